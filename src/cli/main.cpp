@@ -6,6 +6,7 @@
 #include "cli/ranges.hpp"
 #include "cli/terminal.hpp"
 #include "core/memory.hpp"
+#include "ensemble/ensemble.hpp"
 #include "io/text.hpp"
 
 #include <isostat/core/error.hpp>
@@ -182,7 +183,7 @@ Exit status: 0 all completed; 1 some failed, crashed or were refused; 2 some und
 Examples: isostat ensemble examples/biaxial-400.toml --samples 8 -o many
           mpirun -n 4 isostat ensemble examples/biaxial-400.toml --samples 8 -o many)");
         needed(command, "scene", a.scene, "scene file (TOML)", "SCENE.toml");
-        needed(command, "-S,--samples", a.samples, "number of samples", ranges::integer(1, most_samples), "S");
+        needed(command, "-S,--samples", a.samples, "number of samples", ranges::integer(1, isostat::most_samples), "S");
         needed(command, "-o,--output", a.output, "folder of the ensemble", "DIR");
         option(command, "-j,--jobs", a.jobs, "samples at a time (default: one per core; under mpirun one per rank)",
                ranges::integer(1, 10'000), "J");

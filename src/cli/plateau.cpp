@@ -4,6 +4,7 @@
 #include "cli/read_packing.hpp"
 #include "cli/terminal.hpp"
 #include "compare/soft_list.hpp"
+#include "crafted/told_ranges.hpp"
 #include "io/files.hpp"
 #include "preparation/neighbours.hpp"
 
@@ -29,39 +30,6 @@ Strain strain_of(const std::string& name) {
            : name == "diagonal" ? Strain::diagonal
            : name == "full"     ? Strain::full
                                 : Strain::isotropic;
-}
-
-/// What counts of the isostatic ranges.
-struct Told {
-    std::vector<PlateauRange> backbone, all; ///< in the widest range: the answer
-    std::vector<PlateauRange> elsewhere;     ///< of the backbone, less wide
-    int noise = 0;                           ///< of the backbone, less wide than the rounding: so many are left out
-    bool special = false;                    ///< the widest range has N = N_f and no full rank
-};
-
-/// Of two ranges one is a part of the other.
-bool meet(const PlateauRange& a, const PlateauRange& b) {
-    return a.candidates == b.candidates || std::max(a.first, b.first) < std::min(a.last, b.last);
-}
-
-Told told_of(const crafted::Plateau& plateau) {
-    Told out;
-    for (const PlateauRange& range : plateau.ranges) {
-        if (!range.told) {
-            ++out.noise;
-        } else {
-            (meet(range, plateau.widest->range) ? out.backbone : out.elsewhere).push_back(range);
-        }
-    }
-    for (const PlateauRange& range : plateau.ranges_all) {
-        if (range.told && meet(range, plateau.widest->range)) {
-            out.all.push_back(range);
-        }
-    }
-    out.special = plateau.widest && std::any_of(plateau.special.begin(), plateau.special.end(), [&](const auto& range) {
-                      return range.told && meet(range, plateau.widest->range);
-                  });
-    return out;
 }
 
 /// The backbone of the widest range, or at the largest threshold.
@@ -115,7 +83,7 @@ void print_ranges(const std::string& title, const std::vector<PlateauRange>& ran
     }
 }
 
-std::string noise_text(const Told& told, double rounding) {
+std::string noise_text(const crafted::Told& told, double rounding) {
     return told.noise == 0
                ? ""
                : fmt::format(
@@ -137,7 +105,8 @@ std::string self_stress_text(const crafted::Plateau& plateau) {
 }
 
 /// What the packing says: the widest range.
-void print_headline(const crafted::Plateau& plateau, const Told& told, const std::array<double, 2>& thresholds) {
+void print_headline(const crafted::Plateau& plateau, const crafted::Told& told,
+                    const std::array<double, 2>& thresholds) {
     const std::string none = fmt::format("at no threshold of [{:.6g}, {:.6g}]", thresholds[0], thresholds[1]);
     if (plateau.widest) {
         const auto& [range, counts] = *plateau.widest;
@@ -156,8 +125,8 @@ void print_headline(const crafted::Plateau& plateau, const Told& told, const std
     }
 }
 
-void print_text(const PlateauArguments& a, const ReadPacking& file, const crafted::Plateau& plateau, const Told& told,
-                const std::array<double, 2>& thresholds) {
+void print_text(const PlateauArguments& a, const ReadPacking& file, const crafted::Plateau& plateau,
+                const crafted::Told& told, const std::array<double, 2>& thresholds) {
     say("file                        {} ({})\n", a.file, file.format);
     for (const std::string& note : file.notes) {
         say("                            {}\n", note);
@@ -219,8 +188,8 @@ Json ranges_json(const std::vector<PlateauRange>& ranges) {
     return out;
 }
 
-Json to_json(const PlateauArguments& a, const ReadPacking& file, const crafted::Plateau& plateau, const Told& told,
-             const std::array<double, 2>& thresholds) {
+Json to_json(const PlateauArguments& a, const ReadPacking& file, const crafted::Plateau& plateau,
+             const crafted::Told& told, const std::array<double, 2>& thresholds) {
     Json out;
     out["format"] = "isostat-plateau 1";
     out["program"] = program_name();
@@ -358,7 +327,7 @@ int plateau(const PlateauArguments& a) {
     }
     const crafted::Plateau result =
         crafted::plateau(file.packing, thresholds[0], thresholds[1], a.rows, strain, file.rounding);
-    const Told told = told_of(result);
+    const crafted::Told told = crafted::told_of(result);
     note_walls(a, result, file);
     if (const std::string sizes = far_disks(file.packing, thresholds[1], result); !sizes.empty()) {
         file.notes.push_back(sizes);

@@ -1,9 +1,9 @@
 // Frames of a series, matched by time step.
+#include "compare/frame_file.hpp"
 #include "compare/manifest.hpp"
 #include "compare/pair_images.hpp"
 #include "io/digits.hpp"
 #include "io/files.hpp"
-#include "io/frame_file.hpp"
 #include "io/numbers.hpp"
 
 #include <isostat/core/error.hpp>
@@ -21,8 +21,6 @@ namespace isostat::compare {
 namespace {
 
 using foreign::Boundary;
-using foreign::FileFrame;
-using foreign::FrameFile;
 using foreign::FrameHeader;
 
 /// Which wall a field of a file of contacts means: its name, or -1 left, -2 bottom, -3 right, -4 top.

@@ -6,7 +6,6 @@
 
 #include <isostat/core/error.hpp>
 #include <isostat/crafted/plateau.hpp>
-#include <isostat/io/foreign.hpp>
 
 #include <fmt/format.h>
 

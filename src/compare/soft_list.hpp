@@ -2,8 +2,9 @@
 /// \file
 /// The list of contacts of a packing of soft grains.
 
+#include "compare/frame_file.hpp"
+
 #include <isostat/contact/contact.hpp>
-#include <isostat/io/foreign.hpp>
 
 #include <optional>
 #include <string>

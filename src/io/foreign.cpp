@@ -1,7 +1,7 @@
-#include "io/cell_wrap.hpp"
 #include "io/files.hpp"
 #include "io/foreign_source.hpp"
 #include "io/numbers.hpp"
+#include "packing/cell_wrap.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/io/foreign.hpp>

@@ -1,4 +1,4 @@
-#include "io/frame_file.hpp"
+#include "compare/frame_file.hpp"
 
 #include "io/files.hpp"
 #include "io/numbers.hpp"
@@ -10,7 +10,7 @@
 
 #include <algorithm>
 
-namespace isostat::foreign {
+namespace isostat::compare {
 
 namespace {
 
@@ -66,9 +66,9 @@ void FrameFile::recognise() {
         return;
     }
     Lines lines(head, source_);
-    Raw nothing;
-    names_ = read_table_names(lines, {}, nothing);
-    step_ = find_column(names_.names, "timestep");
+    foreign::Raw nothing;
+    names_ = foreign::read_table_names(lines, {}, nothing);
+    step_ = foreign::find_column(names_.names, "timestep");
     pending_ = lines.at_end() ? "" : row;
     lines_ = lines.number();
 }
@@ -115,24 +115,24 @@ std::string FrameFile::take_table() {
     return text;
 }
 
-void FrameFile::read_xyz(Lines& lines, FrameHeader& header) const {
+void FrameFile::read_xyz(Lines& lines, foreign::FrameHeader& header) const {
     const Line count = lines.next("the number of rows");
     count.require_size(1, "the number of rows");
-    const long rows = count.integer(0, "number of rows", 1, most_disks);
+    const long rows = count.integer(0, "number of rows", 1, foreign::most_disks);
     const Line comment = lines.next("the line of key=value");
     if (comment.text().starts_with("ITEM:")) {
         count.fail(count.text(), "start of a frame", "ITEM: TIMESTEP before it");
     }
-    header = read_xyz_header(comment, rows);
+    header = foreign::read_xyz_header(comment, rows);
     for (std::string& name : header.names) {
         name = name == "pos.0" ? "x" : name == "pos.1" ? "y" : name == "pos.2" ? "z" : name;
         name = name == "velo.0" || name == "vel.0" ? "vx" : name == "velo.1" || name == "vel.1" ? "vy" : name;
     }
-    header.timestep = xyz_timestep(comment, source_).value_or(frames_);
+    header.timestep = foreign::xyz_timestep(comment, source_).value_or(frames_);
 }
 
 void FrameFile::read_rows(Lines& lines, FileFrame& frame) const {
-    const FrameHeader& header = frame.header;
+    const foreign::FrameHeader& header = frame.header;
     for (long k = 0; k < header.rows; ++k) {
         const std::string what = fmt::format("row {} of {} of time step {}", k + 1, header.rows, header.timestep);
         if (lines.at_end() && !pending_.empty()) {
@@ -179,7 +179,7 @@ std::optional<FileFrame> FrameFile::next() {
         return frame.rows.empty() ? std::nullopt : std::optional(std::move(frame));
     }
     if (format_ == Format::dump) {
-        frame.header = read_dump_header(lines, item_);
+        frame.header = foreign::read_dump_header(lines, item_);
     } else {
         read_xyz(lines, frame.header);
     }
@@ -209,7 +209,7 @@ FileFrame FrameFile::at(long timestep) {
 
 std::size_t FrameFile::column(const FileFrame& frame, const std::string& name) const {
     const std::string place = where(frame.header.line);
-    const int found = find_column(frame.header.names, name);
+    const int found = foreign::find_column(frame.header.names, name);
     if (found < 0) {
         throw Error(ErrorKind::bad_input, fmt::format("{}: no column '{}': expected one of {}", place, name,
                                                       fmt::join(frame.header.names, ", ")));
@@ -217,4 +217,4 @@ std::size_t FrameFile::column(const FileFrame& frame, const std::string& name) c
     return static_cast<std::size_t>(found);
 }
 
-} // namespace isostat::foreign
+} // namespace isostat::compare

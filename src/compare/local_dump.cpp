@@ -1,5 +1,5 @@
 // Rows of pairs: LAMMPS dumps of style local, tables.
-#include "io/frame_file.hpp"
+#include "compare/frame_file.hpp"
 
 #include <isostat/core/error.hpp>
 
@@ -8,15 +8,14 @@
 #include <algorithm>
 #include <map>
 
-namespace isostat {
+namespace isostat::compare {
 
 namespace {
 
 /// The pairs of one frame.
 class Pairs {
   public:
-    Pairs(const foreign::FrameFile& file, const foreign::FileFrame& frame, const PairColumns& columns,
-          const std::vector<long>& ids)
+    Pairs(const FrameFile& file, const FileFrame& frame, const PairColumns& columns, const std::vector<long>& ids)
         : names_(frame.header.names), first_(file.column(frame, columns.first)),
           second_(file.column(frame, columns.second)), force_(file.column(frame, columns.force)) {
         for (std::size_t i = 0; i < ids.size(); ++i) {
@@ -55,8 +54,8 @@ class Pairs {
 
 std::vector<PairForce> read_local_dump(const std::filesystem::path& path, const PairColumns& columns,
                                        const std::vector<long>& ids, std::optional<long> frame) {
-    foreign::FrameFile file(path.string(), "ENTRIES");
-    std::optional<foreign::FileFrame> found;
+    FrameFile file(path.string(), "ENTRIES");
+    std::optional<FileFrame> found;
     long number = 0;
     for (auto next = file.next(); next && number <= frame.value_or(number); next = file.next(), ++number) {
         found = std::move(next);
@@ -71,4 +70,4 @@ std::vector<PairForce> read_local_dump(const std::filesystem::path& path, const 
     return pairs.take();
 }
 
-} // namespace isostat
+} // namespace isostat::compare

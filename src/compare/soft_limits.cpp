@@ -1,4 +1,4 @@
-#include "cli/soft_limits.hpp"
+#include "compare/soft_limits.hpp"
 
 #include "compare/backbone.hpp"
 #include "io/files.hpp"
@@ -13,7 +13,7 @@
 #include <cmath>
 #include <limits>
 
-namespace isostat::cli {
+namespace isostat::compare {
 
 namespace {
 
@@ -31,12 +31,12 @@ void add_rows(std::vector<Row>& rows, const EquilibriumRow& equilibrium, const S
     if (!std::isfinite(equilibrium.stress_high) || !(equilibrium.stress_low > 0)) {
         return;
     }
-    const State<2> backbone = compare::backbone_of(state, compare::carrying(state));
+    const State<2> backbone = backbone_of(state, carrying(state));
     for (const int direction : {-1, +1}) {
-        const compare::ExactInterval exact{equilibrium.stress_low, equilibrium.stress_high, direction};
-        const auto soft = compare::soft_limit(backbone, exact, stiffness);
+        const ExactInterval exact{equilibrium.stress_low, equilibrium.stress_high, direction};
+        const auto soft = soft_limit(backbone, exact, stiffness);
         rows.push_back({equilibrium.number, direction > 0 ? "high" : "low", exact.end(), soft ? soft->stress : unknown,
-                        compare::stiffness_needed(backbone, exact).value_or(unknown)});
+                        stiffness_needed(backbone, exact).value_or(unknown)});
     }
 }
 
@@ -80,4 +80,4 @@ std::string soft_limits(const fs::path& run, const fs::path& output, double stif
                        : fmt::format("{} equilibria have no stored state (states_every = 1 stores all)\n", left_out));
 }
 
-} // namespace isostat::cli
+} // namespace isostat::compare

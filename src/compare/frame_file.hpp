@@ -15,7 +15,7 @@ namespace isostat::compare {
 /// One frame with its rows. They refer to `text`.
 struct FileFrame {
     foreign::FrameHeader header;
-    std::vector<Line> rows;
+    std::vector<TextLine> rows;
     std::unique_ptr<std::string> text;
 };
 
@@ -51,9 +51,9 @@ class FrameFile {
     std::string take_xyz();
     std::string take_table();
     /// What stands before its rows, of which a table says nothing.
-    void read_xyz(Lines& lines, foreign::FrameHeader& header) const;
-    void read_rows(Lines& lines, FileFrame& frame) const;
-    void read_table(Lines& lines, FileFrame& frame) const;
+    void read_xyz(TextLines& lines, foreign::FrameHeader& header) const;
+    void read_rows(TextLines& lines, FileFrame& frame) const;
+    void read_table(TextLines& lines, FileFrame& frame) const;
 
     std::string source_, item_;
     std::ifstream file_;

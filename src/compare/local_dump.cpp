@@ -23,7 +23,7 @@ class Pairs {
         }
     }
 
-    void add(const Line& line) {
+    void add(const TextLine& line) {
         const int i = disk(line, first_), j = disk(line, second_);
         if (i == j) {
             line.fail(line.field(second_), "second id", "another disk than the first");
@@ -36,7 +36,7 @@ class Pairs {
     std::vector<PairForce> take() { return std::move(pairs_); }
 
   private:
-    [[nodiscard]] int disk(const Line& line, std::size_t at) const {
+    [[nodiscard]] int disk(const TextLine& line, std::size_t at) const {
         const auto found = disk_of_.find(line.integer(at, names_[at], 0, 1L << 62));
         if (found == disk_of_.end()) {
             line.fail(line.field(at), names_[at], "the id of a disk");
@@ -64,7 +64,7 @@ std::vector<PairForce> read_local_dump(const std::filesystem::path& path, const 
         file.fail(fmt::format("the file ends after {} frames: expected frame {} (from 0)", number, frame.value_or(0)));
     }
     Pairs pairs(file, *found, columns, ids);
-    for (const Line& row : found->rows) {
+    for (const TextLine& row : found->rows) {
         pairs.add(row);
     }
     return pairs.take();

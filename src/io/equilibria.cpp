@@ -253,7 +253,7 @@ std::vector<EquilibriumLine> read_equilibrium_lines(const std::filesystem::path&
         return lines;
     }
     const std::string source = path.string();
-    Lines text(content, source);
+    TextLines text(content, source);
     const std::vector<std::string> names = equilibria_columns(named_columns(without_byte_order_mark(content), source));
     (void)text.take("names of columns");
     while (!text.at_end()) {

@@ -47,10 +47,10 @@ bool is_section(std::string_view name) {
 
 /// "12 atoms", "0 1 xlo xhi": the numbers and the words after them.
 struct HeaderLine {
-    Line line;
+    TextLine line;
     std::size_t numbers = 0;
     std::string keyword;
-    explicit HeaderLine(Line l) : line(std::move(l)) {
+    explicit HeaderLine(TextLine l) : line(std::move(l)) {
         while (numbers < line.size() && finite_number(line.field(numbers))) {
             ++numbers;
         }
@@ -90,7 +90,7 @@ struct DataHeader {
     std::set<std::string> seen; ///< keywords
 
     void take(const HeaderLine& header) {
-        const Line& line = header.line;
+        const TextLine& line = header.line;
         if (!seen.insert(header.keyword).second) {
             line.fail(header.keyword, "a second header line", "it once");
         }
@@ -133,7 +133,7 @@ struct DataHeader {
     }
 };
 
-void read_atoms(Lines& lines, const std::string& style, const DataHeader& header, const ForeignOptions& options,
+void read_atoms(TextLines& lines, const std::string& style, const DataHeader& header, const ForeignOptions& options,
                 Raw& raw) {
     // read_data of LAMMPS: sphere: id type diameter density x y z; bpm/sphere: id molecule type diameter density x y z.
     if (style != "sphere" && style != "bpm/sphere") {
@@ -172,7 +172,7 @@ void read_atoms(Lines& lines, const std::string& style, const DataHeader& header
         if (text.empty()) {
             continue;
         }
-        const Line line(text, lines.number(), &lines.source());
+        const TextLine line(text, lines.number(), &lines.source());
         if (line.size() != width + 3) {
             line.require_size(width, what);
         }
@@ -213,7 +213,7 @@ struct Coordinates {
 } // namespace
 
 Raw read_lammps_data(const std::string& text, const std::string& source, const ForeignOptions& options) {
-    Lines lines(text, source);
+    TextLines lines(text, source);
     Raw raw;
     DataHeader header;
     (void)lines.take("a comment"); // LAMMPS ignores the first line
@@ -226,7 +226,7 @@ Raw read_lammps_data(const std::string& text, const std::string& source, const F
         if (content.empty()) {
             continue;
         }
-        const Line line(content, lines.number(), &source);
+        const TextLine line(content, lines.number(), &source);
         if (content == "Atoms") {
             if (read) {
                 line.fail(content, "section", "one section Atoms");
@@ -262,7 +262,7 @@ Raw read_lammps_data(const std::string& text, const std::string& source, const F
 }
 
 Raw read_lammps_dump(const std::string& text, const std::string& source, const ForeignOptions& options) {
-    Lines lines(text, source);
+    TextLines lines(text, source);
     Raw raw;
     for (long number = 0;; ++number) {
         if (lines.only_blanks()) {
@@ -270,7 +270,7 @@ Raw read_lammps_dump(const std::string& text, const std::string& source, const F
                                    options.frame.value_or(number)));
         }
         const FrameHeader frame = read_dump_header(lines, "ATOMS");
-        Lines atoms = lines;
+        TextLines atoms = lines;
         for (long k = 0; k < frame.rows; ++k) {
             const std::string_view row =
                 lines.take(fmt::format("atom {} of {} in frame {}", k + 1, frame.rows, number));
@@ -295,7 +295,7 @@ Raw read_lammps_dump(const std::string& text, const std::string& source, const F
         columns.id = find_column(frame.names, "id");
         Rows rows(columns, source);
         for (long k = 0; k < frame.rows; ++k) {
-            const Line line = atoms.next("an atom");
+            const TextLine line = atoms.next("an atom");
             line.require_size(frame.names.size(), fmt::format("atom {} of {}", k + 1, frame.rows));
             rows.add(line, raw);
         }

@@ -88,7 +88,7 @@ void find_selection(Columns& columns, const std::vector<std::string>& names, con
     }
 }
 
-void Rows::add(const Line& line, Raw& raw) {
+void Rows::add(const TextLine& line, Raw& raw) {
     ++seen_;
     if (columns_.type >= 0) {
         ++types_[std::string(line.field(static_cast<std::size_t>(columns_.type)))];

@@ -34,11 +34,11 @@ struct FrameHeader {
 };
 
 /// Of a LAMMPS dump, up to the names of the columns. \p item: "ATOMS" or "ENTRIES".
-FrameHeader read_dump_header(Lines& lines, const std::string& item);
+FrameHeader read_dump_header(TextLines& lines, const std::string& item);
 /// Of extended XYZ: `comment` is the line of key=value. Vectors are named name.0, name.1, ...
-FrameHeader read_xyz_header(const Line& comment, long rows);
+FrameHeader read_xyz_header(const TextLine& comment, long rows);
 /// Its key Timestep, if it has one.
-std::optional<long> xyz_timestep(const Line& comment, const std::string& source);
+std::optional<long> xyz_timestep(const TextLine& comment, const std::string& source);
 
 /// What a reader found, before walls and checks.
 struct Raw {
@@ -85,7 +85,7 @@ int find_column(const std::vector<std::string>& names, std::string_view name);
 class Rows {
   public:
     Rows(Columns columns, std::string source) : columns_(std::move(columns)), source_(std::move(source)) {}
-    void add(const Line& line, Raw& raw);
+    void add(const TextLine& line, Raw& raw);
     /// Throws when an id was given twice, or no row is selected. Several types are noted.
     void finish(Raw& raw);
     [[nodiscard]] long seen() const { return seen_; }
@@ -105,7 +105,7 @@ struct TableNames {
     int line = 0; ///< 0: no line names them
     char separator = ' ';
 };
-TableNames read_table_names(Lines& lines, const ForeignOptions& options, Raw& raw);
+TableNames read_table_names(TextLines& lines, const ForeignOptions& options, Raw& raw);
 
 Raw read_lammps_data(const std::string& text, const std::string& source, const ForeignOptions& options);
 Raw read_lammps_dump(const std::string& text, const std::string& source, const ForeignOptions& options);

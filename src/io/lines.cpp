@@ -28,7 +28,7 @@ std::string_view trimmed(std::string_view text) {
 
 } // namespace
 
-Line::Line(std::string_view text, int number, const std::string* source, char separator)
+TextLine::TextLine(std::string_view text, int number, const std::string* source, char separator)
     : text_(text), number_(number), source_(source) {
     const bool commas = separator == blanks_or_commas;
     if (separator != ' ' && !commas) {
@@ -49,16 +49,16 @@ Line::Line(std::string_view text, int number, const std::string* source, char se
     }
 }
 
-std::string Line::place() const {
+std::string TextLine::place() const {
     return fmt::format("{}:{}", *source_, number_);
 }
 
-void Line::fail(std::string_view value, const std::string& name, const std::string& expected) const {
+void TextLine::fail(std::string_view value, const std::string& name, const std::string& expected) const {
     throw Error(ErrorKind::bad_input, fmt::format("{}:{}: {} is '{}': expected {}", *source_, number_, name,
                                                   value.substr(0, longest_quote), expected));
 }
 
-void Line::require_size(std::size_t count, const std::string& what) const {
+void TextLine::require_size(std::size_t count, const std::string& what) const {
     if (fields_.size() != count) {
         throw Error(ErrorKind::bad_input,
                     fmt::format("{}:{}: {} values in '{}': expected {} ({} values)", *source_, number_, fields_.size(),
@@ -66,7 +66,7 @@ void Line::require_size(std::size_t count, const std::string& what) const {
     }
 }
 
-double Line::number(std::size_t k, const std::string& name) const {
+double TextLine::number(std::size_t k, const std::string& name) const {
     const auto value = finite_number(fields_[k]);
     if (!value) {
         fail(fields_[k], name, "a finite number");
@@ -74,7 +74,7 @@ double Line::number(std::size_t k, const std::string& name) const {
     return *value;
 }
 
-double Line::positive(std::size_t k, const std::string& name) const {
+double TextLine::positive(std::size_t k, const std::string& name) const {
     const double value = number(k, name);
     if (!(value > 0)) {
         fail(fields_[k], name, "a positive number");
@@ -82,7 +82,7 @@ double Line::positive(std::size_t k, const std::string& name) const {
     return value;
 }
 
-long Line::integer(std::size_t k, const std::string& name, long lowest, long highest) const {
+long TextLine::integer(std::size_t k, const std::string& name, long lowest, long highest) const {
     const auto value = plain_integer(fields_[k]);
     if (!value || *value < lowest || *value > highest) {
         fail(fields_[k], name, fmt::format("an integer from {} to {}", lowest, highest));
@@ -90,12 +90,12 @@ long Line::integer(std::size_t k, const std::string& name, long lowest, long hig
     return *value;
 }
 
-Lines::Lines(std::string_view text, const std::string& source, int before)
+TextLines::TextLines(std::string_view text, const std::string& source, int before)
     : rest_(without_byte_order_mark(text)), source_(&source), number_(before) {
     require_floating_point();
 }
 
-std::string_view Lines::take(const std::string& what) {
+std::string_view TextLines::take(const std::string& what) {
     if (at_end()) {
         fail("the file ends here: expected " + what);
     }
@@ -105,30 +105,30 @@ std::string_view Lines::take(const std::string& what) {
     return line;
 }
 
-bool Lines::find_row(char separator) {
+bool TextLines::find_row(char separator) {
     while (!at_end() && is_no_row(peek(), separator)) {
         (void)take("");
     }
     return !at_end();
 }
 
-Line Lines::next_row(const std::string& what, std::size_t fields) {
+TextLine TextLines::next_row(const std::string& what, std::size_t fields) {
     (void)find_row(blanks_or_commas);
-    Line row = next(what, blanks_or_commas);
+    TextLine row = next(what, blanks_or_commas);
     if (fields != 0) {
         row.require_size(fields, what);
     }
     return row;
 }
 
-void Lines::finish(const std::string& what) {
+void TextLines::finish(const std::string& what) {
     if (find_row(blanks_or_commas)) {
         const std::string row(take("").substr(0, longest_quote));
         fail(fmt::format("more rows than announced: '{}': expected {}", row, what));
     }
 }
 
-void Lines::fail(const std::string& message) const {
+void TextLines::fail(const std::string& message) const {
     throw Error(ErrorKind::bad_input, fmt::format("{}:{}: {}", *source_, number_, message));
 }
 

@@ -12,11 +12,11 @@ namespace isostat {
 inline constexpr char blanks_or_commas = '\0';
 
 /// One line, split into fields.
-class Line {
+class TextLine {
   public:
     /// At blanks and tabs, at `blanks_or_commas`, or at every `separator` (then fields may be empty, and are trimmed
     /// and unquoted).
-    Line(std::string_view text, int number, const std::string* source, char separator = ' ');
+    TextLine(std::string_view text, int number, const std::string* source, char separator = ' ');
 
     [[nodiscard]] std::string_view text() const { return text_; }
     /// "FILE:LINE".
@@ -44,10 +44,10 @@ class Line {
 
 /// Walks through a text line by line, after its byte order mark if it has one. \pre text and source outlive it and its
 /// lines.
-class Lines {
+class TextLines {
   public:
     /// \p before: lines of the file before the text.
-    Lines(std::string_view text, const std::string& source, int before = 0);
+    TextLines(std::string_view text, const std::string& source, int before = 0);
     [[nodiscard]] bool at_end() const { return rest_.empty(); }
     /// True when only blank lines are left.
     [[nodiscard]] bool only_blanks() const { return rest_.find_first_not_of(" \t\r\n") == std::string_view::npos; }
@@ -55,7 +55,7 @@ class Lines {
     [[nodiscard]] std::string_view peek() const { return rest_.substr(0, rest_.find('\n')); }
     /// Throws at the end of the file; `what` says what was expected.
     std::string_view take(const std::string& what);
-    Line next(const std::string& what, char separator = ' ') {
+    TextLine next(const std::string& what, char separator = ' ') {
         const std::string_view text = take(what); // before number() is asked
         return {text, number_, source_, separator};
     }
@@ -63,7 +63,7 @@ class Lines {
     /// Passes over what `is_no_row`. False: nothing else is left.
     bool find_row(char separator = ' ');
     /// The next row, with so many fields between `blanks_or_commas` (0: any number, at least one).
-    Line next_row(const std::string& what, std::size_t fields);
+    TextLine next_row(const std::string& what, std::size_t fields);
     /// Throws when a row is left.
     void finish(const std::string& what);
 

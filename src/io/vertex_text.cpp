@@ -24,7 +24,7 @@ constexpr std::array<Contact, 4> wall_of_type{{{ContactKind::lower_wall, 0, 0},
                                                {ContactKind::upper_wall, 0, 0},
                                                {ContactKind::upper_wall, 0, 1}}};
 
-Contact contact_of(const Line& row, int disks) {
+Contact contact_of(const TextLine& row, int disks) {
     const long type = row.integer(0, "type of the contact", 0, 4);
     const auto i = static_cast<int>(row.integer(1, "first disk of the contact", 0, disks - 1));
     if (type != 0) {
@@ -45,9 +45,9 @@ struct Head {
     bool radius_first;
 };
 
-Head head_of(Lines& rows) {
+Head head_of(TextLines& rows) {
     constexpr std::array<std::string_view, 5> names{"x", "y", "r", "gx", "gy"};
-    const Line row = rows.next_row("the number of disks", 0);
+    const TextLine row = rows.next_row("the number of disks", 0);
     const Head head{static_cast<int>(row.integer(0, "number of disks", 1, most)), row.size() == 1};
     for (std::size_t k = 1; k < row.size(); ++k) {
         if (row.size() != 1 + names.size() || row.field(k) != names[k - 1]) {
@@ -61,20 +61,20 @@ Head head_of(Lines& rows) {
 } // namespace
 
 State<2> parse_vertex_text(const std::string& text, const std::string& source) {
-    Lines rows(text, source);
+    TextLines rows(text, source);
     State<2> state;
     const auto [disks, radius_first] = head_of(rows);
     const std::size_t size = radius_first ? 0 : 2, first = radius_first ? 1 : 0;
     const char* const order = radius_first ? "radius x y gx gy" : "x y r gx gy";
     for (int i = 0; i < disks; ++i) {
-        const Line row = rows.next_row(fmt::format("disk {} of {}: {}", i, disks, order), 5);
+        const TextLine row = rows.next_row(fmt::format("disk {} of {}: {}", i, disks, order), 5);
         state.packing.radius.push_back(row.positive(size, fmt::format("radius of disk {}", i)));
         state.packing.q.push_back(row.number(first, fmt::format("x of disk {}", i)));
         state.packing.q.push_back(row.number(first + 1, fmt::format("y of disk {}", i)));
         state.load.infinitesimal.push_back(row.number(3, fmt::format("gx of disk {}", i)));
         state.load.infinitesimal.push_back(row.number(4, fmt::format("gy of disk {}", i)));
     }
-    const Line box = rows.next_row("the box: Lx Ly", 2);
+    const TextLine box = rows.next_row("the box: Lx Ly", 2);
     for (std::size_t a = 0; a < 2; ++a) {
         state.packing.q.push_back(box.positive(a, a == 0 ? "Lx" : "Ly"));
         state.load.stress[a] = 1;

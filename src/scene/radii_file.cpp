@@ -10,11 +10,11 @@ namespace isostat {
 std::vector<double> read_radii(const std::filesystem::path& path) {
     const std::string source = path.string();
     const std::string text = read_text(path);
-    Lines rows(text, source);
+    TextLines rows(text, source);
     std::vector<double> radii;
     do {
         const std::string name = fmt::format("radius of disk {}", radii.size());
-        const Line row = rows.next_row(name, 1);
+        const TextLine row = rows.next_row(name, 1);
         const double radius = row.number(0, name);
         if (!(radius >= smallest_size && radius <= largest_size)) {
             row.fail(row.field(0), name, fmt::format("a positive number from {} to {}", smallest_size, largest_size));

@@ -17,32 +17,24 @@ namespace isostat::foreign {
 namespace {
 
 std::string_view without_comment(std::string_view line) {
-    line = line.substr(0, line.find('#'));
-    const std::size_t last = line.find_last_not_of(" \t\r");
-    line = last == std::string_view::npos ? std::string_view() : line.substr(0, last + 1);
-    const std::size_t first = line.find_first_not_of(" \t\r");
-    return first == std::string_view::npos ? std::string_view() : line.substr(first);
+    return without_blanks(line.substr(0, line.find('#')));
 }
 
 std::string comment_of(std::string_view line) {
     const std::size_t at = line.find('#');
-    if (at == std::string_view::npos) {
-        return "";
-    }
-    line = line.substr(at + 1);
-    const std::size_t first = line.find_first_not_of(" \t\r");
-    return first == std::string_view::npos
-               ? ""
-               : std::string(line.substr(first, line.find_last_not_of(" \t\r") - first + 1));
+    return at == std::string_view::npos ? "" : std::string(without_blanks(line.substr(at + 1)));
+}
+
+/// `names`: "|one|two|".
+bool is_among(std::string_view names, const std::string& name) {
+    return name.find('|') == std::string::npos && names.find("|" + name + "|") != std::string_view::npos;
 }
 
 /// Sections that may stand beside Atoms; all of them are skipped.
-bool is_section(std::string_view name) {
-    static const std::vector<std::string_view> names{"Velocities", "Masses",    "Ellipsoids",      "Lines",
-                                                     "Triangles",  "Bodies",    "Bonds",           "Angles",
-                                                     "Dihedrals",  "Impropers", "Atom Type Labels"};
-    return std::find(names.begin(), names.end(), name) != names.end() || name.ends_with(" Coeffs") ||
-           name.ends_with(" Labels");
+bool is_section(const std::string& name) {
+    constexpr std::string_view names = "|Velocities|Masses|Ellipsoids|Lines|Triangles|Bodies|Bonds|Angles|Dihedrals|"
+                                       "Impropers|Atom Type Labels|";
+    return is_among(names, name) || name.ends_with(" Coeffs") || name.ends_with(" Labels");
 }
 
 /// "12 atoms", "0 1 xlo xhi": the numbers and the words after them.
@@ -61,25 +53,11 @@ struct HeaderLine {
 };
 
 bool is_counter(const std::string& keyword) {
-    static const std::vector<std::string_view> names{"bonds",
-                                                     "angles",
-                                                     "dihedrals",
-                                                     "impropers",
-                                                     "atom types",
-                                                     "bond types",
-                                                     "angle types",
-                                                     "dihedral types",
-                                                     "improper types",
-                                                     "ellipsoids",
-                                                     "lines",
-                                                     "triangles",
-                                                     "bodies",
-                                                     "extra bond per atom",
-                                                     "extra angle per atom",
-                                                     "extra dihedral per atom",
-                                                     "extra improper per atom",
-                                                     "extra special per atom"};
-    return std::find(names.begin(), names.end(), keyword) != names.end();
+    constexpr std::string_view names =
+        "|bonds|angles|dihedrals|impropers|atom types|bond types|angle types|dihedral types|improper types|ellipsoids|"
+        "lines|triangles|bodies|extra bond per atom|extra angle per atom|extra dihedral per atom|"
+        "extra improper per atom|extra special per atom|";
+    return is_among(names, keyword);
 }
 
 struct DataHeader {
@@ -236,7 +214,7 @@ Raw read_lammps_data(const std::string& text, const std::string& source, const F
             }
             read_atoms(lines, comment_of(whole), header, options, raw);
             read = in_section = in_atoms = true;
-        } else if (is_section(content)) {
+        } else if (is_section(std::string(content))) {
             in_section = true;
             in_atoms = false;
         } else if (in_atoms) {

@@ -16,13 +16,7 @@ namespace {
 
 constexpr std::size_t longest_quote = 60; ///< characters of a bad line that a message repeats
 
-std::string_view trimmed(std::string_view text) {
-    constexpr std::string_view blanks = " \t\r";
-    const std::size_t first = text.find_first_not_of(blanks);
-    if (first == std::string_view::npos) {
-        return {};
-    }
-    text = text.substr(first, text.find_last_not_of(blanks) - first + 1);
+std::string_view unquoted(std::string_view text) {
     return text.size() >= 2 && text.front() == '"' && text.back() == '"' ? text.substr(1, text.size() - 2) : text;
 }
 
@@ -34,7 +28,7 @@ TextLine::TextLine(std::string_view text, int number, const std::string* source,
     if (separator != ' ' && !commas) {
         while (true) {
             const std::size_t end = text.find(separator);
-            fields_.push_back(trimmed(text.substr(0, end)));
+            fields_.push_back(unquoted(without_blanks(text.substr(0, end))));
             if (end == std::string_view::npos) {
                 return;
             }
@@ -130,6 +124,13 @@ void TextLines::finish(const std::string& what) {
 
 void TextLines::fail(const std::string& message) const {
     throw Error(ErrorKind::bad_input, fmt::format("{}:{}: {}", *source_, number_, message));
+}
+
+std::string_view without_blanks(std::string_view text) {
+    constexpr std::string_view blanks = " \t\r";
+    const std::size_t first = text.find_first_not_of(blanks);
+    return first == std::string_view::npos ? std::string_view()
+                                           : text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
 bool is_no_row(std::string_view line, char separator) {

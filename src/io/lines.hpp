@@ -77,6 +77,9 @@ class TextLines {
     int number_;
 };
 
+/// Without blanks, tabs and carriage returns at its ends.
+std::string_view without_blanks(std::string_view text);
+
 /// Blank, or a comment that begins with '#'. Commas are blank where they separate as blanks do.
 bool is_no_row(std::string_view line, char separator = ' ');
 

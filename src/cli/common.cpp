@@ -28,14 +28,6 @@ void print_json(const Json& object) {
     say_json(json::dumped(object) + "\n");
 }
 
-std::vector<std::string> contact_names(const std::vector<Contact>& contacts) {
-    std::vector<std::string> names;
-    for (const Contact& contact : contacts) {
-        names.push_back(to_string<2>(contact));
-    }
-    return names;
-}
-
 int status_of(FailureKind kind) {
     switch (kind) {
     case FailureKind::tie:

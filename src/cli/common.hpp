@@ -2,6 +2,7 @@
 /// \file
 /// What several subcommands share.
 
+#include "contact/names.hpp"
 #include "core/decimal.hpp"
 
 #include <isostat/core/result.hpp>
@@ -24,9 +25,6 @@ Json number(double value);
 
 /// One line on standard output.
 void print_json(const Json& object);
-
-/// "12-40", "3-left", ...
-std::vector<std::string> contact_names(const std::vector<Contact>& contacts);
 
 /// Exit status of a domain failure: 2 for ties and undecided signs, 130 when the user stopped it, 1 otherwise.
 int status_of(FailureKind kind);

@@ -6,7 +6,6 @@
 #include "compare/soft_list.hpp"
 #include "crafted/told_ranges.hpp"
 #include "io/files.hpp"
-#include "preparation/neighbours.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/crafted/plateau.hpp>
@@ -251,10 +250,6 @@ std::string to_csv(const crafted::Plateau& plateau) {
     return out;
 }
 
-} // namespace
-
-namespace {
-
 /// Half a unit of the last digit of the roundest position in --box; 0 where it has none to lose.
 double rounding_of(const std::string& box) {
     double worst = 0;
@@ -283,30 +278,6 @@ void note_walls(const PlateauArguments& a, const crafted::Plateau& plateau, Read
     }
 }
 
-/// Words where the sizes seem to be wrong by a factor; empty: they do not.
-std::string far_disks(const Packing<2>& packing, double largest, const crafted::Plateau& plateau) {
-    const double radius = packing.min_radius();
-    if (plateau.deepest_overlap < -0.5 * radius) {
-        return fmt::format("two disks overlap by {:.3g} of the smallest radius: are the sizes diameters, taken for "
-                           "radii (--diameter COLUMN)?",
-                           -plateau.deepest_overlap / radius);
-    }
-    double nearest = plateau.deepest_overlap;
-    constexpr double farthest = 8; // radii
-    for (double reach = compare::nearly_touching;
-         plateau.candidates == 0 && reach < farthest && !std::isfinite(nearest); reach *= 2) {
-        for (const Contact& c : preparation::near_contacts<2>(packing, reach * radius, 0)) {
-            nearest = std::min(nearest, gap<2>(packing, c));
-        }
-    }
-    return nearest <= std::max(largest, compare::nearly_touching * radius)
-               ? ""
-               : fmt::format(
-                     "the smallest gap is {:.3g} of the smallest radius: are the sizes wrong by a factor (radii "
-                     "taken for diameters)?",
-                     nearest / radius);
-}
-
 } // namespace
 
 int plateau(const PlateauArguments& a) {
@@ -329,7 +300,7 @@ int plateau(const PlateauArguments& a) {
         crafted::plateau(file.packing, thresholds[0], thresholds[1], a.rows, strain, file.rounding);
     const crafted::Told told = crafted::told_of(result);
     note_walls(a, result, file);
-    if (const std::string sizes = far_disks(file.packing, thresholds[1], result); !sizes.empty()) {
+    if (const std::string sizes = compare::far_disks(file.packing, thresholds[1], result); !sizes.empty()) {
         file.notes.push_back(sizes);
     }
     if (!a.csv.empty()) {

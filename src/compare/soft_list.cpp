@@ -3,9 +3,9 @@
 #include "compare/backbone.hpp"
 #include "compare/pair_images.hpp"
 #include "contact/candidates.hpp"
+#include "preparation/neighbours.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/crafted/plateau.hpp>
 
 #include <fmt/format.h>
 
@@ -79,6 +79,29 @@ std::string far_wall(const Packing<2>& packing) {
         }
     }
     return "";
+}
+
+std::string far_disks(const Packing<2>& packing, double largest, const crafted::Plateau& plateau) {
+    const double radius = packing.min_radius();
+    if (plateau.deepest_overlap < -0.5 * radius) {
+        return fmt::format("two disks overlap by {:.3g} of the smallest radius: are the sizes diameters, taken for "
+                           "radii (--diameter COLUMN)?",
+                           -plateau.deepest_overlap / radius);
+    }
+    double nearest = plateau.deepest_overlap;
+    constexpr double farthest = 8; // radii
+    for (double reach = nearly_touching; plateau.candidates == 0 && reach < farthest && !std::isfinite(nearest);
+         reach *= 2) {
+        for (const Contact& c : preparation::near_contacts<2>(packing, reach * radius, 0)) {
+            nearest = std::min(nearest, gap<2>(packing, c));
+        }
+    }
+    return nearest <= std::max(largest, nearly_touching * radius)
+               ? ""
+               : fmt::format(
+                     "the smallest gap is {:.3g} of the smallest radius: are the sizes wrong by a factor (radii "
+                     "taken for diameters)?",
+                     nearest / radius);
 }
 
 void check_nearness(const std::string& file, const Packing<2>& packing) {

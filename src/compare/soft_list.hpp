@@ -5,6 +5,7 @@
 #include "compare/frame_file.hpp"
 
 #include <isostat/contact/contact.hpp>
+#include <isostat/crafted/plateau.hpp>
 
 #include <optional>
 #include <string>
@@ -20,6 +21,9 @@ inline constexpr double nearly_touching = 0.1;
 
 /// Words on a wall that no disk is near; empty: every wall has one.
 std::string far_wall(const Packing<2>& packing);
+
+/// Words where the sizes seem to be wrong by a factor; empty: they do not. \p largest: threshold of the plateau.
+std::string far_disks(const Packing<2>& packing, double largest, const crafted::Plateau& plateau);
 
 /// Every wall near a disk, no overlap deep: else the file is no packing of nearly rigid disks in these walls. Throws
 /// `Error(bad_input)`.

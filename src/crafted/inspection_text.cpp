@@ -1,3 +1,4 @@
+#include "contact/names.hpp"
 #include "core/words.hpp"
 
 #include <isostat/core/error.hpp>
@@ -80,10 +81,8 @@ namespace {
 class InspectionTable {
   public:
     InspectionTable(const Inspection& inspection, const ExactPacking& packing)
-        : inspection_(inspection), packing_(packing), exact_(inspection.rank_exact == Verdict::proved) {
-        for (const Contact& contact : inspection.contacts) {
-            contact_names_.push_back(to_string<2>(contact));
-        }
+        : inspection_(inspection), packing_(packing), exact_(inspection.rank_exact == Verdict::proved),
+          contact_names_(contact_names(inspection.contacts)) {
         counts();
         grains();
         forces();
@@ -170,16 +169,12 @@ class InspectionTable {
         if (inspection_.bases_exact != Verdict::proved) {
             return;
         }
-        const DofMap<2> dofs(approximate(packing_));
-        std::vector<std::string> dof_names;
-        for (int d = 0; d < dofs.dof_count(); ++d) {
-            dof_names.push_back(dofs.name(d));
-        }
         for (std::size_t s = 0; s < std::min(inspection_.self_stresses.size(), most); ++s) {
             line(fmt::format("self-stress {}", s + 1), vector_text(inspection_.self_stresses[s], contact_names_));
         }
         for (std::size_t m = 0; m < std::min(inspection_.motions.size(), most); ++m) {
-            line(fmt::format("motion {}", m + 1), vector_text(inspection_.motions[m], dof_names));
+            line(fmt::format("motion {}", m + 1),
+                 vector_text(inspection_.motions[m], dof_names(approximate(packing_))));
         }
     }
 

@@ -1,4 +1,5 @@
 // State and Packing: arrays that look into the library's memory.
+#include "contact/names.hpp"
 #include "convert.hpp"
 #include "packing/words.hpp"
 #include "rigidity/isostatic.hpp"
@@ -42,25 +43,6 @@ std::optional<double> tilt(const Packing<2>& packing) {
 
 constexpr const char* tilt_words = "Of a periodic cell: x of the second period; None in a box.";
 constexpr const char* periodic_words = "(along x, along y): whether the packing repeats.";
-
-/// Names of the degrees of freedom: "x of disk 3", "top wall".
-std::vector<std::string> dof_names(const Packing<2>& packing) {
-    const DofMap<2> dofs(packing);
-    std::vector<std::string> names;
-    for (int d = 0; d < dofs.dof_count(); ++d) {
-        names.push_back(dofs.name(d));
-    }
-    return names;
-}
-
-std::vector<std::string> contact_names(const std::vector<Contact>& contacts) {
-    std::vector<std::string> names;
-    names.reserve(contacts.size());
-    for (const Contact& contact : contacts) {
-        names.push_back(to_string<2>(contact));
-    }
-    return names;
-}
 
 /// Moves a vector into an array without a copy.
 template <class T> py::array taken(std::vector<T>&& vector) {

@@ -1,6 +1,6 @@
 #include "io/record_text.hpp"
 
-#include "io/perturbation_json.hpp"
+#include "io/state_json.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/io/run_directory.hpp>
@@ -32,7 +32,7 @@ Json tie_json(const TieDecision& tie) {
         object["choice"] = to_string(tie.choice);
     }
     if (tie.what != "step") {
-        object["log2_zero"] = json::exponent_json(tie.exponent);
+        object["log2_zero"] = json::or_null(tie.exponent);
         object["bits"] = tie.bits;
     }
     return object;

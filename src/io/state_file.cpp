@@ -1,7 +1,5 @@
-#include "io/contact_json.hpp"
 #include "io/files.hpp"
 #include "io/json.hpp"
-#include "io/perturbation_json.hpp"
 #include "io/state_json.hpp"
 #include "io/vertex_text.hpp"
 #include "packing/pressed_sides.hpp"

@@ -1,8 +1,7 @@
 #include "core/work.hpp"
-#include "io/contact_json.hpp"
 #include "io/files.hpp"
 #include "io/json.hpp"
-#include "io/perturbation_json.hpp"
+#include "io/state_json.hpp"
 #include "packing/words.hpp"
 
 #include <isostat/core/error.hpp>

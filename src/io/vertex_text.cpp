@@ -1,8 +1,8 @@
 #include "io/vertex_text.hpp"
 
-#include "io/contact_json.hpp"
 #include "io/json.hpp"
 #include "io/lines.hpp"
+#include "io/state_json.hpp"
 
 #include <isostat/core/error.hpp>
 

@@ -162,8 +162,8 @@ int status_of(const std::vector<FrameResult>& frames) {
 } // namespace
 
 const char* to_string(FrameStatus status) {
-    static constexpr EnumWords<9> words{"same",   "early", "late",    "other",    "soft",
-                                        "moving", "file",  "refuted", "undecided"};
+    static constexpr std::array words{"same",   "early", "late",    "other",    "soft",
+                                      "moving", "file",  "refuted", "undecided"};
     return word_of(status, words);
 }
 

@@ -175,7 +175,7 @@ Packing<2> of_disks(const Packing<2>& packing, const std::vector<int>& disks) {
 }
 
 const char* to_string(SnapOutcome outcome) {
-    static constexpr EnumWords<5> words{"vertex", "hyperstatic", "moving", "refuted", "undecided"};
+    static constexpr std::array words{"vertex", "hyperstatic", "moving", "refuted", "undecided"};
     return word_of(outcome, words);
 }
 

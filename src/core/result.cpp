@@ -8,9 +8,9 @@
 namespace isostat {
 
 const char* to_string(FailureKind kind) {
-    static constexpr EnumWords<11> words{"not isostatic", "overlap",       "tie",        "undecided",
-                                         "no limit",      "flows",         "unbounded",  "not converged",
-                                         "cap reached",   "contradiction", "interrupted"};
+    static constexpr std::array words{"not isostatic", "overlap",       "tie",        "undecided",
+                                      "no limit",      "flows",         "unbounded",  "not converged",
+                                      "cap reached",   "contradiction", "interrupted"};
     return word_of(kind, words);
 }
 

@@ -17,7 +17,7 @@ thread_local std::array<long, work_kinds>* elsewhere = nullptr;
 } // namespace
 
 const char* to_string(Work kind) {
-    static constexpr EnumWords<15> words{
+    static constexpr std::array words{
         "dynamics_steps", "linear_programmes", "candidate_searches", "overlap_proofs", "rank_proofs",
         "factorisations", "inverse_bounds",    "double_double",      "multiprecision", "exact_solutions",
         "states_written", "checkpoints",       "pictures",           "charts",         "vtk_files"};

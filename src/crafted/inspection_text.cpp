@@ -56,22 +56,22 @@ std::string number_list(const std::vector<int>& numbers) {
 } // namespace
 
 const char* to_string(DiskHold hold) {
-    static constexpr EnumWords<5> words{"held", "bridge", "rattler", "fixed", "loaded"};
+    static constexpr std::array words{"held", "bridge", "rattler", "fixed", "loaded"};
     return word_of(hold, words);
 }
 
 const char* to_string(Support support) {
-    static constexpr EnumWords<6> words{"positive", "with zeros", "none", "unbalanced", "undecided", "no load"};
+    static constexpr std::array words{"positive", "with zeros", "none", "unbalanced", "undecided", "no load"};
     return word_of(support, words);
 }
 
 const char* to_string(SecondOrder answer) {
-    static constexpr EnumWords<4> words{"no mechanism", "rigid", "flexes", "undecided"};
+    static constexpr std::array words{"no mechanism", "rigid", "flexes", "undecided"};
     return word_of(answer, words);
 }
 
 const char* to_string(exact::OneSign sign) {
-    static constexpr EnumWords<3> words{"strict", "partial", "none"};
+    static constexpr std::array words{"strict", "partial", "none"};
     return word_of(sign, words);
 }
 

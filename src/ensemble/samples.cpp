@@ -16,7 +16,7 @@ using json::Json;
 
 namespace {
 
-constexpr EnumWords<7> status_words{"completed", "failed", "undecided", "interrupted", "crashed", "refused", "missing"};
+constexpr std::array status_words{"completed", "failed", "undecided", "interrupted", "crashed", "refused", "missing"};
 
 /// "failed: the reason" of a run.json.
 void read_status(Sample& sample, const std::string& words) {

@@ -55,7 +55,7 @@ std::string steering(const RunCounters& counters) {
 } // namespace
 
 const char* to_string(RunStatus status) {
-    static constexpr EnumWords<4> words{"completed", "failed", "undecided", "interrupted"};
+    static constexpr std::array words{"completed", "failed", "undecided", "interrupted"};
     return word_of(status, words);
 }
 

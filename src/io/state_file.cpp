@@ -102,7 +102,7 @@ template <int Dim> void read_cell(const Field& field, Packing<Dim>& packing) {
     const Field axes = field.at("axes");
     axes.require_size(Dim, "one word per axis");
     for (std::size_t a = 0; a < Dim; ++a) {
-        cell.periodic[a] = axes.at(a).word<int>(EnumWords<2>{"periodic", "walls"}) == 0;
+        cell.periodic[a] = axes.at(a).word<int>(std::array{"periodic", "walls"}) == 0;
         if (cell.periodic[a]) {
             packing.walls.lower[a] = packing.walls.upper[a] = WallKind::absent;
         }

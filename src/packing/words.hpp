@@ -8,9 +8,9 @@
 
 namespace isostat {
 
-inline constexpr EnumWords<3> wall_kind_words{"absent", "fixed", "movable"}; ///< of `WallKind`
-inline constexpr EnumWords<2> load_kind_words{"nominal", "true"};            ///< of `LoadKind`
-inline constexpr EnumWords<3> axis_names{"x", "y", "z"};
-inline constexpr EnumWords<3> tilt_names{"xy", "xz", "yz"};
+inline constexpr std::array wall_kind_words{"absent", "fixed", "movable"}; ///< of `WallKind`
+inline constexpr std::array load_kind_words{"nominal", "true"};            ///< of `LoadKind`
+inline constexpr std::array axis_names{"x", "y", "z"};
+inline constexpr std::array tilt_names{"xy", "xz", "yz"};
 
 } // namespace isostat

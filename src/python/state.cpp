@@ -28,21 +28,49 @@ py::dict walls_dict(const Walls<2>& walls) {
     return dict;
 }
 
-py::array positions(const Packing<2>& packing, py::handle owner) {
-    return view(packing.q.data(), {packing.disk_count(), 2}, owner);
+/// What a packing has, or a state by its packing: `of` gives that of an object.
+template <class Bound, class Of> void bind_grains(Bound& bound, const Of& of) {
+    bound
+        .def_property_readonly(
+            "positions",
+            [of](const py::object& self) {
+                const Packing<2>& packing = of(self);
+                return view(packing.q.data(), {packing.disk_count(), 2}, self);
+            },
+            "(n, 2) centres; length. A read-only view.")
+        .def_property_readonly(
+            "length",
+            [of](const py::object& self) {
+                const Packing<2>& packing = of(self);
+                return view(packing.q.data() + 2 * packing.radius.size(), {2}, self);
+            },
+            "(2,) positions of the right and the top wall, or the periods of a cell; length. A read-only view.")
+        .def_property_readonly(
+            "radii", [of](const py::object& self) { return view(of(self).radius, self); },
+            "(n,) radii; length. A read-only view.")
+        .def_property_readonly(
+            "fixed", [of](const py::object& self) { return view(of(self).fixed, self); },
+            "(n,) flags, 1: cannot move; empty where no disk is fixed.")
+        .def_property_readonly(
+            "walls", [of](const py::object& self) { return walls_dict(of(self).walls); },
+            "{\"lower\": (left, bottom), \"upper\": (right, top)}, each \"absent\", \"fixed\" or \"movable\".")
+        .def_property_readonly(
+            "tilt",
+            [of](const py::object& self) {
+                const Packing<2>& packing = of(self);
+                return packing.cell.any() ? std::optional(packing.lattice(0, 1)) : std::nullopt;
+            },
+            "Of a periodic cell: x of the second period; None in a box.")
+        .def_property_readonly(
+            "periodic", [of](const py::object& self) { return py::tuple(py::cast(of(self).cell.periodic)); },
+            "(along x, along y): whether the packing repeats.")
+        .def_property_readonly(
+            "solid_fraction", [of](const py::object& self) { return of(self).solid_fraction(); },
+            "Area of the disks over that of the box.")
+        .def_property_readonly(
+            "dof_names", [of](const py::object& self) { return dof_names(of(self)); },
+            "Names of the N_f degrees of freedom, in their order: \"x of disk 3\", \"top wall\".");
 }
-
-py::array lengths(const Packing<2>& packing, py::handle owner) {
-    return view(packing.q.data() + 2 * packing.radius.size(), {2}, owner);
-}
-
-/// x of the second period of a cell.
-std::optional<double> tilt(const Packing<2>& packing) {
-    return packing.cell.any() ? std::optional(packing.lattice(0, 1)) : std::nullopt;
-}
-
-constexpr const char* tilt_words = "Of a periodic cell: x of the second period; None in a box.";
-constexpr const char* periodic_words = "(along x, along y): whether the packing repeats.";
 
 /// Moves a vector into an array without a copy.
 template <class T> py::array taken(std::vector<T>&& vector) {
@@ -82,62 +110,24 @@ Packing<2> packing_of(const py::array_t<double, py::array::c_style | py::array::
 }
 
 void bind_packing(py::module_& module) {
-    py::class_<Packing<2>, std::shared_ptr<Packing<2>>>(
+    py::class_<Packing<2>, std::shared_ptr<Packing<2>>> packing(
         module, "Packing",
         "Disks and walls: positions, radii, box. No contacts, no load.\n\nPacking(positions, radii, length, *, "
         "lower=(\"fixed\", \"fixed\"), upper=(\"movable\", \"movable\"), fixed=[]): (n, 2) and (n,) floats, (Lx, Ly); "
-        "`fixed` has a flag per disk.")
+        "`fixed` has a flag per disk.");
+    packing
         .def(py::init(&packing_of), py::arg("positions"), py::arg("radii"), py::arg("length"), py::kw_only(),
              py::arg("lower") = std::array<std::string, 2>{"fixed", "fixed"},
              py::arg("upper") = std::array<std::string, 2>{"movable", "movable"},
              py::arg("fixed") = std::vector<bool>{})
-        .def("__len__", &Packing<2>::disk_count)
-        .def_property_readonly(
-            "positions", [](const py::object& self) { return positions(self.cast<const Packing<2>&>(), self); },
-            "(n, 2) centres; length. A read-only view.")
-        .def_property_readonly(
-            "length", [](const py::object& self) { return lengths(self.cast<const Packing<2>&>(), self); },
-            "(2,) positions of the right and the top wall, or the periods of a cell; length. A read-only view.")
-        .def_property_readonly("radii", vector_of(&Packing<2>::radius), "(n,) radii; length. A read-only view.")
-        .def_property_readonly("fixed", vector_of(&Packing<2>::fixed),
-                               "(n,) flags, 1: cannot move; empty where no disk is fixed.")
-        .def_property_readonly(
-            "walls", [](const Packing<2>& self) { return walls_dict(self.walls); },
-            "{\"lower\": (left, bottom), \"upper\": (right, top)}, each \"absent\", \"fixed\" or \"movable\".")
-        .def_property_readonly("tilt", &tilt, tilt_words)
-        .def_property_readonly(
-            "periodic", [](const Packing<2>& self) { return py::tuple(py::cast(self.cell.periodic)); }, periodic_words)
-        .def_property_readonly("solid_fraction", &Packing<2>::solid_fraction, "Area of the disks over that of the box.")
-        .def_property_readonly("dof_names", &dof_names,
-                               "Names of the N_f degrees of freedom, in their order: \"x of disk 3\", \"top wall\".");
+        .def("__len__", &Packing<2>::disk_count);
+    bind_grains(packing, [](const py::object& self) -> const Packing<2>& { return self.cast<const Packing<2>&>(); });
 }
 
 using StateClass = py::class_<PyState, std::shared_ptr<PyState>>;
 
 const State<2>& state_of(const py::object& self) {
     return self.cast<const PyState&>().state;
-}
-
-void bind_grains(StateClass& state) {
-    state
-        .def_property_readonly(
-            "positions", [](const py::object& self) { return positions(state_of(self).packing, self); },
-            "(n, 2) centres; length. A read-only view.")
-        .def_property_readonly(
-            "radii", [](const py::object& self) { return view(state_of(self).packing.radius, self); },
-            "(n,) radii; length. A read-only view.")
-        .def_property_readonly(
-            "length", [](const py::object& self) { return lengths(state_of(self).packing, self); },
-            "(2,) positions of the right and the top wall, or the periods of a cell; length. A read-only view.")
-        .def_property_readonly(
-            "fixed", [](const py::object& self) { return view(state_of(self).packing.fixed, self); },
-            "(n,) flags, 1: cannot move; empty where no disk is fixed.")
-        .def_property_readonly(
-            "walls", [](const PyState& self) { return walls_dict(self.state.packing.walls); },
-            "{\"lower\": (left, bottom), \"upper\": (right, top)}, each \"absent\", \"fixed\" or \"movable\".")
-        .def_property_readonly(
-            "solid_fraction", [](const PyState& self) { return self.state.packing.solid_fraction(); },
-            "Area of the disks over that of the box.");
 }
 
 void bind_contacts(StateClass& state) {
@@ -162,16 +152,8 @@ void bind_contacts(StateClass& state) {
             },
             "(N, 2) integers: the second disk of a contact is moved by so many periods; 0 in a box. A copy.")
         .def_property_readonly(
-            "tilt", [](const PyState& self) { return tilt(self.state.packing); }, tilt_words)
-        .def_property_readonly(
-            "periodic", [](const PyState& self) { return py::tuple(py::cast(self.state.packing.cell.periodic)); },
-            periodic_words)
-        .def_property_readonly(
             "contact_names", [](const PyState& self) { return contact_names(self.state.contacts); },
             "Names of the N contacts: \"3-7\", \"3-8(1,0)\", \"3-left\".")
-        .def_property_readonly(
-            "dof_names", [](const PyState& self) { return dof_names(self.state.packing); },
-            "Names of the N_f degrees of freedom, in their order: \"x of disk 3\", \"top wall\".")
         .def_property_readonly("forces", vector_of(&PyState::forces),
                                "(N,) forces that the file has, stress x length, positive in compression; empty where "
                                "it has none. For looking: `inspect` proves them.");
@@ -235,7 +217,7 @@ void bind_state_class(py::module_& module) {
             },
             py::arg("path"), "Writes a state file in one step: no partial file. Raises CannotWrite.")
         .def("__len__", [](const PyState& self) { return self.state.packing.disk_count(); });
-    bind_grains(state);
+    bind_grains(state, [](const py::object& self) -> const Packing<2>& { return state_of(self).packing; });
     bind_contacts(state);
     bind_load(state);
     state

@@ -109,7 +109,7 @@ Counting settled(Counting counting, const std::function<exact::NumberMatrix()>& 
 } // namespace
 
 const char* to_string(Strain strain) {
-    static constexpr EnumWords<4> words{"fixed cell", "isotropic", "diagonal", "full strain"};
+    static constexpr std::array words{"fixed cell", "isotropic", "diagonal", "full strain"};
     return word_of(strain, words);
 }
 

@@ -240,61 +240,33 @@ Raw read_lammps_data(const std::string& text, const std::string& source, const F
 }
 
 Raw read_lammps_dump(const std::string& text, const std::string& source, const ForeignOptions& options) {
-    TextLines lines(text, source);
     Raw raw;
-    for (long number = 0;; ++number) {
-        if (lines.only_blanks()) {
-            lines.fail(fmt::format("the file ends after {} frames: expected frame {} (from 0)", number,
-                                   options.frame.value_or(number)));
-        }
-        const FrameHeader frame = read_dump_header(lines, "ATOMS");
-        TextLines atoms = lines;
-        for (long k = 0; k < frame.rows; ++k) {
-            const std::string_view row =
-                lines.take(fmt::format("atom {} of {} in frame {}", k + 1, frame.rows, number));
-            if (row.starts_with("ITEM:")) {
-                lines.fail(fmt::format("'{}': expected atom {} of {} in frame {}", row.substr(0, 40), k + 1, frame.rows,
-                                       number));
-            }
-        }
-        if (options.frame ? number < *options.frame : !lines.only_blanks()) {
-            continue;
-        }
-        const std::string where = fmt::format("{}:{}", source, atoms.number());
-        if (frame.rows == 0) {
-            throw Error(ErrorKind::bad_input,
-                        fmt::format("{}: frame {} has 0 atoms: expected at least 1", where, number));
-        }
-        Columns columns;
-        Coordinates coordinates;
-        coordinates.find(columns, frame.names, where, raw);
-        find_size(columns, frame.names, options, where, raw);
-        find_selection(columns, frame.names, options, where);
-        columns.id = find_column(frame.names, "id");
-        Rows rows(columns, source);
-        for (long k = 0; k < frame.rows; ++k) {
-            const TextLine line = atoms.next("an atom");
-            line.require_size(frame.names.size(), fmt::format("atom {} of {}", k + 1, frame.rows));
-            rows.add(line, raw);
-        }
-        rows.finish(raw);
-        raw.box = frame.box;
-        raw.tilt = frame.tilt;
-        raw.sides = frame.sides;
-        raw.boundary = frame.boundary;
-        raw.loose = frame.loose;
-        if (coordinates.scaled) {
-            const std::array<double, 4> box = frame.box.value();
-            raw.scale = std::max(box[1] - box[0] + std::abs(frame.tilt), box[3] - box[2]);
-            for (std::size_t i = 0; i < raw.x.size(); ++i) {
-                raw.x[i] = box[0] + raw.x[i] * (box[1] - box[0]) + raw.y[i] * frame.tilt;
-                raw.y[i] = box[2] + raw.y[i] * (box[3] - box[2]);
-            }
-            raw.notes.emplace_back("scaled coordinates were multiplied out in double: rounded at 2^-52 of the box");
-        }
-        raw.notes.push_back(fmt::format("frame {} (time step {})", number, frame.timestep));
-        return raw;
+    ChosenFrame frame =
+        choose_frame(text, source, options, "atom", [](TextLines& lines) { return read_dump_header(lines, "ATOMS"); });
+    const FrameHeader& header = frame.header;
+    const std::string where = fmt::format("{}:{}", source, header.line);
+    if (header.rows == 0) {
+        throw Error(ErrorKind::bad_input,
+                    fmt::format("{}: frame {} has 0 atoms: expected at least 1", where, frame.number));
     }
+    Columns columns;
+    Coordinates coordinates;
+    coordinates.find(columns, header.names, where, raw);
+    find_size(columns, header.names, options, where, raw);
+    find_selection(columns, header.names, options, where);
+    columns.id = find_column(header.names, "id");
+    frame.read(Rows(columns, source), raw);
+    if (coordinates.scaled) {
+        const std::array<double, 4> box = raw.box.value();
+        raw.scale = std::max(box[1] - box[0] + std::abs(raw.tilt), box[3] - box[2]);
+        for (std::size_t i = 0; i < raw.x.size(); ++i) {
+            raw.x[i] = box[0] + raw.x[i] * (box[1] - box[0]) + raw.y[i] * raw.tilt;
+            raw.y[i] = box[2] + raw.y[i] * (box[3] - box[2]);
+        }
+        raw.notes.emplace_back("scaled coordinates were multiplied out in double: rounded at 2^-52 of the box");
+    }
+    raw.notes.push_back(fmt::format("frame {} (time step {})", frame.number, header.timestep));
+    return raw;
 }
 
 } // namespace isostat::foreign

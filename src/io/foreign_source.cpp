@@ -153,4 +153,35 @@ void Rows::finish(Raw& raw) {
     }
 }
 
+ChosenFrame choose_frame(const std::string& text, const std::string& source, const ForeignOptions& options,
+                         const char* row, const std::function<FrameHeader(TextLines&)>& head) {
+    TextLines lines(text, source);
+    for (long number = 0;; ++number) {
+        if (lines.only_blanks()) {
+            lines.fail(fmt::format("the file ends after {} frames: expected frame {} (from 0)", number,
+                                   options.frame.value_or(number)));
+        }
+        ChosenFrame frame{number, head(lines), lines, row};
+        for (long k = 0; k < frame.header.rows; ++k) {
+            const std::string what = fmt::format("{} {} of {} in frame {}", row, k + 1, frame.header.rows, number);
+            if (const std::string_view line = lines.take(what); line.starts_with("ITEM:")) {
+                lines.fail(fmt::format("'{}': expected {}", line.substr(0, 40), what));
+            }
+        }
+        if (options.frame ? number == *options.frame : lines.only_blanks()) {
+            return frame;
+        }
+    }
+}
+
+void ChosenFrame::read(Rows reader, Raw& raw) {
+    static_cast<Bounds&>(raw) = header;
+    for (long k = 0; k < header.rows; ++k) {
+        const TextLine line = rows.next(row);
+        line.require_size(header.names.size(), fmt::format("{} {} of {}", row, k + 1, header.rows));
+        reader.add(line, raw);
+    }
+    reader.finish(raw);
+}
+
 } // namespace isostat::foreign

@@ -20,17 +20,20 @@ constexpr long most_disks = 100'000'000;
 
 enum class Boundary { open, periodic, unknown };
 
+struct Bounds {
+    std::optional<std::array<double, 4>> box; ///< xlo, xhi, ylo, yhi
+    double tilt = 0;                          ///< x component of the second period
+    std::array<Boundary, 2> boundary{Boundary::unknown, Boundary::unknown};
+    std::array<bool, 2> loose{}; ///< the bounds only follow the disks: no walls there
+    Digits sides;                ///< of box and tilt
+};
+
 /// What stands before the rows of a frame.
-struct FrameHeader {
+struct FrameHeader : Bounds {
     long timestep = 0;
     long rows = -1;
     int line = 0; ///< of the names
     std::vector<std::string> names;
-    std::optional<std::array<double, 4>> box; ///< xlo, xhi, ylo, yhi
-    double tilt = 0;                          ///< x component of the second period
-    std::array<Boundary, 2> boundary{Boundary::unknown, Boundary::unknown};
-    std::array<bool, 2> loose{}; ///< the bounds only follow the disks
-    Digits sides;                ///< of box and tilt
 };
 
 /// Of a LAMMPS dump, up to the names of the columns. \p item: "ATOMS" or "ENTRIES".
@@ -41,18 +44,14 @@ FrameHeader read_xyz_header(const TextLine& comment, long rows);
 std::optional<long> xyz_timestep(const TextLine& comment, const std::string& source);
 
 /// What a reader found, before walls and checks.
-struct Raw {
+struct Raw : Bounds {
     std::vector<double> x, y, size;
     std::vector<long> ids; ///< one per disk, or none
     SizeMeaning meaning = SizeMeaning::radius;
-    std::optional<std::array<double, 4>> box; ///< xlo, xhi, ylo, yhi
-    double tilt = 0;                          ///< x component of the second period
-    std::array<Boundary, 2> boundary{Boundary::unknown, Boundary::unknown};
-    std::array<bool, 2> loose{}; ///< the bounds only follow the disks: no walls there
     std::vector<std::string> notes;
-    Digits places, sides, sizes; ///< digits of coordinates, of box and tilt, of radii or diameters
-    double scale = 1;            ///< of coordinates in units of the box: the largest length that multiplied them
-    std::string types;           ///< empty, or which there are, and that all are taken for disks; a note too
+    Digits places, sizes; ///< digits of coordinates, of radii or diameters
+    double scale = 1;     ///< of coordinates in units of the box: the largest length that multiplied them
+    std::string types;    ///< empty, or which there are, and that all are taken for disks; a note too
 };
 
 /// Which columns hold what.
@@ -98,6 +97,19 @@ class Rows {
     std::map<std::string, int, std::less<>> types_;
     long seen_ = 0; ///< rows
 };
+
+/// The frame that is asked for, the last one where none is. \p head takes what stands before the rows of a frame, which
+/// messages call `row`.
+struct ChosenFrame {
+    long number = 0;
+    FrameHeader header;
+    TextLines rows;
+    const char* row;
+    /// Adds them to a raw packing.
+    void read(Rows reader, Raw& raw);
+};
+ChosenFrame choose_frame(const std::string& text, const std::string& source, const ForeignOptions& options,
+                         const char* row, const std::function<FrameHeader(TextLines&)>& head);
 
 /// Names of the columns of a table: from the comments at its start, or the row of names; reads up to the first row.
 struct TableNames {

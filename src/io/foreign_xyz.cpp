@@ -174,57 +174,38 @@ FrameHeader read_xyz_header(const TextLine& comment, long rows) {
 }
 
 Raw read_xyz(const std::string& text, const std::string& source, const ForeignOptions& options) {
-    TextLines lines(text, source);
-    for (long number = 0;; ++number) {
-        if (lines.only_blanks()) {
-            lines.fail(fmt::format("the file ends after {} frames: expected frame {} (from 0)", number,
-                                   options.frame.value_or(number)));
-        }
+    Raw raw;
+    std::optional<TextLine> comment; // of the last frame looked at: others need not be right
+    ChosenFrame frame = choose_frame(text, source, options, "row", [&comment](TextLines& lines) {
         const TextLine count = lines.next("the number of rows");
         count.require_size(1, "the number of rows");
-        const long rows = count.integer(0, "number of rows", 1, most_disks);
-        const TextLine comment = lines.next("the line of key=value");
-        TextLines body = lines;
-        for (long k = 0; k < rows; ++k) {
-            (void)lines.take(fmt::format("row {} of {} in frame {}", k + 1, rows, number));
-        }
-        if (options.frame ? number < *options.frame : !lines.only_blanks()) {
-            continue;
-        }
-        Raw raw;
-        const FrameHeader header = read_xyz_header(comment, rows);
-        const std::vector<std::string>& names = header.names;
-        const std::string where = fmt::format("{}:{}", source, comment.number());
-        Columns columns;
-        columns.x = find_column(names, "pos.0");
-        columns.y = find_column(names, "pos.1");
-        columns.z = find_column(names, "pos.2");
-        columns.id = find_column(names, "id");
-        if (columns.x < 0) {
-            throw Error(ErrorKind::bad_input,
-                        fmt::format("{}: no coordinates: expected pos:R:2 or pos:R:3 in Properties", where));
-        }
-        find_size(columns, names, options, where, raw);
-        find_selection(columns, names, options, where);
-        raw.box = header.box;
-        raw.tilt = header.tilt;
-        raw.sides = header.sides;
-        raw.boundary = header.boundary;
-        if (header.box && ((*header.box)[0] != 0 || (*header.box)[2] != 0)) {
-            raw.notes.emplace_back("upper bounds = Origin + Lattice in double: rounded at 2^-53 of them");
-        }
-        Rows reader(columns, source);
-        for (long k = 0; k < rows; ++k) {
-            const TextLine line = body.next("a row");
-            line.require_size(names.size(), fmt::format("row {} of {}", k + 1, rows));
-            reader.add(line, raw);
-        }
-        reader.finish(raw);
-        if (number > 0) {
-            raw.notes.push_back(fmt::format("frame {}", number));
-        }
-        return raw;
+        FrameHeader header;
+        header.rows = count.integer(0, "number of rows", 1, most_disks);
+        comment = lines.next("the line of key=value");
+        return header;
+    });
+    frame.header = read_xyz_header(*comment, frame.header.rows);
+    const std::vector<std::string>& names = frame.header.names;
+    const std::string where = comment->place();
+    Columns columns;
+    columns.x = find_column(names, "pos.0");
+    columns.y = find_column(names, "pos.1");
+    columns.z = find_column(names, "pos.2");
+    columns.id = find_column(names, "id");
+    if (columns.x < 0) {
+        throw Error(ErrorKind::bad_input,
+                    fmt::format("{}: no coordinates: expected pos:R:2 or pos:R:3 in Properties", where));
     }
+    find_size(columns, names, options, where, raw);
+    find_selection(columns, names, options, where);
+    if (const auto& box = frame.header.box; box && ((*box)[0] != 0 || (*box)[2] != 0)) {
+        raw.notes.emplace_back("upper bounds = Origin + Lattice in double: rounded at 2^-53 of them");
+    }
+    frame.read(Rows(columns, source), raw);
+    if (frame.number > 0) {
+        raw.notes.push_back(fmt::format("frame {}", frame.number));
+    }
+    return raw;
 }
 
 } // namespace isostat::foreign

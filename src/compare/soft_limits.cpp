@@ -11,19 +11,17 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 
 namespace isostat::compare {
 
 namespace {
 
 namespace fs = std::filesystem;
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 struct Row {
     int number = 0;
     const char* end = "";
-    double exact = unknown, soft = unknown, needed = unknown;
+    double exact = NAN, soft = NAN, needed = NAN;
 };
 
 /// Both ends of one equilibrium that are finite.
@@ -35,8 +33,8 @@ void add_rows(std::vector<Row>& rows, const EquilibriumRow& equilibrium, const S
     for (const int direction : {-1, +1}) {
         const ExactInterval exact{equilibrium.stress_low, equilibrium.stress_high, direction};
         const auto soft = soft_limit(backbone, exact, stiffness);
-        rows.push_back({equilibrium.number, direction > 0 ? "high" : "low", exact.end(), soft ? soft->stress : unknown,
-                        stiffness_needed(backbone, exact).value_or(unknown)});
+        rows.push_back({equilibrium.number, direction > 0 ? "high" : "low", exact.end(), soft ? soft->stress : NAN,
+                        stiffness_needed(backbone, exact).value_or(NAN)});
     }
 }
 

@@ -51,7 +51,7 @@ std::string walls_apart(const Packing<2>& packing) {
             if (const auto [disk, distance] = nearest_to(packing, kind, axis); distance > 0) {
                 out += fmt::format("; none with the {} wall, which is {:.3g} from disk {} (are digits of its position "
                                    "rounded?)",
-                                   to_string<2>({kind, 0, axis}).substr(2), distance, disk);
+                                   to_string<2>(Contact{kind, 0, axis}).substr(2), distance, disk);
             }
         }
     }
@@ -74,7 +74,7 @@ std::string far_wall(const Packing<2>& packing) {
                 return fmt::format("no disk is near the {} wall, the nearest gap is {:.3g} (disk {}): expected the "
                                    "positions of the walls, --box XLO:XHI,YLO:YHI (bounds of a file often are not "
                                    "those)",
-                                   to_string<2>({kind, 0, axis}).substr(2), distance, nearest);
+                                   to_string<2>(Contact{kind, 0, axis}).substr(2), distance, nearest);
             }
         }
     }

@@ -37,15 +37,6 @@ int status_of(FailureKind kind) {
     }
 }
 
-int status_of(Verdict verdict) {
-    switch (verdict) {
-    case Verdict::proved: return done;
-    case Verdict::refuted: return failed;
-    case Verdict::undecided: return undecided;
-    }
-    return undecided;
-}
-
 Result<State<2>> prepare_start(const Scene& scene, const std::string& command, bool quiet,
                                const std::filesystem::path& failed_path) {
     StatusLine line(quiet);

@@ -7,6 +7,7 @@
 
 #include <isostat/core/result.hpp>
 #include <isostat/core/verdict.hpp>
+#include <isostat/io/run_directory.hpp>
 #include <isostat/preparation/preparation.hpp>
 #include <isostat/scene/scene.hpp>
 
@@ -30,7 +31,14 @@ void print_json(const Json& object);
 int status_of(FailureKind kind);
 
 /// 0 proved, 1 refuted, 2 undecided.
-int status_of(Verdict verdict);
+inline int status_of(Verdict verdict) {
+    return static_cast<int>(verdict);
+}
+
+/// How a command takes its folder.
+template <class Arguments> FolderMode mode_of(const Arguments& arguments) {
+    return arguments.resume ? FolderMode::resume : arguments.force ? FolderMode::force : FolderMode::fresh;
+}
 
 /// Prepares the packing of a scene with progress on the terminal. After a failure, what was reached is in `failed`
 /// (atomically).

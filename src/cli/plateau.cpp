@@ -4,6 +4,7 @@
 #include "cli/read_packing.hpp"
 #include "cli/terminal.hpp"
 #include "compare/soft_list.hpp"
+#include "core/words.hpp"
 #include "crafted/told_ranges.hpp"
 #include "io/files.hpp"
 
@@ -23,13 +24,6 @@ namespace {
 using crafted::PlateauCounts;
 using crafted::PlateauRange;
 using crafted::PlateauStep;
-
-Strain strain_of(const std::string& name) {
-    return name == "fixed"      ? Strain::none
-           : name == "diagonal" ? Strain::diagonal
-           : name == "full"     ? Strain::full
-                                : Strain::isotropic;
-}
 
 /// The backbone of the widest range, or at the largest threshold.
 std::vector<Contact> shown_backbone(const ReadPacking& file, const crafted::Plateau& plateau, double& threshold) {
@@ -289,7 +283,7 @@ int plateau(const PlateauArguments& a) {
     ForeignArguments foreign = a.foreign;
     foreign.cells = true;
     ReadPacking file = read_any_packing(a.file, foreign);
-    const Strain strain = strain_of(a.strain);
+    const Strain strain = value_of<Strain>(a.strain, std::array{"fixed", "isotropic", "diagonal", "full"}).value();
     if (a.thresholds.empty()) {
         constexpr double share = 0.1; // of the smallest radius
         thresholds[1] = share * file.packing.min_radius();

@@ -119,20 +119,6 @@ Json counting_json(const std::string& file, const State<2>& state, const Countin
     return object;
 }
 
-Json end_json(const std::optional<LoadIntervalClaim>& claim, bool low, const char* what) {
-    if (!claim) {
-        return nullptr;
-    }
-    const LoadEndClaim& end = low ? claim->low : claim->high;
-    if (end.unbounded) {
-        return nullptr;
-    }
-    if (what == std::string("opens")) {
-        return to_string<2>(end.opens);
-    }
-    return what == std::string("lower") ? number(end.stress.lower) : number(end.stress.upper);
-}
-
 void add_inspection(Json& object, const Inspection<2>& inspection) {
     const EquilibriumRecord<2>& r = inspection.record;
     object["rattlers"] = inspection.rattlers;
@@ -140,11 +126,17 @@ void add_inspection(Json& object, const Inspection<2>& inspection) {
     object["held"] = r.held;
     if (inspection.equilibrium) {
         const auto& interval = inspection.truth.claims.load_interval;
+        Json opens = Json::array();
         object["interval_decided"] = interval.has_value();
         object["supported_interval"] = {number(r.stress_low), number(r.stress_high)}; // middles of the next two
-        object["interval_low"] = {end_json(interval, true, "lower"), end_json(interval, true, "upper")};
-        object["interval_high"] = {end_json(interval, false, "lower"), end_json(interval, false, "upper")};
-        object["opens"] = {end_json(interval, true, "opens"), end_json(interval, false, "opens")};
+        for (const auto& [key, end] :
+             {std::pair{"interval_low", &LoadIntervalClaim::low}, {"interval_high", &LoadIntervalClaim::high}}) {
+            const LoadEndClaim* const known = interval && !((*interval).*end).unbounded ? &((*interval).*end) : nullptr;
+            object[key] = known != nullptr ? Json::array({number(known->stress.lower), number(known->stress.upper)})
+                                           : Json::array({nullptr, nullptr});
+            opens.push_back(known != nullptr ? Json(to_string<2>(known->opens)) : Json());
+        }
+        object["opens"] = std::move(opens);
         const Interval smallest = smallest_force(inspection);
         object["min_force"] = number(r.min_force);
         object["min_force_between"] = {number(smallest.lower), number(smallest.upper)};

@@ -8,6 +8,7 @@
 #include <isostat/crafted/exact_packing.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <initializer_list>
@@ -91,12 +92,9 @@ class Reader {
     void allow(const toml::table& table, const std::string& where, std::initializer_list<std::string_view> keys) const {
         for (const auto& [key, node] : table) {
             if (std::find(keys.begin(), keys.end(), key.str()) == keys.end()) {
-                std::string wanted;
-                for (const std::string_view k : keys) {
-                    wanted += (wanted.empty() ? "" : ", ") + std::string(k);
-                }
-                throw Error(ErrorKind::bad_input, fmt::format("{}:{}: unknown key \"{}{}\", expected one of {}", name_,
-                                                              key.source().begin.line, where, key.str(), wanted));
+                throw Error(ErrorKind::bad_input,
+                            fmt::format("{}:{}: unknown key \"{}{}\", expected one of {}", name_,
+                                        key.source().begin.line, where, key.str(), fmt::join(keys, ", ")));
             }
         }
     }
@@ -111,36 +109,31 @@ class Reader {
         return *node;
     }
 
-    [[nodiscard]] const toml::table& table(const toml::node& node, const std::string& key) const {
-        if (!node.is_table()) {
-            fail(node, key, type_name(node), "a table");
+    /// What a node holds, of one type; `wanted` is that in words.
+    template <class Value>
+    [[nodiscard]] const auto& typed(const toml::node& node, const std::string& key, const char* wanted) const {
+        const auto* value = node.as<Value>();
+        if (value == nullptr) {
+            fail(node, key, type_name(node), wanted);
         }
-        return *node.as_table();
+        return *value;
+    }
+    [[nodiscard]] const toml::table& table(const toml::node& node, const std::string& key) const {
+        return typed<toml::table>(node, key, "a table");
+    }
+    [[nodiscard]] std::string string(const toml::node& node, const std::string& key) const {
+        return typed<std::string>(node, key, "a string").get();
+    }
+    [[nodiscard]] bool boolean(const toml::node& node, const std::string& key) const {
+        return typed<bool>(node, key, "true or false").get();
     }
 
     [[nodiscard]] const toml::array& array(const toml::node& node, const std::string& key, std::size_t size = 0) const {
-        if (!node.is_array()) {
-            fail(node, key, type_name(node), "an array");
-        }
-        const toml::array& out = *node.as_array();
+        const toml::array& out = typed<toml::array>(node, key, "an array");
         if (size != 0 && out.size() != size) {
             fail(node, key, "an array of " + std::to_string(out.size()), "an array of " + std::to_string(size));
         }
         return out;
-    }
-
-    [[nodiscard]] std::string string(const toml::node& node, const std::string& key) const {
-        if (!node.is_string()) {
-            fail(node, key, type_name(node), "a string");
-        }
-        return node.as_string()->get();
-    }
-
-    [[nodiscard]] bool boolean(const toml::node& node, const std::string& key) const {
-        if (!node.is_boolean()) {
-            fail(node, key, type_name(node), "true or false");
-        }
-        return node.as_boolean()->get();
     }
 
     [[nodiscard]] Number number(const toml::node& node, const std::string& key) const {
@@ -307,16 +300,14 @@ class Reader {
             out_.packing.walls.lower[a] = repeats ? WallKind::absent : WallKind::fixed;
             out_.packing.walls.upper[a] = repeats ? WallKind::absent : WallKind::movable;
         }
-        if (const toml::node* lower = box.get("lower")) {
-            const toml::array& kinds = array(*lower, "box.lower", 2);
-            for (std::size_t a = 0; a < 2; ++a) {
-                out_.packing.walls.lower[a] = wall(kinds[a], "box.lower", a, false);
-            }
-        }
-        if (const toml::node* upper = box.get("upper")) {
-            const toml::array& kinds = array(*upper, "box.upper", 2);
-            for (std::size_t a = 0; a < 2; ++a) {
-                out_.packing.walls.upper[a] = wall(kinds[a], "box.upper", a, true);
+        for (const char* side : {"lower", "upper"}) {
+            if (const toml::node* given = box.get(side)) {
+                const bool up = side == std::string_view("upper");
+                const std::string key = std::string("box.") + side;
+                const toml::array& kinds = array(*given, key, 2);
+                for (std::size_t a = 0; a < 2; ++a) {
+                    (up ? out_.packing.walls.upper : out_.packing.walls.lower)[a] = wall(kinds[a], key, a, up);
+                }
             }
         }
         const auto& upper = out_.packing.walls.upper;

@@ -2,17 +2,13 @@
 
 #include "io/files.hpp"
 #include "io/json.hpp"
-#include "io/numbers.hpp"
-#include "io/record_text.hpp"
 
 #include <isostat/core/error.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <set>
 
 namespace isostat::checker {
 
@@ -21,24 +17,6 @@ namespace {
 using json::Field;
 
 constexpr std::array<std::string_view, 5> statuses{"running", "completed", "failed", "undecided", "interrupted"};
-
-/// Columns of integers; in all others are numbers, infinite ones among them.
-const std::set<std::string_view> integer_columns{"number",       "previous",    "segment",     "arcs",
-                                                 "rattlers",     "backbone",    "dofs",        "contacts",
-                                                 "rank",         "h",           "k",           "held",
-                                                 "touching",     "opens_low_i", "opens_low_j", "opens_high_i",
-                                                 "opens_high_j", "min_force_i", "min_force_j", "min_gap_i",
-                                                 "min_gap_j",    "decided_by",  "proved",      "certified"};
-
-std::vector<std::string> split(std::string_view line, char separator) {
-    std::vector<std::string> parts;
-    for (std::size_t at = 0; at <= line.size();) {
-        const std::size_t end = std::min(line.find(separator, at), line.size());
-        parts.emplace_back(line.substr(at, end - at));
-        at = end + 1;
-    }
-    return parts;
-}
 
 /// Complete lines with their numbers, from 1.
 template <class Use> void for_each_line(const std::string& text, const Use& use) {
@@ -135,73 +113,16 @@ EventRecord event_of(const std::string& line, const std::string& where) {
     return event;
 }
 
-[[noreturn]] void bad_field(const std::string& where, const std::string& name, const std::string& text,
-                            const char* expected) {
-    throw Error(ErrorKind::bad_input, fmt::format("{}: {} is '{}': expected {}", where, name, text, expected));
-}
-
-double number_of(const std::string& text, const std::string& where, const std::string& name) {
-    if (integer_columns.contains(name)) {
-        const auto integer = plain_integer(text);
-        if (!integer || *integer != static_cast<int>(*integer)) {
-            bad_field(where, name, text, "an integer");
-        }
-        return static_cast<int>(*integer);
-    }
-    const auto number = text == "inf" ? HUGE_VAL : text == "-inf" ? -HUGE_VAL : finite_number(text);
-    if (!number) {
-        bad_field(where, name, text, "a number");
-    }
-    return *number;
-}
-
 /// The two columns of a contact have its one spelling, or that of none.
 void require_spelling(const EquilibriumLine& line, const std::string& what) {
     const int i = line.integer((what + "_i").c_str());
     const int j = line.integer((what + "_j").c_str());
     const bool none = j == no_contact && i >= no_contact;
     if (!none && (i < 0 || j < -4 || (j >= 0 && j < i))) {
-        bad_field(line.where, what + "_i," + what + "_j", fmt::format("{},{}", i, j),
-                  "a disk and a later one or a wall, or -9,-9");
+        throw Error(ErrorKind::bad_input,
+                    fmt::format("{}: {}_i,{}_j is '{},{}': expected a disk and a later one or a wall, or -9,-9",
+                                line.where, what, what, i, j));
     }
-}
-
-/// The text of a file of records, without a line that was cut.
-std::string records_text(const std::filesystem::path& path, LastLine last) {
-    std::string text = read_text(path);
-    if (last == LastLine::may_be_cut) {
-        text.resize(text.rfind('\n') + 1); // npos + 1: no line at all
-    }
-    return text;
-}
-
-std::vector<EquilibriumLine> equilibria_of(const std::filesystem::path& path, LastLine last) {
-    const std::string text = records_text(path, last);
-    std::vector<EquilibriumLine> lines;
-    if (text.empty()) {
-        return lines;
-    }
-    const std::vector<std::string> names = equilibria_columns(named_columns(text, path.string()));
-    for_each_line(text, [&](int number, const std::string& row) {
-        if (number == 1) {
-            return;
-        }
-        const std::string where = fmt::format("{}:{}", path.string(), number);
-        const std::vector<std::string> fields = split(row, ',');
-        if (fields.size() != names.size()) {
-            throw Error(ErrorKind::bad_input, fmt::format("{}: {} columns: expected {}, named by the first line", where,
-                                                          fields.size(), names.size()));
-        }
-        EquilibriumLine& line = lines.emplace_back();
-        line.where = where;
-        for (std::size_t k = 0; k < names.size(); ++k) {
-            line.value[names[k]] = number_of(fields[k], where, names[k]);
-        }
-        for (const char* contact : {"opens_low", "opens_high", "min_force", "min_gap"}) {
-            require_spelling(line, contact);
-        }
-    });
-    return lines;
 }
 
 } // namespace
@@ -262,7 +183,12 @@ RunRecords read_records(const std::filesystem::path& directory, LastLine last) {
     }
     const std::filesystem::path equilibria = directory / "equilibria.csv"; // its first row comes with their names
     if (!std::filesystem::exists(equilibria) || std::filesystem::file_size(equilibria) > 0) {
-        records.equilibria = equilibria_of(equilibria, last);
+        records.equilibria = read_equilibrium_lines(equilibria, last);
+        for (const EquilibriumLine& line : records.equilibria) {
+            for (const char* contact : {"opens_low", "opens_high", "min_force", "min_gap"}) {
+                require_spelling(line, contact);
+            }
+        }
     }
     return records;
 }

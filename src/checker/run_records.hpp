@@ -2,10 +2,11 @@
 /// \file
 /// The records of a run as they are in its files.
 
+#include "io/equilibria.hpp"
+
 #include <isostat/io/state_file.hpp>
 
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,21 +38,6 @@ struct EventRecord {
     long choices = 0; ///< among the ties, from the first line to this one
 };
 
-/// In both columns of a contact that there is not.
-inline constexpr int no_contact = -9;
-
-/// One line of equilibria.csv, by the names of its header.
-struct EquilibriumLine {
-    std::string where;
-    std::map<std::string, double> value;
-    [[nodiscard]] double at(const char* name) const { return value.at(name); }
-    /// Of the column with that name.
-    [[nodiscard]] double bound(const char* name) const { return value.at(std::string(name) + "_bound"); }
-    /// Of a column of integers.
-    [[nodiscard]] int integer(const char* name) const { return static_cast<int>(at(name)); }
-    [[nodiscard]] bool has(const char* name) const { return value.contains(name); }
-};
-
 struct RunRecords {
     std::filesystem::path directory;
     std::string rule;                                      ///< of run.json
@@ -69,9 +55,6 @@ struct RunRecords {
     /// The stored state of an equilibrium, with its forces, if there is one.
     [[nodiscard]] std::optional<StateFile<2>> stored(int equilibrium) const;
 };
-
-/// The last line of a file of a run that goes on, or was killed, need not be complete.
-enum class LastLine { complete, may_be_cut };
 
 /// Throws `Error(bad_input)`.
 RunRecords read_records(const std::filesystem::path& directory, LastLine last = LastLine::complete);

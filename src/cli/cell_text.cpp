@@ -1,6 +1,7 @@
 #include "cli/cell_text.hpp"
 
 #include "cli/terminal.hpp"
+#include "packing/words.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -9,8 +10,6 @@ namespace isostat::cli {
 
 namespace {
 
-constexpr std::array<const char*, 2> axis_name{"x", "y"};
-
 std::vector<std::string> moving(const Cell<2>& cell) {
     std::vector<std::string> names;
     if (cell.keeps_shape) {
@@ -18,11 +17,11 @@ std::vector<std::string> moving(const Cell<2>& cell) {
     }
     for (std::size_t a = 0; a < 2; ++a) {
         if (cell.period_moves[a]) {
-            names.emplace_back(axis_name[a]);
+            names.emplace_back(axis_names[a]);
         }
     }
     if (cell.tilt_moves[0]) {
-        names.emplace_back("xy");
+        names.emplace_back(tilt_names[0]);
     }
     return names;
 }

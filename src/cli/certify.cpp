@@ -1,6 +1,5 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
-#include "cli/rounding.hpp"
 #include "cli/terminal.hpp"
 #include "cli/true_vertex_text.hpp"
 #include "io/files.hpp"
@@ -25,7 +24,7 @@ int certify(const CertifyArguments& arguments) {
     certificate.state = file.state;
     Certification result = isostat::certify(certificate.state);
     certificate.claims = result.claims;
-    const Untold untold = untold_by(imported_rounding(file.state), file.state, result);
+    const compare::Untold untold = compare::untold_by(compare::imported_rounding(file.state), file.state, result);
     const Verdict verdict = withheld(untold, result.verdict);
     write_certificate(arguments.output, certificate);
     if (arguments.common.json) {

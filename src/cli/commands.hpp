@@ -33,9 +33,6 @@ struct RunArguments {
 };
 int run(const RunArguments& arguments);
 
-/// Of an ensemble.
-inline constexpr int most_samples = 1'000'000;
-
 struct EnsembleArguments {
     Common common;
     std::string scene, output;

@@ -10,12 +10,9 @@
 #include <isostat/io/state_file.hpp>
 
 #include <fmt/format.h>
-#include <mpfr.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 
 namespace isostat::cli {
 
@@ -31,48 +28,6 @@ void print_json(const Json& object) {
     say_json(json::dumped(object) + "\n");
 }
 
-namespace {
-
-std::string rounded(double value, int digits, const char* format) {
-    if (!std::isfinite(value)) {
-        return fmt::format("{}", value);
-    }
-    mpfr_t exact;
-    mpfr_init2(exact, 53);
-    mpfr_set_d(exact, value, MPFR_RNDN);
-    char* text = nullptr;
-    mpfr_asprintf(&text, format, digits, exact);
-    std::string result(text);
-    mpfr_free_str(text);
-    mpfr_clear(exact);
-    return result;
-}
-
-} // namespace
-
-std::string rounded_up(double value, int digits) {
-    return rounded(value, digits, "%.*RUg");
-}
-
-std::string rounded_down(double value, int digits) {
-    return rounded(value, digits, "%.*RDg");
-}
-
-std::string with_bound(double lower, double upper) {
-    constexpr int enough = 17; // tells every double
-    const double middle = 0.5 * lower + 0.5 * upper;
-    for (int digits = 12;; ++digits) {
-        const std::string shown = fmt::format("{:.{}g}", middle, digits);
-        const double value = std::strtod(shown.c_str(), nullptr);
-        // The text itself is off its double by half a unit of the last place.
-        const double off = std::abs(value) * 0x1p-53;
-        const double bound = (std::max(upper - value, value - lower) + off) * (1 + 0x1p-50);
-        if (digits == enough || bound <= 0.75 * (upper - lower)) {
-            return fmt::format("{} +- {}", shown, rounded_up(bound, 2));
-        }
-    }
-}
-
 int status_of(FailureKind kind) {
     switch (kind) {
     case FailureKind::tie:
@@ -80,15 +35,6 @@ int status_of(FailureKind kind) {
     case FailureKind::interrupted: return interrupted;
     default: return failed;
     }
-}
-
-int status_of(Verdict verdict) {
-    switch (verdict) {
-    case Verdict::proved: return done;
-    case Verdict::refuted: return failed;
-    case Verdict::undecided: return undecided;
-    }
-    return undecided;
 }
 
 Result<State<2>> prepare_start(const Scene& scene, const std::string& command, bool quiet,

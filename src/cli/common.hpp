@@ -2,8 +2,12 @@
 /// \file
 /// What several subcommands share.
 
+#include "contact/names.hpp"
+#include "core/decimal.hpp"
+
 #include <isostat/core/result.hpp>
 #include <isostat/core/verdict.hpp>
+#include <isostat/io/run_directory.hpp>
 #include <isostat/preparation/preparation.hpp>
 #include <isostat/scene/scene.hpp>
 
@@ -23,18 +27,18 @@ Json number(double value);
 /// One line on standard output.
 void print_json(const Json& object);
 
-/// Decimal number with that many digits that is not below (not above) the value.
-std::string rounded_up(double value, int digits);
-std::string rounded_down(double value, int digits);
-
-/// "value +- bound" of an interval: what is printed contains it. 12 digits, or more where the interval is narrower.
-std::string with_bound(double lower, double upper);
-
 /// Exit status of a domain failure: 2 for ties and undecided signs, 130 when the user stopped it, 1 otherwise.
 int status_of(FailureKind kind);
 
 /// 0 proved, 1 refuted, 2 undecided.
-int status_of(Verdict verdict);
+inline int status_of(Verdict verdict) {
+    return static_cast<int>(verdict);
+}
+
+/// How a command takes its folder.
+template <class Arguments> FolderMode mode_of(const Arguments& arguments) {
+    return arguments.resume ? FolderMode::resume : arguments.force ? FolderMode::force : FolderMode::fresh;
+}
 
 /// Prepares the packing of a scene with progress on the terminal. After a failure, what was reached is in `failed`
 /// (atomically).

@@ -221,11 +221,8 @@ void print_outcome(const std::filesystem::path& path, const std::vector<Sample>&
 }
 
 int run_and_merge(const EnsembleArguments& arguments, const EnsembleHeader& header, SampleQueue& queue) {
-    const auto mode = arguments.resume  ? EnsembleDirectory::Mode::resume
-                      : arguments.force ? EnsembleDirectory::Mode::force
-                                        : EnsembleDirectory::Mode::fresh;
     const bool quiet = arguments.common.quiet || arguments.common.json;
-    const EnsembleDirectory directory(arguments.output, header, mode);
+    const EnsembleDirectory directory(arguments.output, header, mode_of(arguments));
     const int jobs = arguments.jobs.value_or(default_jobs(queue.ranks()));
     Board board(directory.samples(), jobs * queue.ranks(), quiet);
     std::vector<bool> was_finished;

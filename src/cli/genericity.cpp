@@ -90,21 +90,6 @@ template <class Get> std::array<double, 3> spread(const Genericity& result, Get 
     return {values.front(), values[values.size() / 2], values.back()};
 }
 
-int within(const Genericity& result) {
-    return static_cast<int>(std::count_if(result.samples.begin(), result.samples.end(),
-                                          [](const GenericitySample& sample) { return sample.within_original; }));
-}
-
-std::map<std::string, int> rungs(const Genericity& result) {
-    std::map<std::string, int> out;
-    for (const GenericitySample& sample : result.samples) {
-        if (!sample.failure) {
-            ++out[std::string(to_string(sample.rung))];
-        }
-    }
-    return out;
-}
-
 std::string list_text(const std::vector<Contact>& list, const std::vector<Contact>& original) {
     std::string missing, added;
     int lost = 0, gained = 0;
@@ -153,16 +138,12 @@ Json result_json(const Genericity& result, double size, std::size_t longest) {
     out["ties"] = result.ties;
     out["undecided"] = result.undecided;
     out["failed"] = result.failed;
-    out["within_original"] = within(result);
-    out["rungs"] = rungs(result);
+    out["within_original"] = result.within();
+    out["rungs"] = result.rungs();
     out["distinct_networks"] = result.lists.size();
     Json lists = Json::array();
     for (std::size_t k = 0; k < result.lists.size() && k < longest; ++k) {
-        Json names = Json::array();
-        for (const Contact& contact : result.lists[k].contacts) {
-            names.push_back(to_string<2>(contact));
-        }
-        lists.push_back({{"samples", result.lists[k].samples}, {"contacts", std::move(names)}});
+        lists.push_back({{"samples", result.lists[k].samples}, {"contacts", contact_names(result.lists[k].contacts)}});
     }
     out["networks"] = std::move(lists);
     Json samples = Json::array();
@@ -192,7 +173,7 @@ void print_row(const Genericity& result, double size) {
     const auto sigma = spread(result, [](const GenericitySample& s) { return s.sigma_min; });
     const auto rattlers = spread(result, [](const GenericitySample& s) { return s.rattlers; });
     std::string used;
-    for (const auto& [rung, count] : rungs(result)) {
+    for (const auto& [rung, count] : result.rungs()) {
         used += fmt::format("{}{} {}", used.empty() ? "" : ", ", rung, count);
     }
     if (result.proved == 0) {
@@ -202,7 +183,7 @@ void print_row(const Genericity& result, double size) {
     say("{:>8.1e} {:>7} {:>5} {:>9} {:>6} | {:>6} {:>7} {:>9} {:>8} | {:>9.2e} {:>9.2e} {:>9.2e} {:>9.2e} "
         "{:>9.2e} | {}\n",
         size, result.proved, result.ties, result.undecided, result.failed, result.lists.size(),
-        result.lists.front().samples, within(result), fmt::format("{}..{}", rattlers[0], rattlers[2]), force[0],
+        result.lists.front().samples, result.within(), fmt::format("{}..{}", rattlers[0], rattlers[2]), force[0],
         force[1], gap[0], gap[1], sigma[0], used);
 }
 

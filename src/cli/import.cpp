@@ -1,22 +1,23 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
 #include "cli/read_packing.hpp"
-#include "cli/rounding.hpp"
-#include "cli/soft_list.hpp"
+#include "cli/soft_options.hpp"
 #include "cli/terminal.hpp"
+#include "cli/true_vertex_text.hpp"
+#include "compare/nearest_vertex.hpp"
 #include "io/files.hpp"
 #include "io/json.hpp"
+#include "packing/unbalanced.hpp"
+#include "packing/words.hpp"
 
 #include <isostat/certificate/certify.hpp>
-#include <isostat/compare/snap.hpp>
 #include <isostat/core/error.hpp>
 #include <isostat/crafted/inspection.hpp>
-#include <isostat/crafted/plateau.hpp>
 #include <isostat/io/foreign.hpp>
 #include <isostat/io/state_file.hpp>
-#include <isostat/preparation/preparation.hpp>
 
 #include <fmt/format.h>
+#include <gmpxx.h>
 
 #include <algorithm>
 #include <cmath>
@@ -26,20 +27,10 @@ namespace isostat::cli {
 
 namespace {
 
-/// The contacts that the vertex must have.
-struct Wanted {
-    bool any = false; ///< whatever the vertex has
-    std::vector<Contact> contacts;
-    std::string words; ///< where they come from
-};
-
 /// What was found, or why nothing was.
-struct Imported {
-    State<2> state;
+struct Imported : compare::NearestVertex {
     std::vector<double> from; ///< coordinates of the file
-    std::string contacts;     ///< words
-    Certification truth;
-    Untold untold; ///< by the rounding of the file
+    compare::Untold untold;   ///< by the rounding of the file
     bool load_of_file = false;
     bool copy = false; ///< more is untold by the jitter: the state is of a copy
     [[nodiscard]] Verdict verdict() const { return withheld(untold, truth.verdict); }
@@ -49,124 +40,45 @@ struct Imported {
 void keep_load(ImportArguments& a) {
     const State<2> state = read_any_state<2>(a.file).state;
     if (!state.load.disk_force.empty() || state.load.loaded_axis != 1) {
-        refuse(a.file, "has forces on disks or another loaded axis than 1: expected a load on the walls alone");
+        compare::refuse(a.file,
+                        "has forces on disks or another loaded axis than 1: expected a load on the walls alone");
     }
     if (a.stress.empty()) {
         a.stress = fmt::format("{},{}", state.load.stress[0], state.load.stress[1]);
     }
     if (a.load.empty()) {
-        a.load = state.load.kind == LoadKind::nominal ? "nominal" : "true";
+        a.load = word_of(state.load.kind, load_kind_words);
     }
-}
-
-/// What the cell does is counted by its strains.
-Strain strain_of(const Cell<2>& cell) {
-    return cell.keeps_shape ? Strain::isotropic : cell.tilt_moves[0] ? Strain::full : Strain::diagonal;
-}
-
-/// The contacts of the widest range of thresholds with an isostatic backbone, or at the threshold given.
-Result<Wanted> wanted_below(const ImportArguments& a, const Packing<2>& packing, double rounding) {
-    const double largest = a.threshold.value_or(nearly_touching * packing.min_radius());
-    if (a.threshold) {
-        const crafted::PlateauStep step = crafted::plateau(packing, {largest}, strain_of(packing.cell)).steps.front();
-        if (step.backbone.isostatic != Verdict::proved) {
-            return Failure{
-                step.backbone.isostatic == Verdict::refuted ? FailureKind::not_isostatic : FailureKind::undecided,
-                fmt::format("at the threshold {} the backbone has N_f = {}, N = {}, h = {}, k = {}: expected "
-                            "an isostatic one",
-                            largest, step.backbone.dof_count, step.backbone.contact_count, step.backbone.hyperstaticity,
-                            step.backbone.mechanisms)};
-        }
-        return Wanted{false, crafted::backbone_at(packing, largest), fmt::format("gaps up to {}", largest)};
-    }
-    const double deepest = std::min(crafted::plateau(packing, {largest}).deepest_overlap, largest);
-    crafted::Plateau plateau = crafted::plateau(packing, deepest, largest, 1, strain_of(packing.cell), rounding);
-    std::erase_if(plateau.ranges, [](const crafted::PlateauRange& range) { return !range.told; });
-    if (plateau.ranges.empty()) {
-        return Failure{plateau.special.empty() ? FailureKind::not_isostatic : FailureKind::undecided,
-                       fmt::format("the backbone is isostatic at no threshold up to {:.6g}: isostat plateau shows the "
-                                   "counts, --contacts nearest takes the vertex downhill whatever its contacts",
-                                   largest)};
-    }
-    const auto range =
-        *std::max_element(plateau.ranges.begin(), plateau.ranges.end(),
-                          [&](const auto& x, const auto& y) { return plateau.width(x) < plateau.width(y); });
-    return Wanted{
-        false, crafted::backbone_at(packing, range.first),
-        fmt::format("isostatic backbone at every threshold from {:.6g} to {:.6g}, proved", range.first, range.last)};
-}
-
-/// The vertex downhill, whatever its contacts.
-std::optional<Failure> take_nearest(const ImportArguments& a, const compare::SoftState& soft, Imported& out) {
-    PreparationOptions options;
-    options.seed = a.seed;
-    options.stress = soft.load.stress[0];
-    options.ratio = soft.load.stress[1] / soft.load.stress[0];
-    options.load = soft.load.kind;
-    PreparationReport<2> report;
-    auto vertex = find_vertex<2>(soft.packing, options, report);
-    if (!vertex.ok() && !report.candidate) {
-        return vertex.failure();
-    }
-    out.state = vertex.ok() ? std::move(vertex.value()) : *report.candidate;
-    out.truth = isostat::certify(out.state);
-    out.contacts =
-        fmt::format("{} carry a force, as the nearest vertex has them", compare::carrying(out.state, out.truth).size());
-    return std::nullopt;
-}
-
-/// The vertex of the list, under the stresses times the lengths that the box has there.
-std::optional<Failure> take_listed(const ImportArguments& a, compare::SoftState soft, const std::string& words,
-                                   Imported& out) {
-    compare::Snap snap = compare::snap(soft);
-    if (!snap.disks.empty()) {
-        soft.load.refer_to(snap.backbone.packing);
-    }
-    snap = compare::snap(soft);
-    if (snap.outcome != compare::SnapOutcome::vertex) {
-        const bool undecided = snap.outcome == compare::SnapOutcome::undecided;
-        return Failure{undecided ? FailureKind::undecided : FailureKind::not_isostatic,
-                       fmt::format("{}: the contacts of the file ({}) have no equilibrium near: {}; --contacts nearest "
-                                   "takes the vertex downhill whatever its contacts",
-                                   to_string(snap.outcome), words, snap.reason)};
-    }
-    auto state = compare::with_resting_rattlers(snap, a.seed);
-    if (!state.ok()) {
-        return state.failure();
-    }
-    out.state = std::move(state.value());
-    out.truth = isostat::certify(out.state);
-    out.contacts = fmt::format("{} carry a force, those of the file: {}", snap.backbone.contacts.size(), words);
-    return std::nullopt;
 }
 
 /// The vertex of a packing of another program.
 Result<Imported> from_foreign(const ImportArguments& a, ReadPacking& file) {
     const std::array<double, 2> stress = parse_stress(a.stress);
-    check_nearness(a.file, file.packing);
-    Wanted wanted{true, {}, ""};
+    compare::check_nearness(a.file, file.packing);
+    std::optional<compare::WantedList> wanted;
     if (a.threshold || a.contacts == "plateau") {
-        auto below = wanted_below(a, file.packing, file.rounding);
+        auto below = compare::list_below(file.packing, a.threshold, file.rounding);
         if (!below.ok()) {
             return below.failure();
         }
-        wanted = below.value();
+        wanted = std::move(below.value());
     } else if (a.contacts != "nearest") {
-        SoftList list = list_by_forces(a.file, file, a.foreign.frame, a.contacts, a.contact_columns);
-        wanted = {false, std::move(list.contacts), std::move(list.words)};
+        compare::SoftList list = stated_list(a.file, file, a.foreign.frame, a.contacts, a.contact_columns);
+        wanted = {std::move(list.contacts), std::move(list.words)};
     }
     Imported out;
     out.from = file.packing.q;
     file.packing.radius = with_jitter(file.packing.radius, a.jitter, a.seed);
     Load<2> load;
-    load.kind = a.load == "true" ? LoadKind::true_stress : LoadKind::nominal;
+    load.kind = value_of<LoadKind>(a.load, load_kind_words).value_or(LoadKind::nominal);
     load.stress = stress;
     load.refer_to(file.packing);
-    auto failure = wanted.any ? take_nearest(a, {file.packing, {}, load}, out)
-                              : take_listed(a, {file.packing, wanted.contacts, load}, wanted.words, out);
-    if (failure) {
-        return *failure;
+    auto found = wanted ? compare::vertex_of_list({file.packing, wanted->contacts, load}, wanted->words, a.seed)
+                        : compare::vertex_downhill({file.packing, {}, load}, a.seed);
+    if (!found.ok()) {
+        return found.failure();
     }
+    static_cast<compare::NearestVertex&>(out) = std::move(found.value());
     return out;
 }
 
@@ -211,25 +123,12 @@ ReadPacking read_imported(ImportArguments& a, bool crafted, bool own) {
     return file;
 }
 
-/// The periodic axis along which the stored forces on the disks do not sum to zero; null: there is none.
-const char* unbalanced_axis(const State<2>& state) {
-    for (std::size_t a = 0; a < 2; ++a) {
-        exact::Number sum;
-        for (std::size_t k = a; k < state.load.disk_force.size(); k += 2) {
-            sum += exact::Number::from_double(state.load.disk_force[k]);
-        }
-        if (state.packing.cell.periodic[a] && !sum.is_zero()) {
-            return a == 0 ? "x" : "y";
-        }
-    }
-    return nullptr;
-}
-
 /// A vertex text as it is: its contacts, its load.
 Result<Imported> from_vertex_text(const ImportArguments& a) {
     if (!a.contacts.empty() || a.threshold || !a.stress.empty() || !a.load.empty()) {
-        refuse(a.file, "is a vertex text, which has its contacts and its load: expected no --contacts, --threshold, "
-                       "--stress or --load");
+        compare::refuse(a.file,
+                        "is a vertex text, which has its contacts and its load: expected no --contacts, --threshold, "
+                        "--stress or --load");
     }
     Imported out;
     out.state = read_any_state<2>(a.file).state;
@@ -258,7 +157,7 @@ Result<Imported> from_crafted(const ImportArguments& a, const std::string& text)
     state.packing = crafted::approximate(file.packing);
     state.contacts = exact.contacts;
     state.load.stress = parse_stress(a.stress);
-    state.load.kind = a.load == "true" ? LoadKind::true_stress : LoadKind::nominal;
+    state.load.kind = value_of<LoadKind>(a.load, load_kind_words).value_or(LoadKind::nominal);
     state.load.refer_to(state.packing);
     out.load_of_file = file.packing.load.has_value();
     if (file.packing.load) {
@@ -272,12 +171,12 @@ Result<Imported> from_crafted(const ImportArguments& a, const std::string& text)
         for (const exact::Number& force : file.packing.load->disk) {
             state.load.disk_force.push_back(force.to_double());
         }
-        if (const char* axis = unbalanced_axis(state)) {
+        if (const auto rest = unbalanced<mpq_class>(state.load.disk_force, state.packing.cell)) {
             return Failure{
                 FailureKind::undecided,
                 fmt::format("the forces on the disks, rounded to doubles, do not sum to 0 along {}: expected "
                             "numbers that are doubles",
-                            axis)};
+                            axis_names[rest->first])};
         }
     }
     out.from = state.packing.q;
@@ -286,59 +185,25 @@ Result<Imported> from_crafted(const ImportArguments& a, const std::string& text)
     return out;
 }
 
-/// How far the true vertex may be from a place in the file: per disk, and at most for walls, backbone and rattlers.
-struct Moves {
-    std::vector<double> disk;
-    std::vector<unsigned char> rattler;
-    double walls = 0, backbone = 0, rattlers = 0;
-};
-
-Moves moves_of(const Imported& found) {
-    const Packing<2>& packing = found.state.packing;
-    const double radius = found.truth.claims.vertex ? found.truth.claims.vertex->radius : HUGE_VAL;
-    constexpr double up = 1 + 0x1p-49; // of a difference, a sum and a hypotenuse, each rounded
-    const auto way = [&](std::size_t k) { return (std::abs(packing.q[k] - found.from[k]) + radius) * up; };
-    Moves moves;
-    const std::size_t n = packing.radius.size();
-    moves.rattler.assign(n, 1);
-    for (const Contact& c : compare::carrying(found.state, found.truth)) {
-        moves.rattler[static_cast<std::size_t>(c.i)] = 0;
-        if (c.kind == ContactKind::disk_disk) {
-            moves.rattler[static_cast<std::size_t>(c.j)] = 0;
-        }
-    }
-    for (std::size_t i = 0; i < n; ++i) {
-        moves.disk.push_back(std::hypot(way(2 * i), way(2 * i + 1)) * up);
-        double& largest = moves.rattler[i] != 0 ? moves.rattlers : moves.backbone;
-        largest = std::max(largest, moves.disk[i]);
-    }
-    for (std::size_t k = 2 * n; k < packing.q.size(); ++k) {
-        moves.walls = std::max(moves.walls, way(k));
-    }
-    return moves;
-}
-
-/// The disk with a force that moved most, in its radii.
-std::pair<int, double> farthest(const Moves& moves, const Packing<2>& packing) {
-    std::pair<int, double> out{0, 0};
-    for (std::size_t i = 0; i < moves.disk.size(); ++i) {
-        if (const double radii = moves.disk[i] / packing.radius[i]; moves.rattler[i] == 0 && radii > out.second) {
-            out = {static_cast<int>(i), radii};
-        }
-    }
-    return out;
-}
-
 /// Notes where a disk moved by more than a tenth of its radius. Throws `Error(bad_input)` where it is more than one and
 /// nobody asked for it: then the vertex is not that of the file.
-void judge_moves(const ImportArguments& a, const Imported& found, const Moves& moves, std::vector<std::string>& notes) {
+void judge_moves(const ImportArguments& a, const Imported& found, const compare::Moves& moves,
+                 std::vector<std::string>& notes) {
     constexpr double far = 0.1;
-    const auto [disk, radii] = farthest(moves, found.state.packing);
+    std::size_t disk = 0; // with a force, that moved most in its radii
+    double radii = 0;
+    for (std::size_t i = 0; i < moves.disk.size(); ++i) {
+        if (const double moved = moves.disk[i] / found.state.packing.radius[i];
+            moves.rattler[i] == 0 && moved > radii) {
+            disk = i;
+            radii = moved;
+        }
+    }
     const std::string words = fmt::format("disk {} moved by {} of its radius", disk, rounded_up(radii, 3));
     if (radii > 1 && !a.far && std::isfinite(radii)) {
-        refuse(a.file, words +
-                           ": expected at most one on the way to the vertex (are the sizes wrong by a factor, or the "
-                           "box? --far takes it)");
+        compare::refuse(
+            a.file, words + ": expected at most one on the way to the vertex (are the sizes wrong by a factor, or the "
+                            "box? --far takes it)");
     }
     if (radii > far) {
         notes.push_back(words + ", more than a tenth: the vertex may not be that of the file");
@@ -347,7 +212,7 @@ void judge_moves(const ImportArguments& a, const Imported& found, const Moves& m
 
 constexpr const char* moves_head = "disk,x,y,moved,rattler\n";
 
-std::string moves_csv(const Imported& found, const Moves& moves) {
+std::string moves_csv(const Imported& found, const compare::Moves& moves) {
     std::string text = moves_head;
     for (std::size_t i = 0; i < moves.disk.size(); ++i) {
         text += fmt::format("{},{},{},{},{}\n", i, found.state.packing.q[2 * i], found.state.packing.q[2 * i + 1],
@@ -356,7 +221,8 @@ std::string moves_csv(const Imported& found, const Moves& moves) {
     return text;
 }
 
-Json provenance_of(const ImportArguments& a, const std::string& format, const Imported& found, const Moves& moves) {
+Json provenance_of(const ImportArguments& a, const std::string& format, const Imported& found,
+                   const compare::Moves& moves) {
     Json out;
     out["program"] = program_name();
     out["command"] = a.common.command;
@@ -380,7 +246,8 @@ std::string load_by_default(const ImportArguments& a, const Imported& found) {
                                                 : "";
 }
 
-void print_import(const ImportArguments& a, const ReadPacking& file, const Imported& found, const Moves& moves) {
+void print_import(const ImportArguments& a, const ReadPacking& file, const Imported& found,
+                  const compare::Moves& moves) {
     const State<2>& state = found.state;
     say("file      {} ({})\n", a.file, file.format);
     for (const std::string& note : file.notes) {
@@ -412,7 +279,7 @@ void print_import_json(const ImportArguments& a, const ReadPacking& file, const 
     object["disks"] = imported.state.packing.disk_count();
     object["load"] = {
         {"stress", {imported.state.load.stress[0], imported.state.load.stress[1]}},
-        {"kind", imported.state.load.kind == LoadKind::nominal ? "nominal" : "true"},
+        {"kind", word_of(imported.state.load.kind, load_kind_words)},
         {"by_default",
          {{"stress", a.stress.empty() && !imported.load_of_file}, {"kind", a.load.empty() && !imported.load_of_file}}}};
     object["jitter_matters"] = imported.copy;
@@ -434,13 +301,14 @@ std::string advice(const ImportArguments& a, bool crafted, std::vector<double> r
 void require_importable(const ImportArguments& a, bool own, bool crafted) {
     if (own && a.jitter == 0) {
         (void)read_any_state<2>(a.file); // says what is wrong where it is none
-        refuse(a.file, "is a state of this program: expected a packing of another one, or --jitter");
+        compare::refuse(a.file, "is a state of this program: expected a packing of another one, or --jitter");
     }
     if (crafted && a.jitter != 0) {
-        refuse(a.file,
-               fmt::format("is a crafted packing, whose contacts are those of its exact radii: expected no --jitter, "
-                           "it is {}",
-                           a.jitter));
+        compare::refuse(
+            a.file,
+            fmt::format("is a crafted packing, whose contacts are those of its exact radii: expected no --jitter, "
+                        "it is {}",
+                        a.jitter));
     }
 }
 
@@ -464,9 +332,9 @@ int import(const ImportArguments& arguments) {
     auto found = listed ? from_vertex_text(a) : crafted ? from_crafted(a, text) : from_foreign(a, file);
     if (found.ok() && !crafted && !listed) {
         Imported& f = found.value();
-        f.untold = untold_by(file.rounding, f.state, f.truth);
+        f.untold = compare::untold_by(file.rounding, f.state, f.truth);
         const double jitter = 2 * a.jitter * file.packing.max_radius();
-        f.copy = a.jitter > 0 && untold_by(jitter + file.rounding, f.state, f.truth).any();
+        f.copy = a.jitter > 0 && compare::untold_by(jitter + file.rounding, f.state, f.truth).any();
     }
     const bool refuted = found.ok() && found.value().verdict() == Verdict::refuted;
     if (!found.ok() || refuted) {
@@ -475,7 +343,7 @@ int import(const ImportArguments& arguments) {
         return refuted ? failed : status_of(found.failure().kind);
     }
     Imported& imported = found.value();
-    const Moves moves = moves_of(imported);
+    const compare::Moves moves = compare::moves_to(imported.state, imported.truth, imported.from);
     if (imported.truth.claims.vertex) {
         judge_moves(a, imported, moves, file.notes);
     }

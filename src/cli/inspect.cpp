@@ -2,9 +2,9 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
 #include "cli/face_text.hpp"
-#include "cli/rounding.hpp"
 #include "cli/terminal.hpp"
 #include "cli/true_vertex_text.hpp"
+#include "packing/words.hpp"
 
 #include <isostat/certificate/inspect.hpp>
 #include <isostat/core/error.hpp>
@@ -109,7 +109,7 @@ Json counting_json(const std::string& file, const State<2>& state, const Countin
     object["length"] = {number(state.packing.length(0)), number(state.packing.length(1))};
     object["solid_fraction"] = number(state.packing.solid_fraction());
     object["stress"] = {number(state.load.stress[0]), number(state.load.stress[1])};
-    object["load"] = state.load.kind == LoadKind::nominal ? "nominal" : "true";
+    object["load"] = word_of(state.load.kind, load_kind_words);
     object["N_f"] = c.dof_count;
     object["N"] = c.contact_count;
     object["rank"] = c.rank;
@@ -119,20 +119,6 @@ Json counting_json(const std::string& file, const State<2>& state, const Countin
     return object;
 }
 
-Json end_json(const std::optional<LoadIntervalClaim>& claim, bool low, const char* what) {
-    if (!claim) {
-        return nullptr;
-    }
-    const LoadEndClaim& end = low ? claim->low : claim->high;
-    if (end.unbounded) {
-        return nullptr;
-    }
-    if (what == std::string("opens")) {
-        return to_string<2>(end.opens);
-    }
-    return what == std::string("lower") ? number(end.stress.lower) : number(end.stress.upper);
-}
-
 void add_inspection(Json& object, const Inspection<2>& inspection) {
     const EquilibriumRecord<2>& r = inspection.record;
     object["rattlers"] = inspection.rattlers;
@@ -140,11 +126,17 @@ void add_inspection(Json& object, const Inspection<2>& inspection) {
     object["held"] = r.held;
     if (inspection.equilibrium) {
         const auto& interval = inspection.truth.claims.load_interval;
+        Json opens = Json::array();
         object["interval_decided"] = interval.has_value();
         object["supported_interval"] = {number(r.stress_low), number(r.stress_high)}; // middles of the next two
-        object["interval_low"] = {end_json(interval, true, "lower"), end_json(interval, true, "upper")};
-        object["interval_high"] = {end_json(interval, false, "lower"), end_json(interval, false, "upper")};
-        object["opens"] = {end_json(interval, true, "opens"), end_json(interval, false, "opens")};
+        for (const auto& [key, end] :
+             {std::pair{"interval_low", &LoadIntervalClaim::low}, {"interval_high", &LoadIntervalClaim::high}}) {
+            const LoadEndClaim* const known = interval && !((*interval).*end).unbounded ? &((*interval).*end) : nullptr;
+            object[key] = known != nullptr ? Json::array({number(known->stress.lower), number(known->stress.upper)})
+                                           : Json::array({nullptr, nullptr});
+            opens.push_back(known != nullptr ? Json(to_string<2>(known->opens)) : Json());
+        }
+        object["opens"] = std::move(opens);
         const Interval smallest = smallest_force(inspection);
         object["min_force"] = number(r.min_force);
         object["min_force_between"] = {number(smallest.lower), number(smallest.upper)};
@@ -200,7 +192,7 @@ int inspect(const InspectArguments& arguments) {
     Result<Inspection<2>> result = inspect_vertex(state);
     const Certification truth = result.ok() ? result.value().truth : certify(state);
     auto cell = state.packing.cell.all() ? std::optional(inspect_cell(state, truth)) : std::nullopt;
-    const Untold untold = untold_by(imported_rounding(state), state, truth);
+    const compare::Untold untold = compare::untold_by(compare::imported_rounding(state), state, truth);
     if (result.ok()) {
         withhold(untold, result.value());
     }

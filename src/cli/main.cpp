@@ -6,6 +6,7 @@
 #include "cli/ranges.hpp"
 #include "cli/terminal.hpp"
 #include "core/memory.hpp"
+#include "ensemble/ensemble.hpp"
 #include "io/text.hpp"
 
 #include <isostat/core/error.hpp>
@@ -18,11 +19,13 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <concepts>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <new>
 #include <numeric>
 #include <sstream>
@@ -43,33 +46,35 @@ std::string quoted(int argc, char** argv) {
     return line;
 }
 
+/// An option or an argument of a command, with the type that `--help` shows.
+template <class T>
+CLI::Option* option(CLI::App& command, const char* name, T& value, const char* words, const char* type = nullptr) {
+    CLI::Option* made = command.add_option(name, value, words);
+    return type == nullptr ? made : made->type_name(type);
+}
+/// The same, of what `allowed` takes.
+template <class T, std::derived_from<CLI::Validator> Check>
+CLI::Option* option(CLI::App& command, const char* name, T& value, const char* words, const Check& allowed,
+                    const char* type = nullptr) {
+    return option(command, name, value, words, type)->check(allowed);
+}
+/// One that must be given.
+template <class T, class... More>
+void needed(CLI::App& command, const char* name, T& value, const char* words, const More&... more) {
+    option(command, name, value, words, more...)->required();
+}
+
 void add_threads(CLI::App& command, Common& common) {
-    command
-        .add_option("--threads", common.threads,
-                    "cores for independent work (default: all that this process may use); results have the same bits "
-                    "for any number")
-        ->check(ranges::integer(1, 1024))
-        ->type_name("N");
+    option(command, "--threads", common.threads,
+           "cores for independent work (default: all that this process may use); results have the same bits for any "
+           "number",
+           ranges::integer(1, 1024), "N");
 }
 
 /// The registered subcommands; each sets `todo` when it was chosen.
 struct Program {
     CLI::App app{"Quasi-static trajectories of rigid frictionless disks: equilibria and rearrangements, with proofs",
                  "isostat"};
-    PrepareArguments prepare_arguments;
-    RunArguments run_arguments;
-    EnsembleArguments ensemble_arguments;
-    InspectArguments inspect_arguments;
-    CertifyArguments certify_arguments;
-    PlanArguments plan_arguments;
-    ReportArguments report_arguments;
-    VerifyArguments verify_arguments;
-    PlateauArguments plateau_arguments;
-    GenericityArguments genericity_arguments;
-    ImportArguments import_arguments;
-    ExportArguments export_arguments;
-    SnapArguments snap_arguments;
-    CompareArguments compare_arguments;
     std::function<int()> todo;
 
     explicit Program(std::string line) : line_(std::move(line)) {
@@ -102,6 +107,13 @@ struct Program {
 
   private:
     std::string line_;
+    std::vector<std::shared_ptr<void>> kept_; ///< what is asked of each command
+
+    template <class Arguments> Arguments& keep() {
+        const auto kept = std::make_shared<Arguments>();
+        kept_.push_back(kept);
+        return *kept;
+    }
 
     /// What every command has, and what it does when it was chosen.
     template <class Arguments>
@@ -126,35 +138,32 @@ struct Program {
     }
 
     void add_prepare() {
-        PrepareArguments& a = prepare_arguments;
-        CLI::App& command = add("prepare", "random disks -> equilibrium under isotropic load",
-                                "Writes a state file. When a stage fails, what it reached goes to STATE.failed.json, "
-                                "which no command takes for a\n"
-                                "state.\nExample: isostat prepare examples/biaxial-400.toml -o start.json");
-        command.add_option("scene", a.scene, "scene file (TOML)")->required()->type_name("SCENE.toml");
-        command.add_option("-o,--output", a.output, "state file to write")->required()->type_name("STATE.json");
+        auto& a = keep<PrepareArguments>();
+        CLI::App& command = add(
+            "prepare", "random disks -> equilibrium under isotropic load",
+            R"(Writes a state file. When a stage fails, what it reached goes to STATE.failed.json, which no command takes for a
+state.
+Example: isostat prepare examples/biaxial-400.toml -o start.json)");
+        needed(command, "scene", a.scene, "scene file (TOML)", "SCENE.toml");
+        needed(command, "-o,--output", a.output, "state file to write", "STATE.json");
         add_threads(command, a.common);
         does(command, a, prepare, true);
     }
 
     void add_run() {
-        RunArguments& a = run_arguments;
+        auto& a = keep<RunArguments>();
         CLI::App& command = add(
             "run", "a whole trajectory: start, then the programme of the scene",
-            "The folder holds run.json, events.jsonl, equilibria.csv, checkpoint.json, states/ "
-            "and, at the end, summary.json and\n"
-            "figures/. After a kill or Ctrl-C, --resume goes on from the last equilibrium; the "
-            "files are then those of a run that\n"
-            "was not interrupted, times apart.\n"
-            "A tie (two forces that vanish at one load, two gaps that close at once) ends the run with exit status 2; "
-            "with\n"
-            "ties = \"choose\" in [run] it is settled for radii R_i + eps rho_i, eps -> 0, a rule chooses where these "
-            "do\n"
-            "not tell (at most max_choices times), and the records say how.\n"
-            "Examples: isostat run examples/biaxial-400.toml -o out\n"
-            "          isostat run examples/biaxial-400.toml -o out --resume");
-        command.add_option("scene", a.scene, "scene file (TOML)")->required()->type_name("SCENE.toml");
-        command.add_option("-o,--output", a.output, "folder of the run")->required()->type_name("DIR");
+            R"(The folder holds run.json, events.jsonl, equilibria.csv, checkpoint.json, states/ and, at the end, summary.json and
+figures/. After a kill or Ctrl-C, --resume goes on from the last equilibrium; the files are then those of a run that
+was not interrupted, times apart.
+A tie (two forces that vanish at one load, two gaps that close at once) ends the run with exit status 2; with
+ties = "choose" in [run] it is settled for radii R_i + eps rho_i, eps -> 0, a rule chooses where these do
+not tell (at most max_choices times), and the records say how.
+Examples: isostat run examples/biaxial-400.toml -o out
+          isostat run examples/biaxial-400.toml -o out --resume)");
+        needed(command, "scene", a.scene, "scene file (TOML)", "SCENE.toml");
+        needed(command, "-o,--output", a.output, "folder of the run", "DIR");
         CLI::Option* resume = command.add_flag("--resume", a.resume, "go on after an interruption");
         command.add_flag("--force", a.force, "delete the run that the folder holds first, and nothing else there")
             ->excludes(resume);
@@ -163,32 +172,23 @@ struct Program {
     }
 
     void add_ensemble() {
-        EnsembleArguments& a = ensemble_arguments;
-        CLI::App& command =
-            add("ensemble", "independent samples of a scene (seeds 1, 2, ...), their tables in one",
-                "Every sample is a process of its own: one that fails or crashes loses no other. The folder "
-                "holds samples/seed_.../\n"
-                "(each the folder of a run), equilibria.csv, increments.csv, samples.csv, ensemble.json. "
-                "After a kill or Ctrl-C, --resume\n"
-                "goes on; with a larger --samples it adds more. The tables do not depend on --jobs. Under "
-                "mpirun (builds with\n"
-                "ISOSTAT_WITH_MPI) the ranks share the samples.\n"
-                "Exit status: 0 all completed; 1 some failed, crashed or were refused; 2 some undecided; "
-                "130 interrupted.\n"
-                "Examples: isostat ensemble examples/biaxial-400.toml --samples 8 -o many\n"
-                "          mpirun -n 4 isostat ensemble examples/biaxial-400.toml --samples 8 -o many");
-        command.add_option("scene", a.scene, "scene file (TOML)")->required()->type_name("SCENE.toml");
-        command.add_option("-S,--samples", a.samples, "number of samples")
-            ->required()
-            ->check(ranges::integer(1, most_samples))
-            ->type_name("S");
-        command.add_option("-o,--output", a.output, "folder of the ensemble")->required()->type_name("DIR");
-        command.add_option("-j,--jobs", a.jobs, "samples at a time (default: one per core; under mpirun one per rank)")
-            ->check(ranges::integer(1, 10'000))
-            ->type_name("J");
-        command.add_option("--first-seed", a.first_seed, "seed of the first sample (default 1)")
-            ->check(ranges::integer(0, ranges::largest_seed))
-            ->type_name("SEED");
+        auto& a = keep<EnsembleArguments>();
+        CLI::App& command = add(
+            "ensemble", "independent samples of a scene (seeds 1, 2, ...), their tables in one",
+            R"(Every sample is a process of its own: one that fails or crashes loses no other. The folder holds samples/seed_.../
+(each the folder of a run), equilibria.csv, increments.csv, samples.csv, ensemble.json. After a kill or Ctrl-C, --resume
+goes on; with a larger --samples it adds more. The tables do not depend on --jobs. Under mpirun (builds with
+ISOSTAT_WITH_MPI) the ranks share the samples.
+Exit status: 0 all completed; 1 some failed, crashed or were refused; 2 some undecided; 130 interrupted.
+Examples: isostat ensemble examples/biaxial-400.toml --samples 8 -o many
+          mpirun -n 4 isostat ensemble examples/biaxial-400.toml --samples 8 -o many)");
+        needed(command, "scene", a.scene, "scene file (TOML)", "SCENE.toml");
+        needed(command, "-S,--samples", a.samples, "number of samples", ranges::integer(1, isostat::most_samples), "S");
+        needed(command, "-o,--output", a.output, "folder of the ensemble", "DIR");
+        option(command, "-j,--jobs", a.jobs, "samples at a time (default: one per core; under mpirun one per rank)",
+               ranges::integer(1, 10'000), "J");
+        option(command, "--first-seed", a.first_seed, "seed of the first sample (default 1)",
+               ranges::integer(0, ranges::largest_seed), "SEED");
         CLI::Option* resume = command.add_flag("--resume", a.resume, "go on after an interruption, or add samples");
         command.add_flag("--force", a.force, "delete the ensemble that the folder holds first, and nothing else there")
             ->excludes(resume);
@@ -196,131 +196,108 @@ struct Program {
     }
 
     void add_inspect() {
-        InspectArguments& a = inspect_arguments;
-        CLI::App& command =
-            add("inspect", "N, N_f, rank, h, k, rattlers, smallest force and gap, supported interval of a state",
-                "Nothing moves. Exit status 0: proved to be an isostatic equilibrium; 1: proved not to be one; 2: "
-                "undecided.\n"
-                "A TOML file is a crafted packing with exact numbers (examples/packings): exact contacts, rank, bases, "
-                "stability;\n"
-                "its [expected] entries are checked. A scene is not a packing: see plan.\n"
-                "Examples: isostat inspect start.json\n"
-                "          isostat inspect examples/packings/triangular_patch_3x3.toml");
-        command.add_option("file", a.file, "state file, or vertex text")->required()->type_name("FILE");
-        command.add_option("--at", a.at, "under this sigma_2 instead of that of the state; prints every force")
-            ->check(ranges::number(-ranges::largest, ranges::largest))
-            ->type_name("SIGMA2");
+        auto& a = keep<InspectArguments>();
+        CLI::App& command = add(
+            "inspect", "N, N_f, rank, h, k, rattlers, smallest force and gap, supported interval of a state",
+            R"(Nothing moves. Exit status 0: proved to be an isostatic equilibrium; 1: proved not to be one; 2: undecided.
+A TOML file is a crafted packing with exact numbers (examples/packings): exact contacts, rank, bases, stability;
+its [expected] entries are checked. A scene is not a packing: see plan.
+Examples: isostat inspect start.json
+          isostat inspect examples/packings/triangular_patch_3x3.toml)");
+        needed(command, "file", a.file, "state file, or vertex text", "FILE");
+        option(command, "--at", a.at, "under this sigma_2 instead of that of the state; prints every force",
+               ranges::number(-ranges::largest, ranges::largest), "SIGMA2");
         add_threads(command, a.common);
         does(command, a, inspect, false);
     }
 
     void add_certify() {
-        CertifyArguments& a = certify_arguments;
-        CLI::App& command =
-            add("certify", "proves that a state is an isostatic, stable equilibrium, and writes what was proved",
-                "Claims are about the true vertex near the stored coordinates, where all gaps of the contacts are "
-                "exactly 0. What is not\n"
-                "proved is not claimed, and the reason is written. Exit status 0: every claim is proved; 1: one is "
-                "refuted; 2: some are undecided.\n"
-                "Example: isostat certify out/states/last.json -o last.cert.json");
-        command.add_option("state", a.input, "state file, or vertex text")->required()->type_name("STATE.json");
-        command.add_option("-o,--output", a.output, "certificate to write")->required()->type_name("CERT.json");
+        auto& a = keep<CertifyArguments>();
+        CLI::App& command = add(
+            "certify", "proves that a state is an isostatic, stable equilibrium, and writes what was proved",
+            R"(Claims are about the true vertex near the stored coordinates, where all gaps of the contacts are exactly 0. What is not
+proved is not claimed, and the reason is written. Exit status 0: every claim is proved; 1: one is refuted; 2: some are undecided.
+Example: isostat certify out/states/last.json -o last.cert.json)");
+        needed(command, "state", a.input, "state file, or vertex text", "STATE.json");
+        needed(command, "-o,--output", a.output, "certificate to write", "CERT.json");
         add_threads(command, a.common);
         does(command, a, certify, false);
     }
 
     void add_plan() {
-        PlanArguments& a = plan_arguments;
+        auto& a = keep<PlanArguments>();
         CLI::App& command =
             add("plan", "which stages, solvers and outputs a scene uses and which it leaves out, and every setting",
-                "Nothing is computed.\nExample: isostat plan examples/biaxial-1936.toml");
-        command.add_option("scene", a.scene, "scene file (TOML)")->required()->type_name("SCENE.toml");
+                R"(Nothing is computed.
+Example: isostat plan examples/biaxial-1936.toml)");
+        needed(command, "scene", a.scene, "scene file (TOML)", "SCENE.toml");
         does(command, a, plan, false);
     }
 
     void add_report() {
-        ReportArguments& a = report_arguments;
-        CLI::App& command = add(
-            "report", "tables and figures of a run, or the force picture of a state",
-            "Charts are drawn by gnuplot; without it, data and scripts are written and said to be so.\n"
-            "Examples: isostat report out\n          isostat report out --html\n          isostat report start.json -o "
-            "pictures --vtk");
-        command.add_option("input", a.input, "folder of a run or of an ensemble, or state file")
-            ->required()
-            ->type_name("DIR|STATE");
-        command
-            .add_option("-o,--output", a.output,
-                        "folder of the figures (default: DIR/figures, or the folder of the state); of an ensemble: a "
-                        "folder in it per seed")
-            ->type_name("DIR");
+        auto& a = keep<ReportArguments>();
+        CLI::App& command =
+            add("report", "tables and figures of a run, or the force picture of a state",
+                R"(Charts are drawn by gnuplot; without it, data and scripts are written and said to be so.
+Examples: isostat report out
+          isostat report out --html
+          isostat report start.json -o pictures --vtk)");
+        needed(command, "input", a.input, "folder of a run or of an ensemble, or state file", "DIR|STATE");
+        option(command, "-o,--output", a.output,
+               "folder of the figures (default: DIR/figures, or the folder of the state); of an ensemble: a folder in "
+               "it per seed",
+               "DIR");
         command.add_flag("--vtk", a.vtk, "also write ParaView files");
         command.add_flag("--pdf", a.pdf, "charts as PDF too");
         command.add_flag("--html", a.html,
                          "of a run: also write trajectory.html, one page to look at every equilibrium and arc, without "
                          "network");
         command.add_flag("--no-charts", a.no_charts, "do not call gnuplot");
-        command
-            .add_option("--stiffness", a.stiffness,
-                        "of a run: also where grains of this stiffness (force / overlap) would leave each structure, "
-                        "predicted: soft_limits.csv")
-            ->check(ranges::number(ranges::smallest, ranges::largest))
-            ->type_name("K");
+        option(command, "--stiffness", a.stiffness,
+               "of a run: also where grains of this stiffness (force / overlap) would leave each structure, predicted: "
+               "soft_limits.csv",
+               ranges::number(ranges::smallest, ranges::largest), "K");
         does(command, a, report, true);
     }
 
     void add_verify() {
-        VerifyArguments& a = verify_arguments;
-        CLI::App& command =
-            add("verify",
-                "re-checks a certificate, or the records of a run, with separate code: proved, refuted or undecided",
-                "The checker shares only the reader of the file with the program that made the certificate, and needs "
-                "nothing of a run.\n"
-                "Exit status 0: all claims of a stable equilibrium are there and proved; 1: a claim is refuted; 2: a "
-                "claim is\n"
-                "undecided or absent.\n"
-                "Of the folder of a run every arc and every equilibrium is replayed, power turns, held coordinates and "
-                "ties settled at\n"
-                "first order included; the first wrong record is named. Runs with\n"
-                "states_every = 1 can be taken up again after an arc that the replay cannot follow. Of an ensemble "
-                "every run "
-                "is: 1 when one is\n"
-                "refuted, else 65 when one cannot be read, else 2 when one is undecided, unfinished or missing.\n"
-                "Examples: isostat verify certificate.json --input state.json\n          isostat verify out");
-        command.add_option("certificate", a.certificate, "certificate (JSON), or folder of a run or of an ensemble")
-            ->required()
-            ->type_name("CERT.json|DIR");
-        command.add_option("--input", a.input, "also check that this is the file that the certificate speaks of")
-            ->type_name("FILE");
+        auto& a = keep<VerifyArguments>();
+        CLI::App& command = add(
+            "verify",
+            "re-checks a certificate, or the records of a run, with separate code: proved, refuted or undecided",
+            R"(The checker shares only the reader of the file with the program that made the certificate, and needs nothing of a run.
+Exit status 0: all claims of a stable equilibrium are there and proved; 1: a claim is refuted; 2: a claim is
+undecided or absent.
+Of the folder of a run every arc and every equilibrium is replayed, power turns, held coordinates and ties settled at
+first order included; the first wrong record is named. Runs with
+states_every = 1 can be taken up again after an arc that the replay cannot follow. Of an ensemble every run is: 1 when one is
+refuted, else 65 when one cannot be read, else 2 when one is undecided, unfinished or missing.
+Examples: isostat verify certificate.json --input state.json
+          isostat verify out)");
+        needed(command, "certificate", a.certificate, "certificate (JSON), or folder of a run or of an ensemble",
+               "CERT.json|DIR");
+        option(command, "--input", a.input, "also check that this is the file that the certificate speaks of", "FILE");
         add_threads(command, a.common);
         does(command, a, verify, true);
     }
 
     static void add_foreign(CLI::App& command, ForeignArguments& a) {
-        command.add_option("--radius", a.radius, "the column, or the number, that is every disk's radius")
-            ->type_name("COLUMN|NUMBER");
-        command.add_option("--diameter", a.diameter, "the same for diameters")
-            ->type_name("COLUMN|NUMBER")
-            ->excludes("--radius");
-        command
-            .add_option("--walls", a.walls,
-                        "none; box: left and bottom fixed, right and top movable; fixed: all four (default: none for "
-                        "files of other programs)")
-            ->check(CLI::IsMember({"none", "box", "fixed"}));
-        command.add_option("--box", a.box, "positions of the walls instead of the bounds in the file")
-            ->type_name("XLO:XHI,YLO:YHI");
-        command.add_option("--frame", a.frame, "of a file with several, from 0 (default: last)")
-            ->type_name("NUMBER|last");
-        command
-            .add_option("--columns", a.columns, "names of the columns of a table without a header; - leaves one out")
-            ->type_name("x,y,r");
-        command.add_option("--select", a.select, "rows with this value in this column are the disks, e.g. type=1")
-            ->type_name("COLUMN=VALUE");
-        command.add_option("--format", a.format, "lammps-data, lammps-dump, xyz, table (default: from the content)");
+        option(command, "--radius", a.radius, "the column, or the number, that is every disk's radius",
+               "COLUMN|NUMBER");
+        option(command, "--diameter", a.diameter, "the same for diameters", "COLUMN|NUMBER")->excludes("--radius");
+        option(command, "--walls", a.walls,
+               "none; box: left and bottom fixed, right and top movable; fixed: all four (default: none for files of "
+               "other programs)",
+               CLI::IsMember({"none", "box", "fixed"}));
+        option(command, "--box", a.box, "positions of the walls instead of the bounds in the file", "XLO:XHI,YLO:YHI");
+        option(command, "--frame", a.frame, "of a file with several, from 0 (default: last)", "NUMBER|last");
+        option(command, "--columns", a.columns, "names of the columns of a table without a header; - leaves one out",
+               "x,y,r");
+        option(command, "--select", a.select, "rows with this value in this column are the disks, e.g. type=1",
+               "COLUMN=VALUE");
+        option(command, "--format", a.format, "lammps-data, lammps-dump, xyz, table (default: from the content)");
         command.add_flag("--not-periodic", a.not_periodic,
                          "take periodic boundaries for open ones: contacts across them are not looked for");
-    }
-
-    static void add_periodic(CLI::App& command, ForeignArguments& a) {
         command
             .add_flag("--periodic", a.periodic,
                       "boundaries that the file leaves open are periodic (LAMMPS data files say nothing of them)")
@@ -328,241 +305,190 @@ struct Program {
     }
 
     static void add_cell(CLI::App& command, std::string& cell) {
-        command
-            .add_option("--cell", cell,
-                        "what of a periodic cell moves besides its disks: rectangular, two periods; tilted, the tilt "
-                        "too; isotropic, its size alone (default: tilted if the file's is)")
-            ->check(CLI::IsMember({"rectangular", "tilted", "isotropic"}));
+        option(command, "--cell", cell,
+               "what of a periodic cell moves besides its disks: rectangular, two periods; tilted, the tilt too; "
+               "isotropic, its size alone (default: tilted if the file's is)",
+               CLI::IsMember({"rectangular", "tilted", "isotropic"}));
     }
 
     void add_import() {
-        ImportArguments& a = import_arguments;
+        auto& a = keep<ImportArguments>();
         CLI::App& command = add(
             "import", "a packing of another program -> the equilibrium next to it, as a state",
-            "Reads what plateau reads. Soft grains overlap: linear programmes and Newton's method end at the vertex "
-            "downhill from the file,\n"
-            "under the stresses given, and certify proves it. Its force-carrying contacts must be those of the file: "
-            "where a plateau of\n"
-            "thresholds is proved isostatic, at a threshold, or by the forces of a LAMMPS dump of style local or a "
-            "table. A "
-            "crafted packing (TOML) is\n"
-            "rounded to doubles and keeps its contacts and its load; a vertex text keeps them too. With --jitter a "
-            "state is taken as well.\n"
-            "In a periodic cell or a channel: the vertex downhill whatever its contacts, unless --contacts says more.\n"
-            "Proofs are of the doubles written. Where gaps or forces are below what the digits of the file tell, so "
-            "that "
-            "they may be 0 in its\n"
-            "packing, they are named and the answer is undecided, here and when inspect or certify read the state.\n"
-            "Exit status 0: written and certified; 1: no such equilibrium; 2: undecided.\n"
-            "Examples: isostat import disks.dump --box 0:15.46,0:14.88 -o start.json\n"
-            "          isostat import disks.dump --box 0:15.46,0:14.88 --contacts pairs.dump --contact-columns "
-            "'c_1[1],c_1[2],c_2[2]' -o start.json");
-        command.add_option("file", a.file, "packing")->required()->type_name("FILE");
-        command.add_option("-o,--output", a.output, "state file to write")->required()->type_name("STATE.json");
+            R"(Reads what plateau reads. Soft grains overlap: linear programmes and Newton's method end at the vertex downhill from the file,
+under the stresses given, and certify proves it. Its force-carrying contacts must be those of the file: where a plateau of
+thresholds is proved isostatic, at a threshold, or by the forces of a LAMMPS dump of style local or a table. A crafted packing (TOML) is
+rounded to doubles and keeps its contacts and its load; a vertex text keeps them too. With --jitter a state is taken as well.
+In a periodic cell or a channel: the vertex downhill whatever its contacts, unless --contacts says more.
+Proofs are of the doubles written. Where gaps or forces are below what the digits of the file tell, so that they may be 0 in its
+packing, they are named and the answer is undecided, here and when inspect or certify read the state.
+Exit status 0: written and certified; 1: no such equilibrium; 2: undecided.
+Examples: isostat import disks.dump --box 0:15.46,0:14.88 -o start.json
+          isostat import disks.dump --box 0:15.46,0:14.88 --contacts pairs.dump --contact-columns 'c_1[1],c_1[2],c_2[2]' -o start.json)");
+        needed(command, "file", a.file, "packing", "FILE");
+        needed(command, "-o,--output", a.output, "state file to write", "STATE.json");
         CLI::Option* contacts =
-            command
-                .add_option(
-                    "--contacts", a.contacts,
-                    "plateau: as the widest range of thresholds with an isostatic backbone says; nearest: any; "
-                    "or a dump of style local or a table with forces (default: plateau; nearest in a periodic cell)")
-                ->type_name("plateau|nearest|FILE");
-        command.add_option("--contact-columns", a.contact_columns, "columns of that file: two ids and the force")
-            ->type_name("I,J,FORCE");
-        command.add_option("--threshold", a.threshold, "pairs with this gap or less are the contacts")
-            ->check(ranges::number(-ranges::largest, ranges::largest))
+            option(command, "--contacts", a.contacts,
+                   "plateau: as the widest range of thresholds with an isostatic backbone says; nearest: any; or a "
+                   "dump of style local or a table with forces (default: plateau; nearest in a periodic cell)",
+                   "plateau|nearest|FILE");
+        option(command, "--contact-columns", a.contact_columns, "columns of that file: two ids and the force",
+               "I,J,FORCE");
+        option(command, "--threshold", a.threshold, "pairs with this gap or less are the contacts",
+               ranges::number(-ranges::largest, ranges::largest))
             ->excludes(contacts);
-        command.add_option("--stress", a.stress, "sigma_1 and sigma_2 (default 1,1, or those of a state)")
-            ->type_name("S1,S2");
-        command.add_option("--load", a.load, "nominal: dead wall forces; true: stress x present length")
-            ->check(CLI::IsMember({"nominal", "true"}));
-        command.add_option("--seed", a.seed, "of the infinitesimal loads and of the jitter (default 1)")
-            ->check(ranges::integer(0, ranges::largest_seed));
-        command.add_option("--jitter", a.jitter, "radii R_i (1 + jitter rho_i), rho_i in [-1, 1) at random")
-            ->check(ranges::number(0, 0.1));
-        command.add_option("--moved", a.moved, "write the way of each disk from the file to the vertex")
-            ->type_name("FILE.csv");
+        option(command, "--stress", a.stress, "sigma_1 and sigma_2 (default 1,1, or those of a state)", "S1,S2");
+        option(command, "--load", a.load, "nominal: dead wall forces; true: stress x present length",
+               CLI::IsMember({"nominal", "true"}));
+        option(command, "--seed", a.seed, "of the infinitesimal loads and of the jitter (default 1)",
+               ranges::integer(0, ranges::largest_seed));
+        option(command, "--jitter", a.jitter, "radii R_i (1 + jitter rho_i), rho_i in [-1, 1) at random",
+               ranges::number(0, 0.1));
+        option(command, "--moved", a.moved, "write the way of each disk from the file to the vertex", "FILE.csv");
         command.add_flag("--far", a.far, "disks with a force may move by more than their radius");
         add_cell(command, a.cell);
         add_foreign(command, a.foreign);
-        add_periodic(command, a.foreign);
         add_threads(command, a.common);
         does(command, a, import, false);
     }
 
     void add_snap() {
-        SnapArguments& a = snap_arguments;
+        auto& a = keep<SnapArguments>();
         CLI::App& command = add(
             "snap", "a frame of soft grains -> the vertex of rigid grains with the same contacts, with proof",
-            "The list: pairs with a force in a LAMMPS dump of style local or a table, or those that overlap, or the "
-            "contacts of a "
-            "state. Newton's method\n"
-            "ends at the vertex where they all touch; certify proves it there, with its distance from the file. "
-            "Rattlers must have room and\n"
-            "rest on infinitesimal loads in the state.\n"
-            "Exit status 0: written and proved; 1: the list has no such vertex (hyperstatic, moving, refuted: "
-            "printed); 2: undecided.\n"
-            "Example: isostat snap disks.dump --frame 3 --box 0:15.46,0:14.88 --contacts pairs.dump --contact-columns "
-            "'c_1[1],c_1[2],c_2[2]' --stress 1,1.2 -o state.json");
-        command.add_option("file", a.file, "packing, or state")->required()->type_name("FILE");
-        command.add_option("-o,--output", a.output, "state file to write")->required()->type_name("STATE.json");
-        CLI::Option* contacts = command
-                                    .add_option("--contacts", a.contacts,
-                                                "LAMMPS dump of style local, or a table (default: pairs that overlap)")
-                                    ->type_name("FILE");
-        command.add_option("--contact-columns", a.contact_columns, "columns of that dump: two ids and the force")
-            ->type_name("I,J,FORCE")
+            R"(The list: pairs with a force in a LAMMPS dump of style local or a table, or those that overlap, or the contacts of a state. Newton's method
+ends at the vertex where they all touch; certify proves it there, with its distance from the file. Rattlers must have room and
+rest on infinitesimal loads in the state.
+Exit status 0: written and proved; 1: the list has no such vertex (hyperstatic, moving, refuted: printed); 2: undecided.
+Example: isostat snap disks.dump --frame 3 --box 0:15.46,0:14.88 --contacts pairs.dump --contact-columns 'c_1[1],c_1[2],c_2[2]' --stress 1,1.2 -o state.json)");
+        needed(command, "file", a.file, "packing, or state", "FILE");
+        needed(command, "-o,--output", a.output, "state file to write", "STATE.json");
+        CLI::Option* contacts = option(command, "--contacts", a.contacts,
+                                       "LAMMPS dump of style local, or a table (default: pairs that overlap)", "FILE");
+        option(command, "--contact-columns", a.contact_columns, "columns of that dump: two ids and the force",
+               "I,J,FORCE")
             ->needs(contacts);
-        command.add_option("--stress", a.stress, "sigma_1 and sigma_2 (default 1,1, or those of a state)")
-            ->type_name("S1,S2");
-        command.add_option("--load", a.load, "nominal: dead wall forces; true: stress x present length")
-            ->check(CLI::IsMember({"nominal", "true"}));
-        command
-            .add_option("--reference-length", a.reference_length,
-                        "lengths that nominal stresses press on (default: those of the frame; a series has those of "
-                        "its first frame)")
-            ->type_name("L1,L2");
-        command
-            .add_option("--stiffness", a.stiffness,
-                        "force / overlap: forces that the file does not say are compared with the exact ones too")
-            ->type_name("K")
-            ->check(ranges::number(ranges::smallest, ranges::largest));
+        option(command, "--stress", a.stress, "sigma_1 and sigma_2 (default 1,1, or those of a state)", "S1,S2");
+        option(command, "--load", a.load, "nominal: dead wall forces; true: stress x present length",
+               CLI::IsMember({"nominal", "true"}));
+        option(command, "--reference-length", a.reference_length,
+               "lengths that nominal stresses press on (default: those of the frame; a series has those of its first "
+               "frame)",
+               "L1,L2");
+        option(command, "--stiffness", a.stiffness,
+               "force / overlap: forces that the file does not say are compared with the exact ones too",
+               ranges::number(ranges::smallest, ranges::largest), "K");
         command.add_flag("--exchange", a.exchange,
                          "where the list has no vertex: the one downhill, which need not be the only one near");
-        command.add_option("--seed", a.seed, "of the infinitesimal loads (default 1)")
-            ->check(ranges::integer(0, ranges::largest_seed));
+        option(command, "--seed", a.seed, "of the infinitesimal loads (default 1)",
+               ranges::integer(0, ranges::largest_seed));
         add_cell(command, a.cell);
         add_foreign(command, a.foreign);
-        add_periodic(command, a.foreign);
         does(command, a, snap, false);
     }
 
     void add_compare() {
-        CompareArguments& a = compare_arguments;
+        auto& a = keep<CompareArguments>();
         CLI::App& command = add(
             "compare", "a series of frames of another program against the exact trajectory",
-            "Each frame: its list of contacts, the proved distance to the vertex of rigid grains, errors of the forces "
-            "(law, rest,\n"
-            "stiffness), and what it is: same, early, late, other, soft, moving, file, refuted, undecided. Then where "
-            "the frames leave the\n"
-            "exact run, and why. The folder gets comparison.csv, path.csv, comparison.json, bundle/ and\n"
-            "the figure.\n"
-            "Exit status 0: every frame at rest is the exact equilibrium of its load, proved; 1: a frame departs; 2: "
-            "none departs, and one is\n"
-            "undecided or all are in motion.\n"
-            "Example: isostat compare series.toml -o comparison");
-        command.add_option("series", a.series, "manifest (isostat-series 1)")->required()->type_name("SERIES.toml");
-        command.add_option("-o,--output", a.output, "folder for tables and figure")->type_name("DIR");
-        command
-            .add_option(
-                "--reference", a.reference,
-                "start of the exact run: a state, or equilibrium 0 of the folder of a run (default: the vertex of "
-                "the first frame that has one)")
-            ->type_name("STATE|DIR");
-        command
-            .add_option(
-                "--bundle", a.bundle,
-                "exact runs from the start: other rules of opening, rattlers that rest elsewhere (default 16; 0: none)")
-            ->check(ranges::integer(0, 10'000));
+            R"(Each frame: its list of contacts, the proved distance to the vertex of rigid grains, errors of the forces (law, rest,
+stiffness), and what it is: same, early, late, other, soft, moving, file, refuted, undecided. Then where the frames leave the
+exact run, and why. The folder gets comparison.csv, path.csv, comparison.json, bundle/ and
+the figure.
+Exit status 0: every frame at rest is the exact equilibrium of its load, proved; 1: a frame departs; 2: none departs, and one is
+undecided or all are in motion.
+Example: isostat compare series.toml -o comparison)");
+        needed(command, "series", a.series, "manifest (isostat-series 1)", "SERIES.toml");
+        option(command, "-o,--output", a.output, "folder for tables and figure", "DIR");
+        option(command, "--reference", a.reference,
+               "start of the exact run: a state, or equilibrium 0 of the folder of a run (default: the vertex of the "
+               "first frame that has one)",
+               "STATE|DIR");
+        option(command, "--bundle", a.bundle,
+               "exact runs from the start: other rules of opening, rattlers that rest elsewhere (default 16; 0: none)",
+               ranges::integer(0, 10'000));
         command.add_flag(
             "--local", a.local,
             "besides, the exact run from every frame to the next one: a score that a departure does not spoil");
         command.add_flag(
             "--nearest-arc", a.nearest_arc,
             "besides, the arc of the exact run whose contacts are nearest to those of each frame in motion");
-        command.add_option("--frames", a.frames, "the frames from A to B only, by their numbers from 0 (default: all)")
-            ->type_name("A:B");
+        option(command, "--frames", a.frames, "the frames from A to B only, by their numbers from 0 (default: all)",
+               "A:B");
         add_threads(command, a.common);
         does(command, a, compare_series, true);
     }
 
     void add_export() {
-        ExportArguments& a = export_arguments;
+        auto& a = keep<ExportArguments>();
         CLI::App& command = add(
             "export", "a state, or the states of a run, for other programs",
-            "LAMMPS data (.data), extended XYZ for OVITO (.xyz), CSV (.csv): disks and box; contacts and load have no "
-            "place there. Of the\n"
-            "folder of a run: XYZ has a frame for each state stored, with the displacement from the first; the others "
-            "the last state.\n"
-            "ParaView files: isostat report --vtk.\n"
-            "Examples: isostat export start.json -o start.data\n          isostat export out -o out.xyz");
-        command.add_option("input", a.input, "state file, vertex text, or folder of a run")
-            ->required()
-            ->type_name("STATE|DIR");
-        command.add_option("-o,--output", a.output, "file to write")->required()->type_name("FILE");
-        command
-            .add_option("--format", a.format, "lammps-data, xyz, csv (default: from the end of the name of the file)")
-            ->check(CLI::IsMember({"lammps-data", "xyz", "csv"}));
+            R"(LAMMPS data (.data), extended XYZ for OVITO (.xyz), CSV (.csv): disks and box; contacts and load have no place there. Of the
+folder of a run: XYZ has a frame for each state stored, with the displacement from the first; the others the last state.
+ParaView files: isostat report --vtk.
+Examples: isostat export start.json -o start.data
+          isostat export out -o out.xyz)");
+        needed(command, "input", a.input, "state file, vertex text, or folder of a run", "STATE|DIR");
+        needed(command, "-o,--output", a.output, "file to write", "FILE");
+        option(command, "--format", a.format, "lammps-data, xyz, csv (default: from the end of the name of the file)",
+               CLI::IsMember({"lammps-data", "xyz", "csv"}));
         does(command, a, export_states, false);
     }
 
     void add_genericity() {
-        GenericityArguments& a = genericity_arguments;
+        auto& a = keep<GenericityArguments>();
         CLI::App& command = add(
             "genericity", "perturbs the radii of a packing and proves what its equilibria are",
-            "Each sample: radii times 1 + size u (seeded), downhill to the vertex under isotropic stress, certificate "
-            "of the true vertex.\n"
-            "Exit status 0: every sample is proved isostatic; 2: some are not (ties, signs beyond 100 digits, no "
-            "vertex found).\n"
-            "Examples: isostat genericity examples/packings/square_lattice_3.toml --samples 20 --size 1e-2,1e-6,1e-10\n"
-            "          isostat genericity examples/packings/square_lattice_3.toml --size 1e-3 --keep-equal\n"
-            "          isostat genericity examples/packings/cell_triangular_lattice_6.toml --size 1e-3 --tilt");
-        command
-            .add_option("packing", a.file,
-                        "crafted packing (TOML), state or vertex text, in a box with movable walls or a cell whose "
-                        "periods move")
-            ->required()
-            ->type_name("FILE");
-        command.add_option("--samples", a.samples, "samples per size (default 100)")
-            ->check(ranges::integer(1, 1'000'000'000));
-        command.add_option("--size", a.sizes, "largest relative change of a radius; several: 1e-2,1e-6 (default 1e-6)")
-            ->delimiter(',')
-            ->check(ranges::number(0, 1));
-        command.add_option("--seed", a.seed, "sample s uses seed + s (default 1)")
-            ->check(ranges::integer(0, ranges::largest_seed));
-        command.add_option("--stress", a.stress, "isotropic stress (default 1)")
-            ->check(ranges::number(ranges::smallest, ranges::largest));
-        command.add_option("--lists", a.lists, "frequent contact lists to show (default 10)")
-            ->check(ranges::integer(0, 1'000'000'000));
+            R"(Each sample: radii times 1 + size u (seeded), downhill to the vertex under isotropic stress, certificate of the true vertex.
+Exit status 0: every sample is proved isostatic; 2: some are not (ties, signs beyond 100 digits, no vertex found).
+Examples: isostat genericity examples/packings/square_lattice_3.toml --samples 20 --size 1e-2,1e-6,1e-10
+          isostat genericity examples/packings/square_lattice_3.toml --size 1e-3 --keep-equal
+          isostat genericity examples/packings/cell_triangular_lattice_6.toml --size 1e-3 --tilt)");
+        needed(command, "packing", a.file,
+               "crafted packing (TOML), state or vertex text, in a box with movable walls or a cell whose periods move",
+               "FILE");
+        option(command, "--samples", a.samples, "samples per size (default 100)", ranges::integer(1, 1'000'000'000));
+        option(command, "--size", a.sizes, "largest relative change of a radius; several: 1e-2,1e-6 (default 1e-6)",
+               ranges::number(0, 1))
+            ->delimiter(',');
+        option(command, "--seed", a.seed, "sample s uses seed + s (default 1)",
+               ranges::integer(0, ranges::largest_seed));
+        option(command, "--stress", a.stress, "isotropic stress (default 1)",
+               ranges::number(ranges::smallest, ranges::largest));
+        option(command, "--lists", a.lists, "frequent contact lists to show (default 10)",
+               ranges::integer(0, 1'000'000'000));
         command.add_flag("--keep-equal", a.keep_equal, "disks of equal radius stay equal");
         command.add_flag("--tilt", a.tilt, "perturb the tilt of the cell too, by size u times its first period");
-        command.add_option("--csv", a.csv, "write one row per sample to this file")->type_name("FILE.csv");
+        option(command, "--csv", a.csv, "write one row per sample to this file", "FILE.csv");
         add_threads(command, a.common);
         does(command, a, genericity, false);
     }
 
     void add_plateau() {
-        PlateauArguments& a = plateau_arguments;
+        auto& a = keep<PlateauArguments>();
         CLI::App& command = add(
             "plateau", "contacts, rank, h, k of a packing made elsewhere against the gap threshold",
-            "Reads LAMMPS data files (atom style sphere), LAMMPS dumps, extended XYZ, tables of x y r, CSV, and our "
-            "own files. Whether a\n"
-            "size is a radius or a diameter is said by the name of its column or by you; it is never guessed. Gaps "
-            "are compared exactly,\n"
-            "for the doubles that the file gives. Ranges of thresholds in which the backbone (no rattlers) is "
-            "isostatic are proved at\n"
-            "every threshold, not only at those of the table. The answer is that of the widest range on a logarithmic "
-            "scale; thresholds\n"
-            "between gaps that the digits of the file do not tell apart do not count.\n"
-            "Exit status 0: the widest range is isostatic, proved; 1: it is not; 2: undecided, or no range is wider "
-            "than the digits tell.\n"
-            "Examples: isostat plateau dump.lammpstrj --thresholds=-1e-3:1e-2 --walls box\n"
-            "          isostat plateau disks.txt --columns x,y,d --thresholds 1e-12:0.1");
-        command.add_option("file", a.file, "packing")->required()->type_name("FILE");
-        command
-            .add_option("--thresholds", a.thresholds,
-                        "smallest and largest gap of a contact, in the unit of the file (default: from the deepest "
-                        "overlap to a tenth of the smallest radius)")
-            ->type_name("A:B");
-        command.add_option("--rows", a.rows, "rows of the table; 0: every change of the contact list")
-            ->check(ranges::integer(0, 1'000'000'000));
-        command.add_option("--csv", a.csv, "write the table to this file")->type_name("FILE.csv");
-        command
-            .add_option("--cell", a.strain,
-                        "what a periodic cell may do besides its disks: fixed, isotropic (shape kept, under a "
-                        "pressure), diagonal, full (default: isotropic)")
-            ->check(CLI::IsMember({"fixed", "isotropic", "diagonal", "full"}));
+            R"(Reads LAMMPS data files (atom style sphere), LAMMPS dumps, extended XYZ, tables of x y r, CSV, and our own files. Whether a
+size is a radius or a diameter is said by the name of its column or by you; it is never guessed. Gaps are compared exactly,
+for the doubles that the file gives. Ranges of thresholds in which the backbone (no rattlers) is isostatic are proved at
+every threshold, not only at those of the table. The answer is that of the widest range on a logarithmic scale; thresholds
+between gaps that the digits of the file do not tell apart do not count.
+Exit status 0: the widest range is isostatic, proved; 1: it is not; 2: undecided, or no range is wider than the digits tell.
+Examples: isostat plateau dump.lammpstrj --thresholds=-1e-3:1e-2 --walls box
+          isostat plateau disks.txt --columns x,y,d --thresholds 1e-12:0.1)");
+        needed(command, "file", a.file, "packing", "FILE");
+        option(command, "--thresholds", a.thresholds,
+               "smallest and largest gap of a contact, in the unit of the file (default: from the deepest overlap to a "
+               "tenth of the smallest radius)",
+               "A:B");
+        option(command, "--rows", a.rows, "rows of the table; 0: every change of the contact list",
+               ranges::integer(0, 1'000'000'000));
+        option(command, "--csv", a.csv, "write the table to this file", "FILE.csv");
+        option(command, "--cell", a.strain,
+               "what a periodic cell may do besides its disks: fixed, isotropic (shape kept, under a pressure), "
+               "diagonal, full (default: isotropic)",
+               CLI::IsMember({"fixed", "isotropic", "diagonal", "full"}));
         add_foreign(command, a.foreign);
-        add_periodic(command, a.foreign);
         does(command, a, plateau, false);
     }
 };

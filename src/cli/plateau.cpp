@@ -2,10 +2,11 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
 #include "cli/read_packing.hpp"
-#include "cli/soft_list.hpp"
 #include "cli/terminal.hpp"
+#include "compare/soft_list.hpp"
+#include "core/words.hpp"
+#include "crafted/told_ranges.hpp"
 #include "io/files.hpp"
-#include "preparation/neighbours.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/crafted/plateau.hpp>
@@ -23,46 +24,6 @@ namespace {
 using crafted::PlateauCounts;
 using crafted::PlateauRange;
 using crafted::PlateauStep;
-
-Strain strain_of(const std::string& name) {
-    return name == "fixed"      ? Strain::none
-           : name == "diagonal" ? Strain::diagonal
-           : name == "full"     ? Strain::full
-                                : Strain::isotropic;
-}
-
-/// What counts of the isostatic ranges.
-struct Told {
-    std::vector<PlateauRange> backbone, all; ///< in the widest range: the answer
-    std::vector<PlateauRange> elsewhere;     ///< of the backbone, less wide
-    int noise = 0;                           ///< of the backbone, less wide than the rounding: so many are left out
-    bool special = false;                    ///< the widest range has N = N_f and no full rank
-};
-
-/// Of two ranges one is a part of the other.
-bool meet(const PlateauRange& a, const PlateauRange& b) {
-    return a.candidates == b.candidates || std::max(a.first, b.first) < std::min(a.last, b.last);
-}
-
-Told told_of(const crafted::Plateau& plateau) {
-    Told out;
-    for (const PlateauRange& range : plateau.ranges) {
-        if (!range.told) {
-            ++out.noise;
-        } else {
-            (meet(range, plateau.widest->range) ? out.backbone : out.elsewhere).push_back(range);
-        }
-    }
-    for (const PlateauRange& range : plateau.ranges_all) {
-        if (range.told && meet(range, plateau.widest->range)) {
-            out.all.push_back(range);
-        }
-    }
-    out.special = plateau.widest && std::any_of(plateau.special.begin(), plateau.special.end(), [&](const auto& range) {
-                      return range.told && meet(range, plateau.widest->range);
-                  });
-    return out;
-}
 
 /// The backbone of the widest range, or at the largest threshold.
 std::vector<Contact> shown_backbone(const ReadPacking& file, const crafted::Plateau& plateau, double& threshold) {
@@ -115,7 +76,7 @@ void print_ranges(const std::string& title, const std::vector<PlateauRange>& ran
     }
 }
 
-std::string noise_text(const Told& told, double rounding) {
+std::string noise_text(const crafted::Told& told, double rounding) {
     return told.noise == 0
                ? ""
                : fmt::format(
@@ -137,7 +98,8 @@ std::string self_stress_text(const crafted::Plateau& plateau) {
 }
 
 /// What the packing says: the widest range.
-void print_headline(const crafted::Plateau& plateau, const Told& told, const std::array<double, 2>& thresholds) {
+void print_headline(const crafted::Plateau& plateau, const crafted::Told& told,
+                    const std::array<double, 2>& thresholds) {
     const std::string none = fmt::format("at no threshold of [{:.6g}, {:.6g}]", thresholds[0], thresholds[1]);
     if (plateau.widest) {
         const auto& [range, counts] = *plateau.widest;
@@ -156,8 +118,8 @@ void print_headline(const crafted::Plateau& plateau, const Told& told, const std
     }
 }
 
-void print_text(const PlateauArguments& a, const ReadPacking& file, const crafted::Plateau& plateau, const Told& told,
-                const std::array<double, 2>& thresholds) {
+void print_text(const PlateauArguments& a, const ReadPacking& file, const crafted::Plateau& plateau,
+                const crafted::Told& told, const std::array<double, 2>& thresholds) {
     say("file                        {} ({})\n", a.file, file.format);
     for (const std::string& note : file.notes) {
         say("                            {}\n", note);
@@ -219,8 +181,8 @@ Json ranges_json(const std::vector<PlateauRange>& ranges) {
     return out;
 }
 
-Json to_json(const PlateauArguments& a, const ReadPacking& file, const crafted::Plateau& plateau, const Told& told,
-             const std::array<double, 2>& thresholds) {
+Json to_json(const PlateauArguments& a, const ReadPacking& file, const crafted::Plateau& plateau,
+             const crafted::Told& told, const std::array<double, 2>& thresholds) {
     Json out;
     out["format"] = "isostat-plateau 1";
     out["program"] = program_name();
@@ -282,10 +244,6 @@ std::string to_csv(const crafted::Plateau& plateau) {
     return out;
 }
 
-} // namespace
-
-namespace {
-
 /// Half a unit of the last digit of the roundest position in --box; 0 where it has none to lose.
 double rounding_of(const std::string& box) {
     double worst = 0;
@@ -305,37 +263,13 @@ void note_walls(const PlateauArguments& a, const crafted::Plateau& plateau, Read
     const double rounding = rounding_of(a.foreign.box);
     const bool wide = std::any_of(plateau.ranges.begin(), plateau.ranges.end(),
                                   [&](const PlateauRange& range) { return range.last - range.first > rounding; });
-    if (const std::string far = far_wall(file.packing); !far.empty()) {
+    if (const std::string far = compare::far_wall(file.packing); !far.empty()) {
         file.notes.push_back(far);
     } else if (rounding > 0 && !wide) {
         file.notes.push_back(fmt::format("--box has digits down to {:.2g}: were the walls rounded there, contacts with "
                                          "walls come at wrong thresholds; expected every digit",
                                          2 * rounding));
     }
-}
-
-/// Words where the sizes seem to be wrong by a factor; empty: they do not.
-std::string far_disks(const Packing<2>& packing, double largest, const crafted::Plateau& plateau) {
-    const double radius = packing.min_radius();
-    if (plateau.deepest_overlap < -0.5 * radius) {
-        return fmt::format("two disks overlap by {:.3g} of the smallest radius: are the sizes diameters, taken for "
-                           "radii (--diameter COLUMN)?",
-                           -plateau.deepest_overlap / radius);
-    }
-    double nearest = plateau.deepest_overlap;
-    constexpr double farthest = 8; // radii
-    for (double reach = nearly_touching; plateau.candidates == 0 && reach < farthest && !std::isfinite(nearest);
-         reach *= 2) {
-        for (const Contact& c : preparation::near_contacts<2>(packing, reach * radius, 0)) {
-            nearest = std::min(nearest, gap<2>(packing, c));
-        }
-    }
-    return nearest <= std::max(largest, nearly_touching * radius)
-               ? ""
-               : fmt::format(
-                     "the smallest gap is {:.3g} of the smallest radius: are the sizes wrong by a factor (radii "
-                     "taken for diameters)?",
-                     nearest / radius);
 }
 
 } // namespace
@@ -349,7 +283,7 @@ int plateau(const PlateauArguments& a) {
     ForeignArguments foreign = a.foreign;
     foreign.cells = true;
     ReadPacking file = read_any_packing(a.file, foreign);
-    const Strain strain = strain_of(a.strain);
+    const Strain strain = value_of<Strain>(a.strain, std::array{"fixed", "isotropic", "diagonal", "full"}).value();
     if (a.thresholds.empty()) {
         constexpr double share = 0.1; // of the smallest radius
         thresholds[1] = share * file.packing.min_radius();
@@ -358,9 +292,9 @@ int plateau(const PlateauArguments& a) {
     }
     const crafted::Plateau result =
         crafted::plateau(file.packing, thresholds[0], thresholds[1], a.rows, strain, file.rounding);
-    const Told told = told_of(result);
+    const crafted::Told told = crafted::told_of(result);
     note_walls(a, result, file);
-    if (const std::string sizes = far_disks(file.packing, thresholds[1], result); !sizes.empty()) {
+    if (const std::string sizes = compare::far_disks(file.packing, thresholds[1], result); !sizes.empty()) {
         file.notes.push_back(sizes);
     }
     if (!a.csv.empty()) {

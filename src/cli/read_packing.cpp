@@ -1,7 +1,7 @@
 #include "cli/read_packing.hpp"
 
 #include "cli/ranges.hpp"
-#include "cli/rounding.hpp"
+#include "compare/untold.hpp"
 #include "io/digits.hpp"
 #include "io/files.hpp"
 #include "io/vertex_text.hpp"
@@ -144,7 +144,8 @@ ReadPacking read_any_packing(const std::string& file, const ForeignArguments& ar
     const State<2> state = format != "state" ? parse_vertex_text(text, file)
                            : arguments.cells ? parse_any_state<2>(text, file).state
                                              : parse_state<2>(text, file).state;
-    ReadPacking out{state.packing, format, {}, {}, std::max(rounding_of(state.packing), imported_rounding(state))};
+    ReadPacking out{
+        state.packing, format, {}, {}, std::max(rounding_of(state.packing), compare::imported_rounding(state))};
     out.notes.emplace_back("the contact list of the file is not used");
     return out;
 }

@@ -1,9 +1,9 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
-#include "cli/members.hpp"
 #include "cli/progress.hpp"
-#include "cli/soft_limits.hpp"
 #include "cli/terminal.hpp"
+#include "compare/soft_limits.hpp"
+#include "ensemble/members.hpp"
 #include "report/run_report.hpp"
 
 #include <isostat/core/error.hpp>
@@ -138,7 +138,7 @@ int report(const ReportArguments& arguments) {
     };
     ReportResult result = is_run ? report_run(input, output, options) : report_state(input, output, options);
     if (arguments.stiffness > 0) {
-        result.text += "\n" + soft_limits(input, output, arguments.stiffness);
+        result.text += "\n" + compare::soft_limits(input, output, arguments.stiffness);
         result.files.push_back(output / "soft_limits.csv");
     }
     line.clear();

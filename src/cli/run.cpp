@@ -14,21 +14,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 
 namespace isostat::cli {
 
 namespace {
 
-int exit_status(RunStatus status) {
-    switch (status) {
-    case RunStatus::completed: return done;
-    case RunStatus::failed: return failed;
-    case RunStatus::undecided: return undecided;
-    case RunStatus::interrupted: return interrupted;
-    }
-    return failed;
-}
+constexpr std::array exit_statuses{done, failed, undecided, interrupted}; ///< of `RunStatus`
 
 /// The start of the run: stored one, file or preparation.
 Result<State<2>> start_of(const Scene& scene, const std::optional<State<2>>& from_file, RunDirectory& directory,
@@ -144,16 +137,13 @@ int run(const RunArguments& arguments) {
                     fmt::format("{}: has no [[programme]]: expected at least one segment to run", arguments.scene));
     }
     const bool quiet = arguments.common.quiet || arguments.common.json;
-    const auto mode = arguments.resume  ? RunDirectory::Mode::resume
-                      : arguments.force ? RunDirectory::Mode::force
-                                        : RunDirectory::Mode::fresh;
     std::optional<State<2>> from_file;
     if (!scene.start.empty() && !arguments.resume) {
         from_file = start_from_file(scene); // bad input leaves no folder behind
     }
     RunCounters counters;
-    RunDirectory directory(arguments.output, header_of(scene, program_name(), arguments.common.command), mode,
-                           counters);
+    RunDirectory directory(arguments.output, header_of(scene, program_name(), arguments.common.command),
+                           mode_of(arguments), counters);
     if (!scene.start.empty() && !from_file && !directory.start()) {
         from_file = start_from_file(scene);
     }
@@ -189,7 +179,9 @@ int run(const RunArguments& arguments) {
         draw(scene, directory, quiet);
     }
     record_work(directory.path() / "work.json");
-    return ending.status == RunStatus::completed && !open.empty() ? undecided : exit_status(ending.status);
+    return ending.status == RunStatus::completed && !open.empty()
+               ? undecided
+               : exit_statuses.at(static_cast<std::size_t>(ending.status));
 }
 
 } // namespace isostat::cli

@@ -1,12 +1,13 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
-#include "cli/rounding.hpp"
-#include "cli/soft_list.hpp"
+#include "cli/soft_options.hpp"
 #include "cli/terminal.hpp"
+#include "cli/true_vertex_text.hpp"
 #include "compare/force_split.hpp"
 #include "compare/soft_state.hpp"
 #include "io/files.hpp"
 #include "io/json.hpp"
+#include "packing/words.hpp"
 
 #include <isostat/compare/snap.hpp>
 #include <isostat/core/error.hpp>
@@ -39,7 +40,7 @@ Read from_state(const SnapArguments& a) {
     const StateFile<2> file = read_any_state<2>(a.file);
     Read out;
     static_cast<compare::SoftForces&>(out) = compare::soft_grains(file, a.file);
-    out.rounding = imported_rounding(file.state);
+    out.rounding = compare::imported_rounding(file.state);
     out.words = fmt::format("{} contacts of the state, those that can carry a force", file.state.contacts.size());
     return out;
 }
@@ -59,9 +60,10 @@ Read from_foreign(const SnapArguments& a) {
     }
     ReadPacking file = read_any_packing(a.file, foreign);
     take_cell({a.file, a.cell}, file.packing);
-    check_nearness(a.file, file.packing);
-    SoftList list = a.contacts.empty() ? list_by_overlaps(file.packing)
-                                       : list_by_forces(a.file, file, foreign.frame, a.contacts, a.contact_columns);
+    compare::check_nearness(a.file, file.packing);
+    compare::SoftList list = a.contacts.empty()
+                                 ? compare::list_by_overlaps(file.packing)
+                                 : stated_list(a.file, file, foreign.frame, a.contacts, a.contact_columns);
     Read out;
     out.words = list.words;
     out.forces = list.forces;
@@ -69,7 +71,7 @@ Read from_foreign(const SnapArguments& a) {
     out.rounding = file.rounding;
     out.soft.packing = file.packing;
     out.soft.contacts = std::move(list.contacts);
-    out.soft.load.kind = a.load == "true" ? LoadKind::true_stress : LoadKind::nominal;
+    out.soft.load.kind = value_of<LoadKind>(a.load, load_kind_words).value_or(LoadKind::nominal);
     out.soft.load.stress = parse_stress(a.stress);
     out.soft.load.refer_to(file.packing);
     if (!a.reference_length.empty()) {
@@ -172,10 +174,10 @@ int snap(const SnapArguments& a) {
     const compare::Snap snap = compare::snap(read.soft);
     Json report = json_of(a, read, snap);
     std::optional<State<2>> state = state_of(a, read, snap, report);
-    Untold untold;
+    compare::Untold untold;
     if (state) {
         const Certification truth = certify(*state);
-        untold = untold_by(read.rounding, *state, truth);
+        untold = compare::untold_by(read.rounding, *state, truth);
         add_untold(report, untold, truth.verdict);
         Json provenance = report;
         provenance["rounding"] = number(read.rounding);

@@ -127,19 +127,15 @@ void print_claims(const Certification& certification) {
 Json claims_json(const Certification& certification) {
     const CertificateClaims& c = certification.claims;
     Json object;
-    object["counting"] = nullptr;
-    if (c.counting) {
-        object["counting"] = {{"N_f", c.counting->dof_count},   {"N", c.counting->contact_count},
-                              {"rank", c.counting->rank},       {"h", c.counting->hyperstaticity},
-                              {"k", c.counting->hypostaticity}, {"rung", to_string(c.counting->rung)}};
-    }
-    object["vertex"] = nullptr;
-    if (c.vertex) {
-        object["vertex"] = {{"radius", number(c.vertex->radius)},
-                            {"unique_radius", number(c.vertex->unique_radius)},
-                            {"sigma_min", number(certification.smallest_sigma)},
-                            {"rung", to_string(c.vertex->rung)}};
-    }
+    object["counting"] = c.counting ? Json{{"N_f", c.counting->dof_count},   {"N", c.counting->contact_count},
+                                           {"rank", c.counting->rank},       {"h", c.counting->hyperstaticity},
+                                           {"k", c.counting->hypostaticity}, {"rung", to_string(c.counting->rung)}}
+                                    : Json();
+    object["vertex"] = c.vertex ? Json{{"radius", number(c.vertex->radius)},
+                                       {"unique_radius", number(c.vertex->unique_radius)},
+                                       {"sigma_min", number(certification.smallest_sigma)},
+                                       {"rung", to_string(c.vertex->rung)}}
+                                : Json();
     object["forces"] = nullptr;
     if (c.forces) {
         const auto [smallest, widest] = smallest_and_widest(*c.forces);
@@ -149,18 +145,15 @@ Json claims_json(const Certification& certification) {
                             {"widest_interval", number(widest)},
                             {"rung", to_string(c.forces->rung)}};
     }
-    object["gaps"] = nullptr;
-    if (c.gaps) {
-        object["gaps"] = {{"smallest", number(c.gaps->smallest)},
-                          {"where", std::isfinite(c.gaps->smallest) ? Json(to_string<2>(c.gaps->where)) : Json()},
-                          {"rung", to_string(c.gaps->rung)}};
-    }
-    object["load_interval"] = nullptr;
-    if (c.load_interval) {
-        object["load_interval"] = {{"low", end_json(c.load_interval->low)},
-                                   {"high", end_json(c.load_interval->high)},
-                                   {"rung", to_string(c.load_interval->rung)}};
-    }
+    object["gaps"] = c.gaps
+                         ? Json{{"smallest", number(c.gaps->smallest)},
+                                {"where", std::isfinite(c.gaps->smallest) ? Json(to_string<2>(c.gaps->where)) : Json()},
+                                {"rung", to_string(c.gaps->rung)}}
+                         : Json();
+    object["load_interval"] = c.load_interval ? Json{{"low", end_json(c.load_interval->low)},
+                                                     {"high", end_json(c.load_interval->high)},
+                                                     {"rung", to_string(c.load_interval->rung)}}
+                                              : Json();
     object["stable"] = c.stable;
     return object;
 }
@@ -215,6 +208,16 @@ void add_forces_in_file(Json& object, const StateFile<2>& file, const Certificat
         object["forces_in_file"] = {{"difference", number(forces->difference)},
                                     {"contact", to_string<2>(forces->where)}};
     }
+}
+
+void add_untold(Json& object, const compare::Untold& untold, Verdict of_the_doubles) {
+    if (!untold.any()) {
+        return;
+    }
+    object["untold"] = {{"rounding", number(untold.rounding)},
+                        {"gaps", contact_names(untold.gaps)},
+                        {"forces", contact_names(untold.forces)},
+                        {"verdict_of_the_doubles", to_string(of_the_doubles)}};
 }
 
 } // namespace isostat::cli

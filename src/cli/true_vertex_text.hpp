@@ -3,6 +3,7 @@
 /// How `certify` and `inspect` say what is proved of the true vertex.
 
 #include "cli/common.hpp"
+#include "compare/untold.hpp"
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/io/state_file.hpp>
@@ -26,5 +27,8 @@ Json true_vertex_json(const Certification& certification);
 /// are known. They are no part of what is proved.
 void print_forces_in_file(const StateFile<2>& file, const Certification& truth);
 void add_forces_in_file(Json& object, const StateFile<2>& file, const Certification& truth);
+
+/// What the rounding of a file leaves open, if anything.
+void add_untold(Json& object, const compare::Untold& untold, Verdict of_the_doubles);
 
 } // namespace isostat::cli

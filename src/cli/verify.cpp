@@ -1,8 +1,8 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
-#include "cli/members.hpp"
 #include "cli/terminal.hpp"
 #include "cli/verify_run.hpp"
+#include "ensemble/members.hpp"
 #include "io/files.hpp"
 
 #include <isostat/checker/verify.hpp>

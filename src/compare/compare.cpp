@@ -4,6 +4,7 @@
 #include "compare/local.hpp"
 #include "compare/path.hpp"
 #include "core/parallel.hpp"
+#include "core/words.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/core/machine.hpp>
@@ -161,18 +162,9 @@ int status_of(const std::vector<FrameResult>& frames) {
 } // namespace
 
 const char* to_string(FrameStatus status) {
-    switch (status) {
-    case FrameStatus::same: return "same";
-    case FrameStatus::early: return "early";
-    case FrameStatus::late: return "late";
-    case FrameStatus::other: return "other";
-    case FrameStatus::soft: return "soft";
-    case FrameStatus::moving: return "moving";
-    case FrameStatus::file: return "file";
-    case FrameStatus::refuted: return "refuted";
-    case FrameStatus::undecided: break;
-    }
-    return "undecided";
+    static constexpr std::array words{"same",   "early", "late",    "other",    "soft",
+                                      "moving", "file",  "refuted", "undecided"};
+    return word_of(status, words);
 }
 
 Comparison compare(SeriesReader& reader, const CompareOptions& options) {

@@ -1,9 +1,9 @@
 // Frames of a series, matched by time step.
+#include "compare/frame_file.hpp"
 #include "compare/manifest.hpp"
 #include "compare/pair_images.hpp"
 #include "io/digits.hpp"
 #include "io/files.hpp"
-#include "io/frame_file.hpp"
 #include "io/numbers.hpp"
 
 #include <isostat/core/error.hpp>
@@ -21,11 +21,7 @@ namespace isostat::compare {
 namespace {
 
 using foreign::Boundary;
-using foreign::FileFrame;
-using foreign::FrameFile;
 using foreign::FrameHeader;
-using foreign::Line;
-using foreign::Lines;
 
 /// Which wall a field of a file of contacts means: its name, or -1 left, -2 bottom, -3 right, -4 top.
 std::optional<std::size_t> wall_of(std::string_view field) {
@@ -49,7 +45,7 @@ class FrameTable {
   public:
     explicit FrameTable(const Manifest& manifest)
         : manifest_(manifest), text_(read_text(manifest.frames)), lines_(text_, manifest.frames) {
-        const Line names = lines_.next("names of columns", ',');
+        const TextLine names = lines_.next("names of columns", ',');
         for (std::size_t k = 0; k < names.size(); ++k) {
             names_.emplace_back(names.field(k));
         }
@@ -77,7 +73,7 @@ class FrameTable {
         if (lines_.only_blanks()) {
             return std::nullopt;
         }
-        const Line line = lines_.next("a frame", ',');
+        const TextLine line = lines_.next("a frame", ',');
         line.require_size(names_.size(), "one value per column");
         Frame frame;
         frame.number = count_++;
@@ -108,7 +104,7 @@ class FrameTable {
         return static_cast<std::size_t>(at);
     }
 
-    [[nodiscard]] Sides sides_of(const Line& line) const {
+    [[nodiscard]] Sides sides_of(const TextLine& line) const {
         Sides sides{std::array<double, 4>{}, 0, {}};
         for (std::size_t w = 0; w < 4; ++w) {
             const std::size_t column = required(wall_names[w]);
@@ -122,7 +118,7 @@ class FrameTable {
         return sides;
     }
 
-    [[nodiscard]] Load<2> load_of(const Line& line) const {
+    [[nodiscard]] Load<2> load_of(const TextLine& line) const {
         Load<2> load;
         load.kind = manifest_.load;
         load.reference_length = manifest_.reference_length;
@@ -143,7 +139,7 @@ class FrameTable {
     }
 
     /// A force on a wall must be that of the load, to the digits that a file has.
-    void check_force(const Line& line, std::size_t axis, const Load<2>& load) const {
+    void check_force(const TextLine& line, std::size_t axis, const Load<2>& load) const {
         constexpr double known = 1e-9;
         const std::string name = axis == 0 ? "force_right" : "force_top";
         const int at = find(name);
@@ -163,7 +159,7 @@ class FrameTable {
         }
     }
 
-    [[nodiscard]] static double rounding(const Line& line, std::size_t column) {
+    [[nodiscard]] static double rounding(const TextLine& line, std::size_t column) {
         Digits digits;
         digits.see(line.field(column));
         return digits.rounding();
@@ -171,7 +167,7 @@ class FrameTable {
 
     const Manifest& manifest_;
     std::string text_;
-    Lines lines_;
+    TextLines lines_;
     std::vector<std::string> names_;
     std::string where_;
     bool sides_ = true; ///< it has them
@@ -189,7 +185,7 @@ class Disks {
         check_boundaries(rows, sides);
         const std::size_t id = dump_.column(rows, "id"), size = dump_.column(rows, manifest_.size);
         const std::size_t x = dump_.column(rows, "x"), y = dump_.column(rows, "y");
-        const std::map<long, const Line*> by_id = selected(rows, id);
+        const std::map<long, const TextLine*> by_id = selected(rows, id);
         const double f = manifest_.length_factor;
         if (manifest_.periodic) {
             make_periodic(frame.packing);
@@ -252,9 +248,9 @@ class Disks {
 
   private:
     /// The rows of the disks, by the number in column `id`.
-    [[nodiscard]] std::map<long, const Line*> selected(const FileFrame& rows, std::size_t id) const {
-        std::map<long, const Line*> by_id;
-        for (const Line& row : rows.rows) {
+    [[nodiscard]] std::map<long, const TextLine*> selected(const FileFrame& rows, std::size_t id) const {
+        std::map<long, const TextLine*> by_id;
+        for (const TextLine& row : rows.rows) {
             if (manifest_.select_column.empty() ||
                 row.field(dump_.column(rows, manifest_.select_column)) == manifest_.select_value) {
                 if (!by_id.emplace(row.integer(id, "id", 0, 1L << 62), &row).second) {
@@ -361,7 +357,7 @@ class Disks {
     }
 
     /// Forces of walls that are not 0, positive when they press the disk inwards.
-    void add_walls(Frame& frame, const Line& row, const FileFrame& rows, int disk) {
+    void add_walls(Frame& frame, const TextLine& row, const FileFrame& rows, int disk) {
         if (!manifest_.series.wall_forces) {
             return;
         }
@@ -387,7 +383,7 @@ void read_contacts(const Manifest& manifest, FrameFile& dump, Frame& frame) {
     const std::size_t first = dump.column(rows, manifest.contact_i), second = dump.column(rows, manifest.contact_j),
                       force = dump.column(rows, manifest.contact_force);
     const char* expected = manifest.periodic ? "the id of a disk" : "the id of a disk, or left, bottom, right, top";
-    const auto disk = [&](const Line& row, std::size_t at, const std::string& name) {
+    const auto disk = [&](const TextLine& row, std::size_t at, const std::string& name) {
         if (row.field(at).find_first_not_of("0123456789") != std::string_view::npos) {
             row.fail(row.field(at), name, expected);
         }
@@ -399,7 +395,7 @@ void read_contacts(const Manifest& manifest, FrameFile& dump, Frame& frame) {
         return static_cast<int>(found - frame.ids.begin());
     };
     PairImages images(frame.packing);
-    for (const Line& row : rows.rows) {
+    for (const TextLine& row : rows.rows) {
         FileContact contact;
         const auto one = wall_of(row.field(first)), other = wall_of(row.field(second));
         if (one.has_value() != other.has_value() && !manifest.periodic) {

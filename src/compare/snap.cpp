@@ -1,6 +1,7 @@
 #include "certificate/subject.hpp"
 #include "compare/backbone.hpp"
 #include "compare/room.hpp"
+#include "core/words.hpp"
 #include "crafted/peeling.hpp"
 #include "preparation/polish.hpp"
 #include "rigidity/isostatic.hpp"
@@ -174,14 +175,8 @@ Packing<2> of_disks(const Packing<2>& packing, const std::vector<int>& disks) {
 }
 
 const char* to_string(SnapOutcome outcome) {
-    switch (outcome) {
-    case SnapOutcome::vertex: return "vertex";
-    case SnapOutcome::hyperstatic: return "hyperstatic";
-    case SnapOutcome::moving: return "moving";
-    case SnapOutcome::refuted: return "refuted";
-    case SnapOutcome::undecided: break;
-    }
-    return "undecided";
+    static constexpr std::array words{"vertex", "hyperstatic", "moving", "refuted", "undecided"};
+    return word_of(outcome, words);
 }
 
 State<2> backbone_of(const State<2>& state, const std::vector<Contact>& carrying) {

@@ -1,3 +1,5 @@
+#include "core/words.hpp"
+
 #include <isostat/core/result.hpp>
 
 #include <stdexcept>
@@ -6,20 +8,10 @@
 namespace isostat {
 
 const char* to_string(FailureKind kind) {
-    switch (kind) {
-    case FailureKind::not_isostatic: return "not isostatic";
-    case FailureKind::overlap: return "overlap";
-    case FailureKind::tie: return "tie";
-    case FailureKind::undecided: return "undecided";
-    case FailureKind::no_limit: return "no limit";
-    case FailureKind::flows: return "flows";
-    case FailureKind::unbounded: return "unbounded";
-    case FailureKind::not_converged: return "not converged";
-    case FailureKind::cap_reached: return "cap reached";
-    case FailureKind::contradiction: return "contradiction";
-    case FailureKind::interrupted: return "interrupted";
-    }
-    return "failure";
+    static constexpr std::array words{"not isostatic", "overlap",       "tie",        "undecided",
+                                      "no limit",      "flows",         "unbounded",  "not converged",
+                                      "cap reached",   "contradiction", "interrupted"};
+    return word_of(kind, words);
 }
 
 Words::Words(std::string fixed) {

@@ -1,5 +1,7 @@
 #include "core/work.hpp"
 
+#include "core/words.hpp"
+
 #include <atomic>
 #include <utility>
 
@@ -15,25 +17,11 @@ thread_local std::array<long, work_kinds>* elsewhere = nullptr;
 } // namespace
 
 const char* to_string(Work kind) {
-    switch (kind) {
-    case Work::dynamics_steps: return "dynamics_steps";
-    case Work::linear_programmes: return "linear_programmes";
-    case Work::candidate_searches: return "candidate_searches";
-    case Work::overlap_proofs: return "overlap_proofs";
-    case Work::rank_proofs: return "rank_proofs";
-    case Work::factorisations: return "factorisations";
-    case Work::inverse_bounds: return "inverse_bounds";
-    case Work::double_double: return "double_double";
-    case Work::multiprecision: return "multiprecision";
-    case Work::exact_solutions: return "exact_solutions";
-    case Work::states_written: return "states_written";
-    case Work::checkpoints: return "checkpoints";
-    case Work::pictures: return "pictures";
-    case Work::charts: return "charts";
-    case Work::vtk_files: return "vtk_files";
-    case Work::count: break;
-    }
-    return "";
+    static constexpr std::array words{
+        "dynamics_steps", "linear_programmes", "candidate_searches", "overlap_proofs", "rank_proofs",
+        "factorisations", "inverse_bounds",    "double_double",      "multiprecision", "exact_solutions",
+        "states_written", "checkpoints",       "pictures",           "charts",         "vtk_files"};
+    return word_of(kind, words);
 }
 
 void count_work(Work kind, long amount) {

@@ -5,6 +5,7 @@
 #include <isostat/core/verdict.hpp>
 #include <isostat/crafted/inspection.hpp>
 
+#include <string>
 #include <vector>
 
 namespace isostat::crafted {
@@ -32,5 +33,9 @@ struct EnclosedBases {
 /// (|residual| + |H' - H| |x|) carries the solution over to the exact coordinates. \pre `inspection` is that of the
 /// packing. Cost: an elimination, a factorisation, one solve per vector.
 EnclosedBases enclose_bases(const ExactPacking& packing, const Inspection& inspection, int count);
+
+/// Lines for a terminal: the first 3 of each basis, components beyond the bound. The same as one JSON object: 10.
+std::string enclosed_text(const ExactPacking& packing, const Inspection& inspection);
+std::string enclosed_json(const ExactPacking& packing, const Inspection& inspection);
 
 } // namespace isostat::crafted

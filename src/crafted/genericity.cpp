@@ -142,6 +142,21 @@ GenericitySample sampled(const Packing<2>& packing, const std::vector<Contact>& 
 
 } // namespace
 
+int Genericity::within() const {
+    return static_cast<int>(std::count_if(samples.begin(), samples.end(),
+                                          [](const GenericitySample& sample) { return sample.within_original; }));
+}
+
+std::map<std::string, int> Genericity::rungs() const {
+    std::map<std::string, int> out;
+    for (const GenericitySample& sample : samples) {
+        if (!sample.failure) {
+            ++out[std::string(to_string(sample.rung))];
+        }
+    }
+    return out;
+}
+
 Genericity genericity(const Packing<2>& given, const std::vector<Contact>& original, const GenericityOptions& options) {
     require_floating_point();
     Packing<2> packing = given;

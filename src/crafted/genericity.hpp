@@ -9,7 +9,9 @@
 #include <isostat/packing/packing.hpp>
 
 #include <cstdint>
+#include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace isostat::crafted {
@@ -62,6 +64,10 @@ struct Genericity {
     int ties = 0;      ///< failures `tie`
     int undecided = 0; ///< failures `undecided`
     int failed = 0;    ///< the others
+    /// Samples whose force network is part of the unperturbed contacts.
+    [[nodiscard]] int within() const;
+    /// Proved samples by the arithmetic that they needed.
+    [[nodiscard]] std::map<std::string, int> rungs() const;
 };
 
 /// \p packing has along each axis a fixed lower and a movable upper wall or a period that moves, and no fixed disk

@@ -1,3 +1,5 @@
+#include "contact/names.hpp"
+
 #include <isostat/crafted/inspection.hpp>
 
 #include <nlohmann/json.hpp>
@@ -38,14 +40,8 @@ void add_cell(const Inspection& inspection, Json& out) {
 } // namespace
 
 std::string to_json(const Inspection& inspection, const ExactPacking& packing) {
-    const DofMap<2> dofs(approximate(packing));
-    std::vector<std::string> contacts, coordinates;
-    for (const Contact& contact : inspection.contacts) {
-        contacts.push_back(to_string<2>(contact));
-    }
-    for (int d = 0; d < dofs.dof_count(); ++d) {
-        coordinates.push_back(dofs.name(d));
-    }
+    const std::vector<std::string> contacts = contact_names(inspection.contacts);
+    const std::vector<std::string> coordinates = dof_names(approximate(packing));
     Json out;
     out["format"] = "isostat-inspection 1";
     out["disks"] = packing.disk_count();

@@ -1,3 +1,6 @@
+#include "contact/names.hpp"
+#include "core/words.hpp"
+
 #include <isostat/core/error.hpp>
 #include <isostat/crafted/inspection.hpp>
 
@@ -53,45 +56,23 @@ std::string number_list(const std::vector<int>& numbers) {
 } // namespace
 
 const char* to_string(DiskHold hold) {
-    switch (hold) {
-    case DiskHold::held: return "held";
-    case DiskHold::bridge: return "bridge";
-    case DiskHold::rattler: return "rattler";
-    case DiskHold::fixed: return "fixed";
-    case DiskHold::loaded: return "loaded";
-    }
-    return "";
+    static constexpr std::array words{"held", "bridge", "rattler", "fixed", "loaded"};
+    return word_of(hold, words);
 }
 
 const char* to_string(Support support) {
-    switch (support) {
-    case Support::positive: return "positive";
-    case Support::with_zeros: return "with zeros";
-    case Support::none: return "none";
-    case Support::unbalanced: return "unbalanced";
-    case Support::undecided: return "undecided";
-    case Support::no_load: return "no load";
-    }
-    return "";
+    static constexpr std::array words{"positive", "with zeros", "none", "unbalanced", "undecided", "no load"};
+    return word_of(support, words);
 }
 
 const char* to_string(SecondOrder answer) {
-    switch (answer) {
-    case SecondOrder::no_mechanism: return "no mechanism";
-    case SecondOrder::rigid: return "rigid";
-    case SecondOrder::flexes: return "flexes";
-    case SecondOrder::undecided: return "undecided";
-    }
-    return "";
+    static constexpr std::array words{"no mechanism", "rigid", "flexes", "undecided"};
+    return word_of(answer, words);
 }
 
 const char* to_string(exact::OneSign sign) {
-    switch (sign) {
-    case exact::OneSign::strict: return "strict";
-    case exact::OneSign::partial: return "partial";
-    case exact::OneSign::none: return "none";
-    }
-    return "";
+    static constexpr std::array words{"strict", "partial", "none"};
+    return word_of(sign, words);
 }
 
 namespace {
@@ -100,10 +81,8 @@ namespace {
 class InspectionTable {
   public:
     InspectionTable(const Inspection& inspection, const ExactPacking& packing)
-        : inspection_(inspection), packing_(packing), exact_(inspection.rank_exact == Verdict::proved) {
-        for (const Contact& contact : inspection.contacts) {
-            contact_names_.push_back(to_string<2>(contact));
-        }
+        : inspection_(inspection), packing_(packing), exact_(inspection.rank_exact == Verdict::proved),
+          contact_names_(contact_names(inspection.contacts)) {
         counts();
         grains();
         forces();
@@ -190,16 +169,12 @@ class InspectionTable {
         if (inspection_.bases_exact != Verdict::proved) {
             return;
         }
-        const DofMap<2> dofs(approximate(packing_));
-        std::vector<std::string> dof_names;
-        for (int d = 0; d < dofs.dof_count(); ++d) {
-            dof_names.push_back(dofs.name(d));
-        }
         for (std::size_t s = 0; s < std::min(inspection_.self_stresses.size(), most); ++s) {
             line(fmt::format("self-stress {}", s + 1), vector_text(inspection_.self_stresses[s], contact_names_));
         }
         for (std::size_t m = 0; m < std::min(inspection_.motions.size(), most); ++m) {
-            line(fmt::format("motion {}", m + 1), vector_text(inspection_.motions[m], dof_names));
+            line(fmt::format("motion {}", m + 1),
+                 vector_text(inspection_.motions[m], dof_names(approximate(packing_))));
         }
     }
 

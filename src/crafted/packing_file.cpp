@@ -1,11 +1,14 @@
 #include "contact/images.hpp"
 #include "io/files.hpp"
 #include "io/toml.hpp"
+#include "packing/unbalanced.hpp"
+#include "packing/words.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/crafted/exact_packing.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <initializer_list>
@@ -89,12 +92,9 @@ class Reader {
     void allow(const toml::table& table, const std::string& where, std::initializer_list<std::string_view> keys) const {
         for (const auto& [key, node] : table) {
             if (std::find(keys.begin(), keys.end(), key.str()) == keys.end()) {
-                std::string wanted;
-                for (const std::string_view k : keys) {
-                    wanted += (wanted.empty() ? "" : ", ") + std::string(k);
-                }
-                throw Error(ErrorKind::bad_input, fmt::format("{}:{}: unknown key \"{}{}\", expected one of {}", name_,
-                                                              key.source().begin.line, where, key.str(), wanted));
+                throw Error(ErrorKind::bad_input,
+                            fmt::format("{}:{}: unknown key \"{}{}\", expected one of {}", name_,
+                                        key.source().begin.line, where, key.str(), fmt::join(keys, ", ")));
             }
         }
     }
@@ -109,36 +109,31 @@ class Reader {
         return *node;
     }
 
-    [[nodiscard]] const toml::table& table(const toml::node& node, const std::string& key) const {
-        if (!node.is_table()) {
-            fail(node, key, type_name(node), "a table");
+    /// What a node holds, of one type; `wanted` is that in words.
+    template <class Value>
+    [[nodiscard]] const auto& typed(const toml::node& node, const std::string& key, const char* wanted) const {
+        const auto* value = node.as<Value>();
+        if (value == nullptr) {
+            fail(node, key, type_name(node), wanted);
         }
-        return *node.as_table();
+        return *value;
+    }
+    [[nodiscard]] const toml::table& table(const toml::node& node, const std::string& key) const {
+        return typed<toml::table>(node, key, "a table");
+    }
+    [[nodiscard]] std::string string(const toml::node& node, const std::string& key) const {
+        return typed<std::string>(node, key, "a string").get();
+    }
+    [[nodiscard]] bool boolean(const toml::node& node, const std::string& key) const {
+        return typed<bool>(node, key, "true or false").get();
     }
 
     [[nodiscard]] const toml::array& array(const toml::node& node, const std::string& key, std::size_t size = 0) const {
-        if (!node.is_array()) {
-            fail(node, key, type_name(node), "an array");
-        }
-        const toml::array& out = *node.as_array();
+        const toml::array& out = typed<toml::array>(node, key, "an array");
         if (size != 0 && out.size() != size) {
             fail(node, key, "an array of " + std::to_string(out.size()), "an array of " + std::to_string(size));
         }
         return out;
-    }
-
-    [[nodiscard]] std::string string(const toml::node& node, const std::string& key) const {
-        if (!node.is_string()) {
-            fail(node, key, type_name(node), "a string");
-        }
-        return node.as_string()->get();
-    }
-
-    [[nodiscard]] bool boolean(const toml::node& node, const std::string& key) const {
-        if (!node.is_boolean()) {
-            fail(node, key, type_name(node), "true or false");
-        }
-        return node.as_boolean()->get();
     }
 
     [[nodiscard]] Number number(const toml::node& node, const std::string& key) const {
@@ -210,14 +205,9 @@ class Reader {
         if (kind != "absent" && out_.packing.cell.periodic[axis]) {
             fail(node, key, "\"" + kind + "\"", fmt::format("\"absent\": {} repeats (cell.period)", "xy"[axis]));
         }
-        if (kind == "absent") {
-            return WallKind::absent;
-        }
-        if (kind == "fixed") {
-            return WallKind::fixed;
-        }
-        if (kind == "movable" && may_move) {
-            return WallKind::movable;
+        if (const auto known = value_of<WallKind>(kind, wall_kind_words);
+            known && (may_move || *known != WallKind::movable)) {
+            return *known;
         }
         fail(node, key, "\"" + kind + "\"",
              may_move ? "\"absent\", \"fixed\" or \"movable\"" : "\"absent\" or \"fixed\"");
@@ -310,16 +300,14 @@ class Reader {
             out_.packing.walls.lower[a] = repeats ? WallKind::absent : WallKind::fixed;
             out_.packing.walls.upper[a] = repeats ? WallKind::absent : WallKind::movable;
         }
-        if (const toml::node* lower = box.get("lower")) {
-            const toml::array& kinds = array(*lower, "box.lower", 2);
-            for (std::size_t a = 0; a < 2; ++a) {
-                out_.packing.walls.lower[a] = wall(kinds[a], "box.lower", a, false);
-            }
-        }
-        if (const toml::node* upper = box.get("upper")) {
-            const toml::array& kinds = array(*upper, "box.upper", 2);
-            for (std::size_t a = 0; a < 2; ++a) {
-                out_.packing.walls.upper[a] = wall(kinds[a], "box.upper", a, true);
+        for (const char* side : {"lower", "upper"}) {
+            if (const toml::node* given = box.get(side)) {
+                const bool up = side == std::string_view("upper");
+                const std::string key = std::string("box.") + side;
+                const toml::array& kinds = array(*given, key, 2);
+                for (std::size_t a = 0; a < 2; ++a) {
+                    (up ? out_.packing.walls.upper : out_.packing.walls.lower)[a] = wall(kinds[a], key, a, up);
+                }
             }
         }
         const auto& upper = out_.packing.walls.upper;
@@ -379,15 +367,10 @@ class Reader {
             out[2 * static_cast<std::size_t>(disk)] += number(row[1], "load.disk");
             out[2 * static_cast<std::size_t>(disk) + 1] += number(row[2], "load.disk");
         }
-        for (std::size_t a = 0; a < 2; ++a) {
-            Number sum;
-            for (std::size_t k = a; k < out.size(); k += 2) {
-                sum += out[k];
-            }
-            if (out_.packing.cell.periodic[a] && !sum.is_zero()) {
-                fail(node, "load.disk", "forces that sum to " + sum.text(),
-                     fmt::format("0 along {}, which repeats: the pinned disk would bear the rest", "xy"[a]));
-            }
+        if (const auto rest = unbalanced<Number>(out, out_.packing.cell)) {
+            fail(
+                node, "load.disk", "forces that sum to " + rest->second.text(),
+                fmt::format("0 along {}, which repeats: the pinned disk would bear the rest", axis_names[rest->first]));
         }
         return out;
     }

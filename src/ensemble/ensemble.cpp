@@ -1,8 +1,8 @@
 #include "ensemble/ensemble.hpp"
 
+#include "io/equilibria.hpp"
 #include "io/files.hpp"
 #include "io/json.hpp"
-#include "io/record_text.hpp"
 #include "report/statistics.hpp"
 
 #include <isostat/core/error.hpp>

@@ -24,6 +24,9 @@ struct EnsembleHeader {
     int samples = 1; ///< seeds first_seed ... first_seed + samples - 1
 };
 
+/// Samples of an ensemble.
+inline constexpr int most_samples = 1'000'000;
+
 /// What became of a sample.
 /// - completed, failed (at its load: a result), undecided: as the run says;
 /// - interrupted: by Ctrl-C, SIGTERM or the end of the program; goes on with resume;

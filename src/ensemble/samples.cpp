@@ -1,3 +1,4 @@
+#include "core/words.hpp"
 #include "ensemble/ensemble.hpp"
 #include "io/files.hpp"
 #include "io/json.hpp"
@@ -7,9 +8,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
-
 namespace isostat {
 
 namespace fs = std::filesystem;
@@ -18,18 +16,14 @@ using json::Json;
 
 namespace {
 
-constexpr std::array<SampleStatus, 7> all_statuses{
-    SampleStatus::completed, SampleStatus::failed,  SampleStatus::undecided, SampleStatus::interrupted,
-    SampleStatus::crashed,   SampleStatus::refused, SampleStatus::missing};
+constexpr std::array status_words{"completed", "failed", "undecided", "interrupted", "crashed", "refused", "missing"};
 
 /// "failed: the reason" of a run.json.
 void read_status(Sample& sample, const std::string& words) {
     const std::size_t colon = words.find(": ");
     const std::string word = words.substr(0, colon);
     sample.reason = colon == std::string::npos ? "" : words.substr(colon + 2);
-    const auto status =
-        std::find_if(all_statuses.begin(), all_statuses.end(), [&](SampleStatus s) { return word == to_string(s); });
-    sample.status = status == all_statuses.end() ? SampleStatus::crashed : *status;
+    sample.status = value_of<SampleStatus>(word, status_words).value_or(SampleStatus::crashed);
     if (word == "running") {
         sample.status = SampleStatus::interrupted;
         sample.reason = "the program ended without saying how";
@@ -39,16 +33,7 @@ void read_status(Sample& sample, const std::string& words) {
 } // namespace
 
 const char* to_string(SampleStatus status) {
-    switch (status) {
-    case SampleStatus::completed: return "completed";
-    case SampleStatus::failed: return "failed";
-    case SampleStatus::undecided: return "undecided";
-    case SampleStatus::interrupted: return "interrupted";
-    case SampleStatus::crashed: return "crashed";
-    case SampleStatus::refused: return "refused";
-    case SampleStatus::missing: return "missing";
-    }
-    return "missing";
+    return word_of(status, status_words);
 }
 
 SampleFolders::SampleFolders(fs::path directory, EnsembleHeader header)

@@ -5,6 +5,13 @@
 #include <isostat/io/certificate_file.hpp>
 #include <isostat/io/state_file.hpp>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nettle/sha2.h>
+
+#include <array>
+#include <cstdint>
+
 namespace isostat {
 
 namespace {
@@ -17,6 +24,22 @@ bool is_hash(const std::string& text) {
 }
 
 } // namespace
+
+std::string sha256(const std::string& bytes) {
+    sha256_ctx context;
+    sha256_init(&context);
+    std::vector<std::uint8_t> input(bytes.begin(), bytes.end());
+    sha256_update(&context, input.size(), input.data());
+    std::array<std::uint8_t, SHA256_DIGEST_SIZE> digest{};
+    sha256_digest(&context, digest.size(), digest.data());
+    return fmt::format("{:02x}", fmt::join(digest, ""));
+}
+
+std::string json::digest_of(const json::Json& document) {
+    nlohmann::json sorted = nlohmann::json::parse(json::dumped(document));
+    sorted.erase("digest");
+    return sha256(sorted.dump());
+}
 
 std::string certificate_text(const Certificate& certificate) {
     std::string state = state_text(certificate.state);

@@ -1,6 +1,5 @@
-#include "io/contact_json.hpp"
-
 #include "contact/images.hpp"
+#include "io/state_json.hpp"
 
 #include <isostat/core/error.hpp>
 

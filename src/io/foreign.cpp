@@ -1,10 +1,9 @@
-#include "io/cell_wrap.hpp"
 #include "io/files.hpp"
 #include "io/foreign_source.hpp"
 #include "io/numbers.hpp"
+#include "packing/cell_wrap.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/core/machine.hpp>
 #include <isostat/io/foreign.hpp>
 
 #include <fmt/format.h>
@@ -18,8 +17,6 @@ namespace isostat {
 namespace {
 
 using foreign::Boundary;
-using foreign::Line;
-using foreign::Lines;
 using foreign::Raw;
 
 [[noreturn]] void refuse(const std::string& source, const std::string& message) {
@@ -212,7 +209,7 @@ const std::vector<std::string>& foreign_formats() {
 std::string recognise_format(const std::string& marked) {
     const std::string_view text = without_byte_order_mark(marked);
     const std::string source;
-    Lines lines(text, source);
+    TextLines lines(text, source);
     const auto blank = [](std::string_view line) { return line.find_first_not_of(" \t\r") == std::string_view::npos; };
     const std::size_t first = text.find_first_not_of(" \t\r\n");
     if (first == std::string::npos) {
@@ -225,8 +222,8 @@ std::string recognise_format(const std::string& marked) {
         return "lammps-dump";
     }
     // Vertex texts and XYZ start with a number of rows; the next row tells them apart.
-    Lines rows = lines;
-    std::vector<Line> start;
+    TextLines rows = lines;
+    std::vector<TextLine> start;
     while (!rows.at_end() && start.size() < 2) {
         const std::string_view line = rows.take("");
         if (start.empty() && (blank(line) || line[line.find_first_not_of(" \t\r")] == '#')) {
@@ -234,7 +231,7 @@ std::string recognise_format(const std::string& marked) {
         }
         start.emplace_back(line, rows.number(), &source);
     }
-    const auto is_count = [](const Line& line) {
+    const auto is_count = [](const TextLine& line) {
         return line.size() >= 1 && line.field(0).find_first_not_of("0123456789") == std::string_view::npos;
     };
     if (!start.empty() && is_count(start[0]) && start[0].size() > 1 && start[0].field(1) == "x") {
@@ -246,7 +243,7 @@ std::string recognise_format(const std::string& marked) {
     }
     constexpr int header_lines = 60;
     for (int k = 0; k < header_lines && !lines.at_end(); ++k) {
-        const Line line = lines.next("");
+        const TextLine line = lines.next("");
         if (line.size() >= 2 && finite_number(line.field(0)) && line.field(1) == "atoms") {
             return "lammps-data";
         }
@@ -260,7 +257,6 @@ std::string recognise_format(const std::string& marked) {
 }
 
 ForeignPacking parse_foreign(const std::string& text, const std::string& source, const ForeignOptions& options) {
-    require_floating_point();
     ForeignPacking out;
     out.format = options.format.empty() ? recognise_format(text) : options.format;
     if (options.size && options.size->column.empty() &&

@@ -17,40 +17,32 @@ namespace isostat::foreign {
 namespace {
 
 std::string_view without_comment(std::string_view line) {
-    line = line.substr(0, line.find('#'));
-    const std::size_t last = line.find_last_not_of(" \t\r");
-    line = last == std::string_view::npos ? std::string_view() : line.substr(0, last + 1);
-    const std::size_t first = line.find_first_not_of(" \t\r");
-    return first == std::string_view::npos ? std::string_view() : line.substr(first);
+    return without_blanks(line.substr(0, line.find('#')));
 }
 
 std::string comment_of(std::string_view line) {
     const std::size_t at = line.find('#');
-    if (at == std::string_view::npos) {
-        return "";
-    }
-    line = line.substr(at + 1);
-    const std::size_t first = line.find_first_not_of(" \t\r");
-    return first == std::string_view::npos
-               ? ""
-               : std::string(line.substr(first, line.find_last_not_of(" \t\r") - first + 1));
+    return at == std::string_view::npos ? "" : std::string(without_blanks(line.substr(at + 1)));
+}
+
+/// `names`: "|one|two|".
+bool is_among(std::string_view names, const std::string& name) {
+    return name.find('|') == std::string::npos && names.find("|" + name + "|") != std::string_view::npos;
 }
 
 /// Sections that may stand beside Atoms; all of them are skipped.
-bool is_section(std::string_view name) {
-    static const std::vector<std::string_view> names{"Velocities", "Masses",    "Ellipsoids",      "Lines",
-                                                     "Triangles",  "Bodies",    "Bonds",           "Angles",
-                                                     "Dihedrals",  "Impropers", "Atom Type Labels"};
-    return std::find(names.begin(), names.end(), name) != names.end() || name.ends_with(" Coeffs") ||
-           name.ends_with(" Labels");
+bool is_section(const std::string& name) {
+    constexpr std::string_view names = "|Velocities|Masses|Ellipsoids|Lines|Triangles|Bodies|Bonds|Angles|Dihedrals|"
+                                       "Impropers|Atom Type Labels|";
+    return is_among(names, name) || name.ends_with(" Coeffs") || name.ends_with(" Labels");
 }
 
 /// "12 atoms", "0 1 xlo xhi": the numbers and the words after them.
 struct HeaderLine {
-    Line line;
+    TextLine line;
     std::size_t numbers = 0;
     std::string keyword;
-    explicit HeaderLine(Line l) : line(std::move(l)) {
+    explicit HeaderLine(TextLine l) : line(std::move(l)) {
         while (numbers < line.size() && finite_number(line.field(numbers))) {
             ++numbers;
         }
@@ -61,25 +53,11 @@ struct HeaderLine {
 };
 
 bool is_counter(const std::string& keyword) {
-    static const std::vector<std::string_view> names{"bonds",
-                                                     "angles",
-                                                     "dihedrals",
-                                                     "impropers",
-                                                     "atom types",
-                                                     "bond types",
-                                                     "angle types",
-                                                     "dihedral types",
-                                                     "improper types",
-                                                     "ellipsoids",
-                                                     "lines",
-                                                     "triangles",
-                                                     "bodies",
-                                                     "extra bond per atom",
-                                                     "extra angle per atom",
-                                                     "extra dihedral per atom",
-                                                     "extra improper per atom",
-                                                     "extra special per atom"};
-    return std::find(names.begin(), names.end(), keyword) != names.end();
+    constexpr std::string_view names =
+        "|bonds|angles|dihedrals|impropers|atom types|bond types|angle types|dihedral types|improper types|ellipsoids|"
+        "lines|triangles|bodies|extra bond per atom|extra angle per atom|extra dihedral per atom|"
+        "extra improper per atom|extra special per atom|";
+    return is_among(names, keyword);
 }
 
 struct DataHeader {
@@ -90,7 +68,7 @@ struct DataHeader {
     std::set<std::string> seen; ///< keywords
 
     void take(const HeaderLine& header) {
-        const Line& line = header.line;
+        const TextLine& line = header.line;
         if (!seen.insert(header.keyword).second) {
             line.fail(header.keyword, "a second header line", "it once");
         }
@@ -133,7 +111,7 @@ struct DataHeader {
     }
 };
 
-void read_atoms(Lines& lines, const std::string& style, const DataHeader& header, const ForeignOptions& options,
+void read_atoms(TextLines& lines, const std::string& style, const DataHeader& header, const ForeignOptions& options,
                 Raw& raw) {
     // read_data of LAMMPS: sphere: id type diameter density x y z; bpm/sphere: id molecule type diameter density x y z.
     if (style != "sphere" && style != "bpm/sphere") {
@@ -172,7 +150,7 @@ void read_atoms(Lines& lines, const std::string& style, const DataHeader& header
         if (text.empty()) {
             continue;
         }
-        const Line line(text, lines.number(), &lines.source());
+        const TextLine line(text, lines.number(), &lines.source());
         if (line.size() != width + 3) {
             line.require_size(width, what);
         }
@@ -213,7 +191,7 @@ struct Coordinates {
 } // namespace
 
 Raw read_lammps_data(const std::string& text, const std::string& source, const ForeignOptions& options) {
-    Lines lines(text, source);
+    TextLines lines(text, source);
     Raw raw;
     DataHeader header;
     (void)lines.take("a comment"); // LAMMPS ignores the first line
@@ -226,7 +204,7 @@ Raw read_lammps_data(const std::string& text, const std::string& source, const F
         if (content.empty()) {
             continue;
         }
-        const Line line(content, lines.number(), &source);
+        const TextLine line(content, lines.number(), &source);
         if (content == "Atoms") {
             if (read) {
                 line.fail(content, "section", "one section Atoms");
@@ -236,7 +214,7 @@ Raw read_lammps_data(const std::string& text, const std::string& source, const F
             }
             read_atoms(lines, comment_of(whole), header, options, raw);
             read = in_section = in_atoms = true;
-        } else if (is_section(content)) {
+        } else if (is_section(std::string(content))) {
             in_section = true;
             in_atoms = false;
         } else if (in_atoms) {
@@ -262,61 +240,33 @@ Raw read_lammps_data(const std::string& text, const std::string& source, const F
 }
 
 Raw read_lammps_dump(const std::string& text, const std::string& source, const ForeignOptions& options) {
-    Lines lines(text, source);
     Raw raw;
-    for (long number = 0;; ++number) {
-        if (lines.only_blanks()) {
-            lines.fail(fmt::format("the file ends after {} frames: expected frame {} (from 0)", number,
-                                   options.frame.value_or(number)));
-        }
-        const FrameHeader frame = read_dump_header(lines, "ATOMS");
-        Lines atoms = lines;
-        for (long k = 0; k < frame.rows; ++k) {
-            const std::string_view row =
-                lines.take(fmt::format("atom {} of {} in frame {}", k + 1, frame.rows, number));
-            if (row.starts_with("ITEM:")) {
-                lines.fail(fmt::format("'{}': expected atom {} of {} in frame {}", row.substr(0, 40), k + 1, frame.rows,
-                                       number));
-            }
-        }
-        if (options.frame ? number < *options.frame : !lines.only_blanks()) {
-            continue;
-        }
-        const std::string where = fmt::format("{}:{}", source, atoms.number());
-        if (frame.rows == 0) {
-            throw Error(ErrorKind::bad_input,
-                        fmt::format("{}: frame {} has 0 atoms: expected at least 1", where, number));
-        }
-        Columns columns;
-        Coordinates coordinates;
-        coordinates.find(columns, frame.names, where, raw);
-        find_size(columns, frame.names, options, where, raw);
-        find_selection(columns, frame.names, options, where);
-        columns.id = find_column(frame.names, "id");
-        Rows rows(columns, source);
-        for (long k = 0; k < frame.rows; ++k) {
-            const Line line = atoms.next("an atom");
-            line.require_size(frame.names.size(), fmt::format("atom {} of {}", k + 1, frame.rows));
-            rows.add(line, raw);
-        }
-        rows.finish(raw);
-        raw.box = frame.box;
-        raw.tilt = frame.tilt;
-        raw.sides = frame.sides;
-        raw.boundary = frame.boundary;
-        raw.loose = frame.loose;
-        if (coordinates.scaled) {
-            const std::array<double, 4> box = frame.box.value();
-            raw.scale = std::max(box[1] - box[0] + std::abs(frame.tilt), box[3] - box[2]);
-            for (std::size_t i = 0; i < raw.x.size(); ++i) {
-                raw.x[i] = box[0] + raw.x[i] * (box[1] - box[0]) + raw.y[i] * frame.tilt;
-                raw.y[i] = box[2] + raw.y[i] * (box[3] - box[2]);
-            }
-            raw.notes.emplace_back("scaled coordinates were multiplied out in double: rounded at 2^-52 of the box");
-        }
-        raw.notes.push_back(fmt::format("frame {} (time step {})", number, frame.timestep));
-        return raw;
+    ChosenFrame frame =
+        choose_frame(text, source, options, "atom", [](TextLines& lines) { return read_dump_header(lines, "ATOMS"); });
+    const FrameHeader& header = frame.header;
+    const std::string where = fmt::format("{}:{}", source, header.line);
+    if (header.rows == 0) {
+        throw Error(ErrorKind::bad_input,
+                    fmt::format("{}: frame {} has 0 atoms: expected at least 1", where, frame.number));
     }
+    Columns columns;
+    Coordinates coordinates;
+    coordinates.find(columns, header.names, where, raw);
+    find_size(columns, header.names, options, where, raw);
+    find_selection(columns, header.names, options, where);
+    columns.id = find_column(header.names, "id");
+    frame.read(Rows(columns, source), raw);
+    if (coordinates.scaled) {
+        const std::array<double, 4> box = raw.box.value();
+        raw.scale = std::max(box[1] - box[0] + std::abs(raw.tilt), box[3] - box[2]);
+        for (std::size_t i = 0; i < raw.x.size(); ++i) {
+            raw.x[i] = box[0] + raw.x[i] * (box[1] - box[0]) + raw.y[i] * raw.tilt;
+            raw.y[i] = box[2] + raw.y[i] * (box[3] - box[2]);
+        }
+        raw.notes.emplace_back("scaled coordinates were multiplied out in double: rounded at 2^-52 of the box");
+    }
+    raw.notes.push_back(fmt::format("frame {} (time step {})", frame.number, header.timestep));
+    return raw;
 }
 
 } // namespace isostat::foreign

@@ -1,8 +1,5 @@
 #include "io/foreign_source.hpp"
 
-#include "io/files.hpp"
-#include "io/numbers.hpp"
-
 #include <isostat/core/error.hpp>
 
 #include <fmt/format.h>
@@ -11,96 +8,6 @@
 #include <algorithm>
 
 namespace isostat::foreign {
-
-namespace {
-
-constexpr std::string_view blanks = " \t\r";
-constexpr std::size_t longest_quote = 60; ///< characters of a bad line that a message repeats
-
-std::string_view trimmed(std::string_view text) {
-    const std::size_t first = text.find_first_not_of(blanks);
-    if (first == std::string_view::npos) {
-        return {};
-    }
-    text = text.substr(first, text.find_last_not_of(blanks) - first + 1);
-    return text.size() >= 2 && text.front() == '"' && text.back() == '"' ? text.substr(1, text.size() - 2) : text;
-}
-
-} // namespace
-
-Line::Line(std::string_view text, int number, const std::string* source, char separator)
-    : text_(text), number_(number), source_(source) {
-    if (separator != ' ') {
-        while (true) {
-            const std::size_t end = text.find(separator);
-            fields_.push_back(trimmed(text.substr(0, end)));
-            if (end == std::string_view::npos) {
-                return;
-            }
-            text.remove_prefix(end + 1);
-        }
-    }
-    for (std::size_t at = text.find_first_not_of(blanks); at != std::string_view::npos;) {
-        const std::size_t end = std::min(text.find_first_of(blanks, at), text.size());
-        fields_.push_back(text.substr(at, end - at));
-        at = text.find_first_not_of(blanks, end);
-    }
-}
-
-std::string Line::place() const {
-    return fmt::format("{}:{}", *source_, number_);
-}
-
-void Line::fail(std::string_view value, const std::string& name, const std::string& expected) const {
-    throw Error(ErrorKind::bad_input, fmt::format("{}:{}: {} is '{}': expected {}", *source_, number_, name,
-                                                  value.substr(0, longest_quote), expected));
-}
-
-void Line::require_size(std::size_t count, const std::string& what) const {
-    if (fields_.size() != count) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{}:{}: {} values in '{}': expected {} ({} values)", *source_, number_, fields_.size(),
-                                text_.substr(0, longest_quote), what, count));
-    }
-}
-
-double Line::number(std::size_t k, const std::string& name) const {
-    const std::optional<double> value = finite_number(fields_[k]);
-    if (!value) {
-        fail(fields_[k], name, "a finite number");
-    }
-    return *value;
-}
-
-long Line::integer(std::size_t k, const std::string& name, long lowest, long highest) const {
-    const auto value = plain_integer(fields_[k]);
-    if (!value || *value < lowest || *value > highest) {
-        fail(fields_[k], name, fmt::format("an integer from {} to {}", lowest, highest));
-    }
-    return *value;
-}
-
-Lines::Lines(std::string_view text, const std::string& source, int before)
-    : rest_(without_byte_order_mark(text)), source_(&source), number_(before) {}
-
-std::string_view Lines::peek() const {
-    return rest_.substr(0, rest_.find('\n'));
-}
-
-std::string_view Lines::take(const std::string& what) {
-    if (at_end()) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{}:{}: the file ends here: expected {}", *source_, number_, what));
-    }
-    const std::string_view line = peek();
-    rest_.remove_prefix(std::min(line.size() + 1, rest_.size()));
-    ++number_;
-    return line;
-}
-
-void Lines::fail(const std::string& message) const {
-    throw Error(ErrorKind::bad_input, fmt::format("{}:{}: {}", *source_, number_, message));
-}
 
 void refuse_twice(const std::vector<std::string>& names, const std::string& where) {
     std::vector<std::string> sorted = names;
@@ -181,7 +88,7 @@ void find_selection(Columns& columns, const std::vector<std::string>& names, con
     }
 }
 
-void Rows::add(const Line& line, Raw& raw) {
+void Rows::add(const TextLine& line, Raw& raw) {
     ++seen_;
     if (columns_.type >= 0) {
         ++types_[std::string(line.field(static_cast<std::size_t>(columns_.type)))];
@@ -213,12 +120,9 @@ void Rows::add(const Line& line, Raw& raw) {
     double size = columns_.constant;
     const std::string name = columns_.meaning == SizeMeaning::radius ? "radius" : "diameter";
     if (columns_.size >= 0) {
-        size = number(columns_.size, name.c_str());
-        raw.sizes.see(line.field(static_cast<std::size_t>(columns_.size)));
-        if (!(size > 0)) {
-            line.fail(line.field(static_cast<std::size_t>(columns_.size)), fmt::format("{} of disk {}", name, disk),
-                      "a positive number");
-        }
+        const auto column = static_cast<std::size_t>(columns_.size);
+        size = line.positive(column, fmt::format("{} of disk {}", name, disk));
+        raw.sizes.see(line.field(column));
     }
     raw.size.push_back(size);
 }
@@ -247,6 +151,37 @@ void Rows::finish(Raw& raw) {
         throw Error(ErrorKind::bad_input, fmt::format("{}:{}: id {} was given in line {} already: expected another",
                                                       source_, (twice + 1)->second, twice->first, twice->second));
     }
+}
+
+ChosenFrame choose_frame(const std::string& text, const std::string& source, const ForeignOptions& options,
+                         const char* row, const std::function<FrameHeader(TextLines&)>& head) {
+    TextLines lines(text, source);
+    for (long number = 0;; ++number) {
+        if (lines.only_blanks()) {
+            lines.fail(fmt::format("the file ends after {} frames: expected frame {} (from 0)", number,
+                                   options.frame.value_or(number)));
+        }
+        ChosenFrame frame{number, head(lines), lines, row};
+        for (long k = 0; k < frame.header.rows; ++k) {
+            const std::string what = fmt::format("{} {} of {} in frame {}", row, k + 1, frame.header.rows, number);
+            if (const std::string_view line = lines.take(what); line.starts_with("ITEM:")) {
+                lines.fail(fmt::format("'{}': expected {}", line.substr(0, 40), what));
+            }
+        }
+        if (options.frame ? number == *options.frame : lines.only_blanks()) {
+            return frame;
+        }
+    }
+}
+
+void ChosenFrame::read(Rows reader, Raw& raw) {
+    static_cast<Bounds&>(raw) = header;
+    for (long k = 0; k < header.rows; ++k) {
+        const TextLine line = rows.next(row);
+        line.require_size(header.names.size(), fmt::format("{} {} of {}", row, k + 1, header.rows));
+        reader.add(line, raw);
+    }
+    reader.finish(raw);
 }
 
 } // namespace isostat::foreign

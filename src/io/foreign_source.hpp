@@ -1,7 +1,8 @@
 #pragma once
-// What the readers of foreign formats share: lines with numbers, named columns, the raw packing.
+// What the readers of foreign formats share: named columns, the raw packing.
 
 #include "io/digits.hpp"
+#include "io/lines.hpp"
 
 #include <isostat/io/foreign.hpp>
 
@@ -15,98 +16,42 @@
 
 namespace isostat::foreign {
 
-/// One line, split into fields.
-class Line {
-  public:
-    /// At blanks and tabs, or at every `separator` (then fields may be empty, and are trimmed and unquoted).
-    Line(std::string_view text, int number, const std::string* source, char separator = ' ');
-
-    [[nodiscard]] std::string_view text() const { return text_; }
-    /// "FILE:LINE".
-    [[nodiscard]] std::string place() const;
-    [[nodiscard]] int number() const { return number_; }
-    [[nodiscard]] std::size_t size() const { return fields_.size(); }
-    [[nodiscard]] std::string_view field(std::size_t k) const { return fields_[k]; }
-
-    /// "FILE:LINE: NAME is 'VALUE': expected WHAT".
-    [[noreturn]] void fail(std::string_view value, const std::string& name, const std::string& expected) const;
-    /// Throws when there are not `count` fields.
-    void require_size(std::size_t count, const std::string& what) const;
-    /// A finite number, all of the field.
-    [[nodiscard]] double number(std::size_t k, const std::string& name) const;
-    [[nodiscard]] long integer(std::size_t k, const std::string& name, long lowest, long highest) const;
-
-  private:
-    std::string_view text_;
-    std::vector<std::string_view> fields_;
-    int number_;
-    const std::string* source_;
-};
-
-/// Walks through a text line by line, after its byte order mark if it has one. \pre text and source outlive it and its
-/// lines.
-class Lines {
-  public:
-    /// \p before: lines of the file before the text.
-    Lines(std::string_view text, const std::string& source, int before = 0);
-    [[nodiscard]] bool at_end() const { return rest_.empty(); }
-    /// True when only blank lines are left.
-    [[nodiscard]] bool only_blanks() const { return rest_.find_first_not_of(" \t\r\n") == std::string_view::npos; }
-    /// The next line without taking it; empty at the end.
-    [[nodiscard]] std::string_view peek() const;
-    /// Throws at the end of the file; `what` says what was expected.
-    std::string_view take(const std::string& what);
-    Line next(const std::string& what, char separator = ' ') {
-        const std::string_view text = take(what); // before number() is asked
-        return {text, number_, source_, separator};
-    }
-    [[nodiscard]] int number() const { return number_; }
-    [[nodiscard]] const std::string& source() const { return *source_; }
-    [[noreturn]] void fail(const std::string& message) const;
-
-  private:
-    std::string_view rest_;
-    const std::string* source_;
-    int number_;
-};
-
 constexpr long most_disks = 100'000'000;
 
 enum class Boundary { open, periodic, unknown };
 
-/// What stands before the rows of a frame.
-struct FrameHeader {
-    long timestep = 0;
-    long rows = -1;
-    int line = 0; ///< of the names
-    std::vector<std::string> names;
-    std::optional<std::array<double, 4>> box; ///< xlo, xhi, ylo, yhi
-    double tilt = 0;                          ///< x component of the second period
-    std::array<Boundary, 2> boundary{Boundary::unknown, Boundary::unknown};
-    std::array<bool, 2> loose{}; ///< the bounds only follow the disks
-    Digits sides;                ///< of box and tilt
-};
-
-/// Of a LAMMPS dump, up to the names of the columns. \p item: "ATOMS" or "ENTRIES".
-FrameHeader read_dump_header(Lines& lines, const std::string& item);
-/// Of extended XYZ: `comment` is the line of key=value. Vectors are named name.0, name.1, ...
-FrameHeader read_xyz_header(const Line& comment, long rows);
-/// Its key Timestep, if it has one.
-std::optional<long> xyz_timestep(const Line& comment, const std::string& source);
-
-/// What a reader found, before walls and checks.
-struct Raw {
-    std::vector<double> x, y, size;
-    std::vector<long> ids; ///< one per disk, or none
-    SizeMeaning meaning = SizeMeaning::radius;
+struct Bounds {
     std::optional<std::array<double, 4>> box; ///< xlo, xhi, ylo, yhi
     double tilt = 0;                          ///< x component of the second period
     std::array<Boundary, 2> boundary{Boundary::unknown, Boundary::unknown};
     std::array<bool, 2> loose{}; ///< the bounds only follow the disks: no walls there
+    Digits sides;                ///< of box and tilt
+};
+
+/// What stands before the rows of a frame.
+struct FrameHeader : Bounds {
+    long timestep = 0;
+    long rows = -1;
+    int line = 0; ///< of the names
+    std::vector<std::string> names;
+};
+
+/// Of a LAMMPS dump, up to the names of the columns. \p item: "ATOMS" or "ENTRIES".
+FrameHeader read_dump_header(TextLines& lines, const std::string& item);
+/// Of extended XYZ: `comment` is the line of key=value. Vectors are named name.0, name.1, ...
+FrameHeader read_xyz_header(const TextLine& comment, long rows);
+/// Its key Timestep, if it has one.
+std::optional<long> xyz_timestep(const TextLine& comment, const std::string& source);
+
+/// What a reader found, before walls and checks.
+struct Raw : Bounds {
+    std::vector<double> x, y, size;
+    std::vector<long> ids; ///< one per disk, or none
+    SizeMeaning meaning = SizeMeaning::radius;
     std::vector<std::string> notes;
-    Digits places, sides, sizes; ///< digits of coordinates, of box and tilt, of radii or diameters
-    double scale = 1;            ///< of coordinates in units of the box: the largest length that multiplied them
-    std::string types;           ///< empty, or which there are, and that all are taken for disks; a note too
+    Digits places, sizes; ///< digits of coordinates, of radii or diameters
+    double scale = 1;     ///< of coordinates in units of the box: the largest length that multiplied them
+    std::string types;    ///< empty, or which there are, and that all are taken for disks; a note too
 };
 
 /// Which columns hold what.
@@ -139,7 +84,7 @@ int find_column(const std::vector<std::string>& names, std::string_view name);
 class Rows {
   public:
     Rows(Columns columns, std::string source) : columns_(std::move(columns)), source_(std::move(source)) {}
-    void add(const Line& line, Raw& raw);
+    void add(const TextLine& line, Raw& raw);
     /// Throws when an id was given twice, or no row is selected. Several types are noted.
     void finish(Raw& raw);
     [[nodiscard]] long seen() const { return seen_; }
@@ -153,15 +98,26 @@ class Rows {
     long seen_ = 0; ///< rows
 };
 
-/// Blank, or a comment that begins with #.
-bool is_no_row(std::string_view line);
+/// The frame that is asked for, the last one where none is. \p head takes what stands before the rows of a frame, which
+/// messages call `row`.
+struct ChosenFrame {
+    long number = 0;
+    FrameHeader header;
+    TextLines rows;
+    const char* row;
+    /// Adds them to a raw packing.
+    void read(Rows reader, Raw& raw);
+};
+ChosenFrame choose_frame(const std::string& text, const std::string& source, const ForeignOptions& options,
+                         const char* row, const std::function<FrameHeader(TextLines&)>& head);
+
 /// Names of the columns of a table: from the comments at its start, or the row of names; reads up to the first row.
 struct TableNames {
     std::vector<std::string> names;
     int line = 0; ///< 0: no line names them
     char separator = ' ';
 };
-TableNames read_table_names(Lines& lines, const ForeignOptions& options, Raw& raw);
+TableNames read_table_names(TextLines& lines, const ForeignOptions& options, Raw& raw);
 
 Raw read_lammps_data(const std::string& text, const std::string& source, const ForeignOptions& options);
 Raw read_lammps_dump(const std::string& text, const std::string& source, const ForeignOptions& options);

@@ -23,7 +23,7 @@ char separator_of(std::string_view line) {
     return ' ';
 }
 
-std::vector<std::string> names_of(const Line& line) {
+std::vector<std::string> names_of(const TextLine& line) {
     std::vector<std::string> names;
     for (std::size_t k = 0; k < line.size(); ++k) {
         names.emplace_back(line.field(k));
@@ -34,11 +34,11 @@ std::vector<std::string> names_of(const Line& line) {
 /// "# x y r", "#format x_y_z_r": the names in a comment, or nothing.
 std::vector<std::string> names_in_comment(std::string_view line, int number, const std::string& source) {
     line.remove_prefix(line.find('#') + 1);
-    std::vector<std::string> names = names_of(Line(line, number, &source, separator_of(line)));
+    std::vector<std::string> names = names_of(TextLine(line, number, &source, separator_of(line)));
     if (names.size() == 2 && names[0] == "format") {
         std::string fields = names[1];
         std::replace(fields.begin(), fields.end(), '_', ' ');
-        names = names_of(Line(fields, number, &source));
+        names = names_of(TextLine(fields, number, &source));
     }
     const auto has = [&](const char* name) { return std::find(names.begin(), names.end(), name) != names.end(); };
     return has("x") && has("y") ? names : std::vector<std::string>();
@@ -55,7 +55,7 @@ bool is_value(std::string_view field) {
 }
 
 /// A row without any value is taken for names; all others are disks.
-bool is_row_of_names(const Line& line) {
+bool is_row_of_names(const TextLine& line) {
     for (std::size_t k = 0; k < line.size(); ++k) {
         if (is_value(line.field(k))) {
             return false;
@@ -65,7 +65,7 @@ bool is_row_of_names(const Line& line) {
 }
 
 /// The last comment before the first row that names columns.
-TableNames names_in_comments(Lines& lines) {
+TableNames names_in_comments(TextLines& lines) {
     TableNames out;
     while (!lines.at_end() && is_no_row(lines.peek())) {
         const std::string_view line = lines.take("a row");
@@ -81,18 +81,13 @@ TableNames names_in_comments(Lines& lines) {
 
 } // namespace
 
-bool is_no_row(std::string_view line) {
-    const std::size_t first = line.find_first_not_of(" \t\r\n");
-    return first == std::string_view::npos || line[first] == '#';
-}
-
-TableNames read_table_names(Lines& lines, const ForeignOptions& options, Raw& raw) {
+TableNames read_table_names(TextLines& lines, const ForeignOptions& options, Raw& raw) {
     TableNames out = names_in_comments(lines);
     if (lines.at_end()) {
         lines.fail("the file ends here: expected rows of numbers");
     }
     out.separator = separator_of(lines.peek());
-    const Line first(lines.peek(), lines.number() + 1, &lines.source(), out.separator);
+    const TextLine first(lines.peek(), lines.number() + 1, &lines.source(), out.separator);
     if (is_row_of_names(first)) {
         out.names = names_of(first);
         (void)lines.take("names");
@@ -123,7 +118,7 @@ Raw read_table(const std::string& text, const std::string& source, const Foreign
         throw Error(ErrorKind::bad_input, fmt::format("{}: frame {} was asked for: expected frame 0, a table has one",
                                                       source, *options.frame));
     }
-    Lines lines(text, source);
+    TextLines lines(text, source);
     Raw raw;
     const TableNames header = read_table_names(lines, options, raw);
     const std::string where = header.line == 0 ? source : fmt::format("{}:{}", source, header.line);
@@ -138,12 +133,8 @@ Raw read_table(const std::string& text, const std::string& source, const Foreign
     find_size(columns, header.names, options, where, raw);
     find_selection(columns, header.names, options, where);
     Rows rows(columns, source);
-    while (!lines.at_end()) {
-        if (is_no_row(lines.peek())) {
-            (void)lines.take("a row");
-            continue;
-        }
-        const Line line = lines.next("a row", header.separator);
+    while (lines.find_row()) {
+        const TextLine line = lines.next("a row", header.separator);
         line.require_size(header.names.size(), "one value per column");
         rows.add(line, raw);
     }

@@ -1,5 +1,5 @@
-#include "io/cell_wrap.hpp"
 #include "io/text.hpp"
+#include "packing/cell_wrap.hpp"
 
 #include <isostat/io/foreign.hpp>
 

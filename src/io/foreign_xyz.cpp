@@ -22,7 +22,7 @@ std::string lower(std::string_view text) {
 }
 
 /// key=value, key="several words", key='..', key={..}; words without '=' are flags. Keys in lower case.
-std::map<std::string, std::string> key_values(const Line& line) {
+std::map<std::string, std::string> key_values(const TextLine& line) {
     std::map<std::string, std::string> out;
     std::string_view rest = line.text();
     const auto skip_blanks = [&] { rest.remove_prefix(std::min(rest.find_first_not_of(" \t\r"), rest.size())); };
@@ -59,7 +59,7 @@ std::map<std::string, std::string> key_values(const Line& line) {
 }
 
 /// Properties=name:type:count:... as one name per column; vectors as name.0, name.1, ...
-std::vector<std::string> property_columns(const Line& line, const std::string& properties) {
+std::vector<std::string> property_columns(const TextLine& line, const std::string& properties) {
     std::vector<std::string> parts;
     for (std::size_t at = 0; at <= properties.size();) {
         const std::size_t end = std::min(properties.find(':', at), properties.size());
@@ -86,12 +86,12 @@ std::vector<std::string> property_columns(const Line& line, const std::string& p
     return names;
 }
 
-std::vector<double> numbers_of(const Line& line, const std::string& key, const std::string& value, std::size_t count,
-                               Digits& digits) {
+std::vector<double> numbers_of(const TextLine& line, const std::string& key, const std::string& value,
+                               std::size_t count, Digits& digits) {
     std::string blanks = value;
     std::replace(blanks.begin(), blanks.end(), ',', ' ');
     const std::string source;
-    const Line fields(blanks, 0, &source);
+    const TextLine fields(blanks, 0, &source);
     std::vector<double> out;
     for (std::size_t k = 0; k < fields.size(); ++k) {
         const auto number = finite_number(fields.field(k));
@@ -107,7 +107,7 @@ std::vector<double> numbers_of(const Line& line, const std::string& key, const s
     return out;
 }
 
-void read_box(const Line& line, const std::map<std::string, std::string>& keys, FrameHeader& out) {
+void read_box(const TextLine& line, const std::map<std::string, std::string>& keys, FrameHeader& out) {
     const auto lattice = keys.find("lattice");
     if (lattice != keys.end()) {
         const std::vector<double> v = numbers_of(line, "Lattice", lattice->second, 9, out.sides);
@@ -133,7 +133,7 @@ void read_box(const Line& line, const std::map<std::string, std::string>& keys, 
         const std::string source;
         std::string text = pbc->second;
         std::replace(text.begin(), text.end(), ',', ' ');
-        const Line fields(text, 0, &source);
+        const TextLine fields(text, 0, &source);
         if (fields.size() != 3 && fields.size() != 2) {
             line.fail(pbc->second, "pbc", "three of T and F");
         }
@@ -150,18 +150,18 @@ void read_box(const Line& line, const std::map<std::string, std::string>& keys, 
 
 } // namespace
 
-std::optional<long> xyz_timestep(const Line& comment, const std::string& source) {
+std::optional<long> xyz_timestep(const TextLine& comment, const std::string& source) {
     const auto keys = key_values(comment);
     const auto step = keys.find("timestep");
     if (step == keys.end()) {
         return std::nullopt;
     }
-    const Line value(step->second, comment.number(), &source);
+    const TextLine value(step->second, comment.number(), &source);
     value.require_size(1, "the time step");
     return value.integer(0, "Timestep", 0, 1L << 62);
 }
 
-FrameHeader read_xyz_header(const Line& comment, long rows) {
+FrameHeader read_xyz_header(const TextLine& comment, long rows) {
     FrameHeader out;
     out.rows = rows;
     out.line = comment.number();
@@ -174,57 +174,38 @@ FrameHeader read_xyz_header(const Line& comment, long rows) {
 }
 
 Raw read_xyz(const std::string& text, const std::string& source, const ForeignOptions& options) {
-    Lines lines(text, source);
-    for (long number = 0;; ++number) {
-        if (lines.only_blanks()) {
-            lines.fail(fmt::format("the file ends after {} frames: expected frame {} (from 0)", number,
-                                   options.frame.value_or(number)));
-        }
-        const Line count = lines.next("the number of rows");
+    Raw raw;
+    std::optional<TextLine> comment; // of the last frame looked at: others need not be right
+    ChosenFrame frame = choose_frame(text, source, options, "row", [&comment](TextLines& lines) {
+        const TextLine count = lines.next("the number of rows");
         count.require_size(1, "the number of rows");
-        const long rows = count.integer(0, "number of rows", 1, most_disks);
-        const Line comment = lines.next("the line of key=value");
-        Lines body = lines;
-        for (long k = 0; k < rows; ++k) {
-            (void)lines.take(fmt::format("row {} of {} in frame {}", k + 1, rows, number));
-        }
-        if (options.frame ? number < *options.frame : !lines.only_blanks()) {
-            continue;
-        }
-        Raw raw;
-        const FrameHeader header = read_xyz_header(comment, rows);
-        const std::vector<std::string>& names = header.names;
-        const std::string where = fmt::format("{}:{}", source, comment.number());
-        Columns columns;
-        columns.x = find_column(names, "pos.0");
-        columns.y = find_column(names, "pos.1");
-        columns.z = find_column(names, "pos.2");
-        columns.id = find_column(names, "id");
-        if (columns.x < 0) {
-            throw Error(ErrorKind::bad_input,
-                        fmt::format("{}: no coordinates: expected pos:R:2 or pos:R:3 in Properties", where));
-        }
-        find_size(columns, names, options, where, raw);
-        find_selection(columns, names, options, where);
-        raw.box = header.box;
-        raw.tilt = header.tilt;
-        raw.sides = header.sides;
-        raw.boundary = header.boundary;
-        if (header.box && ((*header.box)[0] != 0 || (*header.box)[2] != 0)) {
-            raw.notes.emplace_back("upper bounds = Origin + Lattice in double: rounded at 2^-53 of them");
-        }
-        Rows reader(columns, source);
-        for (long k = 0; k < rows; ++k) {
-            const Line line = body.next("a row");
-            line.require_size(names.size(), fmt::format("row {} of {}", k + 1, rows));
-            reader.add(line, raw);
-        }
-        reader.finish(raw);
-        if (number > 0) {
-            raw.notes.push_back(fmt::format("frame {}", number));
-        }
-        return raw;
+        FrameHeader header;
+        header.rows = count.integer(0, "number of rows", 1, most_disks);
+        comment = lines.next("the line of key=value");
+        return header;
+    });
+    frame.header = read_xyz_header(*comment, frame.header.rows);
+    const std::vector<std::string>& names = frame.header.names;
+    const std::string where = comment->place();
+    Columns columns;
+    columns.x = find_column(names, "pos.0");
+    columns.y = find_column(names, "pos.1");
+    columns.z = find_column(names, "pos.2");
+    columns.id = find_column(names, "id");
+    if (columns.x < 0) {
+        throw Error(ErrorKind::bad_input,
+                    fmt::format("{}: no coordinates: expected pos:R:2 or pos:R:3 in Properties", where));
     }
+    find_size(columns, names, options, where, raw);
+    find_selection(columns, names, options, where);
+    if (const auto& box = frame.header.box; box && ((*box)[0] != 0 || (*box)[2] != 0)) {
+        raw.notes.emplace_back("upper bounds = Origin + Lattice in double: rounded at 2^-53 of them");
+    }
+    frame.read(Rows(columns, source), raw);
+    if (frame.number > 0) {
+        raw.notes.push_back(fmt::format("frame {}", frame.number));
+    }
+    return raw;
 }
 
 } // namespace isostat::foreign

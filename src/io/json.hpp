@@ -3,6 +3,8 @@
 /// JSON with messages that name file and field. The only place, with the .cpp files that include it, that knows the
 /// JSON library.
 
+#include "core/words.hpp"
+
 #include <isostat/contact/contact.hpp>
 
 #include <nlohmann/json.hpp>
@@ -51,6 +53,14 @@ class Field {
     [[nodiscard]] int integer(int lowest, int highest) const;
     [[nodiscard]] bool boolean() const;
     [[nodiscard]] const std::string& string() const;
+    /// A value by its word.
+    template <class Enum, std::size_t N> [[nodiscard]] Enum word(const EnumWords<N>& words) const {
+        const std::optional<Enum> value = value_of<Enum>(string(), words);
+        if (!value) {
+            fail(listed(words));
+        }
+        return *value;
+    }
     [[nodiscard]] const Json& value() const { return *value_; }
 
   private:

@@ -11,8 +11,8 @@ namespace isostat::foreign {
 
 namespace {
 
-void read_bounds(Lines& lines, std::string_view flags_text, FrameHeader& frame) {
-    const Line flags(flags_text, lines.number(), &lines.source());
+void read_bounds(TextLines& lines, std::string_view flags_text, FrameHeader& frame) {
+    const TextLine flags(flags_text, lines.number(), &lines.source());
     std::vector<std::string_view> codes;
     bool tilted = false;
     for (std::size_t k = 0; k < flags.size(); ++k) {
@@ -34,7 +34,7 @@ void read_bounds(Lines& lines, std::string_view flags_text, FrameHeader& frame) 
     }
     std::array<double, 4> box{};
     for (std::size_t a = 0; a < 3; ++a) {
-        const Line line = lines.next("the bounds of the box: low high");
+        const TextLine line = lines.next("the bounds of the box: low high");
         line.require_size(tilted ? 3 : 2, "bounds of the box");
         const double low = line.number(0, "lower bound"), high = line.number(1, "upper bound");
         if (!(low <= high)) {
@@ -61,13 +61,13 @@ void read_bounds(Lines& lines, std::string_view flags_text, FrameHeader& frame) 
 
 } // namespace
 
-FrameHeader read_dump_header(Lines& lines, const std::string& item) {
+FrameHeader read_dump_header(TextLines& lines, const std::string& item) {
     FrameHeader frame;
     const std::string rows = item == "ATOMS" ? "atoms" : "entries";
     std::set<std::string> seen;
     for (bool first = true;; first = false) {
         const std::string_view text = lines.take("ITEM: " + item);
-        const Line line(text, lines.number(), &lines.source());
+        const TextLine line(text, lines.number(), &lines.source());
         const auto starts = [&](const std::string& name) {
             return text.starts_with(name) &&
                    (text.size() == name.size() || std::isspace(static_cast<unsigned char>(text[name.size()])) != 0);
@@ -79,13 +79,13 @@ FrameHeader read_dump_header(Lines& lines, const std::string& item) {
             line.fail(text, "start of a frame", "ITEM: TIMESTEP");
         }
         if (starts("ITEM: TIMESTEP")) {
-            const Line value = lines.next("the time step");
+            const TextLine value = lines.next("the time step");
             value.require_size(1, "the time step");
             frame.timestep = value.integer(0, "time step", 0, 1L << 62);
         } else if (starts("ITEM: UNITS") || starts("ITEM: TIME")) {
             (void)lines.take("units or time");
         } else if (starts("ITEM: NUMBER OF " + item)) {
-            const Line value = lines.next("the number of " + rows);
+            const TextLine value = lines.next("the number of " + rows);
             value.require_size(1, "the number of " + rows);
             frame.rows = value.integer(0, "number of " + rows, 0, most_disks);
         } else if (starts("ITEM: BOX BOUNDS")) {

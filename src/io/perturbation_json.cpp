@@ -1,6 +1,4 @@
-#include "io/perturbation_json.hpp"
-
-#include "io/contact_json.hpp"
+#include "io/state_json.hpp"
 
 #include <cmath>
 
@@ -36,10 +34,6 @@ std::vector<std::pair<Contact, Enclosure>> terms_from(const Field& field, const 
 }
 
 } // namespace
-
-Json exponent_json(double exponent) {
-    return std::isfinite(exponent) ? Json(exponent) : Json(nullptr);
-}
 
 template <int Dim> Json perturbation_to_json(const RadiusPerturbation& perturbation) {
     Json object;

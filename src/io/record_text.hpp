@@ -1,10 +1,10 @@
 #pragma once
 /// \file
-/// Records as text: a line of events.jsonl, a row of equilibria.csv, counters.
+/// Records as text: a line of events.jsonl, of certificates/arcs.jsonl, counters.
 
 #include "io/json.hpp"
 
-#include <isostat/io/run_directory.hpp>
+#include <isostat/trajectory/trajectory.hpp>
 
 #include <string>
 
@@ -18,16 +18,6 @@ std::string event_line(const ArcRecord<2>& arc);
 /// order.
 std::string witness_line(const ArcRecord<2>& arc);
 
-/// The header line of equilibria.csv.
-std::string equilibria_header(MoreColumns more = {});
-/// The columns that the first line of a file names. Throws `Error(bad_input)`, starting with `source`, where this
-/// program writes no such line.
-MoreColumns named_columns(std::string_view text, const std::string& source);
-/// One row and a newline. `previous`: the equilibrium that this one follows, -1 for the start. \pre the record has what
-/// `more` asks for.
-std::string equilibrium_row(const EquilibriumRecord<2>& record, const State<2>& state, int previous, MoreColumns more);
-
-json::Json tally_json(const Tally& tally);
 json::Json counters_json(const RunCounters& counters);
 RunCounters counters_from(const json::Field& field);
 

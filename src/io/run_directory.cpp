@@ -1,5 +1,7 @@
+#include "core/words.hpp"
 #include "core/work.hpp"
 #include "io/descriptor.hpp"
+#include "io/equilibria.hpp"
 #include "io/files.hpp"
 #include "io/folders.hpp"
 #include "io/json.hpp"
@@ -53,18 +55,24 @@ std::string steering(const RunCounters& counters) {
 } // namespace
 
 const char* to_string(RunStatus status) {
-    switch (status) {
-    case RunStatus::completed: return "completed";
-    case RunStatus::failed: return "failed";
-    case RunStatus::undecided: return "undecided";
-    case RunStatus::interrupted: return "interrupted";
-    }
-    return "failed";
+    static constexpr std::array words{"completed", "failed", "undecided", "interrupted"};
+    return word_of(status, words);
 }
 
 struct RunDirectory::Files {
+    /// A file that grows, and the digest of all in it.
+    struct Records {
+        const char* name;
+        Descriptor file;
+        std::string digest;
+        void write(const std::string& line) {
+            file.write(line);
+            digest = chained(digest, line);
+        }
+    };
     TakenFolder folder;
-    Descriptor events, equilibria, witnesses;
+    Records events{"events.jsonl", {}, {}}, equilibria{"equilibria.csv", {}, {}}, witnesses{witness_records, {}, {}};
+    std::vector<Records*> used{&events, &equilibria}; ///< and the witnesses at level `arcs`
 };
 
 RunDirectory::RunDirectory(fs::path directory, RunHeader header, Mode mode, const RunCounters& counters)
@@ -82,11 +90,12 @@ RunDirectory::RunDirectory(fs::path directory, RunHeader header, Mode mode, cons
     fs::remove(directory_ / "summary.json"); // of the interrupted run: it must not look like that of this one
     write_header("running");
     const int flags = O_WRONLY | O_CREAT | O_APPEND | O_NOFOLLOW | (checkpoint_ ? 0 : O_TRUNC);
-    files_->events = Descriptor::open(directory_ / "events.jsonl", flags);
-    files_->equilibria = Descriptor::open(directory_ / "equilibria.csv", flags);
     if (header_.witnesses) {
         make_directory(directory_ / "certificates");
-        files_->witnesses = Descriptor::open(directory_ / witness_records, flags);
+        files_->used.push_back(&files_->witnesses);
+    }
+    for (Files::Records* records : files_->used) {
+        records->file = Descriptor::open(directory_ / records->name, flags);
     }
     Json provenance;
     provenance["program"] = header_.program;
@@ -152,9 +161,9 @@ void RunDirectory::read_checkpoint() {
     std::vector<std::pair<Descriptor, long>> cut;
     for (const auto& [name, lines] : checked->lines) {
         cut.emplace_back(Descriptor::open(directory_ / name, O_WRONLY | O_NOFOLLOW), lines.bytes);
-        (name == "events.jsonl"    ? events_digest_
-         : name == witness_records ? witness_digest_
-                                   : equilibria_digest_) = lines.digest;
+        for (Files::Records* records : {&files_->events, &files_->equilibria, &files_->witnesses}) {
+            records->digest = name == records->name ? lines.digest : records->digest;
+        }
     }
     for (auto& [records, bytes] : cut) {
         records.truncate(bytes);
@@ -191,22 +200,16 @@ void RunDirectory::begin_segment(int number, const Segment& goal, int made, int 
 }
 
 void RunDirectory::on_arc(const ArcRecord<2>& arc) {
-    const std::string line = event_line(arc);
-    files_->events.write(line);
-    events_digest_ = chained(events_digest_, line);
+    files_->events.write(event_line(arc));
     if (header_.witnesses) {
-        const std::string witness = witness_line(arc);
-        files_->witnesses.write(witness);
-        witness_digest_ = chained(witness_digest_, witness);
+        files_->witnesses.write(witness_line(arc));
     }
 }
 
 void RunDirectory::name_columns(MoreColumns more) {
-    if (equilibria_digest_.empty()) {
+    if (files_->equilibria.digest.empty()) {
         columns_ = more;
-        const std::string header = equilibria_header(more);
-        files_->equilibria.write(header);
-        equilibria_digest_ = chained("", header);
+        files_->equilibria.write(equilibria_header(more));
     }
 }
 
@@ -214,9 +217,7 @@ void RunDirectory::on_equilibrium(const EquilibriumRecord<2>& record, const Stat
                                   const std::vector<double>& forces) {
     const bool first = record.number == 0;
     name_columns({record.length.size() > 2, record.touching.has_value()});
-    const std::string row = equilibrium_row(record, state, first ? -1 : previous_, columns_);
-    files_->equilibria.write(row);
-    equilibria_digest_ = chained(equilibria_digest_, row);
+    files_->equilibria.write(equilibrium_row(record, state, first ? -1 : previous_, columns_));
     previous_ = record.number;
     made_ += first ? 0 : 1;
     last_ = state;
@@ -234,16 +235,10 @@ void RunDirectory::on_equilibrium(const EquilibriumRecord<2>& record, const Stat
     if (first) {
         return; // the start is made again from start.json: run_segment reports number 0 itself
     }
-    pending_ = Point{segment_,
-                     made_,
-                     segment_done(),
-                     counters_,
-                     files_->events.size(),
-                     files_->equilibria.size(),
-                     header_.witnesses ? files_->witnesses.size() : 0,
-                     events_digest_,
-                     equilibria_digest_,
-                     witness_digest_};
+    pending_ = Point{segment_, made_, segment_done(), counters_, {}};
+    for (const Files::Records* records : files_->used) {
+        pending_->records.emplace_back(records->name, records->file.size(), records->digest);
+    }
     const auto now = std::chrono::steady_clock::now();
     const std::chrono::duration<double> interval(header_.checkpoint_seconds);
     if (pending_->segment_done || !last_checkpoint_ || now - *last_checkpoint_ >= interval) {
@@ -271,11 +266,10 @@ void RunDirectory::write_checkpoint() {
     object["strain"] = last_strain_;
     object["segment_done"] = pending_->segment_done;
     object["counters"] = counters_json(pending_->counters);
-    object["bytes"] = {{"events.jsonl", pending_->events_bytes}, {"equilibria.csv", pending_->equilibria_bytes}};
-    object["digests"] = {{"events.jsonl", pending_->events_digest}, {"equilibria.csv", pending_->equilibria_digest}};
-    if (header_.witnesses) {
-        object["bytes"][witness_records] = pending_->witness_bytes;
-        object["digests"][witness_records] = pending_->witness_digest;
+    for (const char* what : {"bytes", "digests"}) {
+        for (const auto& [name, bytes, digest] : pending_->records) {
+            object[what][name] = what == std::string_view("bytes") ? Json(bytes) : Json(digest);
+        }
     }
     object["files"] = digests_;
     std::string text = json::dumped(object);
@@ -286,10 +280,8 @@ void RunDirectory::write_checkpoint() {
 }
 
 void RunDirectory::sync() {
-    files_->events.sync();
-    files_->equilibria.sync();
-    if (header_.witnesses) {
-        files_->witnesses.sync();
+    for (Files::Records* records : files_->used) {
+        records->file.sync();
     }
 }
 

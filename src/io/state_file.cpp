@@ -1,10 +1,10 @@
-#include "io/contact_json.hpp"
 #include "io/files.hpp"
 #include "io/json.hpp"
-#include "io/perturbation_json.hpp"
 #include "io/state_json.hpp"
 #include "io/vertex_text.hpp"
 #include "packing/pressed_sides.hpp"
+#include "packing/unbalanced.hpp"
+#include "packing/words.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/io/foreign.hpp>
@@ -21,20 +21,6 @@ namespace isostat {
 namespace {
 
 using json::Field;
-
-WallKind wall_kind(const Field& field) {
-    const std::string& word = field.string();
-    if (word == "absent") {
-        return WallKind::absent;
-    }
-    if (word == "fixed") {
-        return WallKind::fixed;
-    }
-    if (word == "movable") {
-        return WallKind::movable;
-    }
-    field.fail("\"absent\", \"fixed\" or \"movable\"");
-}
 
 /// Dim numbers per disk; the array may be absent.
 template <int Dim> std::vector<double> vectors(const Field& document, const char* name, std::size_t disks) {
@@ -79,9 +65,6 @@ template <int Dim> void read_disks(const Field& document, Packing<Dim>& packing)
     }
 }
 
-constexpr std::array<const char*, 3> axis_name{"x", "y", "z"};
-constexpr std::array<const char*, 3> tilt_name{"xy", "xz", "yz"};
-
 /// The names of the coordinates of a cell that move.
 template <int Dim> void read_moves(const Field& moves, Cell<Dim>& cell) {
     for (std::size_t k = 0; k < moves.size(); ++k) {
@@ -99,12 +82,12 @@ template <int Dim> void read_moves(const Field& moves, Cell<Dim>& cell) {
             cell.keep_shape();
         }
         for (std::size_t a = 0; a < Dim; ++a) {
-            known = known || name == axis_name[a];
-            cell.period_moves[a] = cell.period_moves[a] || name == axis_name[a];
+            known = known || name == axis_names[a];
+            cell.period_moves[a] = cell.period_moves[a] || name == axis_names[a];
         }
         for (std::size_t t = 0; t < Cell<Dim>::tilts; ++t) {
-            known = known || name == tilt_name[t];
-            cell.tilt_moves[t] = cell.tilt_moves[t] || name == tilt_name[t];
+            known = known || name == tilt_names[t];
+            cell.tilt_moves[t] = cell.tilt_moves[t] || name == tilt_names[t];
         }
         if (!known) {
             moves.at(k).fail("\"x\", \"y\" (periods), \"xy\" (tilt) or \"scale\" (isotropic)");
@@ -119,11 +102,7 @@ template <int Dim> void read_cell(const Field& field, Packing<Dim>& packing) {
     const Field axes = field.at("axes");
     axes.require_size(Dim, "one word per axis");
     for (std::size_t a = 0; a < Dim; ++a) {
-        const std::string& word = axes.at(a).string();
-        if (word != "periodic" && word != "walls") {
-            axes.at(a).fail("\"periodic\" or \"walls\"");
-        }
-        cell.periodic[a] = word == "periodic";
+        cell.periodic[a] = axes.at(a).word<int>(std::array{"periodic", "walls"}) == 0;
         if (cell.periodic[a]) {
             packing.walls.lower[a] = packing.walls.upper[a] = WallKind::absent;
         }
@@ -160,8 +139,8 @@ template <int Dim> Packing<Dim> packing_of(const Field& document) {
         walls.at("lower").require_size(Dim, "one wall per axis");
         walls.at("upper").require_size(Dim, "one wall per axis");
         for (std::size_t a = 0; a < Dim; ++a) {
-            packing.walls.lower[a] = wall_kind(walls.at("lower").at(a));
-            packing.walls.upper[a] = wall_kind(walls.at("upper").at(a));
+            packing.walls.lower[a] = walls.at("lower").at(a).word<WallKind>(wall_kind_words);
+            packing.walls.upper[a] = walls.at("upper").at(a).word<WallKind>(wall_kind_words);
             if (packing.walls.lower[a] == WallKind::movable) {
                 walls.at("lower").at(a).fail("\"absent\" or \"fixed\": the lower walls are the origin");
             }
@@ -184,22 +163,14 @@ template <int Dim> Packing<Dim> packing_of(const Field& document) {
     return packing;
 }
 
-/// Along periodic axes loads on the disks sum to zero, exactly: else the pinned disk bears the rest, whichever it is.
 template <int Dim>
 void require_balance(const Field& document, const char* name, const std::vector<double>& values,
                      const Cell<Dim>& cell) {
-    for (std::size_t a = 0; a < Dim; ++a) {
-        mpq_class sum = 0;
-        for (std::size_t k = a; k < values.size() && cell.periodic[a]; k += Dim) {
-            sum += mpq_class(values[k]);
-        }
-        if (sum != 0) {
-            throw Error(
-                ErrorKind::bad_input,
-                fmt::format("{} along {} sum to {:.3g}: expected exactly 0 along a periodic axis (give one disk "
-                            "minus the sum of the others)",
-                            document.at(name).where(), axis_name[a], sum.get_d()));
-        }
+    if (const auto rest = unbalanced<mpq_class>(values, cell)) {
+        throw Error(ErrorKind::bad_input,
+                    fmt::format("{} along {} sum to {:.3g}: expected exactly 0 along a periodic axis (give one disk "
+                                "minus the sum of the others)",
+                                document.at(name).where(), axis_names[rest->first], rest->second.get_d()));
     }
 }
 
@@ -234,11 +205,7 @@ template <int Dim> Load<Dim> load_of(const Field& document, const Packing<Dim>& 
         const Field field = document.at("load");
         field.only({"kind", "stress", "loaded_axis", "reference_length", "reference_tilt", "shear"});
         if (field.has("kind")) {
-            const std::string& kind = field.at("kind").string();
-            if (kind != "nominal" && kind != "true") {
-                field.at("kind").fail("\"nominal\" or \"true\"");
-            }
-            load.kind = kind == "nominal" ? LoadKind::nominal : LoadKind::true_stress;
+            load.kind = field.at("kind").word<LoadKind>(load_kind_words);
             const auto& tilts = packing.cell.tilt_moves;
             if (load.kind == LoadKind::true_stress && std::find(tilts.begin(), tilts.end(), true) != tilts.end()) {
                 field.at("kind").fail("\"nominal\" where a tilt moves: true stresses have no potential there");

@@ -1,8 +1,8 @@
 #include "core/work.hpp"
-#include "io/contact_json.hpp"
 #include "io/files.hpp"
 #include "io/json.hpp"
-#include "io/perturbation_json.hpp"
+#include "io/state_json.hpp"
+#include "packing/words.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/io/state_file.hpp>
@@ -16,15 +16,6 @@ namespace isostat {
 namespace {
 
 using json::Json;
-
-const char* word(WallKind kind) {
-    switch (kind) {
-    case WallKind::absent: return "absent";
-    case WallKind::fixed: return "fixed";
-    case WallKind::movable: return "movable";
-    }
-    return "absent";
-}
 
 /// JSON has no NaN and no infinity: a state that holds one is not written at all.
 double finite(double value, const char* field) {
@@ -53,8 +44,6 @@ template <int Dim> std::vector<Json> vectors(const std::vector<double>& values, 
 
 /// The member "cell", or nothing in a box.
 template <int Dim> std::string cell_text(const Packing<Dim>& packing) {
-    constexpr std::array<const char*, 3> axis_name{"x", "y", "z"};
-    constexpr std::array<const char*, 3> tilt_name{"xy", "xz", "yz"};
     const Cell<Dim>& cell = packing.cell;
     if (!cell.any()) {
         return {};
@@ -64,13 +53,13 @@ template <int Dim> std::string cell_text(const Packing<Dim>& packing) {
     for (std::size_t a = 0; a < Dim; ++a) {
         object["axes"].push_back(cell.periodic[a] ? "periodic" : "walls");
         if (cell.period_moves[a]) { // of a cell that keeps its shape: the last one
-            object["moves"].push_back(cell.keeps_shape ? "scale" : axis_name[a]);
+            object["moves"].push_back(cell.keeps_shape ? "scale" : axis_names[a]);
         }
     }
     for (std::size_t t = 0; t < Cell<Dim>::tilts; ++t) {
         object["tilt"].push_back(finite(packing.q[packing.length_at(Dim + t)], "cell.tilt"));
         if (cell.tilt_moves[t]) {
-            object["moves"].push_back(tilt_name[t]);
+            object["moves"].push_back(tilt_names[t]);
         }
     }
     object["pin"] = cell.pin;
@@ -99,7 +88,7 @@ template <int Dim> void append_disks(std::string& text, const Packing<Dim>& pack
 template <int Dim> std::string load_text(const State<Dim>& state) {
     const Load<Dim>& load = state.load;
     Json object;
-    object["kind"] = load.kind == LoadKind::nominal ? "nominal" : "true";
+    object["kind"] = word_of(load.kind, load_kind_words);
     object["stress"] = numbers(load.stress, "load.stress");
     object["loaded_axis"] = load.loaded_axis;
     object["reference_length"] = numbers(load.reference_length, "load.reference_length");
@@ -114,8 +103,8 @@ template <int Dim> std::string load_text(const State<Dim>& state) {
 template <int Dim> std::string walls_text(const Walls<Dim>& walls) {
     Json object;
     for (std::size_t a = 0; a < Dim; ++a) {
-        object["lower"].push_back(word(walls.lower[a]));
-        object["upper"].push_back(word(walls.upper[a]));
+        object["lower"].push_back(word_of(walls.lower[a], wall_kind_words));
+        object["upper"].push_back(word_of(walls.upper[a], wall_kind_words));
     }
     return fmt::format("  \"walls\": {},\n", object.dump());
 }

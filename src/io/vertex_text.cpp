@@ -1,8 +1,8 @@
 #include "io/vertex_text.hpp"
 
-#include "io/contact_json.hpp"
 #include "io/json.hpp"
-#include "io/rows.hpp"
+#include "io/lines.hpp"
+#include "io/state_json.hpp"
 
 #include <isostat/core/error.hpp>
 
@@ -24,7 +24,7 @@ constexpr std::array<Contact, 4> wall_of_type{{{ContactKind::lower_wall, 0, 0},
                                                {ContactKind::upper_wall, 0, 0},
                                                {ContactKind::upper_wall, 0, 1}}};
 
-Contact contact_of(const Row& row, int disks) {
+Contact contact_of(const TextLine& row, int disks) {
     const long type = row.integer(0, "type of the contact", 0, 4);
     const auto i = static_cast<int>(row.integer(1, "first disk of the contact", 0, disks - 1));
     if (type != 0) {
@@ -34,7 +34,7 @@ Contact contact_of(const Row& row, int disks) {
     }
     const auto j = static_cast<int>(row.integer(2, "second disk of the contact", 0, disks - 1));
     if (i == j) {
-        row.fail(2, "second disk of the contact", "another disk than the first");
+        row.fail(row.field(2), "second disk of the contact", "another disk than the first");
     }
     return {ContactKind::disk_disk, std::min(i, j), std::max(i, j)};
 }
@@ -45,13 +45,13 @@ struct Head {
     bool radius_first;
 };
 
-Head head_of(RowReader& rows) {
+Head head_of(TextLines& rows) {
     constexpr std::array<std::string_view, 5> names{"x", "y", "r", "gx", "gy"};
-    const Row row = rows.next("the number of disks", 0);
+    const TextLine row = rows.next_row("the number of disks", 0);
     const Head head{static_cast<int>(row.integer(0, "number of disks", 1, most)), row.size() == 1};
     for (std::size_t k = 1; k < row.size(); ++k) {
-        if (row.size() != 1 + names.size() || row.text(k) != names[k - 1]) {
-            row.fail(k, "name of a column",
+        if (row.size() != 1 + names.size() || row.field(k) != names[k - 1]) {
+            row.fail(row.field(k), "name of a column",
                      "the number of disks alone (rows radius x y gx gy), or x y r gx gy after it");
         }
     }
@@ -61,39 +61,30 @@ Head head_of(RowReader& rows) {
 } // namespace
 
 State<2> parse_vertex_text(const std::string& text, const std::string& source) {
-    RowReader rows(text, source);
+    TextLines rows(text, source);
     State<2> state;
     const auto [disks, radius_first] = head_of(rows);
     const std::size_t size = radius_first ? 0 : 2, first = radius_first ? 1 : 0;
     const char* const order = radius_first ? "radius x y gx gy" : "x y r gx gy";
     for (int i = 0; i < disks; ++i) {
-        const Row row = rows.next(fmt::format("disk {} of {}: {}", i, disks, order), 5);
-        const double radius = row.number(size, fmt::format("radius of disk {}", i));
-        if (!(radius > 0)) {
-            row.fail(size, fmt::format("radius of disk {}", i), "a positive number");
-        }
-        state.packing.radius.push_back(radius);
+        const TextLine row = rows.next_row(fmt::format("disk {} of {}: {}", i, disks, order), 5);
+        state.packing.radius.push_back(row.positive(size, fmt::format("radius of disk {}", i)));
         state.packing.q.push_back(row.number(first, fmt::format("x of disk {}", i)));
         state.packing.q.push_back(row.number(first + 1, fmt::format("y of disk {}", i)));
         state.load.infinitesimal.push_back(row.number(3, fmt::format("gx of disk {}", i)));
         state.load.infinitesimal.push_back(row.number(4, fmt::format("gy of disk {}", i)));
     }
-    const Row box = rows.next("the box: Lx Ly", 2);
+    const TextLine box = rows.next_row("the box: Lx Ly", 2);
     for (std::size_t a = 0; a < 2; ++a) {
-        const char* const name = a == 0 ? "Lx" : "Ly";
-        const double length = box.number(a, name);
-        if (!(length > 0)) {
-            box.fail(a, name, "a positive number");
-        }
-        state.packing.q.push_back(length);
+        state.packing.q.push_back(box.positive(a, a == 0 ? "Lx" : "Ly"));
         state.load.stress[a] = 1;
     }
     validate(state.packing, source);
     const auto contacts =
-        static_cast<int>(rows.next("the number of contacts", 1).integer(0, "number of contacts", 0, most));
+        static_cast<int>(rows.next_row("the number of contacts", 1).integer(0, "number of contacts", 0, most));
     for (int l = 0; l < contacts; ++l) {
         state.contacts.push_back(
-            contact_of(rows.next(fmt::format("contact {} of {}: type i j", l, contacts), 3), disks));
+            contact_of(rows.next_row(fmt::format("contact {} of {}: type i j", l, contacts), 3), disks));
     }
     rows.finish(fmt::format("the end of the file after {} contacts", contacts));
     json::refuse_duplicates<2>(state.contacts, source, "contacts");

@@ -1,3 +1,5 @@
+#include "packing/words.hpp"
+
 #include <isostat/core/error.hpp>
 #include <isostat/packing/packing.hpp>
 
@@ -11,7 +13,6 @@ namespace isostat {
 
 namespace {
 
-constexpr std::array<const char*, 3> axis_name{"x", "y", "z"};
 constexpr std::array<const char*, 3> upper_name{"right wall", "top wall", "front wall"};
 constexpr std::array<const char*, 3> tilt_name{"xy", "xz", "yz"};
 
@@ -89,11 +90,11 @@ template <int Dim> std::string DofMap<Dim>::name(int dof) const {
     const auto coordinate = static_cast<std::size_t>(coordinate_of(dof));
     const std::size_t lengths = static_cast<std::size_t>(Dim) * static_cast<std::size_t>(disks_);
     if (coordinate < lengths) {
-        return fmt::format("{} of disk {}", axis_name[coordinate % Dim], coordinate / Dim);
+        return fmt::format("{} of disk {}", axis_names[coordinate % Dim], coordinate / Dim);
     }
     const std::size_t axis = coordinate - lengths;
     return axis >= Dim       ? fmt::format("tilt {}", tilt_name[axis - Dim])
-           : periodic_[axis] ? fmt::format("period along {}", axis_name[axis])
+           : periodic_[axis] ? fmt::format("period along {}", axis_names[axis])
                              : std::string(upper_name[axis]);
 }
 
@@ -106,18 +107,18 @@ template <int Dim> void validate_cell(const Packing<Dim>& packing, const std::st
         if (!cell.periodic[a]) {
             if (cell.period_moves[a]) {
                 bad(fmt::format("the period along {} moves, and that axis has walls: expected a periodic axis",
-                                axis_name[a]));
+                                axis_names[a]));
             }
             continue;
         }
         if (packing.walls.lower[a] != WallKind::absent || packing.walls.upper[a] != WallKind::absent) {
-            bad(fmt::format("{} is periodic and has walls: expected walls \"absent\" along it", axis_name[a]));
+            bad(fmt::format("{} is periodic and has walls: expected walls \"absent\" along it", axis_names[a]));
         }
         const double length = packing.lattice(a, a);
         if (!(length > 0 && length <= longest_length)) {
             bad(fmt::format("the period along {} is {}: expected a positive length of at most {} (the cell is inverted "
                             "or degenerate)",
-                            axis_name[a], length, longest_length));
+                            axis_names[a], length, longest_length));
         }
     }
     for (std::size_t b = 1; b < Dim; ++b) {
@@ -200,7 +201,7 @@ template <int Dim> void validate(const Packing<Dim>& packing, const std::string&
         for (std::size_t a = 0; a < Dim; ++a) {
             const double x = packing.q[Dim * i + a];
             if (!(std::abs(x) <= longest_length)) {
-                bad(fmt::format("{} of disk {} is {}: expected a finite number of size at most {}", axis_name[a], i, x,
+                bad(fmt::format("{} of disk {} is {}: expected a finite number of size at most {}", axis_names[a], i, x,
                                 longest_length));
             }
         }
@@ -225,7 +226,7 @@ template <int Dim> void validate(const Packing<Dim>& packing, const std::string&
             // 2R > L beyond one rounding of L: the disk cannot fit, whatever the configuration.
             if (2 * packing.radius[i] > length * (1 + 1e-9)) {
                 bad(fmt::format("disk {} of diameter {} is larger than the box: its length along {} is {}", i,
-                                2 * packing.radius[i], axis_name[a], length));
+                                2 * packing.radius[i], axis_names[a], length));
             }
         }
     }

@@ -4,6 +4,7 @@
 #include "io/json.hpp"
 #include "io/text.hpp"
 #include "linear/factorisation.hpp"
+#include "packing/words.hpp"
 #include "report/page_bytes.hpp"
 #include "report/run_walk.hpp"
 #include "report/words.hpp"
@@ -21,7 +22,6 @@ namespace isostat {
 
 namespace {
 
-using checker::EquilibriumLine;
 using checker::EventRecord;
 using checker::RunRecords;
 using json::Json;
@@ -235,7 +235,6 @@ Json events_json(const RunRecords& records, const Packing<2>& packing) {
 }
 
 Json packing_json(const State<2>& state) {
-    constexpr std::array<const char*, 3> kinds{"absent", "fixed", "movable"};
     const Packing<2>& packing = state.packing;
     Json object;
     object["radii"] = std::vector<float>(packing.radius.begin(), packing.radius.end());
@@ -243,8 +242,8 @@ Json packing_json(const State<2>& state) {
     object["periodic"] = packing.cell.periodic;
     object["loaded_axis"] = state.load.loaded_axis;
     for (std::size_t a = 0; a < 2; ++a) {
-        object["lower"].push_back(kinds.at(static_cast<std::size_t>(packing.walls.lower[a])));
-        object["upper"].push_back(kinds.at(static_cast<std::size_t>(packing.walls.upper[a])));
+        object["lower"].push_back(word_of(packing.walls.lower[a], wall_kind_words));
+        object["upper"].push_back(word_of(packing.walls.upper[a], wall_kind_words));
     }
     return object;
 }
@@ -273,7 +272,7 @@ Json words_json(const LoadWords& words) {
 } // namespace
 
 Page run_page(const std::filesystem::path& directory, const std::function<void(std::size_t, std::size_t)>& progress) {
-    const RunRecords records = checker::read_records(directory, checker::LastLine::may_be_cut);
+    const RunRecords records = checker::read_records(directory, LastLine::may_be_cut);
     Page page;
     Json data = header_json(directory);
     std::optional<Frames> frames;

@@ -1,7 +1,7 @@
 #include "report/picture.hpp"
 
-#include "io/cell_wrap.hpp"
 #include "io/text.hpp"
+#include "packing/cell_wrap.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,5 @@
 #include "contact/separation.hpp"
+#include "core/words.hpp"
 #include "exact/rank.hpp"
 #include "rigidity/strained_matrix.hpp"
 
@@ -108,13 +109,8 @@ Counting settled(Counting counting, const std::function<exact::NumberMatrix()>& 
 } // namespace
 
 const char* to_string(Strain strain) {
-    switch (strain) {
-    case Strain::none: return "fixed cell";
-    case Strain::isotropic: return "isotropic";
-    case Strain::diagonal: return "diagonal";
-    case Strain::full: return "full strain";
-    }
-    return "";
+    static constexpr std::array words{"fixed cell", "isotropic", "diagonal", "full strain"};
+    return word_of(strain, words);
 }
 
 template <int Dim>

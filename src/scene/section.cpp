@@ -1,7 +1,7 @@
 #include "scene/section.hpp"
 
-#include "io/named_input.hpp"
 #include "io/text.hpp"
+#include "scene/named_input.hpp"
 
 #include <isostat/core/error.hpp>
 

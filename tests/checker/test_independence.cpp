@@ -7,8 +7,8 @@ const std::vector<std::string> allowed{"\"checker/",
                                        "\"io/json.hpp\"",
                                        "\"io/numbers.hpp\"", // reads the text of a number
                                        "\"io/record_digests.hpp\"",
-                                       "\"io/record_text.hpp\"", // the names of columns
-                                       "\"io/folders.hpp\"",     // and of files
+                                       "\"io/equilibria.hpp\"", // the names of columns
+                                       "\"io/folders.hpp\"",    // and of files
                                        "<isostat/checker/",
                                        "<isostat/core/",
                                        "<isostat/packing/packing.hpp>",

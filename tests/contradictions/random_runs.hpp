@@ -9,6 +9,7 @@
 #include <isostat/io/run_directory.hpp>
 #include <isostat/io/state_file.hpp>
 #include <isostat/preparation/preparation.hpp>
+#include <isostat/scene/scene.hpp>
 #include <isostat/trajectory/trajectory.hpp>
 
 namespace contradictions {

@@ -9,6 +9,7 @@
 #include <isostat/core/error.hpp>
 #include <isostat/crafted/inspection.hpp>
 #include <isostat/io/state_file.hpp>
+#include <isostat/scene/scene.hpp>
 
 #include <chrono>
 #include <ctime>

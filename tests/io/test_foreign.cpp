@@ -1,5 +1,6 @@
 // Packings of other programs: every format, what each says of sizes, walls and boundaries, and what is refused.
 
+#include "compare/frame_file.hpp"
 #include "io/bad_input.hpp"
 #include "support/scratch.hpp"
 
@@ -345,7 +346,8 @@ BOOST_AUTO_TEST_CASE(dumps_of_pairs_have_frames_and_named_columns) {
     const auto pairs = [&](const std::string& text, std::optional<long> frame) {
         scratch::write(folder / "p.dump", text);
         std::vector<std::tuple<int, int, double>> rows;
-        for (const PairForce& row : read_local_dump(folder / "p.dump", {"i", "j", "f"}, {9, 8, 7}, frame)) {
+        for (const compare::PairForce& row :
+             compare::read_local_dump(folder / "p.dump", {"i", "j", "f"}, {9, 8, 7}, frame)) {
             rows.emplace_back(row.i, row.j, row.force);
         }
         return rows;

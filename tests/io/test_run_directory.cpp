@@ -1,5 +1,5 @@
 #include "io/bad_input.hpp"
-#include "io/record_text.hpp"
+#include "io/equilibria.hpp"
 #include "support/cells.hpp"
 #include "support/scratch.hpp"
 
@@ -189,6 +189,8 @@ BOOST_AUTO_TEST_CASE(numbers_of_a_table_of_equilibria_are_finite_and_its_integer
             expect_bad_input([&] { (void)read_equilibria(file); }, {name, "'inf'", "a finite number"});
         }
     }
+    scratch::write(file, text + "\n");
+    expect_bad_input([&] { (void)read_equilibria(file); }, {"equilibria.csv:9", "1 columns"});
     for (const char* name : {"number", "previous", "segment", "arcs", "rattlers", "backbone", "h", "proved"}) {
         for (const char* word : {"4.9", "4.0", "-0", "+4", "04", "1e1", "1e99", "2147483648", "-2", "nan"}) {
             altered(name, word);

@@ -24,7 +24,7 @@ void make_run(const scratch::Folder& folder, const std::string& start, const std
 }
 
 checker::RunRecords records_of(const fs::path& run) {
-    return checker::read_records(run, checker::LastLine::may_be_cut);
+    return checker::read_records(run, LastLine::may_be_cut);
 }
 
 } // namespace

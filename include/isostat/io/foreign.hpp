@@ -83,25 +83,6 @@ ForeignPacking parse_foreign(const std::string& text, const std::string& source,
 /// The same from a file.
 ForeignPacking read_foreign(const std::filesystem::path& path, const ForeignOptions& options);
 
-/// Names of the columns of a LAMMPS dump of style local, or of a table: two ids and the force between them, positive
-/// when it repels.
-struct PairColumns {
-    std::string first, second, force;
-};
-
-struct PairForce {
-    int i = 0, j = 0; ///< i < j
-    double force = 0;
-    int line = 0; ///< of the file
-};
-
-/// The pairs of disks with a positive force in a frame (from 0; none: the last) of a dump of style local (`compute
-/// property/local`, `compute pair/local`) or of a table, whose frames are told apart by a column `timestep`, as they
-/// come: a pair may touch through several images. \p ids: of the disks.
-/// Throws `Error(bad_input)` with file, line, value and what was expected: also for columns and ids that are not there.
-std::vector<PairForce> read_local_dump(const std::filesystem::path& path, const PairColumns& columns,
-                                       const std::vector<long>& ids, std::optional<long> frame);
-
 /// The texts that other programs read, every number in the shortest form that gives the same double back: a LAMMPS
 /// data file (atom style sphere, ids from 1, density 1); one frame of extended XYZ (OVITO), with `displacement` (Dim*n
 /// numbers, or none) as a column; rows id, x, y, r under a header (CSV, ids from 0). The box is that of the walls, or

@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace isostat {
@@ -139,12 +140,7 @@ class RunDirectory final : public RunObserver<2> {
         int made = 0;
         bool segment_done = false;
         RunCounters counters;
-        long events_bytes = 0;
-        long equilibria_bytes = 0;
-        long witness_bytes = 0;
-        std::string events_digest;
-        std::string equilibria_digest;
-        std::string witness_digest;
+        std::vector<std::tuple<const char*, long, std::string>> records; ///< name, bytes, digest: see `chained`
     };
     std::optional<Point> pending_; ///< none: checkpoint.json is up to date
     std::optional<std::chrono::steady_clock::time_point> last_checkpoint_;
@@ -152,9 +148,8 @@ class RunDirectory final : public RunObserver<2> {
     Segment goal_;
     int segment_ = 0;
     int made_ = 0;
-    int previous_ = 0;                                               ///< equilibrium that the next one follows
-    std::string events_digest_, equilibria_digest_, witness_digest_; ///< of all records so far: see `chained`
-    std::map<std::string, std::string> digests_;                     ///< SHA-256 of the other files that a resume reads
+    int previous_ = 0;                           ///< equilibrium that the next one follows
+    std::map<std::string, std::string> digests_; ///< SHA-256 of the other files that a resume reads
     State<2> last_;
     std::vector<double> last_forces_;
     EquilibriumRecord<2> last_record_;

@@ -48,15 +48,6 @@ template <int Dim> StateFile<Dim> parse_any_state(const std::string& text, const
 template <int Dim> StateFile<Dim> read_state(const std::filesystem::path& path);
 template <int Dim> StateFile<Dim> read_any_state(const std::filesystem::path& path);
 
-/// What must hold of a state before a trajectory starts from it, in the words of a user: throws `Error(bad_input)` when
-/// contacts and degrees of freedom do not match or the rank is deficient (h or k > 0, with the numbers), when two
-/// grains overlap (which, by how much), or when a listed contact is visibly open. The thresholds on lengths (1e-6 of
-/// the smallest radius) only choose between a clear message here and a proof later: `run_segment` decides the signs of
-/// all gaps with bounds. With h > 0 and k = 0 the message names the contacts of a basis of the self-stresses (double
-/// precision; parts below 1e-9 left out). `hyperstatic_allowed`: then that is no reason to refuse (ties = "choose").
-template <int Dim>
-void check_start(const State<Dim>& state, const std::string& source, bool hyperstatic_allowed = false);
-
 extern template std::string state_text<2>(const State<2>&, std::span<const double>);
 extern template void write_state<2>(const std::filesystem::path&, const State<2>&, std::span<const double>);
 extern template void write_packing<2>(const std::filesystem::path&, const Packing<2>&, const std::string&);
@@ -64,6 +55,5 @@ extern template StateFile<2> parse_state<2>(const std::string&, const std::strin
 extern template StateFile<2> parse_any_state<2>(const std::string&, const std::string&);
 extern template StateFile<2> read_any_state<2>(const std::filesystem::path&);
 extern template StateFile<2> read_state<2>(const std::filesystem::path&);
-extern template void check_start<2>(const State<2>&, const std::string&, bool);
 
 } // namespace isostat

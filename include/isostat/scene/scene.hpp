@@ -80,6 +80,16 @@ struct PlanEntry {
 /// Which stages, solvers and outputs a scene uses and which it leaves out, each with the reason. Nothing is computed.
 std::vector<PlanEntry> make_plan(const Scene& scene);
 
+/// What must hold of a state before a trajectory starts from it, in the words of a user: throws `Error(bad_input)` when
+/// contacts and degrees of freedom do not match or the rank is deficient (h or k > 0, with the numbers), when two
+/// grains overlap (which, by how much), or when a listed contact is visibly open. The thresholds on lengths (1e-6 of
+/// the smallest radius) only choose between a clear message here and a proof later: `run_segment` decides the signs of
+/// all gaps with bounds. With h > 0 and k = 0 the message names the contacts of a basis of the self-stresses (double
+/// precision; parts below 1e-9 left out). `hyperstatic_allowed`: then that is no reason to refuse (ties = "choose").
+template <int Dim>
+void check_start(const State<Dim>& state, const std::string& source, bool hyperstatic_allowed = false);
+extern template void check_start<2>(const State<2>&, const std::string&, bool);
+
 /// The start of a scene that reads one: overrides of [load], checks in the words of a user (`check_start`,
 /// `check_programme`), and then the grid (`snap_to_grid`; the provenance says in `moved_to_grid` by how much it moved a
 /// coordinate, when it did). `source` starts messages. Throws `Error(bad_input)`.

@@ -1,15 +1,14 @@
-#include "cli/members.hpp"
+#include "ensemble/members.hpp"
 
-#include "cli/commands.hpp"
-#include "cli/ranges.hpp"
 #include "ensemble/ensemble.hpp"
 #include "io/files.hpp"
 #include "io/folders.hpp"
 #include "io/json.hpp"
+#include "io/numbers.hpp"
 
 #include <isostat/core/error.hpp>
 
-namespace isostat::cli {
+namespace isostat {
 
 namespace fs = std::filesystem;
 
@@ -25,8 +24,8 @@ std::vector<Member> members_of(const fs::path& directory) {
     const json::Field file(parsed, path);
     EnsembleHeader header;
     header.samples = file.at("samples").integer(1, most_samples);
-    const auto seed = ranges::integer_in(file.at("first_seed").string(), 0, ranges::largest_seed);
-    if (!seed) {
+    const auto seed = plain_integer(file.at("first_seed").string());
+    if (!seed || *seed < 0) {
         file.at("first_seed").fail("a seed");
     }
     header.first_seed = static_cast<std::uint64_t>(*seed);
@@ -44,4 +43,4 @@ std::vector<Member> members_of(const fs::path& directory) {
     return members;
 }
 
-} // namespace isostat::cli
+} // namespace isostat

@@ -1,5 +1,5 @@
 // Rows of pairs: LAMMPS dumps of style local, tables.
-#include "io/frame_file.hpp"
+#include "compare/frame_file.hpp"
 
 #include <isostat/core/error.hpp>
 
@@ -8,17 +8,14 @@
 #include <algorithm>
 #include <map>
 
-namespace isostat {
+namespace isostat::compare {
 
 namespace {
-
-using foreign::Line;
 
 /// The pairs of one frame.
 class Pairs {
   public:
-    Pairs(const foreign::FrameFile& file, const foreign::FileFrame& frame, const PairColumns& columns,
-          const std::vector<long>& ids)
+    Pairs(const FrameFile& file, const FileFrame& frame, const PairColumns& columns, const std::vector<long>& ids)
         : names_(frame.header.names), first_(file.column(frame, columns.first)),
           second_(file.column(frame, columns.second)), force_(file.column(frame, columns.force)) {
         for (std::size_t i = 0; i < ids.size(); ++i) {
@@ -26,7 +23,7 @@ class Pairs {
         }
     }
 
-    void add(const Line& line) {
+    void add(const TextLine& line) {
         const int i = disk(line, first_), j = disk(line, second_);
         if (i == j) {
             line.fail(line.field(second_), "second id", "another disk than the first");
@@ -39,7 +36,7 @@ class Pairs {
     std::vector<PairForce> take() { return std::move(pairs_); }
 
   private:
-    [[nodiscard]] int disk(const Line& line, std::size_t at) const {
+    [[nodiscard]] int disk(const TextLine& line, std::size_t at) const {
         const auto found = disk_of_.find(line.integer(at, names_[at], 0, 1L << 62));
         if (found == disk_of_.end()) {
             line.fail(line.field(at), names_[at], "the id of a disk");
@@ -57,8 +54,8 @@ class Pairs {
 
 std::vector<PairForce> read_local_dump(const std::filesystem::path& path, const PairColumns& columns,
                                        const std::vector<long>& ids, std::optional<long> frame) {
-    foreign::FrameFile file(path.string(), "ENTRIES");
-    std::optional<foreign::FileFrame> found;
+    FrameFile file(path.string(), "ENTRIES");
+    std::optional<FileFrame> found;
     long number = 0;
     for (auto next = file.next(); next && number <= frame.value_or(number); next = file.next(), ++number) {
         found = std::move(next);
@@ -67,10 +64,10 @@ std::vector<PairForce> read_local_dump(const std::filesystem::path& path, const 
         file.fail(fmt::format("the file ends after {} frames: expected frame {} (from 0)", number, frame.value_or(0)));
     }
     Pairs pairs(file, *found, columns, ids);
-    for (const Line& row : found->rows) {
+    for (const TextLine& row : found->rows) {
         pairs.add(row);
     }
     return pairs.take();
 }
 
-} // namespace isostat
+} // namespace isostat::compare

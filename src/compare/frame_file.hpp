@@ -3,18 +3,19 @@
 
 #include "io/foreign_source.hpp"
 
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-namespace isostat::foreign {
+namespace isostat::compare {
 
 /// One frame with its rows. They refer to `text`.
 struct FileFrame {
-    FrameHeader header;
-    std::vector<Line> rows;
+    foreign::FrameHeader header;
+    std::vector<TextLine> rows;
     std::unique_ptr<std::string> text;
 };
 
@@ -50,19 +51,38 @@ class FrameFile {
     std::string take_xyz();
     std::string take_table();
     /// What stands before its rows, of which a table says nothing.
-    void read_xyz(Lines& lines, FrameHeader& header) const;
-    void read_rows(Lines& lines, FileFrame& frame) const;
-    void read_table(Lines& lines, FileFrame& frame) const;
+    void read_xyz(TextLines& lines, foreign::FrameHeader& header) const;
+    void read_rows(TextLines& lines, FileFrame& frame) const;
+    void read_table(TextLines& lines, FileFrame& frame) const;
 
     std::string source_, item_;
     std::ifstream file_;
     Format format_ = Format::dump;
-    TableNames names_;    ///< of a table
-    int step_ = -1;       ///< its column of time steps
-    std::string pending_; ///< first line of the next frame
-    int lines_ = 0;       ///< before it
-    long frames_ = 0;     ///< read
-    long last_ = -1;      ///< time step that `at` came to
+    foreign::TableNames names_; ///< of a table
+    int step_ = -1;             ///< its column of time steps
+    std::string pending_;       ///< first line of the next frame
+    int lines_ = 0;             ///< before it
+    long frames_ = 0;           ///< read
+    long last_ = -1;            ///< time step that `at` came to
 };
 
-} // namespace isostat::foreign
+/// Names of the columns of a LAMMPS dump of style local, or of a table: two ids and the force between them, positive
+/// when it repels.
+struct PairColumns {
+    std::string first, second, force;
+};
+
+struct PairForce {
+    int i = 0, j = 0; ///< i < j
+    double force = 0;
+    int line = 0; ///< of the file
+};
+
+/// The pairs of disks with a positive force in a frame (from 0; none: the last) of a dump of style local (`compute
+/// property/local`, `compute pair/local`) or of a table, whose frames are told apart by a column `timestep`, as they
+/// come: a pair may touch through several images. \p ids: of the disks.
+/// Throws `Error(bad_input)` with file, line, value and what was expected: also for columns and ids that are not there.
+std::vector<PairForce> read_local_dump(const std::filesystem::path& path, const PairColumns& columns,
+                                       const std::vector<long>& ids, std::optional<long> frame);
+
+} // namespace isostat::compare

@@ -4,8 +4,8 @@
 #include "packing/pressed_sides.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/io/state_file.hpp>
 #include <isostat/rigidity/counting.hpp>
+#include <isostat/scene/scene.hpp>
 
 #include <fmt/format.h>
 

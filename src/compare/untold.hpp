@@ -3,13 +3,12 @@
 /// What the rounding of the file that a state was imported from leaves open. Proofs speak of the doubles of the state;
 /// of the packing that the file was written from they hold where no gap and no force is that small.
 
-#include "cli/common.hpp"
-
 #include <isostat/certificate/inspect.hpp>
 
+#include <string>
 #include <vector>
 
-namespace isostat::cli {
+namespace isostat::compare {
 
 /// `rounding` of the provenance of a state, a bound of what is not known of a gap of the file; 0: it was not imported.
 /// Throws `Error(bad_input)` for a value that is none.
@@ -36,6 +35,4 @@ Verdict withheld(const Untold& untold, Verdict of_the_doubles);
 void withhold(const Untold& untold, Inspection<2>& inspection);
 void withhold(const Untold& untold, CellInspection& cell);
 
-void add_untold(Json& object, const Untold& untold, Verdict of_the_doubles);
-
-} // namespace isostat::cli
+} // namespace isostat::compare

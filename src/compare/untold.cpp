@@ -1,7 +1,9 @@
-#include "cli/rounding.hpp"
+#include "compare/untold.hpp"
 
 #include "compare/backbone.hpp"
 #include "contact/candidates.hpp"
+#include "core/decimal.hpp"
+#include "io/json.hpp"
 #include "linear/factorisation.hpp"
 #include "rigidity/isostatic.hpp"
 
@@ -15,7 +17,7 @@
 #include <optional>
 #include <random>
 
-namespace isostat::cli {
+namespace isostat::compare {
 
 namespace {
 
@@ -23,7 +25,7 @@ namespace {
 class Copies {
   public:
     Copies(const State<2>& state, const std::vector<Contact>& carrying)
-        : backbone_(compare::backbone_of(state, carrying)), dofs_(backbone_.packing) {
+        : backbone_(backbone_of(state, carrying)), dofs_(backbone_.packing) {
         const auto structure = IsostaticStructure<2>::prove(backbone_.packing, backbone_.contacts);
         if (!structure.ok()) {
             return;
@@ -32,7 +34,7 @@ class Copies {
         forces = solved(backbone_.packing, *factors_);
         std::vector<Contact> listed = backbone_.contacts;
         std::sort(listed.begin(), listed.end());
-        pairs = compare::without(find_candidates(backbone_.packing, candidate_fraction).contacts, listed);
+        pairs = without(find_candidates(backbone_.packing, candidate_fraction).contacts, listed);
         for (const Contact& pair : pairs) {
             gaps.push_back(gap<2>(backbone_.packing, pair));
         }
@@ -90,7 +92,7 @@ void add_rattlers(const State<2>& state, const std::vector<int>& disks, double c
     std::sort(listed.begin(), listed.end());
     const auto carries = [&](int i) { return std::binary_search(disks.begin(), disks.end(), i); };
     std::vector<Contact> near;
-    for (const Contact& c : compare::without(find_candidates(state.packing, candidate_fraction).contacts, listed)) {
+    for (const Contact& c : without(find_candidates(state.packing, candidate_fraction).contacts, listed)) {
         const bool rattler = !carries(c.i) || (c.kind == ContactKind::disk_disk && !carries(c.j));
         if (rattler && std::abs(gap<2>(state.packing, c)) <= 2 * change) {
             near.push_back(c);
@@ -98,7 +100,7 @@ void add_rattlers(const State<2>& state, const std::vector<int>& disks, double c
     }
     listed.insert(listed.end(), near.begin(), near.end());
     std::sort(listed.begin(), listed.end());
-    const std::vector<Contact> held = compare::able_to_carry(state.packing, listed);
+    const std::vector<Contact> held = able_to_carry(state.packing, listed);
     for (const Contact& c : near) {
         if (std::binary_search(held.begin(), held.end(), c)) {
             out.gaps.push_back(c);
@@ -113,11 +115,11 @@ double imported_rounding(const State<2>& state) {
     if (state.provenance.empty()) {
         return 0;
     }
-    const Json provenance = Json::parse(state.provenance);
+    const auto provenance = json::Json::parse(state.provenance);
     if (!provenance.is_object() || !provenance.contains("rounding")) {
         return 0;
     }
-    const Json& value = provenance["rounding"];
+    const auto& value = provenance["rounding"];
     const double rounding = value.is_number() ? value.get<double>() : -1;
     if (!(rounding >= 0 && std::isfinite(rounding))) {
         throw Error(ErrorKind::bad_input,
@@ -173,10 +175,10 @@ std::string Untold::words() const {
     const auto count = [](std::size_t n, const char* what) {
         return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
     };
-    std::string text = gaps.empty() ? "" : count(gaps.size(), "gap") + " (" + compare::names_of(gaps).substr(1) + ")";
+    std::string text = gaps.empty() ? "" : count(gaps.size(), "gap") + " (" + names_of(gaps).substr(1) + ")";
     text += forces.empty() ? ""
                            : fmt::format("{}{} ({})", text.empty() ? "" : " and ", count(forces.size(), "force"),
-                                         compare::names_of(forces).substr(1));
+                                         names_of(forces).substr(1));
     text += fmt::format(" cannot be told from 0: gaps of the file are known to {}", rounded_up(rounding, 2));
     return gaps.empty() ? text
            : rattlers   ? text + "; some are of rattlers, which may be held"
@@ -209,21 +211,4 @@ void withhold(const Untold& untold, CellInspection& cell) {
     }
 }
 
-void add_untold(Json& object, const Untold& untold, Verdict of_the_doubles) {
-    if (!untold.any()) {
-        return;
-    }
-    const auto names = [](const std::vector<Contact>& contacts) {
-        Json out = Json::array();
-        for (const Contact& c : contacts) {
-            out.push_back(to_string<2>(c));
-        }
-        return out;
-    };
-    object["untold"] = {{"rounding", number(untold.rounding)},
-                        {"gaps", names(untold.gaps)},
-                        {"forces", names(untold.forces)},
-                        {"verdict_of_the_doubles", to_string(of_the_doubles)}};
-}
-
-} // namespace isostat::cli
+} // namespace isostat::compare

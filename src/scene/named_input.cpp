@@ -1,4 +1,4 @@
-#include "io/named_input.hpp"
+#include "scene/named_input.hpp"
 
 #include <isostat/core/error.hpp>
 

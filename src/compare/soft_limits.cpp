@@ -1,4 +1,4 @@
-#include "cli/soft_limits.hpp"
+#include "compare/soft_limits.hpp"
 
 #include "compare/backbone.hpp"
 #include "io/files.hpp"
@@ -11,19 +11,17 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 
-namespace isostat::cli {
+namespace isostat::compare {
 
 namespace {
 
 namespace fs = std::filesystem;
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 struct Row {
     int number = 0;
     const char* end = "";
-    double exact = unknown, soft = unknown, needed = unknown;
+    double exact = NAN, soft = NAN, needed = NAN;
 };
 
 /// Both ends of one equilibrium that are finite.
@@ -31,12 +29,12 @@ void add_rows(std::vector<Row>& rows, const EquilibriumRow& equilibrium, const S
     if (!std::isfinite(equilibrium.stress_high) || !(equilibrium.stress_low > 0)) {
         return;
     }
-    const State<2> backbone = compare::backbone_of(state, compare::carrying(state));
+    const State<2> backbone = backbone_of(state, carrying(state));
     for (const int direction : {-1, +1}) {
-        const compare::ExactInterval exact{equilibrium.stress_low, equilibrium.stress_high, direction};
-        const auto soft = compare::soft_limit(backbone, exact, stiffness);
-        rows.push_back({equilibrium.number, direction > 0 ? "high" : "low", exact.end(), soft ? soft->stress : unknown,
-                        compare::stiffness_needed(backbone, exact).value_or(unknown)});
+        const ExactInterval exact{equilibrium.stress_low, equilibrium.stress_high, direction};
+        const auto soft = soft_limit(backbone, exact, stiffness);
+        rows.push_back({equilibrium.number, direction > 0 ? "high" : "low", exact.end(), soft ? soft->stress : NAN,
+                        stiffness_needed(backbone, exact).value_or(NAN)});
     }
 }
 
@@ -80,4 +78,4 @@ std::string soft_limits(const fs::path& run, const fs::path& output, double stif
                        : fmt::format("{} equilibria have no stored state (states_every = 1 stores all)\n", left_out));
 }
 
-} // namespace isostat::cli
+} // namespace isostat::compare

@@ -1,4 +1,4 @@
-#include "io/cell_wrap.hpp"
+#include "packing/cell_wrap.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "io/frame_file.hpp"
+#include "compare/frame_file.hpp"
 
 #include "io/files.hpp"
 #include "io/numbers.hpp"
@@ -10,7 +10,7 @@
 
 #include <algorithm>
 
-namespace isostat::foreign {
+namespace isostat::compare {
 
 namespace {
 
@@ -56,7 +56,7 @@ void FrameFile::recognise() {
     do {
         head += row = take_line();
     } while (!row.empty() && is_no_row(without_byte_order_mark(row)));
-    const Line first(content(without_byte_order_mark(row)), 0, &source_);
+    const TextLine first(content(without_byte_order_mark(row)), 0, &source_);
     const bool number = first.size() == 1 && first.field(0).find_first_not_of("0123456789") == std::string_view::npos;
     format_ = first.size() == 0 || row.find("ITEM:") != std::string::npos ? Format::dump
               : number && item_ == "ATOMS"                                ? Format::xyz
@@ -65,10 +65,10 @@ void FrameFile::recognise() {
         pending_ = std::move(head);
         return;
     }
-    Lines lines(head, source_);
-    Raw nothing;
-    names_ = read_table_names(lines, {}, nothing);
-    step_ = find_column(names_.names, "timestep");
+    TextLines lines(head, source_);
+    foreign::Raw nothing;
+    names_ = foreign::read_table_names(lines, {}, nothing);
+    step_ = foreign::find_column(names_.names, "timestep");
     pending_ = lines.at_end() ? "" : row;
     lines_ = lines.number();
 }
@@ -89,7 +89,7 @@ std::string FrameFile::take_dump() {
 
 std::string FrameFile::take_xyz() {
     std::string line = take_line(), text = line;
-    const Line count(content(without_byte_order_mark(line)), 0, &source_);
+    const TextLine count(content(without_byte_order_mark(line)), 0, &source_);
     const double rows = count.size() == 1 ? finite_number(count.field(0)).value_or(0) : 0;
     for (double k = 0; k <= rows && !line.empty(); ++k) { // the line of key=value too
         text += line = take_line();
@@ -102,7 +102,7 @@ std::string FrameFile::take_table() {
     const auto step = static_cast<std::size_t>(std::max(step_, 0));
     std::string text, current;
     for (std::string line = take_line(); !line.empty(); line = take_line()) {
-        const Line row(content(line), 0, &source_, names_.separator);
+        const TextLine row(content(line), 0, &source_, names_.separator);
         if (step_ >= 0 && !is_no_row(line) && step < row.size()) {
             if (!current.empty() && row.field(step) != current) {
                 pending_ = std::move(line);
@@ -115,50 +115,46 @@ std::string FrameFile::take_table() {
     return text;
 }
 
-void FrameFile::read_xyz(Lines& lines, FrameHeader& header) const {
-    const Line count = lines.next("the number of rows");
+void FrameFile::read_xyz(TextLines& lines, foreign::FrameHeader& header) const {
+    const TextLine count = lines.next("the number of rows");
     count.require_size(1, "the number of rows");
-    const long rows = count.integer(0, "number of rows", 1, most_disks);
-    const Line comment = lines.next("the line of key=value");
+    const long rows = count.integer(0, "number of rows", 1, foreign::most_disks);
+    const TextLine comment = lines.next("the line of key=value");
     if (comment.text().starts_with("ITEM:")) {
         count.fail(count.text(), "start of a frame", "ITEM: TIMESTEP before it");
     }
-    header = read_xyz_header(comment, rows);
+    header = foreign::read_xyz_header(comment, rows);
     for (std::string& name : header.names) {
         name = name == "pos.0" ? "x" : name == "pos.1" ? "y" : name == "pos.2" ? "z" : name;
         name = name == "velo.0" || name == "vel.0" ? "vx" : name == "velo.1" || name == "vel.1" ? "vy" : name;
     }
-    header.timestep = xyz_timestep(comment, source_).value_or(frames_);
+    header.timestep = foreign::xyz_timestep(comment, source_).value_or(frames_);
 }
 
-void FrameFile::read_rows(Lines& lines, FileFrame& frame) const {
-    const FrameHeader& header = frame.header;
+void FrameFile::read_rows(TextLines& lines, FileFrame& frame) const {
+    const foreign::FrameHeader& header = frame.header;
     for (long k = 0; k < header.rows; ++k) {
         const std::string what = fmt::format("row {} of {} of time step {}", k + 1, header.rows, header.timestep);
         if (lines.at_end() && !pending_.empty()) {
             throw Error(ErrorKind::bad_input, fmt::format("{}: '{}': expected {}", where(lines.number() + 1),
                                                           pending_.substr(0, pending_.find('\n')), what));
         }
-        Line line = lines.next(what);
+        TextLine line = lines.next(what);
         line.require_size(header.names.size(), what);
         frame.rows.push_back(std::move(line));
     }
     if (!lines.only_blanks()) {
-        const Line line = lines.next("a row");
+        const TextLine line = lines.next("a row");
         line.fail(line.text(), "line after the rows",
                   fmt::format("the next frame: {} rows were announced", header.rows));
     }
 }
 
-void FrameFile::read_table(Lines& lines, FileFrame& frame) const {
+void FrameFile::read_table(TextLines& lines, FileFrame& frame) const {
     frame.header.names = names_.names;
     frame.header.line = names_.line;
-    while (!lines.at_end()) {
-        if (is_no_row(lines.peek())) {
-            (void)lines.take("a row");
-            continue;
-        }
-        Line row = lines.next("a row", names_.separator);
+    while (lines.find_row()) {
+        TextLine row = lines.next("a row", names_.separator);
         row.require_size(names_.names.size(), "one value per column");
         frame.rows.push_back(std::move(row));
     }
@@ -173,7 +169,7 @@ std::optional<FileFrame> FrameFile::next() {
     frame.text = std::make_unique<std::string>(format_ == Format::dump  ? take_dump()
                                                : format_ == Format::xyz ? take_xyz()
                                                                         : take_table());
-    Lines lines(*frame.text, source_, lines_);
+    TextLines lines(*frame.text, source_, lines_);
     lines_ += static_cast<int>(std::count(frame.text->begin(), frame.text->end(), '\n'));
     if (lines.only_blanks()) {
         return std::nullopt;
@@ -183,7 +179,7 @@ std::optional<FileFrame> FrameFile::next() {
         return frame.rows.empty() ? std::nullopt : std::optional(std::move(frame));
     }
     if (format_ == Format::dump) {
-        frame.header = read_dump_header(lines, item_);
+        frame.header = foreign::read_dump_header(lines, item_);
     } else {
         read_xyz(lines, frame.header);
     }
@@ -213,7 +209,7 @@ FileFrame FrameFile::at(long timestep) {
 
 std::size_t FrameFile::column(const FileFrame& frame, const std::string& name) const {
     const std::string place = where(frame.header.line);
-    const int found = find_column(frame.header.names, name);
+    const int found = foreign::find_column(frame.header.names, name);
     if (found < 0) {
         throw Error(ErrorKind::bad_input, fmt::format("{}: no column '{}': expected one of {}", place, name,
                                                       fmt::join(frame.header.names, ", ")));
@@ -221,4 +217,4 @@ std::size_t FrameFile::column(const FileFrame& frame, const std::string& name) c
     return static_cast<std::size_t>(found);
 }
 
-} // namespace isostat::foreign
+} // namespace isostat::compare

@@ -1,13 +1,11 @@
-#include "cli/soft_list.hpp"
+#include "compare/soft_list.hpp"
 
-#include "cli/ranges.hpp"
 #include "compare/backbone.hpp"
 #include "compare/pair_images.hpp"
 #include "contact/candidates.hpp"
+#include "preparation/neighbours.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/crafted/plateau.hpp>
-#include <isostat/io/foreign.hpp>
 
 #include <fmt/format.h>
 
@@ -15,7 +13,7 @@
 #include <cmath>
 #include <map>
 
-namespace isostat::cli {
+namespace isostat::compare {
 
 namespace {
 
@@ -53,7 +51,7 @@ std::string walls_apart(const Packing<2>& packing) {
             if (const auto [disk, distance] = nearest_to(packing, kind, axis); distance > 0) {
                 out += fmt::format("; none with the {} wall, which is {:.3g} from disk {} (are digits of its position "
                                    "rounded?)",
-                                   to_string<2>({kind, 0, axis}).substr(2), distance, disk);
+                                   to_string<2>(Contact{kind, 0, axis}).substr(2), distance, disk);
             }
         }
     }
@@ -66,50 +64,6 @@ void refuse(const std::string& file, const std::string& what) {
     throw Error(ErrorKind::bad_input, file + ": " + what);
 }
 
-std::array<double, 2> parse_stress(const std::string& text) {
-    return text.empty() ? std::array<double, 2>{1, 1} : parse_pair(text, "--stress", "S1,S2");
-}
-
-std::array<double, 2> parse_pair(const std::string& text, const char* option, const char* names) {
-    const std::vector<std::string> words = parse_list(text);
-    std::array<double, 2> pair{};
-    bool good = words.size() == 2;
-    for (std::size_t k = 0; good && k < 2; ++k) {
-        const auto value = ranges::number_in(words[k], ranges::smallest);
-        good = value.has_value();
-        pair[k] = value.value_or(0);
-    }
-    if (!good) {
-        throw Error(ErrorKind::usage,
-                    fmt::format("{} is '{}': expected {}, two positive numbers", option, text, names));
-    }
-    return pair;
-}
-
-void take_cell(const CellStatement& statement, Packing<2>& packing) {
-    const auto& [file, cell] = statement;
-    if (!packing.cell.any() && !cell.empty()) {
-        throw Error(ErrorKind::usage, fmt::format("--cell is '{}' and {} is not periodic: expected no --cell "
-                                                  "(--periodic says so where the file leaves it open)",
-                                                  cell, file));
-    }
-    if (!packing.cell.any()) {
-        return;
-    }
-    if (!packing.cell.all() && !cell.empty()) {
-        throw Error(ErrorKind::usage, fmt::format("--cell is '{}' and {} is periodic along one axis only, whose period "
-                                                  "moves: expected no --cell",
-                                                  cell, file));
-    }
-    if (cell == "isotropic") {
-        packing.cell.keep_shape();
-        return;
-    }
-    packing.cell.keeps_shape = false;
-    packing.cell.period_moves = packing.cell.periodic;
-    packing.cell.tilt_moves.fill(cell == "tilted" || (cell.empty() && packing.lattice(0, 1) != 0));
-}
-
 std::string far_wall(const Packing<2>& packing) {
     for (const ContactKind kind : {ContactKind::lower_wall, ContactKind::upper_wall}) {
         for (const int axis : {0, 1}) {
@@ -120,11 +74,34 @@ std::string far_wall(const Packing<2>& packing) {
                 return fmt::format("no disk is near the {} wall, the nearest gap is {:.3g} (disk {}): expected the "
                                    "positions of the walls, --box XLO:XHI,YLO:YHI (bounds of a file often are not "
                                    "those)",
-                                   to_string<2>({kind, 0, axis}).substr(2), distance, nearest);
+                                   to_string<2>(Contact{kind, 0, axis}).substr(2), distance, nearest);
             }
         }
     }
     return "";
+}
+
+std::string far_disks(const Packing<2>& packing, double largest, const crafted::Plateau& plateau) {
+    const double radius = packing.min_radius();
+    if (plateau.deepest_overlap < -0.5 * radius) {
+        return fmt::format("two disks overlap by {:.3g} of the smallest radius: are the sizes diameters, taken for "
+                           "radii (--diameter COLUMN)?",
+                           -plateau.deepest_overlap / radius);
+    }
+    double nearest = plateau.deepest_overlap;
+    constexpr double farthest = 8; // radii
+    for (double reach = nearly_touching; plateau.candidates == 0 && reach < farthest && !std::isfinite(nearest);
+         reach *= 2) {
+        for (const Contact& c : preparation::near_contacts<2>(packing, reach * radius, 0)) {
+            nearest = std::min(nearest, gap<2>(packing, c));
+        }
+    }
+    return nearest <= std::max(largest, nearly_touching * radius)
+               ? ""
+               : fmt::format(
+                     "the smallest gap is {:.3g} of the smallest radius: are the sizes wrong by a factor (radii "
+                     "taken for diameters)?",
+                     nearest / radius);
 }
 
 void check_nearness(const std::string& file, const Packing<2>& packing) {
@@ -139,45 +116,34 @@ void check_nearness(const std::string& file, const Packing<2>& packing) {
     }
 }
 
-SoftList list_by_forces(const std::string& file, const ReadPacking& packing, const std::string& frame,
-                        const std::string& contacts, const std::string& columns) {
-    const std::vector<std::string> names = parse_list(columns);
-    if (names.size() != 3) {
-        throw Error(
-            ErrorKind::usage,
-            fmt::format("--contact-columns is '{}': expected I,J,FORCE, names of columns of {}", columns, contacts));
-    }
-    if (packing.ids.empty()) {
+SoftList list_by_forces(const std::string& file, const Packing<2>& packing, const std::vector<long>& ids,
+                        std::optional<long> frame, const std::string& contacts, const PairColumns& columns) {
+    if (ids.empty()) {
         refuse(file, "has no column id: expected one, the contacts speak of ids");
     }
-    std::optional<long> number;
-    if (frame != "last") {
-        number = std::stol(frame); // read once already
-    }
     SoftList out;
-    compare::PairImages images(packing.packing);
+    PairImages images(packing);
     std::map<Contact, double> forces;
-    for (const PairForce& row : read_local_dump(contacts, {names[0], names[1], names[2]}, packing.ids, number)) {
+    for (const PairForce& row : read_local_dump(contacts, columns, ids, frame)) {
         const Contact pair = images.next(row.i, row.j);
         if (!forces.emplace(pair, row.force).second) {
             refuse(fmt::format("{}:{}", contacts, row.line),
                    fmt::format("disks {} and {} come twice: expected each pair once",
-                               packing.ids[static_cast<std::size_t>(row.i)],
-                               packing.ids[static_cast<std::size_t>(row.j)]));
+                               ids[static_cast<std::size_t>(row.i)], ids[static_cast<std::size_t>(row.j)]));
         }
     }
     const std::size_t pairs = forces.size();
-    const std::vector<Contact> walls = walls_of(packing.packing);
+    const std::vector<Contact> walls = walls_of(packing);
     for (const Contact& wall : walls) {
         forces.emplace(wall, NAN);
     }
-    const std::string beside = packing.packing.cell.any() ? "" : fmt::format(", {} overlaps with walls", walls.size());
-    out.words = fmt::format("{} pairs with a force in {}{}, without rattlers{}", pairs, contacts, beside,
-                            walls_apart(packing.packing));
+    const std::string beside = packing.cell.any() ? "" : fmt::format(", {} overlaps with walls", walls.size());
+    out.words =
+        fmt::format("{} pairs with a force in {}{}, without rattlers{}", pairs, contacts, beside, walls_apart(packing));
     for (const auto& [contact, force] : forces) {
         out.contacts.push_back(contact);
     }
-    out.contacts = compare::able_to_carry(packing.packing, out.contacts);
+    out.contacts = able_to_carry(packing, out.contacts);
     for (const Contact& contact : out.contacts) {
         out.forces.push_back(forces.at(contact));
     }
@@ -193,8 +159,8 @@ SoftList list_by_overlaps(const Packing<2>& packing) {
         }
     }
     out.words = fmt::format("{} overlaps, without rattlers{}", out.contacts.size(), walls_apart(packing));
-    out.contacts = compare::able_to_carry(packing, out.contacts);
+    out.contacts = able_to_carry(packing, out.contacts);
     return out;
 }
 
-} // namespace isostat::cli
+} // namespace isostat::compare

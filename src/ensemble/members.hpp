@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <vector>
 
-namespace isostat::cli {
+namespace isostat {
 
 struct Member {
     std::uint64_t seed = 0;
@@ -21,4 +21,4 @@ bool is_ensemble(const std::filesystem::path& directory);
 /// The samples that ensemble.json names, by seed; of those not begun in a row the first. Throws `Error(bad_input)`.
 std::vector<Member> members_of(const std::filesystem::path& directory);
 
-} // namespace isostat::cli
+} // namespace isostat

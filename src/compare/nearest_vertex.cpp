@@ -1,0 +1,124 @@
+#include "compare/nearest_vertex.hpp"
+
+#include "compare/soft_list.hpp"
+
+#include <isostat/certificate/certify.hpp>
+#include <isostat/crafted/plateau.hpp>
+#include <isostat/preparation/preparation.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace isostat::compare {
+
+namespace {
+
+/// What the cell does is counted by its strains.
+Strain strain_of(const Cell<2>& cell) {
+    return cell.keeps_shape ? Strain::isotropic : cell.tilt_moves[0] ? Strain::full : Strain::diagonal;
+}
+
+} // namespace
+
+Result<WantedList> list_below(const Packing<2>& packing, std::optional<double> threshold, double rounding) {
+    const double largest = threshold.value_or(nearly_touching * packing.min_radius());
+    if (threshold) {
+        const crafted::PlateauStep step = crafted::plateau(packing, {largest}, strain_of(packing.cell)).steps.front();
+        if (step.backbone.isostatic != Verdict::proved) {
+            return Failure{
+                step.backbone.isostatic == Verdict::refuted ? FailureKind::not_isostatic : FailureKind::undecided,
+                fmt::format("at the threshold {} the backbone has N_f = {}, N = {}, h = {}, k = {}: expected "
+                            "an isostatic one",
+                            largest, step.backbone.dof_count, step.backbone.contact_count, step.backbone.hyperstaticity,
+                            step.backbone.mechanisms)};
+        }
+        return WantedList{crafted::backbone_at(packing, largest), fmt::format("gaps up to {}", largest)};
+    }
+    const double deepest = std::min(crafted::plateau(packing, {largest}).deepest_overlap, largest);
+    crafted::Plateau plateau = crafted::plateau(packing, deepest, largest, 1, strain_of(packing.cell), rounding);
+    std::erase_if(plateau.ranges, [](const crafted::PlateauRange& range) { return !range.told; });
+    if (plateau.ranges.empty()) {
+        return Failure{plateau.special.empty() ? FailureKind::not_isostatic : FailureKind::undecided,
+                       fmt::format("the backbone is isostatic at no threshold up to {:.6g}: isostat plateau shows the "
+                                   "counts, --contacts nearest takes the vertex downhill whatever its contacts",
+                                   largest)};
+    }
+    const auto range =
+        *std::max_element(plateau.ranges.begin(), plateau.ranges.end(),
+                          [&](const auto& x, const auto& y) { return plateau.width(x) < plateau.width(y); });
+    return WantedList{
+        crafted::backbone_at(packing, range.first),
+        fmt::format("isostatic backbone at every threshold from {:.6g} to {:.6g}, proved", range.first, range.last)};
+}
+
+Result<NearestVertex> vertex_downhill(const SoftState& soft, std::uint64_t seed) {
+    PreparationOptions options;
+    options.seed = seed;
+    options.stress = soft.load.stress[0];
+    options.ratio = soft.load.stress[1] / soft.load.stress[0];
+    options.load = soft.load.kind;
+    PreparationReport<2> report;
+    auto vertex = find_vertex<2>(soft.packing, options, report);
+    if (!vertex.ok() && !report.candidate) {
+        return vertex.failure();
+    }
+    NearestVertex out;
+    out.state = vertex.ok() ? std::move(vertex.value()) : *report.candidate;
+    out.truth = certify(out.state);
+    out.contacts =
+        fmt::format("{} carry a force, as the nearest vertex has them", carrying(out.state, out.truth).size());
+    return out;
+}
+
+Result<NearestVertex> vertex_of_list(SoftState soft, const std::string& words, std::uint64_t seed) {
+    Snap snapped = compare::snap(soft);
+    if (!snapped.disks.empty()) {
+        soft.load.refer_to(snapped.backbone.packing);
+    }
+    snapped = compare::snap(soft);
+    if (snapped.outcome != SnapOutcome::vertex) {
+        const bool undecided = snapped.outcome == SnapOutcome::undecided;
+        return Failure{undecided ? FailureKind::undecided : FailureKind::not_isostatic,
+                       fmt::format("{}: the contacts of the file ({}) have no equilibrium near: {}; --contacts nearest "
+                                   "takes the vertex downhill whatever its contacts",
+                                   to_string(snapped.outcome), words, snapped.reason)};
+    }
+    auto state = with_resting_rattlers(snapped, seed);
+    if (!state.ok()) {
+        return state.failure();
+    }
+    NearestVertex out;
+    out.state = std::move(state.value());
+    out.truth = certify(out.state);
+    out.contacts = fmt::format("{} carry a force, those of the file: {}", snapped.backbone.contacts.size(), words);
+    return out;
+}
+
+Moves moves_to(const State<2>& state, const Certification& truth, const std::vector<double>& from) {
+    const Packing<2>& packing = state.packing;
+    const double radius = truth.claims.vertex ? truth.claims.vertex->radius : HUGE_VAL;
+    constexpr double up = 1 + 0x1p-49; // of a difference, a sum and a hypotenuse, each rounded
+    const auto way = [&](std::size_t k) { return (std::abs(packing.q[k] - from[k]) + radius) * up; };
+    Moves moves;
+    const std::size_t n = packing.radius.size();
+    moves.rattler.assign(n, 1);
+    for (const Contact& c : carrying(state, truth)) {
+        moves.rattler[static_cast<std::size_t>(c.i)] = 0;
+        if (c.kind == ContactKind::disk_disk) {
+            moves.rattler[static_cast<std::size_t>(c.j)] = 0;
+        }
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+        moves.disk.push_back(std::hypot(way(2 * i), way(2 * i + 1)) * up);
+        double& largest = moves.rattler[i] != 0 ? moves.rattlers : moves.backbone;
+        largest = std::max(largest, moves.disk[i]);
+    }
+    for (std::size_t k = 2 * n; k < packing.q.size(); ++k) {
+        moves.walls = std::max(moves.walls, way(k));
+    }
+    return moves;
+}
+
+} // namespace isostat::compare

@@ -1,0 +1,47 @@
+#pragma once
+/// \file
+/// The list of contacts of a packing of soft grains.
+
+#include "compare/frame_file.hpp"
+
+#include <isostat/contact/contact.hpp>
+#include <isostat/crafted/plateau.hpp>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace isostat::compare {
+
+/// A packing must be this near to touching, in smallest radii: overlaps, and gaps at every wall.
+inline constexpr double nearly_touching = 0.1;
+
+/// Throws `Error(bad_input)` about a file.
+[[noreturn]] void refuse(const std::string& file, const std::string& what);
+
+/// Words on a wall that no disk is near; empty: every wall has one.
+std::string far_wall(const Packing<2>& packing);
+
+/// Words where the sizes seem to be wrong by a factor; empty: they do not. \p largest: threshold of the plateau.
+std::string far_disks(const Packing<2>& packing, double largest, const crafted::Plateau& plateau);
+
+/// Every wall near a disk, no overlap deep: else the file is no packing of nearly rigid disks in these walls. Throws
+/// `Error(bad_input)`.
+void check_nearness(const std::string& file, const Packing<2>& packing);
+
+/// A list of contacts, and in words where it comes from.
+struct SoftList {
+    std::vector<Contact> contacts; ///< without rattlers, sorted
+    std::vector<double> forces;    ///< that the file says of them; NaN: none. Empty: of none
+    std::string words;
+};
+
+/// The pairs with a force in a LAMMPS dump of style local or a table (`read_local_dump`) and the walls that a disk
+/// overlaps. \p ids: of the disks.
+SoftList list_by_forces(const std::string& file, const Packing<2>& packing, const std::vector<long>& ids,
+                        std::optional<long> frame, const std::string& contacts, const PairColumns& columns);
+
+/// The pairs that overlap.
+SoftList list_by_overlaps(const Packing<2>& packing);
+
+} // namespace isostat::compare

@@ -1,0 +1,16 @@
+#pragma once
+/// \file
+/// Decimal texts of bounds, rounded outwards.
+
+#include <string>
+
+namespace isostat {
+
+/// Decimal number with that many digits that is not below (not above) the value.
+std::string rounded_up(double value, int digits);
+std::string rounded_down(double value, int digits);
+
+/// "value +- bound" of an interval: what is printed contains it. 12 digits, or more where the interval is narrower.
+std::string with_bound(double lower, double upper);
+
+} // namespace isostat

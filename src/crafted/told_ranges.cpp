@@ -1,0 +1,36 @@
+#include "crafted/told_ranges.hpp"
+
+#include <algorithm>
+
+namespace isostat::crafted {
+
+namespace {
+
+/// Of two ranges one is a part of the other.
+bool meet(const PlateauRange& a, const PlateauRange& b) {
+    return a.candidates == b.candidates || std::max(a.first, b.first) < std::min(a.last, b.last);
+}
+
+} // namespace
+
+Told told_of(const Plateau& plateau) {
+    Told out;
+    for (const PlateauRange& range : plateau.ranges) {
+        if (!range.told) {
+            ++out.noise;
+        } else {
+            (meet(range, plateau.widest->range) ? out.backbone : out.elsewhere).push_back(range);
+        }
+    }
+    for (const PlateauRange& range : plateau.ranges_all) {
+        if (range.told && meet(range, plateau.widest->range)) {
+            out.all.push_back(range);
+        }
+    }
+    out.special = plateau.widest && std::any_of(plateau.special.begin(), plateau.special.end(), [&](const auto& range) {
+                      return range.told && meet(range, plateau.widest->range);
+                  });
+    return out;
+}
+
+} // namespace isostat::crafted

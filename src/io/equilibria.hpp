@@ -1,0 +1,56 @@
+#pragma once
+/// \file
+/// equilibria.csv as text, both ways.
+
+#include <isostat/io/run_directory.hpp>
+
+#include <filesystem>
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace isostat {
+
+/// In both columns of a contact that there is not, and in the second one of a held coordinate.
+inline constexpr int no_contact = -9;
+/// Columns i and j of a contact: see `equilibria_columns`.
+std::pair<int, int> contact_columns(const Contact& contact);
+
+/// Columns of integers, in whatever run; in all others are numbers, infinite ones among them.
+const std::set<std::string>& integer_columns();
+
+/// The header line of equilibria.csv.
+std::string equilibria_header(MoreColumns more = {});
+/// The columns that the first line of a file names. Throws `Error(bad_input)`, starting with `source`, where this
+/// program writes no such line.
+MoreColumns named_columns(std::string_view text, const std::string& source);
+/// One row and a newline. `previous`: the equilibrium that this one follows, -1 for the start. \pre the record has what
+/// `more` asks for.
+std::string equilibrium_row(const EquilibriumRecord<2>& record, const State<2>& state, int previous, MoreColumns more);
+
+/// One line of equilibria.csv, by the names of its header.
+struct EquilibriumLine {
+    std::string where; ///< file and line
+    std::map<std::string, double> value;
+    [[nodiscard]] double at(const char* name) const { return value.at(name); }
+    /// Of the column with that name.
+    [[nodiscard]] double bound(const char* name) const { return value.at(std::string(name) + "_bound"); }
+    /// Of a column of integers.
+    [[nodiscard]] int integer(const char* name) const { return static_cast<int>(at(name)); }
+    [[nodiscard]] bool has(const char* name) const { return value.contains(name); }
+};
+
+/// The last line of a file of a run that goes on, or was killed, need not be complete.
+enum class LastLine { complete, may_be_cut };
+
+/// The text of a file of records, without a line that was cut.
+std::string records_text(const std::filesystem::path& path, LastLine last);
+
+/// Throws `Error(bad_input)` with file and line where a line has not one number for each column, an integer where the
+/// column has integers.
+std::vector<EquilibriumLine> read_equilibrium_lines(const std::filesystem::path& path, LastLine last);
+
+} // namespace isostat

@@ -1,0 +1,29 @@
+#pragma once
+/// \file
+/// Forces on disks along periodic axes sum to zero, exactly: else the pinned disk bears the rest, whichever it is.
+
+#include <isostat/packing/packing.hpp>
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace isostat {
+
+/// The first periodic axis along which the forces, Dim per disk, do not sum to zero, and their sum. `Exact` rounds no
+/// sum.
+template <class Exact, int Dim, class Force>
+std::optional<std::pair<std::size_t, Exact>> unbalanced(const std::vector<Force>& forces, const Cell<Dim>& cell) {
+    for (std::size_t a = 0; a < Dim; ++a) {
+        Exact sum(0);
+        for (std::size_t k = a; k < forces.size() && cell.periodic[a]; k += Dim) {
+            sum += Exact(forces[k]);
+        }
+        if (!(sum == Exact(0))) {
+            return std::pair(a, sum);
+        }
+    }
+    return std::nullopt;
+}
+
+} // namespace isostat

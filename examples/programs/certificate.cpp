@@ -11,10 +11,10 @@
 namespace {
 
 /// Two disks of radii 1 and 2: the first in a corner, the second on bottom, right and top.
-isostat::State<2> two_disks() {
+isostat::State two_disks() {
     using isostat::ContactKind;
     const double x = 1 + 2 * std::sqrt(2.0);
-    isostat::State<2> state;
+    isostat::State state;
     state.packing.radius = {1, 2};
     state.packing.q = {1, 1, x, 2, x + 2, 4};
     state.load.stress = {1, 1};
@@ -29,7 +29,7 @@ isostat::State<2> two_disks() {
 
 int main(int argc, char** argv) {
     try {
-        const isostat::State<2> state = argc > 1 ? isostat::read_state<2>(argv[1]).state : two_disks();
+        const isostat::State state = argc > 1 ? isostat::read_state(argv[1]).state : two_disks();
         const isostat::Certification proved = isostat::certify(state);
         if (const auto& vertex = proved.claims.vertex) {
             std::printf("a true vertex lies within %.3g, and no other one within %.3g\n", vertex->radius,
@@ -37,13 +37,13 @@ int main(int argc, char** argv) {
         }
         if (const auto& forces = proved.claims.forces) {
             for (std::size_t l = 0; l < state.contacts.size(); ++l) {
-                std::printf("force in %-10s from %.17g to %.17g\n", isostat::to_string<2>(state.contacts[l]).c_str(),
+                std::printf("force in %-10s from %.17g to %.17g\n", isostat::to_string(state.contacts[l]).c_str(),
                             forces->finite[l].lower, forces->finite[l].upper);
             }
         }
         if (const auto& interval = proved.claims.load_interval; interval && !interval->low.unbounded) {
             std::printf("contact %s opens at a loaded stress from %.17g to %.17g\n",
-                        isostat::to_string<2>(interval->low.opens).c_str(), interval->low.stress.lower,
+                        isostat::to_string(interval->low.opens).c_str(), interval->low.stress.lower,
                         interval->low.stress.upper);
         }
         for (const std::string& reason : proved.claims.undecided) {

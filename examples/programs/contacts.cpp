@@ -10,7 +10,7 @@ int main() {
     using exact::Number;
     const Number height = Number::parse("1/4*sqrt(33)"); // disk 2 rests on both others: sqrt((7/4)^2 - 1)
     crafted::ExactPacking packing;
-    packing.walls = Walls<2>::box(); // the paper's: left and bottom fixed, right and top movable
+    packing.walls = Walls::box(); // the paper's: left and bottom fixed, right and top movable
     packing.radius = {1, 1, Number::parse("3/4")};
     packing.centre = {{1, 1}, {3, 1}, {2, 1 + height}};
     packing.length = {4, Number::parse("7/4") + height};
@@ -20,10 +20,9 @@ int main() {
         std::printf("%s\n", contacts.failure().message().c_str());
         return 1;
     }
-    const Packing<2> nearest = crafted::approximate(packing);
+    const Packing nearest = crafted::approximate(packing);
     for (const Contact& contact : contacts.value()) {
-        std::printf("%-10s gap 0; %9.2e of the nearest doubles\n", to_string<2>(contact).c_str(),
-                    gap(nearest, contact));
+        std::printf("%-10s gap 0; %9.2e of the nearest doubles\n", to_string(contact).c_str(), gap(nearest, contact));
     }
     packing.radius[2] += Number::parse("1e-30");
     const Result<std::vector<Contact>> larger = crafted::exact_contacts(packing);

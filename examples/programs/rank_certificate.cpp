@@ -67,24 +67,24 @@ int unit_exponent(const std::vector<double>& q) {
     return least;
 }
 
-State<2> prepared(int disks, std::uint64_t seed) {
+State prepared(int disks, std::uint64_t seed) {
     PreparationOptions options;
     options.disks = disks;
     options.seed = seed;
-    PreparationReport<2> report;
-    auto state = prepare<2>(options, report);
+    PreparationReport report;
+    auto state = prepare(options, report);
     if (!state.ok()) {
         throw Error(ErrorKind::bad_input, state.failure().message());
     }
     return state.value();
 }
 
-void write_certificate(const State<2>& state) {
-    const Packing<2>& packing = state.packing;
-    if (packing.walls != Walls<2>::box() || !packing.fixed.empty()) {
+void write_certificate(const State& state) {
+    const Packing& packing = state.packing;
+    if (packing.walls != Walls::box() || !packing.fixed.empty()) {
         throw Error(ErrorKind::bad_input, "a packing in the box, without fixed disks, was expected");
     }
-    const DofMap<2> dofs(packing);
+    const DofMap dofs(packing);
     auto inverse = inverse_of_transposed(exact_contact_matrix(packing, dofs, state.contacts));
     if (inverse.empty() || dofs.dof_count() != static_cast<int>(state.contacts.size())) {
         throw Error(ErrorKind::bad_input, "the contact matrix is not regular mod 2^61 - 1: there is no certificate");
@@ -142,7 +142,7 @@ int main(int argc, char** argv) {
     try {
         const int disks = argc > 1 ? std::atoi(argv[1]) : 8;
         write_certificate(disks > 0 ? prepared(disks, argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 1)
-                                    : read_state<2>(argv[1]).state);
+                                    : read_state(argv[1]).state);
     } catch (const Error& error) {
         std::fprintf(stderr, "%s\n", error.what());
         return error.exit_status();

@@ -9,27 +9,27 @@ namespace {
 
 using namespace isostat;
 
-class Printer final : public RunObserver<2> {
+class Printer final : public RunObserver {
   public:
-    void on_arc(const ArcRecord<2>& arc) override {
-        std::printf("  arc: opens %s, closes %s, work %.6f, largest displacement %.6f\n",
-                    to_string<2>(arc.opened).c_str(), to_string<2>(arc.closed).c_str(), arc.work, arc.displacement);
+    void on_arc(const ArcRecord& arc) override {
+        std::printf("  arc: opens %s, closes %s, work %.6f, largest displacement %.6f\n", to_string(arc.opened).c_str(),
+                    to_string(arc.closed).c_str(), arc.work, arc.displacement);
     }
-    void on_equilibrium(const EquilibriumRecord<2>& record, const State<2>&, const std::vector<double>&) override {
+    void on_equilibrium(const EquilibriumRecord& record, const State&, const std::vector<double>&) override {
         std::printf("equilibrium %d at sigma2 = %.12f: Lx = %.12f, Ly = %.12f\n", record.number, record.stress,
                     record.length[0], record.length[1]);
     }
 };
 
-State<2> two_disks() {
-    State<2> state;
+State two_disks() {
+    State state;
     const double dx = 2 * std::sqrt(2.0);
     state.packing.radius = {1, 2};
     state.packing.q = {1, 1, 1 + dx, 2, 3 + dx, 4};
     snap_to_grid(state.packing);
     state.load.stress = {1, 1};
     state.load.reference_length = {1, 1}; // forces and stresses have the same numbers
-    state.load.infinitesimal = generic_infinitesimal<2>(state.packing.radius, 1);
+    state.load.infinitesimal = generic_infinitesimal(state.packing.radius, 1);
     state.contacts = {{ContactKind::disk_disk, 0, 1},  {ContactKind::lower_wall, 0, 0},
                       {ContactKind::lower_wall, 0, 1}, {ContactKind::lower_wall, 1, 1},
                       {ContactKind::upper_wall, 1, 0}, {ContactKind::upper_wall, 1, 1}};
@@ -39,7 +39,7 @@ State<2> two_disks() {
 } // namespace
 
 int main() {
-    State<2> state = two_disks();
+    State state = two_disks();
     Printer printer;
     RunCounters counters;
     RunOptions options;
@@ -49,7 +49,7 @@ int main() {
         Segment segment;
         segment.direction = direction;
         segment.equilibria = 1;
-        const SegmentOutcome outcome = run_segment<2>(state, segment, number++, options, counters, printer);
+        const SegmentOutcome outcome = run_segment(state, segment, number++, options, counters, printer);
         if (!outcome.completed) {
             std::printf("%s\n", outcome.failure->message().c_str());
             return 1;

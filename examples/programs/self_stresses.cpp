@@ -7,7 +7,7 @@
 int main() {
     using namespace isostat;
     for (int m = 2; m <= 6; ++m) {
-        Packing<2> packing;
+        Packing packing;
         std::vector<Contact> contacts;
         for (int i = 0; i < m * m; ++i) {
             const int column = i % m;

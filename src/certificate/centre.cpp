@@ -13,8 +13,7 @@ using roundoff::u;
 
 } // namespace
 
-template <int Dim>
-Centre<Dim>::Centre(Packing<Dim> p, IsostaticStructure<Dim> s)
+Centre::Centre(Packing p, IsostaticStructure s)
     : packing(std::move(p)), structure(std::move(s)), factorisation(structure) {
     InverseBoundCache cache;
     inverse = bound_inverse(structure, factorisation, cache);
@@ -27,16 +26,15 @@ Centre<Dim>::Centre(Packing<Dim> p, IsostaticStructure<Dim> s)
     neighbourhood = Neighbourhood::of(packing, structure.contacts(), inverse);
 }
 
-template <int Dim>
-Result<std::unique_ptr<Centre<Dim>>> Centre<Dim>::make(Packing<Dim> packing, std::vector<Contact> contacts) {
-    auto proved = IsostaticStructure<Dim>::prove(packing, std::move(contacts));
+Result<std::unique_ptr<Centre>> Centre::make(Packing packing, std::vector<Contact> contacts) {
+    auto proved = IsostaticStructure::prove(packing, std::move(contacts));
     if (!proved.ok()) {
         return proved.failure();
     }
     return std::unique_ptr<Centre>(new Centre(std::move(packing), std::move(proved.value())));
 }
 
-template <int Dim> std::unique_ptr<Centre<Dim>> Centre<Dim>::downhill(const Centre& start) {
+std::unique_ptr<Centre> Centre::downhill(const Centre& start) {
     constexpr int max_iterations = 12; // quadratic convergence: six from a tenth of a radius
     const double reach = 0.1 * start.packing.min_radius();
     const Centre* here = &start;
@@ -47,7 +45,7 @@ template <int Dim> std::unique_ptr<Centre<Dim>> Centre<Dim>::downhill(const Cent
             step.push_back(gap(here->packing, contact));
         }
         here->factorisation.solve_velocities(step); // approach velocities equal to the gaps close them
-        Packing<Dim> moved = here->packing;
+        Packing moved = here->packing;
         for (std::size_t mu = 0; mu < step.size(); ++mu) {
             const auto at = static_cast<std::size_t>(here->structure.dofs().coordinate_of(static_cast<int>(mu)));
             moved.q[at] += step[mu];
@@ -68,7 +66,5 @@ template <int Dim> std::unique_ptr<Centre<Dim>> Centre<Dim>::downhill(const Cent
     }
     return next;
 }
-
-template class Centre<2>;
 
 } // namespace isostat

@@ -12,18 +12,18 @@
 namespace isostat {
 
 /// Contacts of disks with disks and walls only (nothing held). Not movable: its parts may refer to each other.
-template <int Dim> class Centre {
+class Centre {
   public:
     /// Proves the rank, factorises, bounds the inverse. Failure: `not_isostatic`.
-    static Result<std::unique_ptr<Centre>> make(Packing<Dim> packing, std::vector<Contact> contacts);
+    static Result<std::unique_ptr<Centre>> make(Packing packing, std::vector<Contact> contacts);
     /// Where Newton's iteration for "all gaps are 0" ends that starts at `start`; null when it leaves the
     /// neighbourhood, does not converge or meets a matrix that is not proved regular. Proves nothing about the end.
     static std::unique_ptr<Centre> downhill(const Centre& start);
     Centre(const Centre&) = delete;
     Centre& operator=(const Centre&) = delete;
 
-    Packing<Dim> packing;
-    IsostaticStructure<Dim> structure;
+    Packing packing;
+    IsostaticStructure structure;
     Factorisation factorisation;
     InverseBound inverse;
     double largest_gap = 0;  ///< bound of |gap| of a contact
@@ -31,9 +31,7 @@ template <int Dim> class Centre {
     Neighbourhood neighbourhood;
 
   private:
-    Centre(Packing<Dim> p, IsostaticStructure<Dim> s);
+    Centre(Packing p, IsostaticStructure s);
 };
-
-extern template class Centre<2>;
 
 } // namespace isostat

@@ -30,9 +30,9 @@ struct SignFailures {
 };
 
 /// Makes the claims one after the other; what one needs of those before it is checked where it is used.
-template <int Dim> class Prover {
+class Prover {
   public:
-    Prover(const State<Dim>& state, const CertifyOptions& options) : state_(state), options_(options) {}
+    Prover(const State& state, const CertifyOptions& options) : state_(state), options_(options) {}
 
     Certification run() {
         if (prove_counting() && put_on_grid() && prove_vertex()) {
@@ -65,14 +65,14 @@ template <int Dim> class Prover {
         }
     }
     static std::string fixed_and_overlap(const Contact& pair) {
-        return fmt::format("{} overlap, and cannot move", to_string<Dim>(pair));
+        return fmt::format("{} overlap, and cannot move", to_string(pair));
     }
     /// With all digits: shorter ones would be other numbers.
     static std::string shown(const Interval& interval) {
         return fmt::format("[{:.17g}, {:.17g}]", interval.lower, interval.upper);
     }
     [[nodiscard]] std::string in_contact(std::size_t l, const Interval& f) const {
-        return fmt::format("in contact {} is in {}", to_string<Dim>(state_.contacts[l]), shown(f));
+        return fmt::format("in contact {} is in {}", to_string(state_.contacts[l]), shown(f));
     }
 
     bool prove_counting();
@@ -92,18 +92,18 @@ template <int Dim> class Prover {
     /// Climbs to a rung on which the vertex exists.
     bool exists_on_some_rung();
 
-    const State<Dim>& state_;
+    const State& state_;
     CertifyOptions options_;
     Certification result_;
-    std::unique_ptr<Centre<Dim>> stored_; ///< at the stored coordinates; in a cell, these on the grid
-    double rounded_away_ = 0;             ///< what that changed of a gap, at most
-    std::unique_ptr<Centre<Dim>> moved_;  ///< at the end of a Newton iteration, when that is wanted
-    const Centre<Dim>* centre_ = nullptr; ///< one of them
-    std::unique_ptr<Subject<Dim>> subject_;
-    std::unique_ptr<TrueVertex<Dim>> vertex_;
+    std::unique_ptr<Centre> stored_; ///< at the stored coordinates; in a cell, these on the grid
+    double rounded_away_ = 0;        ///< what that changed of a gap, at most
+    std::unique_ptr<Centre> moved_;  ///< at the end of a Newton iteration, when that is wanted
+    const Centre* centre_ = nullptr; ///< one of them
+    std::unique_ptr<Subject> subject_;
+    std::unique_ptr<TrueVertex> vertex_;
 };
 
-template <int Dim> bool Prover<Dim>::climb() {
+bool Prover::climb() {
     if (vertex_->rung() >= options_.highest || vertex_->rung() == Rung::multiprecision) {
         return false;
     }
@@ -112,26 +112,26 @@ template <int Dim> bool Prover<Dim>::climb() {
     return vertex_->exists() || climb();
 }
 
-template <int Dim> bool Prover<Dim>::exists_on_some_rung() {
+bool Prover::exists_on_some_rung() {
     vertex_ = in_double(*subject_, *centre_);
     return vertex_->exists() || climb();
 }
 
-template <int Dim> bool Prover<Dim>::prove_counting() {
+bool Prover::prove_counting() {
     if (const auto reason = beyond_claims(state_)) {
         result_.counting = count_contacts(state_.packing, state_.contacts);
         absent("counting", *reason);
         absent_from_vertex_on(*reason);
         return false;
     }
-    const int dof_count = DofMap<Dim>(state_.packing).dof_count();
+    const int dof_count = DofMap(state_.packing).dof_count();
     const int count = static_cast<int>(state_.contacts.size());
     if (count == 0 && dof_count == 0) {
         claim_that_nothing_moves();
         return false;
     }
     if (dof_count == count) {
-        auto made = Centre<Dim>::make(state_.packing, state_.contacts);
+        auto made = Centre::make(state_.packing, state_.contacts);
         if (made.ok()) {
             stored_ = std::move(made.value());
             result_.claims.counting = CountingClaim{dof_count, count, count, 0, 0, Rung::exact};
@@ -143,7 +143,7 @@ template <int Dim> bool Prover<Dim>::prove_counting() {
     return false;
 }
 
-template <int Dim> void Prover<Dim>::claim_that_nothing_moves() {
+void Prover::claim_that_nothing_moves() {
     result_.claims.counting = CountingClaim{};
     result_.counting.rank_exact = Verdict::proved;
     const std::string reason = "N_f = 0: there are no degrees of freedom, no grain can move";
@@ -157,7 +157,7 @@ template <int Dim> void Prover<Dim>::claim_that_nothing_moves() {
 }
 
 /// Of a structure that is not isostatic, or not proved to be.
-template <int Dim> void Prover<Dim>::claim_other_counts() {
+void Prover::claim_other_counts() {
     const Counting counting = exact_counting(state_);
     result_.counting = counting;
     const std::string numbers =
@@ -183,7 +183,7 @@ template <int Dim> void Prover<Dim>::claim_other_counts() {
 }
 
 /// The bounds of the true vertex ask for exact differences: in a cell, for coordinates on the grid.
-template <int Dim> bool Prover<Dim>::put_on_grid() {
+bool Prover::put_on_grid() {
     if (!state_.packing.cell.any()) {
         return true;
     }
@@ -196,32 +196,33 @@ template <int Dim> bool Prover<Dim>::put_on_grid() {
                         farthest_image));
         return false;
     }
-    auto made = Centre<Dim>::make(std::move(*snapped), state_.contacts);
+    auto made = Centre::make(std::move(*snapped), state_.contacts);
     if (!made.ok()) {
         absent_from_vertex_on("where the coordinates are on the grid the contact matrix is not proved regular");
         return false;
     }
     stored_ = std::move(made.value());
-    constexpr double weight = 2 + 3 * (Dim + 1); // |delta gap| for offsets up to 3, component by component
-    rounded_away_ = Dim * weight * moved;
+    const int d = stored_->packing.dimension;
+    const double weight = 2 + 3 * (d + 1); // |delta gap| for offsets up to 3, component by component
+    rounded_away_ = d * weight * moved;
     return true;
 }
 
-template <int Dim> bool Prover<Dim>::prove_vertex() {
+bool Prover::prove_vertex() {
     centre_ = stored_.get();
     result_.stored_gap = centre_->largest_gap + rounded_away_;
-    subject_ = std::make_unique<Subject<Dim>>(state_, stored_->structure);
+    subject_ = std::make_unique<Subject>(state_, stored_->structure);
     if (centre_->inverse.verdict != Verdict::proved) {
         absent_from_vertex_on("no bound of the inverse of the contact matrix was found");
         return false;
     }
     // Where the gaps are visibly open, the stored place says less than the end of a Newton iteration. Either will do.
     constexpr double visible = 1e-10;
-    moved_ = stored_->relative_gap < visible ? nullptr : Centre<Dim>::downhill(*stored_);
+    moved_ = stored_->relative_gap < visible ? nullptr : Centre::downhill(*stored_);
     if (moved_ && state_.packing.cell.any()) {
         double moved = 0;
         auto snapped = on_grid(moved_->packing, state_.contacts, moved);
-        auto made = snapped ? Centre<Dim>::make(std::move(*snapped), state_.contacts)
+        auto made = snapped ? Centre::make(std::move(*snapped), state_.contacts)
                             : Failure{FailureKind::undecided, "off the grid"};
         moved_ = made.ok() ? std::move(made.value()) : nullptr;
     }
@@ -245,7 +246,7 @@ template <int Dim> bool Prover<Dim>::prove_vertex() {
     return true;
 }
 
-template <int Dim> bool Prover<Dim>::prove_forces() {
+bool Prover::prove_forces() {
     ForcesClaim claim;
     result_.structural_zero = subject_->zero;
     for (std::size_t l = 0; l < state_.contacts.size(); ++l) {
@@ -275,17 +276,17 @@ template <int Dim> bool Prover<Dim>::prove_forces() {
 }
 
 /// A run that settles ties at first order, or chooses, calls that an equilibrium of the finite loads.
-template <int Dim> bool left_at_zero(const State<Dim>& state, const Contact& contact) {
+bool left_at_zero(const State& state, const Contact& contact) {
     return state.perturbation && std::any_of(state.perturbation->zero.begin(), state.perturbation->zero.end(),
                                              [&](const auto& left) { return left.first == contact; });
 }
 
 /// Its load is the one at which a force vanishes, not the double nearest to that, which is stored.
-template <int Dim> bool load_is_exact(const State<Dim>& state) {
+bool load_is_exact(const State& state) {
     return state.perturbation && state.perturbation->load_zero.i >= 0;
 }
 
-template <int Dim> ForceSigns Prover<Dim>::look_at(const std::vector<Interval>& finite, SignFailures& failures) const {
+ForceSigns Prover::look_at(const std::vector<Interval>& finite, SignFailures& failures) const {
     ForceSigns signs;
     for (std::size_t l = 0; l < finite.size(); ++l) {
         const Interval& f = finite[l];
@@ -309,7 +310,7 @@ template <int Dim> ForceSigns Prover<Dim>::look_at(const std::vector<Interval>& 
 }
 
 /// The infinitesimal forces, where the finite ones are exactly 0.
-template <int Dim> void Prover<Dim>::look_at_zeros(ForcesClaim& claim, SignFailures& failures) const {
+void Prover::look_at_zeros(ForcesClaim& claim, SignFailures& failures) const {
     claim.infinitesimal.clear();
     if (claim.structural_zeros.empty()) {
         return;
@@ -329,7 +330,7 @@ template <int Dim> void Prover<Dim>::look_at_zeros(ForcesClaim& claim, SignFailu
     }
 }
 
-template <int Dim> bool Prover<Dim>::prove_gaps() {
+bool Prover::prove_gaps() {
     if (const auto pair = fixed_overlap(state_.packing)) {
         refute("gaps", fixed_and_overlap(*pair));
         return false;
@@ -353,11 +354,11 @@ template <int Dim> bool Prover<Dim>::prove_gaps() {
         for (const Contact& pair : pairs.near) {
             const Interval h = gaps.emplace_back(vertex_->gap(pair));
             if (h.upper < 0) {
-                refute("gaps", fmt::format("{} overlap: the gap is in {}", to_string<Dim>(pair), shown(h)));
+                refute("gaps", fmt::format("{} overlap: the gap is in {}", to_string(pair), shown(h)));
                 return false;
             }
             if (!(h.lower > 0) && doubtful.empty()) {
-                doubtful = fmt::format("the gap of {} is in {}", to_string<Dim>(pair), shown(h));
+                doubtful = fmt::format("the gap of {} is in {}", to_string(pair), shown(h));
             }
             claim.smallest = std::min(claim.smallest, h.lower);
             if (h.upper < nearest.upper) {
@@ -392,7 +393,7 @@ bool is_vague(const LoadEndClaim& end, double largest) {
 }
 
 /// Climbs until both ends are proved, and well known where the rungs reach that.
-template <int Dim> void Prover<Dim>::prove_load_interval() {
+void Prover::prove_load_interval() {
     std::optional<LoadIntervalClaim>& claim = result_.claims.load_interval;
     const double largest = std::max(std::abs(state_.load.stress[0]), std::abs(state_.load.stress[1]));
     std::string open;
@@ -414,8 +415,8 @@ template <int Dim> void Prover<Dim>::prove_load_interval() {
     }
 }
 
-template <int Dim> void Prover<Dim>::prove_stability(bool forces, bool gaps) {
-    const Load<Dim>& load = state_.load;
+void Prover::prove_stability(bool forces, bool gaps) {
+    const Load& load = state_.load;
     if (!forces || !gaps) {
         absent("stability", "it needs positive forces and no overlap");
     } else if (load.kind == LoadKind::nominal) {
@@ -433,11 +434,9 @@ template <int Dim> void Prover<Dim>::prove_stability(bool forces, bool gaps) {
 
 } // namespace
 
-template <int Dim> Certification certify(const State<Dim>& state, const CertifyOptions& options) {
+Certification certify(const State& state, const CertifyOptions& options) {
     require_floating_point();
-    return Prover<Dim>(state, options).run();
+    return Prover(state, options).run();
 }
-
-template Certification certify<2>(const State<2>&, const CertifyOptions&);
 
 } // namespace isostat

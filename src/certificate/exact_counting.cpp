@@ -13,13 +13,13 @@ namespace isostat {
 namespace {
 
 /// Columns x_j - x_i of the stored doubles, without rounding: those of H up to a positive factor each.
-template <int Dim> exact::NumberMatrix exact_matrix(const State<Dim>& state) {
-    const DofMap<Dim> dofs(state.packing);
+exact::NumberMatrix exact_matrix(const State& state) {
+    const DofMap dofs(state.packing);
     exact::NumberMatrix matrix;
     matrix.rows = dofs.dof_count();
     for (const Contact& contact : state.contacts) {
-        const Separation<Dim> separation(contact, state.packing.disk_count());
-        std::array<exact::Number, Dim> r;
+        const Separation separation(contact, state.packing.layout());
+        PerAxis<exact::Number> r;
         if (contact.kind == ContactKind::disk_disk) {
             r = separation.of_disks([&](std::size_t k) { return exact::Number::from_double(state.packing.q[k]); },
                                     std::minus<>());
@@ -36,7 +36,7 @@ template <int Dim> exact::NumberMatrix exact_matrix(const State<Dim>& state) {
 
 } // namespace
 
-template <int Dim> Counting exact_counting(const State<Dim>& state) {
+Counting exact_counting(const State& state) {
     Counting counting = count_contacts(state.packing, state.contacts);
     if (counting.rank_exact == Verdict::proved) {
         return counting;
@@ -50,7 +50,5 @@ template <int Dim> Counting exact_counting(const State<Dim>& state) {
     }
     return counting;
 }
-
-template Counting exact_counting<2>(const State<2>&);
 
 } // namespace isostat

@@ -9,8 +9,6 @@ namespace isostat {
 
 /// `count_contacts`; when its rank is only a lower bound and the matrix is small, the rank from a kernel that was
 /// checked in rationals (`exact::kernel`): then `rank_exact` is `proved`.
-template <int Dim> Counting exact_counting(const State<Dim>& state);
-
-extern template Counting exact_counting<2>(const State<2>&);
+Counting exact_counting(const State& state);
 
 } // namespace isostat

@@ -25,13 +25,12 @@ double half_width(const Interval& interval) {
     return std::max(interval.upper - m, m - interval.lower) * (1 + 0x1p-50);
 }
 
-template <int Dim> bool has_held(const State<Dim>& state) {
+bool has_held(const State& state) {
     return std::any_of(state.contacts.begin(), state.contacts.end(),
                        [](const Contact& c) { return c.kind == ContactKind::held; });
 }
 
-template <int Dim>
-std::vector<int> without_force(const State<Dim>& state, const std::vector<unsigned char>& structural_zero) {
+std::vector<int> without_force(const State& state, const std::vector<unsigned char>& structural_zero) {
     std::vector<unsigned char> carries(state.packing.radius.size(), 0);
     for (std::size_t l = 0; l < state.contacts.size(); ++l) {
         const Contact& contact = state.contacts[l];
@@ -51,8 +50,8 @@ std::vector<int> without_force(const State<Dim>& state, const std::vector<unsign
     return list;
 }
 
-template <int Dim> void describe_forces(Inspection<Dim>& inspection) {
-    EquilibriumRecord<Dim>& record = inspection.record;
+void describe_forces(Inspection& inspection) {
+    EquilibriumRecord& record = inspection.record;
     record.margin = infinity;
     record.min_force = infinity;
     for (std::size_t l = 0; l < inspection.contacts.size(); ++l) {
@@ -71,7 +70,7 @@ template <int Dim> void describe_forces(Inspection<Dim>& inspection) {
     }
 }
 
-template <int Dim> void describe_interval(EquilibriumRecord<Dim>& record, const CertificateClaims& claims) {
+void describe_interval(EquilibriumRecord& record, const CertificateClaims& claims) {
     const auto end = [&](int direction, double& stress, Contact& opens) {
         opens = {ContactKind::disk_disk, -1, -1};
         stress = unknown;
@@ -86,10 +85,10 @@ template <int Dim> void describe_interval(EquilibriumRecord<Dim>& record, const 
 }
 
 /// Of a state whose true vertex was found.
-template <int Dim> void describe(const State<Dim>& state, Inspection<Dim>& inspection) {
+void describe(const State& state, Inspection& inspection) {
     const Certification& truth = inspection.truth;
     const CertificateClaims& claims = truth.claims;
-    EquilibriumRecord<Dim>& record = inspection.record;
+    EquilibriumRecord& record = inspection.record;
     inspection.structural_zero = truth.structural_zero;
     inspection.rattlers = without_force(state, truth.structural_zero);
     describe_forces(inspection);
@@ -121,13 +120,13 @@ std::string numbers(const Counting& c) {
 
 } // namespace
 
-template <int Dim> Result<Inspection<Dim>> inspect_vertex(const State<Dim>& state) {
-    Inspection<Dim> inspection;
+Result<Inspection> inspect_vertex(const State& state) {
+    Inspection inspection;
     inspection.truth = certify(state);
     inspection.counting = inspection.truth.counting;
     inspection.contacts = state.contacts;
     const Counting& counting = inspection.counting;
-    EquilibriumRecord<Dim>& record = inspection.record;
+    EquilibriumRecord& record = inspection.record;
     if (counting.hyperstaticity > 0) {
         return Failure{FailureKind::not_isostatic, numbers(counting) + ": forces are not determined by the geometry"};
     }
@@ -141,7 +140,7 @@ template <int Dim> Result<Inspection<Dim>> inspect_vertex(const State<Dim>& stat
         if (!found.ok()) {
             return found.failure();
         }
-        MechanismInspection<Dim>& mechanism = found.value();
+        MechanismInspection& mechanism = found.value();
         inspection.record = std::move(mechanism.record);
         inspection.contacts = std::move(mechanism.contacts);
         inspection.forces = std::move(mechanism.forces);
@@ -169,7 +168,7 @@ template <int Dim> Result<Inspection<Dim>> inspect_vertex(const State<Dim>& stat
     return inspection;
 }
 
-template <int Dim> Result<std::vector<Interval>> forces_at(State<Dim> state, double sigma) {
+Result<std::vector<Interval>> forces_at(State state, double sigma) {
     state.load.loaded_stress() = sigma;
     Certification truth = certify(state);
     if (!truth.claims.vertex) {
@@ -178,8 +177,5 @@ template <int Dim> Result<std::vector<Interval>> forces_at(State<Dim> state, dou
     }
     return std::move(truth.finite);
 }
-
-template Result<std::vector<Interval>> forces_at<2>(State<2>, double);
-template Result<Inspection<2>> inspect_vertex<2>(const State<2>&);
 
 } // namespace isostat

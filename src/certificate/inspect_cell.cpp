@@ -12,16 +12,16 @@ namespace isostat {
 namespace {
 
 /// The true vertex with every strain of its cell, under a pressure: N = N_f of full strain, h = k = 0 (C7).
-State<2> strained(State<2> state, const std::vector<Contact>& own) {
+State strained(State state, const std::vector<Contact>& own) {
     state.packing.cell.keeps_shape = false;
-    state.packing.cell.period_moves.fill(true);
-    state.packing.cell.tilt_moves.fill(true);
+    state.packing.cell.move(true, true);
     if (!own.empty()) { // the others move as it does: they are as wide, along the same period
         state.contacts.push_back(own.front());
     }
     const std::vector<double> infinitesimal = state.load.infinitesimal;
     state.load = {};
-    state.load.stress.fill(1);
+    state.load.dimension = state.packing.dimension;
+    std::fill_n(state.load.stress.begin(), state.packing.dimension, 1);
     state.load.infinitesimal = infinitesimal;
     state.load.refer_to(state.packing);
     return state;
@@ -29,7 +29,7 @@ State<2> strained(State<2> state, const std::vector<Contact>& own) {
 
 /// The forces under an isotropic pressure are unique and say whether it is jammed strictly. It is a pressure where the
 /// stresses are as the stored lengths over the true ones, which are known to the radius: forces are affine between.
-JammingAnswer strictly(const State<2>& state, const std::vector<unsigned char>& zero, double radius) {
+JammingAnswer strictly(const State& state, const std::vector<unsigned char>& zero, double radius) {
     constexpr double rounded = 0x1p-48; // nine operations, each to 2^-53
     const double x = state.packing.length(0), y = state.packing.length(1);
     const auto low = forces_at(state, (1 - radius / x) / (1 + radius / y) * (1 - rounded));
@@ -41,7 +41,7 @@ JammingAnswer strictly(const State<2>& state, const std::vector<unsigned char>& 
                       "k = 0 for full strain, and every force of the backbone is positive under an isotropic pressure"};
     for (std::size_t l = 0; l < state.contacts.size(); ++l) {
         const Interval &a = low.value()[l], &b = high.value()[l];
-        const std::string name = to_string<2>(state.contacts[l]);
+        const std::string name = to_string(state.contacts[l]);
         if (a.upper < 0 && b.upper < 0) {
             return {Verdict::refuted, fmt::format("the force of {} is negative under an isotropic pressure: it opens "
                                                   "alone while the volume falls",
@@ -57,12 +57,12 @@ JammingAnswer strictly(const State<2>& state, const std::vector<unsigned char>& 
 
 /// An isostatic equilibrium has no mechanism while its own cell moves, so none while the cell stays (C6). What its own
 /// contacts leave of full strain, own images may close (C7). \p own: those of the backbone; \p others: of rattlers.
-void judge(const State<2>& state, const Certification& truth, const std::vector<Contact>& own,
+void judge(const State& state, const Certification& truth, const std::vector<Contact>& own,
            const std::vector<Contact>& others, CellInspection& out) {
     const auto moving =
         std::count(state.packing.cell.period_moves.begin(), state.packing.cell.period_moves.end(), true) +
         std::count(state.packing.cell.tilt_moves.begin(), state.packing.cell.tilt_moves.end(), true);
-    const int missing = strain_count<2>(Strain::full) - static_cast<int>(moving);
+    const int missing = strain_count(Strain::full, state.packing.dimension) - static_cast<int>(moving);
     const int closed = own.empty() ? 0 : 1;
     out.collective = {Verdict::proved, "positive forces, and no mechanism: k = 0 at the true vertex"};
     out.local = {Verdict::proved, "it is jammed collectively"};
@@ -71,7 +71,7 @@ void judge(const State<2>& state, const Certification& truth, const std::vector<
     } else if (missing == 1 && !others.empty()) {
         out.strict = {Verdict::undecided, fmt::format("N is 1 short of N_f for full strain, and a rattler touches its "
                                                       "own image ({})",
-                                                      to_string<2>(others.front()))};
+                                                      to_string(others.front()))};
     } else {
         out.strict = {Verdict::refuted,
                       fmt::format("N is {} short of N_f for full strain{}: a strain of the cell keeps every contact "
@@ -88,9 +88,10 @@ std::vector<Contact> joined(std::vector<Contact> contacts, const std::vector<Con
 
 } // namespace
 
-template <int Dim> CellInspection inspect_cell(const State<Dim>& state, const Certification& truth) {
+CellInspection inspect_cell(const State& state, const Certification& truth) {
     assert(state.packing.cell.all());
     CellInspection out;
+    out.dimension = state.packing.dimension;
     std::vector<Contact> own = touching_own_images(state.packing);
     std::erase_if(own, [&](const Contact& pair) {
         return std::find(state.contacts.begin(), state.contacts.end(), pair) != state.contacts.end();
@@ -126,7 +127,5 @@ template <int Dim> CellInspection inspect_cell(const State<Dim>& state, const Ce
     }
     return out;
 }
-
-template CellInspection inspect_cell<2>(const State<2>&, const Certification&);
 
 } // namespace isostat

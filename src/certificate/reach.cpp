@@ -16,7 +16,7 @@ using roundoff::infinity;
 namespace {
 
 /// The bounds count roundings, not underflow or overflow: where those could matter, nothing is claimed.
-template <int Dim> std::optional<std::string> out_of_range(const State<Dim>& state) {
+std::optional<std::string> out_of_range(const State& state) {
     constexpr double largest = 1e100;
     constexpr double smallest = 1e-100;
     const auto [least, most] = std::minmax_element(state.packing.radius.begin(), state.packing.radius.end());
@@ -36,7 +36,7 @@ template <int Dim> std::optional<std::string> out_of_range(const State<Dim>& sta
 }
 
 /// The smallest stretch of a lattice vector, from below: |A m| >= that times |m|.
-double least_stretch(const Packing<2>& packing) {
+double least_stretch(const Packing& packing) {
     const auto period = [&](std::size_t a) { return packing.cell.periodic[a] ? packing.lattice(a, a) : infinity; };
     if (!packing.cell.all()) {
         return std::min(period(0), period(1));
@@ -47,19 +47,19 @@ double least_stretch(const Packing<2>& packing) {
 
 } // namespace
 
-template <int Dim> std::optional<std::string> beyond_claims(const State<Dim>& state) {
+std::optional<std::string> beyond_claims(const State& state) {
     const auto held = std::find_if(state.contacts.begin(), state.contacts.end(),
                                    [](const Contact& c) { return c.kind == ContactKind::held; });
     return held == state.contacts.end()
                ? out_of_range(state)
-               : fmt::format("the state keeps a coordinate ({}), which is not a contact", to_string<Dim>(*held));
+               : fmt::format("the state keeps a coordinate ({}), which is not a contact", to_string(*held));
 }
 
-template <int Dim> double largest_length(const Packing<Dim>& packing) {
+double largest_length(const Packing& packing) {
     double largest = packing.max_radius();
     for (std::size_t k = 0; k < packing.q.size(); ++k) {
-        const bool exists =
-            k < Dim * packing.radius.size() || packing.cell.any() || packing.walls.upper[k % Dim] != WallKind::absent;
+        const bool exists = k < packing.axes() * packing.radius.size() || packing.cell.any() ||
+                            packing.walls.upper[k % packing.axes()] != WallKind::absent;
         largest = exists ? std::max(largest, std::abs(packing.q[k])) : largest;
     }
     return largest;
@@ -69,11 +69,10 @@ bool any_far(const std::vector<Contact>& pairs) {
     return std::any_of(pairs.begin(), pairs.end(), [](const Contact& pair) { return is_beyond(pair, farthest_image); });
 }
 
-template <int Dim>
-std::optional<Packing<Dim>> on_grid(Packing<Dim> packing, const std::vector<Contact>& contacts, double& moved) {
-    const Packing<Dim> before = packing;
+std::optional<Packing> on_grid(Packing packing, const std::vector<Contact>& contacts, double& moved) {
+    const Packing before = packing;
     moved = snap_to_grid(packing);
-    const DofMap<Dim> dofs(packing);
+    const DofMap dofs(packing);
     bool stays = !any_far(contacts);
     for (std::size_t k = packing.length_at(0); k < packing.q.size(); ++k) {
         stays = stays && (dofs.dof_of(k) >= 0 || packing.q[k] == before.q[k]);
@@ -81,27 +80,22 @@ std::optional<Packing<Dim>> on_grid(Packing<Dim> packing, const std::vector<Cont
     return stays ? std::optional(std::move(packing)) : std::nullopt;
 }
 
-template <int Dim> double far_weight(const Packing<Dim>& packing, double reach) {
+double far_weight(const Packing& packing, double reach) {
     constexpr double root2 = 1.4143;
     if (!packing.cell.any()) {
         return root2;
     }
     double extent = 0; // of the centres
-    for (std::size_t a = 0; a < Dim; ++a) {
+    for (std::size_t a = 0; a < packing.axes(); ++a) {
         double low = infinity;
         double high = -infinity;
         for (std::size_t i = 0; i < packing.radius.size(); ++i) {
-            low = std::min(low, packing.q[Dim * i + a]);
-            high = std::max(high, packing.q[Dim * i + a]);
+            low = std::min(low, packing.q[packing.dimension * i + a]);
+            high = std::max(high, packing.q[packing.dimension * i + a]);
         }
         extent = std::hypot(extent, high - low);
     }
     return root2 + (2 * packing.max_radius() + reach + extent) / least_stretch(packing) * (1 + 1e-12);
 }
-
-template std::optional<std::string> beyond_claims<2>(const State<2>&);
-template double largest_length<2>(const Packing<2>&);
-template std::optional<Packing<2>> on_grid<2>(Packing<2>, const std::vector<Contact>&, double&);
-template double far_weight<2>(const Packing<2>&, double);
 
 } // namespace isostat

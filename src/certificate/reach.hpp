@@ -12,26 +12,20 @@ namespace isostat {
 
 /// Why nothing is claimed of a state: it holds a coordinate, or has no disks, or numbers so large or small that
 /// underflow and overflow, which no bound counts, could matter.
-template <int Dim> std::optional<std::string> beyond_claims(const State<Dim>& state);
+std::optional<std::string> beyond_claims(const State& state);
 
 /// Largest coordinate or radius.
-template <int Dim> double largest_length(const Packing<Dim>& packing);
+double largest_length(const Packing& packing);
 
 /// Some image is farther away than the grid allows for (proofs/cells.md, C2).
 bool any_far(const std::vector<Contact>& pairs);
 
 /// A cell on the grid, where every r is exact, with `moved` bound of what that changes of a coordinate. Nothing where a
 /// part of the cell that cannot move would have to, or an image is too far.
-template <int Dim>
-std::optional<Packing<Dim>> on_grid(Packing<Dim> packing, const std::vector<Contact>& contacts, double& moved);
+std::optional<Packing> on_grid(Packing packing, const std::vector<Contact>& contacts, double& moved);
 
 /// The gap of a pair that is not among the candidates, at a distance from where they were found, is at least their
 /// `reach` minus this times the distance (proofs/cells.md, C4; V4 (d) in a box).
-template <int Dim> double far_weight(const Packing<Dim>& packing, double reach);
-
-extern template std::optional<std::string> beyond_claims<2>(const State<2>&);
-extern template double largest_length<2>(const Packing<2>&);
-extern template std::optional<Packing<2>> on_grid<2>(Packing<2>, const std::vector<Contact>&, double&);
-extern template double far_weight<2>(const Packing<2>&, double);
+double far_weight(const Packing& packing, double reach);
 
 } // namespace isostat

@@ -14,12 +14,12 @@
 namespace isostat {
 
 StateCertifier::StateCertifier(const std::filesystem::path& run, std::string program, RunCounters& counters,
-                               RunObserver<2>& next)
+                               RunObserver& next)
     : folder_(run / "certificates"), program_(std::move(program)), counters_(counters), next_(next) {
     make_directory(folder_);
 }
 
-void StateCertifier::on_equilibrium(const EquilibriumRecord<2>& record, const State<2>& state,
+void StateCertifier::on_equilibrium(const EquilibriumRecord& record, const State& state,
                                     const std::vector<double>& forces) {
     const auto begin = std::chrono::steady_clock::now();
     Certificate certificate;
@@ -27,7 +27,7 @@ void StateCertifier::on_equilibrium(const EquilibriumRecord<2>& record, const St
     certificate.program = program_;
     certificate.state = state;
     certificate.state.provenance.clear();
-    certificate.input_hash = sha256(state_text<2>(certificate.state));
+    certificate.input_hash = sha256(state_text(certificate.state));
     const Certification result = certify(certificate.state);
     certificate.claims = result.claims;
     write_certificate(folder_ / fmt::format("eq_{:06}.json", record.number), certificate);
@@ -36,7 +36,7 @@ void StateCertifier::on_equilibrium(const EquilibriumRecord<2>& record, const St
      : result.verdict == Verdict::refuted ? tally.refuted
                                           : tally.undecided)++;
     tally.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    EquilibriumRecord<2> certified = record;
+    EquilibriumRecord certified = record;
     certified.certified = result.verdict;
     if (result.verdict == Verdict::refuted) {
         certified.verdict = Verdict::refuted;

@@ -14,14 +14,14 @@ namespace isostat {
 /// Writes certificates/eq_000012.json for every equilibrium, then hands the record, with its verdict, to the next
 /// observer: when that one has written its checkpoint, the certificate is there. A certificate that refutes its
 /// equilibrium ends the run; one that is undecided is counted.
-class StateCertifier final : public RunObserver<2> {
+class StateCertifier final : public RunObserver {
   public:
-    StateCertifier(const std::filesystem::path& run, std::string program, RunCounters& counters, RunObserver<2>& next);
-    void on_segment(int number, const Segment& goal, int made, const State<2>& from) override {
+    StateCertifier(const std::filesystem::path& run, std::string program, RunCounters& counters, RunObserver& next);
+    void on_segment(int number, const Segment& goal, int made, const State& from) override {
         next_.on_segment(number, goal, made, from);
     }
-    void on_arc(const ArcRecord<2>& arc) override { next_.on_arc(arc); }
-    void on_equilibrium(const EquilibriumRecord<2>& record, const State<2>& state,
+    void on_arc(const ArcRecord& arc) override { next_.on_arc(arc); }
+    void on_equilibrium(const EquilibriumRecord& record, const State& state,
                         const std::vector<double>& forces) override;
     [[nodiscard]] std::optional<Failure> objection() const override { return objection_; }
 
@@ -29,7 +29,7 @@ class StateCertifier final : public RunObserver<2> {
     std::filesystem::path folder_;
     std::string program_;
     RunCounters& counters_;
-    RunObserver<2>& next_;
+    RunObserver& next_;
     std::optional<Failure> objection_;
 };
 

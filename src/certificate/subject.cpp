@@ -14,8 +14,7 @@ std::vector<unsigned char> zeros(const ContactPattern& pattern, const std::vecto
 
 } // namespace
 
-template <int Dim>
-Subject<Dim>::Subject(const State<Dim>& s, const IsostaticStructure<Dim>& structure)
+Subject::Subject(const State& s, const IsostaticStructure& structure)
     : state(s), dofs(structure.dofs()), pattern(s.packing, structure), loaded_rows(s.load.loaded_rows(s.packing, dofs)),
       wall_row(s.load.loaded_wall_row(s.packing, dofs)) {
     std::vector<int> all = loaded_rows;
@@ -27,7 +26,7 @@ Subject<Dim>::Subject(const State<Dim>& s, const IsostaticStructure<Dim>& struct
         wall_row < 0 ? std::vector<unsigned char>(s.contacts.size(), 1) : zeros(pattern, std::vector<int>{wall_row});
 }
 
-template <int Dim> std::vector<int> Subject<Dim>::vanish_with(int opens) const {
+std::vector<int> Subject::vanish_with(int opens) const {
     const auto first = static_cast<std::size_t>(opens);
     const std::vector<unsigned char> others = pattern.carrying_without(ContactId(first), wall_row, loaded_rows);
     std::vector<int> members;
@@ -38,7 +37,5 @@ template <int Dim> std::vector<int> Subject<Dim>::vanish_with(int opens) const {
     }
     return members;
 }
-
-template class Subject<2>;
 
 } // namespace isostat

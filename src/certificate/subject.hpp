@@ -11,12 +11,12 @@
 namespace isostat {
 
 /// \pre of the structure: of the contacts of the state; it outlives the subject.
-template <int Dim> class Subject {
+class Subject {
   public:
-    Subject(const State<Dim>& state, const IsostaticStructure<Dim>& structure);
+    Subject(const State& state, const IsostaticStructure& structure);
 
-    const State<Dim>& state;
-    const DofMap<Dim>& dofs;
+    const State& state;
+    const DofMap& dofs;
     ContactPattern pattern;
     std::vector<int> loaded_rows;          ///< that carry a finite load other than the loaded wall's
     int wall_row = -1;                     ///< of the loaded wall; -1: it cannot move
@@ -28,7 +28,5 @@ template <int Dim> class Subject {
     /// itself and the contacts in `zero` are not listed.
     [[nodiscard]] std::vector<int> vanish_with(int opens) const;
 };
-
-extern template class Subject<2>;
 
 } // namespace isostat

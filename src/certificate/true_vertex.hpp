@@ -22,7 +22,7 @@ struct LoadEndAnswer {
 
 /// The true vertex, enclosed around a centre (statement V5), with everything that is asked of it in intervals that
 /// contain the true values. \pre of all but `exists`, `rung`: `exists()`.
-template <int Dim> class TrueVertex {
+class TrueVertex {
   public:
     virtual ~TrueVertex() = default;
     [[nodiscard]] virtual Rung rung() const = 0;
@@ -46,14 +46,8 @@ template <int Dim> class TrueVertex {
 };
 
 /// The rungs, in the order in which they are tried. The arguments must outlive the result.
-template <int Dim> std::unique_ptr<TrueVertex<Dim>> in_double(const Subject<Dim>& subject, const Centre<Dim>& centre);
-template <int Dim>
-std::unique_ptr<TrueVertex<Dim>> in_double_double(const Subject<Dim>& subject, const Centre<Dim>& centre);
-template <int Dim>
-std::unique_ptr<TrueVertex<Dim>> in_multiprecision(const Subject<Dim>& subject, const Centre<Dim>& centre);
-
-extern template std::unique_ptr<TrueVertex<2>> in_double<2>(const Subject<2>&, const Centre<2>&);
-extern template std::unique_ptr<TrueVertex<2>> in_double_double<2>(const Subject<2>&, const Centre<2>&);
-extern template std::unique_ptr<TrueVertex<2>> in_multiprecision<2>(const Subject<2>&, const Centre<2>&);
+std::unique_ptr<TrueVertex> in_double(const Subject& subject, const Centre& centre);
+std::unique_ptr<TrueVertex> in_double_double(const Subject& subject, const Centre& centre);
+std::unique_ptr<TrueVertex> in_multiprecision(const Subject& subject, const Centre& centre);
 
 } // namespace isostat

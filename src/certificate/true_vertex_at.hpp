@@ -15,9 +15,9 @@
 
 namespace isostat {
 
-template <int Dim, class T> class TrueVertexAt final : public TrueVertex<Dim> {
+template <class T> class TrueVertexAt final : public TrueVertex {
   public:
-    TrueVertexAt(const Subject<Dim>& subject, const Centre<Dim>& centre, const Arithmetic<T>& arithmetic)
+    TrueVertexAt(const Subject& subject, const Centre& centre, const Arithmetic<T>& arithmetic)
         : subject_(subject), centre_(centre),
           vertex_(arithmetic, centre.packing, centre.structure, centre.factorisation, centre.neighbourhood) {
         if (vertex_.exists()) {
@@ -53,10 +53,10 @@ template <int Dim, class T> class TrueVertexAt final : public TrueVertex<Dim> {
     void claim_radii();
     /// How far the pinned grain of a cell is from where it is stored: it was put on the grid.
     [[nodiscard]] double pin_moved(const std::vector<double>& stored) const {
-        const Cell<Dim>& cell = centre_.packing.cell;
+        const Cell& cell = centre_.packing.cell;
         double most = 0;
-        for (std::size_t a = 0; a < Dim && cell.any(); ++a) {
-            const std::size_t k = Dim * static_cast<std::size_t>(cell.pin) + a;
+        for (std::size_t a = 0; a < static_cast<std::size_t>(cell.dimension) && cell.any(); ++a) {
+            const std::size_t k = static_cast<std::size_t>(cell.dimension) * static_cast<std::size_t>(cell.pin) + a;
             most = cell.periodic[a] ? std::max(most, std::abs(centre_.packing.q[k] - stored[k]) * (1 + 2 * u)) : most;
         }
         return most;
@@ -67,7 +67,7 @@ template <int Dim, class T> class TrueVertexAt final : public TrueVertex<Dim> {
     const Solution& unit_load();
     const Solution& infinitesimal_solution();
     [[nodiscard]] static std::size_t index(int l) { return static_cast<std::size_t>(l); }
-    [[nodiscard]] std::string name(int l) const { return to_string<Dim>(subject_.state.contacts[index(l)]); }
+    [[nodiscard]] std::string name(int l) const { return to_string(subject_.state.contacts[index(l)]); }
     /// Of the force in contact l when the load goes in the direction.
     double rate(int l, int direction) { return direction * A::rounded(unit_load().value[index(l)]); }
     int first_to_vanish(int direction);
@@ -78,17 +78,17 @@ template <int Dim, class T> class TrueVertexAt final : public TrueVertex<Dim> {
     Interval around(const T& value, double bound) const;
     std::vector<Interval> around(const Solution& solution) const;
 
-    const Subject<Dim>& subject_;
-    const Centre<Dim>& centre_;
-    EnclosedVertex<Dim, T> vertex_;
-    std::optional<ContactSystem<Dim, T>> system_;
+    const Subject& subject_;
+    const Centre& centre_;
+    EnclosedVertex<T> vertex_;
+    std::optional<ContactSystem<T>> system_;
     bool exists_ = false;
     double claimed_radius_ = infinity;
     double claimed_unique_radius_ = 0;
     std::optional<Solution> present_, unit_, infinitesimal_;
 };
 
-template <int Dim, class T> void TrueVertexAt<Dim, T>::claim_radii() {
+template <class T> void TrueVertexAt<T>::claim_radii() {
     const std::vector<double>& stored = subject_.state.packing.q;
     std::vector<double> moved;
     for (std::size_t c = 0; c < stored.size(); ++c) {
@@ -114,8 +114,8 @@ template <int Dim, class T> void TrueVertexAt<Dim, T>::claim_radii() {
     exists_ = vertex_.sigma() > 0 && claimed_radius_ <= room;
 }
 
-template <int Dim, class T> Interval TrueVertexAt<Dim, T>::gap(const Contact& contact) const {
-    const CorrectedConfiguration<Dim, T>& at = vertex_.at();
+template <class T> Interval TrueVertexAt<T>::gap(const Contact& contact) const {
+    const CorrectedConfiguration<T>& at = vertex_.at();
     const double size = target(centre_.packing, contact);
     double value = 0;
     if (contact.kind == ContactKind::disk_disk) {
@@ -133,15 +133,14 @@ template <int Dim, class T> Interval TrueVertexAt<Dim, T>::gap(const Contact& co
                                      8 * unit() * (std::abs(value) + size) + 16 * u * std::abs(value));
 }
 
-template <int Dim, class T>
-auto TrueVertexAt<Dim, T>::solve(const std::vector<T>& load, double load_error) const -> Solution {
+template <class T> auto TrueVertexAt<T>::solve(const std::vector<T>& load, double load_error) const -> Solution {
     auto solved = system_->forces(load, load_error, std::vector<T>(load.size(), number(0)));
     return {std::move(solved.value), above(solved.bound)};
 }
 
-template <int Dim, class T> std::vector<T> TrueVertexAt<Dim, T>::external_force(bool loaded_wall_only) const {
-    const Load<Dim>& load = subject_.state.load;
-    const DofMap<Dim>& dofs = subject_.dofs;
+template <class T> std::vector<T> TrueVertexAt<T>::external_force(bool loaded_wall_only) const {
+    const Load& load = subject_.state.load;
+    const DofMap& dofs = subject_.dofs;
     std::vector<T> force(static_cast<std::size_t>(dofs.dof_count()), number(0));
     if (!loaded_wall_only) {
         for (std::size_t k = 0; k < load.disk_force.size(); ++k) {
@@ -164,9 +163,9 @@ template <int Dim, class T> std::vector<T> TrueVertexAt<Dim, T>::external_force(
     return force;
 }
 
-template <int Dim, class T> auto TrueVertexAt<Dim, T>::present() -> const Solution& {
+template <class T> auto TrueVertexAt<T>::present() -> const Solution& {
     if (!present_) {
-        const Load<Dim>& load = subject_.state.load;
+        const Load& load = subject_.state.load;
         // True stresses act on the lengths of the true vertex.
         const double error = load.kind == LoadKind::nominal
                                  ? 0.0
@@ -181,7 +180,7 @@ template <int Dim, class T> auto TrueVertexAt<Dim, T>::present() -> const Soluti
     return *present_;
 }
 
-template <int Dim, class T> auto TrueVertexAt<Dim, T>::unit_load() -> const Solution& {
+template <class T> auto TrueVertexAt<T>::unit_load() -> const Solution& {
     if (!unit_) {
         unit_ =
             solve(external_force(true), subject_.state.load.kind == LoadKind::nominal ? 0.0 : above(vertex_.radius()));
@@ -189,7 +188,7 @@ template <int Dim, class T> auto TrueVertexAt<Dim, T>::unit_load() -> const Solu
     return *unit_;
 }
 
-template <int Dim, class T> auto TrueVertexAt<Dim, T>::infinitesimal_solution() -> const Solution& {
+template <class T> auto TrueVertexAt<T>::infinitesimal_solution() -> const Solution& {
     if (!infinitesimal_) {
         std::vector<T> force(static_cast<std::size_t>(subject_.dofs.dof_count()), number(0));
         const std::vector<double>& g = subject_.state.load.infinitesimal;
@@ -203,14 +202,14 @@ template <int Dim, class T> auto TrueVertexAt<Dim, T>::infinitesimal_solution() 
     return *infinitesimal_;
 }
 
-template <int Dim, class T> Interval TrueVertexAt<Dim, T>::around(const T& value, double bound) const {
+template <class T> Interval TrueVertexAt<T>::around(const T& value, double bound) const {
     const double middle = A::rounded(value);
     const double half = bound + 4 * u * std::abs(middle); // dropping the low part, and the sum
     const Interval interval{std::nextafter(middle - half, -infinity), std::nextafter(middle + half, infinity)};
     return interval.lower <= interval.upper ? interval : Interval{-infinity, infinity}; // a NaN says nothing
 }
 
-template <int Dim, class T> std::vector<Interval> TrueVertexAt<Dim, T>::around(const Solution& solution) const {
+template <class T> std::vector<Interval> TrueVertexAt<T>::around(const Solution& solution) const {
     std::vector<Interval> intervals;
     for (const T& value : solution.value) {
         intervals.push_back(around(value, solution.bound));
@@ -218,7 +217,7 @@ template <int Dim, class T> std::vector<Interval> TrueVertexAt<Dim, T>::around(c
     return intervals;
 }
 
-template <int Dim, class T> std::vector<Interval> TrueVertexAt<Dim, T>::forces() {
+template <class T> std::vector<Interval> TrueVertexAt<T>::forces() {
     std::vector<Interval> intervals = around(present());
     for (std::size_t l = 0; l < intervals.size(); ++l) {
         if (subject_.zero[l] != 0) {
@@ -228,12 +227,12 @@ template <int Dim, class T> std::vector<Interval> TrueVertexAt<Dim, T>::forces()
     return intervals;
 }
 
-template <int Dim, class T> std::vector<Interval> TrueVertexAt<Dim, T>::infinitesimal() {
+template <class T> std::vector<Interval> TrueVertexAt<T>::infinitesimal() {
     return around(infinitesimal_solution());
 }
 
 /// The force that vanishes first as far as rounded numbers tell; -1: none decreases.
-template <int Dim, class T> int TrueVertexAt<Dim, T>::first_to_vanish(int direction) {
+template <class T> int TrueVertexAt<T>::first_to_vanish(int direction) {
     int first = -1;
     double smallest = infinity;
     for (int l = 0; l < subject_.size(); ++l) {
@@ -248,12 +247,12 @@ template <int Dim, class T> int TrueVertexAt<Dim, T>::first_to_vanish(int direct
     return first;
 }
 
-template <int Dim, class T> std::string TrueVertexAt<Dim, T>::open_rate(int l) {
+template <class T> std::string TrueVertexAt<T>::open_rate(int l) {
     return fmt::format("the force in contact {} changes with the load at a rate of {:.3g}, proved to {:.3g}", name(l),
                        rate(l, +1), unit_load().bound);
 }
 
-template <int Dim, class T> LoadEndAnswer TrueVertexAt<Dim, T>::without_end(int direction) {
+template <class T> LoadEndAnswer TrueVertexAt<T>::without_end(int direction) {
     const double bound = unit_load().bound;
     for (int l = 0; l < subject_.size(); ++l) {
         if (subject_.zero_slope[index(l)] == 0 && !(rate(l, direction) > bound * (1 + 4 * u))) {
@@ -267,9 +266,8 @@ template <int Dim, class T> LoadEndAnswer TrueVertexAt<Dim, T>::without_end(int 
 
 /// Nothing when every force but that of `first` and those of `members` is positive at sigma - t, t known to `error`;
 /// else which one is not.
-template <int Dim, class T>
-std::string TrueVertexAt<Dim, T>::vanishes_before(int first, const std::vector<int>& members, const T& t,
-                                                  double error) {
+template <class T>
+std::string TrueVertexAt<T>::vanishes_before(int first, const std::vector<int>& members, const T& t, double error) {
     const Solution& force = present();
     const Solution& slope = unit_load();
     const double size = std::abs(A::rounded(t));
@@ -299,7 +297,7 @@ std::string TrueVertexAt<Dim, T>::vanishes_before(int first, const std::vector<i
 }
 
 /// Which of a class is named decides nothing; the infinitesimal loads say which one a run would open.
-template <int Dim, class T> int TrueVertexAt<Dim, T>::opens(int first, const std::vector<int>& members, int direction) {
+template <class T> int TrueVertexAt<T>::opens(int first, const std::vector<int>& members, int direction) {
     if (members.empty() || subject_.state.load.infinitesimal.empty()) {
         return first;
     }
@@ -312,7 +310,7 @@ template <int Dim, class T> int TrueVertexAt<Dim, T>::opens(int first, const std
     return best;
 }
 
-template <int Dim, class T> LoadEndAnswer TrueVertexAt<Dim, T>::load_end(int direction) {
+template <class T> LoadEndAnswer TrueVertexAt<T>::load_end(int direction) {
     const Solution& force = present();
     const Solution& slope = unit_load();
     const int first = first_to_vanish(direction);

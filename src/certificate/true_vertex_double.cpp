@@ -3,10 +3,8 @@
 
 namespace isostat {
 
-template <int Dim> std::unique_ptr<TrueVertex<Dim>> in_double(const Subject<Dim>& subject, const Centre<Dim>& centre) {
-    return std::make_unique<TrueVertexAt<Dim, double>>(subject, centre, Arithmetic<double>());
+std::unique_ptr<TrueVertex> in_double(const Subject& subject, const Centre& centre) {
+    return std::make_unique<TrueVertexAt<double>>(subject, centre, Arithmetic<double>());
 }
-
-template std::unique_ptr<TrueVertex<2>> in_double<2>(const Subject<2>&, const Centre<2>&);
 
 } // namespace isostat

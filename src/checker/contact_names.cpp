@@ -65,10 +65,10 @@ std::optional<Contact> contact_spelt(std::string_view name) {
         contact && contact->kind == ContactKind::disk_disk && contact->i == contact->j && contact->image.is_here();
     const bool turned = contact && contact->kind == ContactKind::disk_disk &&
                         !(pair_of(contact->i, contact->j, contact->image) == *contact);
-    return contact && !itself && !turned && to_string<2>(*contact) == name ? contact : std::nullopt;
+    return contact && !itself && !turned && to_string(*contact) == name ? contact : std::nullopt;
 }
 
-std::optional<Contact> contact_named(std::string_view name, const Packing<2>& packing) {
+std::optional<Contact> contact_named(std::string_view name, const Packing& packing) {
     const std::optional<Contact> contact = contact_spelt(name);
     if (!contact) {
         return {};
@@ -88,7 +88,7 @@ bool may_be(const Contact& columns, const Contact& pair) {
     return columns.kind == pair.kind && columns.i == pair.i && columns.j == pair.j;
 }
 
-std::optional<Contact> contact_of_columns(int i, int j, const Packing<2>& packing) {
+std::optional<Contact> contact_of_columns(int i, int j, const Packing& packing) {
     const int disks = packing.disk_count();
     if (i < 0 || i >= disks || j < -4 || j >= disks || (j >= 0 && j < i) || (i == j && !packing.cell.any())) {
         return {};

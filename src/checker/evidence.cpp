@@ -28,7 +28,7 @@ std::optional<int> eliminated_rank(const Problem& problem) {
 
 } // namespace
 
-Evidence::Evidence(const State<2>& checked, CheckerArithmetic arithmetic, bool held_allowed,
+Evidence::Evidence(const State& checked, CheckerArithmetic arithmetic, bool held_allowed,
                    std::shared_ptr<const Solver> near, int digits)
     : state(checked), problem(checked, held_allowed, digits) {
     if (!problem.unsupported.empty()) {

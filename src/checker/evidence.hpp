@@ -16,10 +16,10 @@ namespace isostat::checker {
 struct Evidence {
     /// `near`: factors of the matrix at a configuration close by, or nothing; with `automatic` only. `digits`: those
     /// of the problem; forces get as many more.
-    Evidence(const State<2>& checked, CheckerArithmetic arithmetic, bool held_allowed = false,
+    Evidence(const State& checked, CheckerArithmetic arithmetic, bool held_allowed = false,
              std::shared_ptr<const Solver> near = {}, int digits = usual_digits);
 
-    const State<2>& state;
+    const State& state;
     Problem problem;
     bool square = false;
     std::optional<int> rank; ///< of the stored matrix
@@ -34,7 +34,7 @@ struct Evidence {
     [[nodiscard]] const std::vector<Range>& infinitesimal() const;
     std::shared_ptr<const Solver> solver; ///< when square
 
-    [[nodiscard]] std::string name(std::size_t contact) const { return to_string<2>(state.contacts[contact]); }
+    [[nodiscard]] std::string name(std::size_t contact) const { return to_string(state.contacts[contact]); }
     [[nodiscard]] std::string why_no_inverse() const;
     [[nodiscard]] std::string why_no_vertex() const;
 

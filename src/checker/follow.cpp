@@ -15,7 +15,7 @@ namespace isostat::checker {
 namespace {
 
 /// The gap of a pair.
-double gap_at(const Packing<2>& packing, const std::vector<double>& q, const Contact& c) {
+double gap_at(const Packing& packing, const std::vector<double>& q, const Contact& c) {
     const auto i = static_cast<std::size_t>(c.i);
     const auto j = static_cast<std::size_t>(c.j);
     const auto& r = packing.radius;
@@ -33,7 +33,7 @@ double gap_at(const Packing<2>& packing, const std::vector<double>& q, const Con
 }
 
 /// The same between all images of disks; nothing: there are too many.
-std::optional<std::vector<Contact>> near_pairs_in_cell(const Packing<2>& packing, const std::vector<double>& q,
+std::optional<std::vector<Contact>> near_pairs_in_cell(const Packing& packing, const std::vector<double>& q,
                                                        double reach) {
     const CellImages images(packing, q);
     const double widest = 2 * packing.max_radius();
@@ -62,7 +62,7 @@ std::optional<std::vector<Contact>> near_pairs_in_cell(const Packing<2>& packing
 }
 
 /// Pairs of grains that may touch before a coordinate has moved by `reach`; nothing: there are too many images.
-std::optional<std::vector<Contact>> near_pairs(const Packing<2>& packing, const std::vector<double>& q, double reach) {
+std::optional<std::vector<Contact>> near_pairs(const Packing& packing, const std::vector<double>& q, double reach) {
     const bool cell = packing.cell.any();
     std::vector<Contact> pairs;
     if (cell) {
@@ -114,7 +114,7 @@ struct Met {
 /// The walk along the motion on which all contacts but one stay closed.
 class Walk {
   public:
-    Walk(const State<2>& from, const Motion& motion)
+    Walk(const State& from, const Motion& motion)
         : from_(from), motion_(motion), turns_(motion.closed.kind == ContactKind::held),
           tolerance_(1e-9 * from.packing.min_radius()), reach_(0.2 * from.packing.min_radius()),
           kept_(from.packing, from.contacts, motion.solver), q_(from.packing.q) {}
@@ -251,7 +251,7 @@ class Walk {
             return {false,
                     {},
                     fmt::format("the power of the load turns near {}, but {} is held at {}", q_[c],
-                                to_string<2>(motion_.closed), motion_.held_at)};
+                                to_string(motion_.closed), motion_.held_at)};
         }
         return {false, std::clamp(way != 0 ? (motion_.held_at - q_[c]) / way : 0, 0.0, 1.0), {}};
     }
@@ -260,9 +260,8 @@ class Walk {
     [[nodiscard]] Met closing(const std::vector<double>& next, bool first) const {
         constexpr double rounding = 0x1p-50; // of a velocity, whose largest component is 1
         if (powered_ && power_ < -1e-6 * power_size_.terms && power_ < -rounding * power_size_.load) {
-            return {false,
-                    {},
-                    fmt::format("the power of the load vanishes before {} closes", to_string<2>(motion_.closed))};
+            return {
+                false, {}, fmt::format("the power of the load vanishes before {} closes", to_string(motion_.closed))};
         }
         const double before = kept_.value(q_, motion_.closed);
         const double after = kept_.value(next, motion_.closed);
@@ -312,7 +311,7 @@ class Walk {
         };
         for (const Contact& pair : pairs_) {
             if (pair != motion_.closed && gap_at(from_.packing, next, pair) < -tolerance_ && !kept(pair)) {
-                return fmt::format("{} close before {}", to_string<2>(pair), to_string<2>(motion_.closed));
+                return fmt::format("{} close before {}", to_string(pair), to_string(motion_.closed));
             }
         }
         return {};
@@ -371,7 +370,7 @@ class Walk {
         return moved;
     }
 
-    const State<2>& from_;
+    const State& from_;
     const Motion& motion_;
     bool turns_;
     bool passed_ = false; ///< the recorded displacement
@@ -391,7 +390,7 @@ class Walk {
 
 } // namespace
 
-Followed follow(const State<2>& from, const Motion& motion) {
+Followed follow(const State& from, const Motion& motion) {
     return Walk(from, motion).to_the_end();
 }
 

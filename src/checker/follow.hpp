@@ -39,6 +39,6 @@ struct Followed {
 
 /// At each step every pair of grains that may touch is looked at, and the power of the load. A pair that closes and
 /// opens again within a step is not seen, and a long step may land on another branch: `wrong` refutes nothing.
-Followed follow(const State<2>& from, const Motion& motion);
+Followed follow(const State& from, const Motion& motion);
 
 } // namespace isostat::checker

@@ -9,7 +9,7 @@ namespace isostat::checker {
 namespace {
 
 /// Force of the wall of an axis per unit stress on it, outwards negative: minus the length of the other axis.
-Range wall_force(const Problem& problem, const State<2>& state, const TrueVertex& vertex, std::size_t axis) {
+Range wall_force(const Problem& problem, const State& state, const TrueVertex& vertex, std::size_t axis) {
     const std::size_t other = 1 - axis;
     if (state.load.kind == LoadKind::nominal) {
         return Range(-Rational(state.load.reference_length[other]));
@@ -21,7 +21,7 @@ Range wall_force(const Problem& problem, const State<2>& state, const TrueVertex
 }
 
 /// On the tilt per unit of shear stress: minus the reference length that it acts on.
-Range tilt_force(const State<2>& state) {
+Range tilt_force(const State& state) {
     return Range(-Rational(state.load.reference_length[0]));
 }
 
@@ -38,7 +38,7 @@ Forces disk_loads(const Problem& problem, const std::vector<double>& per_coordin
 
 } // namespace
 
-Forces finite_load(const Problem& problem, const State<2>& state, const TrueVertex& vertex) {
+Forces finite_load(const Problem& problem, const State& state, const TrueVertex& vertex) {
     Forces load = disk_loads(problem, state.load.disk_force);
     for (std::size_t a = 0; a < 2; ++a) {
         const int dof = problem.dof_of[2 * static_cast<std::size_t>(problem.disks) + a];
@@ -55,7 +55,7 @@ Forces finite_load(const Problem& problem, const State<2>& state, const TrueVert
     return load;
 }
 
-Forces unit_load(const Problem& problem, const State<2>& state, const TrueVertex& vertex) {
+Forces unit_load(const Problem& problem, const State& state, const TrueVertex& vertex) {
     Forces load(static_cast<std::size_t>(problem.dofs()), Range(Rational(0)));
     const auto axis = static_cast<std::size_t>(state.load.loaded_axis); // 2: the tilt, whose coordinate follows
     const int dof = problem.dof_of[2 * static_cast<std::size_t>(problem.disks) + axis];
@@ -65,7 +65,7 @@ Forces unit_load(const Problem& problem, const State<2>& state, const TrueVertex
     return load;
 }
 
-Forces infinitesimal_load(const Problem& problem, const State<2>& state) {
+Forces infinitesimal_load(const Problem& problem, const State& state) {
     return disk_loads(problem, state.load.infinitesimal);
 }
 

@@ -12,9 +12,9 @@ namespace isostat::checker {
 using Forces = std::vector<Range>;
 
 /// The finite load of a state, its derivative with respect to the loaded stress, and the infinitesimal load.
-Forces finite_load(const Problem& problem, const State<2>& state, const TrueVertex& vertex);
-Forces unit_load(const Problem& problem, const State<2>& state, const TrueVertex& vertex);
-Forces infinitesimal_load(const Problem& problem, const State<2>& state);
+Forces finite_load(const Problem& problem, const State& state, const TrueVertex& vertex);
+Forces unit_load(const Problem& problem, const State& state, const TrueVertex& vertex);
+Forces infinitesimal_load(const Problem& problem, const State& state);
 
 /// Ranges of all contact forces (compressive positive) under a load.
 std::vector<Range> contact_forces(const Problem& problem, const Solver& solver, const InverseBound& inverse,

@@ -146,7 +146,7 @@ bool GapCourses::look(const Tube& tube, const Contact& pair, double from, double
     const auto found = last_.find(pair);
     std::optional<Course> last = found == last_.end() ? std::nullopt : std::optional(found->second);
     if (!walk(Motion(tube, moving_, pair), from, to, 0, last)) {
-        trouble_ = fmt::format("the gap of {} is not proved positive", to_string<2>(pair));
+        trouble_ = fmt::format("the gap of {} is not proved positive", to_string(pair));
         return false;
     }
     if (last) {
@@ -204,7 +204,7 @@ std::vector<double> GapCourses::ways(const Tube& tube, double h) const {
 
 /// Pairs of disks that may come to touch on these ways: all others keep away from each other by K19.
 std::optional<std::vector<Contact>> GapCourses::near_disks(const Tube& tube, const std::vector<double>& way) const {
-    const Packing<2>& packing = moving_.state.packing;
+    const Packing& packing = moving_.state.packing;
     const std::size_t disks = packing.radius.size();
     const std::vector<double>& q = tube.centre();
     const double most = *std::max_element(way.begin(), way.end());
@@ -230,7 +230,7 @@ std::optional<std::vector<Contact>> GapCourses::near_disks(const Tube& tube, con
 
 /// The same in a cell, of all images; nothing: they are too many.
 std::optional<std::vector<Contact>> GapCourses::near_images(const Tube& tube, const std::vector<double>& way) const {
-    const Packing<2>& packing = moving_.state.packing;
+    const Packing& packing = moving_.state.packing;
     const std::vector<double>& q = tube.centre();
     const std::size_t disks = packing.radius.size();
     const std::array<double, 3> cell{q[2 * disks], q[2 * disks + 1], q[2 * disks + 2]};
@@ -270,7 +270,7 @@ std::optional<std::vector<Contact>> GapCourses::near_images(const Tube& tube, co
 
 /// Disks that may come to touch a wall.
 std::vector<Contact> GapCourses::near_walls(const Tube& tube, const std::vector<double>& way) const {
-    const Packing<2>& packing = moving_.state.packing;
+    const Packing& packing = moving_.state.packing;
     const std::size_t disks = packing.radius.size();
     const std::vector<double>& q = tube.centre();
     std::vector<Contact> pairs;

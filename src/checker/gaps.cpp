@@ -9,18 +9,18 @@ namespace isostat::checker {
 
 namespace {
 
-bool is_fixed(const Packing<2>& packing, int disk) {
+bool is_fixed(const Packing& packing, int disk) {
     return !packing.fixed.empty() && packing.fixed[static_cast<std::size_t>(disk)] != 0;
 }
 
 /// The periods between a disk and its own image move.
-bool own_image_moves(const Packing<2>& packing, const Contact& pair) {
-    const Cell<2>& cell = packing.cell;
+bool own_image_moves(const Packing& packing, const Contact& pair) {
+    const Cell& cell = packing.cell;
     const auto& m = pair.image.m;
     return (m[0] != 0 && cell.period_moves[0]) || (m[1] != 0 && (cell.period_moves[1] || cell.tilt_moves[0]));
 }
 
-bool exists_and_moves(const Packing<2>& packing, const Contact& pair) {
+bool exists_and_moves(const Packing& packing, const Contact& pair) {
     const auto axis = static_cast<std::size_t>(pair.j);
     if (pair.kind == ContactKind::disk_disk && packing.cell.any()) { // no disk is fixed there
         return pair.i != pair.j || own_image_moves(packing, pair);
@@ -103,7 +103,7 @@ Range exact_gap(const Problem& problem, const TrueVertex& vertex, const Contact&
 /// Collects the pairs whose approximate gap is nearly the smallest one so far.
 class Collector {
   public:
-    Collector(const State<2>& state, const Approximation& at) : state_(state), at_(at) {
+    Collector(const State& state, const Approximation& at) : state_(state), at_(at) {
         contacts_.insert(state.contacts.begin(), state.contacts.end());
     }
     /// Pairs with an approximate gap above this are certainly not the nearest.
@@ -128,7 +128,7 @@ class Collector {
     }
 
   private:
-    const State<2>& state_;
+    const State& state_;
     const Approximation& at_;
     std::set<Contact> contacts_;
     std::vector<std::pair<double, Contact>> near_;
@@ -140,7 +140,7 @@ class Collector {
 namespace {
 
 /// An own image that cannot move, nearer than a diameter: the largest disk has one if any has.
-std::optional<Contact> overlapping_image(const Problem& problem, const State<2>& state) {
+std::optional<Contact> overlapping_image(const Problem& problem, const State& state) {
     const auto widest = std::max_element(problem.radius.begin(), problem.radius.end());
     const auto disk = static_cast<int>(widest - problem.radius.begin());
     std::vector<double> q;
@@ -173,7 +173,7 @@ std::optional<Contact> overlapping_image(const Problem& problem, const State<2>&
 
 } // namespace
 
-std::optional<Contact> fixed_overlap(const Problem& problem, const State<2>& state) {
+std::optional<Contact> fixed_overlap(const Problem& problem, const State& state) {
     if (state.packing.cell.any()) {
         return overlapping_image(problem, state);
     }
@@ -219,7 +219,7 @@ std::optional<Contact> fixed_overlap(const Problem& problem, const State<2>& sta
     return {};
 }
 
-bool is_free_pair(const State<2>& state, const Contact& pair) {
+bool is_free_pair(const State& state, const Contact& pair) {
     return exists_and_moves(state.packing, pair) &&
            std::find(state.contacts.begin(), state.contacts.end(), pair) == state.contacts.end();
 }
@@ -257,7 +257,7 @@ void sweep_walls(const Problem& problem, Collector& collector) {
 }
 
 /// The pairs that come nearest; nothing: there are too many images to tell.
-std::optional<std::vector<Contact>> nearest_pairs(const Problem& problem, const State<2>& state, Approximation at) {
+std::optional<std::vector<Contact>> nearest_pairs(const Problem& problem, const State& state, Approximation at) {
     const double widest = 2 * *std::max_element(at.radius.begin(), at.radius.end());
     if (!state.packing.cell.any()) {
         std::vector<Placed> places;
@@ -293,7 +293,7 @@ std::optional<std::vector<Contact>> nearest_pairs(const Problem& problem, const 
 
 } // namespace
 
-std::vector<Gap> smallest_gaps(const Problem& problem, const State<2>& state, const TrueVertex& vertex) {
+std::vector<Gap> smallest_gaps(const Problem& problem, const State& state, const TrueVertex& vertex) {
     const auto nearest = nearest_pairs(problem, state, Approximation(problem, vertex));
     if (!nearest) {
         return {{Contact{ContactKind::disk_disk, -1, -1}, Range::around(0, power_of_two(2000))}};

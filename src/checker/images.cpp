@@ -22,7 +22,7 @@ Contact pair_between(const Placed& one, const Placed& two) {
     return pair_of(one.disk, two.disk, m);
 }
 
-CellImages::CellImages(const Packing<2>& packing, const std::vector<double>& q) : packing_(packing), q_(q) {
+CellImages::CellImages(const Packing& packing, const std::vector<double>& q) : packing_(packing), q_(q) {
     const auto& periodic = packing.cell.periodic;
     const double tilt = lattice(0, 1);
     const double stretch = packing.cell.all() ? std::hypot(1.0, tilt / lattice(1, 1)) : 1;

@@ -27,7 +27,7 @@ Contact pair_between(const Placed& one, const Placed& two);
 class CellImages {
   public:
     /// `q`: coordinates near the true vertex, of the packing's kind.
-    CellImages(const Packing<2>& packing, const std::vector<double>& q);
+    CellImages(const Packing& packing, const std::vector<double>& q);
     /// False: a disk is too far from the cell for its images to have names.
     [[nodiscard]] bool usable() const { return usable_; }
     /// Bound of the sum of |m_a| over all pairs that places within a range make.
@@ -43,7 +43,7 @@ class CellImages {
     [[nodiscard]] double longest() const;
 
   private:
-    const Packing<2>& packing_;
+    const Packing& packing_;
     const std::vector<double>& q_;
     std::vector<std::array<int, 2>> wraps_; ///< periods that a disk is away from the cell
     std::array<int, 2> farthest_{};         ///< largest |wrap|

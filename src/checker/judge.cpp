@@ -86,9 +86,9 @@ ClaimCheck judge_vertex(const Evidence& evidence, const VertexClaim& claim, bool
 }
 
 /// Gaps that differ by less are equally near: 2^-46 of the largest coordinate or radius.
-Rational equally_near(const State<2>& state) {
+Rational equally_near(const State& state) {
     double largest = 0;
-    const Packing<2>& packing = state.packing;
+    const Packing& packing = state.packing;
     for (std::size_t k = 0; k < packing.q.size(); ++k) {
         const std::size_t axis = k % 2;
         const bool exists =
@@ -108,7 +108,7 @@ ClaimCheck judge_gaps(const Evidence& evidence, const GapsClaim& claim) {
     if (const auto pair = fixed_overlap(evidence.problem, evidence.state)) {
         return pair->i < 0
                    ? answer(check, Verdict::undecided, too_far)
-                   : answer(check, Verdict::refuted, fmt::format("{} overlap, and cannot move", to_string<2>(*pair)));
+                   : answer(check, Verdict::refuted, fmt::format("{} overlap, and cannot move", to_string(*pair)));
     }
     const std::vector<Gap> near = smallest_gaps(evidence.problem, evidence.state, evidence.vertex);
     if (near.empty()) {
@@ -129,25 +129,25 @@ ClaimCheck judge_gaps(const Evidence& evidence, const GapsClaim& claim) {
     const Rational& most = nearest->value.upper;
     check.numbers = {{"smallest_gap", rounded_down(least)}};
     const std::string found =
-        fmt::format("smallest gap in {}, of {}", shown(Range(least, most)), to_string<2>(nearest->pair));
+        fmt::format("smallest gap in {}, of {}", shown(Range(least, most)), to_string(nearest->pair));
     if (std::isinf(claim.smallest) || most < Rational(claim.smallest)) {
         return answer(check, Verdict::refuted, fmt::format("{}; claimed >= {:.17g}", found, claim.smallest));
     }
     const Rational room = equally_near(evidence.state);
     if (named == nullptr || named->value.lower > most + room) {
-        return answer(check, Verdict::refuted, fmt::format("{}; claimed of {}", found, to_string<2>(claim.where)));
+        return answer(check, Verdict::refuted, fmt::format("{}; claimed of {}", found, to_string(claim.where)));
     }
     if (least >= Rational(claim.smallest) && named->value.upper <= least + room) {
         return answer(check, Verdict::proved, found);
     }
     return answer(check, Verdict::undecided,
-                  fmt::format("{}; claimed >= {:.17g} of {}", found, claim.smallest, to_string<2>(claim.where)));
+                  fmt::format("{}; claimed >= {:.17g} of {}", found, claim.smallest, to_string(claim.where)));
 }
 
 /// True stresses: the load is minus the volume times the gradient of sum sigma_a ln L_a (S5) when no disk carries a
 /// finite force of its own.
 bool has_volume_potential(const Evidence& evidence) {
-    const State<2>& state = evidence.state;
+    const State& state = evidence.state;
     if (!std::all_of(state.load.disk_force.begin(), state.load.disk_force.end(), [](double f) { return f == 0; })) {
         return false;
     }

@@ -70,7 +70,7 @@ Arrival Lookahead::end_of(Arc arc) {
 Lookahead::Arc Lookahead::arc_of(const Start& from, std::size_t event, const Opening& opening, bool slowly) const {
     const EventRecord& record = records_.events[event];
     Arc arc{event, opening, follow(from.at, record, opening, slowly), from.at.state, {}};
-    Load<2>& load = arc.end.load;
+    Load& load = arc.end.load;
     load.loaded_stress() = record.stress;
     if (!arc.followed.end) {
         return arc;

@@ -42,7 +42,7 @@ class Lookahead {
         std::size_t event = 0;
         Opening opening;
         Followed followed;
-        State<2> end;
+        State end;
         Future<Proved> proof;
     };
     struct Start {

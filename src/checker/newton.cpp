@@ -18,7 +18,7 @@ using Quadruple = long double;
 
 } // namespace
 
-System::System(const Packing<2>& packing, std::vector<Contact> contacts, std::shared_ptr<const Solver> near)
+System::System(const Packing& packing, std::vector<Contact> contacts, std::shared_ptr<const Solver> near)
     : packing_(packing), contacts_(std::move(contacts)), structure_(packing, contacts_),
       weight_(std::ldexp(1.0, structure_.wall_exponent)), solver_(std::move(near)) {}
 
@@ -44,8 +44,6 @@ template <class T> T System::value(const std::vector<T>& q, const Contact& c) co
     }
     return weight_ * ((c.kind == ContactKind::lower_wall ? q[2 * i + j] : q[2 * r.size() + j] - q[2 * i + j]) - r[i]);
 }
-
-template double System::value(const std::vector<double>&, const Contact&) const;
 
 void System::renew(const std::vector<double>& q) {
     solver_ = std::make_shared<Solver>(structure_, q);

@@ -17,7 +17,7 @@ class System {
   public:
     /// `near`: factors of the same list at a configuration close by, or nothing. They serve as long as the iterations
     /// converge with them, then they are made anew.
-    System(const Packing<2>& packing, std::vector<Contact> contacts, std::shared_ptr<const Solver> near = {});
+    System(const Packing& packing, std::vector<Contact> contacts, std::shared_ptr<const Solver> near = {});
 
     [[nodiscard]] bool square() const { return contacts_.size() == structure_.coordinate_of.size(); }
     [[nodiscard]] std::size_t size() const { return structure_.coordinate_of.size(); }
@@ -51,7 +51,7 @@ class System {
     template <class T> [[nodiscard]] Eigen::VectorXd step_at(const std::vector<T>& q, const std::optional<Way>& way);
     [[nodiscard]] Eigen::VectorXd product(const std::vector<double>& q, const Eigen::VectorXd& v) const;
 
-    const Packing<2>& packing_;
+    const Packing& packing_;
     std::vector<Contact> contacts_;
     Structure structure_;
     double weight_; ///< of walls

@@ -41,7 +41,7 @@ struct Known {
 };
 
 /// Disks on walls, held and fixed coordinates.
-std::vector<Known> known_coordinates(const State<2>& state, const std::vector<Integer>& stored,
+std::vector<Known> known_coordinates(const State& state, const std::vector<Integer>& stored,
                                      const std::vector<Integer>& radius) {
     std::vector<Known> known(stored.size());
     const auto at = [](int index) { return static_cast<std::size_t>(index); };
@@ -66,9 +66,9 @@ std::vector<Known> known_coordinates(const State<2>& state, const std::vector<In
 }
 
 /// Whether a coordinate is a degree of freedom (proofs/definition.md).
-bool moves(const Packing<2>& packing, std::size_t k) {
+bool moves(const Packing& packing, std::size_t k) {
     const std::size_t disk = k / 2;
-    const Cell<2>& cell = packing.cell;
+    const Cell& cell = packing.cell;
     if (disk < packing.radius.size()) {
         const bool pinned = disk == static_cast<std::size_t>(cell.pin) && cell.periodic[k % 2];
         return !pinned && (packing.fixed.empty() || packing.fixed[disk] == 0);
@@ -81,8 +81,8 @@ bool moves(const Packing<2>& packing, std::size_t k) {
 }
 
 /// Why the checker does not handle a cell; empty: it does.
-std::string unsupported_cell(const State<2>& state) {
-    const Packing<2>& packing = state.packing;
+std::string unsupported_cell(const State& state) {
+    const Packing& packing = state.packing;
     if (state.load.kind != LoadKind::nominal && packing.cell.tilt_moves[0]) {
         return "true stresses in a periodic cell whose tilt moves: not checked";
     }
@@ -137,7 +137,7 @@ Row::Row(const Contact& contact, int disks) {
     }
 }
 
-Structure::Structure(const Packing<2>& packing, const std::vector<Contact>& contacts) {
+Structure::Structure(const Packing& packing, const std::vector<Contact>& contacts) {
     dof_of.assign(packing.q.size(), -1);
     for (std::size_t k = 0; k < packing.q.size(); ++k) {
         if (moves(packing, k)) {
@@ -158,29 +158,29 @@ Structure::Structure(const Packing<2>& packing, const std::vector<Contact>& cont
 namespace {
 
 /// Why a contact is not one of the packing, or is none; empty: nothing.
-std::string unsupported_contact(const Packing<2>& packing, const Contact& contact) {
+std::string unsupported_contact(const Packing& packing, const Contact& contact) {
     for (std::size_t a = 0; a < contact.image.m.size(); ++a) {
         if (contact.image.m[a] != 0 && (a >= 2 || !packing.cell.periodic[a])) {
-            return "the contact " + to_string<2>(contact) + " is with an image along an axis with walls";
+            return "the contact " + to_string(contact) + " is with an image along an axis with walls";
         }
     }
     if (contact.kind == ContactKind::held) {
-        return "the state has a " + to_string<2>(contact) + ", which is no contact: not checked";
+        return "the state has a " + to_string(contact) + ", which is no contact: not checked";
     }
     const auto axis = static_cast<std::size_t>(contact.j);
     const bool lower = contact.kind == ContactKind::lower_wall;
     if (contact.kind != ContactKind::disk_disk &&
         (lower ? packing.walls.lower : packing.walls.upper)[axis] == WallKind::absent) {
-        return "there is no wall for the contact " + to_string<2>(contact);
+        return "there is no wall for the contact " + to_string(contact);
     }
     return {};
 }
 
 } // namespace
 
-Problem::Problem(const State<2>& state, bool held_allowed, int asked)
+Problem::Problem(const State& state, bool held_allowed, int asked)
     : Structure(state.packing, state.contacts), digits(asked) {
-    const Packing<2>& packing = state.packing;
+    const Packing& packing = state.packing;
     disks = packing.disk_count();
     if (packing.cell.any()) {
         unsupported = unsupported_cell(state);
@@ -229,7 +229,7 @@ Problem::Problem(const State<2>& state, bool held_allowed, int asked)
     }
 }
 
-void Problem::find_contacts_of(const State<2>& state) {
+void Problem::find_contacts_of(const State& state) {
     const std::vector<Known> known = known_coordinates(state, stored, radius);
     const auto level = [&known](const Contact& pair, const Row& row, std::size_t a) {
         const Known& at_i = known[2 * static_cast<std::size_t>(pair.i) + a];
@@ -282,8 +282,8 @@ int most_touched_of(const std::vector<Contact>& contacts, int disks) {
 
 } // namespace
 
-void Problem::find_pinned(const State<2>& state) {
-    const Cell<2>& cell = state.packing.cell;
+void Problem::find_pinned(const State& state) {
+    const Cell& cell = state.packing.cell;
     const bool holds = std::any_of(state.contacts.begin(), state.contacts.end(),
                                    [this](const Contact& c) { return c.kind == ContactKind::held && c.i < 2 * disks; });
     for (std::size_t a = 0; a < 2 && !holds; ++a) {

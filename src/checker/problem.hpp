@@ -65,7 +65,7 @@ inline constexpr int most_digits = 1280;
 
 /// Which coordinates move, and what each contact depends on.
 struct Structure {
-    Structure(const Packing<2>& packing, const std::vector<Contact>& contacts);
+    Structure(const Packing& packing, const std::vector<Contact>& contacts);
     std::vector<int> dof_of;        ///< per coordinate: its degree of freedom, or -1
     std::vector<int> coordinate_of; ///< per degree of freedom
     std::vector<Row> rows;          ///< per contact
@@ -78,7 +78,7 @@ class Problem : public Structure {
   public:
     /// `held_allowed`: a held coordinate is a row like that of a wall, its residual the weight times the way from its
     /// stored value.
-    explicit Problem(const State<2>& state, bool held_allowed = false, int asked = usual_digits);
+    explicit Problem(const State& state, bool held_allowed = false, int asked = usual_digits);
 
     /// Empty, or why this state is outside what the checker handles.
     std::string unsupported;
@@ -124,8 +124,8 @@ class Problem : public Structure {
     [[nodiscard]] Rational length(const Integer& units) const { return Rational(units) * power_of_two(fine); }
 
   private:
-    void find_contacts_of(const State<2>& state);
-    void find_pinned(const State<2>& state);
+    void find_contacts_of(const State& state);
+    void find_pinned(const State& state);
     unsigned long row_curvature_ = 0;
     unsigned long column_curvature_ = 0;
 };

@@ -9,14 +9,14 @@ namespace isostat::checker {
 
 namespace {
 
-std::vector<double> load_at(const Load<2>& load, const Packing<2>& packing, bool rattles) {
+std::vector<double> load_at(const Load& load, const Packing& packing, bool rattles) {
     std::vector<double> pushing = rattles ? load.infinitesimal : load.external_force(packing);
     pushing.resize(packing.q.size(), 0.0);
     return pushing;
 }
 
 /// The multiplier of a contact in double.
-double multiplier(const State<2>& state, const Solver& solver, std::size_t contact, bool rattles, double& largest) {
+double multiplier(const State& state, const Solver& solver, std::size_t contact, bool rattles, double& largest) {
     const Structure structure(state.packing, state.contacts);
     const std::vector<double> load = load_at(state.load, state.packing, rattles);
     Eigen::MatrixXd b(static_cast<Eigen::Index>(structure.coordinate_of.size()), 1);
@@ -34,7 +34,7 @@ bool exchanges_list(const TieRecord& tie) {
     return tie.what == "second order" || tie.what == "end";
 }
 
-std::optional<std::vector<Contact>> list_that_opens(const State<2>& state, const EventRecord& event) {
+std::optional<std::vector<Contact>> list_that_opens(const State& state, const EventRecord& event) {
     std::vector<Contact> list = state.contacts;
     for (const TieRecord& tie : event.ties) {
         if (!exchanges_list(tie)) {
@@ -53,7 +53,7 @@ std::optional<std::vector<Contact>> list_that_opens(const State<2>& state, const
 }
 
 std::optional<std::vector<Contact>> list_before(std::vector<Contact> list, const std::vector<const EventRecord*>& arcs,
-                                                const Packing<2>& packing) {
+                                                const Packing& packing) {
     const auto put_back = [&](const std::string& entered, const std::string& left) {
         const std::optional<Contact> in = contact_named(entered, packing);
         const std::optional<Contact> out = contact_named(left, packing);
@@ -76,7 +76,7 @@ std::optional<std::vector<Contact>> list_before(std::vector<Contact> list, const
 }
 
 std::optional<Opening> opening_of(const ArcStart& start, const EventRecord& event) {
-    const State<2>& from = start.state;
+    const State& from = start.state;
     const std::optional<Contact> opened = contact_named(event.opened, from.packing);
     const std::optional<Contact> closed = contact_named(event.closed, from.packing);
     const auto at = opened ? std::find(from.contacts.begin(), from.contacts.end(), *opened) : from.contacts.end();
@@ -107,7 +107,7 @@ Followed follow(const ArcStart& from, const EventRecord& event, const Opening& o
     motion.displacement = event.displacement;
     motion.solver = from.solver;
     motion.touching = from.touching;
-    Load<2> load = from.state.load;
+    Load load = from.state.load;
     load.loaded_stress() = event.stress;
     motion.power_load = [&, at = from.state.packing](const std::vector<double>& q) mutable {
         at.q = q;

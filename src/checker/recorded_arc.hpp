@@ -17,7 +17,7 @@ struct Opening {
 
 /// Where an arc starts. `solver`: factors there.
 struct ArcStart {
-    const State<2>& state;
+    const State& state;
     std::shared_ptr<const Solver> solver;
     std::vector<Contact> touching{}; ///< pairs that touch there without being contacts
 };
@@ -26,10 +26,10 @@ struct ArcStart {
 /// this kind.
 bool exchanges_list(const TieRecord& tie);
 /// The list with which the contact opens; nothing: the record names what cannot be exchanged.
-std::optional<std::vector<Contact>> list_that_opens(const State<2>& state, const EventRecord& event);
+std::optional<std::vector<Contact>> list_that_opens(const State& state, const EventRecord& event);
 /// The list from which these arcs, with their exchanges, lead to `list`; nothing: they do not.
 std::optional<std::vector<Contact>> list_before(std::vector<Contact> list, const std::vector<const EventRecord*>& arcs,
-                                                const Packing<2>& packing);
+                                                const Packing& packing);
 
 /// How the record says that its arc begins, as far as doubles tell; nothing: something is unusual.
 std::optional<Opening> opening_of(const ArcStart& from, const EventRecord& event);

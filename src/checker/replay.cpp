@@ -102,9 +102,9 @@ Range Place::length(int axis) const {
     return coordinate(2 * static_cast<std::size_t>(evidence->problem.disks) + static_cast<std::size_t>(axis));
 }
 
-Objections make_place(State<2> state, Place& place, const ExactLoad& load, int fresh,
-                      std::shared_ptr<const Solver> near, int digits) {
-    place.state = std::make_unique<State<2>>(std::move(state));
+Objections make_place(State state, Place& place, const ExactLoad& load, int fresh, std::shared_ptr<const Solver> near,
+                      int digits) {
+    place.state = std::make_unique<State>(std::move(state));
     place.evidence = std::make_unique<Evidence>(*place.state, CheckerArithmetic::automatic, true, std::move(near),
                                                 place.state->perturbation ? std::max(digits, more_digits) : digits);
     place.load = load;
@@ -139,13 +139,13 @@ Objections make_place(State<2> state, Place& place, const ExactLoad& load, int f
     return {};
 }
 
-ExactLoad meant_load(const State<2>& state) {
+ExactLoad meant_load(const State& state) {
     const auto& contacts = state.contacts;
     const auto vanishes = state.perturbation
                               ? std::find(contacts.begin(), contacts.end(), state.perturbation->load_zero)
                               : contacts.end();
     Place at;
-    if (vanishes == contacts.end() || (make_place(State<2>(state), at), !at.evidence->vertex.found)) {
+    if (vanishes == contacts.end() || (make_place(State(state), at), !at.evidence->vertex.found)) {
         return {};
     }
     const auto l = static_cast<std::size_t>(vanishes - contacts.begin());
@@ -168,8 +168,7 @@ ExactLoad meant_load(const State<2>& state) {
 Objections sharpen(Place& place, int digits) {
     Place sharper;
     sharper.chooses = place.chooses;
-    Objections open =
-        make_place(State<2>(*place.state), sharper, place.load, place.fresh, place.evidence->solver, digits);
+    Objections open = make_place(State(*place.state), sharper, place.load, place.fresh, place.evidence->solver, digits);
     if (sharper.evidence->vertex.found) {
         sharper.evidence->solver = place.evidence->solver; // the next motion starts with the same factors
         sharper.said = std::move(place.said);

@@ -58,7 +58,7 @@ Objections compare_if_bounded(const char* name, const Bounded& said, const Range
 
 /// A vertex at a load. The state stays where it is: the evidence refers to it. Forces are those at the exact load.
 struct Place {
-    std::unique_ptr<State<2>> state;
+    std::unique_ptr<State> state;
     std::unique_ptr<Evidence> evidence;
     std::vector<int> zeros; ///< structural zeros of the finite load
     ExactLoad load;
@@ -86,10 +86,10 @@ struct Place {
 
 /// The vertex near a configuration; an objection when none is proved there, or a force is neither told from 0 nor a
 /// structural zero. `near`: factors of the matrix close by, or nothing. `digits`: of the problem.
-Objections make_place(State<2> state, Place& place, const ExactLoad& load = {}, int fresh = -1,
+Objections make_place(State state, Place& place, const ExactLoad& load = {}, int fresh = -1,
                       std::shared_ptr<const Solver> near = {}, int digits = usual_digits);
 /// The load that a stored state means: where it says so that at which a force vanishes, next to the stored one.
-ExactLoad meant_load(const State<2>& state);
+ExactLoad meant_load(const State& state);
 /// The same vertex with more digits; the old one stays where none is proved. What `make_place` says of it.
 Objections sharpen(Place& place, int digits);
 
@@ -118,7 +118,7 @@ Objections check_end(const Place& from, const Place& to, const EventRecord& even
 
 /// The start of the arcs to equilibrium 0: nothing overlaps there, and the contacts are those of start.json, unless the
 /// run chose some of the pairs that touch.
-Objections check_start(const Place& place, const State<2>& given);
+Objections check_start(const Place& place, const State& given);
 
 /// The pairs that touch at the start of an arc: those that close again on a way of length O(eps) end it there.
 Objections check_step(const Place& place, const EventRecord& event, std::size_t opened, int direction);
@@ -134,7 +134,7 @@ Objections check_equilibrium(const Place& place, const EquilibriumLine& line);
 
 /// A stored state against the vertex that was reached. `start`: of the run, which may be as far from its vertex as the
 /// proof that there is one allows.
-Objections check_stored(const Place& place, const State<2>& stored, const std::optional<State<2>>& start);
+Objections check_stored(const Place& place, const State& stored, const std::optional<State>& start);
 /// The forces in its file; none may be there.
 Objections check_stored_forces(const Place& place, const std::vector<double>& forces);
 

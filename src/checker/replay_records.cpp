@@ -37,7 +37,7 @@ Objections compare(const char* name, int recorded, int found) {
 
 /// 0 without a length of reference. Axis 2: the tilt.
 Range strain_of(const Place& place, int axis) {
-    const std::array<double, 2>& lengths = place.state->load.reference_length;
+    const PerAxis<double>& lengths = place.state->load.reference_length;
     if (axis == 2) { // the tilt, over the height
         return (Range(Rational(place.state->load.reference_tilt[0])) - place.length(axis)) /
                Range(Rational(lengths[1]));
@@ -61,7 +61,7 @@ Range work(const Place& from, const Place& to, const Forces& load, double& size)
     return sum;
 }
 
-std::set<Contact> contact_set(const State<2>& state) {
+std::set<Contact> contact_set(const State& state) {
     return {state.contacts.begin(), state.contacts.end()};
 }
 
@@ -124,7 +124,7 @@ Objections check_smallest_gap(const Place& place, const EquilibriumLine& line) {
         [&](std::size_t l) { return compare("min_gap", line, near[l].value, size); });
     return found ? *found
                  : Objection{true, fmt::format("min_gap is said to be of {}, found of {}",
-                                               pair ? to_string<2>(*pair) : "no pair", to_string<2>(near[0].pair))};
+                                               pair ? to_string(*pair) : "no pair", to_string(near[0].pair))};
 }
 
 Objections check_smallest_force(const Place& place, const EquilibriumLine& line) {
@@ -178,13 +178,13 @@ Objections check_interval(const Place& place, const EquilibriumLine& line, bool 
         ExactLoad unused;
         const Range& slope = place.evidence->slopes()[opened];
         if (high ? slope.positive() : slope.negative()) {
-            return Objection{true, fmt::format("the force of {} grows in this direction", to_string<2>(*opens))};
+            return Objection{true, fmt::format("the force of {} grows in this direction", to_string(*opens))};
         }
         return place.first ? check_limit_at(place, stress, opened, unused, nullptr)
                            : check_load_end(place, stress, opened, direction);
     });
     if (!found) {
-        return Objection{true, fmt::format("{} ends the supported interval, but is no contact", to_string<2>(*opens))};
+        return Objection{true, fmt::format("{} ends the supported interval, but is no contact", to_string(*opens))};
     }
     if (*found) {
         (*found)->text = fmt::format("{}: {}", name, (*found)->text);
@@ -194,9 +194,8 @@ Objections check_interval(const Place& place, const EquilibriumLine& line, bool 
 
 /// What the record says of a pair that touches at the end; null: nothing.
 const TieRecord* said_of_gap(const EventRecord& event, const Contact& pair) {
-    const auto tie = std::find_if(event.ties.begin(), event.ties.end(), [&](const TieRecord& t) {
-        return t.what == "gap" && t.against == to_string<2>(pair);
-    });
+    const auto tie = std::find_if(event.ties.begin(), event.ties.end(),
+                                  [&](const TieRecord& t) { return t.what == "gap" && t.against == to_string(pair); });
     return tie == event.ties.end() ? nullptr : &*tie;
 }
 
@@ -208,7 +207,7 @@ bool is_first_order_step(const EventRecord& event) {
 /// A pair touches, and would overlap with radii R_i + eps rho_i.
 Objection touches(const Contact& pair, const char* where, const Range& first) {
     return {first.negative(),
-            fmt::format("{} touch at {}, first-order gap in {}", to_string<2>(pair), where, shown(first))};
+            fmt::format("{} touch at {}, first-order gap in {}", to_string(pair), where, shown(first))};
 }
 
 /// No pair overlaps. `settled`: what is to be said of pairs that touch, with their first-order gaps.
@@ -221,11 +220,11 @@ template <class Settled> Objections check_no_overlap(const Place& place, const c
             continue;
         }
         if (gap.value.negative()) {
-            return Objection{
-                true, fmt::format("{} overlap at {}, gap in {}", to_string<2>(gap.pair), where, shown(gap.value))};
+            return Objection{true,
+                             fmt::format("{} overlap at {}, gap in {}", to_string(gap.pair), where, shown(gap.value))};
         }
         if (!gap.value.positive()) {
-            return Objection{false, fmt::format("{} may overlap at {}", to_string<2>(gap.pair), where)};
+            return Objection{false, fmt::format("{} may overlap at {}", to_string(gap.pair), where)};
         }
     }
     return {};
@@ -269,7 +268,7 @@ Range fall_of_phi(const Place& from, const Place& to) {
 
 /// The recorded work is that of the finite loads, if they are dead, and the potential falls, if there is one.
 Objections check_work(const Place& from, const Place& to, const EventRecord& event, bool rattles) {
-    const Load<2>& load = to.state->load;
+    const Load& load = to.state->load;
     const bool dead = load.kind == LoadKind::nominal;
     double size = 0;
     const Range done = dead ? work(from, to, to.evidence->finite_load, size) : Range(Rational(0));
@@ -377,7 +376,7 @@ Range potential_of(const Place& place, double& size) {
 
 /// Stresses, strains, lengths, potential and solid fraction.
 Objections check_measures(const Place& place, const EquilibriumLine& line) {
-    const Load<2>& load = place.state->load;
+    const Load& load = place.state->load;
     const bool shears = load.loaded_axis == 2;
     const int other = shears ? 1 : 1 - load.loaded_axis;
     const double sigma = shears ? load.shear[0] : load.stress[static_cast<std::size_t>(load.loaded_axis)];
@@ -436,7 +435,7 @@ Objections check_end(const Place& from, const Place& to, const EventRecord& even
         return said != nullptr ? Objections() // else a run with more digits may have told the gap from 0
                                : Objection{false, fmt::format("{} touch at the end of the arc as far as is seen, and "
                                                               "the record does not name them",
-                                                              to_string<2>(pair))};
+                                                              to_string(pair))};
     };
     if (Objections wrong = check_no_overlap(to, "the end of the arc", settled)) {
         return wrong;
@@ -448,7 +447,7 @@ Objections check_end(const Place& from, const Place& to, const EventRecord& even
     return check_work(from, to, event, rattles);
 }
 
-Objections check_start(const Place& place, const State<2>& given) {
+Objections check_start(const Place& place, const State& given) {
     const auto settled = [&](const Contact& pair, const Range& first) {
         const bool left = place.chooses && first.has_zero();
         return first.positive() || left ? Objections() : touches(pair, "the start", first);
@@ -492,7 +491,7 @@ Objections check_terms(const char* what, const std::vector<std::pair<Contact, En
     for (const auto& [contact, term] : said) {
         const auto at = std::find_if(found.begin(), found.end(),
                                      [&contact = contact](const Gap& one) { return one.pair == contact; });
-        const std::string name = fmt::format("the first-order {} of {}", what, to_string<2>(contact));
+        const std::string name = fmt::format("the first-order {} of {}", what, to_string(contact));
         if (at == found.end()) {
             return Objection{true, name + ": there is no such one"};
         }
@@ -523,7 +522,7 @@ Objections check_direction(const Place& place, const RadiusPerturbation& said) {
         std::find_if(zero.begin(), zero.end(), [&](const Gap& one) { return one.pair == said.load_zero; });
     if ((said.load_zero.i >= 0) != at_limit || (at_limit && named == zero.end())) {
         return Objection{true, fmt::format("load_zero is {}: {} vanishes at the exact load",
-                                           said.load_zero.i < 0 ? "missing" : to_string<2>(said.load_zero),
+                                           said.load_zero.i < 0 ? "missing" : to_string(said.load_zero),
                                            at_limit ? "another force" : "no force")};
     }
     return at_limit ? check_said("stress_rate", {said.stress_rate.value, said.stress_rate.radius}, place.load.rate)
@@ -533,7 +532,7 @@ Objections check_direction(const Place& place, const RadiusPerturbation& said) {
 /// The doubles of a stored state against the vertex that was reached. Where they are farther from it than doubles of a
 /// well conditioned packing, but its contacts are as closed as doubles allow, or it is the start of the run as it was
 /// given, the vertex near the stored state tells.
-Objections check_coordinates(const Place& place, const State<2>& stored, bool given) {
+Objections check_coordinates(const Place& place, const State& stored, bool given) {
     const double size = stored.packing.max_radius();
     Objections wrong;
     for (std::size_t k = 0; k < stored.packing.q.size() && !wrong; ++k) {
@@ -565,17 +564,17 @@ Objections check_coordinates(const Place& place, const State<2>& stored, bool gi
 
 } // namespace
 
-Objections check_stored(const Place& place, const State<2>& stored, const std::optional<State<2>>& start) {
+Objections check_stored(const Place& place, const State& stored, const std::optional<State>& start) {
     if (contact_set(stored) != contact_set(*place.state)) {
         return Objection{true, "the stored state has other contacts"};
     }
-    const Packing<2>& here = place.state->packing;
+    const Packing& here = place.state->packing;
     if (stored.packing.radius != here.radius || !(stored.packing.walls == here.walls) ||
         stored.packing.fixed != here.fixed || !(stored.packing.cell == here.cell)) {
         return Objection{true, "the stored state has other disks or walls, or another cell"};
     }
-    const Load<2>& a = stored.load;
-    const Load<2>& b = place.state->load;
+    const Load& a = stored.load;
+    const Load& b = place.state->load;
     if (a.stress != b.stress || a.shear != b.shear || a.kind != b.kind || a.reference_length != b.reference_length ||
         a.reference_tilt != b.reference_tilt || a.loaded_axis != b.loaded_axis || a.disk_force != b.disk_force ||
         a.infinitesimal != b.infinitesimal) {

@@ -76,7 +76,7 @@ long made_in_segment(const RunRecords& records) {
 }
 
 /// The strains of a row: along the other axis, along the loaded one and of the third length, where there is one.
-std::vector<std::pair<const char*, std::size_t>> strain_columns(const Load<2>& load, std::size_t count) {
+std::vector<std::pair<const char*, std::size_t>> strain_columns(const Load& load, std::size_t count) {
     const auto loaded = static_cast<std::size_t>(load.loaded_axis);
     const auto other = static_cast<std::size_t>(load.other_axis());
     std::vector<std::pair<const char*, std::size_t>> columns{{"eps1", other}, {"eps2", loaded}};
@@ -87,14 +87,13 @@ std::vector<std::pair<const char*, std::size_t>> strain_columns(const Load<2>& l
 }
 
 /// \pre there is a row
-Objections check_checkpoint(const CheckedRecords& checked, const RunRecords& records, const State<2>& last) {
+Objections check_checkpoint(const CheckedRecords& checked, const RunRecords& records, const State& last) {
     const Field file(checked.checkpoint, (records.directory / "checkpoint.json").string());
     const EquilibriumLine& row = records.equilibria.back();
     const auto rows = static_cast<long>(records.equilibria.size());
     Repeated here("checkpoint.json");
     if (checked.state != read_text(records.directory / "states" / "last.json")) {
-        const std::string difference =
-            state_difference(last, parse_any_state<2>(checked.state, "checkpoint.json").state);
+        const std::string difference = state_difference(last, parse_any_state(checked.state, "checkpoint.json").state);
         return wrong(fmt::format("states/last.json: {} is not that of checkpoint.json",
                                  difference.empty() ? "a recorded result" : difference));
     }
@@ -127,7 +126,7 @@ std::string without_seconds(const Field& counters) {
 }
 
 Objections check_summary(const std::optional<CheckedRecords>& checked, const RunRecords& records,
-                         const std::optional<State<2>>& last) {
+                         const std::optional<State>& last) {
     const fs::path path = records.directory / "summary.json";
     const json::Json parsed = Field::parse(read_text(path), path.string());
     const Field summary(parsed, path.string());
@@ -193,13 +192,13 @@ Objections check_folder(const fs::path& directory, const RunRecords& records) {
     if (Objections damage = checked ? check_digests(directory, *checked, records) : Objections()) {
         return damage;
     }
-    std::optional<State<2>> last;
+    std::optional<State> last;
     if (!records.equilibria.empty()) {
         const fs::path path = directory / "states" / "last.json";
         if (!fs::exists(path)) {
             return wrong("states/last.json is missing");
         }
-        last = read_any_state<2>(path).state;
+        last = read_any_state(path).state;
     }
     if (Objections other = checked && last ? check_checkpoint(*checked, records, *last) : Objections()) {
         return other;

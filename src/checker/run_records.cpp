@@ -127,12 +127,12 @@ void require_spelling(const EquilibriumLine& line, const std::string& what) {
 
 } // namespace
 
-std::optional<StateFile<2>> RunRecords::stored(int equilibrium) const {
+std::optional<StateFile> RunRecords::stored(int equilibrium) const {
     const std::filesystem::path path = states / fmt::format("eq_{:06}.json", equilibrium);
     if (!std::filesystem::exists(path)) {
         return {};
     }
-    return read_any_state<2>(path);
+    return read_any_state(path);
 }
 
 RunRecords read_records(const std::filesystem::path& directory, LastLine last) {
@@ -167,7 +167,7 @@ RunRecords read_records(const std::filesystem::path& directory, LastLine last) {
     records.certified_states = level == "states" || records.certified_arcs;
     records.states = directory / "states";
     if (std::filesystem::exists(directory / "start.json")) {
-        records.start = read_any_state<2>(directory / "start.json").state;
+        records.start = read_any_state(directory / "start.json").state;
     }
     // A run that never left its start has no events: the file is empty then.
     const std::filesystem::path events = directory / "events.jsonl";

@@ -51,9 +51,9 @@ struct RunRecords {
     std::vector<EventRecord> events;
     std::vector<EquilibriumLine> equilibria;
     std::filesystem::path states;
-    std::optional<State<2>> start; ///< start.json; may be far from the true vertex, until the first arc
+    std::optional<State> start; ///< start.json; may be far from the true vertex, until the first arc
     /// The stored state of an equilibrium, with its forces, if there is one.
-    [[nodiscard]] std::optional<StateFile<2>> stored(int equilibrium) const;
+    [[nodiscard]] std::optional<StateFile> stored(int equilibrium) const;
 };
 
 /// Throws `Error(bad_input)`.
@@ -63,10 +63,10 @@ RunRecords read_records(const std::filesystem::path& directory, LastLine last = 
 /// in the one spelling that records have; nothing for anything else.
 std::optional<Contact> contact_spelt(std::string_view name);
 /// The same, of a packing.
-std::optional<Contact> contact_named(std::string_view name, const Packing<2>& packing);
+std::optional<Contact> contact_named(std::string_view name, const Packing& packing);
 
 /// The two columns of a contact in equilibria.csv; nothing for "none". They do not name the image: `may_be`.
-std::optional<Contact> contact_of_columns(int i, int j, const Packing<2>& packing);
+std::optional<Contact> contact_of_columns(int i, int j, const Packing& packing);
 /// The pair of such columns, whichever image it is with.
 bool may_be(const Contact& columns, const Contact& pair);
 

@@ -15,7 +15,7 @@ bool same(const std::optional<RadiusPerturbation>& a, const std::optional<Radius
 
 } // namespace
 
-std::string state_difference(const State<2>& a, const State<2>& b) {
+std::string state_difference(const State& a, const State& b) {
     const std::vector<std::pair<const char*, bool>> fields{
         {"the list of radii", a.packing.radius == b.packing.radius},
         {"a coordinate", a.packing.q == b.packing.q},

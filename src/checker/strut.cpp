@@ -10,7 +10,7 @@ namespace {
 using Vector = std::array<double, 2>;
 
 /// From the disk to what it touches through the contact.
-Vector outward(const State<2>& state, const Contact& c, std::size_t disk) {
+Vector outward(const State& state, const Contact& c, std::size_t disk) {
     if (c.kind != ContactKind::disk_disk) {
         Vector normal{};
         normal[static_cast<std::size_t>(c.j)] = c.kind == ContactKind::upper_wall ? 1 : -1;
@@ -36,7 +36,7 @@ struct Bare {
 
     /// `loose`: earlier held coordinates that tie no disk.
     Bare(const Place& place, const std::vector<int>& loose) {
-        const State<2>& state = *place.state;
+        const State& state = *place.state;
         const Problem& problem = place.evidence->problem;
         const auto disks = static_cast<std::size_t>(problem.disks);
         movable.assign(disks, true);
@@ -71,7 +71,7 @@ struct Bare {
 
   private:
     /// Leaves out every disk that can be; false when there was none.
-    bool sweep(const State<2>& state) {
+    bool sweep(const State& state) {
         around.assign(movable.size(), {});
         for (std::size_t l = 0; l < state.contacts.size(); ++l) {
             const Contact& c = state.contacts[l];
@@ -121,7 +121,7 @@ struct Bare {
 
 /// The disks that hang together with `first` when the contacts a and b are cut; nothing when a wall does, or a disk
 /// that is not movable.
-std::optional<std::vector<unsigned char>> group(const State<2>& state, const Bare& bare, int first, std::size_t a,
+std::optional<std::vector<unsigned char>> group(const State& state, const Bare& bare, int first, std::size_t a,
                                                 std::size_t b) {
     std::vector<unsigned char> inside(bare.movable.size(), 0);
     std::vector<int> open{first};
@@ -177,7 +177,7 @@ bool same_at_turn(const Place& place, std::size_t a, std::size_t b) {
 namespace {
 
 std::vector<bool> without_force(const Place& place, const std::vector<int>& loose) {
-    const State<2>& state = *place.state;
+    const State& state = *place.state;
     const Bare bare(place, loose);
     std::vector<bool> nothing = bare.left_out;
     for (std::size_t l = 0; l < nothing.size(); ++l) {
@@ -238,7 +238,7 @@ bool holds_may_explain(const Place& place, std::size_t a, std::size_t b) {
 }
 
 std::optional<int> strut_order(const Place& place, std::size_t a, std::size_t b) {
-    const State<2>& state = *place.state;
+    const State& state = *place.state;
     const Contact& first = state.contacts[a];
     const Contact& second = state.contacts[b];
     if (first.kind == ContactKind::held || second.kind == ContactKind::held) {

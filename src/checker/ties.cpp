@@ -21,7 +21,7 @@ namespace {
 
 /// One pair was chosen by name to close before another, after ways that are not told apart.
 bool chosen_step(const EventRecord& event, const Contact& chosen, const Contact& other) {
-    const TieRecord* tie = recorded_choice(event.ties, "step", to_string<2>(chosen), to_string<2>(other));
+    const TieRecord* tie = recorded_choice(event.ties, "step", to_string(chosen), to_string(other));
     return tie != nullptr && tie->choice == "names" && chosen < other;
 }
 
@@ -36,7 +36,7 @@ std::optional<std::size_t> position(const Place& place, const std::string& name)
 
 std::vector<Gap>::const_iterator touching_pair(const Place& place, const std::string& name) {
     return std::find_if(place.touching.begin(), place.touching.end(),
-                        [&name](const Gap& gap) { return to_string<2>(gap.pair) == name; });
+                        [&name](const Gap& gap) { return to_string(gap.pair) == name; });
 }
 
 /// First-order gap of a pair that touches.
@@ -177,7 +177,7 @@ struct Arc {
     /// Going back, a pair that touches at the end does not overlap; one that overlaps at first order touched all along,
     /// or only grazes here (C1 g): else it closed before. `back`: the motion back; null: the arc has no length.
     [[nodiscard]] Objections check_back(const Gap& pair, const Velocities::Solution* back) const {
-        const std::string name = to_string<2>(pair.pair);
+        const std::string name = to_string(pair.pair);
         if (back == nullptr) {
             const bool overlapped = std::any_of(from.touching.begin(), from.touching.end(),
                                                 [](const Gap& gap) { return !gap.value.positive(); });
@@ -272,7 +272,7 @@ Objections check_step(const Place& place, const EventRecord& event, std::size_t 
     for (const Gap& gap : place.touching) {
         const Range rate = velocities.gap_rate(gap.pair, motion);
         if (rate.negative()) { // else it opens, or stays as far as is seen
-            const auto at = event.closed == to_string<2>(gap.pair) ? ways.begin() : ways.end();
+            const auto at = event.closed == to_string(gap.pair) ? ways.begin() : ways.end();
             ways.insert(at, {gap.pair, gap.value / (Range(Rational(0)) - rate)});
         }
     }
@@ -284,16 +284,16 @@ Objections check_step(const Place& place, const EventRecord& event, std::size_t 
             first = way.pair;
         } else if (!(shortest->upper < way.value.lower) && !chosen_step(event, *first, way.pair)) {
             return Objection{false, fmt::format("{} and {} close after ways that are equal at first order",
-                                                to_string<2>(*first), to_string<2>(way.pair))};
+                                                to_string(*first), to_string(way.pair))};
         }
     }
     if (said != first.has_value()) {
-        return Objection{true, first ? fmt::format("{} touch and close at once at first order", to_string<2>(*first))
+        return Objection{true, first ? fmt::format("{} touch and close at once at first order", to_string(*first))
                                      : "a step of length O(eps), but no pair that touches closes"};
     }
-    if (first && event.closed != to_string<2>(*first)) {
-        return Objection{
-            true, fmt::format("{} closes, but at first order {} close before", event.closed, to_string<2>(*first))};
+    if (first && event.closed != to_string(*first)) {
+        return Objection{true,
+                         fmt::format("{} closes, but at first order {} close before", event.closed, to_string(*first))};
     }
     return {};
 }

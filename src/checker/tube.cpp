@@ -88,7 +88,7 @@ Pair<Bounds> difference(const std::vector<double>& x, const Contact& c, std::siz
 }
 
 bool Moving::of_cell(const std::vector<bool>& flags) const {
-    const Packing<2>& packing = state.packing;
+    const Packing& packing = state.packing;
     bool any = false;
     for (std::size_t a = 0; a < 3 && packing.cell.any(); ++a) {
         any = any || ((a == 2 || packing.cell.periodic[a]) && flags[packing.length_at(a)]);
@@ -162,7 +162,7 @@ double square_weight(const Contact& c) {
 } // namespace
 
 struct Tube::Linear {
-    explicit Linear(const State<2>& state) : problem(state, true), solver(problem) {}
+    explicit Linear(const State& state) : problem(state, true), solver(problem) {}
     Problem problem;
     Solver solver;
 
@@ -182,7 +182,7 @@ struct Tube::Linear {
 };
 
 std::unique_ptr<Tube> Tube::make(const Moving& moving, std::vector<double> centre, int row, int direction) {
-    State<2> state = moving.state;
+    State state = moving.state;
     state.packing.q = centre;
     state.contacts = moving.kept;
     for (const Contact& c : moving.kept) {
@@ -271,7 +271,7 @@ void Tube::expand() {
 
 /// Coefficients of every F_l along p, whatever the polynomial is.
 void Tube::bound_residuals() {
-    const Packing<2>& packing = moving_.state.packing;
+    const Packing& packing = moving_.state.packing;
     const std::size_t disks = packing.radius.size();
     const std::size_t order = a_.size();
     for (const Contact& c : moving_.kept) {
@@ -509,7 +509,7 @@ std::vector<double> Tube::multipliers(const std::vector<double>& force) const {
 std::vector<double> Tube::corrected(double s) const {
     double unused = 0;
     std::vector<double> q = point(s, unused);
-    const Packing<2>& packing = moving_.state.packing;
+    const Packing& packing = moving_.state.packing;
     const std::size_t disks = packing.radius.size();
     for (int step = 0; step < 4; ++step) {
         std::vector<double> right;

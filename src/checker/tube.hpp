@@ -15,7 +15,7 @@ namespace isostat::checker {
 
 /// What moves along one arc, and the equations: one less than the coordinates that move.
 struct Moving {
-    State<2> state;               ///< coordinates of the start; grains that do not move are marked as fixed
+    State state;                  ///< coordinates of the start; grains that do not move are marked as fixed
     std::vector<Contact> kept;    ///< that a moving grain takes part in
     std::vector<int> coordinates; ///< that move, in their order
     std::vector<bool> moves;      ///< per coordinate

@@ -147,7 +147,7 @@ class Replay {
     }
 
     /// `here_` becomes the vertex near a state; empty when none is proved.
-    void go_to(State<2> state, const std::string& where, const ExactLoad& load) {
+    void go_to(State state, const std::string& where, const ExactLoad& load) {
         Place place;
         place.chooses = records_.chooses;
         here_ = {};
@@ -158,7 +158,7 @@ class Replay {
     }
 
     /// The same at the load that its file means.
-    void go_to_stored(State<2> state, const std::string& where) {
+    void go_to_stored(State state, const std::string& where) {
         const ExactLoad load = meant_load(state);
         go_to(std::move(state), where, load);
     }
@@ -254,7 +254,7 @@ class Replay {
     void begin(const EquilibriumLine& line, const std::vector<const EventRecord*>& arcs) {
         expect(line.integer("previous") == -1, line.where,
                fmt::format("previous is {}, expected -1: there is none before", line.integer("previous")));
-        std::optional<StateFile<2>> file = records_.stored(0);
+        std::optional<StateFile> file = records_.stored(0);
         if (!expect(file.has_value() || !is_row(0), line.where,
                     "states/eq_000000.json, the start of the replay, is missing")) {
             return;
@@ -269,7 +269,7 @@ class Replay {
             leave(line.where, "the arcs from the start are not checked: there is no start.json");
             return;
         }
-        State<2> start = *records_.start;
+        State start = *records_.start;
         if (file) {
             auto list = list_before(std::move(file->state.contacts), arcs, start.packing);
             if (!expect(list.has_value(), line.where, "its arcs do not lead to the contacts of equilibrium 0")) {
@@ -308,7 +308,7 @@ class Replay {
 
     /// In a cell a run puts the pinned disk on its grid too, which becomes coarser as coordinates grow; here it stays.
     bool pin_may_have_moved() {
-        const Packing<2>& packing = here_.state->packing;
+        const Packing& packing = here_.state->packing;
         coarsest_ = std::max(coarsest_, grid_step(packing));
         const auto off = [&](std::size_t a) {
             return packing.cell.periodic[a] &&
@@ -420,7 +420,7 @@ class Replay {
                 !judged(check_exchange(here_, tie, change.position), event.where)) {
                 return false;
             }
-            State<2> state = *here_.state;
+            State state = *here_.state;
             std::replace(state.contacts.begin(), state.contacts.end(), *contact_named(tie.against, state.packing),
                          *contact_named(tie.contact, state.packing));
             state.load.loaded_stress() = event.stress;
@@ -469,7 +469,7 @@ class Replay {
         if (witness) {
             const Way way{change.position,       change.direction, change.rattles,
                           event.kind == "limit", event.stress,     *witness};
-            State<2> state = *here_.state;
+            State state = *here_.state;
             missing = end_of(here_, change.closed, way, state);
             missing = missing ? missing : make_place(state, next, change.load, fresh(event, change));
             missing = missing ? missing : prove_way(here_, next, way);
@@ -483,7 +483,7 @@ class Replay {
 
     /// The end where only the list changes.
     Objections stay(Place& next, const EventRecord& event, const Change& change) {
-        State<2> state = *here_.state;
+        State state = *here_.state;
         state.contacts[change.position] = change.closed;
         state.load.loaded_stress() = event.stress;
         return make_place(std::move(state), next, change.load, fresh(event, change));
@@ -551,14 +551,14 @@ class Replay {
 
     /// A row without arcs: the same vertex under another load.
     void reload(const EquilibriumLine& line) {
-        State<2> state = *here_.state;
+        State state = *here_.state;
         state.load.loaded_stress() = line.at("sigma2");
         go_to(std::move(state), line.where, {});
     }
 
     /// Where the replay was lost, a stored state takes it up again.
     void resume(const EquilibriumLine& line) {
-        std::optional<StateFile<2>> file = records_.stored(line.integer("number"));
+        std::optional<StateFile> file = records_.stored(line.integer("number"));
         if (file) {
             go_to_stored(std::move(file->state), line.where);
         } else {
@@ -576,7 +576,7 @@ class Replay {
         }
         if (here_.first && here_.ties.empty() && (here_.load.shift.lower != 0 || here_.load.shift.upper != 0)) {
             const std::vector<TieRecord> said = here_.said;
-            go_to(State<2>(*here_.state), line.where, {}); // no force vanishes: the load is the stored one
+            go_to(State(*here_.state), line.where, {}); // no force vanishes: the load is the stored one
             if (!here_.state) {
                 return;
             }
@@ -604,7 +604,7 @@ class Replay {
         if (!std::filesystem::exists(path)) {
             return true;
         }
-        const StateFile<2> file = read_any_state<2>(path);
+        const StateFile file = read_any_state(path);
         return expect(file.state.equilibrium == line.integer("number"), name,
                       fmt::format("equilibrium is {}, expected {}", file.state.equilibrium, line.integer("number"))) &&
                judged(check_stored(here_, file.state, records_.start), name) &&
@@ -624,7 +624,7 @@ class Replay {
     const EquilibriumLine* before_ = nullptr; ///< where the rearrangement started
     std::size_t event_ = 0;
     struct Reached {
-        std::optional<State<2>> state; ///< nothing: the replay was lost
+        std::optional<State> state; ///< nothing: the replay was lost
         ExactLoad load;
         bool stored = false;         ///< it is that of the state file
         std::size_t first_event = 0; ///< of the rearrangement towards it

@@ -21,7 +21,7 @@ Objections open(std::string why) {
 }
 
 /// Whether a coordinate of the packing belongs to one of the grains.
-std::vector<bool> moving_coordinates(const State<2>& state, const Problem& problem, const Witness& witness) {
+std::vector<bool> moving_coordinates(const State& state, const Problem& problem, const Witness& witness) {
     std::vector<bool> moves(state.packing.q.size(), false);
     const std::set<int> grains =
         witness.grains ? std::set<int>(witness.grains->begin(), witness.grains->end()) : std::set<int>();
@@ -73,7 +73,7 @@ class Follower {
 
 /// What does not move is marked so.
 void Follower::let_rest() {
-    Packing<2>& packing = moving_.state.packing;
+    Packing& packing = moving_.state.packing;
     packing.fixed.assign(packing.radius.size(), 1);
     for (std::size_t i = 0; i < packing.radius.size(); ++i) {
         packing.fixed[i] = moving_.moves[2 * i] ? 0 : 1;
@@ -91,7 +91,7 @@ void Follower::let_rest() {
 }
 
 Objections Follower::set_up() {
-    const State<2>& start = *from_.state;
+    const State& start = *from_.state;
     const Problem& problem = from_.evidence->problem;
     const std::vector<bool> moves = moving_coordinates(start, problem, way_.witness);
     moving_.state = start;
@@ -131,7 +131,7 @@ Objections Follower::set_up() {
     end_off_ = product_above(rounded_up(b), coordinates);
     for (const Gap& gap : smallest_gaps(problem, start, from_.evidence->vertex)) {
         if (!way_.end_only && !gap.value.positive()) {
-            return open(fmt::format("the gap of {} is not proved positive at the start", to_string<2>(gap.pair)));
+            return open(fmt::format("the gap of {} is not proved positive at the start", to_string(gap.pair)));
         }
     }
     return {};
@@ -139,7 +139,7 @@ Objections Follower::set_up() {
 
 /// The load of the record: bounds of the exact products.
 void Follower::load() {
-    const Load<2>& load = from_.state->load;
+    const Load& load = from_.state->load;
     const std::vector<double>& on_disks = way_.rattles ? load.infinitesimal : load.disk_force;
     pushing_.fixed.assign(moving_.moves.size(), Bounds(0));
     std::copy(on_disks.begin(), on_disks.end(), pushing_.fixed.begin());
@@ -165,7 +165,7 @@ std::unique_ptr<Tube> Follower::tube_at(std::vector<double> centre, int row, int
 
 /// The fastest coordinate at the start and its direction are found with any row that serves.
 std::unique_ptr<Tube> Follower::start() {
-    State<2> state = moving_.state;
+    State state = moving_.state;
     state.contacts = moving_.kept;
     state.contacts.push_back(opened());
     const Problem problem(state, true);
@@ -245,7 +245,7 @@ Objections Follower::arrive(const Bounds& place) {
         return open(trouble_);
     }
     if (closed().kind != ContactKind::held && !gaps_->falls(closed())) {
-        return open(fmt::format("the gap of {} is not proved to fall to 0 at the end", to_string<2>(closed())));
+        return open(fmt::format("the gap of {} is not proved to fall to 0 at the end", to_string(closed())));
     }
     return {};
 }
@@ -338,7 +338,7 @@ Objections Follower::prove() {
 
 } // namespace
 
-Objections end_of(const Place& from, const Contact& closed, const Way& way, State<2>& end) {
+Objections end_of(const Place& from, const Contact& closed, const Way& way, State& end) {
     const std::vector<bool> moves = moving_coordinates(*from.state, from.evidence->problem, way.witness);
     end = *from.state;
     end.contacts[way.opened] = closed;
@@ -362,7 +362,7 @@ Objections end_of(const Place& from, const Contact& closed, const Way& way, Stat
     for (const Contact& c : from.state->contacts) {
         if (c.kind == ContactKind::held && end.packing.q[at(c.i)] != from.state->packing.q[at(c.i)] &&
             std::find(end.contacts.begin(), end.contacts.end(), c) != end.contacts.end()) {
-            return open(fmt::format("{} is at another place at the end", to_string<2>(c)));
+            return open(fmt::format("{} is at another place at the end", to_string(c)));
         }
     }
     return {};

@@ -20,7 +20,7 @@ struct Way {
 
 /// The state in which the witness says that the arc ends: its contacts are those of `from`, the opened one replaced.
 /// An objection when the witness does not fit the arc.
-Objections end_of(const Place& from, const Contact& closed, const Way& way, State<2>& end);
+Objections end_of(const Place& from, const Contact& closed, const Way& way, State& end);
 
 /// Nothing: from the true vertex of `from` the kept contacts define one curve on the side on which the opened one
 /// opens; it reaches the true vertex of `to`; strictly between the two every other gap is positive, and so is the power

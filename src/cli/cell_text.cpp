@@ -10,7 +10,7 @@ namespace isostat::cli {
 
 namespace {
 
-std::vector<std::string> moving(const Cell<2>& cell) {
+std::vector<std::string> moving(const Cell& cell) {
     std::vector<std::string> names;
     if (cell.keeps_shape) {
         return {"scale"};
@@ -48,7 +48,7 @@ Json strains_json(const StrainCounts& counts) {
     return out;
 }
 
-std::string cell_words(const Packing<2>& packing) {
+std::string cell_words(const Packing& packing) {
     std::string text;
     for (std::size_t a = 0; a < 2; ++a) {
         text += fmt::format("{}{} ({})", a == 0 ? "" : " x ", packing.length(static_cast<int>(a)),
@@ -76,15 +76,15 @@ void print_cell(const CellInspection& cell) {
     if (cell.backbone) {
         print_counts(fmt::format("backbone, {} disks", cell.backbone_disks), *cell.backbone);
         say("{:<24} {} for a bulk modulus, {} for all moduli (Goodrich et al., by counting); here {}\n",
-            "contacts needed", contacts_for_bulk_modulus<2>(cell.backbone_disks),
-            contacts_for_all_moduli<2>(cell.backbone_disks), (*cell.backbone)[0].contact_count);
+            "contacts needed", contacts_for_bulk_modulus(cell.backbone_disks, cell.dimension),
+            contacts_for_all_moduli(cell.backbone_disks, cell.dimension), (*cell.backbone)[0].contact_count);
     }
     print_answer("jammed locally", cell.local);
     print_answer("jammed collectively", cell.collective);
     print_answer("jammed strictly", cell.strict);
 }
 
-Json cell_json(const Packing<2>& packing, const CellInspection& cell) {
+Json cell_json(const Packing& packing, const CellInspection& cell) {
     Json out;
     out["moves"] = moving(packing.cell);
     out["tilt"] = number(packing.lattice(0, 1));
@@ -96,8 +96,8 @@ Json cell_json(const Packing<2>& packing, const CellInspection& cell) {
         out["jammed"][name] = {{"verdict", to_string(answer->verdict)}, {"reason", answer->reason}};
     }
     if (cell.backbone) {
-        out["contacts_for_bulk_modulus"] = contacts_for_bulk_modulus<2>(cell.backbone_disks);
-        out["contacts_for_all_moduli"] = contacts_for_all_moduli<2>(cell.backbone_disks);
+        out["contacts_for_bulk_modulus"] = contacts_for_bulk_modulus(cell.backbone_disks, cell.dimension);
+        out["contacts_for_all_moduli"] = contacts_for_all_moduli(cell.backbone_disks, cell.dimension);
     }
     return out;
 }

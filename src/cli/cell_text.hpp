@@ -9,7 +9,7 @@
 namespace isostat::cli {
 
 /// "15.4 x 14.8, tilt 0; x, y move, disk 0 is pinned".
-std::string cell_words(const Packing<2>& packing);
+std::string cell_words(const Packing& packing);
 
 /// Counts of the stored coordinates, one row for each way to strain the cell.
 void print_counts(const std::string& title, const StrainCounts& counts);
@@ -17,6 +17,6 @@ Json strains_json(const StrainCounts& counts);
 
 /// The counts side by side, the words of jamming, and the count of contacts that elastic moduli need.
 void print_cell(const CellInspection& cell);
-Json cell_json(const Packing<2>& packing, const CellInspection& cell);
+Json cell_json(const Packing& packing, const CellInspection& cell);
 
 } // namespace isostat::cli

@@ -37,8 +37,8 @@ int status_of(FailureKind kind) {
     }
 }
 
-Result<State<2>> prepare_start(const Scene& scene, const std::string& command, bool quiet,
-                               const std::filesystem::path& failed_path) {
+Result<State> prepare_start(const Scene& scene, const std::string& command, bool quiet,
+                            const std::filesystem::path& failed_path) {
     StatusLine line(quiet);
     PreparationOptions options = scene.preparation;
     options.stop = &stop_flag();
@@ -55,8 +55,8 @@ Result<State<2>> prepare_start(const Scene& scene, const std::string& command, b
         }
         line.show(fmt::format("preparation: {}: {:3.0f} % {}", progress.stage, 100 * progress.fraction, progress.text));
     };
-    PreparationReport<2> report;
-    Result<State<2>> prepared = isostat::prepare<2>(options, report);
+    PreparationReport report;
+    Result<State> prepared = isostat::prepare(options, report);
     line.clear();
     std::string tied; // what the run has to settle, as far as doubles know
     const bool settles = scene.run.at_first_order() && !scene.programme.empty();
@@ -79,7 +79,7 @@ Result<State<2>> prepare_start(const Scene& scene, const std::string& command, b
                                           to_string(prepared.failure().kind), prepared.failure().message());
         if (report.last) {
             message += advice(scene, prepared.failure(), *report.last);
-            write_packing<2>(failed_path, *report.last, message);
+            write_packing(failed_path, *report.last, message);
             message += fmt::format(" (what was reached is in {})", failed_path.string());
         }
         return Failure{prepared.failure().kind, message};

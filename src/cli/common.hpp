@@ -42,7 +42,7 @@ template <class Arguments> FolderMode mode_of(const Arguments& arguments) {
 
 /// Prepares the packing of a scene with progress on the terminal. After a failure, what was reached is in `failed`
 /// (atomically).
-Result<State<2>> prepare_start(const Scene& scene, const std::string& command, bool quiet,
-                               const std::filesystem::path& failed);
+Result<State> prepare_start(const Scene& scene, const std::string& command, bool quiet,
+                            const std::filesystem::path& failed);
 
 } // namespace isostat::cli

@@ -25,12 +25,12 @@ namespace isostat::cli {
 namespace {
 
 /// Equilibrium 0 of a run, or a state file.
-State<2> start_of(const std::string& reference) {
+State start_of(const std::string& reference) {
     const std::filesystem::path path = reference;
     if (std::filesystem::is_directory(path)) {
         (void)content_of(path, run_folder);
     }
-    return read_any_state<2>(std::filesystem::is_directory(path) ? path / state_name(0) : path).state;
+    return read_any_state(std::filesystem::is_directory(path) ? path / state_name(0) : path).state;
 }
 
 std::string shown(double x) {
@@ -97,7 +97,7 @@ void print_ends(const compare::Comparison& comparison, double stiffness) {
             "K for 1e-3", "opens");
         for (const compare::PathEquilibrium& e : comparison.path) {
             say("{:>5} {:>10.6f} {:>10.6f} {:>12.6f} {:>11}  {}\n", e.number, e.low, e.high, e.soft_limit,
-                shown(e.stiffness_needed), e.opens.i < 0 ? "-" : to_string<2>(e.opens));
+                shown(e.stiffness_needed), e.opens.i < 0 ? "-" : to_string(e.opens));
         }
     }
     if (!comparison.path_end.empty()) {

@@ -62,7 +62,7 @@ std::string series_text(const std::vector<fs::path>& files) {
     std::string text;
     std::vector<double> first;
     for (const fs::path& file : files) {
-        const Packing<2> packing = read_any_state<2>(file).state.packing;
+        const Packing packing = read_any_state(file).state.packing;
         if (first.empty()) {
             first = packing.q;
         }
@@ -88,7 +88,7 @@ int export_states(const ExportArguments& arguments) {
         text = series_text(files);
     } else {
         files = {files.back()};
-        const Packing<2> packing = read_any_state<2>(files.front()).state.packing;
+        const Packing packing = read_any_state(files.front()).state.packing;
         text =
             format == "csv"
                 ? csv_text(packing)

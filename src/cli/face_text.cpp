@@ -16,7 +16,7 @@ namespace {
 std::vector<std::string> names_of(const std::vector<std::pair<Contact, Enclosure>>& noted) {
     std::vector<std::string> names;
     for (const auto& [contact, term] : noted) {
-        names.push_back(to_string<2>(contact));
+        names.push_back(to_string(contact));
     }
     return names;
 }
@@ -26,7 +26,7 @@ bool takes_part(const ForceFace& face, std::size_t l) {
                        [l](const std::vector<double>& stress) { return stress[l] != 0; });
 }
 
-Result<ForceFace> face_of(const State<2>& state) {
+Result<ForceFace> face_of(const State& state) {
     std::vector<Contact> touching;
     for (const auto& [pair, gap] : state.perturbation->open) {
         touching.push_back(pair);
@@ -37,7 +37,7 @@ Result<ForceFace> face_of(const State<2>& state) {
 void print_ends(const ForceFace& face) {
     for (std::size_t l = 0; l < face.pairs.size(); ++l) {
         if (takes_part(face, l)) {
-            say("  force {:<16} from {:.6g} to {:.6g}\n", to_string<2>(face.pairs[l]), face.least[l], face.most[l]);
+            say("  force {:<16} from {:.6g} to {:.6g}\n", to_string(face.pairs[l]), face.least[l], face.most[l]);
         }
     }
     say("  (the run found that these touch; the ends are computed in double, not proved)\n");
@@ -53,7 +53,7 @@ Json face_json(const Result<ForceFace>& result) {
         Json one;
         for (std::size_t l = 0; l < stress.size(); ++l) {
             if (stress[l] != 0) {
-                one[to_string<2>(face.pairs[l])] = number(stress[l]);
+                one[to_string(face.pairs[l])] = number(stress[l]);
             }
         }
         stresses.push_back(std::move(one));
@@ -61,7 +61,7 @@ Json face_json(const Result<ForceFace>& result) {
     Json between = Json::array();
     for (std::size_t l = 0; l < face.pairs.size(); ++l) {
         if (takes_part(face, l)) {
-            between.push_back({to_string<2>(face.pairs[l]), number(face.least[l]), number(face.most[l])});
+            between.push_back({to_string(face.pairs[l]), number(face.least[l]), number(face.most[l])});
         }
     }
     return {{"h", face.self_stresses.size()},
@@ -72,7 +72,7 @@ Json face_json(const Result<ForceFace>& result) {
 
 } // namespace
 
-void print_face(const State<2>& state) {
+void print_face(const State& state) {
     if (!state.perturbation) {
         return;
     }
@@ -92,7 +92,7 @@ void print_face(const State<2>& state) {
     }
 }
 
-void add_face(Json& object, const State<2>& state) {
+void add_face(Json& object, const State& state) {
     if (!state.perturbation) {
         return;
     }

@@ -10,8 +10,8 @@ namespace isostat::cli {
 
 /// Of a state that a run left with pairs that touch besides its contacts: their names, and between which ends the
 /// forces lie that are not unique. Of contacts that it left at force 0: their names. Nothing where it names none.
-void print_face(const State<2>& state);
+void print_face(const State& state);
 /// `face`: `h`, `touching`, `self_stresses`, `forces_between`, or `undecided` with the reason; `left_at_zero`.
-void add_face(Json& object, const State<2>& state);
+void add_face(Json& object, const State& state);
 
 } // namespace isostat::cli

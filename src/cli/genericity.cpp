@@ -32,7 +32,7 @@ constexpr const char* genericity_head =
     "size,seed,result,h,k,carrying,rattlers,min_force,min_gap,sigma_min,within_original\n";
 
 struct Original {
-    Packing<2> packing;
+    Packing packing;
     std::vector<Contact> contacts;
     int hyperstaticity = 0;
     int mechanisms = 0;
@@ -57,7 +57,7 @@ Original read_original(const std::string& file) {
         out.exact = inspection.value().rank_exact;
         out.title = "exact contacts of the crafted packing";
     } else if (format == "state" || format == "vertex") {
-        State<2> state = format == "state" ? parse_any_state<2>(text, file).state : parse_vertex_text(text, file);
+        State state = format == "state" ? parse_any_state(text, file).state : parse_vertex_text(text, file);
         const Counting counting = count_contacts(state.packing, state.contacts);
         out.hyperstaticity = counting.hyperstaticity;
         out.mechanisms = counting.mechanisms;
@@ -96,12 +96,12 @@ std::string list_text(const std::vector<Contact>& list, const std::vector<Contac
     constexpr int most = 8;
     for (const Contact& c : original) {
         if (!std::binary_search(list.begin(), list.end(), c) && ++lost <= most) {
-            missing += " " + to_string<2>(c);
+            missing += " " + to_string(c);
         }
     }
     for (const Contact& c : list) {
         if (!std::binary_search(original.begin(), original.end(), c) && ++gained <= most) {
-            added += " " + to_string<2>(c);
+            added += " " + to_string(c);
         }
     }
     return fmt::format("without{}{}, with{}{}", lost == 0 ? " nothing less" : missing,

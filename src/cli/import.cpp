@@ -38,7 +38,7 @@ struct Imported : compare::NearestVertex {
 
 /// Stresses and kind of load of a state, which were not stated anew.
 void keep_load(ImportArguments& a) {
-    const State<2> state = read_any_state<2>(a.file).state;
+    const State state = read_any_state(a.file).state;
     if (!state.load.disk_force.empty() || state.load.loaded_axis != 1) {
         compare::refuse(a.file,
                         "has forces on disks or another loaded axis than 1: expected a load on the walls alone");
@@ -53,7 +53,7 @@ void keep_load(ImportArguments& a) {
 
 /// The vertex of a packing of another program.
 Result<Imported> from_foreign(const ImportArguments& a, ReadPacking& file) {
-    const std::array<double, 2> stress = parse_stress(a.stress);
+    const PerAxis<double> stress = parse_stress(a.stress);
     compare::check_nearness(a.file, file.packing);
     std::optional<compare::WantedList> wanted;
     if (a.threshold || a.contacts == "plateau") {
@@ -69,7 +69,7 @@ Result<Imported> from_foreign(const ImportArguments& a, ReadPacking& file) {
     Imported out;
     out.from = file.packing.q;
     file.packing.radius = with_jitter(file.packing.radius, a.jitter, a.seed);
-    Load<2> load;
+    Load load;
     load.kind = value_of<LoadKind>(a.load, load_kind_words).value_or(LoadKind::nominal);
     load.stress = stress;
     load.refer_to(file.packing);
@@ -82,9 +82,9 @@ Result<Imported> from_foreign(const ImportArguments& a, ReadPacking& file) {
     return out;
 }
 
-void set_cell(ImportArguments& a, bool own, Packing<2>& packing) {
+void set_cell(ImportArguments& a, bool own, Packing& packing) {
     a.contacts = a.contacts.empty() ? "nearest" : a.contacts;
-    const Cell<2> before = packing.cell;
+    const Cell before = packing.cell;
     take_cell({a.file, a.cell}, packing);
     if (own && a.cell.empty()) { // a state says what moves
         packing.cell.tilt_moves = before.tilt_moves;
@@ -131,7 +131,7 @@ Result<Imported> from_vertex_text(const ImportArguments& a) {
                         "--stress or --load");
     }
     Imported out;
-    out.state = read_any_state<2>(a.file).state;
+    out.state = read_any_state(a.file).state;
     out.from = out.state.packing.q;
     out.truth = isostat::certify(out.state);
     out.contacts = "those of the vertex text";
@@ -153,7 +153,7 @@ Result<Imported> from_crafted(const ImportArguments& a, const std::string& text)
                                    exact.hyperstaticity, exact.mechanisms)};
     }
     Imported out;
-    State<2>& state = out.state;
+    State& state = out.state;
     state.packing = crafted::approximate(file.packing);
     state.contacts = exact.contacts;
     state.load.stress = parse_stress(a.stress);
@@ -248,7 +248,7 @@ std::string load_by_default(const ImportArguments& a, const Imported& found) {
 
 void print_import(const ImportArguments& a, const ReadPacking& file, const Imported& found,
                   const compare::Moves& moves) {
-    const State<2>& state = found.state;
+    const State& state = found.state;
     say("file      {} ({})\n", a.file, file.format);
     for (const std::string& note : file.notes) {
         say("          {}\n", note);
@@ -300,7 +300,7 @@ std::string advice(const ImportArguments& a, bool crafted, std::vector<double> r
 /// A state of this program is imported with a jitter, a crafted packing without.
 void require_importable(const ImportArguments& a, bool own, bool crafted) {
     if (own && a.jitter == 0) {
-        (void)read_any_state<2>(a.file); // says what is wrong where it is none
+        (void)read_any_state(a.file); // says what is wrong where it is none
         compare::refuse(a.file, "is a state of this program: expected a packing of another one, or --jitter");
     }
     if (crafted && a.jitter != 0) {
@@ -356,7 +356,7 @@ int import(const ImportArguments& arguments) {
     if (!imported.truth.claims.vertex || !imported.truth.claims.forces) {
         return undecided;
     }
-    write_state<2>(a.output, imported.state);
+    write_state(a.output, imported.state);
     if (!a.moved.empty()) {
         write_output(a.moved, moves_csv(imported, moves), moves_head);
     }

@@ -21,7 +21,7 @@ namespace isostat::cli {
 
 namespace {
 
-void print_counting(const State<2>& state, const Counting& c) {
+void print_counting(const State& state, const Counting& c) {
     say("disks                    {}\n", state.packing.disk_count());
     const bool periodic = state.packing.cell.any();
     say("{:<25}{}, solid fraction {:.6f}\n", periodic ? "cell" : "box",
@@ -41,7 +41,7 @@ void print_counting(const State<2>& state, const Counting& c) {
 }
 
 /// The smallest finite force that is no structural zero lies in it.
-Interval smallest_force(const Inspection<2>& inspection) {
+Interval smallest_force(const Inspection& inspection) {
     Interval smallest{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
     for (std::size_t l = 0; l < inspection.structural_zero.size(); ++l) {
         if (inspection.structural_zero[l] == 0) {
@@ -52,8 +52,8 @@ Interval smallest_force(const Inspection<2>& inspection) {
     return smallest;
 }
 
-void print_forces(const Inspection<2>& inspection) {
-    const EquilibriumRecord<2>& r = inspection.record;
+void print_forces(const Inspection& inspection) {
+    const EquilibriumRecord& r = inspection.record;
     const CertificateClaims& claims = inspection.truth.claims;
     if (claims.load_interval) {
         say("supported interval       from {}\n", end_text(claims.load_interval->low));
@@ -64,12 +64,12 @@ void print_forces(const Inspection<2>& inspection) {
     if (r.backbone > 0) {
         const Interval smallest = smallest_force(inspection);
         say("smallest force           {} in {} (every force known to {})\n", with_bound(smallest.lower, smallest.upper),
-            to_string<2>(r.min_force_contact), rounded_up(r.force_bound, 2));
+            to_string(r.min_force_contact), rounded_up(r.force_bound, 2));
     }
 }
 
 /// Without held coordinates, which stand in the place of a contact.
-int carrying_count(const Inspection<2>& inspection) {
+int carrying_count(const Inspection& inspection) {
     int held = 0;
     for (std::size_t l = 0; l < inspection.structural_zero.size(); ++l) {
         held += inspection.contacts[l].kind == ContactKind::held && inspection.structural_zero[l] == 0 ? 1 : 0;
@@ -77,8 +77,8 @@ int carrying_count(const Inspection<2>& inspection) {
     return inspection.record.backbone - held;
 }
 
-void print_inspection(const Inspection<2>& inspection) {
-    const EquilibriumRecord<2>& r = inspection.record;
+void print_inspection(const Inspection& inspection) {
+    const EquilibriumRecord& r = inspection.record;
     say("rattlers                 {}\n", inspection.rattlers.size());
     say("force-carrying contacts  {}\n", carrying_count(inspection));
     if (inspection.equilibrium) {
@@ -90,7 +90,7 @@ void print_inspection(const Inspection<2>& inspection) {
                 ? "there is no other pair"
                 : fmt::format("at least {} ({})", rounded_down(r.min_gap, 6),
                               r.min_gap_contact.i < 0 ? "no other pair is near"
-                                                      : "nearest: " + to_string<2>(r.min_gap_contact)));
+                                                      : "nearest: " + to_string(r.min_gap_contact)));
     }
     if (inspection.truth.claims.vertex) {
         say("largest gap of a contact at most {}\n", rounded_up(r.gap_residual, 2));
@@ -102,7 +102,7 @@ void print_inspection(const Inspection<2>& inspection) {
     say("stable                   {}\n", to_string(inspection.stable));
 }
 
-Json counting_json(const std::string& file, const State<2>& state, const Counting& c) {
+Json counting_json(const std::string& file, const State& state, const Counting& c) {
     Json object;
     object["file"] = file;
     object["disks"] = state.packing.disk_count();
@@ -119,8 +119,8 @@ Json counting_json(const std::string& file, const State<2>& state, const Countin
     return object;
 }
 
-void add_inspection(Json& object, const Inspection<2>& inspection) {
-    const EquilibriumRecord<2>& r = inspection.record;
+void add_inspection(Json& object, const Inspection& inspection) {
+    const EquilibriumRecord& r = inspection.record;
     object["rattlers"] = inspection.rattlers;
     object["backbone"] = carrying_count(inspection);
     object["held"] = r.held;
@@ -134,13 +134,13 @@ void add_inspection(Json& object, const Inspection<2>& inspection) {
             const LoadEndClaim* const known = interval && !((*interval).*end).unbounded ? &((*interval).*end) : nullptr;
             object[key] = known != nullptr ? Json::array({number(known->stress.lower), number(known->stress.upper)})
                                            : Json::array({nullptr, nullptr});
-            opens.push_back(known != nullptr ? Json(to_string<2>(known->opens)) : Json());
+            opens.push_back(known != nullptr ? Json(to_string(known->opens)) : Json());
         }
         object["opens"] = std::move(opens);
         const Interval smallest = smallest_force(inspection);
         object["min_force"] = number(r.min_force);
         object["min_force_between"] = {number(smallest.lower), number(smallest.upper)};
-        object["min_force_contact"] = to_string<2>(r.min_force_contact);
+        object["min_force_contact"] = to_string(r.min_force_contact);
         object["force_bound"] = number(r.force_bound);
         object["margin"] = number(r.margin);
     }
@@ -151,7 +151,7 @@ void add_inspection(Json& object, const Inspection<2>& inspection) {
     }
     object["min_gap"] = inspection.truth.claims.gaps ? number(r.min_gap) : Json();
     object["min_gap_contact"] = inspection.truth.claims.gaps && std::isfinite(r.min_gap) && r.min_gap_contact.i >= 0
-                                    ? Json(to_string<2>(r.min_gap_contact))
+                                    ? Json(to_string(r.min_gap_contact))
                                     : Json();
     object["verdict"] = to_string(r.verdict);
     object["stable"] = to_string(inspection.stable);
@@ -159,17 +159,17 @@ void add_inspection(Json& object, const Inspection<2>& inspection) {
 }
 
 /// The forces one by one, when a load was asked for.
-void print_forces_at(const InspectArguments& arguments, const State<2>& state, const Certification& truth) {
+void print_forces_at(const InspectArguments& arguments, const State& state, const Certification& truth) {
     for (std::size_t l = 0; arguments.at && l < truth.finite.size(); ++l) {
-        say("force {:<18} {}\n", to_string<2>(state.contacts[l]),
+        say("force {:<18} {}\n", to_string(state.contacts[l]),
             with_bound(truth.finite[l].lower, truth.finite[l].upper));
     }
 }
 
-Json forces_json(const State<2>& state, const Certification& truth) {
+Json forces_json(const State& state, const Certification& truth) {
     Json out = Json::array();
     for (std::size_t l = 0; l < truth.finite.size(); ++l) {
-        out.push_back({to_string<2>(state.contacts[l]), number(truth.finite[l].lower), number(truth.finite[l].upper)});
+        out.push_back({to_string(state.contacts[l]), number(truth.finite[l].lower), number(truth.finite[l].upper)});
     }
     return out;
 }
@@ -183,13 +183,13 @@ int inspect(const InspectArguments& arguments) {
         }
         return inspect_packing(arguments);
     }
-    StateFile<2> file = read_any_state<2>(arguments.file);
-    State<2>& state = file.state;
+    StateFile file = read_any_state(arguments.file);
+    State& state = file.state;
     if (arguments.at) {
         state.load.loaded_stress() = *arguments.at;
         file.forces.clear(); // of another load
     }
-    Result<Inspection<2>> result = inspect_vertex(state);
+    Result<Inspection> result = inspect_vertex(state);
     const Certification truth = result.ok() ? result.value().truth : certify(state);
     auto cell = state.packing.cell.all() ? std::optional(inspect_cell(state, truth)) : std::nullopt;
     const compare::Untold untold = compare::untold_by(compare::imported_rounding(state), state, truth);

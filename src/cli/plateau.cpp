@@ -43,7 +43,8 @@ void print_strains(const ReadPacking& file, const crafted::Plateau& plateau, dou
     say("\nbackbone at the threshold {:.17g}, for every way to strain the cell\n", threshold);
     print_counts(fmt::format("{} disks", disks), strains_of(file, backbone));
     say("contacts needed          {} for a bulk modulus, {} for all moduli (Goodrich et al., by counting)\n",
-        contacts_for_bulk_modulus<2>(disks), contacts_for_all_moduli<2>(disks));
+        contacts_for_bulk_modulus(disks, file.packing.dimension),
+        contacts_for_all_moduli(disks, file.packing.dimension));
     say("jammed                   undecided: that asks for forces; counts alone do not tell\n");
 }
 

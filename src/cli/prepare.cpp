@@ -43,8 +43,8 @@ int prepare(const PrepareArguments& arguments) {
         }
         return status_of(prepared.failure().kind);
     }
-    const State<2>& state = prepared.value();
-    write_state<2>(arguments.output, state);
+    const State& state = prepared.value();
+    write_state(arguments.output, state);
     if (arguments.common.json) {
         Json object;
         object["status"] = "completed";

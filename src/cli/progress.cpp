@@ -45,7 +45,7 @@ std::string clock_text(double seconds) {
 RunTable::RunTable(const std::vector<ProgrammeStep>& programme, bool quiet)
     : programme_(programme), quiet_(quiet), line_(quiet) {}
 
-void RunTable::on_segment(int number, const Segment& /*goal*/, int made, const State<2>& from) {
+void RunTable::on_segment(int number, const Segment& /*goal*/, int made, const State& from) {
     segment_ = number;
     made_ = made;
     start_equilibrium_ = from.equilibrium;
@@ -86,7 +86,7 @@ double RunTable::remaining(double ratio) const {
     return rest;
 }
 
-void RunTable::on_arc(const ArcRecord<2>& arc) {
+void RunTable::on_arc(const ArcRecord& arc) {
     if (!quiet_) {
         line_.show(fmt::format("towards equilibrium {}: arc {} at {} = {:.9g}, {} = {:.6g}", arc.equilibrium, arc.arc,
                                loads_tilt_ ? "shear" : "sigma2", arc.stress, loads_tilt_ ? "strain" : "eps2",
@@ -94,7 +94,7 @@ void RunTable::on_arc(const ArcRecord<2>& arc) {
     }
 }
 
-void RunTable::on_equilibrium(const EquilibriumRecord<2>& record, const State<2>& state,
+void RunTable::on_equilibrium(const EquilibriumRecord& record, const State& state,
                               const std::vector<double>& /*forces*/) {
     if (record.number != 0) {
         ++made_;

@@ -33,12 +33,12 @@ std::string clock_text(double seconds);
 
 /// Prints one row per equilibrium: number, sigma2/sigma1, eps2, arcs, h, smallest margin, precision used, elapsed,
 /// estimated rest.
-class RunTable final : public RunObserver<2> {
+class RunTable final : public RunObserver {
   public:
     RunTable(const std::vector<ProgrammeStep>& programme, bool quiet);
-    void on_segment(int number, const Segment& goal, int made, const State<2>& from) override;
-    void on_arc(const ArcRecord<2>& arc) override;
-    void on_equilibrium(const EquilibriumRecord<2>& record, const State<2>& state,
+    void on_segment(int number, const Segment& goal, int made, const State& from) override;
+    void on_arc(const ArcRecord& arc) override;
+    void on_equilibrium(const EquilibriumRecord& record, const State& state,
                         const std::vector<double>& forces) override;
     void end() { line_.clear(); }
 

@@ -85,7 +85,7 @@ ForeignOptions options_of(const ForeignArguments& a) {
 }
 
 /// What the doubles of a file of this program leave open of a gap.
-double rounding_of(const Packing<2>& packing) {
+double rounding_of(const Packing& packing) {
     double largest = packing.max_radius();
     for (const double x : packing.q) {
         largest = std::max(largest, std::abs(x));
@@ -141,9 +141,9 @@ ReadPacking read_any_packing(const std::string& file, const ForeignArguments& ar
         out.notes.emplace_back("exact numbers rounded to the nearest doubles: inspect decides contacts exactly");
         return out;
     }
-    const State<2> state = format != "state" ? parse_vertex_text(text, file)
-                           : arguments.cells ? parse_any_state<2>(text, file).state
-                                             : parse_state<2>(text, file).state;
+    const State state = format != "state" ? parse_vertex_text(text, file)
+                        : arguments.cells ? parse_any_state(text, file).state
+                                          : parse_state(text, file).state;
     ReadPacking out{
         state.packing, format, {}, {}, std::max(rounding_of(state.packing), compare::imported_rounding(state))};
     out.notes.emplace_back("the contact list of the file is not used");

@@ -12,7 +12,7 @@
 namespace isostat::cli {
 
 struct ReadPacking {
-    Packing<2> packing;
+    Packing packing;
     std::string format;
     std::vector<std::string> notes;
     std::vector<long> ids; ///< of the disks in a file of another program, or none

@@ -24,8 +24,8 @@ namespace {
 constexpr std::array exit_statuses{done, failed, undecided, interrupted}; ///< of `RunStatus`
 
 /// The start of the run: stored one, file or preparation.
-Result<State<2>> start_of(const Scene& scene, const std::optional<State<2>>& from_file, RunDirectory& directory,
-                          const std::string& command, bool quiet) {
+Result<State> start_of(const Scene& scene, const std::optional<State>& from_file, RunDirectory& directory,
+                       const std::string& command, bool quiet) {
     if (const auto stored = directory.start()) {
         return *stored;
     }
@@ -41,7 +41,7 @@ Result<State<2>> start_of(const Scene& scene, const std::optional<State<2>>& fro
 }
 
 /// By how much `start_from_file` moved the start.
-double moved_to_grid(const State<2>& start) {
+double moved_to_grid(const State& start) {
     const Json provenance = start.provenance.empty() ? Json::object() : Json::parse(start.provenance);
     return provenance.is_object() ? provenance.value("moved_to_grid", 0.0) : 0.0;
 }
@@ -101,7 +101,7 @@ void draw(const Scene& scene, const RunDirectory& directory, bool quiet) {
 }
 
 /// Says what is worth knowing of how a run begins.
-void announce(const std::optional<State<2>>& from_file) {
+void announce(const std::optional<State>& from_file) {
     if (const double moved = from_file ? moved_to_grid(*from_file) : 0; moved > 0) {
         say("start: coordinates of what can move are put on a grid, each moved by at most {}\n", rounded_up(moved, 3));
     }
@@ -137,7 +137,7 @@ int run(const RunArguments& arguments) {
                     fmt::format("{}: has no [[programme]]: expected at least one segment to run", arguments.scene));
     }
     const bool quiet = arguments.common.quiet || arguments.common.json;
-    std::optional<State<2>> from_file;
+    std::optional<State> from_file;
     if (!scene.start.empty() && !arguments.resume) {
         from_file = start_from_file(scene); // bad input leaves no folder behind
     }

@@ -37,7 +37,7 @@ Read from_state(const SnapArguments& a) {
         throw Error(ErrorKind::usage, a.file + " is a state, which says its contacts and its load: expected none of "
                                                "--contacts, --stress, --load, --reference-length");
     }
-    const StateFile<2> file = read_any_state<2>(a.file);
+    const StateFile file = read_any_state(a.file);
     Read out;
     static_cast<compare::SoftForces&>(out) = compare::soft_grains(file, a.file);
     out.rounding = compare::imported_rounding(file.state);
@@ -75,7 +75,7 @@ Read from_foreign(const SnapArguments& a) {
     out.soft.load.stress = parse_stress(a.stress);
     out.soft.load.refer_to(file.packing);
     if (!a.reference_length.empty()) {
-        out.soft.load.reference_length = reference;
+        std::copy(reference.begin(), reference.end(), out.soft.load.reference_length.begin());
     }
     return out;
 }
@@ -102,13 +102,13 @@ Json json_of(const SnapArguments& a, const Read& read, const compare::Snap& snap
         out["forces"] = {{"mean", number(mean)},
                          {"rest", number(split.rest)},
                          {"stiffness", number(split.stiffness)},
-                         {"contact", std::isfinite(split.rest) ? Json(to_string<2>(split.worst)) : Json()}};
+                         {"contact", std::isfinite(split.rest) ? Json(to_string(split.worst)) : Json()}};
     }
     return out;
 }
 
 /// The state to write, with words on what it is; nothing: there is none.
-std::optional<State<2>> state_of(const SnapArguments& a, const Read& read, const compare::Snap& snap, Json& report) {
+std::optional<State> state_of(const SnapArguments& a, const Read& read, const compare::Snap& snap, Json& report) {
     if (snap.outcome == compare::SnapOutcome::vertex) {
         auto state = compare::with_resting_rattlers(snap, a.seed);
         report["unique"] = true;
@@ -173,7 +173,7 @@ int snap(const SnapArguments& a) {
     }
     const compare::Snap snap = compare::snap(read.soft);
     Json report = json_of(a, read, snap);
-    std::optional<State<2>> state = state_of(a, read, snap, report);
+    std::optional<State> state = state_of(a, read, snap, report);
     compare::Untold untold;
     if (state) {
         const Certification truth = certify(*state);
@@ -182,7 +182,7 @@ int snap(const SnapArguments& a) {
         Json provenance = report;
         provenance["rounding"] = number(read.rounding);
         state->provenance = json::dumped(provenance);
-        write_state<2>(a.output, *state);
+        write_state(a.output, *state);
     }
     if (a.common.json) {
         report["state"] = state ? Json(a.output) : Json();

@@ -8,8 +8,9 @@
 
 namespace isostat::cli {
 
-std::array<double, 2> parse_stress(const std::string& text) {
-    return text.empty() ? std::array<double, 2>{1, 1} : parse_pair(text, "--stress", "S1,S2");
+PerAxis<double> parse_stress(const std::string& text) {
+    const auto [s1, s2] = text.empty() ? std::array<double, 2>{1, 1} : parse_pair(text, "--stress", "S1,S2");
+    return {s1, s2};
 }
 
 std::array<double, 2> parse_pair(const std::string& text, const char* option, const char* names) {
@@ -28,7 +29,7 @@ std::array<double, 2> parse_pair(const std::string& text, const char* option, co
     return pair;
 }
 
-void take_cell(const CellStatement& statement, Packing<2>& packing) {
+void take_cell(const CellStatement& statement, Packing& packing) {
     const auto& [file, cell] = statement;
     if (!packing.cell.any() && !cell.empty()) {
         throw Error(ErrorKind::usage, fmt::format("--cell is '{}' and {} is not periodic: expected no --cell "
@@ -49,7 +50,8 @@ void take_cell(const CellStatement& statement, Packing<2>& packing) {
     }
     packing.cell.keeps_shape = false;
     packing.cell.period_moves = packing.cell.periodic;
-    packing.cell.tilt_moves.fill(cell == "tilted" || (cell.empty() && packing.lattice(0, 1) != 0));
+    std::fill_n(packing.cell.tilt_moves.begin(), packing.tilts(),
+                cell == "tilted" || (cell.empty() && packing.lattice(0, 1) != 0));
 }
 
 compare::SoftList stated_list(const std::string& file, const ReadPacking& packing, const std::string& frame,

@@ -13,7 +13,7 @@ namespace isostat::cli {
 /// Two positive numbers, as in "S1,S2"; `names` is that. Throws `Error(usage)`.
 std::array<double, 2> parse_pair(const std::string& text, const char* option, const char* names);
 /// Of --stress; 1,1 for an empty text.
-std::array<double, 2> parse_stress(const std::string& text);
+PerAxis<double> parse_stress(const std::string& text);
 
 /// `--cell`: what of a periodic cell moves, "rectangular", "tilted" or "isotropic"; empty: the tilt too if the file has
 /// one.
@@ -21,7 +21,7 @@ struct CellStatement {
     std::string file, cell;
 };
 /// The periods move, as stated. Throws `Error(usage)` for a statement about walls, or about a channel.
-void take_cell(const CellStatement& statement, Packing<2>& packing);
+void take_cell(const CellStatement& statement, Packing& packing);
 
 /// `--contacts` and `--contact-columns`: a file of pairs with forces and its columns, "I,J,FORCE". \p frame: of both
 /// files. Throws `Error(usage)`.

@@ -38,7 +38,7 @@ Json end_json(const LoadEndClaim& end) {
     object["unbounded"] = end.unbounded;
     if (!end.unbounded) {
         object["stress"] = {number(end.stress.lower), number(end.stress.upper)};
-        object["opens"] = to_string<2>(end.opens);
+        object["opens"] = to_string(end.opens);
     }
     return object;
 }
@@ -55,7 +55,7 @@ struct FileForces {
     Contact where;
 };
 
-std::optional<FileForces> compared_forces(const StateFile<2>& file, const Certification& truth) {
+std::optional<FileForces> compared_forces(const StateFile& file, const Certification& truth) {
     if (file.forces.empty() || file.forces.size() != truth.finite.size()) {
         return std::nullopt;
     }
@@ -74,7 +74,7 @@ std::optional<FileForces> compared_forces(const StateFile<2>& file, const Certif
 std::string end_text(const LoadEndClaim& end) {
     return end.unbounded
                ? "unbounded"
-               : fmt::format("{} (opens {})", with_bound(end.stress.lower, end.stress.upper), to_string<2>(end.opens));
+               : fmt::format("{} (opens {})", with_bound(end.stress.lower, end.stress.upper), to_string(end.opens));
 }
 
 void print_claims(const Certification& certification) {
@@ -103,10 +103,9 @@ void print_claims(const Certification& certification) {
     }
     if (c.gaps) {
         line("gaps",
-             std::isfinite(c.gaps->smallest)
-                 ? fmt::format("all other gaps >= {}, nearest {}", rounded_down(c.gaps->smallest, 6),
-                               to_string<2>(c.gaps->where))
-                 : "there is no other pair",
+             std::isfinite(c.gaps->smallest) ? fmt::format("all other gaps >= {}, nearest {}",
+                                                           rounded_down(c.gaps->smallest, 6), to_string(c.gaps->where))
+                                             : "there is no other pair",
              std::string(to_string(c.gaps->rung)));
     }
     if (c.load_interval) {
@@ -145,11 +144,10 @@ Json claims_json(const Certification& certification) {
                             {"widest_interval", number(widest)},
                             {"rung", to_string(c.forces->rung)}};
     }
-    object["gaps"] = c.gaps
-                         ? Json{{"smallest", number(c.gaps->smallest)},
-                                {"where", std::isfinite(c.gaps->smallest) ? Json(to_string<2>(c.gaps->where)) : Json()},
-                                {"rung", to_string(c.gaps->rung)}}
-                         : Json();
+    object["gaps"] = c.gaps ? Json{{"smallest", number(c.gaps->smallest)},
+                                   {"where", std::isfinite(c.gaps->smallest) ? Json(to_string(c.gaps->where)) : Json()},
+                                   {"rung", to_string(c.gaps->rung)}}
+                            : Json();
     object["load_interval"] = c.load_interval ? Json{{"low", end_json(c.load_interval->low)},
                                                      {"high", end_json(c.load_interval->high)},
                                                      {"rung", to_string(c.load_interval->rung)}}
@@ -196,17 +194,16 @@ Json true_vertex_json(const Certification& certification) {
     return object;
 }
 
-void print_forces_in_file(const StateFile<2>& file, const Certification& truth) {
+void print_forces_in_file(const StateFile& file, const Certification& truth) {
     if (const auto forces = compared_forces(file, truth)) {
         say("forces in the file       differ from the proved ones by at most {}, in {}\n",
-            rounded_up(forces->difference, 2), to_string<2>(forces->where));
+            rounded_up(forces->difference, 2), to_string(forces->where));
     }
 }
 
-void add_forces_in_file(Json& object, const StateFile<2>& file, const Certification& truth) {
+void add_forces_in_file(Json& object, const StateFile& file, const Certification& truth) {
     if (const auto forces = compared_forces(file, truth)) {
-        object["forces_in_file"] = {{"difference", number(forces->difference)},
-                                    {"contact", to_string<2>(forces->where)}};
+        object["forces_in_file"] = {{"difference", number(forces->difference)}, {"contact", to_string(forces->where)}};
     }
 }
 

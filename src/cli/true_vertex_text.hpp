@@ -25,8 +25,8 @@ Json true_vertex_json(const Certification& certification);
 
 /// How far the forces that a state file holds are from the proved ones, and where; nothing where it holds none or none
 /// are known. They are no part of what is proved.
-void print_forces_in_file(const StateFile<2>& file, const Certification& truth);
-void add_forces_in_file(Json& object, const StateFile<2>& file, const Certification& truth);
+void print_forces_in_file(const StateFile& file, const Certification& truth);
+void add_forces_in_file(Json& object, const StateFile& file, const Certification& truth);
 
 /// What the rounding of a file leaves open, if anything.
 void add_untold(Json& object, const compare::Untold& untold, Verdict of_the_doubles);

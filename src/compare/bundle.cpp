@@ -20,9 +20,9 @@ constexpr std::array rests{"down", "up", "left", "right"};
 constexpr std::array rules{OpeningRule::most_negative, OpeningRule::least_index};
 
 /// The loads of `generic_infinitesimal` point down: turned until they point where the rattlers shall rest.
-std::vector<double> infinitesimal_towards(std::size_t rest, const Packing<2>& packing) {
+std::vector<double> infinitesimal_towards(std::size_t rest, const Packing& packing) {
     constexpr std::array<std::size_t, 4> quarters{0, 2, 3, 1}; // anticlockwise, of down, up, left, right
-    std::vector<double> g = generic_infinitesimal<2>(packing.radius, 1);
+    std::vector<double> g = generic_infinitesimal(packing.radius, 1);
     for (std::size_t i = 0; i + 1 < g.size(); i += 2) {
         for (std::size_t k = 0; k < quarters[rest]; ++k) {
             const double x = g[i];
@@ -95,7 +95,7 @@ int common_nodes(const std::vector<BundleMember>& members) {
 
 } // namespace
 
-Bundle make_bundle(const State<2>& start, const Path& path, const std::vector<double>& loads, int count,
+Bundle make_bundle(const State& start, const Path& path, const std::vector<double>& loads, int count,
                    const RunOptions& options) {
     Bundle out;
     if (count < 1 || path.equilibria.empty()) {
@@ -105,7 +105,7 @@ Bundle make_bundle(const State<2>& start, const Path& path, const std::vector<do
     paths.front() = path;
     const Snap vertex =
         snap({start.packing, carrying(start, certify(start)), start.load}); // rattlers leave what they touch
-    std::array<std::optional<Result<State<2>>>, rests.size()> at_rest;      // of all rules
+    std::array<std::optional<Result<State>>, rests.size()> at_rest;         // of all rules
     parallel_pieces(std::min(rests.size(), paths.size()), [&](std::size_t rest) {
         if (rest == 0 && paths.size() <= rests.size()) {
             return; // the exact run alone
@@ -119,7 +119,7 @@ Bundle make_bundle(const State<2>& start, const Path& path, const std::vector<do
             return;
         }
         const BundleMember m = member(static_cast<int>(k));
-        const Result<State<2>>& resting = *at_rest[k % rests.size()];
+        const Result<State>& resting = *at_rest[k % rests.size()];
         if (!resting.ok()) {
             paths[k].end = resting.failure().message();
             paths[k].at_load.assign(loads.size(), -1);

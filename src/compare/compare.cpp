@@ -125,7 +125,7 @@ std::vector<Frame> read_some(SeriesReader& reader, std::size_t most, const Compa
 /// As many frames side by side as there are threads: their coordinates and states are in memory, of the others lists
 /// and numbers. `start`: unless there is one, the state of the first frame that has one; until then they come singly.
 std::vector<JudgedFrame> judge_all(SeriesReader& reader, const CompareOptions& options, const RunOptions& run,
-                                   std::optional<State<2>>& start) {
+                                   std::optional<State>& start) {
     std::vector<JudgedFrame> judged;
     while (options.stop == nullptr || !options.stop->load()) {
         const std::vector<Frame> frames = read_some(reader, start ? static_cast<std::size_t>(threads()) : 1, options);
@@ -173,7 +173,7 @@ Comparison compare(SeriesReader& reader, const CompareOptions& options) {
     RunOptions run;
     run.rule = options.rule;
     run.stop = options.stop;
-    std::optional<State<2>> start = options.start;
+    std::optional<State> start = options.start;
     if (start) {
         (void)snap_to_grid(start->packing); // bounds of a cell hold there
         reader.begin_after(start->packing);

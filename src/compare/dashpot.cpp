@@ -17,7 +17,7 @@ constexpr double fast_wall = 10;
 constexpr double left_over = 0.1;
 
 /// w, of one way to weigh; with `hertz` times the root of the overlap and of R_i R_j / (R_i + R_j).
-double weight(const Packing<2>& packing, const Contact& c, int power, bool hertz) {
+double weight(const Packing& packing, const Contact& c, int power, bool hertz) {
     const double r = packing.radius[static_cast<std::size_t>(c.i)];
     const double s = c.kind == ContactKind::disk_disk ? packing.radius[static_cast<std::size_t>(c.j)] : HUGE_VAL;
     const auto reduced = [&](int p) {
@@ -31,13 +31,13 @@ double weight(const Packing<2>& packing, const Contact& c, int power, bool hertz
 /// One row per contact: what a constant of 1 makes of the velocities of the disks, then what a speed of 1 of each
 /// coordinate beyond the disks does that moves.
 Eigen::MatrixXd equations(const Frame& frame, const std::map<Contact, double>& beyond, int power, bool hertz) {
-    const Packing<2>& packing = frame.packing;
+    const Packing& packing = frame.packing;
     const std::size_t disks = 2 * packing.radius.size();
     Eigen::MatrixXd a =
         Eigen::MatrixXd::Zero(static_cast<int>(beyond.size()), 1 + static_cast<int>(packing.q.size() - disks));
     int row = 0;
     for (const auto& [contact, force] : beyond) {
-        const GapGradient<2> g = gap_gradient(packing, contact);
+        const GapGradient g = gap_gradient(packing, contact);
         const double w = weight(packing, contact, power, hertz);
         for (int e = 0; e < g.count; ++e) {
             const auto k = static_cast<std::size_t>(g.coordinate[static_cast<std::size_t>(e)]);

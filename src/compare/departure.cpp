@@ -123,7 +123,7 @@ class Diagnosis {
         const std::string words = fmt::format(
             "equilibrium {} ends at {:.7g}, with stiffness {:.3g} at {:.7g} (predicted); {} needs a stiffness "
             "of {:.2g} for 1e-3",
-            e->number, exact, series_.linear_stiffness(), soft->stress, to_string<2>(e->opens), e->stiffness_needed);
+            e->number, exact, series_.linear_stiffness(), soft->stress, to_string(e->opens), e->stiffness_needed);
         return soft_left != exact_left && is("stiffness", words);
     }
 
@@ -144,8 +144,8 @@ class Diagnosis {
     }
 
     /// The common equilibrium at the load of the frame before.
-    [[nodiscard]] State<2> at(const PathEquilibrium& e) const {
-        State<2> state = e.state;
+    [[nodiscard]] State at(const PathEquilibrium& e) const {
+        State state = e.state;
         state.load.stress[1] = before_->result.sigma2;
         return state;
     }

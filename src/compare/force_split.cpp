@@ -12,17 +12,17 @@ namespace isostat::compare {
 
 ForceSplit split_forces(const SoftState& soft, const std::vector<double>& forces, double mean, const Snap& snap) {
     ForceSplit out;
-    Packing<2> packing = of_disks(soft.packing, snap.disks);
+    Packing packing = of_disks(soft.packing, snap.disks);
     (void)snap_to_grid(packing);
-    const auto structure = IsostaticStructure<2>::prove(packing, snap.backbone.contacts);
+    const auto structure = IsostaticStructure::prove(packing, snap.backbone.contacts);
     if (!structure.ok() || !(mean > 0)) {
         return out;
     }
     const Factorisation factorisation(structure.value());
     InverseBoundCache cache;
     const InverseBound inverse = bound_inverse(structure.value(), factorisation, cache);
-    const Load<2>& load = snap.backbone.load;
-    const Statics<2> statics(packing, load, structure.value(), factorisation, inverse);
+    const Load& load = snap.backbone.load;
+    const Statics statics(packing, load, structure.value(), factorisation, inverse);
     double rest = -1, stiffness = 0;
     for (std::size_t l = 0; l < forces.size(); ++l) {
         const Enclosure f = statics.force(ContactId(l), load.loaded_stress());

@@ -16,7 +16,7 @@ struct JudgedFrame {
     std::vector<Contact> pressed;  ///< of a frame in motion, every contact with a positive force
     std::vector<Contact> downhill; ///< of the vertex that exchange found, proved; or none
     std::string note;              ///< on its cell
-    std::optional<State<2>> state; ///< complete, where one was asked for or exchange found it
+    std::optional<State> state;    ///< complete, where one was asked for or exchange found it
 };
 
 /// \p complete: make `state` also of a vertex that Newton's method found.

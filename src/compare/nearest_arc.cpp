@@ -14,11 +14,11 @@ NearestArcs::NearestArcs(const std::vector<JudgedFrame>& frames) {
     }
 }
 
-void NearestArcs::start(const State<2>& equilibrium) {
+void NearestArcs::start(const State& equilibrium) {
     contacts_ = carrying(equilibrium);
 }
 
-void NearestArcs::add(const ArcRecord<2>& arc, int equilibrium) {
+void NearestArcs::add(const ArcRecord& arc, int equilibrium) {
     std::erase(contacts_, arc.opened);
     for (Found& found : frames_) {
         std::vector<Contact> lacking = without(contacts_, found.pressed), beside = without(found.pressed, contacts_);

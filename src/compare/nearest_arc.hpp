@@ -16,9 +16,9 @@ namespace isostat::compare {
 class NearestArcs {
   public:
     explicit NearestArcs(const std::vector<JudgedFrame>& frames);
-    void start(const State<2>& equilibrium);
+    void start(const State& equilibrium);
     /// \p equilibrium: of the path, which its rearrangement leads to.
-    void add(const ArcRecord<2>& arc, int equilibrium);
+    void add(const ArcRecord& arc, int equilibrium);
     /// Sets `nearest_arc` of these frames.
     void tell(std::vector<JudgedFrame>& frames) const;
 

@@ -16,13 +16,13 @@ namespace isostat::compare {
 namespace {
 
 /// What the cell does is counted by its strains.
-Strain strain_of(const Cell<2>& cell) {
+Strain strain_of(const Cell& cell) {
     return cell.keeps_shape ? Strain::isotropic : cell.tilt_moves[0] ? Strain::full : Strain::diagonal;
 }
 
 } // namespace
 
-Result<WantedList> list_below(const Packing<2>& packing, std::optional<double> threshold, double rounding) {
+Result<WantedList> list_below(const Packing& packing, std::optional<double> threshold, double rounding) {
     const double largest = threshold.value_or(nearly_touching * packing.min_radius());
     if (threshold) {
         const crafted::PlateauStep step = crafted::plateau(packing, {largest}, strain_of(packing.cell)).steps.front();
@@ -59,8 +59,8 @@ Result<NearestVertex> vertex_downhill(const SoftState& soft, std::uint64_t seed)
     options.stress = soft.load.stress[0];
     options.ratio = soft.load.stress[1] / soft.load.stress[0];
     options.load = soft.load.kind;
-    PreparationReport<2> report;
-    auto vertex = find_vertex<2>(soft.packing, options, report);
+    PreparationReport report;
+    auto vertex = find_vertex(soft.packing, options, report);
     if (!vertex.ok() && !report.candidate) {
         return vertex.failure();
     }
@@ -96,8 +96,8 @@ Result<NearestVertex> vertex_of_list(SoftState soft, const std::string& words, s
     return out;
 }
 
-Moves moves_to(const State<2>& state, const Certification& truth, const std::vector<double>& from) {
-    const Packing<2>& packing = state.packing;
+Moves moves_to(const State& state, const Certification& truth, const std::vector<double>& from) {
+    const Packing& packing = state.packing;
     const double radius = truth.claims.vertex ? truth.claims.vertex->radius : HUGE_VAL;
     constexpr double up = 1 + 0x1p-49; // of a difference, a sum and a hypotenuse, each rounded
     const auto way = [&](std::size_t k) { return (std::abs(packing.q[k] - from[k]) + radius) * up; };

@@ -19,11 +19,11 @@ struct WantedList {
 
 /// The contacts of the widest range of thresholds in which the backbone is isostatic, proved; or those at `threshold`.
 /// \p rounding: of gaps.
-Result<WantedList> list_below(const Packing<2>& packing, std::optional<double> threshold, double rounding);
+Result<WantedList> list_below(const Packing& packing, std::optional<double> threshold, double rounding);
 
 /// A vertex with what is proved of it, and in words which contacts carry a force.
 struct NearestVertex {
-    State<2> state;
+    State state;
     Certification truth;
     std::string contacts;
 };
@@ -40,6 +40,6 @@ struct Moves {
     double walls = 0, backbone = 0, rattlers = 0;
 };
 /// \p from: coordinates of the file.
-Moves moves_to(const State<2>& state, const Certification& truth, const std::vector<double>& from);
+Moves moves_to(const State& state, const Certification& truth, const std::vector<double>& from);
 
 } // namespace isostat::compare

@@ -6,7 +6,7 @@
 
 namespace isostat::compare {
 
-PairImages::PairImages(const Packing<2>& packing) {
+PairImages::PairImages(const Packing& packing) {
     if (!packing.cell.any()) {
         return;
     }

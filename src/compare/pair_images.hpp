@@ -14,7 +14,7 @@ namespace isostat::compare {
 class PairImages {
   public:
     /// Grains of the packing overlap or are near. \pre the packing outlives it
-    explicit PairImages(const Packing<2>& packing);
+    explicit PairImages(const Packing& packing);
     /// What the next row of these two disks means: the deepest overlap of their images that no row before meant; the
     /// nearest images when all were meant, so that a row too many is one that comes twice. In a box the pair.
     Contact next(int i, int j);

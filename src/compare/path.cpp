@@ -16,20 +16,20 @@ namespace {
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr int further = 3; ///< equilibria after the last load: frames may be early
 
-double& loaded(State<2>& state) {
+double& loaded(State& state) {
     return state.load.loaded_stress();
 }
 
 /// Keeps the equilibria with their lists; those that only another load made are the same one.
-class Collector final : public RunObserver<2> {
+class Collector final : public RunObserver {
   public:
     Collector(std::vector<PathEquilibrium>& out, NearestArcs* arcs) : out_(out), arcs_(arcs) {}
-    void on_arc(const ArcRecord<2>& arc) override {
+    void on_arc(const ArcRecord& arc) override {
         if (arcs_ != nullptr) {
             arcs_->add(arc, static_cast<int>(out_.size()));
         }
     }
-    void on_equilibrium(const EquilibriumRecord<2>& record, const State<2>& state,
+    void on_equilibrium(const EquilibriumRecord& record, const State& state,
                         const std::vector<double>& /*forces*/) override {
         if (arcs_ != nullptr) {
             arcs_->start(state);
@@ -68,7 +68,7 @@ void predict(PathEquilibrium& e, int direction, double stiffness) {
     if (!(stiffness > 0) || !std::isfinite(e.high) || !(e.low > 0)) {
         return;
     }
-    const State<2> backbone = backbone_of(e.state, e.contacts);
+    const State backbone = backbone_of(e.state, e.contacts);
     if (const auto limit = soft_limit(backbone, exact, stiffness)) {
         e.soft_limit = limit->stress;
     }
@@ -82,7 +82,7 @@ namespace {
 /// The run along the loads, segment by segment.
 class Follower {
   public:
-    Follower(State<2> state, const RunOptions& options, NearestArcs* arcs)
+    Follower(State state, const RunOptions& options, NearestArcs* arcs)
         : state_(std::move(state)), options_(options), collector_(path.equilibria, arcs) {}
 
     void run(const std::vector<double>& loads) {
@@ -130,7 +130,7 @@ class Follower {
         return outcome.failure;
     }
 
-    State<2> state_;
+    State state_;
     const RunOptions& options_;
     Collector collector_;
     RunCounters counters_;
@@ -140,13 +140,13 @@ class Follower {
 
 } // namespace
 
-Path follow(State<2> state, const std::vector<double>& loads, const RunOptions& options) {
+Path follow(State state, const std::vector<double>& loads, const RunOptions& options) {
     Follower follower(std::move(state), options, nullptr);
     follower.run(loads);
     return std::move(follower.path);
 }
 
-Path follow_beyond(State<2> state, const std::vector<double>& loads, const RunOptions& options, double stiffness,
+Path follow_beyond(State state, const std::vector<double>& loads, const RunOptions& options, double stiffness,
                    NearestArcs* arcs) {
     Follower follower(std::move(state), options, arcs);
     follower.run(loads);
@@ -155,9 +155,9 @@ Path follow_beyond(State<2> state, const std::vector<double>& loads, const RunOp
     return std::move(follower.path);
 }
 
-Result<std::vector<Contact>> list_after(State<2> state, double sigma, bool jump, const RunOptions& options) {
+Result<std::vector<Contact>> list_after(State state, double sigma, bool jump, const RunOptions& options) {
     RunCounters counters;
-    RunObserver<2> nobody;
+    RunObserver nobody;
     Segment segment;
     segment.equilibria = 0;
     if (jump) {

@@ -19,14 +19,14 @@ struct Path {
 };
 
 /// From `state` to each of the loads in turn.
-Path follow(State<2> state, const std::vector<double>& loads, const RunOptions& options);
+Path follow(State state, const std::vector<double>& loads, const RunOptions& options);
 /// The same, then three equilibria on in the last direction; soft limits are added when `stiffness` > 0. \p arcs: null,
 /// or told of all arcs.
-Path follow_beyond(State<2> state, const std::vector<double>& loads, const RunOptions& options, double stiffness,
+Path follow_beyond(State state, const std::vector<double>& loads, const RunOptions& options, double stiffness,
                    NearestArcs* arcs);
 
 /// The contacts that carry a force in the equilibrium at the loaded stress `sigma` that a run from `state` finds: on
 /// the way, or with `jump` after the whole change at once.
-Result<std::vector<Contact>> list_after(State<2> state, double sigma, bool jump, const RunOptions& options);
+Result<std::vector<Contact>> list_after(State state, double sigma, bool jump, const RunOptions& options);
 
 } // namespace isostat::compare

@@ -118,10 +118,10 @@ class FrameTable {
         return sides;
     }
 
-    [[nodiscard]] Load<2> load_of(const TextLine& line) const {
-        Load<2> load;
+    [[nodiscard]] Load load_of(const TextLine& line) const {
+        Load load;
         load.kind = manifest_.load;
-        load.reference_length = manifest_.reference_length;
+        std::copy(manifest_.reference_length.begin(), manifest_.reference_length.end(), load.reference_length.begin());
         load.stress = {manifest_.sigma1, 0};
         const double per_force = manifest_.force_factor / manifest_.reference_length[0];
         if (const int at = find("sigma2"); at >= 0) {
@@ -139,7 +139,7 @@ class FrameTable {
     }
 
     /// A force on a wall must be that of the load, to the digits that a file has.
-    void check_force(const TextLine& line, std::size_t axis, const Load<2>& load) const {
+    void check_force(const TextLine& line, std::size_t axis, const Load& load) const {
         constexpr double known = 1e-9;
         const std::string name = axis == 0 ? "force_right" : "force_top";
         const int at = find(name);
@@ -240,7 +240,7 @@ class Disks {
         keep(frame);
     }
 
-    void begin_after(const Packing<2>& packing) {
+    void begin_after(const Packing& packing) {
         if (packing.cell.all()) {
             last_ = packing;
         }
@@ -286,11 +286,10 @@ class Disks {
         }
         return out.size() == 2 ? out : std::vector<std::size_t>();
     }
-    void make_periodic(Packing<2>& packing) const {
-        packing.walls = Walls<2>::none();
-        packing.cell.periodic.fill(true);
-        packing.cell.period_moves.fill(true);
-        packing.cell.tilt_moves.fill(manifest_.tilted);
+    void make_periodic(Packing& packing) const {
+        packing.walls = Walls::none();
+        packing.cell.repeat();
+        packing.cell.move(true, manifest_.tilted);
     }
     /// The bounds of a dump are the cell.
     [[nodiscard]] Sides sides_of(const FrameHeader& header) const {
@@ -343,8 +342,8 @@ class Disks {
 
     /// Other programs wrap disks that leave the cell. Each is put where it has moved least since the frame before,
     /// relative to the first disk: contacts keep their images.
-    void unwrap(Packing<2>& packing) const {
-        const auto fractions = [](const Packing<2>& p, std::size_t i) {
+    void unwrap(Packing& packing) const {
+        const auto fractions = [](const Packing& p, std::size_t i) {
             const double y = (p.q[2 * i + 1] - p.q[1]) / p.length(1);
             return std::array{(p.q[2 * i] - p.q[0] - y * p.lattice(0, 1)) / p.length(0), y};
         };
@@ -373,7 +372,7 @@ class Disks {
     const Manifest& manifest_;
     FrameFile dump_;
     std::vector<long> ids_;
-    Packing<2> first_, last_;
+    Packing first_, last_;
     double flipped_ = 0; ///< periods between the tilt of the file and that of the frames
 };
 
@@ -437,7 +436,7 @@ const Series& SeriesReader::series() const {
     return files_->manifest.series;
 }
 
-void SeriesReader::begin_after(const Packing<2>& packing) {
+void SeriesReader::begin_after(const Packing& packing) {
     files_->disks.begin_after(packing);
 }
 

@@ -76,7 +76,7 @@ class Reader {
         if (c.kind == ContactKind::disk_disk) {
             return fmt::format("disks {} and {}", id(c.i), id(c.j));
         }
-        const std::string wall = to_string<2>(Contact{c.kind, 0, c.j}).substr(2);
+        const std::string wall = to_string(Contact{c.kind, 0, c.j}).substr(2);
         return fmt::format("disk {} and the {} wall", id(c.i), wall);
     }
     [[nodiscard]] std::string at(const Contact& c) const {
@@ -223,7 +223,7 @@ class Reader {
     [[nodiscard]] Left left_by(const std::map<Contact, double>& forces) const {
         std::vector<double> left = frame_.load.external_force(frame_.packing);
         for (const auto& [c, force] : forces) {
-            const GapGradient<2> g = gap_gradient(frame_.packing, c);
+            const GapGradient g = gap_gradient(frame_.packing, c);
             for (int k = 0; k < g.count; ++k) {
                 const auto e = static_cast<std::size_t>(k);
                 left[static_cast<std::size_t>(g.coordinate[e])] += force * g.value[e];
@@ -231,7 +231,7 @@ class Reader {
         }
         const std::size_t n = frame_.packing.radius.size();
         Left out{0, {}, {std::abs(left[2 * n]), std::abs(left[2 * n + 1])}, 0};
-        if (const Cell<2>& cell = frame_.packing.cell; cell.any() && cell.tilt_moves[0]) {
+        if (const Cell& cell = frame_.packing.cell; cell.any() && cell.tilt_moves[0]) {
             out.tilt = std::abs(left[frame_.packing.tilt_at(0, 1)]);
         }
         for (std::size_t i = 0; i < n; ++i) {

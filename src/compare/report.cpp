@@ -32,7 +32,7 @@ template <class Row> struct Column {
 Json names(const std::vector<Contact>& contacts) {
     std::string text;
     for (const Contact& c : contacts) {
-        text += (text.empty() ? "" : " ") + to_string<2>(c);
+        text += (text.empty() ? "" : " ") + to_string(c);
     }
     return text;
 }
@@ -89,7 +89,7 @@ const std::vector<Column<PathEquilibrium>>& of_path() {
         {"arcs", [](const E& e) { return e.arcs; }},
         {"contacts", [](const E& e) { return e.contacts.size(); }},
         {"proved", [](const E& e) { return e.proved ? 1 : 0; }},
-        {"opens", [](const E& e) { return e.opens.i < 0 ? Json() : Json(to_string<2>(e.opens)); }},
+        {"opens", [](const E& e) { return e.opens.i < 0 ? Json() : Json(to_string(e.opens)); }},
         {"soft_limit", [](const E& e) { return or_null(e.soft_limit); }},
         {"stiffness_needed", [](const E& e) { return or_null(e.stiffness_needed); }}};
     return columns;
@@ -380,7 +380,7 @@ void write_bundle(const std::filesystem::path& folder, const Comparison& compari
     write_atomically(folder / "nodes.csv", bundle_csv(comparison));
     write_atomically(folder / "members.csv", members_csv(comparison));
     for (const BundleNode& node : comparison.bundle.nodes) {
-        write_state<2>(folder / fmt::format("node_{:04}.json", node.equilibrium.number), node.equilibrium.state);
+        write_state(folder / fmt::format("node_{:04}.json", node.equilibrium.number), node.equilibrium.state);
     }
 }
 

@@ -22,14 +22,14 @@ Failure other_list(const std::vector<Contact>& list, const std::vector<Contact>&
 
 } // namespace
 
-Result<State<2>> with_resting_rattlers(const Snap& snap, std::uint64_t seed) {
-    std::vector<double> infinitesimal = generic_infinitesimal<2>(snap.packing.radius, seed);
+Result<State> with_resting_rattlers(const Snap& snap, std::uint64_t seed) {
+    std::vector<double> infinitesimal = generic_infinitesimal(snap.packing.radius, seed);
     balance(infinitesimal, snap.packing.cell);
     return with_resting_rattlers(snap, std::move(infinitesimal));
 }
 
-Result<State<2>> with_resting_rattlers(const Snap& snap, std::vector<double> infinitesimal) {
-    State<2> state;
+Result<State> with_resting_rattlers(const Snap& snap, std::vector<double> infinitesimal) {
+    State state;
     state.packing = snap.packing;
     (void)snap_to_grid(state.packing);
     state.load = snap.backbone.load;
@@ -50,7 +50,7 @@ Result<State<2>> with_resting_rattlers(const Snap& snap, std::vector<double> inf
     Segment rest;
     rest.equilibria = 0; // the start alone
     RunCounters counters;
-    RunObserver<2> nobody;
+    RunObserver nobody;
     const SegmentOutcome outcome = run_segment(state, rest, 0, {}, counters, nobody);
     if (outcome.failure) {
         return Failure{outcome.failure->kind, "rattlers do not come to rest: " + outcome.failure->message()};
@@ -80,8 +80,8 @@ Result<Exchanged> exchange(const SoftState& soft, std::uint64_t seed) {
     };
     options.stress = stress(0);
     options.ratio = stress(1) / stress(0);
-    PreparationReport<2> report;
-    auto vertex = find_vertex<2>(soft.packing, options, report);
+    PreparationReport report;
+    auto vertex = find_vertex(soft.packing, options, report);
     if (!vertex.ok() && !report.candidate) {
         return vertex.failure();
     }

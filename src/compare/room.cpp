@@ -19,11 +19,11 @@ class RattlerPairs {
     explicit RattlerPairs(const std::vector<unsigned char>& rattles) : rattles_(rattles) {}
 
     /// All that can overlap there: those found before while they are complete.
-    const std::vector<Contact>& at(const Packing<2>& packing) {
+    const std::vector<Contact>& at(const Packing& packing) {
         return !list_.reference.empty() && list_.covers(packing) ? pairs_ : found_at(packing);
     }
     /// Found anew: others are farther apart than half the smallest radius.
-    const std::vector<Contact>& found_at(const Packing<2>& packing) {
+    const std::vector<Contact>& found_at(const Packing& packing) {
         constexpr double reach = 0.5; // of the smallest radius; T6 allows up to 0.82
         list_ = find_candidates(packing, reach);
         pairs_.clear();
@@ -38,12 +38,12 @@ class RattlerPairs {
 
   private:
     const std::vector<unsigned char>& rattles_;
-    CandidateList<2> list_;
+    CandidateList list_;
     std::vector<Contact> pairs_;
 };
 
 /// One sweep of projections: each pair that is nearer than `wanted` is parted by moving its rattlers.
-void part(Packing<2>& packing, const std::vector<Contact>& pairs, const std::vector<unsigned char>& rattles,
+void part(Packing& packing, const std::vector<Contact>& pairs, const std::vector<unsigned char>& rattles,
           double wanted) {
     const std::size_t disks = 2 * packing.radius.size();
     for (const Contact& pair : pairs) {
@@ -51,7 +51,7 @@ void part(Packing<2>& packing, const std::vector<Contact>& pairs, const std::vec
         if (!(missing > 0)) {
             continue;
         }
-        const GapGradient<2> gradient = gap_gradient(packing, pair);
+        const GapGradient gradient = gap_gradient(packing, pair);
         const auto moves = [&](int k) {
             const auto at = static_cast<std::size_t>(gradient.coordinate[static_cast<std::size_t>(k)]);
             return at < disks && rattles[at / 2] != 0;
@@ -74,7 +74,7 @@ void part(Packing<2>& packing, const std::vector<Contact>& pairs, const std::vec
 struct GapBounds {
     double lower, upper;
 };
-GapBounds gap_bounds(const Packing<2>& packing, const Contact& pair, double radius) {
+GapBounds gap_bounds(const Packing& packing, const Contact& pair, double radius) {
     using roundoff::u;
     const double h = gap(packing, pair);
     double length = std::abs(h) + touching_distance(packing.radius, pair);
@@ -94,7 +94,7 @@ struct Least {
     double gap = std::numeric_limits<double>::infinity();
     Contact pair;
 };
-Least least_gap(const Packing<2>& packing, const std::vector<Contact>& pairs, double radius) {
+Least least_gap(const Packing& packing, const std::vector<Contact>& pairs, double radius) {
     Least out;
     for (const Contact& pair : pairs) {
         const double h = gap_bounds(packing, pair, radius).lower;
@@ -108,7 +108,7 @@ Least least_gap(const Packing<2>& packing, const std::vector<Contact>& pairs, do
 class Covering {
   public:
     /// `pairs`: of the rattler and grains of the list; `radius`: by which their coordinates may be off.
-    Covering(Packing<2> packing, std::vector<Contact> pairs, std::size_t rattler, double radius)
+    Covering(Packing packing, std::vector<Contact> pairs, std::size_t rattler, double radius)
         : packing_(std::move(packing)), pairs_(std::move(pairs)), rattler_(2 * rattler), radius_(radius) {}
 
     /// False: not shown.
@@ -136,7 +136,7 @@ class Covering {
                covered(x - next, y + next, next) && covered(x + next, y + next, next);
     }
 
-    Packing<2> packing_;
+    Packing packing_;
     std::vector<Contact> pairs_;
     std::size_t rattler_;
     double radius_;
@@ -187,7 +187,7 @@ std::string make_room(Snap& snap) {
     constexpr int rounds = 20, sweeps = 25; // whether the list of pairs is complete is asked in each round
     const double radius = snap.truth.claims.vertex->radius;
     RattlerPairs pairs(rattles);
-    Packing<2> placed;
+    Packing placed;
     Least least;
     for (const double margin : {1e-2, 1e-4, 1e-6, 1e-9}) { // wanted gap in smallest radii
         placed = snap.packing;
@@ -209,8 +209,8 @@ std::string make_room(Snap& snap) {
             }
         }
     }
-    return fmt::format("a rattler found no room at the vertex of the list: {} stay {:.3g} apart",
-                       to_string<2>(least.pair), gap(placed, least.pair));
+    return fmt::format("a rattler found no room at the vertex of the list: {} stay {:.3g} apart", to_string(least.pair),
+                       gap(placed, least.pair));
 }
 
 } // namespace isostat::compare

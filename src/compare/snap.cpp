@@ -43,7 +43,7 @@ void take_backbone(const SoftState& soft, Snap& out) {
         out.disks.push_back(static_cast<int>(i));
     }
     out.backbone.packing = of_disks(soft.packing, out.disks);
-    const Packing<2>& packing = out.backbone.packing;
+    const Packing& packing = out.backbone.packing;
     for (Contact c : soft.contacts) {
         c.i = number[static_cast<std::size_t>(c.i)];
         c.j = c.kind == ContactKind::disk_disk ? number[static_cast<std::size_t>(c.j)] : c.j;
@@ -52,14 +52,14 @@ void take_backbone(const SoftState& soft, Snap& out) {
     out.backbone.load = soft.load;
     out.backbone.load.disk_force.clear();
     // Where several forces vanish together for structural reasons, the end of the interval needs them.
-    out.backbone.load.infinitesimal = generic_infinitesimal<2>(packing.radius, 1);
+    out.backbone.load.infinitesimal = generic_infinitesimal(packing.radius, 1);
     balance(out.backbone.load.infinitesimal, packing.cell);
 }
 
 /// In names of the whole packing.
 std::string renamed(const Snap& snap, const Contact& c) {
     const auto disk = [&](int i) { return snap.disks[static_cast<std::size_t>(i)]; };
-    return to_string<2>(Contact{c.kind, disk(c.i), c.kind == ContactKind::disk_disk ? disk(c.j) : c.j, c.image});
+    return to_string(Contact{c.kind, disk(c.i), c.kind == ContactKind::disk_disk ? disk(c.j) : c.j, c.image});
 }
 
 /// The first force that is proved negative, or empty.
@@ -110,8 +110,8 @@ void measure_moves(const SoftState& soft, Snap& out) {
 }
 
 /// Newton's method, no farther than grains that are nearly rigid are from their vertex. Empty, or why not.
-std::string find_vertex_of(Packing<2>& packing, const std::vector<Contact>& contacts) {
-    Packing<2> moved = packing;
+std::string find_vertex_of(Packing& packing, const std::vector<Contact>& contacts) {
+    Packing moved = packing;
     long iterations = 0;
     if (const auto failure = preparation::newton(moved, contacts, iterations)) {
         return failure->message();
@@ -158,8 +158,8 @@ void judge_room(Snap& out) {
 
 } // namespace
 
-Packing<2> of_disks(const Packing<2>& packing, const std::vector<int>& disks) {
-    Packing<2> out;
+Packing of_disks(const Packing& packing, const std::vector<int>& disks) {
+    Packing out;
     out.walls = packing.walls;
     out.cell = packing.cell;
     for (const int disk : disks) {
@@ -179,13 +179,13 @@ const char* to_string(SnapOutcome outcome) {
     return word_of(outcome, words);
 }
 
-State<2> backbone_of(const State<2>& state, const std::vector<Contact>& carrying) {
+State backbone_of(const State& state, const std::vector<Contact>& carrying) {
     Snap out;
     take_backbone({state.packing, carrying, state.load}, out);
     return std::move(out.backbone);
 }
 
-std::vector<Contact> able_to_carry(const Packing<2>& packing, std::vector<Contact> contacts) {
+std::vector<Contact> able_to_carry(const Packing& packing, std::vector<Contact> contacts) {
     std::erase_if(contacts, [](const Contact& c) { return c.kind == ContactKind::held; });
     const std::vector<int> from = crafted::peel(packing, contacts).contact_from;
     std::vector<Contact> out;
@@ -228,7 +228,7 @@ Snap snap(const SoftState& soft) {
 namespace {
 
 /// All of them where nothing is known of zeros.
-std::vector<Contact> without_zeros(const State<2>& state, const std::vector<unsigned char>& zero) {
+std::vector<Contact> without_zeros(const State& state, const std::vector<unsigned char>& zero) {
     std::vector<Contact> out;
     for (std::size_t l = 0; l < state.contacts.size(); ++l) {
         if (zero.size() != state.contacts.size() || zero[l] == 0) {
@@ -241,21 +241,21 @@ std::vector<Contact> without_zeros(const State<2>& state, const std::vector<unsi
 
 } // namespace
 
-std::vector<Contact> carrying(const State<2>& state, const Certification& truth) {
+std::vector<Contact> carrying(const State& state, const Certification& truth) {
     return without_zeros(state, truth.structural_zero);
 }
 
-std::vector<Contact> carrying(const State<2>& equilibrium) {
-    const auto structure = IsostaticStructure<2>::prove(equilibrium.packing, equilibrium.contacts);
-    return without_zeros(equilibrium, structure.ok() ? Subject<2>(equilibrium, structure.value()).zero
-                                                     : std::vector<unsigned char>());
+std::vector<Contact> carrying(const State& equilibrium) {
+    const auto structure = IsostaticStructure::prove(equilibrium.packing, equilibrium.contacts);
+    return without_zeros(equilibrium,
+                         structure.ok() ? Subject(equilibrium, structure.value()).zero : std::vector<unsigned char>());
 }
 
 std::string names_of(const std::vector<Contact>& contacts) {
     constexpr std::size_t most = 8;
     std::string text;
     for (std::size_t k = 0; k < std::min(most, contacts.size()); ++k) {
-        text += " " + to_string<2>(contacts[k]);
+        text += " " + to_string(contacts[k]);
     }
     return contacts.empty()         ? " none"
            : contacts.size() > most ? fmt::format("{} and {} more", text, contacts.size() - most)

@@ -17,7 +17,7 @@ constexpr double same_stress = 1e-10;
 /// Soft grains on their way to the place where gaps = -f / K: forces at the place, and one step of Newton's method.
 class SoftGrains {
   public:
-    SoftGrains(const State<2>& state, double stiffness)
+    SoftGrains(const State& state, double stiffness)
         : contacts_(state.contacts), load_(state.load), stiffness_(stiffness), dofs_(state.packing),
           packing(state.packing) {}
 
@@ -27,7 +27,7 @@ class SoftGrains {
         if (!std::all_of(packing.q.begin(), packing.q.end(), [](double x) { return std::isfinite(x); })) {
             return false;
         }
-        const auto structure = IsostaticStructure<2>::prove(packing, contacts_);
+        const auto structure = IsostaticStructure::prove(packing, contacts_);
         if (!structure.ok()) {
             return false;
         }
@@ -56,13 +56,13 @@ class SoftGrains {
 
   private:
     const std::vector<Contact>& contacts_;
-    Load<2> load_;
+    Load load_;
     double stiffness_;
-    DofMap<2> dofs_;
+    DofMap dofs_;
     std::optional<Factorisation> factors_;
 
   public:
-    Packing<2> packing;
+    Packing packing;
     std::vector<double> forces, slopes;
 };
 
@@ -91,7 +91,7 @@ std::optional<Vanishing> first_to_vanish(const SoftGrains& grains, double sigma,
 
 } // namespace
 
-std::optional<SoftEquilibrium> soften(const State<2>& state, double sigma, double stiffness) {
+std::optional<SoftEquilibrium> soften(const State& state, double sigma, double stiffness) {
     SoftGrains grains(state, stiffness);
     for (int turn = 0; turn < most_turns; ++turn) {
         if (!grains.solve(sigma)) {
@@ -104,7 +104,7 @@ std::optional<SoftEquilibrium> soften(const State<2>& state, double sigma, doubl
     return std::nullopt;
 }
 
-std::optional<SoftLimit> soft_limit(const State<2>& state, const ExactInterval& exact, double stiffness) {
+std::optional<SoftLimit> soft_limit(const State& state, const ExactInterval& exact, double stiffness) {
     const double middle = 0.5 * (exact.low + exact.high), half = std::abs(exact.end() - middle);
     SoftGrains grains(state, stiffness);
     double sigma = middle; // place and stress move together: one solve a turn
@@ -128,7 +128,7 @@ std::optional<SoftLimit> soft_limit(const State<2>& state, const ExactInterval& 
     return std::nullopt;
 }
 
-std::optional<double> stiffness_needed(const State<2>& state, const ExactInterval& exact, double error) {
+std::optional<double> stiffness_needed(const State& state, const ExactInterval& exact, double error) {
     const double stress = state.load.stress[0];
     constexpr double stiff = 1e8; // in sigma_1: far inside the range where the difference goes as 1 / K
     const auto limit = soft_limit(state, exact, stiff * stress);

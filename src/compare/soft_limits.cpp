@@ -25,11 +25,11 @@ struct Row {
 };
 
 /// Both ends of one equilibrium that are finite.
-void add_rows(std::vector<Row>& rows, const EquilibriumRow& equilibrium, const State<2>& state, double stiffness) {
+void add_rows(std::vector<Row>& rows, const EquilibriumRow& equilibrium, const State& state, double stiffness) {
     if (!std::isfinite(equilibrium.stress_high) || !(equilibrium.stress_low > 0)) {
         return;
     }
-    const State<2> backbone = backbone_of(state, carrying(state));
+    const State backbone = backbone_of(state, carrying(state));
     for (const int direction : {-1, +1}) {
         const ExactInterval exact{equilibrium.stress_low, equilibrium.stress_high, direction};
         const auto soft = soft_limit(backbone, exact, stiffness);
@@ -53,8 +53,8 @@ std::string soft_limits(const fs::path& run, const fs::path& output, double stif
             ++left_out;
             continue;
         }
-        const State<2> state = read_any_state<2>(file).state;
-        if (!state.packing.cell.any() && !(state.packing.walls == Walls<2>::box())) {
+        const State state = read_any_state(file).state;
+        if (!state.packing.cell.any() && !(state.packing.walls == Walls::box())) {
             throw Error(ErrorKind::bad_input, file.string() + ": expected a box with two fixed and two movable walls, "
                                                               "or a periodic cell, for --stiffness");
         }

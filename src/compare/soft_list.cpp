@@ -18,10 +18,10 @@ namespace isostat::compare {
 namespace {
 
 /// The disk that is nearest to a wall, and its gap.
-std::pair<int, double> nearest_to(const Packing<2>& packing, ContactKind wall, int axis) {
+std::pair<int, double> nearest_to(const Packing& packing, ContactKind wall, int axis) {
     std::pair<int, double> out{-1, HUGE_VAL};
     for (int i = 0; i < packing.disk_count(); ++i) {
-        if (const double g = gap<2>(packing, {wall, i, axis}); g < out.second) {
+        if (const double g = gap(packing, {wall, i, axis}); g < out.second) {
             out = {i, g};
         }
     }
@@ -29,12 +29,12 @@ std::pair<int, double> nearest_to(const Packing<2>& packing, ContactKind wall, i
 }
 
 /// Walls that a disk overlaps.
-std::vector<Contact> walls_of(const Packing<2>& packing) {
+std::vector<Contact> walls_of(const Packing& packing) {
     std::vector<Contact> out;
     for (const ContactKind kind : {ContactKind::lower_wall, ContactKind::upper_wall}) {
         for (int i = 0; i < packing.disk_count(); ++i) {
             for (int axis = 0; axis < 2; ++axis) {
-                if (!packing.cell.periodic[static_cast<std::size_t>(axis)] && gap<2>(packing, {kind, i, axis}) <= 0) {
+                if (!packing.cell.periodic[static_cast<std::size_t>(axis)] && gap(packing, {kind, i, axis}) <= 0) {
                     out.emplace_back(kind, i, axis);
                 }
             }
@@ -44,14 +44,14 @@ std::vector<Contact> walls_of(const Packing<2>& packing) {
 }
 
 /// Empty, or the walls that no disk overlaps: soft grains press on each, so digits of its position are missing.
-std::string walls_apart(const Packing<2>& packing) {
+std::string walls_apart(const Packing& packing) {
     std::string out;
     for (const ContactKind kind : {ContactKind::lower_wall, ContactKind::upper_wall}) {
         for (int axis = 0; axis < 2 && !packing.cell.any(); ++axis) {
             if (const auto [disk, distance] = nearest_to(packing, kind, axis); distance > 0) {
                 out += fmt::format("; none with the {} wall, which is {:.3g} from disk {} (are digits of its position "
                                    "rounded?)",
-                                   to_string<2>(Contact{kind, 0, axis}).substr(2), distance, disk);
+                                   to_string(Contact{kind, 0, axis}).substr(2), distance, disk);
             }
         }
     }
@@ -64,7 +64,7 @@ void refuse(const std::string& file, const std::string& what) {
     throw Error(ErrorKind::bad_input, file + ": " + what);
 }
 
-std::string far_wall(const Packing<2>& packing) {
+std::string far_wall(const Packing& packing) {
     for (const ContactKind kind : {ContactKind::lower_wall, ContactKind::upper_wall}) {
         for (const int axis : {0, 1}) {
             const auto a = static_cast<std::size_t>(axis);
@@ -74,14 +74,14 @@ std::string far_wall(const Packing<2>& packing) {
                 return fmt::format("no disk is near the {} wall, the nearest gap is {:.3g} (disk {}): expected the "
                                    "positions of the walls, --box XLO:XHI,YLO:YHI (bounds of a file often are not "
                                    "those)",
-                                   to_string<2>(Contact{kind, 0, axis}).substr(2), distance, nearest);
+                                   to_string(Contact{kind, 0, axis}).substr(2), distance, nearest);
             }
         }
     }
     return "";
 }
 
-std::string far_disks(const Packing<2>& packing, double largest, const crafted::Plateau& plateau) {
+std::string far_disks(const Packing& packing, double largest, const crafted::Plateau& plateau) {
     const double radius = packing.min_radius();
     if (plateau.deepest_overlap < -0.5 * radius) {
         return fmt::format("two disks overlap by {:.3g} of the smallest radius: are the sizes diameters, taken for "
@@ -92,8 +92,8 @@ std::string far_disks(const Packing<2>& packing, double largest, const crafted::
     constexpr double farthest = 8; // radii
     for (double reach = nearly_touching; plateau.candidates == 0 && reach < farthest && !std::isfinite(nearest);
          reach *= 2) {
-        for (const Contact& c : preparation::near_contacts<2>(packing, reach * radius, 0)) {
-            nearest = std::min(nearest, gap<2>(packing, c));
+        for (const Contact& c : preparation::near_contacts(packing, reach * radius, 0)) {
+            nearest = std::min(nearest, gap(packing, c));
         }
     }
     return nearest <= std::max(largest, nearly_touching * radius)
@@ -104,7 +104,7 @@ std::string far_disks(const Packing<2>& packing, double largest, const crafted::
                      nearest / radius);
 }
 
-void check_nearness(const std::string& file, const Packing<2>& packing) {
+void check_nearness(const std::string& file, const Packing& packing) {
     const double near = nearly_touching * packing.min_radius();
     if (const std::string words = far_wall(packing); !words.empty()) {
         refuse(file, words);
@@ -116,7 +116,7 @@ void check_nearness(const std::string& file, const Packing<2>& packing) {
     }
 }
 
-SoftList list_by_forces(const std::string& file, const Packing<2>& packing, const std::vector<long>& ids,
+SoftList list_by_forces(const std::string& file, const Packing& packing, const std::vector<long>& ids,
                         std::optional<long> frame, const std::string& contacts, const PairColumns& columns) {
     if (ids.empty()) {
         refuse(file, "has no column id: expected one, the contacts speak of ids");
@@ -150,7 +150,7 @@ SoftList list_by_forces(const std::string& file, const Packing<2>& packing, cons
     return out;
 }
 
-SoftList list_by_overlaps(const Packing<2>& packing) {
+SoftList list_by_overlaps(const Packing& packing) {
     constexpr double reach = 0.5; // of the smallest radius
     SoftList out;
     for (const Contact& c : find_candidates(packing, reach).contacts) {

@@ -20,14 +20,14 @@ inline constexpr double nearly_touching = 0.1;
 [[noreturn]] void refuse(const std::string& file, const std::string& what);
 
 /// Words on a wall that no disk is near; empty: every wall has one.
-std::string far_wall(const Packing<2>& packing);
+std::string far_wall(const Packing& packing);
 
 /// Words where the sizes seem to be wrong by a factor; empty: they do not. \p largest: threshold of the plateau.
-std::string far_disks(const Packing<2>& packing, double largest, const crafted::Plateau& plateau);
+std::string far_disks(const Packing& packing, double largest, const crafted::Plateau& plateau);
 
 /// Every wall near a disk, no overlap deep: else the file is no packing of nearly rigid disks in these walls. Throws
 /// `Error(bad_input)`.
-void check_nearness(const std::string& file, const Packing<2>& packing);
+void check_nearness(const std::string& file, const Packing& packing);
 
 /// A list of contacts, and in words where it comes from.
 struct SoftList {
@@ -38,10 +38,10 @@ struct SoftList {
 
 /// The pairs with a force in a LAMMPS dump of style local or a table (`read_local_dump`) and the walls that a disk
 /// overlaps. \p ids: of the disks.
-SoftList list_by_forces(const std::string& file, const Packing<2>& packing, const std::vector<long>& ids,
+SoftList list_by_forces(const std::string& file, const Packing& packing, const std::vector<long>& ids,
                         std::optional<long> frame, const std::string& contacts, const PairColumns& columns);
 
 /// The pairs that overlap.
-SoftList list_by_overlaps(const Packing<2>& packing);
+SoftList list_by_overlaps(const Packing& packing);
 
 } // namespace isostat::compare

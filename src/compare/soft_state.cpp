@@ -10,11 +10,11 @@
 
 namespace isostat::compare {
 
-SoftForces soft_grains(const StateFile<2>& file, const std::string& source) {
-    State<2> state = file.state;
+SoftForces soft_grains(const StateFile& file, const std::string& source) {
+    State state = file.state;
     const bool fixed =
         std::any_of(state.packing.fixed.begin(), state.packing.fixed.end(), [](auto f) { return f != 0; });
-    const bool box = state.packing.walls == Walls<2>::box() || state.packing.cell.all();
+    const bool box = state.packing.walls == Walls::box() || state.packing.cell.all();
     if (!box || fixed || !state.load.disk_force.empty()) {
         throw Error(ErrorKind::bad_input, source +
                                               ": expected a box with two fixed and two movable walls or a periodic "

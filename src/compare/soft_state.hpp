@@ -18,7 +18,7 @@ struct SoftForces {
 /// The contacts of a state that can carry a force, with its load. Throws `Error(bad_input)`, which begins with
 /// `source`: expected a box with two fixed and two movable walls or a periodic cell, no fixed disk and no force on a
 /// disk.
-SoftForces soft_grains(const StateFile<2>& file, const std::string& source);
+SoftForces soft_grains(const StateFile& file, const std::string& source);
 
 /// Forces of linear contacts where none are said.
 void add_law(SoftForces& grains, double stiffness);

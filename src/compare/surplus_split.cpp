@@ -25,7 +25,7 @@ using Vector = Eigen::VectorXd;
 /// H of a list with more contacts than degrees of freedom, and its self-stresses, in doubles.
 class Surplus {
   public:
-    Surplus(const Packing<2>& packing, const std::vector<Contact>& contacts) : dofs_(packing) {
+    Surplus(const Packing& packing, const std::vector<Contact>& contacts) : dofs_(packing) {
         const sparse::Matrix<double> h = contact_matrix(packing, dofs_, contacts);
         h_ = Eigen::Map<const Eigen::SparseMatrix<double>>(h.rows, h.cols, h.entries(), h.start.data(), h.row.data(),
                                                            h.value.data());
@@ -34,7 +34,7 @@ class Surplus {
     [[nodiscard]] bool good() const { return normal_.info() == Eigen::Success; }
     [[nodiscard]] const Eigen::SparseMatrix<double>& matrix() const { return h_; }
 
-    Vector load(const Load<2>& load, const Packing<2>& packing) const {
+    Vector load(const Load& load, const Packing& packing) const {
         const std::vector<double> all = load.external_force(packing);
         Vector out(dofs_.dof_count());
         for (int i = 0; i < dofs_.dof_count(); ++i) {
@@ -75,7 +75,7 @@ class Surplus {
     }
 
   private:
-    DofMap<2> dofs_;
+    DofMap dofs_;
     Eigen::SparseMatrix<double> h_;
     Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> normal_;
 };
@@ -87,7 +87,7 @@ struct Balanced {
 };
 
 /// The forces of the surplus contacts are taken as they are, the others solved, with proof.
-std::optional<Balanced> balanced(const Surplus& surplus, const Packing<2>& packing, const Vector& load,
+std::optional<Balanced> balanced(const Surplus& surplus, const Packing& packing, const Vector& load,
                                  const std::vector<Contact>& contacts, Vector f) {
     constexpr double roundings = 8; // of a term: the load, 5 of an entry, product, sum
     const std::vector<Eigen::Index> given = surplus.surplus();
@@ -106,7 +106,7 @@ std::optional<Balanced> balanced(const Surplus& surplus, const Packing<2>& packi
             terms[entry.row()] += 1;
         }
     }
-    const auto structure = IsostaticStructure<2>::prove(packing, others);
+    const auto structure = IsostaticStructure::prove(packing, others);
     if (!structure.ok()) {
         return std::nullopt;
     }
@@ -162,7 +162,7 @@ SurplusSplit split_surplus(const SoftState& soft, const std::vector<double>& for
         !std::all_of(forces.begin(), forces.end(), [](double f) { return std::isfinite(f); })) {
         return out;
     }
-    Packing<2> packing = of_disks(soft.packing, snap.disks);
+    Packing packing = of_disks(soft.packing, snap.disks);
     (void)snap_to_grid(packing);
     const Surplus surplus(packing, snap.backbone.contacts);
     if (!surplus.good()) {

@@ -24,9 +24,9 @@ namespace {
 /// The disks that carry forces, in their contacts, and their other pairs; copies of them with other gaps.
 class Copies {
   public:
-    Copies(const State<2>& state, const std::vector<Contact>& carrying)
+    Copies(const State& state, const std::vector<Contact>& carrying)
         : backbone_(backbone_of(state, carrying)), dofs_(backbone_.packing) {
-        const auto structure = IsostaticStructure<2>::prove(backbone_.packing, backbone_.contacts);
+        const auto structure = IsostaticStructure::prove(backbone_.packing, backbone_.contacts);
         if (!structure.ok()) {
             return;
         }
@@ -36,7 +36,7 @@ class Copies {
         std::sort(listed.begin(), listed.end());
         pairs = without(find_candidates(backbone_.packing, candidate_fraction).contacts, listed);
         for (const Contact& pair : pairs) {
-            gaps.push_back(gap<2>(backbone_.packing, pair));
+            gaps.push_back(gap(backbone_.packing, pair));
         }
         of_gaps.assign(pairs.size(), 0);
         of_forces.assign(forces.size(), 0);
@@ -52,16 +52,16 @@ class Copies {
             approach = (random() >> 63U) != 0 ? step : -step;
         }
         factors_->solve_velocities(moves);
-        Packing<2> packing = backbone_.packing;
+        Packing packing = backbone_.packing;
         for (std::size_t mu = 0; mu < moves.size(); ++mu) {
             packing.q[static_cast<std::size_t>(dofs_.coordinate_of(static_cast<int>(mu)))] += moves[mu];
         }
         const double scale = rounding / step;
         for (std::size_t l = 0; l < pairs.size(); ++l) {
-            const double change = std::abs(gap<2>(packing, pairs[l]) - gaps[l]);
+            const double change = std::abs(gap(packing, pairs[l]) - gaps[l]);
             of_gaps[l] = std::max(of_gaps[l], change * scale + rounding);
         }
-        const auto structure = IsostaticStructure<2>::prove(packing, backbone_.contacts);
+        const auto structure = IsostaticStructure::prove(packing, backbone_.contacts);
         if (!structure.ok()) {
             return;
         }
@@ -75,26 +75,26 @@ class Copies {
     std::vector<double> gaps, forces, of_gaps, of_forces;
 
   private:
-    [[nodiscard]] std::vector<double> solved(const Packing<2>& packing, const Factorisation& factors) const {
+    [[nodiscard]] std::vector<double> solved(const Packing& packing, const Factorisation& factors) const {
         std::vector<double> out = on_dofs(backbone_.load.external_force(packing), dofs_);
         factors.solve_forces(out);
         return out;
     }
 
-    State<2> backbone_;
-    DofMap<2> dofs_;
+    State backbone_;
+    DofMap dofs_;
     std::optional<Factorisation> factors_;
 };
 
 /// Rattlers that would be held if the pairs that are as near as what may change were contacts.
-void add_rattlers(const State<2>& state, const std::vector<int>& disks, double change, Untold& out) {
+void add_rattlers(const State& state, const std::vector<int>& disks, double change, Untold& out) {
     std::vector<Contact> listed = state.contacts;
     std::sort(listed.begin(), listed.end());
     const auto carries = [&](int i) { return std::binary_search(disks.begin(), disks.end(), i); };
     std::vector<Contact> near;
     for (const Contact& c : without(find_candidates(state.packing, candidate_fraction).contacts, listed)) {
         const bool rattler = !carries(c.i) || (c.kind == ContactKind::disk_disk && !carries(c.j));
-        if (rattler && std::abs(gap<2>(state.packing, c)) <= 2 * change) {
+        if (rattler && std::abs(gap(state.packing, c)) <= 2 * change) {
             near.push_back(c);
         }
     }
@@ -111,7 +111,7 @@ void add_rattlers(const State<2>& state, const std::vector<int>& disks, double c
 
 } // namespace
 
-double imported_rounding(const State<2>& state) {
+double imported_rounding(const State& state) {
     if (state.provenance.empty()) {
         return 0;
     }
@@ -128,7 +128,7 @@ double imported_rounding(const State<2>& state) {
     return rounding;
 }
 
-Untold untold_by(double rounding, const State<2>& state, const Certification& truth) {
+Untold untold_by(double rounding, const State& state, const Certification& truth) {
     Untold out;
     out.rounding = rounding;
     if (rounding == 0 || !truth.claims.vertex || truth.finite.empty()) {
@@ -191,8 +191,8 @@ Verdict withheld(const Untold& untold, Verdict of_the_doubles) {
                                                                                    : of_the_doubles;
 }
 
-void withhold(const Untold& untold, Inspection<2>& inspection) {
-    EquilibriumRecord<2>& r = inspection.record;
+void withhold(const Untold& untold, Inspection& inspection) {
+    EquilibriumRecord& r = inspection.record;
     const Verdict verdict = withheld(untold, r.verdict);
     if (verdict != r.verdict) {
         inspection.remark = fmt::format("{}{}{}; {} of the stored doubles", untold.words(),

@@ -12,7 +12,7 @@ namespace isostat::compare {
 
 /// `rounding` of the provenance of a state, a bound of what is not known of a gap of the file; 0: it was not imported.
 /// Throws `Error(bad_input)` for a value that is none.
-double imported_rounding(const State<2>& state);
+double imported_rounding(const State& state);
 
 /// What cannot be told apart from 0 when every gap of a contact is off by the rounding.
 struct Untold {
@@ -28,11 +28,11 @@ struct Untold {
 
 /// Found from sixteen copies whose gaps are off by the rounding, with signs drawn at random: what is less than twice
 /// the largest change in them. Diagnosis, not a bound. Nothing without a true vertex or with a rounding of 0.
-Untold untold_by(double rounding, const State<2>& state, const Certification& truth);
+Untold untold_by(double rounding, const State& state, const Certification& truth);
 
 /// Of the packing the verdict is open where something is untold; what is proved of the doubles becomes the reason.
 Verdict withheld(const Untold& untold, Verdict of_the_doubles);
-void withhold(const Untold& untold, Inspection<2>& inspection);
+void withhold(const Untold& untold, Inspection& inspection);
 void withhold(const Untold& untold, CellInspection& cell);
 
 } // namespace isostat::compare

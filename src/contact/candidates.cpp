@@ -19,9 +19,9 @@ namespace isostat {
 namespace {
 
 /// Calls visit(contact) for every disk and every wall that is there.
-template <int Dim, class Visit> void for_each_wall_contact(const Packing<Dim>& packing, Visit visit) {
+template <class Visit> void for_each_wall_contact(const Packing& packing, Visit visit) {
     for (int i = 0; i < packing.disk_count(); ++i) {
-        for (int a = 0; a < Dim; ++a) {
+        for (int a = 0; a < packing.dimension; ++a) {
             if (packing.walls.lower[static_cast<std::size_t>(a)] != WallKind::absent) {
                 visit(Contact{ContactKind::lower_wall, i, a});
             }
@@ -33,10 +33,10 @@ template <int Dim, class Visit> void for_each_wall_contact(const Packing<Dim>& p
 }
 
 /// Whether A m can change.
-template <int Dim> bool moves_with_cell(const Packing<Dim>& packing, const Image& image) {
-    const Cell<Dim>& cell = packing.cell;
+bool moves_with_cell(const Packing& packing, const Image& image) {
+    const Cell& cell = packing.cell;
     bool moves = false;
-    for (std::size_t b = 0; b < Dim; ++b) {
+    for (std::size_t b = 0; b < packing.axes(); ++b) {
         moves = moves || (image.m[b] != 0 && cell.period_moves[b]);
         for (std::size_t a = 0; a < b; ++a) {
             moves = moves || (image.m[b] != 0 && cell.tilt_moves[cell.tilt(a, b)]);
@@ -46,9 +46,9 @@ template <int Dim> bool moves_with_cell(const Packing<Dim>& packing, const Image
 }
 
 /// Bound on the rounding of a wall gap, from the lengths that enter.
-template <int Dim> double wall_rounding(const Packing<Dim>& packing, const Contact& contact) {
+double wall_rounding(const Packing& packing, const Contact& contact) {
     double lengths = 0;
-    Separation<Dim>(contact, packing.disk_count()).for_each_coordinate([&](std::size_t k, std::size_t, int) {
+    Separation(contact, packing.layout()).for_each_coordinate([&](std::size_t k, std::size_t, int) {
         lengths += std::abs(packing.q[k]);
     });
     return 0x1p-51 * (lengths + packing.radius[static_cast<std::size_t>(contact.i)]);
@@ -56,7 +56,7 @@ template <int Dim> double wall_rounding(const Packing<Dim>& packing, const Conta
 
 } // namespace
 
-template <int Dim> bool can_move(const Packing<Dim>& packing, const Contact& pair) {
+bool can_move(const Packing& packing, const Contact& pair) {
     if (packing.cell.any() && pair.kind == ContactKind::disk_disk) { // no disk is fixed there
         return pair.i != pair.j || moves_with_cell(packing, pair.image);
     }
@@ -72,7 +72,7 @@ template <int Dim> bool can_move(const Packing<Dim>& packing, const Contact& pai
     return true;
 }
 
-template <int Dim> std::optional<Contact> fixed_overlap(const Packing<Dim>& packing) {
+std::optional<Contact> fixed_overlap(const Packing& packing) {
     std::optional<Contact> found;
     const auto look = [&](const Contact& pair) {
         if (!found && !can_move(packing, pair) && gap_sign(packing, pair, 0) < 0) {
@@ -89,7 +89,7 @@ template <int Dim> std::optional<Contact> fixed_overlap(const Packing<Dim>& pack
     return found;
 }
 
-template <int Dim> bool CandidateList<Dim>::covers(const Packing<Dim>& packing, double radius) const {
+bool CandidateList::covers(const Packing& packing, double radius) const {
     if (reference.size() != packing.q.size()) {
         return false;
     }
@@ -102,9 +102,9 @@ template <int Dim> bool CandidateList<Dim>::covers(const Packing<Dim>& packing, 
     if (limit > 0x1p-450 && limit < 0x1p500) { // no square that matters under- or overflows
         const double square_limit = limit * limit;
         bool within = true;
-        for (std::size_t k = 0; k < reference.size(); k += Dim) {
+        for (std::size_t k = 0; k < reference.size(); k += packing.axes()) {
             double square = 0;
-            for (std::size_t a = 0; a < Dim; ++a) {
+            for (std::size_t a = 0; a < packing.axes(); ++a) {
                 const double d = packing.q[k + a] - reference[k + a];
                 square += d * d;
             }
@@ -112,9 +112,9 @@ template <int Dim> bool CandidateList<Dim>::covers(const Packing<Dim>& packing, 
         }
         return within;
     }
-    for (std::size_t k = 0; k < reference.size(); k += Dim) {
+    for (std::size_t k = 0; k < reference.size(); k += packing.axes()) {
         double farthest = 0;
-        for (std::size_t a = 0; a < Dim; ++a) {
+        for (std::size_t a = 0; a < packing.axes(); ++a) {
             farthest = std::hypot(farthest, packing.q[k + a] - reference[k + a]);
         }
         if (!(farthest < limit)) {
@@ -124,15 +124,14 @@ template <int Dim> bool CandidateList<Dim>::covers(const Packing<Dim>& packing, 
     return true;
 }
 
-template <int Dim>
-CandidateList<Dim> find_candidates(const Packing<Dim>& packing, double fraction,
-                                   const std::shared_ptr<const RegularTriangulation<Dim>>& from) {
+CandidateList find_candidates(const Packing& packing, double fraction,
+                              const std::shared_ptr<const RegularTriangulation>& from) {
     assert(fraction > 0 && fraction <= largest_candidate_fraction);
     count_work(Work::candidate_searches);
-    CandidateList<Dim> list;
+    CandidateList list;
     list.reach = fraction * packing.min_radius();
     list.reference = packing.q;
-    NearPairs<Dim> near = near_pairs(packing, list.reach, from);
+    NearPairs near = near_pairs(packing, list.reach, from);
     list.contacts = std::move(near.pairs);
     list.triangulation = std::move(near.triangulation);
     if (!packing.fixed.empty() || packing.cell.any()) {
@@ -150,8 +149,7 @@ CandidateList<Dim> find_candidates(const Packing<Dim>& packing, double fraction,
     return list;
 }
 
-template <int Dim>
-Admissibility certify_admissible(const Packing<Dim>& packing, double allowance, const CandidateList<Dim>* known) {
+Admissibility certify_admissible(const Packing& packing, double allowance, const CandidateList* known) {
     require_floating_point();
     assert(allowance >= 0);
     count_work(Work::overlap_proofs);
@@ -188,12 +186,5 @@ Admissibility certify_admissible(const Packing<Dim>& packing, double allowance, 
     for_each_wall_contact(packing, look);
     return result;
 }
-
-template struct CandidateList<2>;
-template bool can_move<2>(const Packing<2>&, const Contact&);
-template std::optional<Contact> fixed_overlap<2>(const Packing<2>&);
-template CandidateList<2> find_candidates<2>(const Packing<2>&, double,
-                                             const std::shared_ptr<const RegularTriangulation<2>>&);
-template Admissibility certify_admissible<2>(const Packing<2>&, double, const CandidateList<2>*);
 
 } // namespace isostat

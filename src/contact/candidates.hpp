@@ -11,37 +11,36 @@
 
 namespace isostat {
 
-template <int Dim> class RegularTriangulation;
+class RegularTriangulation;
 
 /// Of the smallest radius: how far candidates are listed, and the most that statement T6 allows.
 inline constexpr double candidate_fraction = 0.8;
 inline constexpr double largest_candidate_fraction = 0.82;
 
 /// Every pair that can come into contact before the displacements exceed the list's reach.
-template <int Dim> struct CandidateList {
-    static_assert(has_dimension<Dim>());
+struct CandidateList {
     std::vector<Contact> contacts; ///< sorted; all with gap < reach, and perhaps a few beyond by rounding
     double reach = 0; ///< delta: complete as long as twice the largest displacement since `reference` < delta
     std::vector<double> reference; ///< q at which the list was made
     /// Whose edges the disk pairs are; null when they were found by a sweep. Shared by copies, never changed.
-    std::shared_ptr<const RegularTriangulation<Dim>> triangulation;
+    std::shared_ptr<const RegularTriangulation> triangulation;
 
     /// True when the list is still complete at `packing`: 2 max_i |x_i - x_i^ref| < reach, (Lx, Ly) counted as one
     /// more point, roundings included. One-sided: false only means that the list must be rebuilt (also for NaN, or
     /// another number of disks). Cost O(n).
     /// With `radius` > 0: complete in every configuration within that distance (2-norm) of `packing`. In a cell
     /// displacements are those from the affine motion of the cell (proofs/cells.md, C8).
-    [[nodiscard]] bool covers(const Packing<Dim>& packing, double radius = 0) const;
+    [[nodiscard]] bool covers(const Packing& packing, double radius = 0) const;
 };
 
 /// Whether the two grains of a pair can move relative to each other at all: not two fixed disks, nor a fixed disk and a
 /// wall that is not movable, nor a disk and its own image where the periods between them do not move.
-template <int Dim> bool can_move(const Packing<Dim>& packing, const Contact& pair);
+bool can_move(const Packing& packing, const Contact& pair);
 
 /// A pair of grains that cannot move relative to each other and that overlaps, exactly: such a packing is in no
 /// equilibrium *without overlap*, whatever else is proved of it (proofs/definition.md). Cost: none without fixed disks,
 /// else that of a search for candidates.
-template <int Dim> std::optional<Contact> fixed_overlap(const Packing<Dim>& packing);
+std::optional<Contact> fixed_overlap(const Packing& packing);
 
 /// Candidates with gap < fraction * R_min, \pre 0 < fraction <= 0.82, every coordinate and radius finite. Pairs
 /// that cannot move relative to each other (two fixed disks, a fixed disk and a wall that is not movable) are left
@@ -54,9 +53,8 @@ template <int Dim> std::optional<Contact> fixed_overlap(const Packing<Dim>& pack
 ///   axis; O(n^1.5) for packings.
 /// In a cell: pairs with all images (proofs/cells.md, C3), nothing carried along. Walls by a scan. `contacts` depends
 /// on the packing and the fraction alone, not on `from` nor on what found them.
-template <int Dim>
-CandidateList<Dim> find_candidates(const Packing<Dim>& packing, double fraction,
-                                   const std::shared_ptr<const RegularTriangulation<Dim>>& from = nullptr);
+CandidateList find_candidates(const Packing& packing, double fraction,
+                              const std::shared_ptr<const RegularTriangulation>& from = nullptr);
 
 /// Result of `certify_admissible`.
 struct Admissibility {
@@ -73,15 +71,6 @@ struct Admissibility {
 /// Cost: as `find_candidates`.
 /// `known`: a list to use when it was made at this very configuration (and no disk is fixed: it leaves out pairs that
 /// cannot move), so that the search is saved; else its triangulation is carried here.
-template <int Dim>
-Admissibility certify_admissible(const Packing<Dim>& packing, double allowance,
-                                 const CandidateList<Dim>* known = nullptr);
-
-extern template struct CandidateList<2>;
-extern template bool can_move<2>(const Packing<2>&, const Contact&);
-extern template std::optional<Contact> fixed_overlap<2>(const Packing<2>&);
-extern template CandidateList<2> find_candidates<2>(const Packing<2>&, double,
-                                                    const std::shared_ptr<const RegularTriangulation<2>>&);
-extern template Admissibility certify_admissible<2>(const Packing<2>&, double, const CandidateList<2>*);
+Admissibility certify_admissible(const Packing& packing, double allowance, const CandidateList* known = nullptr);
 
 } // namespace isostat

@@ -30,12 +30,12 @@ struct Strain {
     double inverse = 0;
 
     /// `change`: dA as `Packing::q` has it.
-    Strain(const std::vector<double>& reference, const Packing<2>& packing, const std::array<double, 3>& change) {
+    Strain(const std::vector<double>& reference, const Packing& packing, const std::array<double, 3>& change) {
         const std::size_t at = packing.length_at(0);
         const double lx = reference[at];
         const double ly = reference[at + 1];
         const double tilt = reference[at + 2];
-        const Cell<2>& cell = packing.cell;
+        const Cell& cell = packing.cell;
         const double along_x = change[0] / lx;
         xx = cell.periodic[0] ? along_x : 0;
         yy = cell.periodic[1] ? change[1] / ly : 0;
@@ -53,7 +53,7 @@ struct Used {
     double rate = 1;
     double strain = 0;
 
-    template <class Moved> Used(const CandidateList<2>& list, const Packing<2>& packing, Moved moved) {
+    template <class Moved> Used(const CandidateList& list, const Packing& packing, Moved moved) {
         const std::vector<double>& from = list.reference;
         const std::size_t disks = 2 * packing.radius.size();
         const Strain affine(from, packing, {moved(disks), moved(disks + 1), moved(disks + 2)});
@@ -94,7 +94,7 @@ struct Used {
 
 } // namespace
 
-CellDrift cell_drift(const CandidateList<2>& list, const Packing<2>& packing) {
+CellDrift cell_drift(const CandidateList& list, const Packing& packing) {
     if (list.reference.size() != packing.q.size()) {
         return {infinity, 1};
     }
@@ -104,7 +104,7 @@ CellDrift cell_drift(const CandidateList<2>& list, const Packing<2>& packing) {
     return {small ? left.used + rounding * size : infinity, left.rate};
 }
 
-double drift_along(const CandidateList<2>& list, const Packing<2>& packing, const std::vector<double>& displacement) {
+double drift_along(const CandidateList& list, const Packing& packing, const std::vector<double>& displacement) {
     const Used left(list, packing, [&](std::size_t k) { return displacement[k]; });
     return left.used + rounding * largest(displacement) * left.rate;
 }

@@ -15,10 +15,10 @@ struct CellDrift {
 };
 
 /// \pre there are periodic axes. Cost: O(n).
-CellDrift cell_drift(const CandidateList<2>& list, const Packing<2>& packing);
+CellDrift cell_drift(const CandidateList& list, const Packing& packing);
 
 /// What `used` grows by at most along a displacement of all coordinates: it is a norm of that. \pre `list` is of these
 /// grains
-double drift_along(const CandidateList<2>& list, const Packing<2>& packing, const std::vector<double>& displacement);
+double drift_along(const CandidateList& list, const Packing& packing, const std::vector<double>& displacement);
 
 } // namespace isostat

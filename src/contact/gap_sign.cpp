@@ -13,11 +13,10 @@ namespace {
 
 /// A number with the sign of gap + allowance. Two disks: |d|^2 - t |t| with t = R_i + R_j - allowance, which has the
 /// sign of |d| - t for every t.
-template <class Number, int Dim>
-Number with_sign_of_gap(const Packing<Dim>& packing, const Contact& contact, double allowance) {
+template <class Number> Number with_sign_of_gap(const Packing& packing, const Contact& contact, double allowance) {
     const auto at = [&](std::size_t k) { return Number(packing.q[k]); };
     const auto minus = [](const Number& a, const Number& b) -> Number { return a - b; };
-    const Separation<Dim> separation(contact, packing.disk_count());
+    const Separation separation(contact, packing.layout());
     const Number radius(packing.radius[static_cast<std::size_t>(contact.i)]);
     if (contact.kind != ContactKind::disk_disk) {
         return separation.of_wall(at, minus) - radius + Number(allowance);
@@ -32,7 +31,7 @@ Number with_sign_of_gap(const Packing<Dim>& packing, const Contact& contact, dou
 
 } // namespace
 
-template <int Dim> int gap_sign(const Packing<Dim>& packing, const Contact& contact, double allowance) {
+int gap_sign(const Packing& packing, const Contact& contact, double allowance) {
     assert(contact.kind != ContactKind::held);
     {
         using Interval = CGAL::Interval_nt<false>;
@@ -44,7 +43,5 @@ template <int Dim> int gap_sign(const Packing<Dim>& packing, const Contact& cont
     }
     return CGAL::sign(with_sign_of_gap<CGAL::Exact_rational>(packing, contact, allowance));
 }
-
-template int gap_sign<2>(const Packing<2>&, const Contact&, double);
 
 } // namespace isostat

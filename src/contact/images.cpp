@@ -13,7 +13,7 @@ namespace isostat {
 namespace {
 
 /// Fractional coordinates of a point along the periodic axes, rounded; 0 along the others.
-std::array<double, 2> fractional(const Packing<2>& packing, double x, double y) {
+std::array<double, 2> fractional(const Packing& packing, double x, double y) {
     std::array<double, 2> s{};
     if (packing.cell.periodic[1]) {
         s[1] = y / packing.lattice(1, 1);
@@ -25,8 +25,8 @@ std::array<double, 2> fractional(const Packing<2>& packing, double x, double y) 
 }
 
 /// Distance of the two sides of the cell along each periodic axis: 1 / |row of A^-1|.
-std::array<double, 2> heights(const Packing<2>& packing) {
-    const Cell<2>& cell = packing.cell;
+std::array<double, 2> heights(const Packing& packing) {
+    const Cell& cell = packing.cell;
     std::array<double, 2> h{};
     if (cell.periodic[1]) {
         h[1] = packing.lattice(1, 1);
@@ -52,7 +52,7 @@ Range range_of(double s, double margin) {
 
 /// So many periods apart may disks be whose gap is below `reach`. The rounding of s and of the heights moves an image
 /// by far less than a hundredth of it.
-std::array<double, 2> margin_of(const Packing<2>& packing, double reach) {
+std::array<double, 2> margin_of(const Packing& packing, double reach) {
     const double near = 1.01 * (2 * packing.max_radius() + reach);
     const std::array<double, 2> height = heights(packing);
     std::array<double, 2> margin{};
@@ -63,7 +63,7 @@ std::array<double, 2> margin_of(const Packing<2>& packing, double reach) {
 }
 
 /// Largest size of a coordinate of the images, and of the cell.
-double largest_length(const Packing<2>& packing, const Images<2>& images) {
+double largest_length(const Packing& packing, const Images& images) {
     double largest = 0;
     for (const auto* q : {&packing.q, &images.packing.q}) {
         for (const double x : *q) {
@@ -75,7 +75,7 @@ double largest_length(const Packing<2>& packing, const Images<2>& images) {
 
 } // namespace
 
-std::optional<std::string> disk_beyond(const Packing<2>& packing, double reach, double most) {
+std::optional<std::string> disk_beyond(const Packing& packing, double reach, double most) {
     const std::array<double, 2> margin = margin_of(packing, reach);
     for (int i = 0; i < packing.disk_count(); ++i) {
         const auto k = static_cast<std::size_t>(i);
@@ -92,7 +92,7 @@ std::optional<std::string> disk_beyond(const Packing<2>& packing, double reach, 
     return std::nullopt;
 }
 
-template <int Dim> Contact Images<Dim>::contact(int a, int b) const {
+Contact Images::contact(int a, int b) const {
     const auto from = static_cast<std::size_t>(a);
     const auto to = static_cast<std::size_t>(b);
     Image image;
@@ -102,10 +102,10 @@ template <int Dim> Contact Images<Dim>::contact(int a, int b) const {
     return pair_of(disk[from], disk[to], image);
 }
 
-Images<2> images_near_cell(const Packing<2>& packing, double reach) {
+Images images_near_cell(const Packing& packing, double reach) {
     constexpr double most = 1e8;
-    Images<2> images;
-    images.packing.walls = Walls<2>::none();
+    Images images;
+    images.packing.walls = Walls::none();
     const std::array<double, 2> height = heights(packing);
     const std::array<double, 2> margin = margin_of(packing, reach);
     if (const auto beyond = disk_beyond(packing, reach, farthest_disk)) {
@@ -142,7 +142,5 @@ Images<2> images_near_cell(const Packing<2>& packing, double reach) {
     images.packing.q.insert(images.packing.q.end(), {0, 0});
     return images;
 }
-
-template struct Images<2>;
 
 } // namespace isostat

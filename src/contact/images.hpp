@@ -25,8 +25,8 @@ inline bool is_beyond(const Contact& pair, int most) {
 
 /// Finitely many images of the disks of a cell: without a cell, as a packing of their own. Every pair of a disk and an
 /// image with a gap below `reach` is, moved by some period, a pair of these (proofs/cells.md, C3).
-template <int Dim> struct Images {
-    Packing<Dim> packing;      ///< no walls, no cell; their centres as rounded
+struct Images {
+    Packing packing;           ///< no walls, no cell; their centres as rounded
     std::vector<int> disk;     ///< of each image, the disk
     std::vector<Image> offset; ///< and where it is: x_disk + A offset
     double rounding = 0;       ///< bound of what the rounding of two centres does to a gap
@@ -41,23 +41,21 @@ inline constexpr double farthest_disk_of_a_run = 25;
 
 /// Words for the first disk that is `most` periods or more from the origin, or whose images that many periods apart may
 /// have a gap below `reach` (then `most` - 1); nothing: there is none. Cost O(n).
-std::optional<std::string> disk_beyond(const Packing<2>& packing, double reach, double most);
+std::optional<std::string> disk_beyond(const Packing& packing, double reach, double most);
 
 /// \pre there are periodic axes. Throws `Error(bad_input)` when a disk is beyond `farthest_disk`, or when more than
 /// 10^8 images would be needed: a cell that flat has another basis.
-Images<2> images_near_cell(const Packing<2>& packing, double reach);
+Images images_near_cell(const Packing& packing, double reach);
 
 /// Sum of the lengths that r of an image is made of, which the rounding of r goes with; 0 without an image.
-template <int Dim> double lengths_of_image(const Packing<Dim>& packing, const Contact& pair) {
+inline double lengths_of_image(const Packing& packing, const Contact& pair) {
     double sum = 0;
     if (!pair.image.is_here()) {
-        Separation<Dim>(pair, packing.disk_count()).for_each_coordinate([&](std::size_t k, std::size_t, int multiple) {
+        Separation(pair, packing.layout()).for_each_coordinate([&](std::size_t k, std::size_t, int multiple) {
             sum += std::abs(multiple) * std::abs(packing.q[k]);
         });
     }
     return sum;
 }
-
-extern template struct Images<2>;
 
 } // namespace isostat

@@ -14,14 +14,14 @@ namespace isostat {
 inline std::vector<std::string> contact_names(const std::vector<Contact>& contacts) {
     std::vector<std::string> names;
     for (const Contact& contact : contacts) {
-        names.push_back(to_string<2>(contact));
+        names.push_back(to_string(contact));
     }
     return names;
 }
 
 /// Of the N_f degrees of freedom, in their order: "x of disk 3", "top wall", ...
-inline std::vector<std::string> dof_names(const Packing<2>& packing) {
-    const DofMap<2> dofs(packing);
+inline std::vector<std::string> dof_names(const Packing& packing) {
+    const DofMap dofs(packing);
     std::vector<std::string> names;
     for (int d = 0; d < dofs.dof_count(); ++d) {
         names.push_back(dofs.name(d));

@@ -27,7 +27,7 @@ constexpr double largest_scale = 1e100;   // squares neither overflow
 constexpr double smallest_scale = 1e-100; // nor underflow
 
 /// Whether no square of a length that matters under- or overflows.
-bool lengths_are_plain(const Packing<2>& packing) {
+bool lengths_are_plain(const Packing& packing) {
     return packing.min_radius() >= smallest_scale && packing.max_radius() <= largest_scale &&
            std::all_of(packing.q.begin(), packing.q.end(),
                        [](double x) { return std::abs(x) <= largest_scale; }); // also false for a NaN
@@ -41,23 +41,23 @@ class Gaps {
         double error;
         [[nodiscard]] bool may_be_below(double reach) const { return value - error < reach; }
     };
-    explicit Gaps(const Packing<2>& packing) : packing_(packing), plain_(lengths_are_plain(packing)) {}
+    explicit Gaps(const Packing& packing) : packing_(packing), plain_(lengths_are_plain(packing)) {}
 
     [[nodiscard]] Gap of(const Contact& pair) const {
-        const auto [dx, dy] = separation<2>(packing_.q, pair);
+        const auto [dx, dy, none] = separation(packing_.layout(), packing_.q, pair);
         const double distance = plain_ ? std::sqrt(dx * dx + dy * dy) : std::hypot(dx, dy); // slow; error below 1 ulp
         const double radii = touching_distance(packing_.radius, pair);
         return {distance - radii, 0x1p-50 * (distance + radii + lengths_of_image(packing_, pair))};
     }
 
   private:
-    const Packing<2>& packing_;
+    const Packing& packing_;
     bool plain_;
 };
 
 /// Pairs of images, by the cell.
-std::vector<Contact> near_pairs_in_cell(const Packing<2>& packing, double reach) {
-    const Images<2> images = images_near_cell(packing, reach);
+std::vector<Contact> near_pairs_in_cell(const Packing& packing, double reach) {
+    const Images images = images_near_cell(packing, reach);
     const Gaps gaps(packing);
     std::vector<Contact> pairs;
     const double wide = reach + images.rounding;
@@ -95,9 +95,8 @@ void sort_pairs(std::vector<Contact>& pairs, std::size_t disk_count) {
 
 } // namespace
 
-template <>
-std::optional<std::vector<Contact>> near_edges<2>(const Packing<2>& packing, double reach,
-                                                  const RegularTriangulation<2>& triangulation) {
+std::optional<std::vector<Contact>> near_edges(const Packing& packing, double reach,
+                                               const RegularTriangulation& triangulation) {
     const Gaps gaps(packing);
     const double smallest = packing.min_radius();
     const auto share = [&](std::size_t i) { return smallest / packing.radius[i]; };
@@ -121,7 +120,7 @@ std::optional<std::vector<Contact>> near_edges<2>(const Packing<2>& packing, dou
     return pairs;
 }
 
-template <> std::vector<Contact> near_pairs_by_sweep<2>(const Packing<2>& packing, double reach) {
+std::vector<Contact> near_pairs_by_sweep(const Packing& packing, double reach) {
     const std::size_t n = packing.radius.size();
     std::vector<std::pair<double, std::size_t>> left(n);
     double extent = reach;
@@ -140,7 +139,8 @@ template <> std::vector<Contact> near_pairs_by_sweep<2>(const Packing<2>& packin
             const std::size_t j = left[b].second;
             const Contact pair{ContactKind::disk_disk, static_cast<int>(std::min(i, j)),
                                static_cast<int>(std::max(i, j))};
-            if (std::abs(separation<2>(packing.q, pair)[1]) > touching_distance(packing.radius, pair) + slack) {
+            if (std::abs(separation(packing.layout(), packing.q, pair)[1]) >
+                touching_distance(packing.radius, pair) + slack) {
                 continue; // apart along the other axis already
             }
             if (gaps.of(pair).may_be_below(reach)) {
@@ -152,10 +152,8 @@ template <> std::vector<Contact> near_pairs_by_sweep<2>(const Packing<2>& packin
     return pairs;
 }
 
-template <int Dim>
-NearPairs<Dim> near_pairs(const Packing<Dim>& packing, double reach,
-                          const std::shared_ptr<const RegularTriangulation<Dim>>& from) {
-    using Triangulation = RegularTriangulation<Dim>;
+NearPairs near_pairs(const Packing& packing, double reach, const std::shared_ptr<const RegularTriangulation>& from) {
+    using Triangulation = RegularTriangulation;
     if (packing.cell.any()) {
         return {near_pairs_in_cell(packing, reach), nullptr};
     }
@@ -175,7 +173,5 @@ NearPairs<Dim> near_pairs(const Packing<Dim>& packing, double reach,
     }
     return {near_pairs_by_sweep(packing, reach), nullptr};
 }
-
-template NearPairs<2> near_pairs<2>(const Packing<2>&, double, const std::shared_ptr<const RegularTriangulation<2>>&);
 
 } // namespace isostat

@@ -13,9 +13,9 @@
 namespace isostat {
 
 /// Sorted pairs, and the triangulation that they are edges of (null: they were found by the sweep).
-template <int Dim> struct NearPairs {
+struct NearPairs {
     std::vector<Contact> pairs;
-    std::shared_ptr<const RegularTriangulation<Dim>> triangulation;
+    std::shared_ptr<const RegularTriangulation> triangulation;
 };
 
 /// Every pair of disks with gap < reach (of the real numbers; a few pairs beyond by rounding may be in it), whatever
@@ -23,23 +23,15 @@ template <int Dim> struct NearPairs {
 /// same disks elsewhere that is carried to these places if it is there, nor what finds them makes a difference.
 /// In a cell: every pair of a disk and an image, each once; found among finitely many images, without a triangulation
 /// that could be carried. \pre 0 < reach <= 0.82 R_min; in a cell any reach > 0
-template <int Dim>
-NearPairs<Dim> near_pairs(const Packing<Dim>& packing, double reach,
-                          const std::shared_ptr<const RegularTriangulation<Dim>>& from = nullptr);
+NearPairs near_pairs(const Packing& packing, double reach,
+                     const std::shared_ptr<const RegularTriangulation>& from = nullptr);
 
 /// Those pairs among the edges of the triangulation. Empty optional when an edge overlaps by more than about 5e-4
 /// R_min^2 / R, so that the completeness theorem does not apply.
-template <int Dim>
-std::optional<std::vector<Contact>> near_edges(const Packing<Dim>& packing, double reach,
-                                               const RegularTriangulation<Dim>& triangulation);
+std::optional<std::vector<Contact>> near_edges(const Packing& packing, double reach,
+                                               const RegularTriangulation& triangulation);
 
 /// The same pairs from a sweep along the first axis: complete without any hypothesis, O(n^1.5) for packings.
-template <int Dim> std::vector<Contact> near_pairs_by_sweep(const Packing<Dim>& packing, double reach);
-
-template <>
-std::optional<std::vector<Contact>> near_edges<2>(const Packing<2>&, double, const RegularTriangulation<2>&);
-template <> std::vector<Contact> near_pairs_by_sweep<2>(const Packing<2>&, double);
-extern template NearPairs<2> near_pairs<2>(const Packing<2>&, double,
-                                           const std::shared_ptr<const RegularTriangulation<2>>&);
+std::vector<Contact> near_pairs_by_sweep(const Packing& packing, double reach);
 
 } // namespace isostat

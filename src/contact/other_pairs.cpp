@@ -13,14 +13,14 @@ namespace isostat {
 namespace {
 
 /// Those with walls, and without images those of two disks.
-template <int Dim> std::vector<Contact> all_pairs(const Packing<Dim>& packing) {
+std::vector<Contact> all_pairs(const Packing& packing) {
     std::vector<Contact> pairs;
     const int n = packing.disk_count();
     for (int i = 0; i < n; ++i) {
         for (int j = i + 1; j < n && !packing.cell.any(); ++j) {
             pairs.push_back({ContactKind::disk_disk, i, j});
         }
-        for (int a = 0; a < Dim; ++a) {
+        for (int a = 0; a < packing.dimension; ++a) {
             const auto axis = static_cast<std::size_t>(a);
             if (packing.walls.lower[axis] != WallKind::absent) {
                 pairs.push_back({ContactKind::lower_wall, i, a});
@@ -42,14 +42,14 @@ std::vector<Contact> without(std::vector<Contact> pairs, const std::vector<Conta
     return pairs;
 }
 
-template <int Dim> OtherPairs other_pairs(const Packing<Dim>& packing, const std::vector<Contact>& contacts) {
-    CandidateList<Dim> candidates = find_candidates(packing, largest_candidate_fraction);
+OtherPairs other_pairs(const Packing& packing, const std::vector<Contact>& contacts) {
+    CandidateList candidates = find_candidates(packing, largest_candidate_fraction);
     OtherPairs pairs{without(std::move(candidates.contacts), contacts, packing.disk_count()), candidates.reach};
     if (!pairs.near.empty()) {
         return pairs;
     }
     pairs = {without(all_pairs(packing), contacts, packing.disk_count()), std::numeric_limits<double>::infinity()};
-    const bool any = packing.cell.any() && DofMap<Dim>(packing).dof_count() > 0; // else nothing ever comes near
+    const bool any = packing.cell.any() && DofMap(packing).dof_count() > 0; // else nothing ever comes near
     for (double reach = packing.min_radius(); any && std::isinf(pairs.reach); reach *= 2) {
         if (disk_beyond(packing, reach, farthest_disk)) {
             return {{}, candidates.reach};
@@ -64,7 +64,5 @@ template <int Dim> OtherPairs other_pairs(const Packing<Dim>& packing, const std
     }
     return pairs;
 }
-
-template OtherPairs other_pairs<2>(const Packing<2>&, const std::vector<Contact>&);
 
 } // namespace isostat

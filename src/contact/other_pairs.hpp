@@ -25,8 +25,6 @@ std::vector<Contact> without(std::vector<Contact> pairs, const std::vector<Conta
 /// Candidates of the triangulation (T5, T6) without the contacts; when that leaves none, all pairs (O(n^2), in small
 /// packings only), in a cell those of a longer and longer reach. Pairs that cannot move relative to each other do not
 /// count.
-template <int Dim> OtherPairs other_pairs(const Packing<Dim>& packing, const std::vector<Contact>& contacts);
-
-extern template OtherPairs other_pairs<2>(const Packing<2>&, const std::vector<Contact>&);
+OtherPairs other_pairs(const Packing& packing, const std::vector<Contact>& contacts);
 
 } // namespace isostat

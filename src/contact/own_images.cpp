@@ -6,7 +6,7 @@
 
 namespace isostat {
 
-template <int Dim> std::vector<Contact> touching_own_images(const Packing<Dim>& packing) {
+std::vector<Contact> touching_own_images(const Packing& packing) {
     std::vector<Contact> out;
     if (packing.cell.any()) {
         for (const Contact& pair :
@@ -18,7 +18,5 @@ template <int Dim> std::vector<Contact> touching_own_images(const Packing<Dim>& 
     }
     return out;
 }
-
-template std::vector<Contact> touching_own_images<2>(const Packing<2>&);
 
 } // namespace isostat

@@ -10,8 +10,6 @@ namespace isostat {
 
 /// A disk and an own image at gap 0, exactly, between which no part of the cell moves (`can_move`). Such a pair is no
 /// contact of a list, and none that a load presses; it closes all the same under the other strains of the cell.
-template <int Dim> std::vector<Contact> touching_own_images(const Packing<Dim>& packing);
-
-extern template std::vector<Contact> touching_own_images<2>(const Packing<2>&);
+std::vector<Contact> touching_own_images(const Packing& packing);
 
 } // namespace isostat

@@ -20,7 +20,7 @@ using Disk = Kernel::Weighted_point_2;
 
 /// The disks, and after them the four far outside, counter-clockwise: at least 3 R_max from every centre along each
 /// axis, whatever is rounded.
-std::vector<Disk> weighted_points(const Packing<2>& packing) {
+std::vector<Disk> weighted_points(const Packing& packing) {
     std::vector<Disk> points;
     points.reserve(packing.radius.size() + 4);
     std::array<double, 2> low{packing.q[0], packing.q[1]};
@@ -45,7 +45,7 @@ std::vector<Disk> weighted_points(const Packing<2>& packing) {
 
 } // namespace
 
-RegularTriangulation<2>::Shared RegularTriangulation<2>::build(const Packing<2>& packing) {
+RegularTriangulation::Shared RegularTriangulation::build(const Packing& packing) {
     using Vertex =
         CGAL::Triangulation_vertex_base_with_info_2<int, Kernel, CGAL::Regular_triangulation_vertex_base_2<Kernel>>;
     using Cell =
@@ -82,9 +82,9 @@ RegularTriangulation<2>::Shared RegularTriangulation<2>::build(const Packing<2>&
 }
 
 /// Flips edges until every one is regular.
-class RegularTriangulation<2>::Mover {
+class RegularTriangulation::Mover {
   public:
-    Mover(const RegularTriangulation& from, const Packing<2>& packing)
+    Mover(const RegularTriangulation& from, const Packing& packing)
         : faces_(&from.faces_), points_(weighted_points(packing)) {}
 
     /// The faces whose edges are in doubt. False: a face has turned over.
@@ -185,7 +185,7 @@ class RegularTriangulation<2>::Mover {
     Kernel::Power_side_of_oriented_power_circle_2 side_;
 };
 
-RegularTriangulation<2>::Shared RegularTriangulation<2>::carry(const Shared& from, const Packing<2>& packing) {
+RegularTriangulation::Shared RegularTriangulation::carry(const Shared& from, const Packing& packing) {
     assert(from->disks_ == packing.disk_count());
     Mover mover(*from, packing);
     if (!mover.find_doubtful()) {

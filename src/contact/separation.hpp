@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <cstdlib>
 #include <type_traits>
-#include <utility>
 
 namespace isostat {
 
@@ -19,14 +18,11 @@ namespace isostat {
 ///
 /// Arithmetic: at(k) is what stands at coordinate k (as in `Packing::q`), minus(a, b) the difference of two such, a
 /// value. In double r is exact where the coordinates are on the grid; without an image it is else correctly rounded.
-template <int Dim> class Separation {
-    static_assert(has_dimension<Dim>());
-
+class Separation {
   public:
-    /// `disks`: how many the packing has.
-    Separation(const Contact& contact, int disks)
-        : kind_(contact.kind), image_(contact.image), i_(contact.i), j_(contact.j),
-          walls_(static_cast<std::size_t>(Dim * disks)) {}
+    /// \pre of a contact through an image or with a wall: `layout` says how many disks there are
+    Separation(const Contact& contact, const Layout& layout)
+        : kind_(contact.kind), image_(contact.image), i_(contact.i), j_(contact.j), layout_(layout) {}
 
     /// \pre two disks
     template <class At, class Minus> [[nodiscard]] auto of_disks(At at, Minus minus) const {
@@ -40,16 +36,16 @@ template <int Dim> class Separation {
     }
     /// x_j - x_i alone: r where there is no image.
     template <class At, class Minus> [[nodiscard]] auto of_centres(At at, Minus minus) const {
-        const auto i = static_cast<std::size_t>(Dim * i_);
-        const auto j = static_cast<std::size_t>(Dim * j_);
-        using Number = std::remove_cvref_t<decltype(minus(at(j), at(i)))>;
-        return [&]<std::size_t... axis>(std::index_sequence<axis...>) {
-            return std::array<Number, sizeof...(axis)>{minus(at(j + axis), at(i + axis))...};
-        }(std::make_index_sequence<static_cast<std::size_t>(Dim)>());
+        const std::size_t i = layout_.of_disk(i_);
+        const std::size_t j = layout_.of_disk(j_);
+        PerAxis<std::remove_cvref_t<decltype(minus(at(j), at(i)))>> r{minus(at(j), at(i)), minus(at(j + 1), at(i + 1))};
+        if (layout_.dimension > plane) [[unlikely]] {
+            r[2] = minus(at(j + 2), at(i + 2));
+        }
+        return r;
     }
     /// r += A m, of what `at` says of the coordinates of the cell.
-    template <class Number, class At, class Minus>
-    void add_periods(std::array<Number, static_cast<std::size_t>(Dim)>& r, At at, Minus minus) const {
+    template <class Number, class At, class Minus> void add_periods(PerAxis<Number>& r, At at, Minus minus) const {
         for_each_period([&](std::size_t coordinate, std::size_t axis, int m) {
             const Number period = at(coordinate);
             const Number back = minus(minus(period, period), period); // -period
@@ -63,10 +59,10 @@ template <int Dim> class Separation {
     }
     /// \pre a disk and a wall
     template <class At, class Minus> [[nodiscard]] auto of_wall(At at, Minus minus) const {
-        const auto x = static_cast<std::size_t>(Dim * i_ + j_);
+        const auto x = layout_.of_disk(i_) + static_cast<std::size_t>(j_);
         using Number = std::remove_cvref_t<decltype(minus(at(x), at(x)))>;
         return kind_ == ContactKind::lower_wall ? Number(at(x))
-                                                : minus(at(walls_ + static_cast<std::size_t>(j_)), at(x));
+                                                : minus(at(layout_.of_length(static_cast<std::size_t>(j_))), at(x));
     }
 
     /// Calls visit(coordinate, component, coefficient) for every coordinate that the gap depends on, in ascending
@@ -74,14 +70,14 @@ template <int Dim> class Separation {
     /// cell m_a. A disk and its own image depend on the cell alone. \pre i <= j
     template <class Visit> void for_each_coordinate(Visit visit) const {
         const auto axis = static_cast<std::size_t>(j_);
-        const auto x = static_cast<std::size_t>(Dim * i_);
+        const std::size_t x = layout_.of_disk(i_);
         switch (kind_) {
         case ContactKind::disk_disk:
-            for (std::size_t a = 0; a < static_cast<std::size_t>(Dim) && i_ != j_; ++a) {
+            for (std::size_t a = 0; a < layout_.axes() && i_ != j_; ++a) {
                 visit(x + a, a, -1);
             }
-            for (std::size_t a = 0; a < static_cast<std::size_t>(Dim) && i_ != j_; ++a) {
-                visit(static_cast<std::size_t>(Dim * j_) + a, a, 1);
+            for (std::size_t a = 0; a < layout_.axes() && i_ != j_; ++a) {
+                visit(layout_.of_disk(j_) + a, a, 1);
             }
             if (!image_.is_here()) [[unlikely]] {
                 for_each_period(visit);
@@ -90,7 +86,7 @@ template <int Dim> class Separation {
         case ContactKind::lower_wall: visit(x + axis, axis, 1); break;
         case ContactKind::upper_wall:
             visit(x + axis, axis, -1);
-            visit(walls_ + axis, axis, 1);
+            visit(layout_.of_length(axis), axis, 1);
             break;
         case ContactKind::held: visit(static_cast<std::size_t>(i_), std::size_t{0}, 1); break;
         }
@@ -100,8 +96,7 @@ template <int Dim> class Separation {
     /// from disk to disk, or any multiple of it, in any arithmetic; not read for other contacts, whose entries are -1
     /// and +1. On the rows of the cell they are multiplied by -m_a, by sums of up to three.
     template <class Number, class Visit>
-    void for_each_entry(const DofMap<Dim>& dofs, const std::array<Number, static_cast<std::size_t>(Dim)>& normal,
-                        Visit visit) const {
+    void for_each_entry(const DofMap& dofs, const PerAxis<Number>& normal, Visit visit) const {
         for_each_coordinate([&](std::size_t coordinate, std::size_t component, int sign) {
             const int dof = dofs.dof_of(coordinate);
             if (dof >= 0) {
@@ -119,14 +114,14 @@ template <int Dim> class Separation {
   private:
     /// visit(coordinate, component of r, multiple) for the coordinates of the cell that A m depends on, ascending.
     template <class Visit> void for_each_period(Visit visit) const {
-        for (std::size_t a = 0; a < static_cast<std::size_t>(Dim); ++a) {
+        for (std::size_t a = 0; a < layout_.axes(); ++a) {
             if (image_.m[a] != 0) {
-                visit(walls_ + a, a, static_cast<int>(image_.m[a]));
+                visit(layout_.of_length(a), a, static_cast<int>(image_.m[a]));
             }
         }
-        for (std::size_t b = 1; b < static_cast<std::size_t>(Dim); ++b) {
+        for (std::size_t b = 1; b < layout_.axes(); ++b) {
             for (std::size_t a = 0; a < b && image_.m[b] != 0; ++a) {
-                visit(walls_ + static_cast<std::size_t>(Dim) + Cell<Dim>::tilt(a, b), a, static_cast<int>(image_.m[b]));
+                visit(layout_.of_tilt(a, b), a, static_cast<int>(image_.m[b]));
             }
         }
     }
@@ -134,28 +129,24 @@ template <int Dim> class Separation {
     ContactKind kind_;
     Image image_;
     int i_, j_;
-    std::size_t walls_; ///< first coordinate behind the disks
+    Layout layout_;
 };
 
 /// The unit vector along d, whatever the length: defined in contact.cpp.
-template <int Dim> std::array<double, Dim> direction(std::array<double, Dim> d);
-extern template std::array<double, 2> direction<2>(std::array<double, 2>);
+PerAxis<double> direction(PerAxis<double> d);
 
 /// r of two disks for a vector on all coordinates, of numbers of any kind. \pre two disks
-template <int Dim, class Vector> inline auto separation(const Vector& x, const Contact& pair) {
+template <class Vector> inline auto separation(const Layout& layout, const Vector& x, const Contact& pair) {
     using Number = std::remove_cvref_t<decltype(x[0])>;
     const auto at = [&x](std::size_t k) -> decltype(auto) { return x[k]; };
     const auto minus = [](const Number& a, const Number& b) -> Number { return a - b; };
-    if (pair.image.is_here()) [[likely]] { // inner loops: where the walls are is not asked
-        return Separation<Dim>(pair, 0).of_centres(at, minus);
-    }
-    return Separation<Dim>(pair, static_cast<int>(x.size()) / Dim - 1).of_disks(at, minus);
+    return Separation(pair, layout).of_disks(at, minus);
 }
 
 /// The same from a wall. \pre a disk and a wall
-template <int Dim, class Vector> inline auto wall_distance(const Vector& x, const Contact& contact) {
+template <class Vector> inline auto wall_distance(const Layout& layout, const Vector& x, const Contact& contact) {
     using Number = std::remove_cvref_t<decltype(x[0])>;
-    return Separation<Dim>(contact, static_cast<int>(x.size()) / Dim - 1)
+    return Separation(contact, layout)
         .of_wall([&x](std::size_t k) -> decltype(auto) { return x[k]; },
                  [](const Number& a, const Number& b) -> Number { return a - b; });
 }

@@ -14,16 +14,16 @@
 namespace isostat {
 
 /// A contact within words.
-template <int Dim> struct Named {
+struct Named {
     Contact contact;
 };
-template <int Dim> Named<Dim> named(const Contact& contact) {
+inline Named named(const Contact& contact) {
     return {contact};
 }
 
 /// What words name is found among their arguments.
 template <class Value> void collect_names(Words& /*words*/, const Value& /*value*/) {}
-template <int Dim> void collect_names(Words& words, const Named<Dim>& name) {
+inline void collect_names(Words& words, const Named& name) {
     words.contacts.push_back(name.contact);
 }
 inline void collect_names(Words& words, const Words& inner) {
@@ -37,8 +37,8 @@ inline void collect_names(Words& words, const Failure& inner) {
 template <class Value> const Value& in_text(const Value& value) {
     return value;
 }
-template <int Dim> std::string in_text(const Named<Dim>& name) {
-    return to_string<Dim>(name.contact);
+inline std::string in_text(const Named& name) {
+    return to_string(name.contact);
 }
 inline std::string in_text(const Words& words) {
     return words.text();

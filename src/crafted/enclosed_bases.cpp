@@ -58,12 +58,12 @@ class Encloser {
                 out.free_contacts.push_back(static_cast<int>(l));
             }
         }
-        const DofMap<2> dofs(stored_);
+        const DofMap dofs(stored_);
         out.free_dofs = independent.free_rows;
         for (const int dof : out.free_dofs) {
             kept.push_back({ContactKind::held, dofs.coordinate_of(dof), 0});
         }
-        const auto proved = IsostaticStructure<2>::prove(stored_, kept);
+        const auto proved = IsostaticStructure::prove(stored_, kept);
         if (!proved.ok()) {
             return out;
         }
@@ -98,12 +98,12 @@ class Encloser {
   private:
     /// Forces of the independent contacts that balance a unit force in the free one; the multipliers of the held
     /// degrees of freedom are 0 because the column of the free contact depends on the others (the rank is proved).
-    [[nodiscard]] EnclosedVector self_stress(const IsostaticStructure<2>& structure, const Factorisation& factorisation,
+    [[nodiscard]] EnclosedVector self_stress(const IsostaticStructure& structure, const Factorisation& factorisation,
                                              const InverseBound& inverse, const std::vector<int>& columns,
                                              int free) const {
         const auto l = static_cast<std::size_t>(free);
         std::vector<double> right(static_cast<std::size_t>(structure.size()), 0.0);
-        const GapGradient<2> g = gap_gradient(stored_, inspection_.contacts[l]);
+        const GapGradient g = gap_gradient(stored_, inspection_.contacts[l]);
         for (std::size_t k = 0; k < static_cast<std::size_t>(g.count); ++k) {
             const int dof = structure.dofs().dof_of(static_cast<std::size_t>(g.coordinate[k]));
             if (dof >= 0) {
@@ -125,7 +125,7 @@ class Encloser {
     }
 
     /// Velocity that keeps all gaps and is 1 in the held degree of freedom number `row` of the structure.
-    [[nodiscard]] EnclosedVector motion(const IsostaticStructure<2>& structure, const Factorisation& factorisation,
+    [[nodiscard]] EnclosedVector motion(const IsostaticStructure& structure, const Factorisation& factorisation,
                                         std::size_t row, int free) const {
         std::vector<double> v(static_cast<std::size_t>(structure.size()), 0.0);
         v[row] = -1; // approach velocities; the column of a held coordinate is -1
@@ -153,7 +153,7 @@ class Encloser {
     }
 
     const Inspection& inspection_;
-    Packing<2> stored_;
+    Packing stored_;
     std::vector<double> column_error_; ///< |exact - stored unit-normal column|
     double change_ = 0;                ///< the same of the matrix
     double sigma_ = 0;
@@ -166,7 +166,7 @@ EnclosedBases enclose_bases(const ExactPacking& packing, const Inspection& inspe
     if (inspection.rank_exact != Verdict::proved || packing.cell.any()) {
         return {};
     }
-    const DofMap<2> dofs(approximate(packing));
+    const DofMap dofs(approximate(packing));
     const exact::RankBound independent = exact::rank_bound(exact_contact_matrix(packing, dofs, inspection.contacts));
     if (independent.rank != inspection.rank) {
         return {};

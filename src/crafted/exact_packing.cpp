@@ -71,7 +71,7 @@ struct Sweep {
 
 /// The contacts found so far, each with its gap decided.
 struct Touching {
-    Touching(const ExactPacking& exact, const Packing<2>& rounded) : packing(exact), dofs(rounded) {}
+    Touching(const ExactPacking& exact, const Packing& rounded) : packing(exact), dofs(rounded) {}
 
     /// A pair or a disk and a wall with this excess over touching, in the sign of the gap.
     std::optional<Failure> take(const Contact& contact, const Number& excess) {
@@ -79,7 +79,7 @@ struct Touching {
             return overlap(contact, excess);
         }
         bool moves = false;
-        Separation<2>(contact, packing.disk_count()).for_each_coordinate([&](std::size_t k, std::size_t, int) {
+        Separation(contact, packing.layout()).for_each_coordinate([&](std::size_t k, std::size_t, int) {
             moves = moves || dofs.dof_of(k) >= 0;
         });
         if (excess.is_zero() && moves) {
@@ -89,8 +89,8 @@ struct Touching {
     }
 
     std::optional<Failure> take_pair(const Contact& pair) {
-        const auto [dx, dy] =
-            Separation<2>(pair, packing.disk_count())
+        const auto [dx, dy, none] =
+            Separation(pair, packing.layout())
                 .of_disks([&](std::size_t k) -> const Number& { return packing.coordinate(k); }, std::minus<>());
         const Number reach = touching_distance(packing.radius, pair);
         return take(pair, dx * dx + dy * dy - reach * reach);
@@ -99,8 +99,8 @@ struct Touching {
     [[nodiscard]] Failure overlap(const Contact& contact, const Number& excess) const {
         const Words first = describe(packing, contact.i);
         if (contact.kind != ContactKind::disk_disk) {
-            return failed(FailureKind::overlap, "{} overlaps the wall of contact {}: gap = {}", first,
-                          named<2>(contact), excess.text());
+            return failed(FailureKind::overlap, "{} overlaps the wall of contact {}: gap = {}", first, named(contact),
+                          excess.text());
         }
         const Words second = describe(packing, contact.j);
         if (contact.image.is_here()) {
@@ -109,11 +109,11 @@ struct Touching {
         }
         return failed(FailureKind::overlap,
                       "{} and an image of {} overlap, pair {}: distance^2 - (sum of radii)^2 = {}", first, second,
-                      named<2>(contact), excess.text());
+                      named(contact), excess.text());
     }
 
     const ExactPacking& packing;
-    DofMap<2> dofs;
+    DofMap dofs;
     std::vector<Contact> contacts;
 };
 
@@ -160,7 +160,7 @@ std::optional<Failure> take_pairs(Touching& touching) {
 
 /// Rounding to doubles changes a gap by less than this: of each coordinate half a unit of the last place, of an image
 /// less than 100 times that for each period.
-double lost_by_rounding(const Packing<2>& rounded) {
+double lost_by_rounding(const Packing& rounded) {
     double largest = rounded.max_radius();
     for (const double x : rounded.q) {
         largest = std::max(largest, std::abs(x));
@@ -168,8 +168,8 @@ double lost_by_rounding(const Packing<2>& rounded) {
     return 0x1p-40 * largest;
 }
 
-std::optional<Failure> take_images(Touching& touching, const Packing<2>& rounded) {
-    for (const Contact& pair : near_pairs<2>(rounded, lost_by_rounding(rounded)).pairs) {
+std::optional<Failure> take_images(Touching& touching, const Packing& rounded) {
+    for (const Contact& pair : near_pairs(rounded, lost_by_rounding(rounded)).pairs) {
         if (auto failure = touching.take_pair(pair)) {
             return failure;
         }
@@ -179,7 +179,7 @@ std::optional<Failure> take_images(Touching& touching, const Packing<2>& rounded
 
 } // namespace
 
-ExactPacking exact_copy(const Packing<2>& packing) {
+ExactPacking exact_copy(const Packing& packing) {
     ExactPacking out;
     for (int i = 0; i < packing.disk_count(); ++i) {
         out.radius.push_back(Number::from_double(packing.radius[static_cast<std::size_t>(i)]));
@@ -196,8 +196,8 @@ ExactPacking exact_copy(const Packing<2>& packing) {
     return out;
 }
 
-Packing<2> approximate(const ExactPacking& packing) {
-    Packing<2> out;
+Packing approximate(const ExactPacking& packing) {
+    Packing out;
     out.walls = packing.walls;
     out.fixed = packing.fixed;
     for (std::size_t i = 0; i < packing.radius.size(); ++i) {
@@ -215,7 +215,7 @@ Packing<2> approximate(const ExactPacking& packing) {
 }
 
 Result<std::vector<Contact>> exact_contacts(const ExactPacking& packing) {
-    const Packing<2> rounded = approximate(packing);
+    const Packing rounded = approximate(packing);
     Touching touching(packing, rounded);
     if (auto failure = take_walls(touching)) {
         return *failure;
@@ -227,13 +227,13 @@ Result<std::vector<Contact>> exact_contacts(const ExactPacking& packing) {
     return std::move(touching.contacts);
 }
 
-exact::NumberMatrix exact_contact_matrix(const ExactPacking& packing, const DofMap<2>& dofs,
+exact::NumberMatrix exact_contact_matrix(const ExactPacking& packing, const DofMap& dofs,
                                          const std::vector<Contact>& contacts) {
     exact::NumberMatrix out;
     out.rows = dofs.dof_count();
     for (const Contact& contact : contacts) {
-        const Separation<2> separation(contact, packing.disk_count());
-        std::array<Number, 2> normal;
+        const Separation separation(contact, packing.layout());
+        PerAxis<Number> normal;
         if (contact.kind == ContactKind::disk_disk) {
             const Number scale = touching_distance(packing.radius, contact).inverse();
             normal = separation.of_disks([&](std::size_t k) -> const Number& { return packing.coordinate(k); },
@@ -252,7 +252,7 @@ exact::NumberMatrix exact_contact_matrix(const ExactPacking& packing, const DofM
     return out;
 }
 
-std::vector<Number> external_force(const ExactPacking& packing, const DofMap<2>& dofs) {
+std::vector<Number> external_force(const ExactPacking& packing, const DofMap& dofs) {
     std::vector<Number> out(static_cast<std::size_t>(dofs.dof_count()));
     const auto add = [&](std::size_t coordinate, const Number& value) {
         const int dof = dofs.dof_of(coordinate);

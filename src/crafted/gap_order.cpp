@@ -77,20 +77,20 @@ struct GapOrder::Exact {
         return e >= 0 ? out << e : out >> -e; // the shift to the right drops zeros only
     }
 
-    [[nodiscard]] Root root(const Packing<2>& packing, const Contact& contact, int unit) const {
-        const Separation<2> separation(contact, packing.disk_count());
+    [[nodiscard]] Root root(const Packing& packing, const Contact& contact, int unit) const {
+        const Separation separation(contact, packing.layout());
         const auto at = [&](std::size_t k) { return integer(packing.q[k], unit); };
         const auto minus = [](const Integer& a, const Integer& b) -> Integer { return a - b; };
         const Integer r = integer(packing.radius[static_cast<std::size_t>(contact.i)], unit);
         if (contact.kind == ContactKind::disk_disk) {
-            const auto [dx, dy] = separation.of_disks(at, minus);
+            const auto [dx, dy, none] = separation.of_disks(at, minus);
             return {dx * dx + dy * dy, r + integer(packing.radius[static_cast<std::size_t>(contact.j)], unit)};
         }
         return {0, r - separation.of_wall(at, minus)};
     }
 };
 
-GapOrder::GapOrder(const Packing<2>& packing) : packing_(&packing), exact_(std::make_unique<Exact>()) {
+GapOrder::GapOrder(const Packing& packing) : packing_(&packing), exact_(std::make_unique<Exact>()) {
     exact_->exponent = std::numeric_limits<int>::max();
     for (const auto* values : {&packing.q, &packing.radius}) {
         for (const double x : *values) {
@@ -106,16 +106,16 @@ GapOrder::Item GapOrder::item(const Contact& contact) const {
     const std::vector<double>& q = packing_->q;
     const double touching = touching_distance(packing_->radius, contact);
     if (contact.kind == ContactKind::disk_disk) {
-        const auto [dx, dy] = separation<2>(q, contact);
+        const auto [dx, dy, none] = separation(packing_->layout(), q, contact);
         const double distance = std::hypot(dx, dy);
         return {contact, distance - touching,
                 relative_bound * (distance + touching + lengths_of_image(*packing_, contact))};
     }
     double size = touching;
-    Separation<2>(contact, packing_->disk_count()).for_each_coordinate([&](std::size_t k, std::size_t, int) {
+    Separation(contact, packing_->layout()).for_each_coordinate([&](std::size_t k, std::size_t, int) {
         size += std::abs(q[k]);
     });
-    return {contact, wall_distance<2>(q, contact) - touching, relative_bound * size};
+    return {contact, wall_distance(packing_->layout(), q, contact) - touching, relative_bound * size};
 }
 
 int GapOrder::compare(const Item& a, const Item& b) const {

@@ -13,7 +13,7 @@ namespace isostat::crafted {
 class GapOrder {
   public:
     /// The packing must outlive the order. \pre finite coordinates and radii
-    explicit GapOrder(const Packing<2>& packing);
+    explicit GapOrder(const Packing& packing);
     ~GapOrder();
     GapOrder(GapOrder&&) noexcept;
     GapOrder& operator=(GapOrder&&) = delete;
@@ -37,7 +37,7 @@ class GapOrder {
 
   private:
     struct Exact;
-    const Packing<2>* packing_;
+    const Packing* packing_;
     std::unique_ptr<Exact> exact_;
 };
 

@@ -18,7 +18,7 @@ namespace isostat::crafted {
 
 namespace {
 
-void check(const Packing<2>& packing, const GenericityOptions& options) {
+void check(const Packing& packing, const GenericityOptions& options) {
     bool gives_way = std::count(packing.fixed.begin(), packing.fixed.end(), 1) == 0;
     for (std::size_t a = 0; a < 2; ++a) {
         const bool box = packing.walls.lower[a] == WallKind::fixed && packing.walls.upper[a] == WallKind::movable;
@@ -51,7 +51,7 @@ void check(const Packing<2>& packing, const GenericityOptions& options) {
 }
 
 /// The radii, and the tilt if it is asked for.
-void perturb(Packing<2>& packing, const GenericityOptions& options, std::uint64_t seed) {
+void perturb(Packing& packing, const GenericityOptions& options, std::uint64_t seed) {
     std::mt19937_64 random(seed);
     const auto change = [&] { return options.size * (static_cast<double>(random() >> 11) * 0x1p-52 - 1); };
     std::map<double, double> factor_of; // of a class of equal radii
@@ -78,7 +78,7 @@ void perturb(Packing<2>& packing, const GenericityOptions& options, std::uint64_
 }
 
 /// The claims of the certificate in figures; the reason when one that makes an isostatic equilibrium is missing.
-void fill(GenericitySample& sample, const State<2>& state, const Certification& certified) {
+void fill(GenericitySample& sample, const State& state, const Certification& certified) {
     const CertificateClaims& claims = certified.claims;
     if (!claims.counting || !claims.vertex || !claims.forces || !claims.gaps || !claims.stable ||
         claims.counting->hyperstaticity != 0 || claims.counting->hypostaticity != 0) {
@@ -114,22 +114,22 @@ void fill(GenericitySample& sample, const State<2>& state, const Certification& 
 }
 
 /// One sample, with the contacts of the unperturbed packing sorted.
-GenericitySample sampled(const Packing<2>& packing, const std::vector<Contact>& original,
-                         const GenericityOptions& options, std::uint64_t seed) {
+GenericitySample sampled(const Packing& packing, const std::vector<Contact>& original, const GenericityOptions& options,
+                         std::uint64_t seed) {
     GenericitySample sample;
     sample.seed = seed;
-    Packing<2> start = packing;
+    Packing start = packing;
     perturb(start, options, seed);
     PreparationOptions preparation;
     preparation.seed = seed;
     preparation.stress = options.stress;
-    PreparationReport<2> report;
-    const auto found = find_vertex<2>(start, preparation, report);
+    PreparationReport report;
+    const auto found = find_vertex(start, preparation, report);
     if (!found.ok() && (!report.candidate || found.failure().kind == FailureKind::tie)) {
         sample.failure = found.failure();
         return sample;
     }
-    const State<2>& state = found.ok() ? found.value() : *report.candidate;
+    const State& state = found.ok() ? found.value() : *report.candidate;
     fill(sample, state, certify(state));
     if (!sample.failure) {
         sample.within_original =
@@ -157,9 +157,9 @@ std::map<std::string, int> Genericity::rungs() const {
     return out;
 }
 
-Genericity genericity(const Packing<2>& given, const std::vector<Contact>& original, const GenericityOptions& options) {
+Genericity genericity(const Packing& given, const std::vector<Contact>& original, const GenericityOptions& options) {
     require_floating_point();
-    Packing<2> packing = given;
+    Packing packing = given;
     const auto& moves = packing.cell.period_moves;
     if (packing.cell.all() && !moves[0] && !moves[1] && !packing.cell.tilt_moves[0]) {
         packing.cell.keep_shape(); // other radii need another size

@@ -74,7 +74,6 @@ struct Genericity {
 /// (throws `Error(bad_input)` otherwise, and for options out of range); \p original are its contacts. The samples are
 /// independent; only proved vertices count. A failure says nothing of the perturbed packing's vertex but that it was
 /// not proved. Cost: one `find_vertex` and one `certify` per sample.
-Genericity genericity(const Packing<2>& packing, const std::vector<Contact>& original,
-                      const GenericityOptions& options);
+Genericity genericity(const Packing& packing, const std::vector<Contact>& original, const GenericityOptions& options);
 
 } // namespace isostat::crafted

@@ -32,8 +32,8 @@ void judge_holds(Inspection& inspection, const ExactPacking& packing) {
         const auto i = static_cast<std::size_t>(contact.i);
         const auto j = static_cast<std::size_t>(contact.j);
         if (contact.kind == ContactKind::disk_disk) {
-            const auto [x, y] =
-                Separation<2>(contact, packing.disk_count())
+            const auto [x, y, none] =
+                Separation(contact, packing.layout())
                     .of_disks([&](std::size_t k) -> const Number& { return packing.coordinate(k); }, std::minus<>());
             arms[i].push_back({l, {x, y}});
             arms[j].push_back({l, {-x, -y}});

@@ -15,7 +15,7 @@ namespace {
 
 /// The contact matrix of the same contact graph with the disks, and the periods and tilt of a cell, at random integers;
 /// columns scaled by the distance.
-exact::NumberMatrix generic_matrix(const ExactPacking& packing, const DofMap<2>& dofs,
+exact::NumberMatrix generic_matrix(const ExactPacking& packing, const DofMap& dofs,
                                    const std::vector<Contact>& contacts) {
     ExactPacking random = packing;
     std::uint64_t state = 0x9e3779b97f4a7c15u; // splitmix64: the same points at every call
@@ -40,10 +40,10 @@ exact::NumberMatrix generic_matrix(const ExactPacking& packing, const DofMap<2>&
 
 /// Counts for each way to strain the cell, of all pairs that touch.
 StrainCounts exact_strains(const ExactPacking& packing, const std::vector<Contact>& touching) {
-    const Packing<2> rounded = approximate(packing);
+    const Packing rounded = approximate(packing);
     StrainCounts counts;
     std::transform(strains.begin(), strains.end(), counts.begin(), [&](Strain strain) {
-        return count_matrix(strained_matrix<2>(
+        return count_matrix(strained_matrix(
             rounded, [&](std::size_t k) { return packing.coordinate(k); }, touching, strain));
     });
     return counts;
@@ -51,8 +51,7 @@ StrainCounts exact_strains(const ExactPacking& packing, const std::vector<Contac
 
 /// The same packing, with a cell of which everything moves.
 ExactPacking loose_cell(ExactPacking packing) {
-    packing.cell.period_moves.fill(true);
-    packing.cell.tilt_moves.fill(true);
+    packing.cell.move(true, true);
     return packing;
 }
 
@@ -259,7 +258,7 @@ class Inspector {
 
     const ExactPacking& packing_;
     const InspectionLimits& limits_;
-    DofMap<2> dofs_;
+    DofMap dofs_;
     exact::NumberMatrix matrix_;
     Inspection out_;
     bool balanced_ = false; // some forces balance the load, and `forces` holds them (without contacts it is empty)

@@ -268,7 +268,7 @@ class Comparison {
         const auto contacts = [&](const auto& listed) {
             for (std::size_t l = 0; l < inspection_.contacts.size(); ++l) {
                 if (listed(l)) {
-                    found.push_back(to_string<2>(inspection_.contacts[l]));
+                    found.push_back(to_string(inspection_.contacts[l]));
                 }
             }
         };
@@ -319,7 +319,7 @@ class Comparison {
         std::string found = inspection_.forces_unique ? "no such contact" : "forces that are not unique";
         bool holds = false;
         for (std::size_t l = 0; l < inspection_.contacts.size() && inspection_.forces_unique; ++l) {
-            if (to_string<2>(inspection_.contacts[l]) == row[0]) {
+            if (to_string(inspection_.contacts[l]) == row[0]) {
                 found = inspection_.forces[l].text();
                 holds = inspection_.forces[l] == wanted;
             }

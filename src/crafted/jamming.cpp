@@ -43,8 +43,7 @@ Jamming judge_jamming(const ExactPacking& packing, const std::vector<DiskHold>& 
         return out;
     }
     const auto inspected = [&](bool moves) {
-        rest.cell.period_moves.fill(moves);
-        rest.cell.tilt_moves.fill(moves);
+        rest.cell.move(moves, moves);
         return inspect_contacts(rest, exact_contacts(rest).value(), limits);
     };
     const Inspection fixed = inspected(false);

@@ -253,7 +253,7 @@ class Reader {
     }
 
     void moves(const toml::node& moved) {
-        Cell<2>& cell = out_.packing.cell;
+        Cell& cell = out_.packing.cell;
         const std::string word = string(moved, "cell.moves");
         const int axis = word == "x" ? 0 : (word == "y" ? 1 : 2);
         bool& flag = axis < 2 ? cell.period_moves[static_cast<std::size_t>(axis)] : cell.tilt_moves[0];
@@ -281,7 +281,7 @@ class Reader {
                 }
             }
         }
-        const Packing<2> rounded = approximate(packing);
+        const Packing rounded = approximate(packing);
         validate(rounded, fmt::format("{}:{}", name_, period.source().begin.line));
         if (const auto beyond = disk_beyond(rounded, 0, farthest_disk)) {
             throw Error(ErrorKind::bad_input, fmt::format("{}:{}: {}", name_, period.source().begin.line, *beyond));

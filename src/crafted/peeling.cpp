@@ -182,7 +182,7 @@ enum class Hold { held, bridge, rattler, fixed };
 
 class Peeler {
   public:
-    Peeler(const Packing<2>& packing, const std::vector<Contact>& contacts)
+    Peeler(const Packing& packing, const std::vector<Contact>& contacts)
         : packing_(packing), contacts_(contacts), rings_(packing.radius.size()),
           hold_(packing.radius.size(), Hold::held), carrying_(contacts.size(), 1) {
         out_.contact_from.assign(contacts.size(), 0);
@@ -246,13 +246,13 @@ class Peeler {
                                     contact.i));
         }
         const auto minus = [](const Number& a, const Number& b) -> Number { return a - b; };
-        const auto r = Separation<2>(contact, packing_.disk_count())
+        const auto r = Separation(contact, packing_.layout())
                            .of_disks([&](std::size_t k) { return Number::from_double(packing_.q[k]); }, minus);
         if (r[0].is_zero() && r[1].is_zero()) {
             throw Error(ErrorKind::bad_input,
                         fmt::format("disk {} and an image of disk {} have the same centre", contact.i, contact.j));
         }
-        rings_[static_cast<std::size_t>(contact.i)].add(l, StoredNormal(r));
+        rings_[static_cast<std::size_t>(contact.i)].add(l, StoredNormal({r[0], r[1]}));
         rings_[static_cast<std::size_t>(contact.j)].add(l, StoredNormal({-r[0], -r[1]}));
     }
 
@@ -327,7 +327,7 @@ class Peeler {
         }
     }
 
-    const Packing<2>& packing_;
+    const Packing& packing_;
     const std::vector<Contact>& contacts_;
     std::vector<Ring> rings_;
     std::vector<Hold> hold_;
@@ -339,7 +339,7 @@ class Peeler {
 
 } // namespace
 
-Peeling peel(const Packing<2>& packing, const std::vector<Contact>& contacts) {
+Peeling peel(const Packing& packing, const std::vector<Contact>& contacts) {
     return Peeler(packing, contacts).run();
 }
 

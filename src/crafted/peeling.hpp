@@ -18,6 +18,6 @@ struct Peeling {
 /// By removing the contacts from the last to the first; each removal looks at the two neighbours in angle only. Every
 /// sign is decided. Throws `Error(bad_input)` when two disks of a contact have the same centre. Cost O(N log N) beside
 /// near-parallel normals, which are decided in rationals.
-Peeling peel(const Packing<2>& packing, const std::vector<Contact>& contacts);
+Peeling peel(const Packing& packing, const std::vector<Contact>& contacts);
 
 } // namespace isostat::crafted

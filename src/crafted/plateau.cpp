@@ -31,14 +31,14 @@ constexpr double largest_length = 1e100;   // squares neither overflow
 constexpr double smallest_length = 1e-100; // nor underflow
 
 /// More are no contacts, and take longer than anyone waits.
-int most_pairs(const Packing<2>& packing) {
+int most_pairs(const Packing& packing) {
     constexpr int most_disks = std::numeric_limits<int>::max() / most_pairs_per_disk;
     return most_pairs_per_disk * std::min(packing.disk_count(), most_disks);
 }
 
 class Sequence {
   public:
-    Sequence(const Packing<2>& packing, double largest, Strain strain)
+    Sequence(const Packing& packing, double largest, Strain strain)
         : packing_(at_rest(packing)), strain_(strain), order_(packing_), largest_(largest) {
         check();
         find_candidates();
@@ -57,11 +57,11 @@ class Sequence {
         }
         count_backbones();
         count_all();
-        const auto matrix_rank = [strain](const Packing<2>& rest, const std::vector<Contact>& list) {
+        const auto matrix_rank = [strain](const Packing& rest, const std::vector<Contact>& list) {
             if (rest.cell.all()) {
                 return list.empty() ? 0 : exact::rank(exact_strained_matrix(rest, list, strain));
             }
-            const DofMap<2> dofs(rest);
+            const DofMap dofs(rest);
             return list.empty() || dofs.dof_count() == 0 ? 0 : exact::rank(exact_contact_matrix(rest, dofs, list));
         };
         backbone_stress_ =
@@ -164,11 +164,10 @@ class Sequence {
 
   private:
     /// Where every axis is periodic, what moves of the cell is its strain.
-    static Packing<2> at_rest(Packing<2> packing) {
+    static Packing at_rest(Packing packing) {
         if (packing.cell.all()) {
             packing.cell.keeps_shape = false;
-            packing.cell.period_moves.fill(false);
-            packing.cell.tilt_moves.fill(false);
+            packing.cell.move(false, false);
         }
         return packing;
     }
@@ -200,12 +199,12 @@ class Sequence {
     }
 
     void find_pairs_of_images(double reach) {
-        const Images<2> images = images_near_cell(packing_, reach);
+        const Images images = images_near_cell(packing_, reach);
         const int count = images.packing.disk_count();
         preparation::PairList pairs;
         std::vector<double> centres(images.packing.q.begin(), images.packing.q.end() - 2);
-        preparation::find_pairs<2>(centres, images.packing.radius, reach + images.rounding, pairs,
-                                   most_pairs(images.packing));
+        preparation::find_pairs(packing_.dimension, centres, images.packing.radius, reach + images.rounding, pairs,
+                                most_pairs(images.packing));
         std::vector<Contact> found;
         for (int a = 0; a < count; ++a) {
             const auto k = static_cast<std::size_t>(a);
@@ -228,7 +227,8 @@ class Sequence {
             find_pairs_of_images(reach);
             pairs.start.assign(packing_.radius.size() + 1, 0);
         } else {
-            preparation::find_pairs<2>(packing_.q, packing_.radius, reach, pairs, most_pairs(packing_));
+            preparation::find_pairs(packing_.dimension, packing_.q, packing_.radius, reach, pairs,
+                                    most_pairs(packing_));
         }
         for (int i = 0; i < packing_.disk_count(); ++i) {
             const auto k = static_cast<std::size_t>(i);
@@ -286,10 +286,12 @@ class Sequence {
         for (const bool moves : packing_.cell.period_moves) {
             moving_ += moves ? 1 : 0;
         }
-        all_dofs_ = DofMap<2>(packing_).dof_count() + cell_coordinates();
+        all_dofs_ = DofMap(packing_).dof_count() + cell_coordinates();
     }
     /// What the cell adds to the degrees of freedom of the disks: its strains.
-    [[nodiscard]] int cell_coordinates() const { return packing_.cell.all() ? strain_count<2>(strain_) : 0; }
+    [[nodiscard]] int cell_coordinates() const {
+        return packing_.cell.all() ? strain_count(strain_, packing_.cell.dimension) : 0;
+    }
 
     [[nodiscard]] PlateauCounts backbone_counts(int m) const {
         const auto k = static_cast<std::size_t>(m);
@@ -349,8 +351,8 @@ class Sequence {
     }
 
     /// A rattler has no degree of freedom left: it is held fixed, and touches nothing.
-    [[nodiscard]] Packing<2> without_rattlers(int m) const {
-        Packing<2> rest = packing_;
+    [[nodiscard]] Packing without_rattlers(int m) const {
+        Packing rest = packing_;
         rest.fixed.resize(rest.radius.size(), 0);
         for (std::size_t i = 0; i < rest.fixed.size(); ++i) {
             if (peeling_.disk_from[i] > m) {
@@ -389,7 +391,7 @@ class Sequence {
         return range;
     }
 
-    Packing<2> packing_;
+    Packing packing_;
     Strain strain_;
     GapOrder order_;
     double largest_;
@@ -472,7 +474,7 @@ double Plateau::width(const PlateauRange& range) const {
     return std::asinh(range.last / rounding) - std::asinh(range.first / rounding);
 }
 
-Plateau plateau(const Packing<2>& packing, const std::vector<double>& thresholds, Strain strain) {
+Plateau plateau(const Packing& packing, const std::vector<double>& thresholds, Strain strain) {
     require_floating_point();
     assert(std::is_sorted(thresholds.begin(), thresholds.end()));
     if (thresholds.empty()) {
@@ -489,7 +491,7 @@ Plateau plateau(const Packing<2>& packing, const std::vector<double>& thresholds
     return out;
 }
 
-Plateau plateau(const Packing<2>& packing, double first, double last, int rows, Strain strain, double rounding) {
+Plateau plateau(const Packing& packing, double first, double last, int rows, Strain strain, double rounding) {
     require_floating_point();
     assert(first <= last);
     Sequence sequence(packing, last, strain);
@@ -509,7 +511,7 @@ Plateau plateau(const Packing<2>& packing, double first, double last, int rows, 
     return out;
 }
 
-std::vector<Contact> backbone_at(const Packing<2>& packing, double threshold) {
+std::vector<Contact> backbone_at(const Packing& packing, double threshold) {
     const Sequence sequence(packing, threshold, Strain::isotropic);
     return sequence.backbone_contacts(sequence.below(threshold));
 }

@@ -4,9 +4,9 @@
 
 namespace isostat::crafted {
 
-int rigid_motions(const Walls<2>& walls, const std::vector<unsigned char>& fixed, int disks) {
+int rigid_motions(const Walls& walls, const std::vector<unsigned char>& fixed, int disks) {
     const auto held = std::count(fixed.begin(), fixed.end(), 1);
-    const bool no_walls = walls == Walls<2>::none();
+    const bool no_walls = walls == Walls::none();
     if (held > 0) {
         return held == 1 && no_walls && disks > 1 ? 1 : 0; // turning about the fixed centre
     }
@@ -18,7 +18,7 @@ int rigid_motions(const Walls<2>& walls, const std::vector<unsigned char>& fixed
     return out;
 }
 
-int rigid_motions(const Packing<2>& packing, int disks) {
+int rigid_motions(const Packing& packing, int disks) {
     if (!packing.cell.any()) {
         return rigid_motions(packing.walls, packing.fixed, disks);
     }

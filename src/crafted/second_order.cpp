@@ -54,7 +54,7 @@ Inertia inertia(std::vector<std::vector<Number>> a) {
     return out;
 }
 
-std::vector<std::vector<Number>> stress_form(const ExactPacking& packing, const DofMap<2>& dofs,
+std::vector<std::vector<Number>> stress_form(const ExactPacking& packing, const DofMap& dofs,
                                              const std::vector<Contact>& contacts, const std::vector<Number>& forces,
                                              const std::vector<std::vector<Number>>& motions) {
     const std::size_t k = motions.size();
@@ -64,8 +64,8 @@ std::vector<std::vector<Number>> stress_form(const ExactPacking& packing, const 
         if (contact.kind != ContactKind::disk_disk || forces[l].is_zero()) {
             continue; // a wall's gap is linear
         }
-        const Separation<2> separation(contact, packing.disk_count());
-        std::vector<std::array<Number, 2>> relative(k);
+        const Separation separation(contact, packing.layout());
+        std::vector<PerAxis<Number>> relative(k);
         for (std::size_t m = 0; m < k; ++m) {
             const auto velocity = [&](std::size_t coordinate) {
                 const int dof = dofs.dof_of(coordinate);
@@ -86,7 +86,7 @@ std::vector<std::vector<Number>> stress_form(const ExactPacking& packing, const 
     return out;
 }
 
-SecondOrder second_order_test(const Inspection& inspection, const ExactPacking& packing, const DofMap<2>& dofs) {
+SecondOrder second_order_test(const Inspection& inspection, const ExactPacking& packing, const DofMap& dofs) {
     const int internal = inspection.internal_mechanisms();
     if (internal == 0) {
         return SecondOrder::no_mechanism;

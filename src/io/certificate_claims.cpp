@@ -68,27 +68,27 @@ Json claim(const ForcesClaim& forces) {
             {"rung", to_string(forces.rung)}};
 }
 
-Json claim(const GapsClaim& gaps) {
+Json claim(const GapsClaim& gaps, int dimension) {
     return {{"smallest", number(gaps.smallest, "gaps.smallest")},
-            {"where", std::isinf(gaps.smallest) ? Json(nullptr) : contact_to_json<2>(gaps.where)},
+            {"where", std::isinf(gaps.smallest) ? Json(nullptr) : contact_to_json(gaps.where, dimension)},
             {"rung", to_string(gaps.rung)}};
 }
 
-Json claim(const LoadEndClaim& end) {
+Json claim(const LoadEndClaim& end, int dimension) {
     if (end.unbounded) {
         return {{"unbounded", true}};
     }
     return {{"unbounded", false},
             {"stress", interval(end.stress, "load_interval")},
-            {"opens", contact_to_json<2>(end.opens)}};
+            {"opens", contact_to_json(end.opens, dimension)}};
 }
 
-Json claim(const LoadIntervalClaim& load) {
-    return {{"low", claim(load.low)}, {"high", claim(load.high)}, {"rung", to_string(load.rung)}};
+Json claim(const LoadIntervalClaim& load, int dimension) {
+    return {{"low", claim(load.low, dimension)}, {"high", claim(load.high, dimension)}, {"rung", to_string(load.rung)}};
 }
 
-template <class Claim> Json or_absent(const std::optional<Claim>& value) {
-    return value ? claim(*value) : Json(nullptr);
+template <class Claim, class... More> Json or_absent(const std::optional<Claim>& value, More... more) {
+    return value ? claim(*value, more...) : Json(nullptr);
 }
 
 /// The rungs that can settle a claim, by their words.
@@ -178,7 +178,7 @@ ForcesClaim forces_of(const Field& field, std::size_t contacts) {
     return claim;
 }
 
-GapsClaim gaps_of(const Field& field, const Packing<2>& packing) {
+GapsClaim gaps_of(const Field& field, const Packing& packing) {
     field.only({"smallest", "where", "rung"});
     GapsClaim claim;
     claim.smallest = number_or_infinity(field.at("smallest"));
@@ -190,7 +190,7 @@ GapsClaim gaps_of(const Field& field, const Packing<2>& packing) {
         where.fail("a pair of grains, or null exactly when the smallest gap is infinite");
     }
     if (!where.value().is_null()) {
-        claim.where = contact_from_json<2>(where, packing);
+        claim.where = contact_from_json(where, packing);
         if (claim.where.kind == ContactKind::held) {
             where.fail("a pair of grains");
         }
@@ -199,7 +199,7 @@ GapsClaim gaps_of(const Field& field, const Packing<2>& packing) {
     return claim;
 }
 
-LoadEndClaim load_end_of(const Field& field, const State<2>& state) {
+LoadEndClaim load_end_of(const Field& field, const State& state) {
     LoadEndClaim claim;
     claim.unbounded = field.at("unbounded").boolean();
     if (claim.unbounded) {
@@ -208,33 +208,33 @@ LoadEndClaim load_end_of(const Field& field, const State<2>& state) {
     }
     field.only({"unbounded", "stress", "opens"});
     claim.stress = interval_of(field.at("stress"));
-    claim.opens = contact_from_json<2>(field.at("opens"), state.packing);
+    claim.opens = contact_from_json(field.at("opens"), state.packing);
     if (std::find(state.contacts.begin(), state.contacts.end(), claim.opens) == state.contacts.end()) {
         field.at("opens").fail("a contact of the state");
     }
     return claim;
 }
 
-LoadIntervalClaim load_interval_of(const Field& field, const State<2>& state) {
+LoadIntervalClaim load_interval_of(const Field& field, const State& state) {
     field.only({"low", "high", "rung"});
     return {load_end_of(field.at("low"), state), load_end_of(field.at("high"), state), rung_of(field.at("rung"))};
 }
 
 } // namespace
 
-std::string claims_text(const CertificateClaims& claims) {
+std::string claims_text(const CertificateClaims& claims, int dimension) {
     std::string text = "\"claims\": {\n";
     text += "  " + member_line("counting", or_absent(claims.counting)) + ",\n";
     text += "  " + member_line("vertex", or_absent(claims.vertex)) + ",\n";
     text += "  " + member_line("forces", or_absent(claims.forces)) + ",\n";
-    text += "  " + member_line("gaps", or_absent(claims.gaps)) + ",\n";
-    text += "  " + member_line("load_interval", or_absent(claims.load_interval)) + ",\n";
+    text += "  " + member_line("gaps", or_absent(claims.gaps, dimension)) + ",\n";
+    text += "  " + member_line("load_interval", or_absent(claims.load_interval, dimension)) + ",\n";
     text += "  " + member_line("stable", claims.stable) + ",\n";
     text += "  " + member_line("undecided", claims.undecided) + "\n}";
     return text;
 }
 
-CertificateClaims claims_of(const Field& field, const State<2>& state) {
+CertificateClaims claims_of(const Field& field, const State& state) {
     field.only({"counting", "vertex", "forces", "gaps", "load_interval", "stable", "undecided"});
     const auto given = [&field](const char* name) { return !field.at(name).value().is_null(); };
     CertificateClaims claims;

@@ -50,7 +50,7 @@ std::string certificate_text(const Certificate& certificate) {
     text += member_line("program", certificate.program) + ",\n";
     text += member_line("input", certificate.input) + ",\n";
     text += member_line("input_hash", certificate.input_hash) + ",\n";
-    text += json::claims_text(certificate.claims) + ",\n";
+    text += json::claims_text(certificate.claims, certificate.state.packing.dimension) + ",\n";
     text += "\"state\": " + state;
     return text + ",\n" + member_line("digest", json::digest_of(json::Json::parse(text + "}"))) + "\n}\n";
 }
@@ -87,7 +87,7 @@ Certificate parse_certificate(const std::string& text, const std::string& source
     if (state.has("forces")) {
         state.at("forces").fail("no such field in a certificate: forces are claims");
     }
-    certificate.state = json::state_from_json<2>(state, source).state;
+    certificate.state = json::state_from_json(state, source).state;
     certificate.claims = json::claims_of(document.at("claims"), certificate.state);
     return certificate;
 }

@@ -16,10 +16,10 @@ inline std::string member_line(const char* name, const Json& value) {
 }
 
 /// The member "claims", each claim in one line. Throws `Error(bad_input)` as `certificate_text` does.
-std::string claims_text(const CertificateClaims& claims);
+std::string claims_text(const CertificateClaims& claims, int dimension);
 
 /// What `claims_text` wrote. Throws as `parse_certificate` does.
-CertificateClaims claims_of(const Field& field, const State<2>& state);
+CertificateClaims claims_of(const Field& field, const State& state);
 
 /// SHA-256 of a document without its field "digest", dumped without white space and with sorted keys.
 std::string digest_of(const Json& document);

@@ -24,13 +24,13 @@ int disk_index(const Field& field, int disks) {
 }
 
 /// The third element of [i, j, [mx, my]].
-template <int Dim> Image image_of(const Field& field, const Packing<Dim>& packing) {
+Image image_of(const Field& field, const Packing& packing) {
     if (!packing.cell.any()) {
         field.fail("[disk, disk]: images are of a periodic \"cell\"");
     }
-    field.require_size(Dim, "one number of periods per axis");
+    field.require_size(packing.dimension, "one number of periods per axis");
     Image image;
-    for (std::size_t a = 0; a < Dim; ++a) {
+    for (std::size_t a = 0; a < packing.axes(); ++a) {
         const long m = field.at(a).integer();
         if (m != 0 && !packing.cell.periodic[a]) {
             field.at(a).fail("0, as that axis has walls");
@@ -44,7 +44,7 @@ template <int Dim> Image image_of(const Field& field, const Packing<Dim>& packin
     return image;
 }
 
-template <int Dim> Contact pair_from_json(const Field& field, int i, int j, const Packing<Dim>& packing) {
+Contact pair_from_json(const Field& field, int i, int j, const Packing& packing) {
     const Image image = field.size() == 3 ? image_of(field.at(std::size_t{2}), packing) : Image{};
     if (i == j && image.is_here()) {
         field.fail(packing.cell.any() ? "two different disks, or the image of one that is not itself"
@@ -55,14 +55,14 @@ template <int Dim> Contact pair_from_json(const Field& field, int i, int j, cons
 
 } // namespace
 
-template <int Dim> Json contact_to_json(const Contact& contact) {
+Json contact_to_json(const Contact& contact, int dimension) {
     const auto axis = static_cast<std::size_t>(contact.j);
     switch (contact.kind) {
     case ContactKind::disk_disk: {
         Json pair = Json::array({contact.i, contact.j});
         if (!contact.image.is_here()) {
             pair.push_back(Json::array());
-            for (std::size_t a = 0; a < Dim; ++a) {
+            for (std::size_t a = 0; a < static_cast<std::size_t>(dimension); ++a) {
                 pair.back().push_back(static_cast<int>(contact.image.m[a]));
             }
         }
@@ -77,7 +77,7 @@ template <int Dim> Json contact_to_json(const Contact& contact) {
 
 namespace {
 
-template <int Dim> Contact contact_of(const Field& field, const Packing<Dim>& packing) {
+Contact contact_of(const Field& field, const Packing& packing) {
     if (field.size() != 3) {
         field.require_size(2, "[disk, disk], [disk, disk, [mx, my]], [disk, \"wall\"] or [\"held\", coordinate]");
     }
@@ -97,7 +97,7 @@ template <int Dim> Contact contact_of(const Field& field, const Packing<Dim>& pa
         return pair_from_json(field, i, disk_index(second, packing.disk_count()), packing);
     }
     field.require_size(2, "[disk, \"wall\"]");
-    for (std::size_t a = 0; a < Dim; ++a) {
+    for (std::size_t a = 0; a < packing.axes(); ++a) {
         const bool lower = second.string() == lower_name[a];
         if (!lower && second.string() != upper_name[a]) {
             continue;
@@ -112,15 +112,14 @@ template <int Dim> Contact contact_of(const Field& field, const Packing<Dim>& pa
 
 } // namespace
 
-template <int Dim> Contact contact_from_json(const Field& field, const Packing<Dim>& packing) {
+Contact contact_from_json(const Field& field, const Packing& packing) {
     const Contact contact = contact_of(field, packing);
-    if (const Json written = contact_to_json<Dim>(contact); written != field.value()) {
+    if (const Json written = contact_to_json(contact, packing.dimension); written != field.value()) {
         field.fail(fmt::format("{}: a contact has one spelling", written.dump()));
     }
     return contact;
 }
 
-template <int Dim>
 void refuse_duplicates(const std::vector<Contact>& contacts, const std::string& source, const std::string& name) {
     std::vector<std::size_t> order(contacts.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -130,13 +129,9 @@ void refuse_duplicates(const std::vector<Contact>& contacts, const std::string& 
         if (contacts[order[k]] == contacts[order[k - 1]]) {
             throw Error(ErrorKind::bad_input,
                         fmt::format("{}: {}[{}] is {}, as {}[{}] already: expected each contact once", source, name,
-                                    order[k], to_string<Dim>(contacts[order[k]]), name, order[k - 1]));
+                                    order[k], to_string(contacts[order[k]]), name, order[k - 1]));
         }
     }
 }
-
-template Json contact_to_json<2>(const Contact&);
-template Contact contact_from_json<2>(const Field&, const Packing<2>&);
-template void refuse_duplicates<2>(const std::vector<Contact>&, const std::string&, const std::string&);
 
 } // namespace isostat::json

@@ -22,7 +22,7 @@ namespace {
 
 /// What a row is made of.
 struct Row {
-    const EquilibriumRecord<2>& record;
+    const EquilibriumRecord& record;
     double solid_fraction = 0;
     int previous = 0;
     std::array<std::size_t, 3> axis{0, 1, 2}; ///< the one that is not loaded, the loaded one, that of the tilt
@@ -31,7 +31,7 @@ struct Row {
 
 /// The last columns: bounds, and what only some rows have.
 template <class Use> void for_each_bound(const Row& row, const Use& use) {
-    const EquilibriumRecord<2>& r = row.record;
+    const EquilibriumRecord& r = row.record;
     const auto& [other, loaded, third] = row.axis;
     use("eps1_bound", r.strain_bound[other]);
     use("eps2_bound", r.strain_bound[loaded]);
@@ -55,7 +55,7 @@ template <class Use> void for_each_bound(const Row& row, const Use& use) {
 /// The one list of columns, in their order but for the time, which is last. `use` takes the name and the value, an
 /// integer or a double.
 template <class Use> void for_each_column(const Row& row, const Use& use) {
-    const EquilibriumRecord<2>& r = row.record;
+    const EquilibriumRecord& r = row.record;
     const auto [other, loaded] = std::pair(row.axis[0], row.axis[1]);
     const auto contact = [&use](const std::string& name, const Contact& value) {
         const auto [i, j] = contact_columns(value);
@@ -104,7 +104,7 @@ template <class Use> void for_each_column(const Row& row, const Use& use) {
 
 /// The names, and whether integers are there.
 template <class Use> void for_each_name(MoreColumns more, const Use& use) {
-    EquilibriumRecord<2> any;
+    EquilibriumRecord any;
     any.strain = any.strain_bound = any.length = any.length_bound = {0, 0, 0};
     any.touching = 0;
     for_each_column({any, 0, 0, {0, 1, 2}, more},
@@ -229,7 +229,7 @@ MoreColumns named_columns(std::string_view text, const std::string& source) {
                                                   source, equilibria_header()));
 }
 
-std::string equilibrium_row(const EquilibriumRecord<2>& record, const State<2>& state, int previous, MoreColumns more) {
+std::string equilibrium_row(const EquilibriumRecord& record, const State& state, int previous, MoreColumns more) {
     const auto loaded = static_cast<std::size_t>(state.load.loaded_axis);
     const auto other = static_cast<std::size_t>(state.load.other_axis());
     std::string text;

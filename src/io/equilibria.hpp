@@ -29,7 +29,7 @@ std::string equilibria_header(MoreColumns more = {});
 MoreColumns named_columns(std::string_view text, const std::string& source);
 /// One row and a newline. `previous`: the equilibrium that this one follows, -1 for the start. \pre the record has what
 /// `more` asks for.
-std::string equilibrium_row(const EquilibriumRecord<2>& record, const State<2>& state, int previous, MoreColumns more);
+std::string equilibrium_row(const EquilibriumRecord& record, const State& state, int previous, MoreColumns more);
 
 /// One line of equilibria.csv, by the names of its header.
 struct EquilibriumLine {

@@ -54,7 +54,7 @@ void check_boundaries(Raw& raw, const std::string& source, const ForeignOptions&
 }
 
 /// Not `validate`: disks of any size may overlap, and reach beyond the walls.
-void check_range(const Packing<2>& packing, const std::string& source) {
+void check_range(const Packing& packing, const std::string& source) {
     for (std::size_t i = 0; i < packing.radius.size(); ++i) {
         if (!(packing.radius[i] >= shortest_length && packing.radius[i] <= longest_length)) {
             refuse(source, fmt::format("radius of disk {} is {}: expected one from {} to {}", i, packing.radius[i],
@@ -79,7 +79,7 @@ double shifted(double x, double origin, double& worst) {
 /// The walls of one axis, where they were asked for.
 void add_wall_pair(ForeignPacking& out, std::size_t a, const Raw& raw, const std::string& source,
                    const ForeignOptions& options, double& worst) {
-    Packing<2>& packing = out.packing;
+    Packing& packing = out.packing;
     if (options.walls == ForeignWalls::none) {
         packing.q.push_back(0);
         return;
@@ -109,7 +109,7 @@ void add_wall_pair(ForeignPacking& out, std::size_t a, const Raw& raw, const std
 /// Periodic axes: the cell of the file, which does not move, with its lower corner at 0 and the disks in it. By how
 /// much that rounds a coordinate.
 double add_cell(ForeignPacking& out, const Raw& raw, const std::string& source, const ForeignOptions& options) {
-    Packing<2>& packing = out.packing;
+    Packing& packing = out.packing;
     if (!raw.box) {
         refuse(source, "periodic, and the file has no bounds of a box: expected some");
     }
@@ -118,7 +118,7 @@ double add_cell(ForeignPacking& out, const Raw& raw, const std::string& source, 
         refuse(source, "walls or a box were stated of a periodic packing: expected none (--not-periodic looks at the "
                        "disks as they lie)");
     }
-    packing.walls = Walls<2>::none();
+    packing.walls = Walls::none();
     double worst = 0;
     for (std::size_t a = 0; a < 2; ++a) {
         packing.cell.periodic[a] = raw.boundary[a] == Boundary::periodic;
@@ -155,8 +155,8 @@ double add_cell(ForeignPacking& out, const Raw& raw, const std::string& source, 
 
 /// By how much the shift to them rounds a coordinate.
 double add_walls(ForeignPacking& out, const Raw& raw, const std::string& source, const ForeignOptions& options) {
-    Packing<2>& packing = out.packing;
-    packing.walls = Walls<2>::none();
+    Packing& packing = out.packing;
+    packing.walls = Walls::none();
     if (options.walls == ForeignWalls::none) {
         packing.q.insert(packing.q.end(), {0, 0});
         if (options.box) {
@@ -186,7 +186,7 @@ double add_walls(ForeignPacking& out, const Raw& raw, const std::string& source,
 
 /// \p moved: the rounding of a coordinate that came with the walls or the cell.
 double rounding_of(const Raw& raw, const ForeignPacking& found, const ForeignOptions& options, double moved) {
-    const bool walls = !(found.packing.walls == Walls<2>::none());
+    const bool walls = !(found.packing.walls == Walls::none());
     const bool sides = found.packing.cell.any() || (walls && !options.box);
     const int digits = std::max({raw.places.most(), raw.sizes.most(), sides ? raw.sides.most() : 0});
     const double scaled = raw.scale == 1 ? 0 : 0x1p-51 * raw.scale; // three operations

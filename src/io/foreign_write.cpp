@@ -13,7 +13,7 @@ namespace isostat {
 namespace {
 
 /// xlo, xhi, ylo, yhi: the walls, or a period from 0; where there is neither, the last disk.
-std::array<double, 4> bounds_of(const Packing<2>& packing) {
+std::array<double, 4> bounds_of(const Packing& packing) {
     std::array<double, 4> box{};
     for (std::size_t a = 0; a < 2; ++a) {
         double low = 0, high = 0;
@@ -30,14 +30,14 @@ std::array<double, 4> bounds_of(const Packing<2>& packing) {
 }
 
 /// A_xy; 0 in a box.
-double tilt_of(const Packing<2>& packing) {
+double tilt_of(const Packing& packing) {
     return packing.cell.all() ? packing.lattice(0, 1) : 0;
 }
 
 } // namespace
 
-std::string lammps_data_text(const Packing<2>& stored, const std::string& title) {
-    Packing<2> packing = stored;
+std::string lammps_data_text(const Packing& stored, const std::string& title) {
+    Packing packing = stored;
     const Wrapped wrapped = packing.cell.any() ? wrap_into_cell(packing) : Wrapped{};
     const auto [xlo, xhi, ylo, yhi] = bounds_of(packing);
     const double r = packing.max_radius();
@@ -57,7 +57,7 @@ std::string lammps_data_text(const Packing<2>& stored, const std::string& title)
     return text;
 }
 
-std::string xyz_text(const Packing<2>& packing, const std::vector<double>& displacement) {
+std::string xyz_text(const Packing& packing, const std::vector<double>& displacement) {
     const auto [xlo, xhi, ylo, yhi] = bounds_of(packing);
     const double r = packing.max_radius();
     std::string text = fmt::format("{}\nLattice=\"{} 0 0 {} {} 0 0 0 {}\" Origin=\"{} {} {}\" pbc=\"{} {} F\" "
@@ -75,7 +75,7 @@ std::string xyz_text(const Packing<2>& packing, const std::vector<double>& displ
     return text;
 }
 
-std::string csv_text(const Packing<2>& packing) {
+std::string csv_text(const Packing& packing) {
     const auto [xlo, xhi, ylo, yhi] = bounds_of(packing);
     std::string text = fmt::format("# box {}:{},{}:{}", xlo, xhi, ylo, yhi);
     if (packing.cell.any()) {

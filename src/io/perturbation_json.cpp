@@ -6,10 +6,10 @@ namespace isostat::json {
 
 namespace {
 
-template <int Dim> Json terms(const std::vector<std::pair<Contact, Enclosure>>& list) {
+Json terms(const std::vector<std::pair<Contact, Enclosure>>& list, int dimension) {
     Json rows = Json::array();
     for (const auto& [contact, term] : list) {
-        rows.push_back(Json::array({contact_to_json<Dim>(contact), term.value, term.radius}));
+        rows.push_back(Json::array({contact_to_json(contact, dimension), term.value, term.radius}));
     }
     return rows;
 }
@@ -21,13 +21,12 @@ Enclosure enclosure_from(const Field& value, const Field& bound) {
     return {value.number(), bound.number()};
 }
 
-template <int Dim>
-std::vector<std::pair<Contact, Enclosure>> terms_from(const Field& field, const Packing<Dim>& packing) {
+std::vector<std::pair<Contact, Enclosure>> terms_from(const Field& field, const Packing& packing) {
     std::vector<std::pair<Contact, Enclosure>> list;
     for (std::size_t k = 0; k < field.size(); ++k) {
         const Field row = field.at(k);
         row.require_size(3, "[contact, value, bound]");
-        list.emplace_back(contact_from_json<Dim>(row.at(std::size_t{0}), packing),
+        list.emplace_back(contact_from_json(row.at(std::size_t{0}), packing),
                           enclosure_from(row.at(std::size_t{1}), row.at(std::size_t{2})));
     }
     return list;
@@ -35,24 +34,24 @@ std::vector<std::pair<Contact, Enclosure>> terms_from(const Field& field, const 
 
 } // namespace
 
-template <int Dim> Json perturbation_to_json(const RadiusPerturbation& perturbation) {
+Json perturbation_to_json(const RadiusPerturbation& perturbation, int dimension) {
     Json object;
     object["seed"] = perturbation.seed;
     object["rho"] = perturbation.rho;
     if (perturbation.load_zero.i >= 0) {
-        object["load_zero"] = contact_to_json<Dim>(perturbation.load_zero);
+        object["load_zero"] = contact_to_json(perturbation.load_zero, dimension);
         object["stress_rate"] = Json::array({perturbation.stress_rate.value, perturbation.stress_rate.radius});
     }
     if (!perturbation.open.empty()) {
-        object["open"] = terms<Dim>(perturbation.open);
+        object["open"] = terms(perturbation.open, dimension);
     }
     if (!perturbation.zero.empty()) {
-        object["zero"] = terms<Dim>(perturbation.zero);
+        object["zero"] = terms(perturbation.zero, dimension);
     }
     return object;
 }
 
-template <int Dim> RadiusPerturbation perturbation_from_json(const Field& field, const Packing<Dim>& packing) {
+RadiusPerturbation perturbation_from_json(const Field& field, const Packing& packing) {
     field.only({"seed", "rho", "load_zero", "stress_rate", "open", "zero"});
     RadiusPerturbation perturbation;
     if (!field.at("seed").value().is_number_unsigned()) {
@@ -65,7 +64,7 @@ template <int Dim> RadiusPerturbation perturbation_from_json(const Field& field,
         perturbation.rho.push_back(rho.at(i).number());
     }
     if (field.has("load_zero")) {
-        perturbation.load_zero = contact_from_json<Dim>(field.at("load_zero"), packing);
+        perturbation.load_zero = contact_from_json(field.at("load_zero"), packing);
         const Field rate = field.at("stress_rate");
         rate.require_size(2, "[value, bound]");
         perturbation.stress_rate = enclosure_from(rate.at(std::size_t{0}), rate.at(std::size_t{1}));
@@ -78,8 +77,5 @@ template <int Dim> RadiusPerturbation perturbation_from_json(const Field& field,
     }
     return perturbation;
 }
-
-template Json perturbation_to_json<2>(const RadiusPerturbation&);
-template RadiusPerturbation perturbation_from_json<2>(const Field&, const Packing<2>&);
 
 } // namespace isostat::json

@@ -22,10 +22,10 @@ Json tie_json(const TieDecision& tie) {
     const auto term = [](const Enclosure& e) { return Json::array({json::or_null(e.value), json::or_null(e.radius)}); };
     Json object;
     object["decision"] = tie.what;
-    object["contact"] = to_string<2>(tie.chosen);
+    object["contact"] = to_string(tie.chosen);
     object["first_order"] = term(tie.first);
     if (tie.against.i >= 0) {
-        object["against"] = to_string<2>(tie.against);
+        object["against"] = to_string(tie.against);
         object["against_first_order"] = term(tie.other);
     }
     if (tie.choice != TieChoice::none) {
@@ -126,14 +126,14 @@ template <class Value> void read_from(const json::Field& document, const std::st
 
 } // namespace
 
-std::string event_line(const ArcRecord<2>& arc) {
+std::string event_line(const ArcRecord& arc) {
     Json line;
     line["step"] = arc.step;
     line["equilibrium"] = arc.equilibrium;
     line["arc"] = arc.arc;
     line["kind"] = to_string(arc.kind);
-    line["opened"] = to_string<2>(arc.opened);
-    line["closed"] = to_string<2>(arc.closed);
+    line["opened"] = to_string(arc.opened);
+    line["closed"] = to_string(arc.closed);
     line["power_turn"] = arc.power_turn;
     if (arc.power_turn) {
         line["held_at"] = arc.held_at;
@@ -165,7 +165,7 @@ std::string event_line(const ArcRecord<2>& arc) {
     return json::dumped(line) + "\n";
 }
 
-std::string witness_line(const ArcRecord<2>& arc) {
+std::string witness_line(const ArcRecord& arc) {
     Json line;
     line["step"] = arc.step;
     if (arc.certificate && arc.certificate->verdict == Verdict::proved) {

@@ -144,9 +144,9 @@ void RunDirectory::read_checkpoint() {
     point.made = file.at("made").integer(0, std::numeric_limits<int>::max());
     point.segment_done = file.at("segment_done").boolean();
     point.counters = counters_from(file.at("counters"));
-    StateFile<2> state = parse_any_state<2>(file.at("state").value().dump(), path);
+    StateFile state = parse_any_state(file.at("state").value().dump(), path);
     point.state = state.state;
-    const Cell<2>& cell = point.state.packing.cell;
+    const Cell& cell = point.state.packing.cell;
     const bool tilts = cell.any() && cell.tilt_moves[0];
     file.at("strain").require_size(tilts ? 3 : 2, "a strain for each axis");
     for (std::size_t a = 0; a < file.at("strain").size(); ++a) {
@@ -170,26 +170,26 @@ void RunDirectory::read_checkpoint() {
     }
 }
 
-std::optional<State<2>> RunDirectory::start() const {
+std::optional<State> RunDirectory::start() const {
     const fs::path path = directory_ / "start.json";
     if (!resumed_ || !fs::exists(path)) {
         return std::nullopt;
     }
-    return read_any_state<2>(path).state;
+    return read_any_state(path).state;
 }
 
 void RunDirectory::keep_digest(const std::string& name) {
     digests_[name] = sha256(read_text(directory_ / name));
 }
 
-void RunDirectory::store_start(const State<2>& state) {
-    write_state<2>(directory_ / "start.json", state);
+void RunDirectory::store_start(const State& state) {
+    write_state(directory_ / "start.json", state);
     keep_digest("start.json");
     name_columns({state.packing.cell.any() && state.packing.cell.tilt_moves[0], header_.touching});
 }
 
-State<2> RunDirectory::stored(int equilibrium) const {
-    return read_any_state<2>(directory_ / state_name(equilibrium)).state;
+State RunDirectory::stored(int equilibrium) const {
+    return read_any_state(directory_ / state_name(equilibrium)).state;
 }
 
 void RunDirectory::begin_segment(int number, const Segment& goal, int made, int from) {
@@ -199,7 +199,7 @@ void RunDirectory::begin_segment(int number, const Segment& goal, int made, int 
     previous_ = from;
 }
 
-void RunDirectory::on_arc(const ArcRecord<2>& arc) {
+void RunDirectory::on_arc(const ArcRecord& arc) {
     files_->events.write(event_line(arc));
     if (header_.witnesses) {
         files_->witnesses.write(witness_line(arc));
@@ -213,7 +213,7 @@ void RunDirectory::name_columns(MoreColumns more) {
     }
 }
 
-void RunDirectory::on_equilibrium(const EquilibriumRecord<2>& record, const State<2>& state,
+void RunDirectory::on_equilibrium(const EquilibriumRecord& record, const State& state,
                                   const std::vector<double>& forces) {
     const bool first = record.number == 0;
     name_columns({record.length.size() > 2, record.touching.has_value()});
@@ -229,7 +229,7 @@ void RunDirectory::on_equilibrium(const EquilibriumRecord<2>& record, const Stat
     const bool kept = std::find(header_.keep.begin(), header_.keep.end(), record.number) != header_.keep.end();
     if (first || every || kept || segment_done()) {
         const std::string name = state_name(record.number);
-        write_state<2>(directory_ / name, last_, last_forces_);
+        write_state(directory_ / name, last_, last_forces_);
         keep_digest(name);
     }
     if (first) {
@@ -274,7 +274,7 @@ void RunDirectory::write_checkpoint() {
     object["files"] = digests_;
     std::string text = json::dumped(object);
     text.pop_back();
-    text += before_state + state_text<2>(last_, last_forces_);
+    text += before_state + state_text(last_, last_forces_);
     write_atomically(directory_ / "checkpoint.json", text + before_digest + '"' + sha256(text) + "\"}\n");
     pending_.reset();
 }
@@ -290,7 +290,7 @@ void RunDirectory::finish(RunStatus status, const std::string& reason) {
     name_columns({}); // of a run without a start
     write_checkpoint();
     if (!last_.packing.radius.empty()) {
-        write_state<2>(directory_ / last_state, last_, last_forces_);
+        write_state(directory_ / last_state, last_, last_forces_);
     }
     Json object;
     object["format"] = "isostat-summary";

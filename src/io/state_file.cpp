@@ -22,19 +22,19 @@ namespace {
 
 using json::Field;
 
-/// Dim numbers per disk; the array may be absent.
-template <int Dim> std::vector<double> vectors(const Field& document, const char* name, std::size_t disks) {
+/// d numbers per disk; the array may be absent.
+std::vector<double> vectors(const Field& document, const char* name, const Layout& layout) {
     std::vector<double> values;
     if (!document.has(name)) {
         return values;
     }
     const Field list = document.at(name);
-    list.require_size(disks, "one row per disk");
-    values.reserve(Dim * disks);
-    for (std::size_t i = 0; i < disks; ++i) {
+    list.require_size(static_cast<std::size_t>(layout.disks), "one row per disk");
+    values.reserve(layout.of_length(0));
+    for (std::size_t i = 0; i < list.size(); ++i) {
         const Field row = list.at(i);
-        row.require_size(Dim, "one number per axis");
-        for (std::size_t a = 0; a < Dim; ++a) {
+        row.require_size(layout.axes(), "one number per axis");
+        for (std::size_t a = 0; a < layout.axes(); ++a) {
             values.push_back(row.at(a).number());
         }
     }
@@ -42,31 +42,34 @@ template <int Dim> std::vector<double> vectors(const Field& document, const char
 }
 
 /// Version 1 has rows [radius, x, y], version 2 [x, y, radius].
-template <int Dim> void read_disks(const Field& document, Packing<Dim>& packing) {
+void read_disks(const Field& document, Packing& packing) {
     const bool radius_first = document.at("version").integer() == 1;
-    const char* const order = radius_first ? "[radius, x, y]" : "[x, y, radius]";
+    const char* const order = radius_first             ? "[radius, x, y]"
+                              : packing.dimension == 3 ? "[x, y, z, radius]"
+                                                       : "[x, y, radius]";
     const std::size_t first = radius_first ? 1 : 0;
-    const std::size_t size = radius_first ? 0 : Dim;
+    const std::size_t size = radius_first ? 0 : packing.axes();
     const Field disks = document.at("disks");
     if (disks.size() == 0) {
         disks.fail(fmt::format("at least one disk {}", order));
     }
     for (std::size_t i = 0; i < disks.size(); ++i) {
         const Field row = disks.at(i);
-        row.require_size(1 + Dim, order);
+        row.require_size(1 + packing.dimension, order);
         const double radius = row.at(size).number();
         if (!(radius > 0)) {
             row.at(size).fail("a positive radius");
         }
         packing.radius.push_back(radius);
-        for (std::size_t a = 0; a < Dim; ++a) {
+        for (std::size_t a = 0; a < packing.axes(); ++a) {
             packing.q.push_back(row.at(first + a).number());
         }
     }
 }
 
 /// The names of the coordinates of a cell that move.
-template <int Dim> void read_moves(const Field& moves, Cell<Dim>& cell) {
+void read_moves(const Field& moves, Packing& packing) {
+    Cell& cell = packing.cell;
     for (std::size_t k = 0; k < moves.size(); ++k) {
         const std::string& name = moves.at(k).string();
         for (std::size_t before = 0; before < k; ++before) {
@@ -81,11 +84,11 @@ template <int Dim> void read_moves(const Field& moves, Cell<Dim>& cell) {
         if (known) {
             cell.keep_shape();
         }
-        for (std::size_t a = 0; a < Dim; ++a) {
+        for (std::size_t a = 0; a < packing.axes(); ++a) {
             known = known || name == axis_names[a];
             cell.period_moves[a] = cell.period_moves[a] || name == axis_names[a];
         }
-        for (std::size_t t = 0; t < Cell<Dim>::tilts; ++t) {
+        for (std::size_t t = 0; t < packing.tilts(); ++t) {
             known = known || name == tilt_names[t];
             cell.tilt_moves[t] = cell.tilt_moves[t] || name == tilt_names[t];
         }
@@ -96,12 +99,12 @@ template <int Dim> void read_moves(const Field& moves, Cell<Dim>& cell) {
 }
 
 /// Axes that repeat have no walls; the others keep those of a box unless "walls" says otherwise.
-template <int Dim> void read_cell(const Field& field, Packing<Dim>& packing) {
+void read_cell(const Field& field, Packing& packing) {
     field.only({"axes", "moves", "tilt", "pin"});
-    Cell<Dim>& cell = packing.cell;
+    Cell& cell = packing.cell;
     const Field axes = field.at("axes");
-    axes.require_size(Dim, "one word per axis");
-    for (std::size_t a = 0; a < Dim; ++a) {
+    axes.require_size(packing.dimension, "one word per axis");
+    for (std::size_t a = 0; a < packing.axes(); ++a) {
         cell.periodic[a] = axes.at(a).word<int>(std::array{"periodic", "walls"}) == 0;
         if (cell.periodic[a]) {
             packing.walls.lower[a] = packing.walls.upper[a] = WallKind::absent;
@@ -110,11 +113,11 @@ template <int Dim> void read_cell(const Field& field, Packing<Dim>& packing) {
     if (!cell.any()) {
         axes.fail("a periodic axis; a box has no \"cell\"");
     }
-    read_moves(field.at("moves"), cell);
+    read_moves(field.at("moves"), packing);
     if (field.has("tilt")) {
-        field.at("tilt").require_size(Cell<Dim>::tilts, "one tilt per pair of axes");
+        field.at("tilt").require_size(packing.tilts(), "one tilt per pair of axes");
     }
-    for (std::size_t t = 0; t < Cell<Dim>::tilts; ++t) {
+    for (std::size_t t = 0; t < packing.tilts(); ++t) {
         packing.q.push_back(field.has("tilt") ? field.at("tilt").at(t).number() : 0);
     }
     if (field.has("pin")) {
@@ -122,12 +125,16 @@ template <int Dim> void read_cell(const Field& field, Packing<Dim>& packing) {
     }
 }
 
-template <int Dim> Packing<Dim> packing_of(const Field& document) {
-    Packing<Dim> packing;
+Packing packing_of(const Field& document) {
+    Packing packing;
+    if (document.has("dimension")) {
+        packing.dimension = packing.cell.dimension = document.at("dimension").integer(2, 3);
+        packing.walls = Walls::box(packing.dimension);
+    }
     read_disks(document, packing);
     const Field length = document.at("length");
-    length.require_size(Dim, "one length per axis");
-    for (std::size_t a = 0; a < Dim; ++a) {
+    length.require_size(packing.dimension, "one length per axis");
+    for (std::size_t a = 0; a < packing.axes(); ++a) {
         packing.q.push_back(length.at(a).number());
     }
     if (document.has("cell")) {
@@ -136,9 +143,9 @@ template <int Dim> Packing<Dim> packing_of(const Field& document) {
     if (document.has("walls")) {
         const Field walls = document.at("walls");
         walls.only({"lower", "upper"});
-        walls.at("lower").require_size(Dim, "one wall per axis");
-        walls.at("upper").require_size(Dim, "one wall per axis");
-        for (std::size_t a = 0; a < Dim; ++a) {
+        walls.at("lower").require_size(packing.dimension, "one wall per axis");
+        walls.at("upper").require_size(packing.dimension, "one wall per axis");
+        for (std::size_t a = 0; a < packing.axes(); ++a) {
             packing.walls.lower[a] = walls.at("lower").at(a).word<WallKind>(wall_kind_words);
             packing.walls.upper[a] = walls.at("upper").at(a).word<WallKind>(wall_kind_words);
             if (packing.walls.lower[a] == WallKind::movable) {
@@ -163,9 +170,7 @@ template <int Dim> Packing<Dim> packing_of(const Field& document) {
     return packing;
 }
 
-template <int Dim>
-void require_balance(const Field& document, const char* name, const std::vector<double>& values,
-                     const Cell<Dim>& cell) {
+void require_balance(const Field& document, const char* name, const std::vector<double>& values, const Cell& cell) {
     if (const auto rest = unbalanced<mpq_class>(values, cell)) {
         throw Error(ErrorKind::bad_input,
                     fmt::format("{} along {} sum to {:.3g}: expected exactly 0 along a periodic axis (give one disk "
@@ -175,11 +180,11 @@ void require_balance(const Field& document, const char* name, const std::vector<
 }
 
 /// Shear stresses, and the tilts that shear counts from.
-template <int Dim> void read_tilts(const Field& field, const Packing<Dim>& packing, Load<Dim>& load) {
+void read_tilts(const Field& field, const Packing& packing, Load& load) {
     if (field.has("shear")) {
         const Field shear = field.at("shear");
-        shear.require_size(Cell<Dim>::tilts, "one shear stress per tilt");
-        for (std::size_t t = 0; t < Cell<Dim>::tilts; ++t) {
+        shear.require_size(packing.tilts(), "one shear stress per tilt");
+        for (std::size_t t = 0; t < packing.tilts(); ++t) {
             load.shear[t] = shear.at(t).number();
             if (load.shear[t] != 0 && !packing.cell.tilt_moves[t]) {
                 shear.at(t).fail("0, as that tilt does not move");
@@ -188,7 +193,7 @@ template <int Dim> void read_tilts(const Field& field, const Packing<Dim>& packi
     }
     if (field.has("reference_tilt")) {
         const Field tilt = field.at("reference_tilt");
-        tilt.require_size(packing.cell.any() ? Cell<Dim>::tilts : 0, "one number per tilt of a periodic cell");
+        tilt.require_size(packing.cell.any() ? packing.tilts() : 0, "one number per tilt of a periodic cell");
         for (std::size_t t = 0; t < tilt.size(); ++t) {
             load.reference_tilt[t] = tilt.at(t).number();
         }
@@ -197,9 +202,10 @@ template <int Dim> void read_tilts(const Field& field, const Packing<Dim>& packi
     }
 }
 
-template <int Dim> Load<Dim> load_of(const Field& document, const Packing<Dim>& packing) {
-    Load<Dim> load;
-    load.stress.fill(1);
+Load load_of(const Field& document, const Packing& packing) {
+    Load load;
+    std::fill_n(load.stress.begin(), packing.dimension, 1);
+    load.dimension = packing.dimension;
     load.refer_to(packing);
     if (document.has("load")) {
         const Field field = document.at("load");
@@ -216,8 +222,8 @@ template <int Dim> Load<Dim> load_of(const Field& document, const Packing<Dim>& 
             if (!field.has(name)) {
                 continue;
             }
-            field.at(name).require_size(Dim, "one number per axis");
-            for (std::size_t a = 0; a < Dim; ++a) {
+            field.at(name).require_size(packing.dimension, "one number per axis");
+            for (std::size_t a = 0; a < packing.axes(); ++a) {
                 const Field number = field.at(name).at(a);
                 const bool is_stress = name == std::string("stress");
                 (is_stress ? load.stress : load.reference_length)[a] = number.number();
@@ -229,27 +235,28 @@ template <int Dim> Load<Dim> load_of(const Field& document, const Packing<Dim>& 
         if (field.has("loaded_axis")) {
             const long axis = field.at("loaded_axis").integer();
             const bool tilts = packing.cell.any() && packing.cell.tilt_moves[0];
-            if (axis < 0 || axis >= Dim + (tilts ? 1 : 0)) {
+            if (axis < 0 || axis >= packing.dimension + (tilts ? 1 : 0)) {
                 field.at("loaded_axis")
-                    .fail(fmt::format("an axis from 0 to {}{}", Dim - 1, tilts ? ", or the tilt, 2" : ""));
+                    .fail(
+                        fmt::format("an axis from 0 to {}{}", packing.dimension - 1, tilts ? ", or the tilt, 2" : ""));
             }
             load.loaded_axis = static_cast<int>(axis);
         }
     }
-    load.disk_force = vectors<Dim>(document, "disk_force", packing.radius.size());
-    load.infinitesimal = vectors<Dim>(document, "infinitesimal", packing.radius.size());
-    require_balance<Dim>(document, "disk_force", load.disk_force, packing.cell);
+    load.disk_force = vectors(document, "disk_force", packing.layout());
+    load.infinitesimal = vectors(document, "infinitesimal", packing.layout());
+    require_balance(document, "disk_force", load.disk_force, packing.cell);
     if (packing.cell.keeps_shape &&
         std::any_of(load.disk_force.begin(), load.disk_force.end(), [](double f) { return f != 0; })) {
         document.at("disk_force").fail("no force on a disk, as the cell keeps its shape");
     }
-    require_balance<Dim>(document, "infinitesimal", load.infinitesimal, packing.cell);
+    require_balance(document, "infinitesimal", load.infinitesimal, packing.cell);
     return load;
 }
 
 } // namespace
 
-template <int Dim> StateFile<Dim> json::state_from_json(const Field& document, const std::string& source) {
+StateFile json::state_from_json(const Field& document, const std::string& source) {
     if (!document.value().is_object()) {
         document.fail("an object with \"format\": \"isostat-state\"");
     }
@@ -261,12 +268,9 @@ template <int Dim> StateFile<Dim> json::state_from_json(const Field& document, c
     }
     document.only({"format", "version", "dimension", "equilibrium", "provenance", "load", "walls", "length", "cell",
                    "disks", "fixed", "disk_force", "infinitesimal", "perturbation", "contacts", "forces"});
-    if (document.has("dimension") && document.at("dimension").integer() != Dim) {
-        document.at("dimension").fail(fmt::format("{}", Dim));
-    }
-    StateFile<Dim> file;
-    State<Dim>& state = file.state;
-    state.packing = packing_of<Dim>(document);
+    StateFile file;
+    State& state = file.state;
+    state.packing = packing_of(document);
     validate(state.packing, source);
     state.load = load_of(document, state.packing);
     require_pressed_sides(state.packing, state.load,
@@ -283,11 +287,11 @@ template <int Dim> StateFile<Dim> json::state_from_json(const Field& document, c
     }
     const Field contacts = document.at("contacts");
     for (std::size_t l = 0; l < contacts.size(); ++l) {
-        state.contacts.push_back(json::contact_from_json<Dim>(contacts.at(l), state.packing));
+        state.contacts.push_back(json::contact_from_json(contacts.at(l), state.packing));
     }
-    json::refuse_duplicates<Dim>(state.contacts, source, "contacts");
+    json::refuse_duplicates(state.contacts, source, "contacts");
     if (document.has("perturbation")) {
-        state.perturbation = json::perturbation_from_json<Dim>(document.at("perturbation"), state.packing);
+        state.perturbation = json::perturbation_from_json(document.at("perturbation"), state.packing);
     }
     if (document.has("forces")) {
         const Field forces = document.at("forces");
@@ -301,31 +305,31 @@ template <int Dim> StateFile<Dim> json::state_from_json(const Field& document, c
 
 namespace {
 
-template <int Dim> StateFile<Dim> of_box(StateFile<Dim> file, const std::string& source) {
+StateFile of_box(StateFile file, const std::string& source) {
     require_box(file.state.packing, source, "run, inspect, plateau, certify and verify take it, this command");
     return file;
 }
 
 } // namespace
 
-template <int Dim> StateFile<Dim> parse_any_state(const std::string& text, const std::string& source) {
+StateFile parse_any_state(const std::string& text, const std::string& source) {
     const json::Json parsed = Field::parse(text, source);
-    return json::state_from_json<Dim>(Field(parsed, source), source);
+    return json::state_from_json(Field(parsed, source), source);
 }
 
-template <int Dim> StateFile<Dim> parse_state(const std::string& text, const std::string& source) {
-    return of_box(parse_any_state<Dim>(text, source), source);
+StateFile parse_state(const std::string& text, const std::string& source) {
+    return of_box(parse_any_state(text, source), source);
 }
 
-template <int Dim> StateFile<Dim> read_state(const std::filesystem::path& path) {
-    return of_box(read_any_state<Dim>(path), path.string());
+StateFile read_state(const std::filesystem::path& path) {
+    return of_box(read_any_state(path), path.string());
 }
 
-template <int Dim> StateFile<Dim> read_any_state(const std::filesystem::path& path) {
+StateFile read_any_state(const std::filesystem::path& path) {
     const std::string text = read_text(path);
     const std::string_view content = without_byte_order_mark(text);
     if (content[content.find_first_not_of(" \t\r\n")] == '{') {
-        return parse_any_state<Dim>(text, path.string());
+        return parse_any_state(text, path.string());
     }
     try {
         return {parse_vertex_text(text, path.string()), {}};
@@ -344,11 +348,5 @@ template <int Dim> StateFile<Dim> read_any_state(const std::filesystem::path& pa
                                               error.what(), format));
     }
 }
-
-template StateFile<2> json::state_from_json<2>(const Field&, const std::string&);
-template StateFile<2> parse_any_state<2>(const std::string&, const std::string&);
-template StateFile<2> read_any_state<2>(const std::filesystem::path&);
-template StateFile<2> parse_state<2>(const std::string&, const std::string&);
-template StateFile<2> read_state<2>(const std::filesystem::path&);
 
 } // namespace isostat

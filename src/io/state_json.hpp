@@ -10,19 +10,18 @@
 namespace isostat::json {
 
 /// The state that `parse_state` reads, from an object of a document.
-template <int Dim> StateFile<Dim> state_from_json(const Field& document, const std::string& source);
+StateFile state_from_json(const Field& document, const std::string& source);
 
-template <int Dim> Json contact_to_json(const Contact& contact);
+Json contact_to_json(const Contact& contact, int dimension);
 /// Throws when an index is out of range, a disk touches itself, a wall is unknown or absent, or `contact_to_json`
 /// spells it otherwise (disks in increasing order, no image [0, 0]).
-template <int Dim> Contact contact_from_json(const Field& field, const Packing<Dim>& packing);
+Contact contact_from_json(const Field& field, const Packing& packing);
 /// Throws naming the first contact that is listed twice, and its position. `name` is that of the list.
-template <int Dim>
 void refuse_duplicates(const std::vector<Contact>& contacts, const std::string& source, const std::string& name);
 
 /// What a run under `ties = "choose"` adds: {"seed", "rho": [...], "load_zero": contact, "stress_rate": [value, bound],
 /// "open": [[contact, value, bound], ...], "zero": the same}; the last four only when they say something.
-template <int Dim> Json perturbation_to_json(const RadiusPerturbation& perturbation);
-template <int Dim> RadiusPerturbation perturbation_from_json(const Field& field, const Packing<Dim>& packing);
+Json perturbation_to_json(const RadiusPerturbation& perturbation, int dimension);
+RadiusPerturbation perturbation_from_json(const Field& field, const Packing& packing);
 
 } // namespace isostat::json

@@ -33,31 +33,31 @@ template <class Range> Json numbers(const Range& values, const char* field) {
     return list;
 }
 
-/// Dim numbers per disk, one row each.
-template <int Dim> std::vector<Json> vectors(const std::vector<double>& values, const char* field) {
+/// d numbers per disk, one row each.
+std::vector<Json> vectors(const std::vector<double>& values, std::size_t axes, const char* field) {
     std::vector<Json> rows;
-    for (std::size_t k = 0; k + Dim <= values.size(); k += Dim) {
-        rows.push_back(numbers(std::span(values).subspan(k, Dim), field));
+    for (std::size_t k = 0; k + axes <= values.size(); k += axes) {
+        rows.push_back(numbers(std::span(values).subspan(k, axes), field));
     }
     return rows;
 }
 
 /// The member "cell", or nothing in a box.
-template <int Dim> std::string cell_text(const Packing<Dim>& packing) {
-    const Cell<Dim>& cell = packing.cell;
+std::string cell_text(const Packing& packing) {
+    const Cell& cell = packing.cell;
     if (!cell.any()) {
         return {};
     }
     Json object;
     object["moves"] = Json::array();
-    for (std::size_t a = 0; a < Dim; ++a) {
+    for (std::size_t a = 0; a < packing.axes(); ++a) {
         object["axes"].push_back(cell.periodic[a] ? "periodic" : "walls");
         if (cell.period_moves[a]) { // of a cell that keeps its shape: the last one
             object["moves"].push_back(cell.keeps_shape ? "scale" : axis_names[a]);
         }
     }
-    for (std::size_t t = 0; t < Cell<Dim>::tilts; ++t) {
-        object["tilt"].push_back(finite(packing.q[packing.length_at(Dim + t)], "cell.tilt"));
+    for (std::size_t t = 0; t < packing.tilts(); ++t) {
+        object["tilt"].push_back(finite(packing.q[packing.length_at(packing.axes() + t)], "cell.tilt"));
         if (cell.tilt_moves[t]) {
             object["moves"].push_back(tilt_names[t]);
         }
@@ -67,16 +67,15 @@ template <int Dim> std::string cell_text(const Packing<Dim>& packing) {
 }
 
 /// The members "length" and "disks".
-template <int Dim> void append_disks(std::string& text, const Packing<Dim>& packing) {
-    const std::size_t first_length = Dim * packing.radius.size();
-    text +=
-        fmt::format("  \"length\": {},\n", numbers(std::span(packing.q).subspan(first_length, Dim), "length").dump());
+void append_disks(std::string& text, const Packing& packing) {
+    text += fmt::format("  \"length\": {},\n",
+                        numbers(std::span(packing.q).subspan(packing.length_at(0), packing.axes()), "length").dump());
 
     std::vector<Json> rows;
     for (std::size_t i = 0; i < packing.radius.size(); ++i) {
         Json row = Json::array();
-        for (std::size_t a = 0; a < Dim; ++a) {
-            row.push_back(finite(packing.q[Dim * i + a], "disks (position)"));
+        for (std::size_t a = 0; a < packing.axes(); ++a) {
+            row.push_back(finite(packing.q[packing.axes() * i + a], "disks (position)"));
         }
         row.push_back(finite(packing.radius[i], "disks (radius)"));
         rows.push_back(std::move(row));
@@ -85,24 +84,27 @@ template <int Dim> void append_disks(std::string& text, const Packing<Dim>& pack
 }
 
 /// The member "load", without the forces on disks.
-template <int Dim> std::string load_text(const State<Dim>& state) {
-    const Load<Dim>& load = state.load;
+std::string load_text(const State& state) {
+    const Load& load = state.load;
+    const std::size_t axes = state.packing.axes();
+    const std::size_t tilts = state.packing.tilts();
     Json object;
     object["kind"] = word_of(load.kind, load_kind_words);
-    object["stress"] = numbers(load.stress, "load.stress");
+    object["stress"] = numbers(std::span(load.stress).first(axes), "load.stress");
     object["loaded_axis"] = load.loaded_axis;
-    object["reference_length"] = numbers(load.reference_length, "load.reference_length");
+    object["reference_length"] = numbers(std::span(load.reference_length).first(axes), "load.reference_length");
     if (state.packing.cell.any()) {
-        object["shear"] = numbers(load.shear, "load.shear");
-        object["reference_tilt"] = numbers(load.reference_tilt, "load.reference_tilt");
+        object["shear"] = numbers(std::span(load.shear).first(tilts), "load.shear");
+        object["reference_tilt"] = numbers(std::span(load.reference_tilt).first(tilts), "load.reference_tilt");
     }
     return fmt::format("  \"load\": {},\n", object.dump());
 }
 
 /// The member "walls".
-template <int Dim> std::string walls_text(const Walls<Dim>& walls) {
+std::string walls_text(const Packing& packing) {
+    const Walls& walls = packing.walls;
     Json object;
-    for (std::size_t a = 0; a < Dim; ++a) {
+    for (std::size_t a = 0; a < packing.axes(); ++a) {
         object["lower"].push_back(word_of(walls.lower[a], wall_kind_words));
         object["upper"].push_back(word_of(walls.upper[a], wall_kind_words));
     }
@@ -119,14 +121,14 @@ void append_member(std::string& text, const char* name, const std::vector<Json>&
 
 } // namespace
 
-template <int Dim> std::string state_text(const State<Dim>& state, std::span<const double> forces) {
-    const Packing<Dim>& packing = state.packing;
+std::string state_text(const State& state, std::span<const double> forces) {
+    const Packing& packing = state.packing;
     std::string text = "{\n  \"format\": \"isostat-state\",\n  \"version\": 2,\n";
-    text += fmt::format("  \"dimension\": {},\n  \"equilibrium\": {},\n", Dim, state.equilibrium);
+    text += fmt::format("  \"dimension\": {},\n  \"equilibrium\": {},\n", packing.dimension, state.equilibrium);
     text +=
         fmt::format("  \"provenance\": {},\n", state.provenance.empty() ? "{}" : Json::parse(state.provenance).dump());
     text += load_text(state);
-    text += walls_text(packing.walls);
+    text += walls_text(packing);
     text += cell_text(packing);
     append_disks(text, packing);
 
@@ -137,14 +139,15 @@ template <int Dim> std::string state_text(const State<Dim>& state, std::span<con
         }
     }
     append_member(text, "fixed", rows);
-    append_member(text, "disk_force", vectors<Dim>(state.load.disk_force, "disk_force"));
-    append_member(text, "infinitesimal", vectors<Dim>(state.load.infinitesimal, "infinitesimal"));
+    append_member(text, "disk_force", vectors(state.load.disk_force, packing.axes(), "disk_force"));
+    append_member(text, "infinitesimal", vectors(state.load.infinitesimal, packing.axes(), "infinitesimal"));
     if (state.perturbation) {
-        text += fmt::format(",\n  \"perturbation\": {}", json::perturbation_to_json<Dim>(*state.perturbation).dump());
+        text += fmt::format(",\n  \"perturbation\": {}",
+                            json::perturbation_to_json(*state.perturbation, packing.dimension).dump());
     }
     rows.clear();
     for (const Contact& contact : state.contacts) {
-        rows.push_back(json::contact_to_json<Dim>(contact));
+        rows.push_back(json::contact_to_json(contact, packing.dimension));
     }
     text += ",\n";
     json::append_rows(text, "contacts", rows);
@@ -156,22 +159,16 @@ template <int Dim> std::string state_text(const State<Dim>& state, std::span<con
     return text + "\n}\n";
 }
 
-template <int Dim>
-void write_state(const std::filesystem::path& path, const State<Dim>& state, std::span<const double> forces) {
+void write_state(const std::filesystem::path& path, const State& state, std::span<const double> forces) {
     count_work(Work::states_written);
     write_output(path, state_text(state, forces), "\"isostat-state\"");
 }
 
-template <int Dim>
-void write_packing(const std::filesystem::path& path, const Packing<Dim>& packing, const std::string& reason) {
+void write_packing(const std::filesystem::path& path, const Packing& packing, const std::string& reason) {
     std::string text = "{\n  \"format\": \"isostat-packing\",\n  \"version\": 2,\n";
     text += fmt::format("  \"incomplete\": {},\n", json::dumped(reason));
     append_disks(text, packing);
     write_output(path, text + "\n}\n", "\"isostat-packing\"");
 }
-
-template void write_packing<2>(const std::filesystem::path&, const Packing<2>&, const std::string&);
-template std::string state_text<2>(const State<2>&, std::span<const double>);
-template void write_state<2>(const std::filesystem::path&, const State<2>&, std::span<const double>);
 
 } // namespace isostat

@@ -60,9 +60,9 @@ Head head_of(TextLines& rows) {
 
 } // namespace
 
-State<2> parse_vertex_text(const std::string& text, const std::string& source) {
+State parse_vertex_text(const std::string& text, const std::string& source) {
     TextLines rows(text, source);
-    State<2> state;
+    State state;
     const auto [disks, radius_first] = head_of(rows);
     const std::size_t size = radius_first ? 0 : 2, first = radius_first ? 1 : 0;
     const char* const order = radius_first ? "radius x y gx gy" : "x y r gx gy";
@@ -87,7 +87,7 @@ State<2> parse_vertex_text(const std::string& text, const std::string& source) {
             contact_of(rows.next_row(fmt::format("contact {} of {}: type i j", l, contacts), 3), disks));
     }
     rows.finish(fmt::format("the end of the file after {} contacts", contacts));
-    json::refuse_duplicates<2>(state.contacts, source, "contacts");
+    json::refuse_duplicates(state.contacts, source, "contacts");
     std::sort(state.contacts.begin(), state.contacts.end());
     state.load.refer_to(state.packing);
     state.provenance = json::dumped({{"converted_from", source}});

@@ -22,6 +22,6 @@ namespace isostat {
 /// The load is nominal with sigma_1 = sigma_2 = 1 and reference lengths Lx, Ly; contacts come out sorted.
 /// `source` (a file name) starts every message. Throws `Error(bad_input)` with file, line, value and what was expected.
 /// As `parse_state`, it does not look at the geometry.
-State<2> parse_vertex_text(const std::string& text, const std::string& source);
+State parse_vertex_text(const std::string& text, const std::string& source);
 
 } // namespace isostat

@@ -232,8 +232,7 @@ struct Factorisation::Implementation {
     }
 };
 
-template <int Dim>
-Factorisation::Factorisation(const IsostaticStructure<Dim>& structure)
+Factorisation::Factorisation(const IsostaticStructure& structure)
     : implementation_(new Implementation{structure.shared_matrix(),
                                          ApproximateInverse(structure.matrix(), structure.ordering().symbolic()),
                                          true,
@@ -241,12 +240,10 @@ Factorisation::Factorisation(const IsostaticStructure<Dim>& structure)
                                          {},
                                          {}}) {}
 
-template <int Dim>
-Factorisation::Factorisation(const IsostaticStructure<Dim>& structure, ApproximateInverse inverse)
+Factorisation::Factorisation(const IsostaticStructure& structure, ApproximateInverse inverse)
     : implementation_(new Implementation{structure.shared_matrix(), std::move(inverse), false, 0, {}, {}}) {}
 
-template <int Dim>
-std::optional<Factorisation> Factorisation::of_moving_block(const IsostaticStructure<Dim>& structure, int slot) {
+std::optional<Factorisation> Factorisation::of_moving_block(const IsostaticStructure& structure, int slot) {
     // Unknown velocities that are not structural zeros when only contact `slot` has one: the pattern of G.
     const sparse::Matrix<double>& h = structure.matrix();
     const auto n = static_cast<std::size_t>(h.rows);
@@ -331,9 +328,5 @@ bool Factorisation::is_fresh() const {
 int Factorisation::passes() const {
     return implementation_->passes;
 }
-
-template Factorisation::Factorisation(const IsostaticStructure<2>&);
-template Factorisation::Factorisation(const IsostaticStructure<2>&, ApproximateInverse);
-template std::optional<Factorisation> Factorisation::of_moving_block(const IsostaticStructure<2>&, int);
 
 } // namespace isostat

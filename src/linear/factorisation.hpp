@@ -21,13 +21,12 @@ namespace isostat {
 /// does not converge, this matrix is factorised after all.
 class Factorisation {
   public:
-    template <int Dim> explicit Factorisation(const IsostaticStructure<Dim>& structure);
+    explicit Factorisation(const IsostaticStructure& structure);
     /// With an operator close to the inverse of the structure's matrix.
-    template <int Dim> Factorisation(const IsostaticStructure<Dim>& structure, ApproximateInverse inverse);
+    Factorisation(const IsostaticStructure& structure, ApproximateInverse inverse);
     /// Of the grains that move when contact `slot` opens, when these are few (rattlers): for such motions one pass is a
     /// solve; forces are those of the block. Nothing when more than a quarter of the degrees of freedom move.
-    template <int Dim>
-    static std::optional<Factorisation> of_moving_block(const IsostaticStructure<Dim>& structure, int slot);
+    static std::optional<Factorisation> of_moving_block(const IsostaticStructure& structure, int slot);
     ~Factorisation();
     Factorisation(Factorisation&&) noexcept;
     Factorisation& operator=(Factorisation&&) noexcept;
@@ -57,9 +56,5 @@ class Factorisation {
     struct Implementation;
     std::unique_ptr<Implementation> implementation_;
 };
-
-extern template Factorisation::Factorisation(const IsostaticStructure<2>&);
-extern template Factorisation::Factorisation(const IsostaticStructure<2>&, ApproximateInverse);
-extern template std::optional<Factorisation> Factorisation::of_moving_block(const IsostaticStructure<2>&, int);
 
 } // namespace isostat

@@ -38,19 +38,17 @@ struct ArcOptions {
 
 /// What an arc starts from: a structure made at the packing, with factors that solve well for it. The gap of `opened`
 /// grows (`direction` +1; a held coordinate grows, or falls with -1).
-template <int Dim> struct ArcOrigin {
-    static_assert(has_dimension<Dim>());
-    const Packing<Dim>& packing;
-    const IsostaticStructure<Dim>& structure;
+struct ArcOrigin {
+    const Packing& packing;
+    const IsostaticStructure& structure;
     const Factorisation& factorisation;
     ContactId opened;
     int direction = 1;
 };
 
 /// The load whose power is watched along the arc: -dW/ds = F_ext . dq/ds must stay positive.
-template <int Dim> struct PowerLoad {
-    static_assert(has_dimension<Dim>());
-    const Load<Dim>* load = nullptr;
+struct PowerLoad {
+    const Load* load = nullptr;
     bool infinitesimal = false;  ///< only rattlers move: the power is that of the infinitesimal loads
     bool starts_at_zero = false; ///< first arc at a limit load: the power grows from 0
 };
@@ -59,9 +57,8 @@ template <int Dim> struct PowerLoad {
 enum class ArcEnd : unsigned char { contact, power_turn };
 
 /// End of an arc. \post kept gaps are 0 to rounding at `end`, which is on the dyadic grid.
-template <int Dim> struct Arc {
-    static_assert(has_dimension<Dim>());
-    Packing<Dim> end;
+struct Arc {
+    Packing end;
     ArcEnd kind = ArcEnd::contact;
     Contact closed;              ///< the new contact, or the fastest coordinate at the power turn (ContactKind::held)
     double power = 0;            ///< F_ext . t at the end, t scaled to 1 in the fastest coordinate; as good as t
@@ -86,43 +83,37 @@ template <int Dim> struct Arc {
 /// \pre `candidates` is complete at the origin; it is rebuilt when the motion leaves its reach. Failures: `unbounded`,
 /// `not_converged`, `not_isostatic` (the mechanism is not unique on the way), `undecided` (a dip that touches). Cost:
 /// about 10 to 30 triangular solves for a short arc; no factorisation.
-template <int Dim>
-Result<Arc<Dim>> follow_arc(const ArcOrigin<Dim>& origin, const PowerLoad<Dim>& power, CandidateList<Dim>& candidates,
-                            const ArcOptions& options);
+Result<Arc> follow_arc(const ArcOrigin& origin, const PowerLoad& power, CandidateList& candidates,
+                       const ArcOptions& options);
 
 /// Candidates anew, when less than a quarter of their reach is left at a configuration; whether they were. What every
 /// step of an arc begins with.
-template <int Dim> bool renew_candidates(CandidateList<Dim>& candidates, const Packing<Dim>& at);
+bool renew_candidates(CandidateList& candidates, const Packing& at);
 
 /// An arc of which tangent, curvature and the candidates at the start are worked out: the part that can be done beside
 /// other work on the same vertex. `follow` is then what `follow_arc` is. What the origin and the constructor refer to
 /// must outlive it. The candidates are made anew only when `renew_candidates` would. `open`: those that are not
 /// contacts of the structure, if they are at hand (`Arc::open` of the arc before). Cost: about half the solves of a
 /// short arc.
-template <int Dim> class ArcDeparture {
+class ArcDeparture {
   public:
-    ArcDeparture(const ArcOrigin<Dim>& origin, const PowerLoad<Dim>& power, CandidateList<Dim>& candidates,
-                 const ArcOptions& options, std::vector<Contact> open = {});
+    ArcDeparture(const ArcOrigin& origin, const PowerLoad& power, CandidateList& candidates, const ArcOptions& options,
+                 std::vector<Contact> open = {});
     ArcDeparture(ArcDeparture&&) noexcept;
     ~ArcDeparture();
     /// The end as the start foretells it.
     struct Expected {
         Contact closes;
-        Packing<Dim> end; ///< not on the curve
+        Packing end; ///< not on the curve
     };
     /// A guess, before `follow`. Nothing when no contact closes within the first step. Cost: a copy of the coordinates.
     [[nodiscard]] std::optional<Expected> expected() const;
     /// Once.
-    Result<Arc<Dim>> follow();
+    Result<Arc> follow();
 
   private:
     struct Implementation;
     std::unique_ptr<Implementation> implementation_;
 };
-
-extern template bool renew_candidates<2>(CandidateList<2>&, const Packing<2>&);
-extern template class ArcDeparture<2>;
-extern template Result<Arc<2>> follow_arc<2>(const ArcOrigin<2>&, const PowerLoad<2>&, CandidateList<2>&,
-                                             const ArcOptions&);
 
 } // namespace isostat

@@ -2,16 +2,14 @@
 
 namespace isostat {
 
-template <int Dim>
-std::unique_ptr<ArcCentre<Dim>> ArcCentre<Dim>::make(Packing<Dim> packing, std::vector<Contact> contacts,
-                                                     InverseBoundCache& cache) {
-    auto structure = IsostaticStructure<Dim>::prove(packing, std::move(contacts));
+std::unique_ptr<ArcCentre> ArcCentre::make(Packing packing, std::vector<Contact> contacts, InverseBoundCache& cache) {
+    auto structure = IsostaticStructure::prove(packing, std::move(contacts));
     if (!structure.ok()) {
         return nullptr;
     }
     auto centre = std::make_unique<ArcCentre>();
     centre->packing_ = std::move(packing);
-    centre->own_ = std::make_unique<FactorisedStructure<Dim>>(std::move(structure.value()));
+    centre->own_ = std::make_unique<FactorisedStructure>(std::move(structure.value()));
     const InverseBound bound = bound_inverse(centre->own_->structure, centre->own_->factorisation, cache);
     if (bound.verdict != Verdict::proved) {
         return nullptr;
@@ -20,7 +18,7 @@ std::unique_ptr<ArcCentre<Dim>> ArcCentre<Dim>::make(Packing<Dim> packing, std::
     return centre;
 }
 
-template <int Dim> std::unique_ptr<ArcCentre<Dim>> ArcCentre<Dim>::of(const ArcVertex<Dim>& vertex) {
+std::unique_ptr<ArcCentre> ArcCentre::of(const ArcVertex& vertex) {
     auto centre = std::make_unique<ArcCentre>();
     centre->packing_ = vertex.packing;
     centre->structure_ = &vertex.structure;
@@ -28,7 +26,5 @@ template <int Dim> std::unique_ptr<ArcCentre<Dim>> ArcCentre<Dim>::of(const ArcV
     centre->sigma_min_ = vertex.inverse.sigma_min;
     return centre;
 }
-
-template class ArcCentre<2>;
 
 } // namespace isostat

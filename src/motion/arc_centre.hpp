@@ -10,27 +10,24 @@
 namespace isostat {
 
 /// A configuration whose contact matrix (moving grains only) was proved regular, factorised and bounded.
-template <int Dim> class ArcCentre {
+class ArcCentre {
   public:
     /// Nothing when a step fails.
-    static std::unique_ptr<ArcCentre> make(Packing<Dim> packing, std::vector<Contact> contacts,
-                                           InverseBoundCache& cache);
+    static std::unique_ptr<ArcCentre> make(Packing packing, std::vector<Contact> contacts, InverseBoundCache& cache);
     /// The vertex itself, nothing copied but the coordinates.
-    static std::unique_ptr<ArcCentre> of(const ArcVertex<Dim>& vertex);
+    static std::unique_ptr<ArcCentre> of(const ArcVertex& vertex);
 
-    [[nodiscard]] const Packing<Dim>& packing() const { return packing_; }
-    [[nodiscard]] const IsostaticStructure<Dim>& structure() const { return own_ ? own_->structure : *structure_; }
+    [[nodiscard]] const Packing& packing() const { return packing_; }
+    [[nodiscard]] const IsostaticStructure& structure() const { return own_ ? own_->structure : *structure_; }
     [[nodiscard]] const Factorisation& factorisation() const { return own_ ? own_->factorisation : *factorisation_; }
     [[nodiscard]] double sigma_min() const { return sigma_min_; }
 
   private:
-    Packing<Dim> packing_;
-    std::unique_ptr<FactorisedStructure<Dim>> own_;
-    const IsostaticStructure<Dim>* structure_ = nullptr;
+    Packing packing_;
+    std::unique_ptr<FactorisedStructure> own_;
+    const IsostaticStructure* structure_ = nullptr;
     const Factorisation* factorisation_ = nullptr;
     double sigma_min_ = 0;
 };
-
-extern template class ArcCentre<2>;
 
 } // namespace isostat

@@ -26,10 +26,10 @@ double uncertainty(const VertexEnclosure& vertex) {
     return (vertex.radius + std::sqrt(square)) * up;
 }
 
-template <int Dim> class Certifier {
+class Certifier {
   public:
-    Certifier(const ArcVertex<Dim>& start, ContactId opened, int direction, const ArcVertex<Dim>& end,
-              const PowerLoad<Dim>& power, const CandidateList<Dim>& candidates, const ArcCertificateOptions& options)
+    Certifier(const ArcVertex& start, ContactId opened, int direction, const ArcVertex& end, const PowerLoad& power,
+              const CandidateList& candidates, const ArcCertificateOptions& options)
         : start_(start), end_(end), slot_(opened.index()), direction_(direction), candidates_(candidates),
           options_(options), load_(power) {}
 
@@ -53,10 +53,10 @@ template <int Dim> class Certifier {
     }
 
   private:
-    using Piece = CurvePiece<Dim>;
+    using Piece = CurvePiece;
     /// The piece that the curve has come to, its centre, and where on it the next stretch begins, up to `slack`.
     struct Front {
-        std::unique_ptr<ArcCentre<Dim>> centre;
+        std::unique_ptr<ArcCentre> centre;
         std::unique_ptr<Piece> piece;
         double from = 0;
         double slack = 0;
@@ -76,27 +76,27 @@ template <int Dim> class Certifier {
     std::optional<Front> ahead_of(const std::vector<double>& frontier, double open, double to);
     bool follow();
     bool check_input();
-    bool check_vertex(const ArcVertex<Dim>& vertex, const Contact& zero, const char* name);
-    std::unique_ptr<Piece> proved_piece(const ArcCentre<Dim>& centre, double forward);
+    bool check_vertex(const ArcVertex& vertex, const Contact& zero, const char* name);
+    std::unique_ptr<Piece> proved_piece(const ArcCentre& centre, double forward);
     bool finish(const Piece& piece, double from, double to);
     bool arrive(const Piece& last, double from, double joint_slack);
-    [[nodiscard]] std::vector<double> moving_coordinates(const Packing<Dim>& at) const;
+    [[nodiscard]] std::vector<double> moving_coordinates(const Packing& at) const;
 
-    const ArcVertex<Dim>& start_;
-    const ArcVertex<Dim>& end_;
+    const ArcVertex& start_;
+    const ArcVertex& end_;
     std::size_t slot_;
     int direction_;
-    CandidateList<Dim> candidates_;
+    CandidateList candidates_;
     std::vector<Contact> active_;
     ArcCertificateOptions options_;
-    std::unique_ptr<MovingPart<Dim>> part_;
+    std::unique_ptr<MovingPart> part_;
     InverseBoundCache cache_; ///< of one attempt
     Front front_;
-    std::unique_ptr<ArcCentre<Dim>> end_centre_;
+    std::unique_ptr<ArcCentre> end_centre_;
     std::unique_ptr<Piece> last_; ///< at `end_centre_`
-    GapWatch<Dim> watch_;
-    const PowerLoad<Dim>& load_;
-    PowerWatch<Dim>* power_ = nullptr;
+    GapWatch watch_;
+    const PowerLoad& load_;
+    PowerWatch* power_ = nullptr;
     bool fresh_ends_ = false;
     bool hopeless_ = false; ///< fresh ends would not help
     double end_rate_ = -1;  ///< of the free row at the end
@@ -105,7 +105,7 @@ template <int Dim> class Certifier {
     double end_uncertainty_ = 0;
 };
 
-template <int Dim> bool Certifier<Dim>::check_input() {
+bool Certifier::check_input() {
     const auto& a = start_.structure.contacts();
     const auto& b = end_.structure.contacts();
     if (start_.enclosure.verdict != Verdict::proved || end_.enclosure.verdict != Verdict::proved ||
@@ -119,7 +119,7 @@ template <int Dim> bool Certifier<Dim>::check_input() {
         if (l != slot_ && a[l].kind == ContactKind::held) {
             const auto k = static_cast<std::size_t>(a[l].i);
             if (start_.packing.q[k] != end_.packing.q[k]) {
-                return refuse(fmt::format("{} is not at the same place at both ends", to_string<Dim>(a[l])));
+                return refuse(fmt::format("{} is not at the same place at both ends", to_string(a[l])));
             }
         }
     }
@@ -130,19 +130,17 @@ template <int Dim> bool Certifier<Dim>::check_input() {
 }
 
 /// Every candidate but the contacts has a positive gap at the true vertex; `zero` may be 0.
-template <int Dim>
-bool Certifier<Dim>::check_vertex(const ArcVertex<Dim>& vertex, const Contact& zero, const char* name) {
+bool Certifier::check_vertex(const ArcVertex& vertex, const Contact& zero, const char* name) {
     for (const Contact& contact : active_) {
         if (contact != zero && !gap_at_vertex(vertex.packing, vertex.enclosure, contact).positive()) {
-            return refuse(fmt::format("the gap of {} is not proved positive at the {}", to_string<Dim>(contact), name));
+            return refuse(fmt::format("the gap of {} is not proved positive at the {}", to_string(contact), name));
         }
     }
     return true;
 }
 
 /// The piece at a centre with the longest tube that is proved; null: none.
-template <int Dim>
-std::unique_ptr<CurvePiece<Dim>> Certifier<Dim>::proved_piece(const ArcCentre<Dim>& centre, double forward) {
+std::unique_ptr<CurvePiece> Certifier::proved_piece(const ArcCentre& centre, double forward) {
     auto piece = std::make_unique<Piece>(part_->curve(), centre, forward);
     const double floor = options_.smallest_step * start_.packing.min_radius();
     for (double h = piece->natural_reach(); h > floor; h *= 0.6) {
@@ -154,7 +152,7 @@ std::unique_ptr<CurvePiece<Dim>> Certifier<Dim>::proved_piece(const ArcCentre<Di
 }
 
 /// Gaps and power for s in [from, to] of a proved piece.
-template <int Dim> bool Certifier<Dim>::finish(const Piece& piece, double from, double to) {
+bool Certifier::finish(const Piece& piece, double from, double to) {
     ++certificate_.pieces;
     certificate_.tube = std::max(certificate_.tube, piece.radius());
     certificate_.tube_margin = std::min(certificate_.tube_margin, piece.margin());
@@ -173,7 +171,7 @@ template <int Dim> bool Certifier<Dim>::finish(const Piece& piece, double from, 
             const double s = watch_.where();
             return refuse(fmt::format("the gap of {} is not proved positive in piece {} at s = {:.6g} of [{:.6g}, "
                                       "{:.6g}] (tube {:.3g})",
-                                      to_string<Dim>(contact), certificate_.pieces, s, from, to, piece.radius()));
+                                      to_string(contact), certificate_.pieces, s, from, to, piece.radius()));
         }
     }
     power_->look(piece, from, to);
@@ -181,7 +179,7 @@ template <int Dim> bool Certifier<Dim>::finish(const Piece& piece, double from, 
 }
 
 /// The end vertex lies on `last`: looks at what is left and at the gaps of the end.
-template <int Dim> bool Certifier<Dim>::arrive(const Piece& last, double from, double joint_slack) {
+bool Certifier::arrive(const Piece& last, double from, double joint_slack) {
     const auto place = last.locate(end_.packing.q, end_uncertainty_);
     if (!place) {
         return refuse("the end vertex is not proved to lie on the curve");
@@ -197,14 +195,14 @@ template <int Dim> bool Certifier<Dim>::arrive(const Piece& last, double from, d
         return refuse("the end is not proved to lie ahead of the start");
     }
     if (closed().kind != ContactKind::held && !watch_.falls(closed())) {
-        return refuse(fmt::format("the gap of {} is not proved to fall to 0 at the end", to_string<Dim>(closed())));
+        return refuse(fmt::format("the gap of {} is not proved to fall to 0 at the end", to_string(closed())));
     }
-    certificate_.turning = opened().kind != ContactKind::held && GapWatch<Dim>::rate_sign(last, opened(), place->s) < 0;
+    certificate_.turning = opened().kind != ContactKind::held && GapWatch::rate_sign(last, opened(), place->s) < 0;
     return check_vertex(end_, closed(), "end");
 }
 
-template <int Dim> std::vector<double> Certifier<Dim>::moving_coordinates(const Packing<Dim>& at) const {
-    const DofMap<Dim>& dofs = part_->curve().dofs;
+std::vector<double> Certifier::moving_coordinates(const Packing& at) const {
+    const DofMap& dofs = part_->curve().dofs;
     std::vector<double> q;
     for (int mu = 0; mu < dofs.dof_count(); ++mu) {
         q.push_back(at.q[static_cast<std::size_t>(dofs.coordinate_of(mu))]);
@@ -212,13 +210,13 @@ template <int Dim> std::vector<double> Certifier<Dim>::moving_coordinates(const 
     return q;
 }
 
-template <int Dim> ArcCertificate Certifier<Dim>::attempt(bool fresh_ends) {
+ArcCertificate Certifier::attempt(bool fresh_ends) {
     fresh_ends_ = fresh_ends;
     certificate_ = {};
     certificate_.tube_margin = std::numeric_limits<double>::infinity();
     watch_ = {};
     active_.clear();
-    PowerWatch<Dim> power(load_);
+    PowerWatch power(load_);
     power_ = &power;
     cache_ = {};
     hopeless_ = !begin();
@@ -235,10 +233,10 @@ template <int Dim> ArcCertificate Certifier<Dim>::attempt(bool fresh_ends) {
 }
 
 /// The moving part, its equations, and the gaps at the start. False: fresh ends would not help either.
-template <int Dim> bool Certifier<Dim>::begin() {
+bool Certifier::begin() {
     start_uncertainty_ = uncertainty(start_.enclosure);
-    end_uncertainty_ = uncertainty(end_.enclosure) + MovingPart<Dim>::shift_of_end(start_, end_);
-    part_ = std::make_unique<MovingPart<Dim>>(start_, end_, slot_, start_uncertainty_, end_uncertainty_);
+    end_uncertainty_ = uncertainty(end_.enclosure) + MovingPart::shift_of_end(start_, end_);
+    part_ = std::make_unique<MovingPart>(start_, end_, slot_, start_uncertainty_, end_uncertainty_);
     certificate_.moving = static_cast<int>(part_->curve().contacts.size());
     if (!part_->trouble().empty()) {
         return refuse(part_->trouble());
@@ -260,9 +258,9 @@ template <int Dim> bool Certifier<Dim>::begin() {
 
 /// Centres at the two ends, and the piece at the start. A released coordinate says in which direction the curve is
 /// followed: its row stays.
-template <int Dim> bool Certifier<Dim>::place_ends() {
+bool Certifier::place_ends() {
     double rate = opened().kind == ContactKind::held ? static_cast<double>(direction_) : 1.0;
-    const auto with_fastest = [&](std::unique_ptr<ArcCentre<Dim>>& vertex, double& forward) {
+    const auto with_fastest = [&](std::unique_ptr<ArcCentre>& vertex, double& forward) {
         ++certificate_.factorisations;
         vertex = vertex ? part_->with_fastest(*vertex, forward, cache_) : nullptr;
     };
@@ -292,7 +290,7 @@ template <int Dim> bool Certifier<Dim>::place_ends() {
 }
 
 /// Sees to it that `last_`, the piece at the end, runs the way in which the present piece reaches it; false: no tube.
-template <int Dim> bool Certifier<Dim>::aim_at_end(double to) {
+bool Certifier::aim_at_end(double to) {
     const bool held = closed().kind == ContactKind::held;
     if (last_ && !(held && last_->forward() != front_.piece->direction_along(*last_, to))) {
         return true;
@@ -307,9 +305,7 @@ template <int Dim> bool Certifier<Dim>::aim_at_end(double to) {
 }
 
 /// A fresh centre ahead of the frontier p(to) of the present piece, known up to `open`, whose tube reaches back to it.
-template <int Dim>
-std::optional<typename Certifier<Dim>::Front> Certifier<Dim>::ahead_of(const std::vector<double>& frontier, double open,
-                                                                       double to) {
+std::optional<Certifier::Front> Certifier::ahead_of(const std::vector<double>& frontier, double open, double to) {
     const Piece& piece = *front_.piece;
     const double floor = options_.smallest_step * start_.packing.min_radius();
     std::string why = "the curve was not followed";
@@ -346,7 +342,7 @@ std::optional<typename Certifier<Dim>::Front> Certifier<Dim>::ahead_of(const std
 }
 
 /// From piece to piece, until the end vertex lies on the present one or on one that it meets.
-template <int Dim> bool Certifier<Dim>::follow() {
+bool Certifier::follow() {
     last_.reset();
     while (certificate_.pieces < options_.max_pieces) {
         const Piece& piece = *front_.piece;
@@ -378,15 +374,11 @@ template <int Dim> bool Certifier<Dim>::follow() {
 
 } // namespace
 
-template <int Dim>
-ArcCertificate certify_arc(const ArcVertex<Dim>& start, ContactId opened, int direction, const ArcVertex<Dim>& end,
-                           const PowerLoad<Dim>& power, const CandidateList<Dim>& candidates,
+ArcCertificate certify_arc(const ArcVertex& start, ContactId opened, int direction, const ArcVertex& end,
+                           const PowerLoad& power, const CandidateList& candidates,
                            const ArcCertificateOptions& options) {
     require_floating_point();
-    return Certifier<Dim>(start, opened, direction, end, power, candidates, options).run();
+    return Certifier(start, opened, direction, end, power, candidates, options).run();
 }
-
-template ArcCertificate certify_arc<2>(const ArcVertex<2>&, ContactId, int, const ArcVertex<2>&, const PowerLoad<2>&,
-                                       const CandidateList<2>&, const ArcCertificateOptions&);
 
 } // namespace isostat

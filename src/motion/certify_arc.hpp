@@ -10,9 +10,9 @@
 namespace isostat {
 
 /// One end of an arc with what is known of it; all of the same vertex.
-template <int Dim> struct ArcVertex {
-    const Packing<Dim>& packing;
-    const IsostaticStructure<Dim>& structure;
+struct ArcVertex {
+    const Packing& packing;
+    const IsostaticStructure& structure;
     const Factorisation& factorisation;
     const InverseBound& inverse;
     const VertexEnclosure& enclosure;
@@ -34,13 +34,8 @@ struct ArcCertificateOptions {
 /// proved (A1 to A7). Pieces at the two ends use the bounds that the vertices have already; a longer arc needs fresh
 /// centres: one rank proof, one factorisation, one bound of the inverse each. Arcs of rattlers are certified in their
 /// own few degrees of freedom.
-template <int Dim>
-ArcCertificate certify_arc(const ArcVertex<Dim>& start, ContactId opened, int direction, const ArcVertex<Dim>& end,
-                           const PowerLoad<Dim>& power, const CandidateList<Dim>& candidates,
+ArcCertificate certify_arc(const ArcVertex& start, ContactId opened, int direction, const ArcVertex& end,
+                           const PowerLoad& power, const CandidateList& candidates,
                            const ArcCertificateOptions& options = {});
-
-extern template ArcCertificate certify_arc<2>(const ArcVertex<2>&, ContactId, int, const ArcVertex<2>&,
-                                              const PowerLoad<2>&, const CandidateList<2>&,
-                                              const ArcCertificateOptions&);
 
 } // namespace isostat

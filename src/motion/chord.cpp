@@ -16,10 +16,9 @@ namespace {
 using roundoff::infinity;
 
 /// Rate of a gap along v (on coordinates).
-template <int Dim>
-double precise_rate(const CorrectedConfiguration<Dim, dd_real>& place, const Contact& contact,
+double precise_rate(const CorrectedConfiguration<dd_real>& place, const Contact& contact,
                     const std::vector<double>& v) {
-    std::array<dd_real, static_cast<std::size_t>(Dim)> normal;
+    PerAxis<dd_real> normal;
     normal.fill(1.0); // walls, and coordinates
     if (contact.kind == ContactKind::disk_disk) {
         normal = place.separation(contact);
@@ -29,7 +28,7 @@ double precise_rate(const CorrectedConfiguration<Dim, dd_real>& place, const Con
         }
     }
     dd_real rate = 0.0;
-    Separation<Dim>(contact, place.packing().disk_count())
+    Separation(contact, place.packing().layout())
         .for_each_coordinate([&](std::size_t coordinate, std::size_t component, int multiple) {
             rate += multiple * normal[component] * v[coordinate];
         });
@@ -38,31 +37,30 @@ double precise_rate(const CorrectedConfiguration<Dim, dd_real>& place, const Con
 
 } // namespace
 
-template <int Dim>
-Chord<Dim>::Chord(const IsostaticStructure<Dim>& structure, const Factorisation& factorisation, std::size_t slot)
+Chord::Chord(const IsostaticStructure& structure, const Factorisation& factorisation, std::size_t slot)
     : structure_(&structure), factorisation_(&factorisation), slot_(slot),
       size_(static_cast<std::size_t>(structure.size())), approach_(size_),
       y_(static_cast<std::size_t>(structure.dofs().coordinate_count()), 0.0) {
     make_mechanism();
 }
 
-template <int Dim> void Chord<Dim>::make_mechanism() {
+void Chord::make_mechanism() {
     mechanism_.assign(y_.size(), 0.0);
     to_coordinates(factorisation().approximate().mechanism(static_cast<int>(slot_)), mechanism_);
 }
 
-template <int Dim> void Chord<Dim>::to_coordinates(const Vector& on_dofs, Vector& on_coordinates) const {
-    const DofMap<Dim>& dofs = structure().dofs();
+void Chord::to_coordinates(const Vector& on_dofs, Vector& on_coordinates) const {
+    const DofMap& dofs = structure().dofs();
     for (std::size_t mu = 0; mu < size_; ++mu) {
         on_coordinates[static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(mu)))] = on_dofs[mu];
     }
 }
 
-template <int Dim> bool Chord<Dim>::converge(Packing<Dim>& at, const Contact& row) {
+bool Chord::converge(Packing& at, const Contact& row) {
     if (precise_) {
         return iterate_precisely(at, row);
     }
-    const Packing<Dim> guess = at;
+    const Packing guess = at;
     if (iterate(at, row, true)) {
         return true;
     }
@@ -70,7 +68,7 @@ template <int Dim> bool Chord<Dim>::converge(Packing<Dim>& at, const Contact& ro
     return iterate(at, row, false);
 }
 
-template <int Dim> bool Chord<Dim>::iterate(Packing<Dim>& at, const Contact& row, bool accelerated) {
+bool Chord::iterate(Packing& at, const Contact& row, bool accelerated) {
     const auto& contacts = structure().contacts();
     const double rounding = 2 * grid_step(at);
     double previous = infinity;
@@ -111,9 +109,9 @@ template <int Dim> bool Chord<Dim>::iterate(Packing<Dim>& at, const Contact& row
 
 /// With factors of a place on the curve: of two places that a nearly singular list allows it goes to the one that is
 /// there already, or nowhere.
-template <int Dim> bool Chord<Dim>::iterate_precisely(Packing<Dim>& at, const Contact& row) {
+bool Chord::iterate_precisely(Packing& at, const Contact& row) {
     constexpr double converged = 1e-19; // of a radius: coordinates are rounded to doubles afterwards
-    CorrectedConfiguration<Dim, dd_real> place(Arithmetic<dd_real>(), at);
+    CorrectedConfiguration<dd_real> place(Arithmetic<dd_real>(), at);
     double previous = infinity;
     for (iterations_ = 1; iterations_ <= 60; ++iterations_) {
         for (std::size_t l = 0; l < size_; ++l) {
@@ -141,7 +139,7 @@ template <int Dim> bool Chord<Dim>::iterate_precisely(Packing<Dim>& at, const Co
     return false;
 }
 
-template <int Dim> void Chord<Dim>::rates_at(const Packing<Dim>& at, const Vector& v) {
+void Chord::rates_at(const Packing& at, const Vector& v) {
     const auto& contacts = structure().contacts();
     for (std::size_t l = 0; l < size_; ++l) {
         approach_[l] = gap_rate(at, contacts[l], v);
@@ -149,9 +147,9 @@ template <int Dim> void Chord<Dim>::rates_at(const Packing<Dim>& at, const Vecto
 }
 
 /// The rates are minus the approach velocities G v, whose G is at hand.
-template <int Dim> void Chord<Dim>::rates_from_matrix(const Vector& v) {
+void Chord::rates_from_matrix(const Vector& v) {
     const sparse::Matrix<double>& h = structure().matrix();
-    const DofMap<Dim>& dofs = structure().dofs();
+    const DofMap& dofs = structure().dofs();
     Vector on_dofs(size_);
     for (std::size_t mu = 0; mu < size_; ++mu) {
         on_dofs[mu] = v[static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(mu)))];
@@ -166,10 +164,9 @@ template <int Dim> void Chord<Dim>::rates_from_matrix(const Vector& v) {
 }
 
 /// `rates` makes `approach_` the rates of the kept gaps along a velocity: what must be taken away from it.
-template <int Dim>
 template <class Rates>
-std::optional<std::vector<double>> Chord<Dim>::refined_tangent(const Vector& guess, std::size_t fastest,
-                                                               double accuracy, Rates rates) {
+std::optional<std::vector<double>> Chord::refined_tangent(const Vector& guess, std::size_t fastest, double accuracy,
+                                                          Rates rates) {
     Vector t = guess;
     double previous = infinity;
     tangent_error_ = infinity;
@@ -194,18 +191,17 @@ std::optional<std::vector<double>> Chord<Dim>::refined_tangent(const Vector& gue
     return previous < 1e-4 * largest(t) ? std::optional<Vector>(t) : std::nullopt;
 }
 
-template <int Dim>
-std::optional<std::vector<double>> Chord<Dim>::tangent(const Packing<Dim>& at, const Vector& guess, std::size_t fastest,
-                                                       double accuracy) {
+std::optional<std::vector<double>> Chord::tangent(const Packing& at, const Vector& guess, std::size_t fastest,
+                                                  double accuracy) {
     if (!precise_) {
         return refined_tangent(guess, fastest, accuracy, [&](const Vector& t) { rates_at(at, t); });
     }
     constexpr double sharp = 1e-13; // rounding of the coordinates apart
-    Packing<Dim> there = at;
+    Packing there = at;
     if (!iterate_precisely(there, Contact{ContactKind::held, static_cast<int>(fastest), 0})) {
         return std::nullopt;
     }
-    const CorrectedConfiguration<Dim, dd_real> place(Arithmetic<dd_real>(), there, rest_);
+    const CorrectedConfiguration<dd_real> place(Arithmetic<dd_real>(), there, rest_);
     return refined_tangent(guess, fastest, std::min(accuracy, sharp), [&](const Vector& t) {
         for (std::size_t l = 0; l < size_; ++l) {
             approach_[l] = precise_rate(place, contacts()[l], t);
@@ -213,24 +209,21 @@ std::optional<std::vector<double>> Chord<Dim>::tangent(const Packing<Dim>& at, c
     });
 }
 
-template <int Dim>
-std::optional<std::vector<double>> Chord<Dim>::tangent(const Vector& guess, std::size_t fastest, double accuracy) {
+std::optional<std::vector<double>> Chord::tangent(const Vector& guess, std::size_t fastest, double accuracy) {
     return refined_tangent(guess, fastest, accuracy, [&](const Vector& t) { rates_from_matrix(t); });
 }
 
-template <int Dim> std::optional<Failure> Chord<Dim>::renew(const Packing<Dim>& at, std::size_t held) {
+std::optional<Failure> Chord::renew(const Packing& at, std::size_t held) {
     std::vector<Contact> with_held = contacts();
     with_held[slot_] = Contact{ContactKind::held, static_cast<int>(held), 0};
-    auto proved = IsostaticStructure<Dim>::prove(at, std::move(with_held));
+    auto proved = IsostaticStructure::prove(at, std::move(with_held));
     if (!proved.ok()) {
         return proved.failure();
     }
-    own_ = std::make_unique<FactorisedStructure<Dim>>(std::move(proved.value()));
+    own_ = std::make_unique<FactorisedStructure>(std::move(proved.value()));
     ++factorisations_;
     make_mechanism();
     return std::nullopt;
 }
-
-template class Chord<2>;
 
 } // namespace isostat

@@ -18,16 +18,16 @@ namespace isostat {
 
 /// Newton-like iterations with the factors of one contact matrix, for the equations gap_l = 0 of all its contacts but
 /// one, in the *slot*, whose row is free: the caller says what stands there. Nothing is proved by what it returns.
-template <int Dim> class Chord {
+class Chord {
   public:
     using Vector = std::vector<double>;
 
     /// \pre `structure` and `factorisation` outlive it.
-    Chord(const IsostaticStructure<Dim>& structure, const Factorisation& factorisation, std::size_t slot);
+    Chord(const IsostaticStructure& structure, const Factorisation& factorisation, std::size_t slot);
 
     /// All of them, that in the slot included.
     [[nodiscard]] const std::vector<Contact>& contacts() const { return structure().contacts(); }
-    [[nodiscard]] const DofMap<Dim>& dofs() const { return structure().dofs(); }
+    [[nodiscard]] const DofMap& dofs() const { return structure().dofs(); }
     [[nodiscard]] std::size_t slot() const { return slot_; }
     [[nodiscard]] bool is_fresh() const { return factorisation().is_fresh(); }
     /// Velocity with unit approach in the slot and none in the kept contacts, where the matrix was made.
@@ -50,40 +50,40 @@ template <int Dim> class Chord {
 
     /// Moves `at` to where the kept gaps vanish, down to rounding, and so does the gap of `row`; a coordinate (`held`)
     /// stays as it is. False: it did not converge, and `at` is anywhere.
-    bool converge(Packing<Dim>& at, const Contact& row);
+    bool converge(Packing& at, const Contact& row);
     /// Iterations of the last attempt.
     [[nodiscard]] int iterations() const { return iterations_; }
 
     /// Tangent at a point of the curve near `guess`, scaled like it in coordinate `fastest`, to a relative accuracy.
-    std::optional<Vector> tangent(const Packing<Dim>& at, const Vector& guess, std::size_t fastest, double accuracy);
+    std::optional<Vector> tangent(const Packing& at, const Vector& guess, std::size_t fastest, double accuracy);
     /// Relative size of the last correction of it: what it is good to, where that is above the accuracy asked for.
     [[nodiscard]] double tangent_error() const { return tangent_error_; }
     /// The same where the matrix was made. \pre nothing was renewed.
     std::optional<Vector> tangent(const Vector& guess, std::size_t fastest, double accuracy);
 
     /// Proves and factorises the structure with coordinate `held` in the slot, at another configuration.
-    std::optional<Failure> renew(const Packing<Dim>& at, std::size_t held);
+    std::optional<Failure> renew(const Packing& at, std::size_t held);
 
     /// Matrices factorised by `renew`, and applications of the factors.
     [[nodiscard]] int factorisations() const { return factorisations_; }
     [[nodiscard]] int passes() const { return passes_; }
 
   private:
-    [[nodiscard]] const IsostaticStructure<Dim>& structure() const { return own_ ? own_->structure : *structure_; }
+    [[nodiscard]] const IsostaticStructure& structure() const { return own_ ? own_->structure : *structure_; }
     [[nodiscard]] const Factorisation& factorisation() const { return own_ ? own_->factorisation : *factorisation_; }
     void make_mechanism();
     void to_coordinates(const Vector& on_dofs, Vector& on_coordinates) const;
     template <class Row> void solve(Row row, double target);
-    bool iterate(Packing<Dim>& at, const Contact& row, bool accelerated);
-    bool iterate_precisely(Packing<Dim>& at, const Contact& row);
-    void rates_at(const Packing<Dim>& at, const Vector& v);
+    bool iterate(Packing& at, const Contact& row, bool accelerated);
+    bool iterate_precisely(Packing& at, const Contact& row);
+    void rates_at(const Packing& at, const Vector& v);
     void rates_from_matrix(const Vector& v);
     template <class Rates>
     std::optional<Vector> refined_tangent(const Vector& guess, std::size_t fastest, double accuracy, Rates rates);
 
-    const IsostaticStructure<Dim>* structure_;
+    const IsostaticStructure* structure_;
     const Factorisation* factorisation_;
-    std::unique_ptr<FactorisedStructure<Dim>> own_; ///< in place of the two, once renewed
+    std::unique_ptr<FactorisedStructure> own_; ///< in place of the two, once renewed
     std::size_t slot_;
     std::size_t size_;
     double tangent_error_ = 0;
@@ -100,7 +100,7 @@ template <int Dim> class Chord {
 };
 
 /// y_ = velocity with the approach velocities `approach_` and row(y_) = target.
-template <int Dim> template <class Row> void Chord<Dim>::solve(Row row, double target) {
+template <class Row> void Chord::solve(Row row, double target) {
     ++passes_;
     factorisation().approximate().velocities(approach_);
     to_coordinates(approach_, y_);
@@ -109,7 +109,5 @@ template <int Dim> template <class Row> void Chord<Dim>::solve(Row row, double t
         y_[k] += scale * mechanism_[k];
     }
 }
-
-extern template class Chord<2>;
 
 } // namespace isostat

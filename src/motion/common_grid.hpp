@@ -11,8 +11,8 @@ namespace isostat {
 
 /// Whether separations of up to 3 periods are exact at multiples of `step`: no sum on the way has more than 2^53 of
 /// them. \pre there are periodic axes
-template <int Dim> bool fits_grid(const Packing<Dim>& packing, double step) {
-    static_assert(Dim == 2);
+inline bool fits_grid(const Packing& packing, double step) {
+    static_assert(plane == 2);
     double farthest = 0;
     for (std::size_t k = 0; k < packing.length_at(0); ++k) {
         farthest = std::max(farthest, std::abs(packing.q[k]));
@@ -23,7 +23,7 @@ template <int Dim> bool fits_grid(const Packing<Dim>& packing, double step) {
 
 /// Rounds what moves to the grid of another configuration, so that what does not move stays; false: this one is too
 /// large for it. \pre there are periodic axes
-template <int Dim> bool put_on_grid_of(const Packing<Dim>& other, const DofMap<Dim>& dofs, Packing<Dim>& packing) {
+inline bool put_on_grid_of(const Packing& other, const DofMap& dofs, Packing& packing) {
     const double step = grid_step(other);
     for (int mu = 0; mu < dofs.dof_count(); ++mu) {
         double& x = packing.q[static_cast<std::size_t>(dofs.coordinate_of(mu))];

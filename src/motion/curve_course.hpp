@@ -11,14 +11,14 @@
 namespace isostat {
 
 /// A point of the curve, and the tangent there.
-template <int Dim> struct CurvePoint {
-    Packing<Dim> at;
+struct CurvePoint {
+    Packing at;
     std::vector<double> tangent; ///< on coordinates
 };
 
 /// The curve to second order, with one coordinate for the parameter: q(s) = at + s tangent + s^2 curvature / 2.
-template <int Dim> struct CurveCourse {
-    Packing<Dim> at;
+struct CurveCourse {
+    Packing at;
     std::vector<double> tangent;
     std::vector<double> curvature; ///< 0 in the fastest coordinate
     std::size_t fastest = 0;       ///< the coordinate s: its tangent is +1 or -1, no other is larger
@@ -37,8 +37,8 @@ template <int Dim> struct CurveCourse {
         }
     }
     [[nodiscard]] double direction() const { return tangent[fastest] < 0 ? -1.0 : 1.0; }
-    [[nodiscard]] Packing<Dim> predicted(double s) const {
-        Packing<Dim> there = at;
+    [[nodiscard]] Packing predicted(double s) const {
+        Packing there = at;
         for (std::size_t k = 0; k < there.q.size(); ++k) {
             there.q[k] += s * (tangent[k] + 0.5 * s * curvature[k]);
         }
@@ -46,7 +46,7 @@ template <int Dim> struct CurveCourse {
     }
     /// The tangent at a point of the curve, from the way it went: the third derivative is what the prediction missed.
     /// Below `shortest` that is rounding, and left out.
-    [[nodiscard]] std::vector<double> extrapolated_tangent(const Packing<Dim>& there, double s, double shortest) const {
+    [[nodiscard]] std::vector<double> extrapolated_tangent(const Packing& there, double s, double shortest) const {
         const double third = s > shortest ? 3 / s : 0.0;
         std::vector<double> t(tangent.size());
         for (std::size_t k = 0; k < t.size(); ++k) {

@@ -26,8 +26,7 @@ double norm(const std::vector<double>& x) {
 
 } // namespace
 
-template <int Dim>
-CurvePiece<Dim>::CurvePiece(const KeptCurve<Dim>& kept, const ArcCentre<Dim>& at, double forward)
+CurvePiece::CurvePiece(const KeptCurve& kept, const ArcCentre& at, double forward)
     : Polynomial(kept, at, forward), reach_(Polynomial::natural_reach()) {
     if (!coefficients().empty()) {
         shift_norm_ = norm(this->shift()) * up;
@@ -36,7 +35,7 @@ CurvePiece<Dim>::CurvePiece(const KeptCurve<Dim>& kept, const ArcCentre<Dim>& at
     }
 }
 
-template <int Dim> void CurvePiece<Dim>::bound_coefficients() {
+void CurvePiece::bound_coefficients() {
     const std::size_t n = curve().contacts.size();
     relative_.assign(n * coefficients().size(), 0.0);
     shifted_.assign(n, 0.0);
@@ -53,7 +52,7 @@ template <int Dim> void CurvePiece<Dim>::bound_coefficients() {
 }
 
 /// Around p + a_0 in the place of p: the constant term is that of F(m + a_0), the others gain D_l a_0 . D_l a_k.
-template <int Dim> void CurvePiece<Dim>::shift_residual_of(std::size_t l) {
+void CurvePiece::shift_residual_of(std::size_t l) {
     const std::vector<double>& shift = this->shift();
     if (shift.empty()) {
         return;
@@ -61,26 +60,26 @@ template <int Dim> void CurvePiece<Dim>::shift_residual_of(std::size_t l) {
     const Contact& c = curve().contacts[l];
     const std::size_t order = coefficients().size();
     double* bound = &residual_[l * (2 * order + 1)];
-    const Enclosure misses = shifted_equation<Dim>(*curve().start, centre(), c, shift);
+    const Enclosure misses = shifted_equation(*curve().start, centre(), c, shift);
     bound[0] = (std::abs(misses.value) + misses.radius) * up;
     if (!curve().bends(l)) {
         return;
     }
-    const auto d = separation_over<Dim>(shift, c);
+    const auto d = separation_over(centre().layout(), shift, c);
     shifted_[l] = std::sqrt(dot(d, d)) * up;
     for (std::size_t k = 1; k <= order; ++k) {
         bound[k] += shifted_[l] * relative_[l * order + k - 1] / curve().target[l] * up;
     }
 }
 
-template <int Dim> void CurvePiece<Dim>::bound_coefficients_of(std::size_t l) {
+void CurvePiece::bound_coefficients_of(std::size_t l) {
     const Contact& c = curve().contacts[l];
     const std::size_t order = coefficients().size();
     double* size = &relative_[l * order];
     double* bound = &residual_[l * (2 * order + 1)];
-    std::vector<std::array<double, Dim>> d(order + 1);
+    std::vector<PerAxis<double>> d(order + 1);
     for (std::size_t k = 1; k <= order; ++k) {
-        d[k] = separation_over<Dim>(coefficients()[k - 1], c);
+        d[k] = separation_over(centre().layout(), coefficients()[k - 1], c);
         size[k - 1] = std::sqrt(dot(d[k], d[k])) * up;
     }
     if (c.kind == ContactKind::held) {
@@ -96,7 +95,7 @@ template <int Dim> void CurvePiece<Dim>::bound_coefficients_of(std::size_t l) {
         std::copy(size, size + order, bound + 1);
         return;
     }
-    const std::array<double, Dim> line = separation<Dim>(centre().q, c);
+    const PerAxis<double> line = separation(centre().layout(), centre().q, c);
     for (std::size_t k = 1; k <= 2 * order; ++k) {
         RoundedSum sum;
         for (std::size_t i = k > order ? k - order : 1; i <= std::min(order, k - 1); ++i) {
@@ -113,7 +112,7 @@ template <int Dim> void CurvePiece<Dim>::bound_coefficients_of(std::size_t l) {
 
 /// Shortens the reach until the polynomial misses the equations by no more than the centre itself does; around a
 /// shifted one by a small part of that, which costs a fifth of the reach (the misfit grows as its 15th power).
-template <int Dim> void CurvePiece<Dim>::shorten_reach() {
+void CurvePiece::shorten_reach() {
     const std::size_t order = coefficients().size();
     const std::size_t stride = 2 * order + 1;
     for (int attempt = 0; attempt < 60; ++attempt, reach_ *= 0.85) {
@@ -132,7 +131,7 @@ template <int Dim> void CurvePiece<Dim>::shorten_reach() {
     }
 }
 
-template <int Dim> std::vector<double> CurvePiece<Dim>::stretch(double h) const {
+std::vector<double> CurvePiece::stretch(double h) const {
     const std::size_t order = coefficients().size();
     std::vector<double> e(curve().contacts.size(), 0.0);
     for (std::size_t l = 0; l < e.size(); ++l) {
@@ -149,7 +148,7 @@ template <int Dim> std::vector<double> CurvePiece<Dim>::stretch(double h) const 
     return e;
 }
 
-template <int Dim> typename CurvePiece<Dim>::Misfit CurvePiece<Dim>::misfit(double h) const {
+CurvePiece::Misfit CurvePiece::misfit(double h) const {
     const std::size_t order = coefficients().size();
     Misfit sum;
     for (std::size_t l = 0; l < curve().contacts.size(); ++l) {
@@ -181,7 +180,7 @@ template <int Dim> typename CurvePiece<Dim>::Misfit CurvePiece<Dim>::misfit(doub
     return sum;
 }
 
-template <int Dim> typename CurvePiece<Dim>::Motion CurvePiece<Dim>::motion(double h) const {
+CurvePiece::Motion CurvePiece::motion(double h) const {
     Motion least;
     double loss = 0;
     double power = 1;
@@ -198,7 +197,7 @@ template <int Dim> typename CurvePiece<Dim>::Motion CurvePiece<Dim>::motion(doub
     return least;
 }
 
-template <int Dim> bool CurvePiece<Dim>::prove(double h) {
+bool CurvePiece::prove(double h) {
     proved_ = 0;
     if (coefficients().empty() || !(h > 0)) {
         return false;
@@ -230,14 +229,14 @@ template <int Dim> bool CurvePiece<Dim>::prove(double h) {
     return true;
 }
 
-template <int Dim> std::vector<double> CurvePiece<Dim>::away(const std::vector<double>& x, double s) const {
+std::vector<double> CurvePiece::away(const std::vector<double>& x, double s) const {
     std::vector<double> off = this->point(s);
     std::transform(x.begin(), x.end(), off.begin(), off.begin(), std::minus<>());
     return off;
 }
 
 /// Where row . (x - p(s)) = 0, by Newton's method: any s will do, the bound in `locate` is what counts.
-template <int Dim> std::optional<double> CurvePiece<Dim>::nearest(const std::vector<double>& x) const {
+std::optional<double> CurvePiece::nearest(const std::vector<double>& x) const {
     double s = 0;
     for (int k = 0; k < 8; ++k) {
         const double change = this->along_row(away(x, s)).value / this->along_row(this->slope(s)).value;
@@ -252,9 +251,7 @@ template <int Dim> std::optional<double> CurvePiece<Dim>::nearest(const std::vec
     return s;
 }
 
-template <int Dim>
-std::optional<typename CurvePiece<Dim>::Place> CurvePiece<Dim>::locate(const std::vector<double>& x,
-                                                                       double uncertainty) const {
+std::optional<CurvePiece::Place> CurvePiece::locate(const std::vector<double>& x, double uncertainty) const {
     const auto s = proved_ > 0 ? nearest(x) : std::nullopt;
     if (!s) {
         return std::nullopt;
@@ -287,7 +284,7 @@ std::optional<typename CurvePiece<Dim>::Place> CurvePiece<Dim>::locate(const std
     return place;
 }
 
-template <int Dim> int CurvePiece<Dim>::direction_along(const CurvePiece& other, double s) const {
+int CurvePiece::direction_along(const CurvePiece& other, double s) const {
     const RoundedSum sum = other.along_row(this->slope(s));
     double size = 0; // of the terms of Horner's scheme
     double power = 1;
@@ -298,7 +295,5 @@ template <int Dim> int CurvePiece<Dim>::direction_along(const CurvePiece& other,
         (other.row_norm() * slope_error_ + 64 * u * (sum.absolute + 4 * other.row_terms() * size)) * up;
     return sum.value > error ? 1 : -sum.value > error ? -1 : 0;
 }
-
-template class CurvePiece<2>;
 
 } // namespace isostat

@@ -12,11 +12,11 @@
 namespace isostat {
 
 /// The polynomial for |s| <= h, and what `prove` found about the curve near it.
-template <int Dim> class CurvePiece : public CurvePolynomial<Dim> {
-    using Polynomial = CurvePolynomial<Dim>;
+class CurvePiece : public CurvePolynomial {
+    using Polynomial = CurvePolynomial;
 
   public:
-    CurvePiece(const KeptCurve<Dim>& kept, const ArcCentre<Dim>& at, double forward);
+    CurvePiece(const KeptCurve& kept, const ArcCentre& at, double forward);
 
     using Polynomial::centre;
     using Polynomial::coefficients;
@@ -87,7 +87,5 @@ template <int Dim> class CurvePiece : public CurvePolynomial<Dim> {
     double row_rate_ = 0; ///< smallest |row . p'|
     double speed_ = 0;    ///< largest |p'| (2-norm)
 };
-
-extern template class CurvePiece<2>;
 
 } // namespace isostat

@@ -21,11 +21,11 @@ constexpr double share = 0.7;
 constexpr int max_order = 14;
 constexpr double longest_reach = 0.2; ///< in units of the smallest radius
 
-template <int Dim>
-std::vector<std::array<double, Dim>> separations(const std::vector<double>& x, const std::vector<Contact>& contacts) {
-    std::vector<std::array<double, Dim>> list(contacts.size());
+std::vector<PerAxis<double>> separations(const Layout& layout, const std::vector<double>& x,
+                                         const std::vector<Contact>& contacts) {
+    std::vector<PerAxis<double>> list(contacts.size());
     std::transform(contacts.begin(), contacts.end(), list.begin(),
-                   [&](const Contact& contact) { return separation_over<Dim>(x, contact); });
+                   [&](const Contact& contact) { return separation_over(layout, x, contact); });
     return list;
 }
 
@@ -42,8 +42,7 @@ void put_on_grid(std::vector<double>& a) {
 
 } // namespace
 
-template <int Dim>
-CurvePolynomial<Dim>::CurvePolynomial(const KeptCurve<Dim>& curve, const ArcCentre<Dim>& centre, double forward)
+CurvePolynomial::CurvePolynomial(const KeptCurve& curve, const ArcCentre& centre, double forward)
     : curve_(&curve), at_(&centre), forward_(forward) {
     row_ = gap_gradient(centre.packing(), centre.structure().contacts()[curve.slot]);
     double ratio = 0; // |gap| / D of the kept contacts and of the one in the free row
@@ -60,10 +59,10 @@ CurvePolynomial<Dim>::CurvePolynomial(const KeptCurve<Dim>& curve, const ArcCent
     expand();
 }
 
-template <int Dim> std::vector<double> CurvePolynomial<Dim>::solved(std::vector<double> rhs) const {
+std::vector<double> CurvePolynomial::solved(std::vector<double> rhs) const {
     factorisation().solve_velocities(rhs);
     std::vector<double> y(centre().q.size(), 0.0);
-    const DofMap<Dim>& dofs = structure().dofs();
+    const DofMap& dofs = structure().dofs();
     for (std::size_t mu = 0; mu < rhs.size(); ++mu) {
         y[static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(mu)))] = rhs[mu];
     }
@@ -71,7 +70,7 @@ template <int Dim> std::vector<double> CurvePolynomial<Dim>::solved(std::vector<
 }
 
 /// Tangent at the centre, 1 in its fastest coordinate. False: it is no good.
-template <int Dim> bool CurvePolynomial<Dim>::first_coefficient() {
+bool CurvePolynomial::first_coefficient() {
     std::vector<double> rhs(curve_->contacts.size(), 0.0);
     rhs[curve_->slot] = -forward_; // approach velocity: minus the rate of the row
     std::vector<double> a = solved(rhs);
@@ -90,7 +89,7 @@ template <int Dim> bool CurvePolynomial<Dim>::first_coefficient() {
 }
 
 /// From the first coefficient over the contacts: how far the derivative of the equations may turn.
-template <int Dim> void CurvePolynomial<Dim>::choose_reach(const std::vector<std::array<double, Dim>>& first) {
+void CurvePolynomial::choose_reach(const std::vector<PerAxis<double>>& first) {
     std::vector<double> e(first.size(), 0.0);
     for (std::size_t l = 0; l < first.size(); ++l) {
         if (curve_->bends(l)) {
@@ -104,11 +103,11 @@ template <int Dim> void CurvePolynomial<Dim>::choose_reach(const std::vector<std
 }
 
 /// One step of Newton's method from the centre, with gaps in double-double.
-template <int Dim> void CurvePolynomial<Dim>::find_shift() {
+void CurvePolynomial::find_shift() {
     std::vector<double> rhs(curve_->contacts.size(), 0.0);
     for (std::size_t l = 0; l < rhs.size(); ++l) {
         if (l != curve_->slot) {
-            rhs[l] = shifted_equation<Dim>(*curve_->start, centre(), curve_->contacts[l], {}).value;
+            rhs[l] = shifted_equation(*curve_->start, centre(), curve_->contacts[l], {}).value;
         }
     }
     shift_ = solved(std::move(rhs));
@@ -120,7 +119,7 @@ template <int Dim> void CurvePolynomial<Dim>::find_shift() {
 }
 
 /// Coefficient k of |d|^2 = D^2 along p: 2 line . a_k + sum of a_i . a_(k-i) = 0 over every kept disk contact.
-template <int Dim> void CurvePolynomial<Dim>::expand() {
+void CurvePolynomial::expand() {
     if (!first_coefficient()) {
         return;
     }
@@ -129,8 +128,8 @@ template <int Dim> void CurvePolynomial<Dim>::expand() {
     }
     const auto& contacts = curve_->contacts;
     const std::size_t n = contacts.size();
-    const auto line = separations<Dim>(centre().q, contacts);
-    std::vector<std::vector<std::array<double, Dim>>> d{separations<Dim>(a_[0], contacts)}; // of a_k, from k = 1
+    const auto line = separations(centre().layout(), centre().q, contacts);
+    std::vector<std::vector<PerAxis<double>>> d{separations(centre().layout(), a_[0], contacts)}; // of a_k, from k = 1
     choose_reach(d[0]);
     const double negligible = 0x1p-60 * centre().min_radius();
     std::vector<double> rhs(n, 0.0);
@@ -158,11 +157,11 @@ template <int Dim> void CurvePolynomial<Dim>::expand() {
         if (size < negligible) {
             break;
         }
-        d.push_back(separations<Dim>(a_.back(), contacts));
+        d.push_back(separations(centre().layout(), a_.back(), contacts));
     }
 }
 
-template <int Dim> std::vector<double> CurvePolynomial<Dim>::point(double s) const {
+std::vector<double> CurvePolynomial::point(double s) const {
     std::vector<double> x = centre().q;
     for (std::size_t mu = 0; mu < static_cast<std::size_t>(structure().size()); ++mu) {
         const auto k = static_cast<std::size_t>(structure().dofs().coordinate_of(static_cast<int>(mu)));
@@ -175,7 +174,7 @@ template <int Dim> std::vector<double> CurvePolynomial<Dim>::point(double s) con
     return x;
 }
 
-template <int Dim> std::vector<double> CurvePolynomial<Dim>::slope(double s) const {
+std::vector<double> CurvePolynomial::slope(double s) const {
     std::vector<double> v(centre().q.size(), 0.0);
     for (std::size_t mu = 0; mu < static_cast<std::size_t>(structure().size()); ++mu) {
         const auto k = static_cast<std::size_t>(structure().dofs().coordinate_of(static_cast<int>(mu)));
@@ -186,8 +185,8 @@ template <int Dim> std::vector<double> CurvePolynomial<Dim>::slope(double s) con
     return v;
 }
 
-template <int Dim> std::optional<Packing<Dim>> CurvePolynomial<Dim>::corrected(double s) const {
-    Packing<Dim> at = centre();
+std::optional<Packing> CurvePolynomial::corrected(double s) const {
+    Packing at = centre();
     at.q = point(s);
     const std::vector<double> guess = at.q;
     const double rounding = 2 * grid_step(at);
@@ -230,15 +229,15 @@ template <int Dim> std::optional<Packing<Dim>> CurvePolynomial<Dim>::corrected(d
     return at;
 }
 
-template <int Dim> double CurvePolynomial<Dim>::row_norm() const {
+double CurvePolynomial::row_norm() const {
     return separation_weight(structure().contacts()[curve_->slot]);
 }
 
-template <int Dim> double CurvePolynomial<Dim>::row_terms() const {
+double CurvePolynomial::row_terms() const {
     return 1 + cell_weight(structure().contacts()[curve_->slot]);
 }
 
-template <int Dim> RoundedSum CurvePolynomial<Dim>::along_row(const std::vector<double>& v) const {
+RoundedSum CurvePolynomial::along_row(const std::vector<double>& v) const {
     RoundedSum sum;
     for (int g = 0; g < row_.count; ++g) {
         const auto e = static_cast<std::size_t>(g);
@@ -246,7 +245,5 @@ template <int Dim> RoundedSum CurvePolynomial<Dim>::along_row(const std::vector<
     }
     return sum;
 }
-
-template class CurvePolynomial<2>;
 
 } // namespace isostat

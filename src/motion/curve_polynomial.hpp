@@ -14,11 +14,11 @@
 namespace isostat {
 
 /// p(s) = centre + sum_k s^k a_k, the derivatives of the curve at a place near it. Nothing is proved of it here.
-template <int Dim> class CurvePolynomial {
+class CurvePolynomial {
   public:
     /// Derivatives of the curve at a centre with the contacts of `curve`, but for the free row. `forward` = +1 or -1:
     /// sign of the rate of the free row for growing s. \pre the curve and the centre outlive it
-    CurvePolynomial(const KeptCurve<Dim>& curve, const ArcCentre<Dim>& centre, double forward);
+    CurvePolynomial(const KeptCurve& curve, const ArcCentre& centre, double forward);
 
     /// Largest |s| worth trying (an estimate; 0: the centre is no good).
     [[nodiscard]] double natural_reach() const { return reach_; }
@@ -31,16 +31,16 @@ template <int Dim> class CurvePolynomial {
     [[nodiscard]] std::vector<double> point(double s) const;
     [[nodiscard]] std::vector<double> slope(double s) const;
     /// The point of the curve near p(s), by chord iterations, on the grid; nothing when they do not converge.
-    [[nodiscard]] std::optional<Packing<Dim>> corrected(double s) const;
+    [[nodiscard]] std::optional<Packing> corrected(double s) const;
     /// row . v, and the sum of the absolute values of its terms.
     [[nodiscard]] RoundedSum along_row(const std::vector<double>& v) const;
     /// No less than the 2-norm of the row, and than a fourth of the sum of its absolute values.
     [[nodiscard]] double row_norm() const;
     [[nodiscard]] double row_terms() const;
 
-    [[nodiscard]] const KeptCurve<Dim>& curve() const { return *curve_; }
-    [[nodiscard]] const Packing<Dim>& centre() const { return at_->packing(); }
-    [[nodiscard]] const IsostaticStructure<Dim>& structure() const { return at_->structure(); }
+    [[nodiscard]] const KeptCurve& curve() const { return *curve_; }
+    [[nodiscard]] const Packing& centre() const { return at_->packing(); }
+    [[nodiscard]] const IsostaticStructure& structure() const { return at_->structure(); }
     [[nodiscard]] const Factorisation& factorisation() const { return at_->factorisation(); }
     /// a_1 ... a_K on all coordinates (0 at rest). In a cell on a grid of their own: separations of them are exact.
     [[nodiscard]] const std::vector<std::vector<double>>& coefficients() const { return a_; }
@@ -53,18 +53,16 @@ template <int Dim> class CurvePolynomial {
     void expand();
     void find_shift();
     bool first_coefficient();
-    void choose_reach(const std::vector<std::array<double, Dim>>& first);
+    void choose_reach(const std::vector<PerAxis<double>>& first);
 
-    const KeptCurve<Dim>* curve_;
-    const ArcCentre<Dim>* at_;
+    const KeptCurve* curve_;
+    const ArcCentre* at_;
     double forward_;
     double inverse_ = 0;
-    GapGradient<Dim> row_;
+    GapGradient row_;
     std::vector<std::vector<double>> a_;
     std::vector<double> shift_;
     double reach_ = 0;
 };
-
-extern template class CurvePolynomial<2>;
 
 } // namespace isostat

@@ -86,7 +86,7 @@ bool listed(const std::vector<Contact>& list, const Contact& c) {
 
 } // namespace
 
-template <int Dim> double reach_left(const CandidateList<Dim>& candidates, const Packing<Dim>& at) {
+double reach_left(const CandidateList& candidates, const Packing& at) {
     if (candidates.reference.size() != at.q.size()) {
         return -1;
     }
@@ -95,9 +95,9 @@ template <int Dim> double reach_left(const CandidateList<Dim>& candidates, const
     }
     const double unit = 1 / candidates.reach; // squares neither under- nor overflow, whatever the units are
     double moved = 0;
-    for (std::size_t k = 0; k + Dim <= at.q.size(); k += Dim) {
+    for (std::size_t k = 0; k + at.axes() <= at.q.size(); k += at.axes()) {
         double square = 0;
-        for (std::size_t a = 0; a < Dim; ++a) {
+        for (std::size_t a = 0; a < at.axes(); ++a) {
             const double d = unit * (at.q[k + a] - candidates.reference[k + a]);
             square += d * d;
         }
@@ -106,18 +106,18 @@ template <int Dim> double reach_left(const CandidateList<Dim>& candidates, const
     return candidates.reach * (0.5 - std::sqrt(moved));
 }
 
-template <int Dim> double longest_step(const CandidateList<Dim>& candidates, const Packing<Dim>& at) {
+double longest_step(const CandidateList& candidates, const Packing& at) {
     const double reach = reach_left(candidates, at);
-    // Displacements are at most sqrt(Dim) s, and the corrector adds a little.
-    const double root_dim = std::sqrt(static_cast<double>(Dim));
+    // Displacements are at most sqrt(d) s, and the corrector adds a little.
+    const double root_dim = std::sqrt(static_cast<double>(at.dimension));
     if (!at.cell.any()) {
         return 0.9 * reach / (1.3 * root_dim);
     }
-    const double in_cell = std::sqrt(static_cast<double>(Dim + Cell<Dim>::tilts)); // its coordinates
+    const double in_cell = std::sqrt(static_cast<double>(at.dimension + at.tilts())); // its coordinates
     return 0.9 * reach / (1.3 * in_cell * cell_drift(candidates, at).rate);
 }
 
-template <int Dim> bool renew_candidates(CandidateList<Dim>& candidates, const Packing<Dim>& at) {
+bool renew_candidates(CandidateList& candidates, const Packing& at) {
     if (reach_left(candidates, at) >= 0.25 * candidates.reach) {
         return false;
     }
@@ -125,9 +125,8 @@ template <int Dim> bool renew_candidates(CandidateList<Dim>& candidates, const P
     return true;
 }
 
-template <int Dim>
-EventScan<Dim>::EventScan(const Contact& opened, const ArcOptions& options, CandidateList<Dim>& candidates,
-                          std::vector<Contact> open)
+EventScan::EventScan(const Contact& opened, const ArcOptions& options, CandidateList& candidates,
+                     std::vector<Contact> open)
     : opened_(opened), leaving_(options.leaving), resting_(options.resting), candidates_(candidates),
       active_(std::move(open)) {
     resting_.insert(resting_.end(), options.taken_to_rest.begin(), options.taken_to_rest.end());
@@ -136,7 +135,7 @@ EventScan<Dim>::EventScan(const Contact& opened, const ArcOptions& options, Cand
     }
 }
 
-template <int Dim> void EventScan<Dim>::list(const Packing<Dim>& at, const std::vector<Contact>& kept) {
+void EventScan::list(const Packing& at, const std::vector<Contact>& kept) {
     if (renew_candidates(candidates_, at)) {
         active_.clear();
     }
@@ -151,28 +150,28 @@ template <int Dim> void EventScan<Dim>::list(const Packing<Dim>& at, const std::
 }
 
 /// Of the open ones, those that take part; with the one that opens, which may close again.
-template <int Dim> void EventScan<Dim>::complete() {
+void EventScan::complete() {
     std::erase_if(active_, [&](const Contact& c) { return c == opened_ || listed(resting_, c); });
     if (opened_.kind != ContactKind::held) {
         active_.push_back(opened_);
     }
 }
 
-template <int Dim>
-GapEvent EventScan<Dim>::first_event(const CurveCourse<Dim>& course, double longest, double noise, bool at_start) {
+GapEvent EventScan::first_event(const CurveCourse& course, double longest, double noise, bool at_start) {
     gap_.resize(active_.size());
     rate_.resize(active_.size());
     GapEvent first;
     // Roots beyond the longest step are not asked for: |t| <= 1 in every coordinate, so that no second derivative of a
     // gap is larger than this.
-    const double root_dim = std::sqrt(static_cast<double>(Dim));
-    const double bend = 1.01 * (2 * root_dim * largest(course.curvature) + 2 * Dim / course.at.min_radius());
+    const double root_dim = std::sqrt(static_cast<double>(course.at.dimension));
+    const double bend =
+        1.01 * (2 * root_dim * largest(course.curvature) + 2 * course.at.dimension / course.at.min_radius());
     const double of_disks = 0.5 * bend * longest * longest;
     for (std::size_t c = 0; c < active_.size(); ++c) {
         const bool opening = at_start && leaves(active_[c]);
         if (const auto line = centre_line(course.at, active_[c]); line && !opening) {
             gap_[c] = gap_of(course.at, active_[c], *line);
-            rate_[c] = rate_of(*line, active_[c], course.tangent);
+            rate_[c] = rate_of(course.at.layout(), *line, active_[c], course.tangent);
             const double weight = image_weight(active_[c]);
             if (gap_[c] + std::min(1.01 * rate_[c], 0.0) * longest > of_disks * weight * weight) {
                 continue;
@@ -199,14 +198,14 @@ GapEvent EventScan<Dim>::first_event(const CurveCourse<Dim>& course, double long
     return first;
 }
 
-template <int Dim> std::optional<GapEvent> EventScan<Dim>::first_violation(const Step& step, double noise) const {
+std::optional<GapEvent> EventScan::first_violation(const Step& step, double noise) const {
     std::optional<GapEvent> found;
     double moved = 0;
     for (std::size_t k = 0; k < step.to.q.size(); ++k) {
         moved = std::max(moved, std::abs(step.to.q[k] - step.from.q[k]));
     }
     // A gap changes by no more than its grains, or a grain and a wall, move.
-    const double within = 2.01 * std::sqrt(static_cast<double>(Dim)) * moved;
+    const double within = 2.01 * std::sqrt(static_cast<double>(step.to.dimension)) * moved;
     for (std::size_t c = 0; c < active_.size(); ++c) {
         if (gap_[c] > within * image_weight(active_[c]) || active_[c] == step.closing) {
             continue;
@@ -223,9 +222,8 @@ template <int Dim> std::optional<GapEvent> EventScan<Dim>::first_violation(const
     return found;
 }
 
-template <int Dim>
-std::optional<double> EventScan<Dim>::suspicious_dip(const Step& step, const std::vector<double>& tangent,
-                                                     double noise) const {
+std::optional<double> EventScan::suspicious_dip(const Step& step, const std::vector<double>& tangent,
+                                                double noise) const {
     std::optional<double> where;
     for (std::size_t c = 0; c < active_.size(); ++c) {
         if (!(rate_[c] < 0) || active_[c] == step.closing) {
@@ -248,11 +246,11 @@ std::optional<double> EventScan<Dim>::suspicious_dip(const Step& step, const std
     return where;
 }
 
-template <int Dim> bool EventScan<Dim>::leaves(const Contact& contact) const {
+bool EventScan::leaves(const Contact& contact) const {
     return contact == opened_ || listed(leaving_, contact);
 }
 
-template <int Dim> std::vector<Contact> EventScan<Dim>::open_at_end(const Contact& closed) {
+std::vector<Contact> EventScan::open_at_end(const Contact& closed) {
     if (!resting_.empty() || active_.empty()) {
         return {};
     }
@@ -265,9 +263,5 @@ template <int Dim> std::vector<Contact> EventScan<Dim>::open_at_end(const Contac
     }
     return std::move(active_);
 }
-
-template double reach_left<2>(const CandidateList<2>&, const Packing<2>&);
-template bool renew_candidates<2>(CandidateList<2>&, const Packing<2>&);
-template class EventScan<2>;
 
 } // namespace isostat

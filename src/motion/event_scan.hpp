@@ -19,33 +19,32 @@ struct GapEvent {
 };
 
 /// Displacement from `at` that the candidates still allow; negative when they are of other grains.
-template <int Dim> double reach_left(const CandidateList<Dim>& candidates, const Packing<Dim>& at);
+double reach_left(const CandidateList& candidates, const Packing& at);
 
 /// Step of the fastest coordinate that they allow from there: no coordinate is faster.
-template <int Dim> double longest_step(const CandidateList<Dim>& candidates, const Packing<Dim>& at);
+double longest_step(const CandidateList& candidates, const Packing& at);
 
 /// The candidates that take part in one arc, with their gaps and rates where the present step begins. All it says is a
 /// guess: gaps are rounded, and between the ends of a step it knows a cubic.
-template <int Dim> class EventScan {
+class EventScan {
   public:
     /// `open`: the candidates that are not contacts of `structure`, if they are at hand.
-    EventScan(const Contact& opened, const ArcOptions& options, CandidateList<Dim>& candidates,
-              std::vector<Contact> open);
+    EventScan(const Contact& opened, const ArcOptions& options, CandidateList& candidates, std::vector<Contact> open);
 
     /// Sees to it that the list is complete about `at`; `kept` are the contacts that are not to be looked at.
-    void list(const Packing<Dim>& at, const std::vector<Contact>& kept);
+    void list(const Packing& at, const std::vector<Contact>& kept);
     /// Step of the fastest coordinate that the candidates allow from there.
     [[nodiscard]] double longest_step() const { return longest_; }
 
     /// The first gap that the course brings to 0 within `longest`; from here on the step begins there. At the start of
     /// the arc those that leave are 0. One that is 0 to `noise` and stays so within `longest` is no event: the proof of
     /// the end judges it.
-    GapEvent first_event(const CurveCourse<Dim>& course, double longest, double noise, bool at_start);
+    GapEvent first_event(const CurveCourse& course, double longest, double noise, bool at_start);
 
     /// Where a step went and to which place. `closing`: the gap that is 0 there and is not looked at.
     struct Step {
-        const Packing<Dim>& from;
-        const Packing<Dim>& to;
+        const Packing& from;
+        const Packing& to;
         double s;
         const Contact& closing;
     };
@@ -68,12 +67,10 @@ template <int Dim> class EventScan {
 
     Contact opened_;
     std::vector<Contact> leaving_, resting_;
-    CandidateList<Dim>& candidates_;
+    CandidateList& candidates_;
     std::vector<Contact> active_;
     std::vector<double> gap_, rate_; ///< of the active ones where the step begins
     double longest_ = 0;
 };
-
-extern template class EventScan<2>;
 
 } // namespace isostat

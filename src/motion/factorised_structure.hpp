@@ -9,11 +9,11 @@
 namespace isostat {
 
 /// Not movable: the factors refer to the structure.
-template <int Dim> struct FactorisedStructure {
-    explicit FactorisedStructure(IsostaticStructure<Dim> s) : structure(std::move(s)), factorisation(structure) {}
+struct FactorisedStructure {
+    explicit FactorisedStructure(IsostaticStructure s) : structure(std::move(s)), factorisation(structure) {}
     FactorisedStructure(const FactorisedStructure&) = delete;
     FactorisedStructure& operator=(const FactorisedStructure&) = delete;
-    IsostaticStructure<Dim> structure;
+    IsostaticStructure structure;
     Factorisation factorisation;
 };
 

@@ -24,9 +24,8 @@ constexpr double end_tangent_accuracy = 1e-4; ///< at an event, where only dips 
 
 } // namespace
 
-template <int Dim>
-Follower<Dim>::Follower(const ArcOrigin<Dim>& origin, const PowerLoad<Dim>& power, CandidateList<Dim>& candidates,
-                        const ArcOptions& options, std::vector<Contact> open)
+Follower::Follower(const ArcOrigin& origin, const PowerLoad& power, CandidateList& candidates,
+                   const ArcOptions& options, std::vector<Contact> open)
     : start_(origin.packing), opened_(origin.structure.contacts()[origin.opened.index()]), options_(options),
       chord_(origin.structure, origin.factorisation, origin.opened.index()),
       scan_(opened_, options, candidates, std::move(open)), power_(power),
@@ -41,7 +40,7 @@ Follower<Dim>::Follower(const ArcOrigin<Dim>& origin, const PowerLoad<Dim>& powe
     }
 }
 
-template <int Dim> void Follower<Dim>::begin() {
+void Follower::begin() {
     if (chord_.is_precise()) {
         failure_ = sharpen();
     } else if (!chord_.is_fresh()) { // the mechanism is that of a neighbouring matrix
@@ -57,15 +56,15 @@ template <int Dim> void Follower<Dim>::begin() {
     }
 }
 
-template <int Dim> std::optional<typename ArcDeparture<Dim>::Expected> Follower<Dim>::expected() const {
+std::optional<ArcDeparture::Expected> Follower::expected() const {
     if (!predicted_ || !(event_.s <= step_limit_)) {
         return std::nullopt;
     }
-    return typename ArcDeparture<Dim>::Expected{event_.contact, here_.predicted(event_.s)};
+    return ArcDeparture::Expected{event_.contact, here_.predicted(event_.s)};
 }
 
 /// Curvature and first event from `here_` and its tangent; false: `failure_` says why.
-template <int Dim> bool Follower<Dim>::predict() {
+bool Follower::predict() {
     here_.choose_fastest();
     if (!std::isfinite(here_.tangent[here_.fastest])) {
         failure_ = Failure{FailureKind::not_converged, "the mechanism is not finite"};
@@ -78,7 +77,7 @@ template <int Dim> bool Follower<Dim>::predict() {
     return true;
 }
 
-template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
+Result<Arc> Follower::run() {
     if (failure_) {
         return *failure_;
     }
@@ -95,7 +94,7 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
 }
 
 /// It is minus the force that opens: where that is small, only a sharper tangent tells its sign.
-template <int Dim> double Follower<Dim>::power_at_start() {
+double Follower::power_at_start() {
     const double power = power_(here_.at, here_.tangent);
     if (power > 0 || power_.starts_at_zero()) {
         return power;
@@ -105,7 +104,7 @@ template <int Dim> double Follower<Dim>::power_at_start() {
 }
 
 /// One attempt at a step. Nothing: the arc goes on, from there or from here.
-template <int Dim> typename Follower<Dim>::Ending Follower<Dim>::step() {
+Follower::Ending Follower::step() {
     if (!predicted_ && !predict()) {
         return *failure_;
     }
@@ -153,7 +152,7 @@ template <int Dim> typename Follower<Dim>::Ending Follower<Dim>::step() {
     if (there.closing != nothing) {
         const Contact closed = options_.closes.value_or(there.closing);
         if (closed != there.closing && !converge_to(there.point.at, closed)) {
-            return failed(FailureKind::not_converged, "the event at contact {} was not reached", named<Dim>(closed));
+            return failed(FailureKind::not_converged, "the event at contact {} was not reached", named(closed));
         }
         return Ending(finish(std::move(there.point), ArcEnd::contact, closed, there.power));
     }
@@ -164,7 +163,7 @@ template <int Dim> typename Follower<Dim>::Ending Follower<Dim>::step() {
 }
 
 /// A gap seems to dip within the step: it is to be tried again as far as that, and no further.
-template <int Dim> Result<bool> Follower<Dim>::dips_within(const Reached& there) {
+Result<bool> Follower::dips_within(const Reached& there) {
     const auto dip = there.s > noise_ ? scan_.suspicious_dip({here_.at, there.point.at, there.s, there.closing},
                                                              there.point.tangent, noise_)
                                       : std::nullopt;
@@ -182,7 +181,7 @@ template <int Dim> Result<bool> Follower<Dim>::dips_within(const Reached& there)
 }
 
 /// The event, if it is predicted within this length or seen to lie within it; else the end of a step of this length.
-template <int Dim> typename Follower<Dim>::Attempt Follower<Dim>::reach(double longest) {
+Follower::Attempt Follower::reach(double longest) {
     if (event_.s <= longest) {
         return reach_event(event_, longest);
     }
@@ -203,9 +202,9 @@ template <int Dim> typename Follower<Dim>::Attempt Follower<Dim>::reach(double l
 }
 
 /// The place where the gap of an event closes, or that of another which closes before.
-template <int Dim> typename Follower<Dim>::Attempt Follower<Dim>::reach_event(GapEvent event, double longest) {
+Follower::Attempt Follower::reach_event(GapEvent event, double longest) {
     for (int attempt = 0; attempt < 40; ++attempt) {
-        Packing<Dim> at = here_.predicted(event.s);
+        Packing at = here_.predicted(event.s);
         if (!converge_to(at, event.contact)) {
             break;
         }
@@ -235,13 +234,12 @@ template <int Dim> typename Follower<Dim>::Attempt Follower<Dim>::reach_event(Ga
 /// The direct solve failed: renews the factors, and shortens the step when that does not help. In the end it is 0 long
 /// before a gap that nearly grazes: 0 to rounding where it still falls. Then the arc ends here, and the caller looks
 /// for the end in more digits.
-template <int Dim>
-typename Follower<Dim>::Attempt Follower<Dim>::shorten_before(const GapEvent& event, double longest) {
+Follower::Attempt Follower::shorten_before(const GapEvent& event, double longest) {
     if (longest < 1e-12 * step_limit_ || pace_.shrink < 1e-9) {
         if (moved_ && std::abs(quick_gap(here_.at, event.contact)) <= noise_) {
             return Attempt(Reached{{here_.at, here_.tangent}, 0, event.contact});
         }
-        return failed(FailureKind::not_converged, "the event at contact {} was not reached", named<Dim>(event.contact));
+        return failed(FailureKind::not_converged, "the event at contact {} was not reached", named(event.contact));
     }
     if (pace_.renewed) {
         pace_.shrink = std::min(pace_.shrink, event.s / step_limit_) * 0.25;
@@ -254,8 +252,8 @@ typename Follower<Dim>::Attempt Follower<Dim>::shorten_before(const GapEvent& ev
     return Attempt(std::nullopt);
 }
 
-template <int Dim> std::optional<CurvePoint<Dim>> Follower<Dim>::step_to(double s, double accuracy) {
-    Packing<Dim> at = here_.predicted(s);
+std::optional<CurvePoint> Follower::step_to(double s, double accuracy) {
+    Packing at = here_.predicted(s);
     Vector off = at.q;
     if (!chord_.converge(at, Contact{ContactKind::held, static_cast<int>(here_.fastest), 0})) {
         return std::nullopt;
@@ -269,10 +267,10 @@ template <int Dim> std::optional<CurvePoint<Dim>> Follower<Dim>::step_to(double 
     if (!t || !(largest(*t) <= 4)) {
         return std::nullopt; // another coordinate became much faster: shorter steps re-choose it in time
     }
-    return CurvePoint<Dim>{std::move(at), std::move(*t)};
+    return CurvePoint{std::move(at), std::move(*t)};
 }
 
-template <int Dim> bool Follower<Dim>::converge_to(Packing<Dim>& at, const Contact& closing) {
+bool Follower::converge_to(Packing& at, const Contact& closing) {
     const bool converged = chord_.converge(at, closing);
     if (converged) {
         snap_to_grid(at);
@@ -282,22 +280,21 @@ template <int Dim> bool Follower<Dim>::converge_to(Packing<Dim>& at, const Conta
 
 /// With the tangent that the event needs: where a dip or the sign of the power is not clear from an extrapolation, it
 /// is solved for.
-template <int Dim>
-std::optional<CurvePoint<Dim>> Follower<Dim>::tangent_at_event(Packing<Dim> at, double s, const Contact& closing) {
+std::optional<CurvePoint> Follower::tangent_at_event(Packing at, double s, const Contact& closing) {
     if (options_.extrapolate_tangent) {
         Vector t = here_.extrapolated_tangent(at, s, 1e-5 * step_limit_);
         const double power = power_(here_.at, here_.tangent);
         if (power_(at, t) > 0.1 * std::abs(power) && !scan_.suspicious_dip({here_.at, at, s, closing}, t, noise_)) {
-            return CurvePoint<Dim>{std::move(at), std::move(t)};
+            return CurvePoint{std::move(at), std::move(t)};
         }
     }
     auto t = chord_.tangent(at, here_.tangent, here_.fastest, end_tangent_accuracy);
-    return t ? std::optional(CurvePoint<Dim>{std::move(at), std::move(*t)}) : std::nullopt;
+    return t ? std::optional(CurvePoint{std::move(at), std::move(*t)}) : std::nullopt;
 }
 
 /// The power where the step ended, and what it says of the step.
-template <int Dim> typename Follower<Dim>::PowerSign Follower<Dim>::judge_power(Reached& there) {
-    CurvePoint<Dim>& point = there.point;
+Follower::PowerSign Follower::judge_power(Reached& there) {
+    CurvePoint& point = there.point;
     there.power = power_(point.at, point.tangent);
     // At a limit load the power grows from zero: over the first, possibly tiny, step its sign is left to the force
     // in the new contact.
@@ -330,9 +327,9 @@ template <int Dim> typename Follower<Dim>::PowerSign Follower<Dim>::judge_power(
 }
 
 /// The end where the power vanishes, within a step of length s at whose end it is negative.
-template <int Dim> Result<Arc<Dim>> Follower<Dim>::power_turn(double s, double power) {
+Result<Arc> Follower::power_turn(double s, double power) {
     SignChange bracket({0.0, here_power_}, {s, power});
-    std::optional<CurvePoint<Dim>> best;
+    std::optional<CurvePoint> best;
     double smallest = infinity;
     for (int k = 0; k < 60; ++k) {
         const double tried = bracket.next();
@@ -364,7 +361,7 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::power_turn(double s, double p
 }
 
 /// The next step begins there.
-template <int Dim> std::optional<Failure> Follower<Dim>::go_on(Reached there) {
+std::optional<Failure> Follower::go_on(Reached there) {
     moved_ = true;
     here_.at = std::move(there.point.at);
     here_.tangent = std::move(there.point.tangent);
@@ -373,7 +370,7 @@ template <int Dim> std::optional<Failure> Follower<Dim>::go_on(Reached there) {
         constexpr double seen = 1e-10; // of a radius: far above the rounding of a length
         if (quick_gap(here_.at, pair) < -seen * here_.at.min_radius()) {
             return failed(FailureKind::undecided, "{} touch and were taken not to close, but overlap on the way",
-                          named<Dim>(pair));
+                          named(pair));
         }
     }
     pace_.for_dip = infinity;
@@ -385,13 +382,13 @@ template <int Dim> std::optional<Failure> Follower<Dim>::go_on(Reached there) {
         }
     }
     pace_.shrink = std::min(1.0, 2 * pace_.shrink);
-    for (int a = 0; a < Dim; ++a) {
+    for (int a = 0; a < start_.dimension; ++a) {
         if (std::abs(here_.at.length(a) / start_.length(a) - 1) > options_.max_length_change) {
             return failed(FailureKind::unbounded, "the motion has no end: L along axis {} went from {} to {}", a,
                           start_.length(a), here_.at.length(a));
         }
     }
-    for (std::size_t k = start_.length_at(Dim); k < start_.q.size(); ++k) { // tilts
+    for (std::size_t k = start_.length_at(start_.axes()); k < start_.q.size(); ++k) { // tilts
         if (std::abs(here_.at.q[k] - start_.q[k]) > options_.max_length_change * start_.length(0)) {
             return failed(FailureKind::flows, "the motion has no end: the tilt went from {} to {}", start_.q[k],
                           here_.at.q[k]);
@@ -406,7 +403,7 @@ template <int Dim> std::optional<Failure> Follower<Dim>::go_on(Reached there) {
 }
 
 /// Stale factors first, then shorter steps.
-template <int Dim> std::optional<Failure> Follower<Dim>::narrow() {
+std::optional<Failure> Follower::narrow() {
     if (chord_.iterations() > 12 || pace_.shrink < 0.3) {
         if (auto failure = renew()) {
             return failure;
@@ -417,7 +414,7 @@ template <int Dim> std::optional<Failure> Follower<Dim>::narrow() {
 }
 
 /// The factors of the start are stale: those of the structure that holds the fastest coordinate, here.
-template <int Dim> std::optional<Failure> Follower<Dim>::renew() {
+std::optional<Failure> Follower::renew() {
     if (auto failure = chord_.renew(here_.at, here_.fastest)) {
         return failure;
     }
@@ -430,7 +427,7 @@ template <int Dim> std::optional<Failure> Follower<Dim>::renew() {
 }
 
 /// The tangent here, which double knows no better than rounding of the coordinates allows.
-template <int Dim> std::optional<Failure> Follower<Dim>::sharpen() {
+std::optional<Failure> Follower::sharpen() {
     here_.choose_fastest();
     auto t = chord_.tangent(here_.at, here_.tangent, here_.fastest, tangent_accuracy);
     if (!t) {
@@ -440,9 +437,8 @@ template <int Dim> std::optional<Failure> Follower<Dim>::sharpen() {
     return std::nullopt;
 }
 
-template <int Dim>
-Arc<Dim> Follower<Dim>::finish(CurvePoint<Dim> end, ArcEnd kind, const Contact& closed, double power) {
-    Arc<Dim> arc;
+Arc Follower::finish(CurvePoint end, ArcEnd kind, const Contact& closed, double power) {
+    Arc arc;
     for (std::size_t l = 0; l < chord_.contacts().size(); ++l) {
         const Contact& contact = chord_.contacts()[l];
         if (contact.kind == ContactKind::held && contact != opened_ && l != chord_.slot()) {
@@ -470,7 +466,5 @@ Arc<Dim> Follower<Dim>::finish(CurvePoint<Dim> end, ArcEnd kind, const Contact& 
     arc.passes = chord_.passes();
     return arc;
 }
-
-template class Follower<2>;
 
 } // namespace isostat

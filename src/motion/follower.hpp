@@ -14,17 +14,17 @@
 namespace isostat {
 
 /// Predictor and corrector, step by step, until a gap closes or the power vanishes.
-template <int Dim> class Follower {
+class Follower {
   public:
-    Follower(const ArcOrigin<Dim>& origin, const PowerLoad<Dim>& power, CandidateList<Dim>& candidates,
-             const ArcOptions& options, std::vector<Contact> open);
+    Follower(const ArcOrigin& origin, const PowerLoad& power, CandidateList& candidates, const ArcOptions& options,
+             std::vector<Contact> open);
 
     /// Tangent, curvature and the first event that they predict, at the start.
     void begin();
     /// \pre begin()
-    [[nodiscard]] std::optional<typename ArcDeparture<Dim>::Expected> expected() const;
+    [[nodiscard]] std::optional<ArcDeparture::Expected> expected() const;
     /// \pre begin()
-    Result<Arc<Dim>> run();
+    Result<Arc> run();
 
   private:
     using Vector = std::vector<double>;
@@ -39,7 +39,7 @@ template <int Dim> class Follower {
     };
     /// Where a step came to. `closing`: the gap that is 0 there (`nothing`: it just ended).
     struct Reached {
-        CurvePoint<Dim> point;
+        CurvePoint point;
         double s = 0;
         Contact closing;
         double power = 0;
@@ -47,7 +47,7 @@ template <int Dim> class Follower {
     static constexpr Contact nothing{ContactKind::held, -1, 0};
     /// Nothing: again, with what `pace_` and the factors are now.
     using Attempt = Result<std::optional<Reached>>;
-    using Ending = Result<std::optional<Arc<Dim>>>;
+    using Ending = Result<std::optional<Arc>>;
     enum class PowerSign { positive, shorten, turned, unclear };
 
     bool predict();
@@ -55,26 +55,26 @@ template <int Dim> class Follower {
     Attempt reach(double longest);
     Attempt reach_event(GapEvent event, double longest);
     Attempt shorten_before(const GapEvent& event, double longest);
-    std::optional<CurvePoint<Dim>> step_to(double s, double accuracy);
-    bool converge_to(Packing<Dim>& at, const Contact& closing);
-    std::optional<CurvePoint<Dim>> tangent_at_event(Packing<Dim> at, double s, const Contact& closing);
+    std::optional<CurvePoint> step_to(double s, double accuracy);
+    bool converge_to(Packing& at, const Contact& closing);
+    std::optional<CurvePoint> tangent_at_event(Packing at, double s, const Contact& closing);
     double power_at_start();
     Result<bool> dips_within(const Reached& there);
     PowerSign judge_power(Reached& there);
-    Result<Arc<Dim>> power_turn(double s, double power);
+    Result<Arc> power_turn(double s, double power);
     std::optional<Failure> go_on(Reached there);
     std::optional<Failure> narrow();
     std::optional<Failure> renew();
     std::optional<Failure> sharpen();
-    Arc<Dim> finish(CurvePoint<Dim> end, ArcEnd kind, const Contact& closed, double power);
+    Arc finish(CurvePoint end, ArcEnd kind, const Contact& closed, double power);
 
-    const Packing<Dim>& start_;
+    const Packing& start_;
     Contact opened_;
     ArcOptions options_;
-    Chord<Dim> chord_;
-    EventScan<Dim> scan_;
-    PowerAlong<Dim> power_;
-    CurveCourse<Dim> here_; ///< where the next step begins
+    Chord chord_;
+    EventScan scan_;
+    PowerAlong power_;
+    CurveCourse here_; ///< where the next step begins
     double step_limit_;
     double noise_;                   ///< lengths that rounding may make
     std::optional<Failure> failure_; ///< of `begin` or `predict`
@@ -85,7 +85,5 @@ template <int Dim> class Follower {
     Pace pace_;
     int steps_ = 0;
 };
-
-extern template class Follower<2>;
 
 } // namespace isostat

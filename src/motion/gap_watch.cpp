@@ -16,14 +16,14 @@ constexpr int max_depth = 60;
 } // namespace
 
 /// Relative position of the two grains of a candidate along p(s), and what the tube adds to it.
-template <int Dim> struct GapWatch<Dim>::Motion {
-    Motion(const CurvePiece<Dim>& piece, const Contact& contact) {
+struct GapWatch::Motion {
+    Motion(const CurvePiece& piece, const Contact& contact) {
         wall = contact.kind != ContactKind::disk_disk;
-        components = wall ? 1 : Dim;
+        components = wall ? 1 : most_axes;
         target = touching_distance(piece.centre().radius, contact);
-        a.push_back(separation_over<Dim>(piece.centre().q, contact));
+        a.push_back(separation_over(piece.centre().layout(), piece.centre().q, contact));
         for (const auto& coefficient : piece.coefficients()) {
-            a.push_back(separation_over<Dim>(coefficient, contact));
+            a.push_back(separation_over(piece.centre().layout(), coefficient, contact));
         }
         for (const auto& d : a) {
             size.push_back(std::sqrt(dot(d, d)) * up);
@@ -51,8 +51,8 @@ template <int Dim> struct GapWatch<Dim>::Motion {
 
     /// Relative position and velocity at s, and for |s| <= h: bounds of two derivatives and of roundings.
     struct Course {
-        std::array<double, Dim> x{};
-        std::array<double, Dim> v{};
+        PerAxis<double> x{};
+        PerAxis<double> v{};
         double first = 0;  ///< largest |x'|
         double second = 0; ///< largest |x''|
         double rounding = 0;
@@ -116,16 +116,15 @@ template <int Dim> struct GapWatch<Dim>::Motion {
     }
 
     bool wall = false;
-    int components = Dim;
+    int components = most_axes;
     double target = 0;
-    std::vector<std::array<double, Dim>> a; ///< position, then coefficients
+    std::vector<PerAxis<double>> a; ///< position, then coefficients
     std::vector<double> size;
     double apart = 0;       ///< how far the true relative position is from that of p
     double slope_error = 0; ///< the same for its derivative
 };
 
-template <int Dim>
-bool GapWatch<Dim>::walk(const Motion& motion, double from, double to, int depth, GapTrend& last, bool& only_falls) {
+bool GapWatch::walk(const Motion& motion, double from, double to, int depth, GapTrend& last, bool& only_falls) {
     ++tests_;
     const auto view = motion.view(from, to);
     if (view.gap_low > 0) {
@@ -161,8 +160,7 @@ bool GapWatch<Dim>::walk(const Motion& motion, double from, double to, int depth
            walk(motion, middle, to, depth + 1, last, only_falls);
 }
 
-template <int Dim>
-bool GapWatch<Dim>::look(const CurvePiece<Dim>& piece, const Contact& contact, double from, double to) {
+bool GapWatch::look(const CurvePiece& piece, const Contact& contact, double from, double to) {
     const Motion motion(piece, contact);
     const auto found = last_.find(contact);
     GapTrend last = found == last_.end() ? GapTrend::above : found->second;
@@ -183,11 +181,9 @@ bool GapWatch<Dim>::look(const CurvePiece<Dim>& piece, const Contact& contact, d
     return true;
 }
 
-template <int Dim> int GapWatch<Dim>::rate_sign(const CurvePiece<Dim>& piece, const Contact& contact, double s) {
+int GapWatch::rate_sign(const CurvePiece& piece, const Contact& contact, double s) {
     const auto view = Motion(piece, contact).view(s, s);
     return view.rate > view.rate_open ? 1 : -view.rate > view.rate_open ? -1 : 0;
 }
-
-template class GapWatch<2>;
 
 } // namespace isostat

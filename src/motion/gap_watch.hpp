@@ -16,13 +16,13 @@ enum class GapTrend : unsigned char { above, rising, falling, zero };
 
 /// Follows every candidate from piece to piece. A stretch on which a gap falls must not be followed by one on which it
 /// rises, unless the gap is bounded away from 0 where they meet.
-template <int Dim> class GapWatch {
+class GapWatch {
   public:
     /// The gap of a contact is 0 at the start of the arc (the opened one): it must rise there.
     void starts_at_zero(const Contact& contact) { last_[contact] = GapTrend::zero; }
     /// Looks at one candidate for s in [from, to] (within the reach of the piece). False: neither a sign of the gap nor
     /// of its rate was proved near `where()`.
-    bool look(const CurvePiece<Dim>& piece, const Contact& contact, double from, double to);
+    bool look(const CurvePiece& piece, const Contact& contact, double from, double to);
     /// Whether the gap of a contact was last seen falling: its right end must be shown not to be negative.
     [[nodiscard]] bool falls(const Contact& contact) const {
         const auto found = last_.find(contact);
@@ -31,7 +31,7 @@ template <int Dim> class GapWatch {
     /// Whether the gap of a contact was shown to fall on every stretch of the piece looked at last.
     [[nodiscard]] bool fell_all_along(const Contact& contact) const { return fell_.count(contact) != 0; }
     /// Proved sign of the rate of a gap at s: +1, -1, or 0 = not proved.
-    static int rate_sign(const CurvePiece<Dim>& piece, const Contact& contact, double s);
+    static int rate_sign(const CurvePiece& piece, const Contact& contact, double s);
     /// Smallest |quantity| / (share of it that the tube and the roundings leave open) over what was proved.
     [[nodiscard]] double margin() const { return margin_; }
     [[nodiscard]] double where() const { return where_; }
@@ -47,7 +47,5 @@ template <int Dim> class GapWatch {
     double where_ = 0;
     long tests_ = 0;
 };
-
-extern template class GapWatch<2>;
 
 } // namespace isostat

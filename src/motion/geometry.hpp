@@ -9,17 +9,17 @@
 namespace isostat {
 
 /// Line of the centres of a pair of disks.
-template <int Dim> struct CentreLine {
-    std::array<double, Dim> d;
+struct CentreLine {
+    PerAxis<double> d;
     double length;
 };
 
 /// Nothing for other contacts, and where squares under- or overflow: the general functions of the room contact serve.
-template <int Dim> inline std::optional<CentreLine<Dim>> centre_line(const Packing<Dim>& at, const Contact& contact) {
+inline std::optional<CentreLine> centre_line(const Packing& at, const Contact& contact) {
     if (contact.kind != ContactKind::disk_disk) {
         return std::nullopt;
     }
-    CentreLine<Dim> line{separation<Dim>(at.q, contact), 0};
+    CentreLine line{separation(at.layout(), at.q, contact), 0};
     double square = 0;
     for (const double component : line.d) {
         square += component * component;
@@ -31,41 +31,40 @@ template <int Dim> inline std::optional<CentreLine<Dim>> centre_line(const Packi
     return line;
 }
 
-template <int Dim> inline double gap_of(const Packing<Dim>& at, const Contact& contact, const CentreLine<Dim>& line) {
+inline double gap_of(const Packing& at, const Contact& contact, const CentreLine& line) {
     return line.length - touching_distance(at.radius, contact);
 }
 
 /// The same bits as `gap`.
-template <int Dim> inline double quick_gap(const Packing<Dim>& at, const Contact& contact) {
+inline double quick_gap(const Packing& at, const Contact& contact) {
     const auto line = centre_line(at, contact);
     return line ? gap_of(at, contact, *line) : gap(at, contact);
 }
 
 /// Rate of the gap along v (on coordinates) times the length of the line.
-template <int Dim>
-inline double along(const CentreLine<Dim>& line, const Contact& contact, const std::vector<double>& v, double& square) {
-    const std::array<double, Dim> relative = separation<Dim>(v, contact);
+inline double along(const Layout& layout, const CentreLine& line, const Contact& contact, const std::vector<double>& v,
+                    double& square) {
+    const PerAxis<double> relative = separation(layout, v, contact);
     double sum = 0;
     square = 0;
-    for (std::size_t a = 0; a < Dim; ++a) {
+    for (std::size_t a = 0; a < most_axes; ++a) {
         sum += line.d[a] * relative[a];
         square += relative[a] * relative[a];
     }
     return sum;
 }
 
-template <int Dim>
-inline double rate_of(const CentreLine<Dim>& line, const Contact& contact, const std::vector<double>& v) {
+inline double rate_of(const Layout& layout, const CentreLine& line, const Contact& contact,
+                      const std::vector<double>& v) {
     double square = 0;
-    return along(line, contact, v, square) / line.length;
+    return along(layout, line, contact, v, square) / line.length;
 }
 
-template <int Dim>
-inline double gap_rate(const Packing<Dim>& at, const Contact& contact, const std::vector<double>& v) {
+inline double gap_rate(const Packing& at, const Contact& contact, const std::vector<double>& v) {
     if (const auto line = centre_line(at, contact)) {
-        return rate_of(*line, contact, v);
+        return rate_of(at.layout(), *line, contact, v);
     }
-    const GapGradient<Dim> g = gap_gradient(at, contact);
+    const GapGradient g = gap_gradient(at, contact);
     double sum = 0;
     for (int k = 0; k < g.count; ++k) {
         const auto e = static_cast<std::size_t>(k);
@@ -75,24 +74,22 @@ inline double gap_rate(const Packing<Dim>& at, const Contact& contact, const std
 }
 
 /// Second derivative of the gap along a velocity.
-template <int Dim>
-inline double quick_curvature(const Packing<Dim>& at, const Contact& contact, const std::vector<double>& v) {
+inline double quick_curvature(const Packing& at, const Contact& contact, const std::vector<double>& v) {
     if (const auto line = centre_line(at, contact)) {
         double square = 0;
-        const double rate = along(*line, contact, v, square) / line->length;
+        const double rate = along(at.layout(), *line, contact, v, square) / line->length;
         return (square - rate * rate) / line->length;
     }
     return gap_curvature(at, contact, v.data());
 }
 
 /// Separation over a contact of any kind: all components for two disks, else the first one, of a wall or a coordinate.
-template <int Dim>
-inline std::array<double, Dim> separation_over(const std::vector<double>& x, const Contact& contact) {
-    std::array<double, Dim> d{};
+inline PerAxis<double> separation_over(const Layout& layout, const std::vector<double>& x, const Contact& contact) {
+    PerAxis<double> d{};
     switch (contact.kind) {
-    case ContactKind::disk_disk: return separation<Dim>(x, contact);
+    case ContactKind::disk_disk: return separation(layout, x, contact);
     case ContactKind::lower_wall:
-    case ContactKind::upper_wall: d[0] = wall_distance<Dim>(x, contact); break;
+    case ContactKind::upper_wall: d[0] = wall_distance(layout, x, contact); break;
     case ContactKind::held: d[0] = x[static_cast<std::size_t>(contact.i)]; break;
     }
     return d;
@@ -102,14 +99,13 @@ inline std::array<double, Dim> separation_over(const std::vector<double>& x, con
 struct GapCourse {
     double value, rate, bend;
 };
-template <int Dim>
-inline GapCourse gap_course(const Packing<Dim>& at, const Contact& contact, const std::vector<double>& velocity,
+inline GapCourse gap_course(const Packing& at, const Contact& contact, const std::vector<double>& velocity,
                             const std::vector<double>& acceleration) {
     if (const auto line = centre_line(at, contact)) {
         double square = 0;
         double unused = 0;
-        const double rate = along(*line, contact, velocity, square) / line->length;
-        const double bend = along(*line, contact, acceleration, unused) / line->length;
+        const double rate = along(at.layout(), *line, contact, velocity, square) / line->length;
+        const double bend = along(at.layout(), *line, contact, acceleration, unused) / line->length;
         return {gap_of(at, contact, *line), rate, bend + (square - rate * rate) / line->length};
     }
     return {gap(at, contact), gap_rate(at, contact, velocity),

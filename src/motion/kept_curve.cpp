@@ -10,14 +10,12 @@
 
 namespace isostat {
 
-template <int Dim>
-KeptCurve<Dim>::KeptCurve(const Packing<Dim>& start_packing, std::vector<Contact> list, std::size_t slot_index,
-                          double rest)
+KeptCurve::KeptCurve(const Packing& start_packing, std::vector<Contact> list, std::size_t slot_index, double rest)
     : start(&start_packing), contacts(std::move(list)), slot(slot_index), dofs(start_packing),
       smallest(std::numeric_limits<double>::infinity()), rest_radius(rest) {
     const std::size_t disks = start->radius.size();
     std::vector<int> count(disks, 0);
-    std::vector<int> at_rest(disks + Dim, 0);
+    std::vector<int> at_rest(disks + start->axes(), 0);
     double most_at_rest = 0;
     target.resize(contacts.size());
     for (std::size_t l = 0; l < contacts.size(); ++l) {
@@ -51,8 +49,8 @@ KeptCurve<Dim>::KeptCurve(const Packing<Dim>& start_packing, std::vector<Contact
     bound_rest(most_at_rest, 1);
 }
 
-template <int Dim> void KeptCurve<Dim>::find_blocks() {
-    const Cell<Dim>& cell = start->cell;
+void KeptCurve::find_blocks() {
+    const Cell& cell = start->cell;
     const auto moves = [](const auto& flags) { return std::find(flags.begin(), flags.end(), true) != flags.end(); };
     const bool cell_moves = moves(cell.period_moves) || moves(cell.tilt_moves);
     blocks.resize(contacts.size());
@@ -70,7 +68,7 @@ template <int Dim> void KeptCurve<Dim>::find_blocks() {
 }
 
 /// As C5 and A7 say (proofs/cells.md, C11): sums over the blocks that move, and over those at rest.
-template <int Dim> void KeptCurve<Dim>::bound_in_cell() {
+void KeptCurve::bound_in_cell() {
     const std::size_t disks = start->radius.size();
     std::vector<double> squares(disks + 1, 0.0);
     std::vector<double> fourths(disks + 1, 0.0);
@@ -100,13 +98,13 @@ template <int Dim> void KeptCurve<Dim>::bound_in_cell() {
 }
 
 /// `heaviest`: sum of the squares of what a block at rest does; `row`: 2-norm of the signs in a row of moving disks.
-template <int Dim> void KeptCurve<Dim>::bound_rest(double heaviest, double row) {
+void KeptCurve::bound_rest(double heaviest, double row) {
     const double weight = std::sqrt(heaviest) * rest_radius;
     rest_residual = 1.01 * weight * up;
     rest_derivative = std::isfinite(smallest) ? row * weight / smallest * up : 0;
 }
 
-template <int Dim> double KeptCurve<Dim>::norm_of(const std::vector<double>& e) const {
+double KeptCurve::norm_of(const std::vector<double>& e) const {
     // |B|^2 = largest eigenvalue of B^T B <= max_i (B^T B x)_i / x_i for every positive x (Collatz, Wielandt).
     std::vector<double> x(start->radius.size() + (start->cell.any() ? 1 : 0), 1.0);
     std::vector<double> z(x.size());
@@ -140,7 +138,5 @@ template <int Dim> double KeptCurve<Dim>::norm_of(const std::vector<double>& e) 
     }
     return std::sqrt(best) * up;
 }
-
-template struct KeptCurve<2>;
 
 } // namespace isostat

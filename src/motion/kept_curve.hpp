@@ -24,17 +24,17 @@ struct Blocks {
 
 /// The equations of one arc: contacts[l] keeps gap 0 for every l but `slot`, whose row is free. Only grains that move
 /// take part; the others stay at their true place, which is within `rest_radius` (2-norm) of the one in `start`.
-template <int Dim> struct KeptCurve {
-    KeptCurve(const Packing<Dim>& start, std::vector<Contact> contacts, std::size_t slot, double rest_radius);
+struct KeptCurve {
+    KeptCurve(const Packing& start, std::vector<Contact> contacts, std::size_t slot, double rest_radius);
     /// Two disks that keep contact: the equations of all others are linear.
     [[nodiscard]] bool bends(std::size_t l) const { return l != slot && contacts[l].kind == ContactKind::disk_disk; }
     /// Upper bound of the 2-norm of the matrix whose row l has blocks of norm e_l times their weight.
     [[nodiscard]] double norm_of(const std::vector<double>& e) const;
 
-    const Packing<Dim>* start; ///< `fixed` and `walls` tell which grains move; held coordinates keep their value here
+    const Packing* start; ///< `fixed` and `walls` tell which grains move; held coordinates keep their value here
     std::vector<Contact> contacts;
     std::size_t slot;
-    DofMap<Dim> dofs;
+    DofMap dofs;
     std::vector<double> target; ///< sum of the radii, radius (walls), 0 (held), rounded
     std::vector<Blocks> blocks; ///< per contact; none but of two disks that keep contact
     double spread = 2;          ///< sum_l |D_l x|^2 <= spread |x|^2 over the kept contacts of two disks
@@ -49,7 +49,5 @@ template <int Dim> struct KeptCurve {
     void bound_in_cell();
     void bound_rest(double heaviest, double row);
 };
-
-extern template struct KeptCurve<2>;
 
 } // namespace isostat

@@ -9,9 +9,8 @@
 
 namespace isostat {
 
-template <int Dim>
-MovingPart<Dim>::MovingPart(const ArcVertex<Dim>& start, const ArcVertex<Dim>& end, std::size_t slot,
-                            double start_uncertainty, double end_uncertainty)
+MovingPart::MovingPart(const ArcVertex& start, const ArcVertex& end, std::size_t slot, double start_uncertainty,
+                       double end_uncertainty)
     : start_(start), end_(end), slot_(slot), start_packing_(start.packing), end_packing_(end.packing) {
     const auto n = static_cast<std::size_t>(start.structure.size());
     std::vector<double> mechanism(n, 0.0);
@@ -21,17 +20,17 @@ MovingPart<Dim>::MovingPart(const ArcVertex<Dim>& start, const ArcVertex<Dim>& e
     if (whole_) {
         disk_moves_.assign(start_packing_.radius.size(), 1);
         wall_moves_.assign(start_packing_.coordinate_count() - start_packing_.length_at(0), 1);
-        curve_ = std::make_unique<KeptCurve<Dim>>(start_packing_, start.structure.contacts(), slot, 0.0);
+        curve_ = std::make_unique<KeptCurve>(start_packing_, start.structure.contacts(), slot, 0.0);
         bring_end_back();
         return;
     }
     std::vector<Contact> contacts = with_row(start.structure.contacts()[slot]);
-    curve_ = std::make_unique<KeptCurve<Dim>>(start_packing_, std::move(contacts), 0, start_uncertainty);
+    curve_ = std::make_unique<KeptCurve>(start_packing_, std::move(contacts), 0, start_uncertainty);
     check_rest(start_uncertainty + end_uncertainty);
     bring_end_back();
 }
 
-template <int Dim> double MovingPart<Dim>::shift_of_end(const ArcVertex<Dim>& start, const ArcVertex<Dim>& end) {
+double MovingPart::shift_of_end(const ArcVertex& start, const ArcVertex& end) {
     double square = 0;
     for (std::size_t k = 0; k < start.packing.q.size(); ++k) {
         if (start.structure.dofs().dof_of(k) < 0) { // of a disk that is pinned: all go with it
@@ -43,8 +42,8 @@ template <int Dim> double MovingPart<Dim>::shift_of_end(const ArcVertex<Dim>& st
 }
 
 /// A grid that became coarser has moved the pinned disk by a rounding: with it all others, by a translation.
-template <int Dim> void MovingPart<Dim>::bring_end_back() {
-    const DofMap<Dim>& dofs = start_.structure.dofs();
+void MovingPart::bring_end_back() {
+    const DofMap& dofs = start_.structure.dofs();
     for (std::size_t k = 0; k < end_packing_.q.size(); ++k) {
         end_moved_ = end_moved_ || (dofs.dof_of(k) < 0 && end_.packing.q[k] != start_.packing.q[k]);
         end_packing_.q[k] = dofs.dof_of(k) < 0 ? start_.packing.q[k] : end_packing_.q[k];
@@ -58,22 +57,26 @@ template <int Dim> void MovingPart<Dim>::bring_end_back() {
     }
 }
 
-template <int Dim> bool MovingPart<Dim>::moves(const Contact& contact) const {
+bool MovingPart::coordinate_moves(std::size_t coordinate) const {
+    const std::size_t walls = start_packing_.length_at(0);
+    return (coordinate < walls ? disk_moves_[coordinate / start_packing_.axes()] : wall_moves_[coordinate - walls]) !=
+           0;
+}
+
+bool MovingPart::moves(const Contact& contact) const {
     const auto i = static_cast<std::size_t>(contact.i);
     const auto j = static_cast<std::size_t>(contact.j);
     switch (contact.kind) {
     case ContactKind::disk_disk: return disk_moves_[i] != 0 || disk_moves_[j] != 0;
     case ContactKind::lower_wall: return disk_moves_[i] != 0;
     case ContactKind::upper_wall: return disk_moves_[i] != 0 || wall_moves_[j] != 0;
-    case ContactKind::held:
-        return i / Dim < disk_moves_.size() ? disk_moves_[i / Dim] != 0
-                                            : wall_moves_[i - Dim * disk_moves_.size()] != 0;
+    case ContactKind::held: return coordinate_moves(i);
     }
     return true;
 }
 
 /// The free row first, then the kept contacts that touch a moving grain.
-template <int Dim> std::vector<Contact> MovingPart<Dim>::with_row(const Contact& row) const {
+std::vector<Contact> MovingPart::with_row(const Contact& row) const {
     std::vector<Contact> contacts = start_.structure.contacts();
     contacts[slot_] = row;
     if (whole_) {
@@ -88,21 +91,22 @@ template <int Dim> std::vector<Contact> MovingPart<Dim>::with_row(const Contact&
     return list;
 }
 
-template <int Dim> bool MovingPart<Dim>::restrict_to(const std::vector<double>& mechanism) {
-    const DofMap<Dim>& dofs = start_.structure.dofs();
+bool MovingPart::restrict_to(const std::vector<double>& mechanism) {
+    const DofMap& dofs = start_.structure.dofs();
     const std::size_t disks = start_packing_.radius.size();
     disk_moves_.assign(disks, 0);
-    wall_moves_.assign(start_packing_.coordinate_count() - start_packing_.length_at(0), 0);
+    const std::size_t walls = start_packing_.length_at(0);
+    wall_moves_.assign(start_packing_.coordinate_count() - walls, 0);
     for (std::size_t mu = 0; mu < mechanism.size(); ++mu) {
         if (mechanism[mu] != 0) {
             const auto k = static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(mu)));
-            (k < Dim * disks ? disk_moves_[k / Dim] : wall_moves_[k - Dim * disks]) = 1;
+            (k < walls ? disk_moves_[k / start_packing_.axes()] : wall_moves_[k - walls]) = 1;
         }
     }
     std::size_t degrees = 0;
     for (std::size_t mu = 0; mu < mechanism.size(); ++mu) {
         const auto k = static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(mu)));
-        degrees += k < Dim * disks ? disk_moves_[k / Dim] : wall_moves_[k - Dim * disks];
+        degrees += coordinate_moves(k) ? 1 : 0;
     }
     whole_ = false;
     const Contact& row = start_.structure.contacts()[slot_];
@@ -113,7 +117,7 @@ template <int Dim> bool MovingPart<Dim>::restrict_to(const std::vector<double>& 
     }
     let_rest();
     end_packing_ = start_packing_;
-    const DofMap<Dim> moving(start_packing_);
+    const DofMap moving(start_packing_);
     for (int mu = 0; mu < moving.dof_count(); ++mu) {
         const auto k = static_cast<std::size_t>(moving.coordinate_of(mu));
         end_packing_.q[k] = end_.packing.q[k];
@@ -122,7 +126,7 @@ template <int Dim> bool MovingPart<Dim>::restrict_to(const std::vector<double>& 
 }
 
 /// What does not move is marked so; a cell that rests needs no pin.
-template <int Dim> void MovingPart<Dim>::let_rest() {
+void MovingPart::let_rest() {
     const std::size_t disks = start_packing_.radius.size();
     std::vector<unsigned char> fixed(disks, 0);
     for (std::size_t i = 0; i < disks; ++i) {
@@ -130,7 +134,7 @@ template <int Dim> void MovingPart<Dim>::let_rest() {
         disk_moves_[i] = disk_moves_[i] != 0 && !start_packing_.is_fixed(DiskId(i)) ? 1 : 0;
     }
     start_packing_.fixed = fixed;
-    for (std::size_t a = 0; a < Dim; ++a) {
+    for (std::size_t a = 0; a < start_packing_.axes(); ++a) {
         if (wall_moves_[a] == 0 && start_packing_.walls.upper[a] == WallKind::movable) {
             start_packing_.walls.upper[a] = WallKind::fixed;
         }
@@ -143,24 +147,25 @@ template <int Dim> void MovingPart<Dim>::let_rest() {
 }
 
 /// Then everything takes part: A7 is for disks alone there.
-template <int Dim> bool MovingPart<Dim>::moves_pin_or_cell() const {
-    const Cell<Dim>& cell = start_packing_.cell;
+bool MovingPart::moves_pin_or_cell() const {
+    const Cell& cell = start_packing_.cell;
     if (!cell.any()) {
         return false;
     }
     bool moves = disk_moves_[static_cast<std::size_t>(cell.pin)] != 0;
     for (std::size_t a = 0; a < wall_moves_.size(); ++a) {
-        moves = moves || (wall_moves_[a] != 0 && (a >= Dim || cell.periodic[a]));
+        moves = moves || (wall_moves_[a] != 0 && (a >= start_packing_.axes() || cell.periodic[a]));
     }
     return moves;
 }
 
 /// The grains at rest have the same true place at both ends: their equations have one root near the stored start.
-template <int Dim> void MovingPart<Dim>::check_rest(double uncertainty) {
+void MovingPart::check_rest(double uncertainty) {
     double square = 0;
     for (std::size_t i = 0; i < disk_moves_.size(); ++i) {
-        for (std::size_t a = 0; a < Dim && disk_moves_[i] == 0; ++a) {
-            const double d = end_.packing.q[Dim * i + a] - start_.packing.q[Dim * i + a];
+        for (std::size_t a = 0; a < start_packing_.axes() && disk_moves_[i] == 0; ++a) {
+            const double d =
+                end_.packing.q[start_packing_.axes() * i + a] - start_.packing.q[start_packing_.axes() * i + a];
             square += d * d;
         }
     }
@@ -171,33 +176,29 @@ template <int Dim> void MovingPart<Dim>::check_rest(double uncertainty) {
             square += d * d;
         }
     }
-    const KeptCurve<Dim> all(start_.packing, start_.structure.contacts(), slot_, 0.0);
+    const KeptCurve all(start_.packing, start_.structure.contacts(), slot_, 0.0);
     const double inverse = 1.003 / start_.inverse.sigma_min;
     if (!((std::sqrt(square) + uncertainty) * inverse * all.lipschitz * up < 1)) {
         trouble_ = "grains that do not move are not proved to be at the same place at both ends";
     }
 }
 
-template <int Dim> std::unique_ptr<ArcCentre<Dim>> MovingPart<Dim>::at_start(InverseBoundCache& cache) const {
-    return whole_ ? ArcCentre<Dim>::of(start_)
-                  : ArcCentre<Dim>::make(start_packing_, with_row(start_.structure.contacts()[slot_]), cache);
+std::unique_ptr<ArcCentre> MovingPart::at_start(InverseBoundCache& cache) const {
+    return whole_ ? ArcCentre::of(start_)
+                  : ArcCentre::make(start_packing_, with_row(start_.structure.contacts()[slot_]), cache);
 }
 
-template <int Dim> std::unique_ptr<ArcCentre<Dim>> MovingPart<Dim>::at_end(InverseBoundCache& cache) const {
-    return whole_ && !end_moved_
-               ? ArcCentre<Dim>::of(end_)
-               : ArcCentre<Dim>::make(end_packing_, with_row(end_.structure.contacts()[slot_]), cache);
+std::unique_ptr<ArcCentre> MovingPart::at_end(InverseBoundCache& cache) const {
+    return whole_ && !end_moved_ ? ArcCentre::of(end_)
+                                 : ArcCentre::make(end_packing_, with_row(end_.structure.contacts()[slot_]), cache);
 }
 
-template <int Dim>
-std::unique_ptr<ArcCentre<Dim>> MovingPart<Dim>::centre(Packing<Dim> packing, int held,
-                                                        InverseBoundCache& cache) const {
-    return ArcCentre<Dim>::make(std::move(packing), with_row(Contact{ContactKind::held, held, 0}), cache);
+std::unique_ptr<ArcCentre> MovingPart::centre(Packing packing, int held, InverseBoundCache& cache) const {
+    return ArcCentre::make(std::move(packing), with_row(Contact{ContactKind::held, held, 0}), cache);
 }
 
-template <int Dim>
-std::unique_ptr<ArcCentre<Dim>> MovingPart<Dim>::with_fastest(const ArcCentre<Dim>& vertex, double& rate,
-                                                              InverseBoundCache& cache) const {
+std::unique_ptr<ArcCentre> MovingPart::with_fastest(const ArcCentre& vertex, double& rate,
+                                                    InverseBoundCache& cache) const {
     std::vector<double> mechanism(static_cast<std::size_t>(vertex.structure().size()), 0.0);
     mechanism[curve_->slot] = -rate; // approach velocity
     vertex.factorisation().solve_velocities(mechanism);
@@ -208,7 +209,7 @@ std::unique_ptr<ArcCentre<Dim>> MovingPart<Dim>::with_fastest(const ArcCentre<Di
                   vertex.structure().dofs().coordinate_of(static_cast<int>(fastest - mechanism.begin())), cache);
 }
 
-template <int Dim> std::vector<int> MovingPart<Dim>::grains() const {
+std::vector<int> MovingPart::grains() const {
     std::vector<int> list;
     for (std::size_t g = 0; g < disk_moves_.size() + wall_moves_.size() && !whole_; ++g) {
         if (g < disk_moves_.size() ? disk_moves_[g] != 0 : wall_moves_[g - disk_moves_.size()] != 0) {
@@ -218,7 +219,7 @@ template <int Dim> std::vector<int> MovingPart<Dim>::grains() const {
     return list;
 }
 
-template <int Dim> std::vector<Contact> MovingPart<Dim>::watched(const CandidateList<Dim>& list) const {
+std::vector<Contact> MovingPart::watched(const CandidateList& list) const {
     const Contact& opened = start_.structure.contacts()[slot_];
     const ContactSet kept(start_.structure.contacts(), start_.packing.disk_count());
     std::vector<Contact> contacts;
@@ -233,7 +234,7 @@ template <int Dim> std::vector<Contact> MovingPart<Dim>::watched(const Candidate
     return contacts;
 }
 
-template <int Dim> std::vector<Contact> MovingPart<Dim>::all(const CandidateList<Dim>& list) const {
+std::vector<Contact> MovingPart::all(const CandidateList& list) const {
     const ContactSet kept(start_.structure.contacts(), start_.packing.disk_count());
     std::vector<Contact> contacts;
     std::copy_if(list.contacts.begin(), list.contacts.end(), std::back_inserter(contacts),
@@ -241,8 +242,7 @@ template <int Dim> std::vector<Contact> MovingPart<Dim>::all(const CandidateList
     return contacts;
 }
 
-template <int Dim>
-bool MovingPart<Dim>::complete(const CurvePiece<Dim>& piece, double h, const CandidateList<Dim>& list) const {
+bool MovingPart::complete(const CurvePiece& piece, double h, const CandidateList& list) const {
     const std::vector<double>& q = piece.centre().q;
     if (list.reference.size() != q.size()) {
         return false;
@@ -258,15 +258,15 @@ bool MovingPart<Dim>::complete(const CurvePiece<Dim>& piece, double h, const Can
         }
         return used * up < 0.5 * list.reach;
     }
-    for (std::size_t k = 0; k < q.size(); k += Dim) {
+    for (std::size_t k = 0; k < q.size(); k += piece.centre().axes()) {
         double moved = 0;
-        for (std::size_t a = 0; a < Dim; ++a) {
+        for (std::size_t a = 0; a < piece.centre().axes(); ++a) {
             moved = std::hypot(moved, q[k + a] - list.reference[k + a]);
         }
         double power = h;
         for (const auto& coefficient : piece.coefficients()) {
             double size = 0;
-            for (std::size_t a = 0; a < Dim; ++a) {
+            for (std::size_t a = 0; a < piece.centre().axes(); ++a) {
                 size = std::hypot(size, coefficient[k + a]);
             }
             moved += power * size;
@@ -278,7 +278,5 @@ bool MovingPart<Dim>::complete(const CurvePiece<Dim>& piece, double h, const Can
     }
     return true;
 }
-
-template class MovingPart<2>;
 
 } // namespace isostat

@@ -22,16 +22,16 @@ double product(const std::vector<double>& maybe_empty, const std::vector<double>
 }
 
 /// n . third derivative of a kept gap, whose own third derivative is 0: -3 (t . curvature) / d, as approach.
-template <int Dim> double third_approach(const CurveCourse<Dim>& course, const Contact& c) {
+double third_approach(const CurveCourse& course, const Contact& c) {
     if (c.kind != ContactKind::disk_disk) {
         return 0;
     }
-    const auto d = separation<Dim>(course.at.q, c);
-    const auto t = separation<Dim>(course.tangent, c);
-    const auto bend = separation<Dim>(course.curvature, c);
+    const auto d = separation(course.at.layout(), course.at.q, c);
+    const auto t = separation(course.at.layout(), course.tangent, c);
+    const auto bend = separation(course.at.layout(), course.curvature, c);
     double product = 0;
     double square = 0;
-    for (std::size_t a = 0; a < Dim; ++a) {
+    for (std::size_t a = 0; a < plane; ++a) {
         square += d[a] * d[a];
         product += t[a] * bend[a];
     }
@@ -40,7 +40,7 @@ template <int Dim> double third_approach(const CurveCourse<Dim>& course, const C
 
 } // namespace
 
-template <int Dim> double PowerAlong<Dim>::operator()(const Packing<Dim>& at, const std::vector<double>& t) const {
+double PowerAlong::operator()(const Packing& at, const std::vector<double>& t) const {
     if (load_.infinitesimal) {
         return product(load_.load->infinitesimal, t);
     }
@@ -49,7 +49,7 @@ template <int Dim> double PowerAlong<Dim>::operator()(const Packing<Dim>& at, co
     return power;
 }
 
-template <int Dim> double PowerAlong<Dim>::largest_force(const Packing<Dim>& at) const {
+double PowerAlong::largest_force(const Packing& at) const {
     if (load_.infinitesimal) {
         return isostat::largest(load_.load->infinitesimal);
     }
@@ -58,7 +58,7 @@ template <int Dim> double PowerAlong<Dim>::largest_force(const Packing<Dim>& at)
     return most;
 }
 
-template <int Dim> double PowerAlong<Dim>::terms(const Packing<Dim>& at, const std::vector<double>& v) const {
+double PowerAlong::terms(const Packing& at, const std::vector<double>& v) const {
     double sum = 0;
     if (load_.infinitesimal) {
         for (std::size_t k = 0; k < load_.load->infinitesimal.size(); ++k) {
@@ -71,13 +71,12 @@ template <int Dim> double PowerAlong<Dim>::terms(const Packing<Dim>& at, const s
 }
 
 /// DF v: true stresses act on lengths, linear in q in two dimensions. Empty when the load is dead.
-template <int Dim>
-std::vector<double> PowerAlong<Dim>::change(const Packing<Dim>& at, const std::vector<double>& v) const {
-    static_assert(Dim == 2);
+std::vector<double> PowerAlong::change(const Packing& at, const std::vector<double>& v) const {
+    static_assert(plane == 2);
     if (load_.infinitesimal || load_.load->kind == LoadKind::nominal) {
         return {};
     }
-    Packing<Dim> there = at;
+    Packing there = at;
     for (std::size_t k = 0; k < there.q.size(); ++k) {
         there.q[k] += v[k];
     }
@@ -89,8 +88,7 @@ std::vector<double> PowerAlong<Dim>::change(const Packing<Dim>& at, const std::v
 
 /// Passes until what one does to the power over a length s is small beside `least`, a power, or beside what the slope
 /// does: of a power that starts at 0.
-template <int Dim>
-void PowerAlong<Dim>::sharpen(CurveCourse<Dim>& course, Chord<Dim>& chord, double s, double least) const {
+void PowerAlong::sharpen(CurveCourse& course, Chord& chord, double s, double least) const {
     constexpr int most_passes = 10;
     constexpr double small = 0.1;
     double change = roundoff::infinity;
@@ -108,8 +106,7 @@ void PowerAlong<Dim>::sharpen(CurveCourse<Dim>& course, Chord<Dim>& chord, doubl
     }
 }
 
-template <int Dim>
-std::optional<double> PowerAlong<Dim>::dip(const CurveCourse<Dim>& course, Chord<Dim>& chord, const Step& step) const {
+std::optional<double> PowerAlong::dip(const CurveCourse& course, Chord& chord, const Step& step) const {
     // Factors of another place leave an error of this share in the curvature: where the power is less beside its terms
     // it is a difference that they do not tell.
     constexpr double stale = 0.1;
@@ -121,20 +118,18 @@ std::optional<double> PowerAlong<Dim>::dip(const CurveCourse<Dim>& course, Chord
     if (least > 2 * std::abs(step.end - step.start - slope) && least > stale * s * terms(course.at, course.curvature)) {
         return std::nullopt;
     }
-    CurveCourse<Dim> sharp = course;
+    CurveCourse sharp = course;
     sharpen(sharp, chord, s, std::min(step.start, step.end));
     return dip_of_cubic(sharp, chord, step);
 }
 
 /// p' = F.c + t.DF t, c = dt/ds; dead loads: DF = 0.
-template <int Dim> double PowerAlong<Dim>::slope_along(const CurveCourse<Dim>& course) const {
+double PowerAlong::slope_along(const CurveCourse& course) const {
     return (*this)(course.at, course.curvature) + product(change(course.at, course.tangent), course.tangent);
 }
 
 /// p'' = F.e + 2 c.DF t + t.DF c, e = dc/ds.
-template <int Dim>
-std::optional<double> PowerAlong<Dim>::dip_of_cubic(const CurveCourse<Dim>& course, Chord<Dim>& chord,
-                                                    const Step& step) const {
+std::optional<double> PowerAlong::dip_of_cubic(const CurveCourse& course, Chord& chord, const Step& step) const {
     const double s = step.s;
     const double p1 = s * slope_along(course);
     const std::vector<double>& third =
@@ -170,7 +165,5 @@ void SignChange::found(End there) {
         side_ = -1;
     }
 }
-
-template class PowerAlong<2>;
 
 } // namespace isostat

@@ -11,15 +11,15 @@
 namespace isostat {
 
 /// Power of the load, F_ext . t, and where it may vanish inside a step: estimates.
-template <int Dim> class PowerAlong {
+class PowerAlong {
   public:
-    explicit PowerAlong(const PowerLoad<Dim>& load) : load_(load) {}
+    explicit PowerAlong(const PowerLoad& load) : load_(load) {}
 
     [[nodiscard]] bool starts_at_zero() const { return load_.starts_at_zero; }
     /// F_ext . t at a configuration.
-    [[nodiscard]] double operator()(const Packing<Dim>& at, const std::vector<double>& t) const;
+    [[nodiscard]] double operator()(const Packing& at, const std::vector<double>& t) const;
     /// Largest force of the load.
-    [[nodiscard]] double largest_force(const Packing<Dim>& at) const;
+    [[nodiscard]] double largest_force(const Packing& at) const;
 
     /// The power at the two ends of a step of length s.
     struct Step {
@@ -28,18 +28,17 @@ template <int Dim> class PowerAlong {
     /// First place inside a step where the power seems to be negative although both ends are positive: the cubic with
     /// its value and its first two derivatives at the start, and its value at the end. Mostly without a pass; else the
     /// curvature of the course is solved for until it tells the slope of the power, and one pass more.
-    [[nodiscard]] std::optional<double> dip(const CurveCourse<Dim>& course, Chord<Dim>& chord, const Step& step) const;
+    [[nodiscard]] std::optional<double> dip(const CurveCourse& course, Chord& chord, const Step& step) const;
 
   private:
     /// Sum of the sizes of the terms of F_ext . v.
-    [[nodiscard]] double terms(const Packing<Dim>& at, const std::vector<double>& v) const;
-    [[nodiscard]] double slope_along(const CurveCourse<Dim>& course) const;
-    void sharpen(CurveCourse<Dim>& course, Chord<Dim>& chord, double s, double least) const;
-    [[nodiscard]] std::optional<double> dip_of_cubic(const CurveCourse<Dim>& course, Chord<Dim>& chord,
-                                                     const Step& step) const;
-    [[nodiscard]] std::vector<double> change(const Packing<Dim>& at, const std::vector<double>& v) const;
+    [[nodiscard]] double terms(const Packing& at, const std::vector<double>& v) const;
+    [[nodiscard]] double slope_along(const CurveCourse& course) const;
+    void sharpen(CurveCourse& course, Chord& chord, double s, double least) const;
+    [[nodiscard]] std::optional<double> dip_of_cubic(const CurveCourse& course, Chord& chord, const Step& step) const;
+    [[nodiscard]] std::vector<double> change(const Packing& at, const std::vector<double>& v) const;
 
-    PowerLoad<Dim> load_;
+    PowerLoad load_;
 };
 
 /// Root of a function between two places where it has opposite signs, positive at the lower one: false position with
@@ -60,7 +59,5 @@ class SignChange {
     End low_, high_;
     int side_ = 0; ///< +1, -1: the end replaced last was the lower, the upper one
 };
-
-extern template class PowerAlong<2>;
 
 } // namespace isostat

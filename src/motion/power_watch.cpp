@@ -18,7 +18,7 @@ constexpr double largest_open_end = 1e-2;
 
 /// P(s) = -f_slot row . p'(s) + d/ds sum_l f_l |difference of (p - centre)|^2 / (2 d_l), up to `open(h)`, f the forces
 /// that balance the load at the centre up to a residual.
-template <int Dim> struct PowerWatch<Dim>::Power {
+struct PowerWatch::Power {
     std::vector<double> c;      ///< P(s) = sum_k c_k s^k
     std::vector<double> c_open; ///< rounding of c_k
     std::vector<double> g;      ///< (sum (f/d)^2 |difference of a_k|^2)^(1/2), k = 1 ...
@@ -59,7 +59,7 @@ template <int Dim> struct PowerWatch<Dim>::Power {
     }
 };
 
-template <int Dim> void PowerWatch<Dim>::walk(const Power& power, double from, double to, int depth) {
+void PowerWatch::walk(const Power& power, double from, double to, int depth) {
     if (power.low(from, to) > 0) {
         return;
     }
@@ -78,8 +78,8 @@ template <int Dim> void PowerWatch<Dim>::walk(const Power& power, double from, d
 }
 
 /// Forces that balance the load at the centre, and what they leave of it.
-template <int Dim> typename PowerWatch<Dim>::Balance PowerWatch<Dim>::balance(const CurvePiece<Dim>& piece) const {
-    const IsostaticStructure<Dim>& structure = piece.structure();
+PowerWatch::Balance PowerWatch::balance(const CurvePiece& piece) const {
+    const IsostaticStructure& structure = piece.structure();
     const sparse::Matrix<double>& h = structure.matrix();
     const auto n = static_cast<std::size_t>(structure.size());
     const std::vector<double> load =
@@ -117,7 +117,7 @@ template <int Dim> typename PowerWatch<Dim>::Balance PowerWatch<Dim>::balance(co
 }
 
 /// The part of the free row; returns the largest speed.
-template <int Dim> double PowerWatch<Dim>::add_row(const CurvePiece<Dim>& piece, double force, Power& power) {
+double PowerWatch::add_row(const CurvePiece& piece, double force, Power& power) {
     const auto& a = piece.coefficients();
     double speed = 0;
     double reach_power = 1;
@@ -136,15 +136,14 @@ template <int Dim> double PowerWatch<Dim>::add_row(const CurvePiece<Dim>& piece,
 }
 
 /// The part of a kept contact of two disks.
-template <int Dim>
-void PowerWatch<Dim>::add_contact(const CurvePiece<Dim>& piece, const Contact& contact, double force, Power& power) {
+void PowerWatch::add_contact(const CurvePiece& piece, const Contact& contact, double force, Power& power) {
     const auto& a = piece.coefficients();
     const std::size_t order = a.size();
     const auto count = static_cast<double>(piece.structure().size());
-    const auto line = separation<Dim>(piece.centre().q, contact);
-    std::vector<std::array<double, Dim>> d(order + 1);
+    const auto line = separation(piece.centre().layout(), piece.centre().q, contact);
+    std::vector<PerAxis<double>> d(order + 1);
     for (std::size_t k = 1; k <= order; ++k) {
-        d[k] = separation<Dim>(a[k - 1], contact);
+        d[k] = separation(piece.centre().layout(), a[k - 1], contact);
     }
     const double weight = force / std::sqrt(dot(line, line));
     power.heaviest = std::max(power.heaviest, std::abs(weight));
@@ -154,7 +153,7 @@ void PowerWatch<Dim>::add_contact(const CurvePiece<Dim>& piece, const Contact& c
     for (std::size_t k = 2; k <= 2 * order; ++k) {
         RoundedSum sum;
         for (std::size_t p = k > order ? k - order : 1; p <= std::min(order, k - 1); ++p) {
-            for (std::size_t c = 0; c < Dim; ++c) {
+            for (std::size_t c = 0; c < most_axes; ++c) {
                 sum.add(d[p][c] * d[k - p][c]);
             }
         }
@@ -164,8 +163,8 @@ void PowerWatch<Dim>::add_contact(const CurvePiece<Dim>& piece, const Contact& c
     }
 }
 
-template <int Dim> typename PowerWatch<Dim>::Power PowerWatch<Dim>::power_along(const CurvePiece<Dim>& piece) const {
-    const KeptCurve<Dim>& curve = piece.curve();
+PowerWatch::Power PowerWatch::power_along(const CurvePiece& piece) const {
+    const KeptCurve& curve = piece.curve();
     const Balance forces = balance(piece);
     const std::size_t order = piece.coefficients().size();
     Power power;
@@ -188,7 +187,7 @@ template <int Dim> typename PowerWatch<Dim>::Power PowerWatch<Dim>::power_along(
     return power;
 }
 
-template <int Dim> void PowerWatch<Dim>::look(const CurvePiece<Dim>& piece, double from, double to) {
+void PowerWatch::look(const CurvePiece& piece, double from, double to) {
     if (power_.load == nullptr || (!power_.infinitesimal && power_.load->kind == LoadKind::true_stress)) {
         reason_ = power_.load == nullptr ? "no load was given" : "true stresses are not dead loads";
         return;
@@ -210,7 +209,7 @@ template <int Dim> void PowerWatch<Dim>::look(const CurvePiece<Dim>& piece, doub
     }
 }
 
-template <int Dim> void PowerWatch<Dim>::conclude(ArcCertificate& certificate, bool turns) const {
+void PowerWatch::conclude(ArcCertificate& certificate, bool turns) const {
     certificate.power_reason = reason_;
     if (!reason_.empty()) {
         return;
@@ -223,7 +222,5 @@ template <int Dim> void PowerWatch<Dim>::conclude(ArcCertificate& certificate, b
     }
     certificate.power = Verdict::proved;
 }
-
-template class PowerWatch<2>;
 
 } // namespace isostat

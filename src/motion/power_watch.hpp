@@ -13,10 +13,10 @@
 namespace isostat {
 
 /// Power F . q'(s) of a load that does not change, piece by piece.
-template <int Dim> class PowerWatch {
+class PowerWatch {
   public:
-    explicit PowerWatch(const PowerLoad<Dim>& power) : power_(power) {}
-    void look(const CurvePiece<Dim>& piece, double from, double to);
+    explicit PowerWatch(const PowerLoad& power) : power_(power) {}
+    void look(const CurvePiece& piece, double from, double to);
     /// Fills the fields of the power. `turns`: the arc ends at a power turn.
     void conclude(ArcCertificate& certificate, bool turns) const;
 
@@ -26,14 +26,14 @@ template <int Dim> class PowerWatch {
         std::vector<double> f; ///< per contact
         double residual = 0;   ///< bound of |load - H f| (2-norm)
     };
-    [[nodiscard]] Balance balance(const CurvePiece<Dim>& piece) const;
-    [[nodiscard]] Power power_along(const CurvePiece<Dim>& piece) const;
-    static double add_row(const CurvePiece<Dim>& piece, double force, Power& power);
-    static void add_contact(const CurvePiece<Dim>& piece, const Contact& contact, double force, Power& power);
+    [[nodiscard]] Balance balance(const CurvePiece& piece) const;
+    [[nodiscard]] Power power_along(const CurvePiece& piece) const;
+    static double add_row(const CurvePiece& piece, double force, Power& power);
+    static void add_contact(const CurvePiece& piece, const Contact& contact, double force, Power& power);
     /// Longest end [s, to] and start [from, s] on which the power is proved positive.
     void walk(const Power& power, double from, double to, int depth);
 
-    const PowerLoad<Dim>& power_;
+    const PowerLoad& power_;
     std::string reason_;
     int pieces_ = 0;
     double first_open_ = 0;   ///< share of the first piece, from its start
@@ -41,7 +41,5 @@ template <int Dim> class PowerWatch {
     bool inner_open_ = false; ///< not proved elsewhere
     std::vector<std::pair<double, double>> open_;
 };
-
-extern template class PowerWatch<2>;
 
 } // namespace isostat

@@ -12,9 +12,9 @@ namespace isostat {
 namespace {
 
 /// Where the iteration begins: before the place that double took for the end, on the curve to (1e-6)^2.
-template <int Dim> Packing<Dim> a_little_before(const RoughEnd<Dim>& rough) {
+Packing a_little_before(const RoughEnd& rough) {
     constexpr double back = 1e-6; // of a radius: a hundred times the stretch on which a gap is 0 to rounding
-    Packing<Dim> at = rough.end;
+    Packing at = rough.end;
     const double speed = largest(rough.tangent);
     const double way = std::min(back * at.min_radius(), 0.5 * rough.displacement);
     for (std::size_t k = 0; k < rough.tangent.size() && speed > 0; ++k) {
@@ -24,19 +24,17 @@ template <int Dim> Packing<Dim> a_little_before(const RoughEnd<Dim>& rough) {
 }
 
 /// The step that closes the gaps of `at` + `correction`; empty: the contacts are singular, structurally or to doubles.
-template <int Dim>
-std::vector<double> newton_step(const RoughEnd<Dim>& rough, const Packing<Dim>& at,
-                                const std::vector<dd_real>& correction) {
-    Packing<Dim> rounded = at;
+std::vector<double> newton_step(const RoughEnd& rough, const Packing& at, const std::vector<dd_real>& correction) {
+    Packing rounded = at;
     for (std::size_t k = 0; k < correction.size(); ++k) {
         rounded.q[k] += correction[k].x[0];
     }
-    auto contacts = IsostaticStructure<Dim>::exchange(rough.structure, rounded, rough.opened, rough.closed);
+    auto contacts = IsostaticStructure::exchange(rough.structure, rounded, rough.opened, rough.closed);
     if (!contacts) {
         return {};
     }
-    const auto there = IsostaticStructure<Dim>::without_proof(std::move(*contacts));
-    const CorrectedConfiguration<Dim, dd_real> place(Arithmetic<dd_real>(), at, correction);
+    const auto there = IsostaticStructure::without_proof(std::move(*contacts));
+    const CorrectedConfiguration<dd_real> place(Arithmetic<dd_real>(), at, correction);
     std::vector<double> step;
     for (const Contact& contact : there.contacts()) {
         step.push_back(place.gap_function(contact).x[0]);
@@ -48,12 +46,12 @@ std::vector<double> newton_step(const RoughEnd<Dim>& rough, const Packing<Dim>& 
 
 } // namespace
 
-template <int Dim> std::optional<Packing<Dim>> precise_end(const RoughEnd<Dim>& rough) {
+std::optional<Packing> precise_end(const RoughEnd& rough) {
     constexpr int max_steps = 60;
     constexpr double converged = 1e-22; // of a radius: coordinates are rounded to doubles afterwards
-    Packing<Dim> at = a_little_before(rough);
+    Packing at = a_little_before(rough);
     std::vector<dd_real> correction(at.q.size(), dd_real(0.0));
-    const DofMap<Dim>& dofs = rough.structure.dofs();
+    const DofMap& dofs = rough.structure.dofs();
     for (int k = 0; k < max_steps; ++k) {
         const std::vector<double> step = newton_step(rough, at, correction);
         const double size = step.empty() ? roundoff::infinity : largest(step);
@@ -73,7 +71,5 @@ template <int Dim> std::optional<Packing<Dim>> precise_end(const RoughEnd<Dim>& 
     }
     return std::nullopt;
 }
-
-template std::optional<Packing<2>> precise_end<2>(const RoughEnd<2>&);
 
 } // namespace isostat

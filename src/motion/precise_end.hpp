@@ -9,11 +9,11 @@
 namespace isostat {
 
 /// An arc that was followed in double, and what is nearly singular there.
-template <int Dim> struct RoughEnd {
-    const IsostaticStructure<Dim>& structure; ///< at the start
+struct RoughEnd {
+    const IsostaticStructure& structure; ///< at the start
     ContactId opened;
     Contact closed;
-    const Packing<Dim>& end;
+    const Packing& end;
     const std::vector<double>& tangent; ///< there, on coordinates, forwards
     double displacement;                ///< of the arc, largest of a coordinate
 };
@@ -23,8 +23,6 @@ template <int Dim> struct RoughEnd {
 /// 1e-8 and more, on which the matrix is another one. Where the gap nearly grazes there are two places: the iteration
 /// begins a little before the end, from where it finds the first. Nothing: it did not converge. A guess: what is proved
 /// of it is for the caller. Cost: some 20 factorisations.
-template <int Dim> std::optional<Packing<Dim>> precise_end(const RoughEnd<Dim>& rough);
-
-extern template std::optional<Packing<2>> precise_end<2>(const RoughEnd<2>&);
+std::optional<Packing> precise_end(const RoughEnd& rough);
 
 } // namespace isostat

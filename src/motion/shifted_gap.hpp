@@ -17,17 +17,16 @@ namespace isostat {
 /// F_l at `centre` + `shift` (empty: 0) of a contact or of a held coordinate, which stays where it is in `start`; the
 /// equation in units of length (A1, proofs/arcs.md). The radius bounds the error of the value.
 /// \pre separations of both are exact (on their grids)
-template <int Dim>
-Enclosure shifted_equation(const Packing<Dim>& start, const Packing<Dim>& centre, const Contact& c,
-                           const std::vector<double>& shift) {
+inline Enclosure shifted_equation(const Packing& start, const Packing& centre, const Contact& c,
+                                  const std::vector<double>& shift) {
     constexpr double rounding = 0x1p-96; // of a few operations, each within 2^-98
     if (c.kind == ContactKind::held) {
         const auto k = static_cast<std::size_t>(c.i);
         const dd_real off = dd_real(centre.q[k]) - start.q[k] + (shift.empty() ? 0.0 : shift[k]);
         return {off.x[0], std::abs(off.x[1]) + rounding * std::abs(centre.q[k])};
     }
-    const auto x = separation_over<Dim>(centre.q, c);
-    const auto d = shift.empty() ? decltype(x){} : separation_over<Dim>(shift, c);
+    const auto x = separation_over(centre.layout(), centre.q, c);
+    const auto d = shift.empty() ? decltype(x){} : separation_over(centre.layout(), shift, c);
     const auto& radius = centre.radius;
     const auto i = static_cast<std::size_t>(c.i);
     if (c.kind != ContactKind::disk_disk) {
@@ -36,7 +35,7 @@ Enclosure shifted_equation(const Packing<Dim>& start, const Packing<Dim>& centre
     }
     const dd_real distance = dd_real(radius[i]) + radius[static_cast<std::size_t>(c.j)];
     dd_real square = 0.0;
-    for (std::size_t a = 0; a < Dim; ++a) {
+    for (std::size_t a = 0; a < most_axes; ++a) {
         const dd_real component = dd_real(x[a]) + d[a];
         square += component * component;
     }

@@ -5,7 +5,7 @@
 
 namespace isostat {
 
-Wrapped wrap_into_cell(Packing<2>& packing) {
+Wrapped wrap_into_cell(Packing& packing) {
     Wrapped out;
     out.periods.resize(packing.radius.size());
     const double lean = packing.cell.all() ? packing.lattice(0, 1) / packing.lattice(1, 1) : 0;

@@ -18,6 +18,6 @@ struct Wrapped {
 /// Moves every disk by whole periods so that its fractional coordinates, as rounded, are in [0, 1); along axes with
 /// walls nothing moves. Exact where the coordinates are on the grid of `snap_to_grid`.
 /// \pre there are periodic axes
-Wrapped wrap_into_cell(Packing<2>& packing);
+Wrapped wrap_into_cell(Packing& packing);
 
 } // namespace isostat

@@ -7,23 +7,23 @@
 
 namespace isostat {
 
-template <int Dim> void Load<Dim>::refer_to(const Packing<Dim>& packing) {
-    for (std::size_t a = 0; a < Dim; ++a) {
+void Load::refer_to(const Packing& packing) {
+    for (std::size_t a = 0; a < packing.axes(); ++a) {
         reference_length[a] = packing.length(static_cast<int>(a));
     }
-    for (std::size_t t = 0; t < Cell<Dim>::tilts; ++t) {
-        reference_tilt[t] = packing.cell.any() ? packing.q[packing.length_at(Dim + t)] : 0;
+    for (std::size_t t = 0; t < packing.tilts(); ++t) {
+        reference_tilt[t] = packing.cell.any() ? packing.q[packing.length_at(packing.axes() + t)] : 0;
     }
 }
 
-template <int Dim> std::vector<WallForce> Load<Dim>::wall_forces(const Packing<Dim>& packing) const {
-    static_assert(Dim == 2, "the area that a wall is pressed on is one length");
+std::vector<WallForce> Load::wall_forces(const Packing& packing) const {
+    assert(dimension == 2); // the area that a wall is pressed on is one length
     std::vector<WallForce> forces;
-    forces.reserve(Dim + Cell<Dim>::tilts);
-    for (int a = 0; a < Dim; ++a) {
+    forces.reserve(packing.axes() + packing.tilts());
+    for (int a = 0; a < dimension; ++a) {
         const int other = 1 - a;
         const bool follows = kind == LoadKind::true_stress;
-        const int walls = Dim * packing.disk_count();
+        const int walls = dimension * packing.disk_count();
         const auto axis = static_cast<std::size_t>(a);
         if (packing.cell.periodic[axis] ? packing.cell.period_moves[axis]
                                         : packing.walls.upper[axis] == WallKind::movable) {
@@ -34,12 +34,12 @@ template <int Dim> std::vector<WallForce> Load<Dim>::wall_forces(const Packing<D
     }
     assert(!loads_tilt() || (packing.cell.any() && packing.cell.tilt_moves[0]));
     if (packing.cell.any() && packing.cell.tilt_moves[0]) {
-        forces.push_back({Dim * packing.disk_count() + Dim, 0, shear[0], reference_length[0], -1, loads_tilt()});
+        forces.push_back({dimension * (packing.disk_count() + 1), 0, shear[0], reference_length[0], -1, loads_tilt()});
     }
     return forces;
 }
 
-template <int Dim> std::vector<int> Load<Dim>::loaded_rows(const Packing<Dim>& packing, const DofMap<Dim>& dofs) const {
+std::vector<int> Load::loaded_rows(const Packing& packing, const DofMap& dofs) const {
     std::vector<int> rows;
     for (std::size_t k = 0; k < disk_force.size(); ++k) {
         if (disk_force[k] != 0 && dofs.dof_of(k) >= 0) {
@@ -54,7 +54,7 @@ template <int Dim> std::vector<int> Load<Dim>::loaded_rows(const Packing<Dim>& p
     return rows;
 }
 
-template <int Dim> int Load<Dim>::loaded_wall_row(const Packing<Dim>& packing, const DofMap<Dim>& dofs) const {
+int Load::loaded_wall_row(const Packing& packing, const DofMap& dofs) const {
     for (const WallForce& wall : wall_forces(packing)) {
         if (wall.loaded && wall.length != 0) {
             return dofs.dof_of(static_cast<std::size_t>(wall.coordinate));
@@ -63,13 +63,13 @@ template <int Dim> int Load<Dim>::loaded_wall_row(const Packing<Dim>& packing, c
     return -1;
 }
 
-template <int Dim> std::vector<double> Load<Dim>::external_force(const Packing<Dim>& packing) const {
+std::vector<double> Load::external_force(const Packing& packing) const {
     std::vector<double> force(packing.q.size(), 0.0);
     for_each_force(packing, [&force](std::size_t k, double f) { force[k] = f; });
     return force;
 }
 
-template <int Dim> std::vector<double> Load<Dim>::unit_force(const Packing<Dim>& packing) const {
+std::vector<double> Load::unit_force(const Packing& packing) const {
     std::vector<double> force(packing.q.size(), 0.0);
     for (const WallForce& wall : wall_forces(packing)) {
         if (wall.loaded) {
@@ -79,7 +79,7 @@ template <int Dim> std::vector<double> Load<Dim>::unit_force(const Packing<Dim>&
     return force;
 }
 
-template <int Dim> std::vector<double> Load<Dim>::fixed_force(const Packing<Dim>& packing) const {
+std::vector<double> Load::fixed_force(const Packing& packing) const {
     std::vector<double> force(packing.q.size(), 0.0);
     std::copy(disk_force.begin(), disk_force.end(), force.begin());
     for (const WallForce& wall : wall_forces(packing)) {
@@ -90,30 +90,30 @@ template <int Dim> std::vector<double> Load<Dim>::fixed_force(const Packing<Dim>
     return force;
 }
 
-template <int Dim> double potential(const Packing<Dim>& packing, const Load<Dim>& load) {
+double potential(const Packing& packing, const Load& load) {
     double work = 0;
     load.for_each_force(packing, [&](std::size_t k, double f) { work -= f * packing.q[k]; });
     return work;
 }
 
-template <int Dim>
-std::vector<double> generic_infinitesimal(const std::vector<double>& radius, unsigned long long seed) {
+std::vector<double> generic_infinitesimal(const std::vector<double>& radius, unsigned long long seed, int dimension) {
     // Mostly along minus the last axis, tilted off every wall normal; the noise makes it generic.
     constexpr double tilt = 0.10;
     constexpr double amplitude = 0.25;
     std::mt19937_64 random(seed);
     const auto noise = [&random] { return 2 * static_cast<double>(random() >> 11) * 0x1p-53 - 1; };
-    std::vector<double> g(static_cast<std::size_t>(Dim) * radius.size());
+    const auto axes = static_cast<std::size_t>(dimension);
+    std::vector<double> g(axes * radius.size());
     for (std::size_t i = 0; i < radius.size(); ++i) {
-        for (std::size_t a = 0; a < Dim; ++a) {
-            const double direction = a + 1 == Dim ? -1.0 : tilt;
-            g[Dim * i + a] = radius[i] * radius[i] * (direction + amplitude * noise());
+        for (std::size_t a = 0; a < axes; ++a) {
+            const double direction = a + 1 == axes ? -1.0 : tilt;
+            g[axes * i + a] = radius[i] * radius[i] * (direction + amplitude * noise());
         }
     }
     return g;
 }
 
-template <int Dim> void balance(std::vector<double>& infinitesimal, const Cell<Dim>& cell) {
+void balance(std::vector<double>& infinitesimal, const Cell& cell) {
     constexpr int bits = 30;
     double largest = 0;
     for (const double g : infinitesimal) {
@@ -121,21 +121,22 @@ template <int Dim> void balance(std::vector<double>& infinitesimal, const Cell<D
     }
     int exponent = 0;
     std::frexp(largest, &exponent);
-    for (std::size_t a = 0; a < Dim && largest > 0; ++a) {
+    const auto axes = static_cast<std::size_t>(cell.dimension);
+    for (std::size_t a = 0; a < axes && largest > 0; ++a) {
         if (!cell.periodic[a]) {
             continue;
         }
         double others = 0; // up to 2^22 terms of 30 bits: exact
-        for (std::size_t k = a; k < infinitesimal.size(); k += Dim) {
+        for (std::size_t k = a; k < infinitesimal.size(); k += axes) {
             infinitesimal[k] =
                 std::ldexp(std::nearbyint(std::ldexp(infinitesimal[k], bits - exponent)), exponent - bits);
-            others += k == Dim * static_cast<std::size_t>(cell.pin) + a ? 0 : infinitesimal[k];
+            others += k == axes * static_cast<std::size_t>(cell.pin) + a ? 0 : infinitesimal[k];
         }
-        infinitesimal[Dim * static_cast<std::size_t>(cell.pin) + a] = -others;
+        infinitesimal[axes * static_cast<std::size_t>(cell.pin) + a] = -others;
     }
 }
 
-template <int Dim> std::vector<double> on_dofs(const std::vector<double>& on_coordinates, const DofMap<Dim>& dofs) {
+std::vector<double> on_dofs(const std::vector<double>& on_coordinates, const DofMap& dofs) {
     std::vector<double> force(static_cast<std::size_t>(dofs.dof_count()), 0.0);
     for (std::size_t mu = 0; mu < force.size(); ++mu) {
         const auto k = static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(mu)));
@@ -143,11 +144,5 @@ template <int Dim> std::vector<double> on_dofs(const std::vector<double>& on_coo
     }
     return force;
 }
-
-template struct Load<2>;
-template std::vector<double> on_dofs<2>(const std::vector<double>&, const DofMap<2>&);
-template void balance<2>(std::vector<double>&, const Cell<2>&);
-template double potential<2>(const Packing<2>&, const Load<2>&);
-template std::vector<double> generic_infinitesimal<2>(const std::vector<double>&, unsigned long long);
 
 } // namespace isostat

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numbers>
 
@@ -17,7 +18,7 @@ constexpr std::array<const char*, 3> upper_name{"right wall", "top wall", "front
 constexpr std::array<const char*, 3> tilt_name{"xy", "xz", "yz"};
 
 /// -1: nothing has to be pinned.
-template <int Dim> int pinned_grain(const Packing<Dim>& packing) {
+int pinned_grain(const Packing& packing) {
     int pin = packing.cell.any() ? packing.cell.pin : -1;
     for (int i = 0; pin >= 0 && packing.is_fixed(DiskId(pin)) && i < packing.disk_count(); ++i) {
         pin = packing.is_fixed(DiskId(i)) ? pin : i;
@@ -27,29 +28,26 @@ template <int Dim> int pinned_grain(const Packing<Dim>& packing) {
 
 } // namespace
 
-template <int Dim> Walls<Dim> Walls<Dim>::box() {
+Walls Walls::box(int dimension) {
     Walls walls;
-    walls.lower.fill(WallKind::fixed);
-    walls.upper.fill(WallKind::movable);
+    std::fill_n(walls.lower.begin(), dimension, WallKind::fixed);
+    std::fill_n(walls.upper.begin(), dimension, WallKind::movable);
     return walls;
 }
 
-template <int Dim> Walls<Dim> Walls<Dim>::none() {
-    Walls walls;
-    walls.lower.fill(WallKind::absent);
-    walls.upper.fill(WallKind::absent);
-    return walls;
+Walls Walls::none() {
+    return {};
 }
 
-template <int Dim> double Packing<Dim>::min_radius() const {
+double Packing::min_radius() const {
     return *std::min_element(radius.begin(), radius.end());
 }
-template <int Dim> double Packing<Dim>::max_radius() const {
+double Packing::max_radius() const {
     return *std::max_element(radius.begin(), radius.end());
 }
 
-template <int Dim> double Packing<Dim>::solid_fraction() const {
-    static_assert(Dim == 2);
+double Packing::solid_fraction() const {
+    assert(dimension == 2);
     double area = 0;
     for (const double r : radius) {
         area += std::numbers::pi * r * r;
@@ -57,53 +55,52 @@ template <int Dim> double Packing<Dim>::solid_fraction() const {
     return area / (length(0) * length(1));
 }
 
-template <int Dim>
-DofMap<Dim>::DofMap(const Packing<Dim>& packing)
-    : disks_(packing.disk_count()), periodic_(packing.cell.periodic), dof_of_(packing.q.size(), -1) {
+DofMap::DofMap(const Packing& packing)
+    : layout_(packing.layout()), periodic_(packing.cell.periodic), dof_of_(packing.q.size(), -1) {
     coordinate_of_.reserve(packing.q.size());
     const auto add = [&](std::size_t coordinate) {
         dof_of_[coordinate] = static_cast<int>(coordinate_of_.size());
         coordinate_of_.push_back(static_cast<int>(coordinate));
     };
     const int pin = pinned_grain(packing);
-    for (int i = 0; i < disks_; ++i) {
-        for (int a = 0; a < Dim && !packing.is_fixed(DiskId(i)); ++a) {
-            if (i != pin || !periodic_[static_cast<std::size_t>(a)]) {
-                add(static_cast<std::size_t>(Dim * i + a));
+    for (int i = 0; i < layout_.disks; ++i) {
+        for (std::size_t a = 0; a < layout_.axes() && !packing.is_fixed(DiskId(i)); ++a) {
+            if (i != pin || !periodic_[a]) {
+                add(layout_.of_disk(i) + a);
             }
         }
     }
-    const Cell<Dim>& cell = packing.cell;
-    for (std::size_t a = 0; a < Dim; ++a) {
+    const Cell& cell = packing.cell;
+    for (std::size_t a = 0; a < layout_.axes(); ++a) {
         if (cell.periodic[a] ? cell.period_moves[a] : packing.walls.upper[a] == WallKind::movable) {
             add(packing.length_at(a));
         }
     }
     for (std::size_t t = 0; cell.any() && t < cell.tilt_moves.size(); ++t) {
         if (cell.tilt_moves[t]) {
-            add(packing.length_at(Dim + t));
+            add(packing.length_at(layout_.axes() + t));
         }
     }
 }
 
-template <int Dim> std::string DofMap<Dim>::name(int dof) const {
+std::string DofMap::name(int dof) const {
     const auto coordinate = static_cast<std::size_t>(coordinate_of(dof));
-    const std::size_t lengths = static_cast<std::size_t>(Dim) * static_cast<std::size_t>(disks_);
-    if (coordinate < lengths) {
-        return fmt::format("{} of disk {}", axis_names[coordinate % Dim], coordinate / Dim);
+    const std::size_t d = layout_.axes();
+    if (coordinate < layout_.of_length(0)) {
+        return fmt::format("{} of disk {}", axis_names[coordinate % d], coordinate / d);
     }
-    const std::size_t axis = coordinate - lengths;
-    return axis >= Dim       ? fmt::format("tilt {}", tilt_name[axis - Dim])
+    const std::size_t axis = coordinate - layout_.of_length(0);
+    return axis >= d         ? fmt::format("tilt {}", tilt_name[axis - d])
            : periodic_[axis] ? fmt::format("period along {}", axis_names[axis])
                              : std::string(upper_name[axis]);
 }
 
 namespace {
 
-template <int Dim> void validate_cell(const Packing<Dim>& packing, const std::string& source) {
+void validate_cell(const Packing& packing, const std::string& source) {
     const auto bad = [&](const std::string& what) { throw Error(ErrorKind::bad_input, source + ": " + what); };
-    const Cell<Dim>& cell = packing.cell;
-    for (std::size_t a = 0; a < Dim; ++a) {
+    const Cell& cell = packing.cell;
+    for (std::size_t a = 0; a < packing.axes(); ++a) {
         if (!cell.periodic[a]) {
             if (cell.period_moves[a]) {
                 bad(fmt::format("the period along {} moves, and that axis has walls: expected a periodic axis",
@@ -121,7 +118,7 @@ template <int Dim> void validate_cell(const Packing<Dim>& packing, const std::st
                             axis_names[a], length, longest_length));
         }
     }
-    for (std::size_t b = 1; b < Dim; ++b) {
+    for (std::size_t b = 1; b < packing.axes(); ++b) {
         for (std::size_t a = 0; a < b; ++a) {
             const double tilt = packing.lattice(a, b);
             const bool both = cell.periodic[a] && cell.periodic[b];
@@ -131,7 +128,7 @@ template <int Dim> void validate_cell(const Packing<Dim>& packing, const std::st
             }
         }
     }
-    Cell<Dim> shaped = cell;
+    Cell shaped = cell;
     shaped.keep_shape();
     if (cell.keeps_shape && (!cell.all() || shaped != cell)) {
         bad("the cell keeps its shape: expected periodic axes alone, and nothing else that moves");
@@ -151,7 +148,7 @@ template <int Dim> void validate_cell(const Packing<Dim>& packing, const std::st
 }
 
 /// Periods that a disk can meet itself through: the short ones among those of a few cells.
-void validate_own_images(const Packing<2>& packing, const std::string& source) {
+void validate_own_images(const Packing& packing, const std::string& source) {
     constexpr int few = 3;
     const auto largest = std::max_element(packing.radius.begin(), packing.radius.end());
     for (int x = -few; x <= few; ++x) {
@@ -174,14 +171,18 @@ void validate_own_images(const Packing<2>& packing, const std::string& source) {
 
 } // namespace
 
-template <int Dim> void require_box(const Packing<Dim>& packing, const std::string& source, const std::string& what) {
+void require_box(const Packing& packing, const std::string& source, const std::string& what) {
     if (packing.cell.any()) {
         throw Error(ErrorKind::bad_input, fmt::format("{}: a periodic cell; {} takes boxes only so far", source, what));
     }
 }
 
-template <int Dim> void validate(const Packing<Dim>& packing, const std::string& source) {
+void validate(const Packing& packing, const std::string& source) {
     const auto bad = [&](const std::string& what) { throw Error(ErrorKind::bad_input, source + ": " + what); };
+    if (packing.dimension != 2 || packing.cell.dimension != 2) {
+        bad(fmt::format("dimension {}: Isostat has disks only, dimension 2; spheres are not written yet",
+                        packing.dimension));
+    }
     if (packing.radius.empty()) {
         bad("no disks: a packing needs at least one disk");
     }
@@ -198,8 +199,8 @@ template <int Dim> void validate(const Packing<Dim>& packing, const std::string&
             bad(fmt::format("radius of disk {} is {}: expected a positive finite number from {} to {}", i, r,
                             shortest_length, longest_length));
         }
-        for (std::size_t a = 0; a < Dim; ++a) {
-            const double x = packing.q[Dim * i + a];
+        for (std::size_t a = 0; a < packing.axes(); ++a) {
+            const double x = packing.q[packing.axes() * i + a];
             if (!(std::abs(x) <= longest_length)) {
                 bad(fmt::format("{} of disk {} is {}: expected a finite number of size at most {}", axis_names[a], i, x,
                                 longest_length));
@@ -210,7 +211,7 @@ template <int Dim> void validate(const Packing<Dim>& packing, const std::string&
         validate_cell(packing, source);
         validate_own_images(packing, source);
     }
-    for (std::size_t a = 0; a < Dim; ++a) {
+    for (std::size_t a = 0; a < packing.axes(); ++a) {
         if (packing.walls.upper[a] == WallKind::absent) {
             continue;
         }
@@ -232,9 +233,9 @@ template <int Dim> void validate(const Packing<Dim>& packing, const std::string&
     }
 }
 
-template <int Dim> double grid_step(const Packing<Dim>& packing) {
+double grid_step(const Packing& packing) {
     double largest = 0;
-    const std::size_t disks = Dim * packing.radius.size();
+    const std::size_t disks = packing.length_at(0);
     for (std::size_t k = 0; k < packing.q.size(); ++k) {
         if (k < disks || packing.cell.any() || packing.walls.upper[k - disks] != WallKind::absent) {
             largest = std::max(largest, std::abs(packing.q[k]));
@@ -250,7 +251,7 @@ template <int Dim> double grid_step(const Packing<Dim>& packing) {
     return std::ldexp(1.0, exponent - 52 + coarser);
 }
 
-template <int Dim> bool is_on_grid(const Packing<Dim>& packing) {
+bool is_on_grid(const Packing& packing) {
     const double step = grid_step(packing);
     return std::all_of(packing.q.begin(), packing.q.end(), [step](double x) {
         const double steps = x / step; // exact but for underflow, as the step is a power of two; fmod is slow
@@ -258,7 +259,7 @@ template <int Dim> bool is_on_grid(const Packing<Dim>& packing) {
     });
 }
 
-template <int Dim> double snap_to_grid(Packing<Dim>& packing) {
+double snap_to_grid(Packing& packing) {
     // With |x| <= 2^e, x +- 2^e away from 0 lies in the binade whose spacing is the step, 2^(e-52): the sum is rounded
     // to nearest there, and the difference is exact.
     const double shift = std::ldexp(grid_step(packing), 52);
@@ -279,25 +280,16 @@ template <int Dim> double snap_to_grid(Packing<Dim>& packing) {
     }
     const std::size_t disks = packing.radius.size();
     for (std::size_t i = 0; i < disks; ++i) {
-        for (std::size_t a = 0; a < Dim && !packing.is_fixed(DiskId(i)); ++a) {
-            snap(packing.q[Dim * i + a]);
+        for (std::size_t a = 0; a < packing.axes() && !packing.is_fixed(DiskId(i)); ++a) {
+            snap(packing.q[packing.axes() * i + a]);
         }
     }
-    for (std::size_t a = 0; a < Dim; ++a) {
+    for (std::size_t a = 0; a < packing.axes(); ++a) {
         if (packing.walls.upper[a] == WallKind::movable) {
-            snap(packing.q[Dim * disks + a]);
+            snap(packing.q[packing.length_at(a)]);
         }
     }
     return moved;
 }
-
-template struct Walls<2>;
-template struct Packing<2>;
-template class DofMap<2>;
-template void validate<2>(const Packing<2>&, const std::string&);
-template void require_box<2>(const Packing<2>&, const std::string&, const std::string&);
-template bool is_on_grid<2>(const Packing<2>&);
-template double snap_to_grid<2>(Packing<2>&);
-template double grid_step<2>(const Packing<2>&);
 
 } // namespace isostat

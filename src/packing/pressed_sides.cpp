@@ -8,12 +8,11 @@
 
 namespace isostat {
 
-template <int Dim>
-void require_pressed_sides(const Packing<Dim>& packing, const Load<Dim>& load, bool stated, const std::string& source) {
+void require_pressed_sides(const Packing& packing, const Load& load, bool stated, const std::string& source) {
     constexpr std::array<char, 2> axis_name{'x', 'y'};
     const bool present = load.kind == LoadKind::true_stress;
     for (const WallForce& wall : load.wall_forces(packing)) {
-        const auto side = static_cast<std::size_t>(Dim - 1 - wall.axis);
+        const auto side = static_cast<std::size_t>(packing.axes() - 1 - wall.axis);
         const bool open =
             packing.walls.lower[side] == WallKind::absent || packing.walls.upper[side] == WallKind::absent;
         if (open && !packing.cell.periodic[side] && (present || !stated)) {
@@ -26,7 +25,5 @@ void require_pressed_sides(const Packing<Dim>& packing, const Load<Dim>& load, b
         }
     }
 }
-
-template void require_pressed_sides<2>(const Packing<2>&, const Load<2>&, bool, const std::string&);
 
 } // namespace isostat

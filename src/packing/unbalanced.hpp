@@ -10,13 +10,14 @@
 
 namespace isostat {
 
-/// The first periodic axis along which the forces, Dim per disk, do not sum to zero, and their sum. `Exact` rounds no
+/// The first periodic axis along which the forces, d per disk, do not sum to zero, and their sum. `Exact` rounds no
 /// sum.
-template <class Exact, int Dim, class Force>
-std::optional<std::pair<std::size_t, Exact>> unbalanced(const std::vector<Force>& forces, const Cell<Dim>& cell) {
-    for (std::size_t a = 0; a < Dim; ++a) {
+template <class Exact, class Force>
+std::optional<std::pair<std::size_t, Exact>> unbalanced(const std::vector<Force>& forces, const Cell& cell) {
+    const auto axes = static_cast<std::size_t>(cell.dimension);
+    for (std::size_t a = 0; a < axes; ++a) {
         Exact sum(0);
-        for (std::size_t k = a; k < forces.size() && cell.periodic[a]; k += Dim) {
+        for (std::size_t k = a; k < forces.size() && cell.periodic[a]; k += axes) {
             sum += Exact(forces[k]);
         }
         if (!(sum == Exact(0))) {

@@ -9,11 +9,11 @@
 
 namespace isostat::preparation {
 
-template <int Dim> std::optional<std::vector<Contact>> best_conditioned(const Packing<Dim>& packing) {
+std::optional<std::vector<Contact>> best_conditioned(const Packing& packing) {
     constexpr int most = 2000;           // degrees of freedom: seconds
     constexpr double touching = 1e-6;    // of the smallest radius: above what nearly dependent contacts leave open
     constexpr double independent = 1e-6; // of the largest pivot
-    const DofMap<Dim> dofs(packing);
+    const DofMap dofs(packing);
     const int n = dofs.dof_count();
     if (n > most) {
         return std::nullopt;
@@ -26,7 +26,7 @@ template <int Dim> std::optional<std::vector<Contact>> best_conditioned(const Pa
     }
     Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(n, count);
     for (Eigen::Index l = 0; l < count; ++l) {
-        const GapGradient<Dim> g = gap_gradient(packing, pairs[static_cast<std::size_t>(l)]);
+        const GapGradient g = gap_gradient(packing, pairs[static_cast<std::size_t>(l)]);
         for (std::size_t k = 0; k < static_cast<std::size_t>(g.count); ++k) {
             const int dof = dofs.dof_of(static_cast<std::size_t>(g.coordinate[k]));
             if (dof >= 0) {
@@ -46,7 +46,5 @@ template <int Dim> std::optional<std::vector<Contact>> best_conditioned(const Pa
     std::sort(kept.begin(), kept.end());
     return kept;
 }
-
-template std::optional<std::vector<Contact>> best_conditioned<2>(const Packing<2>&);
 
 } // namespace isostat::preparation

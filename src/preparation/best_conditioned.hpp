@@ -13,8 +13,6 @@ namespace isostat::preparation {
 /// factorisation with column pivoting finds them. A linear solver may keep contacts whose rows are independent only
 /// because its coordinates are rounded: those of equal disks in line. Nothing: too few touch, their rows are dependent
 /// to rounding, or the packing is too large for full matrices. A guess, which later proofs judge. Cost: N_f^3.
-template <int Dim> std::optional<std::vector<Contact>> best_conditioned(const Packing<Dim>& packing);
-
-extern template std::optional<std::vector<Contact>> best_conditioned<2>(const Packing<2>&);
+std::optional<std::vector<Contact>> best_conditioned(const Packing& packing);
 
 } // namespace isostat::preparation

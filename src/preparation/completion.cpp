@@ -49,8 +49,7 @@ std::optional<std::vector<double>> mechanism(std::size_t columns, const std::vec
 
 } // namespace
 
-template <int Dim>
-bool ContactProgramme<Dim>::complete(Packing<Dim>& packing, double eps, std::vector<Contact>& contacts) const {
+bool ContactProgramme::complete(Packing& packing, double eps, std::vector<Contact>& contacts) const {
     const Rows none(packing);
     const std::size_t wanted = none.columns();
     if (contacts.size() + most_missing < wanted) {
@@ -96,7 +95,5 @@ bool ContactProgramme<Dim>::complete(Packing<Dim>& packing, double eps, std::vec
     }
     return contacts.size() == wanted;
 }
-
-template bool ContactProgramme<2>::complete(Packing<2>&, double, std::vector<Contact>&) const;
 
 } // namespace isostat::preparation

@@ -100,8 +100,7 @@ void count_changes(const ActiveSet& before, const ActiveSet& now, std::size_t co
 
 } // namespace
 
-template <int Dim>
-InteriorPoint ContactProgramme<Dim>::first_point(const Packing<Dim>& packing, const Rows& rows) const {
+InteriorPoint ContactProgramme::first_point(const Packing& packing, const Rows& rows) const {
     // The overlaps of a relaxed soft packing are its forces; their scale makes the walls balance (virial).
     double virial = 0;
     std::size_t closed = 0;
@@ -111,8 +110,8 @@ InteriorPoint ContactProgramme<Dim>::first_point(const Packing<Dim>& packing, co
             virial -= rows.gap[k] * rows.range(packing, k);
         }
     }
-    double work = Dim * objective_scale;
-    for (int a = 0; a < Dim; ++a) {
+    double work = packing.dimension * objective_scale;
+    for (int a = 0; a < packing.dimension; ++a) {
         work *= packing.length(a);
     }
     const double first = method_ == ProgrammeMethod::interior ? first_slack_late : first_slack;
@@ -135,8 +134,7 @@ InteriorPoint ContactProgramme<Dim>::first_point(const Packing<Dim>& packing, co
 namespace {
 
 /// Moves the degrees of freedom; the largest displacement of a disk's coordinate.
-template <int Dim>
-double displace(Packing<Dim>& packing, const DofMap<Dim>& dofs, const std::vector<double>& x, std::size_t disks) {
+double displace(Packing& packing, const DofMap& dofs, const std::vector<double>& x, std::size_t disks) {
     double largest = 0;
     for (int c = 0; c < dofs.dof_count(); ++c) {
         const auto k = static_cast<std::size_t>(dofs.coordinate_of(c));
@@ -149,9 +147,8 @@ double displace(Packing<Dim>& packing, const DofMap<Dim>& dofs, const std::vecto
 
 } // namespace
 
-template <int Dim>
-ProgrammeStep ContactProgramme<Dim>::descend(Packing<Dim>& packing, double eps,
-                                             const std::function<void(const ProgrammeStep&)>& watch) {
+ProgrammeStep ContactProgramme::descend(Packing& packing, double eps,
+                                        const std::function<void(const ProgrammeStep&)>& watch) {
     const std::size_t disks = infinitesimal_->size();
     ProgrammeStep step;
     Rows rows(packing);
@@ -210,7 +207,7 @@ ProgrammeStep ContactProgramme<Dim>::descend(Packing<Dim>& packing, double eps,
     return step;
 }
 
-template <int Dim> void ContactProgramme<Dim>::keep_basis(Rows rows, const ActiveSet& active, ProgrammeStep& step) {
+void ContactProgramme::keep_basis(Rows rows, const ActiveSet& active, ProgrammeStep& step) {
     step.outcome = ProgrammeStep::Outcome::optimal;
     row_contact_ = std::move(rows.contact);
     row_status_.resize(row_contact_.size());
@@ -224,10 +221,5 @@ template <int Dim> void ContactProgramme<Dim>::keep_basis(Rows rows, const Activ
     first_ = false;
     inside_ = step.bounds != 0 || step.changes > few_changes;
 }
-
-template void ContactProgramme<2>::keep_basis(Rows, const ActiveSet&, ProgrammeStep&);
-template ProgrammeStep ContactProgramme<2>::descend(Packing<2>&, double,
-                                                    const std::function<void(const ProgrammeStep&)>&);
-template InteriorPoint ContactProgramme<2>::first_point(const Packing<2>&, const Rows&) const;
 
 } // namespace isostat::preparation

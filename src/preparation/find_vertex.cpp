@@ -43,7 +43,7 @@ constexpr double weight_divisor = 10;
 constexpr double near_enough = 1e-3;
 
 /// Relative dilation about the lower corner that parts every overlapping pair.
-template <int Dim> double dilation_needed(const Packing<Dim>& packing, const std::vector<Contact>& contacts) {
+double dilation_needed(const Packing& packing, const std::vector<Contact>& contacts) {
     double needed = 0;
     for (const Contact& c : contacts) {
         const double h = gap(packing, c);
@@ -56,7 +56,7 @@ template <int Dim> double dilation_needed(const Packing<Dim>& packing, const std
 }
 
 /// The disk with the most overlaps: hardly ever a rattler.
-template <int Dim> int best_held(const Packing<Dim>& packing) {
+int best_held(const Packing& packing) {
     std::vector<int> touching(packing.radius.size(), 0);
     for (const Contact& c : near_contacts(packing, near_enough * packing.min_radius(), 0)) {
         ++touching[static_cast<std::size_t>(c.i)];
@@ -67,16 +67,18 @@ template <int Dim> int best_held(const Packing<Dim>& packing) {
     return static_cast<int>(std::max_element(touching.begin(), touching.end()) - touching.begin());
 }
 
-template <int Dim> void require_sensible(const Packing<Dim>& start, const PreparationOptions& options) {
-    Packing<Dim> checked = start; // a soft packing may overlap its box a little
-    for (int a = 0; a < Dim && !start.radius.empty() && start.q.size() == Dim * (start.radius.size() + 1); ++a) {
+void require_sensible(const Packing& start, const PreparationOptions& options) {
+    Packing checked = start; // a soft packing may overlap its box a little
+    for (int a = 0;
+         a < start.dimension && !start.radius.empty() && start.q.size() == start.axes() * (start.radius.size() + 1);
+         ++a) {
         checked.length(a) = start.length(a) > 0 ? std::max(start.length(a), 2 * start.max_radius()) : start.length(a);
     }
     validate(checked, "start of the linear programmes");
     const auto is_fixed = [](unsigned char flag) { return flag != 0; };
-    const Cell<Dim>& cell = start.cell;
+    const Cell& cell = start.cell;
     bool gives_way = std::none_of(start.fixed.begin(), start.fixed.end(), is_fixed);
-    for (std::size_t a = 0; a < Dim; ++a) {
+    for (std::size_t a = 0; a < start.axes(); ++a) {
         const bool box = start.walls.lower[a] == WallKind::fixed && start.walls.upper[a] == WallKind::movable;
         gives_way = gives_way && (cell.periodic[a] ? cell.period_moves[a] || cell.keeps_shape : box);
     }
@@ -101,30 +103,29 @@ template <int Dim> void require_sensible(const Packing<Dim>& start, const Prepar
 }
 
 /// The sequence of programmes with attempts at the vertex in between. Lengths in the internal unit until `polish`.
-template <int Dim> class VertexSearch {
+class VertexSearch {
   public:
-    VertexSearch(const Packing<Dim>& start, const PreparationOptions& options, PreparationReport<Dim>& report)
+    VertexSearch(const Packing& start, const PreparationOptions& options, PreparationReport& report)
         : options_(options), report_(report), radius_(start.radius), scale_(start.radius),
           packing_(scale_.to_internal(start)), stage_("linear programmes", options) {
         report_.infinitesimal_seed = derived_seed(options.seed, Stream::infinitesimal);
         load_.kind = options.load;
-        load_.stress.fill(options.stress);
-        load_.stress[Dim - 1] *= options.ratio;
+        std::fill_n(load_.stress.begin(), packing_.dimension, options.stress);
+        load_.stress[start.dimension - 1] *= options.ratio;
         if (packing_.cell.any()) {
             packing_.cell.pin = best_held(packing_);
         }
         load_.infinitesimal = infinitesimal_loads(radius_);
     }
 
-    Result<State<Dim>> run() {
+    Result<State> run() {
         const std::vector<double> g = infinitesimal_loads(packing_.radius);
         const bool large = packing_.disk_count() > options_.large_above;
         const ProgrammeMethod method = !large ? ProgrammeMethod::simplex
                                        : packing_.disk_count() > options_.newton_above
                                            ? ProgrammeMethod::interior
                                            : ProgrammeMethod::interior_first;
-        ContactProgramme<Dim> programme(g, trust_in_radii * scale_.mean_radius(), method, options_.stop,
-                                        options_.ratio);
+        ContactProgramme programme(g, trust_in_radii * scale_.mean_radius(), method, options_.stop, options_.ratio);
         double weight = options_.infinitesimal_weight;
         bool divided = false;
         if (large && options_.max_programmes > 0) {
@@ -179,12 +180,12 @@ template <int Dim> class VertexSearch {
   private:
     /// In a cell they sum to zero: the pinned disk bears those of the others.
     [[nodiscard]] std::vector<double> infinitesimal_loads(const std::vector<double>& radius) const {
-        std::vector<double> g = generic_infinitesimal<Dim>(radius, report_.infinitesimal_seed);
+        std::vector<double> g = generic_infinitesimal(radius, report_.infinitesimal_seed);
         balance(g, packing_.cell);
         return g;
     }
     /// The descent, then Newton and the proofs. Nothing: the programmes go on from where it ended.
-    std::optional<Polished<Dim>> descend(ContactProgramme<Dim>& programme, double weight) {
+    std::optional<Polished> descend(ContactProgramme& programme, double weight) {
         const Stage stage("interior descent", options_);
         const ProgrammeStep end = programme.descend(packing_, weight, [&](const ProgrammeStep& step) {
             stage.progress(static_cast<double>(step.iterations) / (50.0 + static_cast<double>(step.iterations)),
@@ -207,12 +208,12 @@ template <int Dim> class VertexSearch {
     }
 
     /// Contacts that an interior-point method left open.
-    bool complete(ContactProgramme<Dim>& programme, double weight, std::vector<Contact>& contacts) {
-        return contacts.size() < static_cast<std::size_t>(DofMap<Dim>(packing_).dof_count()) &&
+    bool complete(ContactProgramme& programme, double weight, std::vector<Contact>& contacts) {
+        return contacts.size() < static_cast<std::size_t>(DofMap(packing_).dof_count()) &&
                programme.complete(packing_, weight, contacts);
     }
 
-    Result<Polished<Dim>> attempt(const std::vector<Contact>& contacts) {
+    Result<Polished> attempt(const std::vector<Contact>& contacts) {
         const Stopwatch watch;
         auto polished = polish(scale_.to_user(packing_, radius_), contacts, load_, newton_.iterations);
         newton_.seconds += watch.seconds();
@@ -220,7 +221,7 @@ template <int Dim> class VertexSearch {
         return polished;
     }
 
-    Result<Polished<Dim>> finish(const std::vector<Contact>& contacts) {
+    Result<Polished> finish(const std::vector<Contact>& contacts) {
         const Stopwatch watch;
         PivotLimits limits;
         limits.step = attempt_below * scale_.mean_radius() * scale_.unit();
@@ -243,7 +244,7 @@ template <int Dim> class VertexSearch {
                       : std::nullopt;
     }
 
-    std::optional<Failure> judge(const ProgrammeStep& step, const ContactProgramme<Dim>& programme) {
+    std::optional<Failure> judge(const ProgrammeStep& step, const ContactProgramme& programme) {
         switch (step.outcome) {
         case ProgrammeStep::Outcome::optimal: return std::nullopt;
         case ProgrammeStep::Outcome::interrupted:
@@ -275,7 +276,7 @@ template <int Dim> class VertexSearch {
         const double relative = step.largest / scale_.mean_radius();
         stage_.progress(std::clamp(std::log(relative + converged_below) / std::log(converged_below), 0.0, 1.0),
                         fmt::format("programme {}: {} changes, {} of {} contacts, step {:.1e} radii", programmes_,
-                                    step.changes, contacts_, DofMap<Dim>(packing_).dof_count(), relative));
+                                    step.changes, contacts_, DofMap(packing_).dof_count(), relative));
     }
 
     [[nodiscard]] bool worth_an_attempt(const ProgrammeStep& step) const {
@@ -309,7 +310,7 @@ template <int Dim> class VertexSearch {
         return located(why, "linear programmes");
     }
 
-    State<Dim> succeed(Polished<Dim> vertex) {
+    State succeed(Polished vertex) {
         newton_.residual = vertex.max_gap;
         record(true);
         report_.solid_fraction = vertex.state.packing.solid_fraction();
@@ -323,11 +324,11 @@ template <int Dim> class VertexSearch {
     }
 
     const PreparationOptions& options_;
-    PreparationReport<Dim>& report_;
+    PreparationReport& report_;
     std::vector<double> radius_; ///< the user's
     Scale scale_;
-    Packing<Dim> packing_; ///< internal unit
-    Load<Dim> load_;
+    Packing packing_; ///< internal unit
+    Load load_;
     Stage stage_;
     PreparationStage newton_;
     int programmes_ = 0;
@@ -340,15 +341,10 @@ template <int Dim> class VertexSearch {
 
 } // namespace preparation
 
-template <int Dim>
-Result<State<Dim>> find_vertex(const Packing<Dim>& start, const PreparationOptions& options,
-                               PreparationReport<Dim>& report) {
+Result<State> find_vertex(const Packing& start, const PreparationOptions& options, PreparationReport& report) {
     require_floating_point();
     preparation::require_sensible(start, options);
-    return preparation::VertexSearch<Dim>(start, options, report).run();
+    return preparation::VertexSearch(start, options, report).run();
 }
-
-template struct PreparationReport<2>;
-template Result<State<2>> find_vertex<2>(const Packing<2>&, const PreparationOptions&, PreparationReport<2>&);
 
 } // namespace isostat

@@ -15,9 +15,8 @@ namespace isostat {
 namespace {
 
 /// Calls `entry` with the degrees of freedom that a contact acts on, and the force on each per unit of its own.
-template <int Dim, class Entry>
-void for_each_push(const Packing<Dim>& packing, const DofMap<Dim>& dofs, const Contact& c, Entry entry) {
-    const GapGradient<Dim> g = gap_gradient(packing, c);
+template <class Entry> void for_each_push(const Packing& packing, const DofMap& dofs, const Contact& c, Entry entry) {
+    const GapGradient g = gap_gradient(packing, c);
     for (std::size_t k = 0; k < static_cast<std::size_t>(g.count); ++k) {
         if (const int dof = dofs.dof_of(static_cast<std::size_t>(g.coordinate[k])); dof >= 0) {
             entry(dof, g.value[k]);
@@ -26,10 +25,9 @@ void for_each_push(const Packing<Dim>& packing, const DofMap<Dim>& dofs, const C
 }
 
 /// Balance: the forces of the pairs on every degree of freedom are minus the load, in units of the largest load.
-template <int Dim>
-void load_balance(ClpSimplex& simplex, const Packing<Dim>& packing, const std::vector<Contact>& pairs,
+void load_balance(ClpSimplex& simplex, const Packing& packing, const std::vector<Contact>& pairs,
                   const std::vector<double>& force, double size) {
-    const DofMap<Dim> dofs(packing);
+    const DofMap dofs(packing);
     std::vector<int> row;
     std::vector<int> column;
     std::vector<double> value;
@@ -78,10 +76,9 @@ bool find_ends(ClpSimplex& simplex, const std::vector<unsigned char>& varies, do
 
 } // namespace
 
-template <int Dim>
-Result<ForceFace> force_face(const Packing<Dim>& packing, const Load<Dim>& load, const std::vector<Contact>& contacts,
+Result<ForceFace> force_face(const Packing& packing, const Load& load, const std::vector<Contact>& contacts,
                              const std::vector<Contact>& touching) {
-    auto structure = IsostaticStructure<Dim>::prove(packing, contacts);
+    auto structure = IsostaticStructure::prove(packing, contacts);
     if (!structure.ok()) {
         return structure.failure();
     }
@@ -121,8 +118,5 @@ Result<ForceFace> force_face(const Packing<Dim>& packing, const Load<Dim>& load,
     }
     return face;
 }
-
-template Result<ForceFace> force_face<2>(const Packing<2>&, const Load<2>&, const std::vector<Contact>&,
-                                         const std::vector<Contact>&);
 
 } // namespace isostat

@@ -26,11 +26,7 @@ struct ForceFace {
 /// (there is one in the box without fixed grains),
 /// `not_isostatic` when the contacts are not proved regular. Cost: two programmes per force that is not unique, each
 /// from the basis of the one before.
-template <int Dim>
-Result<ForceFace> force_face(const Packing<Dim>& packing, const Load<Dim>& load, const std::vector<Contact>& contacts,
+Result<ForceFace> force_face(const Packing& packing, const Load& load, const std::vector<Contact>& contacts,
                              const std::vector<Contact>& touching);
-
-extern template Result<ForceFace> force_face<2>(const Packing<2>&, const Load<2>&, const std::vector<Contact>&,
-                                                const std::vector<Contact>&);
 
 } // namespace isostat

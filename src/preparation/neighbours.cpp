@@ -19,23 +19,24 @@ namespace {
 
 /// Cells of a bounding box, disks sorted by cell. A disk is found again from its own cell number, so rounding cannot
 /// lose it; pairs within one cell width are in adjacent cells up to rounding, which the margin in the width covers.
-template <int Dim> class Grid {
+class Grid {
   public:
-    Grid(const std::vector<double>& x, std::size_t n, double width) : cell_of_(n) {
-        std::array<double, Dim> lowest{};
-        std::array<double, Dim> highest{};
-        for (std::size_t a = 0; a < Dim; ++a) {
+    Grid(int dimension, const std::vector<double>& x, std::size_t n, double width)
+        : axes_(static_cast<std::size_t>(dimension)), cell_of_(n) {
+        PerAxis<double> lowest{};
+        PerAxis<double> highest{};
+        for (std::size_t a = 0; a < axes_; ++a) {
             lowest[a] = highest[a] = x[a];
             for (std::size_t i = 1; i < n; ++i) {
-                lowest[a] = std::min(lowest[a], x[Dim * i + a]);
-                highest[a] = std::max(highest[a], x[Dim * i + a]);
+                lowest[a] = std::min(lowest[a], x[axes_ * i + a]);
+                highest[a] = std::max(highest[a], x[axes_ * i + a]);
             }
         }
         // More cells than disks cost memory and find nothing.
-        const double most = std::ceil(std::pow(static_cast<double>(n), 1.0 / Dim)) + 1;
-        std::array<double, Dim> step{};
+        const double most = std::ceil(std::pow(static_cast<double>(n), 1.0 / static_cast<double>(axes_))) + 1;
+        PerAxis<double> step{};
         int cells = 1;
-        for (std::size_t a = 0; a < Dim; ++a) {
+        for (std::size_t a = 0; a < axes_; ++a) {
             const double extent = highest[a] - lowest[a];
             count_[a] = static_cast<int>(std::clamp(std::floor(extent / width), 1.0, most));
             step[a] = extent > 0 ? extent / count_[a] : 1.0;
@@ -44,8 +45,8 @@ template <int Dim> class Grid {
         start_.assign(static_cast<std::size_t>(cells) + 1, 0);
         for (std::size_t i = 0; i < n; ++i) {
             int cell = 0;
-            for (std::size_t a = 0; a < Dim; ++a) {
-                const int c = static_cast<int>((x[Dim * i + a] - lowest[a]) / step[a]);
+            for (std::size_t a = 0; a < axes_; ++a) {
+                const int c = static_cast<int>((x[axes_ * i + a] - lowest[a]) / step[a]);
                 cell = cell * count_[a] + std::clamp(c, 0, count_[a] - 1);
             }
             cell_of_[i] = cell;
@@ -63,9 +64,9 @@ template <int Dim> class Grid {
 
     /// Calls `visit(j)` for the disks of the cell of i and of the cells around it.
     template <class Visit> void around(std::size_t i, const Visit& visit) const {
-        std::array<int, Dim> centre{};
+        PerAxis<int> centre{};
         int cell = cell_of_[i];
-        for (std::size_t a = Dim; a-- > 0;) {
+        for (std::size_t a = axes_; a-- > 0;) {
             centre[a] = cell % count_[a];
             cell /= count_[a];
         }
@@ -74,8 +75,8 @@ template <int Dim> class Grid {
 
   private:
     template <class Visit>
-    void walk(std::size_t axis, int prefix, const std::array<int, Dim>& centre, const Visit& visit) const {
-        if (axis == Dim) {
+    void walk(std::size_t axis, int prefix, const PerAxis<int>& centre, const Visit& visit) const {
+        if (axis == axes_) {
             const auto cell = static_cast<std::size_t>(prefix);
             for (int k = start_[cell]; k < start_[cell + 1]; ++k) {
                 visit(member_[static_cast<std::size_t>(k)]);
@@ -87,15 +88,15 @@ template <int Dim> class Grid {
         }
     }
 
-    std::array<int, Dim> count_{};
+    std::size_t axes_;
+    PerAxis<int> count_{};
     std::vector<int> start_, member_, cell_of_;
 };
 
 } // namespace
 
-template <int Dim>
-void find_pairs(const std::vector<double>& x, const std::vector<double>& radius, double reach, PairList& pairs,
-                int most) {
+void find_pairs(int dimension, const std::vector<double>& x, const std::vector<double>& radius, double reach,
+                PairList& pairs, int most) {
     const std::size_t n = radius.size();
     pairs.start.assign(1, 0);
     pairs.partner.clear();
@@ -103,7 +104,7 @@ void find_pairs(const std::vector<double>& x, const std::vector<double>& radius,
         return;
     }
     const double largest = *std::max_element(radius.begin(), radius.end());
-    const Grid<Dim> grid(x, n, (2 * largest + reach) * (1 + 1e-9));
+    const Grid grid(dimension, x, n, (2 * largest + reach) * (1 + 1e-9));
     for (std::size_t i = 0; i < n; ++i) {
         const auto first = static_cast<std::ptrdiff_t>(pairs.partner.size());
         grid.around(i, [&](int partner) {
@@ -111,8 +112,8 @@ void find_pairs(const std::vector<double>& x, const std::vector<double>& radius,
             if (j <= i) {
                 return;
             }
-            const Separation<Dim> separation({ContactKind::disk_disk, static_cast<int>(i), partner},
-                                             static_cast<int>(n));
+            const Separation separation({ContactKind::disk_disk, static_cast<int>(i), partner},
+                                        Layout{dimension, static_cast<int>(n)});
             double square = 0;
             for (const double d : separation.of_disks([&](std::size_t k) { return x[k]; }, std::minus<>())) {
                 square += d * d;
@@ -135,14 +136,14 @@ void find_pairs(const std::vector<double>& x, const std::vector<double>& radius,
 
 namespace {
 
-template <int Dim> std::vector<Contact> near_disks(const Packing<Dim>& packing, double reach, double upper_reach) {
+std::vector<Contact> near_disks(const Packing& packing, double reach, double upper_reach) {
     if (packing.cell.any()) {
         std::vector<Contact> all = near_pairs(packing, reach + upper_reach).pairs;
         std::erase_if(all, [&](const Contact& c) { return c.image.is_here() && !(gap(packing, c) < reach); });
         return all;
     }
     PairList pairs;
-    find_pairs<Dim>(packing.q, packing.radius, reach, pairs);
+    find_pairs(packing.dimension, packing.q, packing.radius, reach, pairs);
     std::vector<Contact> near;
     const int n = packing.disk_count();
     for (int i = 0; i < n; ++i) {
@@ -156,11 +157,11 @@ template <int Dim> std::vector<Contact> near_disks(const Packing<Dim>& packing, 
 
 } // namespace
 
-template <int Dim> std::vector<Contact> near_contacts(const Packing<Dim>& packing, double reach, double upper_reach) {
+std::vector<Contact> near_contacts(const Packing& packing, double reach, double upper_reach) {
     std::vector<Contact> near = near_disks(packing, reach, upper_reach);
     for (const ContactKind kind : {ContactKind::lower_wall, ContactKind::upper_wall}) {
         for (int i = 0; i < packing.disk_count(); ++i) {
-            for (int a = 0; a < Dim; ++a) {
+            for (int a = 0; a < packing.dimension; ++a) {
                 const Contact wall{kind, i, a};
                 if (packing.cell.periodic[static_cast<std::size_t>(a)]) {
                     continue;
@@ -173,8 +174,5 @@ template <int Dim> std::vector<Contact> near_contacts(const Packing<Dim>& packin
     }
     return near;
 }
-
-template std::vector<Contact> near_contacts<2>(const Packing<2>&, double, double);
-template void find_pairs<2>(const std::vector<double>&, const std::vector<double>&, double, PairList&, int);
 
 } // namespace isostat::preparation

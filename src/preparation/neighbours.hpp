@@ -17,19 +17,15 @@ struct PairList {
     std::vector<int> partner; ///< one per pair
 };
 
-/// All pairs with gap < reach: complete for any positions and radii. `x` holds Dim*n coordinates.
-/// The answer does not depend on the grid, hence not on rounding of the cell numbers. Cost O(n) for comparable radii.
-/// Throws `Error(bad_input)` when they are more than `most`.
-template <int Dim>
-void find_pairs(const std::vector<double>& x, const std::vector<double>& radius, double reach, PairList& pairs,
-                int most = std::numeric_limits<int>::max());
+/// All pairs with gap < reach: complete for any positions and radii. `x` holds the coordinates of the disks first, as
+/// `Packing::q` does. The answer does not depend on the grid, hence not on rounding of the cell numbers. Cost O(n) for
+/// comparable radii. Throws `Error(bad_input)` when they are more than `most`.
+void find_pairs(int dimension, const std::vector<double>& x, const std::vector<double>& radius, double reach,
+                PairList& pairs, int most = std::numeric_limits<int>::max());
 
 /// The same with the disks near walls: pairs and lower walls with gap < `reach`, upper walls with gap < `upper_reach`,
 /// sorted. In a cell: pairs with the images of another disk too, those with gap < `reach` + `upper_reach`, as a period
 /// moves as far as an upper wall.
-template <int Dim> std::vector<Contact> near_contacts(const Packing<Dim>& packing, double reach, double upper_reach);
-
-extern template std::vector<Contact> near_contacts<2>(const Packing<2>&, double, double);
-extern template void find_pairs<2>(const std::vector<double>&, const std::vector<double>&, double, PairList&, int);
+std::vector<Contact> near_contacts(const Packing& packing, double reach, double upper_reach);
 
 } // namespace isostat::preparation

@@ -37,9 +37,9 @@ double value_of(const Enclosure& x, Signs signs) {
 }
 
 /// One basis: contacts that are sorted, a configuration at which their gaps are 0 to rounding.
-template <int Dim> class Basis {
+class Basis {
   public:
-    Basis(const Packing<Dim>& packing, const Load<Dim>& load, const IsostaticStructure<Dim>& structure, Signs signs)
+    Basis(const Packing& packing, const Load& load, const IsostaticStructure& structure, Signs signs)
         : packing_(packing), load_(final_load(load, packing)), structure_(structure), factorisation_(structure),
           inverse_(bound_inverse(structure, factorisation_, cache_)),
           vertex_(enclose_vertex_double_double(packing, structure, factorisation_, inverse_)),
@@ -82,7 +82,7 @@ template <int Dim> class Basis {
     /// Contact m = sum of a_l contacts l: as its force grows, f_l - a_l f_m reaches 0 first for the one returned.
     [[nodiscard]] std::optional<std::size_t> leaving(std::size_t other) const {
         std::vector<double> a(contacts().size(), 0.0);
-        const GapGradient<Dim> g = gap_gradient(packing_, others_[other]);
+        const GapGradient g = gap_gradient(packing_, others_[other]);
         for (std::size_t k = 0; k < static_cast<std::size_t>(g.count); ++k) {
             const int dof = structure_.dofs().dof_of(static_cast<std::size_t>(g.coordinate[k]));
             if (dof >= 0) {
@@ -119,7 +119,7 @@ template <int Dim> class Basis {
         factorisation_.solve_velocities(out.velocity);
         const double least = smallest_pivot * largest(out.velocity);
         for (std::size_t m = 0; m < others_.size(); ++m) {
-            const GapGradient<Dim> g = gap_gradient(packing_, others_[m]);
+            const GapGradient g = gap_gradient(packing_, others_[m]);
             double rate = 0;
             for (std::size_t k = 0; k < static_cast<std::size_t>(g.count); ++k) {
                 const int dof = structure_.dofs().dof_of(static_cast<std::size_t>(g.coordinate[k]));
@@ -135,31 +135,30 @@ template <int Dim> class Basis {
 
     [[nodiscard]] const std::vector<Contact>& contacts() const { return structure_.contacts(); }
     [[nodiscard]] const Contact& other(std::size_t m) const { return others_[m]; }
-    [[nodiscard]] const IsostaticStructure<Dim>& structure() const { return structure_; }
+    [[nodiscard]] const IsostaticStructure& structure() const { return structure_; }
 
   private:
-    static Load<Dim> final_load(Load<Dim> load, const Packing<Dim>& packing) {
+    static Load final_load(Load load, const Packing& packing) {
         load.refer_to(packing);
         return load;
     }
 
-    const Packing<Dim>& packing_;
-    Load<Dim> load_;
-    const IsostaticStructure<Dim>& structure_;
+    const Packing& packing_;
+    Load load_;
+    const IsostaticStructure& structure_;
     Factorisation factorisation_;
     InverseBoundCache cache_;
     InverseBound inverse_;
     VertexEnclosure vertex_;
-    Statics<Dim> statics_;
+    Statics statics_;
     std::vector<Contact> others_;
     std::vector<double> gaps_;  ///< of `others_`
     std::vector<Force> forces_; ///< of the contacts
 };
 
 /// Proved, or left to another proof as `candidate`.
-template <int Dim>
-Result<Polished<Dim>> end_at(Packing<Dim> packing, std::vector<Contact> contacts, const Load<Dim>& load,
-                             long& iterations, std::optional<State<Dim>>& candidate) {
+Result<Polished> end_at(Packing packing, std::vector<Contact> contacts, const Load& load, long& iterations,
+                        std::optional<State>& candidate) {
     auto polished = polish(packing, contacts, load, iterations);
     const bool open = !polished.ok() && (polished.failure().kind == FailureKind::undecided ||
                                          polished.failure().kind == FailureKind::tie);
@@ -173,10 +172,8 @@ Result<Polished<Dim>> end_at(Packing<Dim> packing, std::vector<Contact> contacts
     return polished;
 }
 
-template <int Dim>
-Result<Polished<Dim>> pivot(Packing<Dim> packing, std::vector<Contact> contacts, const Load<Dim>& load,
-                            const PivotLimits& limits, Signs signs, long& iterations,
-                            std::optional<State<Dim>>& candidate) {
+Result<Polished> pivot(Packing packing, std::vector<Contact> contacts, const Load& load, const PivotLimits& limits,
+                       Signs signs, long& iterations, std::optional<State>& candidate) {
     bool may_replace = signs == Signs::told;
     std::set<std::vector<Contact>> seen;
     for (int pivot = 0; pivot < limits.pivots; ++pivot) {
@@ -191,11 +188,11 @@ Result<Polished<Dim>> pivot(Packing<Dim> packing, std::vector<Contact> contacts,
             return *failure;
         }
         snap_to_grid(packing);
-        const auto structure = IsostaticStructure<Dim>::prove(packing, contacts);
+        const auto structure = IsostaticStructure::prove(packing, contacts);
         if (!structure.ok()) {
             return structure.failure();
         }
-        const Basis<Dim> basis(packing, load, structure.value(), signs);
+        const Basis basis(packing, load, structure.value(), signs);
         const auto overlapping = basis.overlapping();
         const auto pulling = basis.pulling();
         if (!basis.known() && may_replace) { // nearly dependent contacts: others of those that touch are better
@@ -211,18 +208,18 @@ Result<Polished<Dim>> pivot(Packing<Dim> packing, std::vector<Contact> contacts,
         if (overlapping) {
             const auto leaving = basis.leaving(*overlapping);
             if (!leaving) {
-                return failed(FailureKind::overlap, "{} cannot be parted", named<Dim>(basis.other(*overlapping)));
+                return failed(FailureKind::overlap, "{} cannot be parted", named(basis.other(*overlapping)));
             }
             contacts[*leaving] = basis.other(*overlapping);
             continue;
         }
         const auto motion = basis.open(*pulling);
         if (!motion.entering) {
-            return failed(FailureKind::unbounded, "opening {} closes no gap", named<Dim>(contacts[*pulling]));
+            return failed(FailureKind::unbounded, "opening {} closes no gap", named(contacts[*pulling]));
         }
         if (motion.time * largest(motion.velocity) > limits.step) {
             return failed(FailureKind::not_converged, "opening {} moves farther ({:.3g}) than linear gaps hold",
-                          named<Dim>(contacts[*pulling]), motion.time * largest(motion.velocity));
+                          named(contacts[*pulling]), motion.time * largest(motion.velocity));
         }
         for (std::size_t mu = 0; mu < motion.velocity.size(); ++mu) {
             packing.q[static_cast<std::size_t>(basis.structure().dofs().coordinate_of(static_cast<int>(mu)))] +=
@@ -235,15 +232,13 @@ Result<Polished<Dim>> pivot(Packing<Dim> packing, std::vector<Contact> contacts,
 
 } // namespace
 
-template <int Dim>
-Result<Polished<Dim>> pivot_to_vertex(const Packing<Dim>& packing, const std::vector<Contact>& contacts,
-                                      const Load<Dim>& load, const PivotLimits& limits, long& iterations,
-                                      std::optional<State<Dim>>& candidate) {
+Result<Polished> pivot_to_vertex(const Packing& packing, const std::vector<Contact>& contacts, const Load& load,
+                                 const PivotLimits& limits, long& iterations, std::optional<State>& candidate) {
     auto first = pivot(packing, contacts, load, limits, Signs::as_computed, iterations, candidate);
     if (first.ok() || first.failure().kind == FailureKind::interrupted) {
         return first;
     }
-    std::optional<State<Dim>> other;
+    std::optional<State> other;
     auto second = pivot(packing, contacts, load, limits, Signs::told, iterations, other);
     const bool better = second.ok() || other.has_value();
     if (better) {
@@ -251,8 +246,5 @@ Result<Polished<Dim>> pivot_to_vertex(const Packing<Dim>& packing, const std::ve
     }
     return better ? second : first;
 }
-
-template Result<Polished<2>> pivot_to_vertex<2>(const Packing<2>&, const std::vector<Contact>&, const Load<2>&,
-                                                const PivotLimits&, long&, std::optional<State<2>>&);
 
 } // namespace isostat::preparation

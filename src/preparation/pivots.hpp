@@ -25,12 +25,7 @@ struct PivotLimits {
 /// When the last basis has gaps and forces of the right sign as computed and `polish` cannot prove them in
 /// double-double, the state is in `candidate`: another proof may. Failures beside those: `unbounded`, `not_converged`
 /// (limits), `interrupted`. Cost: a rank proof, a factorisation and a bound of the inverse per pivot.
-template <int Dim>
-Result<Polished<Dim>> pivot_to_vertex(const Packing<Dim>& packing, const std::vector<Contact>& contacts,
-                                      const Load<Dim>& load, const PivotLimits& limits, long& iterations,
-                                      std::optional<State<Dim>>& candidate);
-
-extern template Result<Polished<2>> pivot_to_vertex<2>(const Packing<2>&, const std::vector<Contact>&, const Load<2>&,
-                                                       const PivotLimits&, long&, std::optional<State<2>>&);
+Result<Polished> pivot_to_vertex(const Packing& packing, const std::vector<Contact>& contacts, const Load& load,
+                                 const PivotLimits& limits, long& iterations, std::optional<State>& candidate);
 
 } // namespace isostat::preparation

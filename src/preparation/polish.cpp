@@ -16,7 +16,7 @@ namespace {
 
 constexpr int max_newton = 30;
 
-template <int Dim> double largest_gap(const Packing<Dim>& packing, const std::vector<Contact>& contacts) {
+double largest_gap(const Packing& packing, const std::vector<Contact>& contacts) {
     double largest = 0;
     for (const Contact& contact : contacts) {
         largest = std::max(largest, std::abs(gap(packing, contact)));
@@ -27,14 +27,13 @@ template <int Dim> double largest_gap(const Packing<Dim>& packing, const std::ve
 /// A cell that keeps its shape: the rest of it follows the last period, the only one that moves. `step`: that of the
 /// degrees of freedom with the rest at rest. With the rest stretched by beta it is step + beta * answer, and beta is
 /// the stretch of the last period.
-template <int Dim>
-void keep_shape(Packing<Dim>& packing, const std::vector<Contact>& contacts, const Factorisation& factorisation,
+void keep_shape(Packing& packing, const std::vector<Contact>& contacts, const Factorisation& factorisation,
                 std::vector<double>& step) {
     const std::size_t first = packing.length_at(0);
-    const std::size_t leads = packing.length_at(Dim - 1);
+    const std::size_t leads = packing.length_at(packing.axes() - 1);
     std::vector<double> answer(contacts.size(), 0.0);
     for (std::size_t l = 0; l < contacts.size(); ++l) {
-        const GapGradient<Dim> g = gap_gradient(packing, contacts[l]);
+        const GapGradient g = gap_gradient(packing, contacts[l]);
         for (std::size_t k = 0; k < static_cast<std::size_t>(g.count); ++k) {
             const auto coordinate = static_cast<std::size_t>(g.coordinate[k]);
             answer[l] += coordinate >= first && coordinate != leads ? g.value[k] * packing.q[coordinate] : 0;
@@ -51,8 +50,8 @@ void keep_shape(Packing<Dim>& packing, const std::vector<Contact>& contacts, con
 }
 
 /// One step; failure when the matrix is not proved regular.
-template <int Dim> std::optional<Failure> newton_step(Packing<Dim>& packing, const std::vector<Contact>& contacts) {
-    const auto structure = IsostaticStructure<Dim>::prove(packing, contacts);
+std::optional<Failure> newton_step(Packing& packing, const std::vector<Contact>& contacts) {
+    const auto structure = IsostaticStructure::prove(packing, contacts);
     if (!structure.ok()) {
         return structure.failure();
     }
@@ -65,7 +64,7 @@ template <int Dim> std::optional<Failure> newton_step(Packing<Dim>& packing, con
     if (packing.cell.keeps_shape) {
         keep_shape(packing, contacts, factorisation, step);
     }
-    const DofMap<Dim>& dofs = structure.value().dofs();
+    const DofMap& dofs = structure.value().dofs();
     for (std::size_t mu = 0; mu < step.size(); ++mu) {
         packing.q[static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(mu)))] += step[mu];
     }
@@ -74,11 +73,10 @@ template <int Dim> std::optional<Failure> newton_step(Packing<Dim>& packing, con
 
 } // namespace
 
-template <int Dim>
-std::optional<Failure> newton(Packing<Dim>& packing, const std::vector<Contact>& contacts, long& iterations) {
+std::optional<Failure> newton(Packing& packing, const std::vector<Contact>& contacts, long& iterations) {
     double before = largest_gap(packing, contacts);
     for (int k = 0; k < max_newton; ++k) {
-        Packing<Dim> next = packing;
+        Packing next = packing;
         if (auto failure = newton_step(next, contacts)) {
             return failure;
         }
@@ -104,8 +102,7 @@ std::optional<Failure> newton(Packing<Dim>& packing, const std::vector<Contact>&
 namespace {
 
 /// Every candidate beside the contacts has a positive gap at the true vertex: proved, or named.
-template <int Dim>
-Result<double> check_other_gaps(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+Result<double> check_other_gaps(const Packing& packing, const IsostaticStructure& structure,
                                 const Factorisation& factorisation, const InverseBound& inverse,
                                 VertexEnclosure vertex) {
     const std::vector<Contact>& contacts = structure.contacts(); // sorted by the caller
@@ -124,7 +121,7 @@ Result<double> check_other_gaps(const Packing<Dim>& packing, const IsostaticStru
         for (const Contact& other : others) {
             const Enclosure h = gap_at_vertex(packing, vertex, other);
             if (h.negative()) {
-                return failed(FailureKind::overlap, "{} overlap by {:.3g}", named<Dim>(other), -h.value);
+                return failed(FailureKind::overlap, "{} overlap by {:.3g}", named(other), -h.value);
             }
             if (h.positive()) {
                 smallest = std::min(smallest, h.value);
@@ -141,10 +138,10 @@ Result<double> check_other_gaps(const Packing<Dim>& packing, const IsostaticStru
     return failed(FailureKind::tie,
                   "{} more gaps than the {} contacts kept are 0 as far as double-double arithmetic can tell, first {} "
                   "({:.3g}, known to {:.3g})",
-                  others.size(), contacts.size(), named<Dim>(others.front()), h.value, h.radius);
+                  others.size(), contacts.size(), named(others.front()), h.value, h.radius);
 }
 
-template <int Dim> int count_rattlers(const Packing<Dim>& packing, const Statics<Dim>& statics) {
+int count_rattlers(const Packing& packing, const Statics& statics) {
     std::vector<unsigned char> carries(packing.radius.size(), 0);
     const std::vector<Contact>& contacts = statics.structure().contacts();
     for (std::size_t l = 0; l < contacts.size(); ++l) {
@@ -159,8 +156,7 @@ template <int Dim> int count_rattlers(const Packing<Dim>& packing, const Statics
 }
 
 /// The true vertex near a packing, with as many digits as it takes.
-template <int Dim>
-Result<VertexEnclosure> enclosed(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+Result<VertexEnclosure> enclosed(const Packing& packing, const IsostaticStructure& structure,
                                  const Factorisation& factorisation, const InverseBound& inverse) {
     VertexEnclosure vertex = enclose_vertex(packing, structure, inverse);
     if (vertex.verdict != Verdict::proved) { // large packings: gaps at the rounding of the coordinates are too many
@@ -178,7 +174,7 @@ Result<VertexEnclosure> enclosed(const Packing<Dim>& packing, const IsostaticStr
 /// The candidate list is complete for an admissible packing (T6): that comes first. The contacts themselves are within
 /// `max_gap` of touching, as computed; the grid steps cover the error of computing it. Other pairs that touch at the
 /// true vertex are within twice its distance; their gaps there are looked at one by one.
-template <int Dim> std::optional<Failure> overlaps(const Packing<Dim>& packing, const VertexEnclosure& vertex) {
+std::optional<Failure> overlaps(const Packing& packing, const VertexEnclosure& vertex) {
     const double open = std::max(vertex.max_gap, vertex.distance());
     const Admissibility admissible = certify_admissible(packing, 2 * open + 4 * grid_step(packing));
     if (admissible.verdict == Verdict::proved) {
@@ -186,12 +182,11 @@ template <int Dim> std::optional<Failure> overlaps(const Packing<Dim>& packing, 
     }
     const bool overlap = admissible.verdict == Verdict::refuted;
     return failed(overlap ? FailureKind::overlap : FailureKind::undecided, "{}: {} has gap {:.3g}",
-                  overlap ? "overlap" : "non-overlap was not proved", named<Dim>(admissible.worst),
-                  admissible.worst_gap);
+                  overlap ? "overlap" : "non-overlap was not proved", named(admissible.worst), admissible.worst_gap);
 }
 
 /// The smallest force that is not a structural zero; a failure when one is not compressive.
-template <int Dim> Result<double> smallest_force(Statics<Dim>& statics, double sigma) {
+Result<double> smallest_force(Statics& statics, double sigma) {
     const std::vector<Contact>& contacts = statics.structure().contacts();
     const Result<OpeningDecision> decision = decide_opening(statics, sigma, OpeningRule::most_negative, ContactId(), 0);
     if (!decision.ok()) {
@@ -201,7 +196,7 @@ template <int Dim> Result<double> smallest_force(Statics<Dim>& statics, double s
         const Opening& opening = *decision.value().opening;
         return failed(FailureKind::not_converged, "{}force {:.3g} in contact {} is not compressive",
                       opening.infinitesimal ? "infinitesimal " : "", opening.force.value,
-                      named<Dim>(contacts[opening.contact.index()]));
+                      named(contacts[opening.contact.index()]));
     }
     double smallest = std::numeric_limits<double>::infinity();
     for (std::size_t l = 0; l < contacts.size(); ++l) {
@@ -214,18 +209,17 @@ template <int Dim> Result<double> smallest_force(Statics<Dim>& statics, double s
 
 } // namespace
 
-template <int Dim>
-Result<Polished<Dim>> polish(Packing<Dim> packing, std::vector<Contact> contacts, Load<Dim> load, long& iterations) {
+Result<Polished> polish(Packing packing, std::vector<Contact> contacts, Load load, long& iterations) {
     std::sort(contacts.begin(), contacts.end());
     if (auto failure = newton(packing, contacts, iterations)) {
         return *failure;
     }
     snap_to_grid(packing);
-    const auto proved = IsostaticStructure<Dim>::prove(packing, contacts);
+    const auto proved = IsostaticStructure::prove(packing, contacts);
     if (!proved.ok()) {
         return proved.failure();
     }
-    const IsostaticStructure<Dim>& structure = proved.value();
+    const IsostaticStructure& structure = proved.value();
     const Factorisation factorisation(structure);
     InverseBoundCache cache;
     const InverseBound inverse = bound_inverse(structure, factorisation, cache);
@@ -245,13 +239,13 @@ Result<Polished<Dim>> polish(Packing<Dim> packing, std::vector<Contact> contacts
         return others.failure();
     }
     load.refer_to(packing);
-    Statics<Dim> statics(packing, load, structure, factorisation, inverse);
+    Statics statics(packing, load, structure, factorisation, inverse);
     const double sigma = load.loaded_stress();
     const Result<double> force = smallest_force(statics, sigma);
     if (!force.ok()) {
         return force.failure();
     }
-    Polished<Dim> result;
+    Polished result;
     result.max_gap = vertex.value().max_gap;
     result.min_gap = others.value();
     result.sigma_min_bound = inverse.sigma_min;
@@ -262,8 +256,5 @@ Result<Polished<Dim>> polish(Packing<Dim> packing, std::vector<Contact> contacts
     result.state.contacts = std::move(contacts);
     return result;
 }
-
-template std::optional<Failure> newton<2>(Packing<2>&, const std::vector<Contact>&, long&);
-template Result<Polished<2>> polish<2>(Packing<2>, std::vector<Contact>, Load<2>, long&);
 
 } // namespace isostat::preparation

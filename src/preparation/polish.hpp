@@ -16,12 +16,11 @@ inline constexpr double pivot_reach = 0.5;
 
 /// Newton on the gaps of `contacts`, each step through a structure that was proved regular, until the largest gap is at
 /// the grid or stops decreasing. Failures: `not_isostatic`, `not_converged`.
-template <int Dim>
-std::optional<Failure> newton(Packing<Dim>& packing, const std::vector<Contact>& contacts, long& iterations);
+std::optional<Failure> newton(Packing& packing, const std::vector<Contact>& contacts, long& iterations);
 
 /// The vertex and the figures of its proof.
-template <int Dim> struct Polished {
-    State<Dim> state;
+struct Polished {
+    State state;
     double max_gap = 0;   ///< largest |gap| of a contact, as computed
     double min_gap = 0;   ///< smallest gap of the other candidates at the true vertex
     double min_force = 0; ///< smallest backbone force
@@ -36,10 +35,6 @@ template <int Dim> struct Polished {
 /// Failures: `not_isostatic`; `not_converged` (Newton stopped short, or a force is not compressive: named); `overlap`
 /// (another pair does); `tie` (another gap is 0 as far as the arithmetic can tell); `undecided` (a bound that would
 /// prove the rest was not found).
-template <int Dim>
-Result<Polished<Dim>> polish(Packing<Dim> packing, std::vector<Contact> contacts, Load<Dim> load, long& iterations);
-
-extern template std::optional<Failure> newton<2>(Packing<2>&, const std::vector<Contact>&, long&);
-extern template Result<Polished<2>> polish<2>(Packing<2>, std::vector<Contact>, Load<2>, long&);
+Result<Polished> polish(Packing packing, std::vector<Contact> contacts, Load load, long& iterations);
 
 } // namespace isostat::preparation

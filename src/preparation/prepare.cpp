@@ -62,14 +62,12 @@ void require_positive(const char* field, double value) {
 }
 
 /// Random positions in a box of the wanted solid fraction and aspect, never narrower than the largest disk.
-template <int Dim>
-Packing<Dim> scatter(std::vector<double> radius, // NOLINT(performance-unnecessary-value-param): it is moved
-                     const PreparationOptions& options, std::uint64_t seed) {
-    static_assert(Dim == 2);
+Packing scatter(std::vector<double> radius, // NOLINT(performance-unnecessary-value-param): it is moved
+                const PreparationOptions& options, std::uint64_t seed) {
     const double fraction = options.loose_fraction;
     const double aspect = options.aspect;
     const bool periodic = options.cell != PreparedCell::none;
-    Packing<Dim> packing;
+    Packing packing;
     packing.radius = std::move(radius);
     double area = 0;
     for (const double r : packing.radius) {
@@ -77,19 +75,18 @@ Packing<Dim> scatter(std::vector<double> radius, // NOLINT(performance-unnecessa
     }
     const double narrowest = (periodic ? narrowest_cell : 2.2) * packing.max_radius();
     const double lx = std::max(narrowest, std::sqrt(area / (fraction * aspect)));
-    const std::array<double, Dim> length{lx, std::max(narrowest, lx * aspect)};
+    const std::array<double, plane> length{lx, std::max(narrowest, lx * aspect)};
     Uniform uniform(seed);
     for (const double r : packing.radius) {
-        for (std::size_t a = 0; a < Dim; ++a) {
+        for (std::size_t a = 0; a < packing.axes(); ++a) {
             packing.q.push_back(periodic ? uniform() * length[a] : r + uniform() * (length[a] - 2 * r));
         }
     }
     packing.q.insert(packing.q.end(), length.begin(), length.end());
     if (periodic) {
-        packing.walls = Walls<Dim>::none();
-        packing.cell.periodic.fill(true);
-        packing.cell.period_moves.fill(true);
-        packing.cell.tilt_moves.fill(options.cell == PreparedCell::tilted);
+        packing.walls = Walls::none();
+        packing.cell.repeat();
+        packing.cell.move(true, options.cell == PreparedCell::tilted);
         if (options.cell == PreparedCell::isotropic) {
             packing.cell.keep_shape();
         }
@@ -140,9 +137,9 @@ std::vector<double> radii_of(const PreparationOptions& options) {
 }
 
 /// Soft disks from a random start to a packing under a small pressure, stage by stage, each recorded.
-template <int Dim> class SoftStages {
+class SoftStages {
   public:
-    SoftStages(Packing<Dim>& packing, const PreparationOptions& options, PreparationReport<Dim>& report)
+    SoftStages(Packing& packing, const PreparationOptions& options, PreparationReport& report)
         : packing_(packing), options_(options), report_(report), large_(packing.disk_count() > options.large_above) {}
 
     /// False: interrupted in the last stage that the report has.
@@ -179,7 +176,7 @@ template <int Dim> class SoftStages {
         if (!large_ || packing_.disk_count() <= options_.newton_above) {
             return true;
         }
-        SoftNewton<Dim> steps(packing_, options_.stop);
+        SoftNewton steps(packing_, options_.stop);
         return std::all_of(newton_divisors.begin(), newton_divisors.end(), [&](double divisor) {
             const double pressure = options_.softness / divisor;
             return record(fmt::format("newton steps at {:.0e}", pressure), [&](const auto& progress) {
@@ -189,7 +186,7 @@ template <int Dim> class SoftStages {
     }
     template <class Work> bool soft(const std::string& name, const Work& work) {
         return record(name, [&](const std::function<void(double)>& progress) {
-            SoftDynamics<Dim> dynamics(packing_, large_, options_.stop, progress);
+            SoftDynamics dynamics(packing_, large_, options_.stop, progress);
             return work(dynamics);
         });
     }
@@ -210,9 +207,9 @@ template <int Dim> class SoftStages {
         return !measures.interrupted;
     }
 
-    Packing<Dim>& packing_;
+    Packing& packing_;
     const PreparationOptions& options_;
-    PreparationReport<Dim>& report_;
+    PreparationReport& report_;
     bool large_;
 };
 
@@ -220,7 +217,7 @@ template <int Dim> class SoftStages {
 
 } // namespace preparation
 
-template <int Dim> Result<State<Dim>> prepare(const PreparationOptions& options, PreparationReport<Dim>& report) {
+Result<State> prepare(const PreparationOptions& options, PreparationReport& report) {
     require_floating_point();
     using namespace preparation;
     check(options);
@@ -228,8 +225,8 @@ template <int Dim> Result<State<Dim>> prepare(const PreparationOptions& options,
     const Scale scale(radius);
     std::vector<double> internal = radius;
     scale.to_internal(internal);
-    Packing<Dim> packing = scatter<Dim>(std::move(internal), options, derived_seed(options.seed, Stream::positions));
-    if (!SoftStages<Dim>(packing, options, report).run()) {
+    Packing packing = scatter(std::move(internal), options, derived_seed(options.seed, Stream::positions));
+    if (!SoftStages(packing, options, report).run()) {
         report.last = scale.to_user(packing, radius);
         report.solid_fraction = packing.solid_fraction();
         const PreparationStage& stage = report.stages.back();
@@ -237,11 +234,9 @@ template <int Dim> Result<State<Dim>> prepare(const PreparationOptions& options,
     }
     auto state = find_vertex(scale.to_user(packing, radius), options, report);
     if (state.ok() && options.loads_tilt) {
-        state.value().load.loaded_axis = Dim;
+        state.value().load.loaded_axis = packing.dimension;
     }
     return state;
 }
-
-template Result<State<2>> prepare<2>(const PreparationOptions&, PreparationReport<2>&);
 
 } // namespace isostat

@@ -40,15 +40,15 @@ class StopHandler : public ClpEventHandler {
 
 } // namespace
 
-template <int Dim>
-ContactProgramme<Dim>::ContactProgramme(const std::vector<double>& infinitesimal, double trust, ProgrammeMethod method,
-                                        const std::atomic<bool>* stop, double ratio)
+ContactProgramme::ContactProgramme(const std::vector<double>& infinitesimal, double trust, ProgrammeMethod method,
+                                   const std::atomic<bool>* stop, double ratio)
     : infinitesimal_(&infinitesimal), trust_(trust), ratio_(ratio), stop_(stop), method_(method),
       inside_(method != ProgrammeMethod::simplex) {}
 
-template <int Dim> void ContactProgramme<Dim>::collect(const Packing<Dim>& packing, Rows& rows) const {
-    // Two disks approach by at most 2 sqrt(Dim) trust: a pair farther apart cannot overlap after the step.
-    const double reach = 2 * std::sqrt(static_cast<double>(Dim)) * trust_ * (1 + 1e-9);
+void ContactProgramme::collect(const Packing& packing, Rows& rows) const {
+    // Two disks approach by at most 2 sqrt(packing.dimension) trust: a pair farther apart cannot overlap after the
+    // step.
+    const double reach = 2 * std::sqrt(static_cast<double>(packing.dimension)) * trust_ * (1 + 1e-9);
     // A wall moves farther than a disk: look as far as both together can go. Across a corner of a cell two periods
     // move, one of them with the tilt.
     const bool tilted = packing.cell.any() && (packing.cell.tilt_moves[0] || packing.cell.keeps_shape);
@@ -59,14 +59,13 @@ template <int Dim> void ContactProgramme<Dim>::collect(const Packing<Dim>& packi
     }
 }
 
-template <int Dim> std::vector<Contact> ContactProgramme<Dim>::candidates(const Packing<Dim>& packing) const {
+std::vector<Contact> ContactProgramme::candidates(const Packing& packing) const {
     Rows rows(packing);
     collect(packing, rows);
     return std::move(rows.contact);
 }
 
-template <int Dim>
-BoxedProgramme ContactProgramme<Dim>::boxed(const Packing<Dim>& packing, const Rows& rows, double eps) const {
+BoxedProgramme ContactProgramme::boxed(const Packing& packing, const Rows& rows, double eps) const {
     BoxedProgramme programme;
     programme.start = rows.starts();
     programme.column = rows.column;
@@ -82,11 +81,11 @@ BoxedProgramme ContactProgramme<Dim>::boxed(const Packing<Dim>& packing, const R
         }
         const int a = static_cast<int>(k - disks);
         programme.bound[c] *= wall_trust;
-        if (a >= Dim) {
+        if (a >= packing.dimension) {
             continue; // a tilt, which bears no stress
         }
-        programme.cost[c] = a == Dim - 1 ? objective_scale * ratio_ : objective_scale;
-        for (int b = 0; b < Dim; ++b) {
+        programme.cost[c] = a == packing.dimension - 1 ? objective_scale * ratio_ : objective_scale;
+        for (int b = 0; b < packing.dimension; ++b) {
             programme.cost[c] *= b == a ? 1.0 : packing.length(b);
         }
     }
@@ -97,11 +96,11 @@ BoxedProgramme ContactProgramme<Dim>::boxed(const Packing<Dim>& packing, const R
     return programme;
 }
 
-template <int Dim> bool ContactProgramme<Dim>::stopped() const {
+bool ContactProgramme::stopped() const {
     return stop_ != nullptr && stop_->load(std::memory_order_relaxed);
 }
 
-template <int Dim> ProgrammeStep ContactProgramme<Dim>::solve(const Packing<Dim>& packing, double eps) {
+ProgrammeStep ContactProgramme::solve(const Packing& packing, double eps) {
     Rows rows(packing);
     collect(packing, rows);
     const BoxedProgramme programme = boxed(packing, rows, eps);
@@ -120,9 +119,8 @@ template <int Dim> ProgrammeStep ContactProgramme<Dim>::solve(const Packing<Dim>
     return step;
 }
 
-template <int Dim>
-void ContactProgramme<Dim>::solve_simplex(const Packing<Dim>& packing, Rows& rows, const BoxedProgramme& programme,
-                                          ProgrammeStep& step) {
+void ContactProgramme::solve_simplex(const Packing& packing, Rows& rows, const BoxedProgramme& programme,
+                                     ProgrammeStep& step) {
     ClpSimplex simplex;
     StopHandler handler(stop_);
     load(simplex, rows, programme);
@@ -158,8 +156,7 @@ void ContactProgramme<Dim>::solve_simplex(const Packing<Dim>& packing, Rows& row
     }
 }
 
-template <int Dim>
-void ContactProgramme<Dim>::load(ClpSimplex& simplex, const Rows& rows, const BoxedProgramme& programme) {
+void ContactProgramme::load(ClpSimplex& simplex, const Rows& rows, const BoxedProgramme& programme) {
     CoinPackedMatrix matrix(true, rows.row.data(), rows.column.data(), rows.value.data(),
                             static_cast<CoinBigIndex>(rows.value.size()));
     matrix.setDimensions(static_cast<int>(rows.contact.size()), static_cast<int>(programme.bound.size()));
@@ -174,11 +171,10 @@ void ContactProgramme<Dim>::load(ClpSimplex& simplex, const Rows& rows, const Bo
 }
 
 /// Overlapping pairs as the first basis, if they are enough; the point 0 is feasible then.
-template <int Dim>
-bool ContactProgramme<Dim>::start_from_overlaps(ClpSimplex& simplex, const Packing<Dim>& packing, const Rows& rows) {
+bool ContactProgramme::start_from_overlaps(ClpSimplex& simplex, const Packing& packing, const Rows& rows) {
     const auto columns = static_cast<int>(rows.columns());
     const auto count = static_cast<int>(rows.contact.size());
-    const int disks = Dim * packing.disk_count();
+    const int disks = packing.dimension * packing.disk_count();
     std::vector<int> degree(static_cast<std::size_t>(packing.disk_count()), 0);
     int nonbasic = 0;
     for (std::size_t k = 0; k < rows.gap.size(); ++k) {
@@ -190,8 +186,9 @@ bool ContactProgramme<Dim>::start_from_overlaps(ClpSimplex& simplex, const Packi
             }
         }
     }
-    const auto hanging = static_cast<int>(std::count_if(degree.begin(), degree.end(), [](int d) { return d < Dim; }));
-    if (nonbasic + Dim * hanging < mostly_closed * columns) {
+    const auto hanging = static_cast<int>(
+        std::count_if(degree.begin(), degree.end(), [&packing](int d) { return d < packing.dimension; }));
+    if (nonbasic + packing.dimension * hanging < mostly_closed * columns) {
         return false;
     }
     for (int k = 0; k < count; ++k) {
@@ -200,7 +197,7 @@ bool ContactProgramme<Dim>::start_from_overlaps(ClpSimplex& simplex, const Packi
     }
     for (int k = 0; k < columns; ++k) {
         const int at = rows.dofs.coordinate_of(k);
-        const bool loose = at < disks && degree[static_cast<std::size_t>(at / Dim)] < Dim;
+        const bool loose = at < disks && degree[static_cast<std::size_t>(at / packing.dimension)] < packing.dimension;
         simplex.setColumnStatus(k, loose ? ClpSimplex::superBasic : ClpSimplex::basic);
     }
     std::fill_n(simplex.primalColumnSolution(), columns, 0.0);
@@ -209,7 +206,7 @@ bool ContactProgramme<Dim>::start_from_overlaps(ClpSimplex& simplex, const Packi
 }
 
 /// The basis of the programme before, row by contact.
-template <int Dim> void ContactProgramme<Dim>::start_from_last(ClpSimplex& simplex, const Rows& rows) const {
+void ContactProgramme::start_from_last(ClpSimplex& simplex, const Rows& rows) const {
     std::size_t old = 0;
     for (std::size_t k = 0; k < rows.contact.size(); ++k) {
         const Contact& contact = rows.contact[k];
@@ -226,8 +223,7 @@ template <int Dim> void ContactProgramme<Dim>::start_from_last(ClpSimplex& simpl
 }
 
 /// The optimum into the step, and its basis into this.
-template <int Dim>
-void ContactProgramme<Dim>::take_solution(const ClpSimplex& simplex, Rows& rows, ProgrammeStep& step) {
+void ContactProgramme::take_solution(const ClpSimplex& simplex, Rows& rows, ProgrammeStep& step) {
     const auto columns = static_cast<std::size_t>(simplex.numberColumns());
     const double* const solution = simplex.primalColumnSolution();
     step.displacement = rows.on_coordinates(solution);
@@ -254,8 +250,7 @@ void ContactProgramme<Dim>::take_solution(const ClpSimplex& simplex, Rows& rows,
               (method_ == ProgrammeMethod::interior_first && step.pivots > few_changes);
 }
 
-template <int Dim>
-bool ContactProgramme<Dim>::solve_inside(Rows& rows, const BoxedProgramme& programme, ProgrammeStep& step) {
+bool ContactProgramme::solve_inside(Rows& rows, const BoxedProgramme& programme, ProgrammeStep& step) {
     ActiveSet active = interior_point(programme, interior_tolerance, stop_);
     if (!active.converged) {
         return false; // infeasible, or beyond double: the simplex method says which
@@ -297,7 +292,5 @@ bool ContactProgramme<Dim>::solve_inside(Rows& rows, const BoxedProgramme& progr
     inside_ = method_ == ProgrammeMethod::interior || missing != 0 || step.changes > few_changes;
     return true;
 }
-
-template class ContactProgramme<2>;
 
 } // namespace isostat::preparation

@@ -42,9 +42,9 @@ struct ProgrammeStep {
 /// Scales: lengths of order the radii (mean radius in [0.5, 1)), stress 1, so that contact forces are of order 1. The
 /// objective is multiplied by 256, which puts Clp's dual tolerance 1e-9 at 4e-12 of a force and well below the
 /// multipliers eps g of rattlers.
-template <int Dim> class ContactProgramme {
+class ContactProgramme {
   public:
-    /// `infinitesimal`: Dim*n loads g. `trust`: largest displacement of a disk along an axis in one step. `ratio`: of
+    /// `infinitesimal`: d n loads g. `trust`: largest displacement of a disk along an axis in one step. `ratio`: of
     /// the stress on the last axis to that on the others.
     ContactProgramme(const std::vector<double>& infinitesimal, double trust, ProgrammeMethod method,
                      const std::atomic<bool>* stop, double ratio = 1);
@@ -58,7 +58,7 @@ template <int Dim> class ContactProgramme {
     /// more pivots: a few wrong rows put the basic solution far away.) When too few pairs overlap: dual simplex from
     /// the slack basis. Later calls: dual simplex from the basis of the call before; candidates new to the list start
     /// as slacks.
-    ProgrammeStep solve(const Packing<Dim>& packing, double eps);
+    ProgrammeStep solve(const Packing& packing, double eps);
 
     /// For large packings, before the first programme: an interior-point method for the true problem, the gaps
     /// linearised anew at every step. A sequence of programmes takes programmes times iterations or pivots, because
@@ -67,30 +67,30 @@ template <int Dim> class ContactProgramme {
     /// stayed the same, when `bounds` is 0) and are the basis of the next programme. `failed`: the packing is where it
     /// got to, and the programmes go on from there. Nothing is proved. `watch` is called after every step. Cost: 30 to
     /// 190 factorisations for 10 000 disks, 260 to 290 for 20 000, 385 for 100 000; no bound is known.
-    ProgrammeStep descend(Packing<Dim>& packing, double eps, const std::function<void(const ProgrammeStep&)>& watch);
+    ProgrammeStep descend(Packing& packing, double eps, const std::function<void(const ProgrammeStep&)>& watch);
 
     /// The interior-point methods end in the middle of the optimal face where the cost hardly changes along it, as with
     /// a rattler whose load is nearly balanced by one contact; then `contacts` are fewer than the coordinates. Follows
     /// a mechanism of theirs downhill to the first pair of the last programme that closes, adds that, and so on:
     /// `packing` moves a little. False, with both as far as it got, when nothing closes or too many are missing.
     /// Nothing is proved. Cost: a factorisation per contact.
-    bool complete(Packing<Dim>& packing, double eps, std::vector<Contact>& contacts) const;
+    bool complete(Packing& packing, double eps, std::vector<Contact>& contacts) const;
 
     /// The pairs that a programme at `packing` holds apart, sorted.
-    [[nodiscard]] std::vector<Contact> candidates(const Packing<Dim>& packing) const;
+    [[nodiscard]] std::vector<Contact> candidates(const Packing& packing) const;
 
   private:
     struct Rows;
-    void collect(const Packing<Dim>& packing, Rows& rows) const;
-    [[nodiscard]] BoxedProgramme boxed(const Packing<Dim>& packing, const Rows& rows, double eps) const;
-    [[nodiscard]] InteriorPoint first_point(const Packing<Dim>& packing, const Rows& rows) const;
+    void collect(const Packing& packing, Rows& rows) const;
+    [[nodiscard]] BoxedProgramme boxed(const Packing& packing, const Rows& rows, double eps) const;
+    [[nodiscard]] InteriorPoint first_point(const Packing& packing, const Rows& rows) const;
     [[nodiscard]] bool stopped() const;
     /// What the simplex method starts from after a descent, and the contacts of the step.
     void keep_basis(Rows rows, const ActiveSet& active, ProgrammeStep& step);
     bool solve_inside(Rows& rows, const BoxedProgramme& programme, ProgrammeStep& step);
-    void solve_simplex(const Packing<Dim>& packing, Rows& rows, const BoxedProgramme& programme, ProgrammeStep& step);
+    void solve_simplex(const Packing& packing, Rows& rows, const BoxedProgramme& programme, ProgrammeStep& step);
     static void load(ClpSimplex& simplex, const Rows& rows, const BoxedProgramme& programme);
-    static bool start_from_overlaps(ClpSimplex& simplex, const Packing<Dim>& packing, const Rows& rows);
+    static bool start_from_overlaps(ClpSimplex& simplex, const Packing& packing, const Rows& rows);
     void start_from_last(ClpSimplex& simplex, const Rows& rows) const;
     void take_solution(const ClpSimplex& simplex, Rows& rows, ProgrammeStep& step);
 
@@ -105,7 +105,5 @@ template <int Dim> class ContactProgramme {
     std::vector<int> row_status_;      ///< Clp's, one per row of the last programme
     std::vector<int> column_status_;
 };
-
-extern template class ContactProgramme<2>;
 
 } // namespace isostat::preparation

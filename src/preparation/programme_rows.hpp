@@ -19,9 +19,9 @@ inline constexpr double objective_scale = 256;
 /// are cheaper below this than some 25 iterations of the other (1.5 to 2 s there).
 inline constexpr long few_changes = 200;
 
-template <int Dim> struct ContactProgramme<Dim>::Rows {
-    explicit Rows(const Packing<Dim>& packing) : dofs(packing) {}
-    DofMap<Dim> dofs; ///< the columns
+struct ContactProgramme::Rows {
+    explicit Rows(const Packing& packing) : dofs(packing) {}
+    DofMap dofs; ///< the columns
     std::vector<Contact> contact;
     std::vector<double> gap;
     std::vector<int> row, column;
@@ -29,8 +29,8 @@ template <int Dim> struct ContactProgramme<Dim>::Rows {
     /// Of a cell that keeps its shape: by how much its coordinates change when the last period changes by 1.
     std::vector<double> follows;
 
-    void add(const Packing<Dim>& packing, const Contact& c) {
-        GapGradient<Dim> g = gap_gradient(packing, c);
+    void add(const Packing& packing, const Contact& c) {
+        GapGradient g = gap_gradient(packing, c);
         if (packing.cell.keeps_shape) {
             keep_shape(packing, g);
         }
@@ -60,9 +60,9 @@ template <int Dim> struct ContactProgramme<Dim>::Rows {
     }
 
     /// The gradient of a gap where the whole cell follows its last period.
-    void keep_shape(const Packing<Dim>& packing, GapGradient<Dim>& g) {
+    void keep_shape(const Packing& packing, GapGradient& g) {
         const std::size_t first = packing.length_at(0);
-        const std::size_t leads = packing.length_at(Dim - 1);
+        const std::size_t leads = packing.length_at(packing.axes() - 1);
         if (follows.empty()) {
             for (std::size_t k = first; k < packing.q.size(); ++k) {
                 follows.push_back(packing.q[k] / packing.q[leads]);
@@ -83,7 +83,7 @@ template <int Dim> struct ContactProgramme<Dim>::Rows {
     }
 
     /// Distance of the centres, or of the centre from the wall, at contact.
-    [[nodiscard]] double range(const Packing<Dim>& packing, std::size_t k) const {
+    [[nodiscard]] double range(const Packing& packing, std::size_t k) const {
         return touching_distance(packing.radius, contact[k]);
     }
 

@@ -23,15 +23,14 @@ class Scale {
     [[nodiscard]] double mean_radius() const { return mean_; }               ///< internal unit
     [[nodiscard]] double unit() const { return std::ldexp(1.0, exponent_); } ///< in the user's
 
-    template <int Dim> [[nodiscard]] Packing<Dim> to_internal(Packing<Dim> packing) const {
+    [[nodiscard]] Packing to_internal(Packing packing) const {
         multiply(packing.radius, -exponent_);
         multiply(packing.q, -exponent_);
         return packing;
     }
 
     /// `radius`: the user's, so that they come back as they were.
-    template <int Dim>
-    [[nodiscard]] Packing<Dim> to_user(Packing<Dim> packing, const std::vector<double>& radius) const {
+    [[nodiscard]] Packing to_user(Packing packing, const std::vector<double>& radius) const {
         packing.radius = radius;
         multiply(packing.q, exponent_);
         return packing;

@@ -16,6 +16,8 @@ namespace isostat::preparation {
 
 namespace {
 
+constexpr auto axes = static_cast<std::size_t>(plane);
+
 /// Longest stable step of the central scheme is 2/omega; six contacts of stiffness 1 on a disk of mass 1 give omega^2
 /// <= 12 in a dense packing.
 constexpr double largest_step = 0.4;
@@ -53,10 +55,9 @@ void store(double* xy, const Plane& value) {
 
 } // namespace
 
-template <int Dim>
-SoftDynamics<Dim>::SoftDynamics(Packing<Dim>& packing, bool in_patches, const std::atomic<bool>* stop,
-                                std::function<void(double)> progress)
-    : packing_(packing), n_(packing.radius.size()), velocity_(Dim * (n_ + 1), 0.0), force_(Dim * (n_ + 1), 0.0),
+SoftDynamics::SoftDynamics(Packing& packing, bool in_patches, const std::atomic<bool>* stop,
+                           std::function<void(double)> progress)
+    : packing_(packing), n_(packing.radius.size()), velocity_(axes * (n_ + 1), 0.0), force_(axes * (n_ + 1), 0.0),
       stop_(stop), progress_(std::move(progress)) {
     double sum = 0;
     for (const double r : packing.radius) {
@@ -70,15 +71,15 @@ SoftDynamics<Dim>::SoftDynamics(Packing<Dim>& packing, bool in_patches, const st
     refresh_pairs();
 }
 
-template <int Dim> void SoftDynamics<Dim>::renumber(bool in_patches) {
+void SoftDynamics::renumber(bool in_patches) {
     order_.resize(n_);
     std::iota(order_.begin(), order_.end(), 0);
     if (in_patches) {
         const double width = patch_width * mean_diameter_;
-        std::vector<std::array<double, Dim>> square(n_);
+        std::vector<PerAxis<double>> square(n_);
         for (std::size_t i = 0; i < n_; ++i) {
-            for (std::size_t a = 0; a < Dim; ++a) {
-                square[i][Dim - 1 - a] = std::floor(packing_.q[Dim * i + a] / width);
+            for (std::size_t a = 0; a < axes; ++a) {
+                square[i][axes - 1 - a] = std::floor(packing_.q[axes * i + a] / width);
             }
         }
         std::stable_sort(order_.begin(), order_.end(), [&](int i, int j) {
@@ -87,45 +88,44 @@ template <int Dim> void SoftDynamics<Dim>::renumber(bool in_patches) {
         for (std::size_t k = 0; k < n_; ++k) {
             if (k == 0 ||
                 square[static_cast<std::size_t>(order_[k])] != square[static_cast<std::size_t>(order_[k - 1])]) {
-                patches_.push_back({Dim * k, Dim * k});
+                patches_.push_back({axes * k, axes * k});
             }
-            patches_.back().last += Dim;
+            patches_.back().last += axes;
         }
-        patches_.push_back({Dim * n_, Dim * (n_ + 1)});
+        patches_.push_back({axes * n_, axes * (n_ + 1)});
     }
-    q_.resize(Dim * (n_ + 1));
+    q_.resize(axes * (n_ + 1));
     radius_.resize(n_);
     for (std::size_t k = 0; k < n_; ++k) {
         const auto i = static_cast<std::size_t>(order_[k]);
         radius_[k] = packing_.radius[i];
-        for (std::size_t a = 0; a < Dim; ++a) {
-            q_[Dim * k + a] = packing_.q[Dim * i + a];
+        for (std::size_t a = 0; a < axes; ++a) {
+            q_[axes * k + a] = packing_.q[axes * i + a];
         }
     }
-    for (std::size_t a = 0; a < Dim; ++a) {
-        q_[Dim * n_ + a] = packing_.q[Dim * n_ + a];
+    for (std::size_t a = 0; a < axes; ++a) {
+        q_[axes * n_ + a] = packing_.q[axes * n_ + a];
     }
 }
 
 /// Every disk into the cell, and the images that a disk in it may touch before the next search.
-template <int Dim> void SoftDynamics<Dim>::place_images() {
-    static_assert(Dim == 2);
+void SoftDynamics::place_images() {
     const double margin = 2 * max_radius_ + skin_;
     images_.clear();
-    q_.resize(Dim * (n_ + 1));
-    const double* const length = q_.data() + Dim * n_;
+    q_.resize(axes * (n_ + 1));
+    const double* const length = q_.data() + axes * n_;
     if (!(std::min(length[0], length[1]) >= 2 * margin)) {
         throw Error(ErrorKind::bad_input,
                     "preparation: a periodic cell became narrower than four disks: expected more disks");
     }
     for (std::size_t i = 0; i < n_; ++i) {
-        for (std::size_t a = 0; a < Dim; ++a) {
-            q_[Dim * i + a] -= length[a] * std::floor(q_[Dim * i + a] / length[a]);
+        for (std::size_t a = 0; a < axes; ++a) {
+            q_[axes * i + a] -= length[a] * std::floor(q_[axes * i + a] / length[a]);
         }
         for (int m = -1; m <= 1; ++m) {
             for (int p = -1; p <= 1; ++p) {
-                const double x = q_[Dim * i] + m * length[0];
-                const double y = q_[Dim * i + 1] + p * length[1];
+                const double x = q_[axes * i] + m * length[0];
+                const double y = q_[axes * i + 1] + p * length[1];
                 if ((m != 0 || p != 0) && x > -margin && x < length[0] + margin && y > -margin &&
                     y < length[1] + margin) {
                     images_.push_back({i, {m, p}});
@@ -133,30 +133,30 @@ template <int Dim> void SoftDynamics<Dim>::place_images() {
             }
         }
     }
-    q_.resize(Dim * (n_ + 1 + images_.size()));
+    q_.resize(axes * (n_ + 1 + images_.size()));
     follow_images();
 }
 
-template <int Dim> void SoftDynamics<Dim>::follow_images() {
-    double* image = q_.data() + Dim * (n_ + 1);
+void SoftDynamics::follow_images() {
+    double* image = q_.data() + axes * (n_ + 1);
     for (const GhostImage& g : images_) {
-        for (std::size_t a = 0; a < Dim; ++a) {
-            *image++ = q_[Dim * g.disk + a] + g.periods[a] * q_[Dim * n_ + a];
+        for (std::size_t a = 0; a < axes; ++a) {
+            *image++ = q_[axes * g.disk + a] + g.periods[a] * q_[axes * n_ + a];
         }
     }
 }
 
 /// Each pair once: of two images the one behind the disk of lower number.
-template <int Dim> void SoftDynamics<Dim>::find_pairs_in_cell() {
+void SoftDynamics::find_pairs_in_cell() {
     place_images();
-    std::vector<double> x(q_.begin(), q_.begin() + static_cast<std::ptrdiff_t>(Dim * n_));
-    x.insert(x.end(), q_.begin() + static_cast<std::ptrdiff_t>(Dim * (n_ + 1)), q_.end());
+    std::vector<double> x(q_.begin(), q_.begin() + static_cast<std::ptrdiff_t>(axes * n_));
+    x.insert(x.end(), q_.begin() + static_cast<std::ptrdiff_t>(axes * (n_ + 1)), q_.end());
     std::vector<double> radius = radius_;
     for (const GhostImage& g : images_) {
         radius.push_back(radius_[g.disk]);
     }
     PairList all;
-    find_pairs<Dim>(x, radius, skin_, all);
+    find_pairs(plane, x, radius, skin_, all);
     pairs_.start.assign(1, 0);
     pairs_.partner.clear();
     pair_second_.clear();
@@ -173,18 +173,18 @@ template <int Dim> void SoftDynamics<Dim>::find_pairs_in_cell() {
     }
 }
 
-template <int Dim> void SoftDynamics<Dim>::publish_lengths() {
-    for (std::size_t a = 0; a < Dim; ++a) {
-        packing_.q[Dim * n_ + a] = q_[Dim * n_ + a];
+void SoftDynamics::publish_lengths() {
+    for (std::size_t a = 0; a < axes; ++a) {
+        packing_.q[axes * n_ + a] = q_[axes * n_ + a];
     }
 }
 
-template <int Dim> SoftMeasures SoftDynamics<Dim>::finish(SoftMeasures result) {
+SoftMeasures SoftDynamics::finish(SoftMeasures result) {
     publish_lengths();
     for (std::size_t k = 0; k < n_; ++k) {
         const auto i = static_cast<std::size_t>(order_[k]);
-        for (std::size_t a = 0; a < Dim; ++a) {
-            packing_.q[Dim * i + a] = q_[Dim * k + a];
+        for (std::size_t a = 0; a < axes; ++a) {
+            packing_.q[axes * i + a] = q_[axes * k + a];
         }
     }
     result.interrupted = stopped();
@@ -192,12 +192,12 @@ template <int Dim> SoftMeasures SoftDynamics<Dim>::finish(SoftMeasures result) {
     return result;
 }
 
-template <int Dim> void SoftDynamics<Dim>::refresh_pairs() {
+void SoftDynamics::refresh_pairs() {
     const bool repeats = packing_.cell.any();
     if (repeats) {
         find_pairs_in_cell();
     } else {
-        find_pairs<Dim>(q_, radius_, skin_, pairs_);
+        find_pairs(plane, q_, radius_, skin_, pairs_);
     }
     allowance_ = skin_;
     age_ = 0;
@@ -205,13 +205,13 @@ template <int Dim> void SoftDynamics<Dim>::refresh_pairs() {
     pair_first_.resize(count);
     pair_range_.resize(count);
     overlap_of_.resize(count);
-    push_.resize(Dim * count);
-    virial_.resize(Dim * count);
+    push_.resize(axes * count);
+    virial_.resize(axes * count);
     pair_target_.resize(count);
     pairs_across_.clear();
     const Pieces blocks{n_, block};
-    from_above_.resize(Dim * n_);
-    from_below_.resize(Dim * (n_ + blocks.count()));
+    from_above_.resize(axes * n_);
+    from_below_.resize(axes * (n_ + blocks.count()));
     for (std::size_t i = 0; i < n_; ++i) {
         const std::size_t piece = i / block;
         for (auto k = static_cast<std::size_t>(pairs_.start[i]); k < static_cast<std::size_t>(pairs_.start[i + 1]);
@@ -229,9 +229,9 @@ template <int Dim> void SoftDynamics<Dim>::refresh_pairs() {
     wall_disks_.clear();
     for (std::size_t i = 0; i < n_ && !repeats; ++i) {
         bool near = false;
-        for (std::size_t a = 0; a < Dim; ++a) {
-            const double x = q_[Dim * i + a];
-            near = near || x - radius_[i] < skin_ || q_[Dim * n_ + a] - x - radius_[i] < skin_;
+        for (std::size_t a = 0; a < axes; ++a) {
+            const double x = q_[axes * i + a];
+            near = near || x - radius_[i] < skin_ || q_[axes * n_ + a] - x - radius_[i] < skin_;
         }
         if (near) {
             wall_disks_.push_back({.disk = i});
@@ -239,11 +239,11 @@ template <int Dim> void SoftDynamics<Dim>::refresh_pairs() {
     }
 }
 
-template <int Dim> void SoftDynamics<Dim>::wall_forces() {
+void SoftDynamics::wall_forces() {
     for (WallDisk& w : wall_disks_) {
-        for (std::size_t a = 0; a < Dim; ++a) {
-            const double x = q_[Dim * w.disk + a];
-            const double length = q_[Dim * n_ + a];
+        for (std::size_t a = 0; a < axes; ++a) {
+            const double x = q_[axes * w.disk + a];
+            const double length = q_[axes * n_ + a];
             const double below = std::max(0.0, radius_[w.disk] - x);
             const double above = std::max(0.0, radius_[w.disk] - (length - x));
             w.overlap[2 * a] = below;
@@ -255,36 +255,34 @@ template <int Dim> void SoftDynamics<Dim>::wall_forces() {
     }
 }
 
-template <int Dim>
-std::array<double, Dim> SoftDynamics<Dim>::spread(std::size_t first, std::size_t last, std::size_t piece) {
+PerAxis<double> SoftDynamics::spread(std::size_t first, std::size_t last, std::size_t piece) {
     // One pass over the pairs without a branch: loops over the few partners of each disk are mispredicted at every end.
-    static_assert(Dim == 2);
     const double* const push = push_.data();
     const double* const share = virial_.data();
     const int* const target = pair_target_.data();
     const int* const source = pair_first_.data();
     double* const from_below = from_below_.data();
     double* const from_above = from_above_.data();
-    std::fill(from_below + Dim * first, from_below + Dim * last, 0.0);
-    std::fill(from_above + Dim * first, from_above + Dim * last, 0.0);
-    store(from_below + Dim * (n_ + piece), Plane{});
+    std::fill(from_below + axes * first, from_below + axes * last, 0.0);
+    std::fill(from_above + axes * first, from_above + axes * last, 0.0);
+    store(from_below + axes * (n_ + piece), Plane{});
     auto wall = std::lower_bound(wall_disks_.begin(), wall_disks_.end(), first,
                                  [](const WallDisk& w, std::size_t i) { return w.disk < i; });
     Plane virial{};
     auto k = static_cast<std::size_t>(pairs_.start[first]);
     const auto pairs_until = [&](std::size_t end) {
         for (; k < end; ++k) {
-            const Plane p = load(push + Dim * k);
-            double* const own = from_above + Dim * static_cast<std::size_t>(source[k]);
-            double* const other = from_below + Dim * static_cast<std::size_t>(target[k]);
+            const Plane p = load(push + axes * k);
+            double* const own = from_above + axes * static_cast<std::size_t>(source[k]);
+            double* const other = from_below + axes * static_cast<std::size_t>(target[k]);
             store(own, load(own) - p);
             store(other, load(other) + p);
-            virial += load(share + Dim * k);
+            virial += load(share + axes * k);
         }
     };
     for (; wall != wall_disks_.end() && wall->disk < last; ++wall) {
         pairs_until(static_cast<std::size_t>(pairs_.start[wall->disk]));
-        store(from_above + Dim * wall->disk, Plane{wall->force[0], wall->force[1]});
+        store(from_above + axes * wall->disk, Plane{wall->force[0], wall->force[1]});
         virial += Plane{wall->virial[0], wall->virial[2]};
         virial += Plane{wall->virial[1], wall->virial[3]};
     }
@@ -292,9 +290,9 @@ std::array<double, Dim> SoftDynamics<Dim>::spread(std::size_t first, std::size_t
     return {virial[0], virial[1]};
 }
 
-template <int Dim> typename SoftDynamics<Dim>::Sums SoftDynamics<Dim>::add_up(std::size_t first, std::size_t last) {
+SoftDynamics::Sums SoftDynamics::add_up(std::size_t first, std::size_t last) {
     Sums sums;
-    for (std::size_t k = Dim * first; k < Dim * last; ++k) {
+    for (std::size_t k = axes * first; k < axes * last; ++k) {
         const double f = from_below_[k] + from_above_[k];
         const double w = velocity_[k];
         force_[k] = f;
@@ -305,50 +303,50 @@ template <int Dim> typename SoftDynamics<Dim>::Sums SoftDynamics<Dim>::add_up(st
     return sums;
 }
 
-template <int Dim> void SoftDynamics<Dim>::compute_forces(double pressure) {
+void SoftDynamics::compute_forces(double pressure) {
     const Pieces stretches{pairs_.partner.size(), pair_stretch};
     parallel_pieces(stretches.count(), [&](std::size_t piece) {
         const std::size_t from = stretches.first(piece);
         const std::vector<int>& second = packing_.cell.any() ? pair_second_ : pairs_.partner;
         const PairStretch stretch{stretches.last(piece) - from, pair_first_.data() + from, second.data() + from,
                                   pair_range_.data() + from};
-        pair_forces(stretch, q_.data(), q_.data() + Dim * n_, overlap_of_.data() + from, push_.data() + Dim * from,
-                    virial_.data() + Dim * from);
+        pair_forces(stretch, q_.data(), q_.data() + axes * n_, overlap_of_.data() + from, push_.data() + axes * from,
+                    virial_.data() + axes * from);
     });
     wall_forces();
     const Pieces blocks{n_, block};
-    std::vector<std::array<double, Dim>> virials(blocks.count());
+    std::vector<PerAxis<double>> virials(blocks.count());
     parallel_pieces(blocks.count(), [&](std::size_t piece) {
         virials[piece] = spread(blocks.first(piece), blocks.last(piece), piece);
     });
     for (const int k : pairs_across_) {
         const auto p = static_cast<std::size_t>(k);
-        double* const other = from_below_.data() + Dim * static_cast<std::size_t>(pairs_.partner[p]);
-        store(other, load(other) + load(push_.data() + Dim * p));
+        double* const other = from_below_.data() + axes * static_cast<std::size_t>(pairs_.partner[p]);
+        store(other, load(other) + load(push_.data() + axes * p));
     }
     std::vector<Sums> sums(blocks.count());
     parallel_pieces(blocks.count(),
                     [&](std::size_t piece) { sums[piece] = add_up(blocks.first(piece), blocks.last(piece)); });
     sums_ = sums.front();
-    std::array<double, Dim> virial = virials.front();
+    PerAxis<double> virial = virials.front();
     for (std::size_t b = 1; b < sums.size(); ++b) {
-        for (std::size_t a = 0; a < Dim; ++a) {
+        for (std::size_t a = 0; a < axes; ++a) {
             virial[a] += virials[b][a];
         }
         sums_.power += sums[b].power;
         sums_.vv += sums[b].vv;
         sums_.ff += sums[b].ff;
     }
-    for (std::size_t a = 0; a < Dim; ++a) {
+    for (std::size_t a = 0; a < axes; ++a) {
         double area = 1;
-        for (std::size_t b = 0; b < Dim; ++b) {
-            area *= b == a ? 1.0 : q_[Dim * n_ + b];
+        for (std::size_t b = 0; b < axes; ++b) {
+            area *= b == a ? 1.0 : q_[axes * n_ + b];
         }
-        force_[Dim * n_ + a] = virial[a] - pressure * area;
+        force_[axes * n_ + a] = virial[a] - pressure * area;
     }
     if (packing_.cell.keeps_shape) { // the part of it that leaves the ratio of the periods
-        const double* const length = q_.data() + Dim * n_;
-        double* const on_cell = force_.data() + Dim * n_;
+        const double* const length = q_.data() + axes * n_;
+        double* const on_cell = force_.data() + axes * n_;
         const double share =
             (on_cell[0] * length[0] + on_cell[1] * length[1]) / (length[0] * length[0] + length[1] * length[1]);
         on_cell[0] = share * length[0];
@@ -356,16 +354,16 @@ template <int Dim> void SoftDynamics<Dim>::compute_forces(double pressure) {
     }
 }
 
-template <int Dim> double SoftDynamics<Dim>::out_of_balance(std::size_t axis, double pressure) const {
-    const double* const length = q_.data() + Dim * n_;
-    const double* const force = force_.data() + Dim * n_;
+double SoftDynamics::out_of_balance(std::size_t axis, double pressure) const {
+    const double* const length = q_.data() + axes * n_;
+    const double* const force = force_.data() + axes * n_;
     if (packing_.cell.keeps_shape) {
         return (force[0] * length[0] + force[1] * length[1]) / (2 * pressure * length[0] * length[1]);
     }
     return force[axis] / (pressure * length[1 - axis]);
 }
 
-template <int Dim> void SoftDynamics<Dim>::count_contacts() {
+void SoftDynamics::count_contacts() {
     overlap_ = 0;
     contacts_ = 0;
     const auto count = [&](double f) {
@@ -382,26 +380,25 @@ template <int Dim> void SoftDynamics<Dim>::count_contacts() {
     }
 }
 
-template <int Dim>
-void SoftDynamics<Dim>::move(std::size_t first, std::size_t last, double dt, const std::array<double, Dim>& stretch,
-                             double& fastest) {
+void SoftDynamics::move(std::size_t first, std::size_t last, double dt, const PerAxis<double>& stretch,
+                        double& fastest) {
     for (std::size_t i = first; i < last; ++i) {
         double square = 0;
-        for (std::size_t a = 0; a < Dim; ++a) {
-            const double w = velocity_[Dim * i + a];
-            q_[Dim * i + a] = q_[Dim * i + a] * stretch[a] + dt * w;
+        for (std::size_t a = 0; a < axes; ++a) {
+            const double w = velocity_[axes * i + a];
+            q_[axes * i + a] = q_[axes * i + a] * stretch[a] + dt * w;
             square += w * w;
         }
         fastest = fastest < square ? square : fastest;
     }
 }
 
-template <int Dim> void SoftDynamics<Dim>::advance(double dt, bool walls) {
-    std::array<double, Dim> stretch{};
+void SoftDynamics::advance(double dt, bool walls) {
+    PerAxis<double> stretch{};
     double shrink = 0;
-    for (std::size_t a = 0; a < Dim; ++a) {
-        stretch[a] = walls ? 1 + dt * velocity_[Dim * n_ + a] / q_[Dim * n_ + a] : 1.0;
-        q_[Dim * n_ + a] *= stretch[a];
+    for (std::size_t a = 0; a < axes; ++a) {
+        stretch[a] = walls ? 1 + dt * velocity_[axes * n_ + a] / q_[axes * n_ + a] : 1.0;
+        q_[axes * n_ + a] *= stretch[a];
         shrink = std::max(shrink, 1 - stretch[a]);
     }
     const Pieces blocks{n_, block};
@@ -425,17 +422,17 @@ template <int Dim> void SoftDynamics<Dim>::advance(double dt, bool walls) {
     }
 }
 
-template <int Dim> SoftMeasures SoftDynamics<Dim>::measure(double pressure) {
+SoftMeasures SoftDynamics::measure(double pressure) {
     count_contacts();
     SoftMeasures result;
     double largest = 0;
-    for (std::size_t k = 0; k < Dim * n_; ++k) {
+    for (std::size_t k = 0; k < axes * n_; ++k) {
         const double f = std::abs(force_[k]);
         largest = largest < f ? f : largest;
     }
     const double unit = pressure > 0 ? pressure * mean_diameter_ : mean_diameter_;
     result.residual = largest / unit;
-    for (std::size_t a = 0; a < Dim && pressure > 0; ++a) {
+    for (std::size_t a = 0; a < axes && pressure > 0; ++a) {
         result.pressure_error = std::max(result.pressure_error, std::abs(out_of_balance(a, pressure)));
     }
     result.overlap = overlap_ / mean_diameter_;
@@ -443,7 +440,7 @@ template <int Dim> SoftMeasures SoftDynamics<Dim>::measure(double pressure) {
     return result;
 }
 
-template <int Dim> SoftMeasures SoftDynamics<Dim>::separate(double overlap, long max_steps) {
+SoftMeasures SoftDynamics::separate(double overlap, long max_steps) {
     // Overdamped: velocity = force; at most a tenth of a diameter per step.
     long step = 0;
     const double limit = overlap * mean_diameter_;
@@ -466,7 +463,7 @@ template <int Dim> SoftMeasures SoftDynamics<Dim>::separate(double overlap, long
     return finish(result);
 }
 
-template <int Dim> SoftMeasures SoftDynamics<Dim>::compress(double pressure, double rate, long max_steps) {
+SoftMeasures SoftDynamics::compress(double pressure, double rate, long max_steps) {
     // Walls: viscous drag such that the unopposed pressure drives the strain rate `rate`. Disks: friction against the
     // homogeneous motion, weak over one contact time. With ten times more the walls feel the pressure through drag and
     // stop at a solid fraction of 0.77.
@@ -477,14 +474,14 @@ template <int Dim> SoftMeasures SoftDynamics<Dim>::compress(double pressure, dou
     bool reached = false;
     for (; step < max_steps && !stopped(); ++step) {
         compute_forces(pressure);
-        for (std::size_t k = 0; k < Dim * n_; ++k) {
+        for (std::size_t k = 0; k < axes * n_; ++k) {
             velocity_[k] = (velocity_[k] + dt * force_[k]) * keep;
         }
         double error = 0;
-        for (std::size_t a = 0; a < Dim; ++a) {
-            const double length = q_[Dim * n_ + a];
+        for (std::size_t a = 0; a < axes; ++a) {
+            const double length = q_[axes * n_ + a];
             const double excess = out_of_balance(a, pressure);
-            velocity_[Dim * n_ + a] = rate * length * std::clamp(excess, -1.0, 1.0);
+            velocity_[axes * n_ + a] = rate * length * std::clamp(excess, -1.0, 1.0);
             error = std::max(error, std::abs(excess));
         }
         reached = error < 0.1;
@@ -504,7 +501,7 @@ template <int Dim> SoftMeasures SoftDynamics<Dim>::compress(double pressure, dou
     return finish(result);
 }
 
-template <int Dim> typename SoftDynamics<Dim>::Sums SoftDynamics<Dim>::sums_of(const Patch& patch) const {
+SoftDynamics::Sums SoftDynamics::sums_of(const Patch& patch) const {
     Sums sums;
     for (std::size_t k = patch.first; k < patch.last; ++k) {
         sums.power += force_[k] * velocity_[k];
@@ -515,7 +512,7 @@ template <int Dim> typename SoftDynamics<Dim>::Sums SoftDynamics<Dim>::sums_of(c
 }
 
 /// Towards the forces; where these work against the velocities, these start anew.
-template <int Dim> void SoftDynamics<Dim>::turn(Patch& patch, Sums sums, double dt) {
+void SoftDynamics::turn(Patch& patch, Sums sums, double dt) {
     if (sums.power > 0) {
         if (++patch.downhill > delay) {
             patch.alpha *= alpha_decay;
@@ -533,14 +530,14 @@ template <int Dim> void SoftDynamics<Dim>::turn(Patch& patch, Sums sums, double 
     }
 }
 
-template <int Dim> SoftMeasures SoftDynamics<Dim>::relax(double pressure, double tolerance, long max_steps) {
+SoftMeasures SoftDynamics::relax(double pressure, double tolerance, long max_steps) {
     constexpr double grow = 1.1;
     constexpr double shrink = 0.5;
     double dt = 0.1; // in units of sqrt(mass / stiffness)
     long step = 0;
-    const std::size_t disks = Dim * n_;
+    const std::size_t disks = axes * n_;
     std::fill(velocity_.begin(), velocity_.end(), 0.0);
-    Patch whole{0, disks + Dim, alpha_start, 0};
+    Patch whole{0, disks + axes, alpha_start, 0};
     for (Patch& patch : patches_) {
         patch.alpha = alpha_start;
         patch.downhill = 0;
@@ -564,12 +561,12 @@ template <int Dim> SoftMeasures SoftDynamics<Dim>::relax(double pressure, double
                     std::clamp(std::log(worst / first_residual) / std::log(tolerance / first_residual), 0.0, 1.0));
             }
         }
-        for (std::size_t a = 0; a < Dim; ++a) {
+        for (std::size_t a = 0; a < axes; ++a) {
             force_[disks + a] /= wall_mass_; // from here on: accelerations
         }
         if (patches_.empty()) {
             Sums sums = sums_;
-            for (std::size_t k = disks; k < disks + Dim; ++k) {
+            for (std::size_t k = disks; k < disks + axes; ++k) {
                 sums.power += wall_mass_ * force_[k] * velocity_[k];
                 sums.vv += wall_mass_ * velocity_[k] * velocity_[k];
                 sums.ff += wall_mass_ * force_[k] * force_[k];
@@ -591,7 +588,5 @@ template <int Dim> SoftMeasures SoftDynamics<Dim>::relax(double pressure, double
     result.steps = step;
     return finish(result);
 }
-
-template class SoftDynamics<2>;
 
 } // namespace isostat::preparation

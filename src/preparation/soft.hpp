@@ -42,11 +42,11 @@ struct SoftMeasures {
 /// then judges the power of the forces patch by patch. Over a whole large packing it stays positive for thousands of
 /// steps, and the damping with it at 1e-5 and less. One sample of 10 000 disks: 32 000 steps instead of 68 000 to the
 /// residual 1e-4 at the pressure 1e-4; at 1e-5 50 000 to 1e-3, but 135 000 instead of 85 000 to 1e-4.
-template <int Dim> class SoftDynamics {
+class SoftDynamics {
   public:
     /// Takes the packing as it is; overlaps are allowed. The packing is up to date after each phase; during one only
     /// its lengths are.
-    SoftDynamics(Packing<Dim>& packing, bool in_patches, const std::atomic<bool>* stop,
+    SoftDynamics(Packing& packing, bool in_patches, const std::atomic<bool>* stop,
                  std::function<void(double)> progress);
 
     /// Fixed box: pushes overlapping disks apart until no overlap exceeds `overlap` mean diameters (or `max_steps`).
@@ -74,18 +74,18 @@ template <int Dim> class SoftDynamics {
     /// A disk that a wall may reach before the next search.
     struct WallDisk {
         std::size_t disk = 0;
-        std::array<double, Dim> force{};
-        std::array<double, 2 * Dim> virial{}; ///< lower and upper wall of each axis
-        std::array<double, 2 * Dim> overlap{};
+        PerAxis<double> force{};
+        std::array<double, 2 * most_axes> virial{}; ///< lower and upper wall of each axis
+        std::array<double, 2 * most_axes> overlap{};
     };
 
     void compute_forces(double pressure);
     void wall_forces();
     /// Sums of the pairs whose first disk is in [first, last): forces on disks, virials returned.
-    std::array<double, Dim> spread(std::size_t first, std::size_t last, std::size_t piece);
+    PerAxis<double> spread(std::size_t first, std::size_t last, std::size_t piece);
     Sums add_up(std::size_t first, std::size_t last);
     void advance(double dt, bool walls);
-    void move(std::size_t first, std::size_t last, double dt, const std::array<double, Dim>& stretch, double& fastest);
+    void move(std::size_t first, std::size_t last, double dt, const PerAxis<double>& stretch, double& fastest);
     void refresh_pairs();
     void place_images();
     void follow_images();
@@ -101,7 +101,7 @@ template <int Dim> class SoftDynamics {
     [[nodiscard]] SoftMeasures measure(double pressure);
     [[nodiscard]] bool stopped() const { return stop_ != nullptr && stop_->load(std::memory_order_relaxed); }
 
-    Packing<Dim>& packing_;
+    Packing& packing_;
     std::size_t n_;
     std::vector<Patch> patches_; ///< of disks, then one of the walls; empty: everything in one
     std::vector<int> order_;     ///< disk of the packing in each place here
@@ -109,14 +109,14 @@ template <int Dim> class SoftDynamics {
     double max_radius_ = 0;
     double mean_diameter_ = 0;
     double wall_mass_ = 0;
-    std::vector<double> velocity_; ///< Dim*n peculiar velocities, then the walls'
+    std::vector<double> velocity_; ///< 2 n peculiar velocities, then the walls'
     std::vector<double> force_;    ///< the same layout
     Sums sums_;                    ///< of the disks
     PairList pairs_;
     /// In a rectangular cell: copies of the disks near a side, behind the lengths in `q_`.
     struct GhostImage {
         std::size_t disk = 0;
-        std::array<int, Dim> periods{};
+        PerAxis<int> periods{};
     };
     std::vector<GhostImage> images_;
     std::vector<int> pair_second_;   ///< where in `q_` the second of each pair is: `pairs_.partner`, or an image of it
@@ -138,7 +138,5 @@ template <int Dim> class SoftDynamics {
     const std::atomic<bool>* stop_;
     std::function<void(double)> progress_;
 };
-
-extern template class SoftDynamics<2>;
 
 } // namespace isostat::preparation

@@ -37,19 +37,18 @@ double dot(const std::vector<double>& a, const std::vector<double>& b) {
 
 } // namespace
 
-template <int Dim>
-SoftNewton<Dim>::SoftNewton(Packing<Dim>& packing, const std::atomic<bool>* stop)
+SoftNewton::SoftNewton(Packing& packing, const std::atomic<bool>* stop)
     : packing_(packing), damping_(first_damping), stop_(stop) {
     mean_diameter_ = 2 * std::accumulate(packing.radius.begin(), packing.radius.end(), 0.0) /
                      static_cast<double>(packing.radius.size());
 }
 
-template <int Dim> void SoftNewton<Dim>::collect() {
+void SoftNewton::collect() {
     pairs_ = near_contacts(packing_, reach, reach);
     start_.assign(1, 0);
     column_.clear();
     for (const Contact& pair : pairs_) {
-        const GapGradient<Dim> g = gap_gradient(packing_, pair);
+        const GapGradient g = gap_gradient(packing_, pair);
         column_.insert(column_.end(), g.coordinate.begin(), g.coordinate.begin() + g.count);
         start_.push_back(static_cast<int>(column_.size()));
     }
@@ -59,7 +58,7 @@ template <int Dim> void SoftNewton<Dim>::collect() {
     matrix_.emplace(packing_.q.size(), start_, column_);
 }
 
-template <int Dim> bool SoftNewton<Dim>::left_the_list() const {
+bool SoftNewton::left_the_list() const {
     for (std::size_t k = 0; k < anchor_.size(); ++k) {
         if (std::abs(packing_.q[k] - anchor_[k]) > list_holds) {
             return true;
@@ -68,18 +67,18 @@ template <int Dim> bool SoftNewton<Dim>::left_the_list() const {
     return anchor_.empty();
 }
 
-template <int Dim> void SoftNewton<Dim>::evaluate() {
+void SoftNewton::evaluate() {
     const Pieces pieces{pairs_.size(), 8192};
     parallel_pieces(pieces.count(), [&](std::size_t piece) {
         for (std::size_t l = pieces.first(piece); l < pieces.last(piece); ++l) {
-            const GapGradient<Dim> g = gap_gradient(packing_, pairs_[l]);
+            const GapGradient g = gap_gradient(packing_, pairs_[l]);
             std::copy_n(g.value.begin(), g.count, value_.begin() + start_[l]);
             gap_[l] = gap(packing_, pairs_[l]);
         }
     });
 }
 
-template <int Dim> void SoftNewton<Dim>::gradient(double pressure, std::vector<double>& slope) const {
+void SoftNewton::gradient(double pressure, std::vector<double>& slope) const {
     slope.assign(packing_.q.size(), 0.0);
     for (std::size_t l = 0; l < gap_.size(); ++l) {
         if (gap_[l] < 0) {
@@ -88,24 +87,24 @@ template <int Dim> void SoftNewton<Dim>::gradient(double pressure, std::vector<d
             }
         }
     }
-    for (int a = 0; a < Dim; ++a) {
+    for (int a = 0; a < packing_.dimension; ++a) {
         double face = pressure;
-        for (int b = 0; b < Dim; ++b) {
+        for (int b = 0; b < packing_.dimension; ++b) {
             face *= b == a ? 1.0 : packing_.length(b);
         }
-        slope[Dim * packing_.radius.size() + static_cast<std::size_t>(a)] += face;
+        slope[packing_.axes() * packing_.radius.size() + static_cast<std::size_t>(a)] += face;
     }
 }
 
-template <int Dim> SoftMeasures SoftNewton<Dim>::measure(double pressure, const std::vector<double>& slope) const {
+SoftMeasures SoftNewton::measure(double pressure, const std::vector<double>& slope) const {
     SoftMeasures now;
-    const std::size_t disks = Dim * packing_.radius.size();
+    const std::size_t disks = packing_.axes() * packing_.radius.size();
     for (std::size_t k = 0; k < disks; ++k) {
         now.residual = std::max(now.residual, std::abs(slope[k]) / (pressure * mean_diameter_));
     }
-    for (int a = 0; a < Dim; ++a) {
+    for (int a = 0; a < packing_.dimension; ++a) {
         double face = pressure;
-        for (int b = 0; b < Dim; ++b) {
+        for (int b = 0; b < packing_.dimension; ++b) {
             face *= b == a ? 1.0 : packing_.length(b);
         }
         now.pressure_error = std::max(now.pressure_error, std::abs(slope[disks + static_cast<std::size_t>(a)]) / face);
@@ -117,10 +116,10 @@ template <int Dim> SoftMeasures SoftNewton<Dim>::measure(double pressure, const 
     return now;
 }
 
-template <int Dim> bool SoftNewton<Dim>::direction(const std::vector<double>& slope, std::vector<double>& step) {
+bool SoftNewton::direction(const std::vector<double>& slope, std::vector<double>& step) {
     const std::size_t disks = packing_.radius.size();
     std::vector<double> diagonal(slope.size(), damping_);
-    for (std::size_t k = Dim * disks; k < diagonal.size(); ++k) {
+    for (std::size_t k = packing_.axes() * disks; k < diagonal.size(); ++k) {
         diagonal[k] = damping_ * wall_damping * static_cast<double>(disks);
     }
     const auto block = [&](std::size_t l, std::size_t p, std::size_t r) {
@@ -136,10 +135,9 @@ template <int Dim> bool SoftNewton<Dim>::direction(const std::vector<double>& sl
 }
 
 /// Moves the packing; returns the share of the step.
-template <int Dim>
-double SoftNewton<Dim>::search(double pressure, const std::vector<double>& slope, const std::vector<double>& step) {
+double SoftNewton::search(double pressure, const std::vector<double>& slope, const std::vector<double>& step) {
     double largest = 0;
-    for (std::size_t k = 0; k < Dim * packing_.radius.size(); ++k) {
+    for (std::size_t k = 0; k < packing_.axes() * packing_.radius.size(); ++k) {
         largest = std::max(largest, std::abs(step[k]));
     }
     const double first = dot(slope, step); // negative
@@ -176,9 +174,8 @@ double SoftNewton<Dim>::search(double pressure, const std::vector<double>& slope
     }
 }
 
-template <int Dim>
-SoftMeasures SoftNewton<Dim>::relax(double pressure, double tolerance, long max_steps,
-                                    const std::function<void(double)>& progress) {
+SoftMeasures SoftNewton::relax(double pressure, double tolerance, long max_steps,
+                               const std::function<void(double)>& progress) {
     std::vector<double> slope;
     std::vector<double> step;
     SoftMeasures now;
@@ -213,7 +210,5 @@ SoftMeasures SoftNewton<Dim>::relax(double pressure, double tolerance, long max_
         }
     }
 }
-
-template class SoftNewton<2>;
 
 } // namespace isostat::preparation

@@ -25,10 +25,10 @@ namespace isostat::preparation {
 ///
 /// Why: one sample of 100 000 disks keeps losing energy for 340 000 steps of the dynamics at the pressure 1e-5, and the
 /// interior descent from there does not end in 500 steps; after these relaxations at 1e-5 to 1e-7 it ends after 385.
-template <int Dim> class SoftNewton {
+class SoftNewton {
   public:
     /// Takes the packing as it is, overlaps are wanted; keeps it up to date.
-    SoftNewton(Packing<Dim>& packing, const std::atomic<bool>* stop);
+    SoftNewton(Packing& packing, const std::atomic<bool>* stop);
 
     /// Until residual (largest unbalanced force) and pressure error are below `tolerance`. The damping is kept from
     /// call to call. Cost of a step: a factorisation and 5 sums over the pairs or so, 0.25 s for 100 000 disks on two
@@ -46,7 +46,7 @@ template <int Dim> class SoftNewton {
     double search(double pressure, const std::vector<double>& slope, const std::vector<double>& step);
     [[nodiscard]] bool stopped() const { return stop_ != nullptr && stop_->load(std::memory_order_relaxed); }
 
-    Packing<Dim>& packing_;
+    Packing& packing_;
     double mean_diameter_ = 0;
     double damping_;
     std::vector<Contact> pairs_; ///< all that are near, walls included
@@ -56,7 +56,5 @@ template <int Dim> class SoftNewton {
     std::optional<CliqueMatrix> matrix_;
     const std::atomic<bool>* stop_;
 };
-
-extern template class SoftNewton<2>;
 
 } // namespace isostat::preparation

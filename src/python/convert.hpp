@@ -29,7 +29,7 @@ namespace isostat::python {
 namespace py = pybind11;
 
 /// A state in Python: the state and the forces that its file may have.
-using PyState = StateFile<2>;
+using PyState = StateFile;
 
 /// Read-only array that looks at `data`; `owner` lives as long as the array.
 template <class T> py::array view(const T* data, std::vector<py::ssize_t> shape, py::handle owner) {

@@ -146,7 +146,7 @@ CraftedInspection inspected(const Crafted& crafted) {
 
 py::list exact_columns(const Crafted& crafted) {
     const auto contacts = contacts_of(crafted);
-    const DofMap<2> dofs(approximate(crafted.packing));
+    const DofMap dofs(approximate(crafted.packing));
     const exact::NumberMatrix matrix = crafted::exact_contact_matrix(crafted.packing, dofs, contacts);
     py::list columns;
     for (const auto& column : matrix.column) {

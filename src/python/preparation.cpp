@@ -21,8 +21,8 @@ template <class Work> std::shared_ptr<PyState> stoppable(PreparationOptions opti
             stop = true;
         }
     };
-    PreparationReport<2> report;
-    Result<State<2>> result = unlocked([&] { return work(options, report); });
+    PreparationReport report;
+    Result<State> result = unlocked([&] { return work(options, report); });
     if (raised) {
         throw py::error_already_set(*raised);
     }
@@ -42,21 +42,20 @@ std::shared_ptr<PyState> prepare_disks(int disks, std::uint64_t seed, std::pair<
     options.diameters.largest = diameters.second;
     options.jitter = finite(jitter, "jitter");
     options.radii = radii.value_or(std::vector<double>());
-    return stoppable(options, [](const PreparationOptions& o, PreparationReport<2>& r) { return prepare<2>(o, r); });
+    return stoppable(options, [](const PreparationOptions& o, PreparationReport& r) { return prepare(o, r); });
 }
 
-std::shared_ptr<PyState> vertex_near(const Packing<2>& packing, std::array<double, 2> stress, std::uint64_t seed) {
+std::shared_ptr<PyState> vertex_near(const Packing& packing, std::array<double, 2> stress, std::uint64_t seed) {
     PreparationOptions options;
     options.stress = finite(stress[0], "stress");
     options.ratio = finite(stress[1] / stress[0], "ratio of the stresses");
     options.seed = seed;
-    return stoppable(options, [&packing](const PreparationOptions& o, PreparationReport<2>& r) {
-        return find_vertex<2>(packing, o, r);
-    });
+    return stoppable(
+        options, [&packing](const PreparationOptions& o, PreparationReport& r) { return find_vertex(packing, o, r); });
 }
 
-Packing<2> read_any(const std::filesystem::path& path, const std::string& walls,
-                    std::optional<std::array<double, 4>> box, const std::string& radius, const std::string& diameter) {
+Packing read_any(const std::filesystem::path& path, const std::string& walls, std::optional<std::array<double, 4>> box,
+                 const std::string& radius, const std::string& diameter) {
     ForeignOptions options;
     if (walls != "none" && walls != "fixed" && walls != "box") {
         throw Error(ErrorKind::bad_input, "walls is '" + walls + "': expected \"box\", \"fixed\" or \"none\"");
@@ -113,7 +112,7 @@ void bind_plateau(py::module_& module) {
         .def_readonly("changes", &Plateau::changes, "Different gaps: thresholds at which the contact list changes.");
     module.def(
         "plateau",
-        [](const Packing<2>& packing, double first, double last, int rows) {
+        [](const Packing& packing, double first, double last, int rows) {
             return crafted::plateau(packing, finite(first, "first"), finite(last, "last"), rows);
         },
         py::arg("packing"), py::arg("first"), py::arg("last"), py::arg("rows") = 0,
@@ -122,7 +121,7 @@ void bind_plateau(py::module_& module) {
         "how many steps, 0 all.");
     module.def(
         "backbone_at",
-        [](const Packing<2>& packing, double threshold) {
+        [](const Packing& packing, double threshold) {
             finite(threshold, "threshold");
             return contact_array(unlocked([&] { return crafted::backbone_at(packing, threshold); }));
         },

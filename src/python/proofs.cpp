@@ -29,7 +29,7 @@ Certified certify_file(const std::filesystem::path& path) {
     Certificate certificate;
     certificate.input = path.filename().string();
     certificate.input_hash = sha256(read_text(path));
-    certificate.state = read_any_state<2>(path).state;
+    certificate.state = read_any_state(path).state;
     return certified(std::move(certificate));
 }
 
@@ -37,7 +37,7 @@ Certified certify_state(const PyState& state) {
     Certificate certificate;
     certificate.input = "State";
     certificate.state = state.state;
-    certificate.input_hash = sha256(state_text<2>(certificate.state));
+    certificate.input_hash = sha256(state_text(certificate.state));
     return certified(std::move(certificate));
 }
 
@@ -143,9 +143,9 @@ void bind_certificate(py::module_& module) {
 }
 
 void bind_inspection(py::module_& module) {
-    using Seen = Inspection<2>;
+    using Seen = Inspection;
     const auto record = [](auto member) { return [member](const Seen& self) { return self.record.*member; }; };
-    using Record = EquilibriumRecord<2>;
+    using Record = EquilibriumRecord;
     py::class_<Seen, std::shared_ptr<Seen>>(
         module, "Inspection",
         "What is known of a state without moving it; forces and ends of intervals are middles of proved intervals.")
@@ -206,7 +206,7 @@ void bind_forces(py::module_& module) {
     module.def(
         "forces_at",
         [](const PyState& state, double sigma) {
-            const State<2> copy = state.state;
+            const State copy = state.state;
             finite(sigma, "sigma2");
             return interval_array(value_or_raise(interruptible([copy, sigma] { return forces_at(copy, sigma); })));
         },

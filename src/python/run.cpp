@@ -18,23 +18,23 @@ constexpr const char* command = "isostat.Run";
 
 /// One equilibrium as Python gets it.
 struct Equilibrium {
-    EquilibriumRecord<2> record;
+    EquilibriumRecord record;
     std::shared_ptr<PyState> state;
 };
 
 /// Calls the functions of Python; what they raise, and Ctrl-C, stops the run and is kept.
-class Watcher final : public RunObserver<2> {
+class Watcher final : public RunObserver {
   public:
     Watcher(const py::object& on_arc, const py::object& on_equilibrium, std::atomic<bool>& stop)
         : on_arc_(on_arc), on_equilibrium_(on_equilibrium), stop_(stop) {}
-    void on_arc(const ArcRecord<2>& arc) override {
+    void on_arc(const ArcRecord& arc) override {
         call([&] {
             if (!on_arc_.is_none()) {
                 on_arc_(arc);
             }
         });
     }
-    void on_equilibrium(const EquilibriumRecord<2>& record, const State<2>& state,
+    void on_equilibrium(const EquilibriumRecord& record, const State& state,
                         const std::vector<double>& forces) override {
         call([&] {
             if (!on_equilibrium_.is_none()) {
@@ -122,7 +122,7 @@ class Run {
                                                  : Mode::fresh,
                                counters);
         SceneEnding ending;
-        if (const Result<State<2>> start = start_in(directory, watcher); start.ok()) {
+        if (const Result<State> start = start_in(directory, watcher); start.ok()) {
             ending = play_scene(scene_, start.value(), directory, program, counters, stop_, watcher);
         } else {
             ending = ending_of(start.failure(), "");
@@ -131,7 +131,7 @@ class Run {
         return ending;
     }
 
-    Result<State<2>> start_in(RunDirectory& directory, Watcher& watcher) {
+    Result<State> start_in(RunDirectory& directory, Watcher& watcher) {
         if (const auto stored = directory.start()) {
             return *stored;
         }
@@ -139,8 +139,8 @@ class Run {
             PreparationOptions options = scene_.preparation;
             options.stop = &stop_;
             options.progress = [&watcher](const PreparationProgress&) { watcher.poll(); };
-            PreparationReport<2> report;
-            Result<State<2>> prepared = prepare<2>(options, report);
+            PreparationReport report;
+            Result<State> prepared = prepare(options, report);
             if (!prepared.ok()) {
                 return prepared;
             }
@@ -153,13 +153,13 @@ class Run {
 
     Scene scene_;
     std::filesystem::path output_;
-    std::optional<State<2>> start_;
+    std::optional<State> start_;
     std::atomic<bool> stop_{false};
     std::string status_, reason_;
 };
 
 void bind_arc(py::module_& module) {
-    using Arc = ArcRecord<2>;
+    using Arc = ArcRecord;
     const auto contact = [](auto member) { return [member](const Arc& self) { return contact_pair(self.*member); }; };
     const auto image = [](auto member) {
         return [member](const Arc& self) {
@@ -192,7 +192,7 @@ void bind_arc(py::module_& module) {
 }
 
 void bind_equilibrium(py::module_& module) {
-    using Record = EquilibriumRecord<2>;
+    using Record = EquilibriumRecord;
     const auto field = [](auto member) { return [member](const Equilibrium& self) { return self.record.*member; }; };
     py::class_<Equilibrium>(module, "Equilibrium", "One equilibrium, checked, with its state and forces.")
         .def_readonly("state", &Equilibrium::state, "State, with its forces.")

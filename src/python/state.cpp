@@ -18,8 +18,17 @@ WallKind wall_kind(const std::string& name) {
     throw Error(ErrorKind::bad_input, "wall is \"" + name + "\": expected absent, fixed or movable");
 }
 
-py::dict walls_dict(const Walls<2>& walls) {
-    const auto words = [](const std::array<WallKind, 2>& kinds) {
+/// The entries that the dimension needs.
+template <class T> py::list per_axis(const PerAxis<T>& values, int dimension) {
+    py::list list;
+    for (std::size_t a = 0; a < static_cast<std::size_t>(dimension); ++a) {
+        list.append(values[a]);
+    }
+    return list;
+}
+
+py::dict walls_dict(const Walls& walls) {
+    const auto words = [](const PerAxis<WallKind>& kinds) {
         return py::make_tuple(word_of(kinds[0], wall_kind_words), word_of(kinds[1], wall_kind_words));
     };
     py::dict dict;
@@ -34,14 +43,14 @@ template <class Bound, class Of> void bind_grains(Bound& bound, const Of& of) {
         .def_property_readonly(
             "positions",
             [of](const py::object& self) {
-                const Packing<2>& packing = of(self);
+                const Packing& packing = of(self);
                 return view(packing.q.data(), {packing.disk_count(), 2}, self);
             },
             "(n, 2) centres; length. A read-only view.")
         .def_property_readonly(
             "length",
             [of](const py::object& self) {
-                const Packing<2>& packing = of(self);
+                const Packing& packing = of(self);
                 return view(packing.q.data() + 2 * packing.radius.size(), {2}, self);
             },
             "(2,) positions of the right and the top wall, or the periods of a cell; length. A read-only view.")
@@ -57,12 +66,13 @@ template <class Bound, class Of> void bind_grains(Bound& bound, const Of& of) {
         .def_property_readonly(
             "tilt",
             [of](const py::object& self) {
-                const Packing<2>& packing = of(self);
+                const Packing& packing = of(self);
                 return packing.cell.any() ? std::optional(packing.lattice(0, 1)) : std::nullopt;
             },
             "Of a periodic cell: x of the second period; None in a box.")
         .def_property_readonly(
-            "periodic", [of](const py::object& self) { return py::tuple(py::cast(of(self).cell.periodic)); },
+            "periodic",
+            [of](const py::object& self) { return py::tuple(per_axis(of(self).cell.periodic, of(self).dimension)); },
             "(along x, along y): whether the packing repeats.")
         .def_property_readonly(
             "solid_fraction", [of](const py::object& self) { return of(self).solid_fraction(); },
@@ -80,23 +90,23 @@ template <class T> py::array taken(std::vector<T>&& vector) {
 }
 
 /// (data, indices, indptr), shape: the arguments of scipy.sparse.csc_matrix.
-py::tuple matrix_parts(const Packing<2>& packing, const std::vector<Contact>& contacts) {
-    sparse::Matrix<double> h = contact_matrix<2>(packing, DofMap<2>(packing), contacts);
+py::tuple matrix_parts(const Packing& packing, const std::vector<Contact>& contacts) {
+    sparse::Matrix<double> h = contact_matrix(packing, DofMap(packing), contacts);
     return py::make_tuple(py::make_tuple(taken(std::move(h.value)), taken(std::move(h.row)), taken(std::move(h.start))),
                           py::make_tuple(h.rows, h.cols));
 }
 
-Packing<2> packing_of(const py::array_t<double, py::array::c_style | py::array::forcecast>& centres,
-                      const std::vector<double>& radii, std::array<double, 2> length,
-                      const std::array<std::string, 2>& lower, const std::array<std::string, 2>& upper,
-                      const std::vector<bool>& fixed) {
+Packing packing_of(const py::array_t<double, py::array::c_style | py::array::forcecast>& centres,
+                   const std::vector<double>& radii, std::array<double, 2> length,
+                   const std::array<std::string, 2>& lower, const std::array<std::string, 2>& upper,
+                   const std::vector<bool>& fixed) {
     if (centres.ndim() != 2 || centres.shape(1) != 2 || static_cast<std::size_t>(centres.shape(0)) != radii.size()) {
         throw Error(ErrorKind::bad_input, "positions: expected an array of shape (n, 2) for n radii");
     }
     if (!fixed.empty() && fixed.size() != radii.size()) {
         throw Error(ErrorKind::bad_input, "fixed: expected one flag per disk");
     }
-    Packing<2> packing;
+    Packing packing;
     packing.radius = radii;
     packing.q.assign(centres.data(), centres.data() + centres.size());
     packing.q.insert(packing.q.end(), length.begin(), length.end());
@@ -110,7 +120,7 @@ Packing<2> packing_of(const py::array_t<double, py::array::c_style | py::array::
 }
 
 void bind_packing(py::module_& module) {
-    py::class_<Packing<2>, std::shared_ptr<Packing<2>>> packing(
+    py::class_<Packing, std::shared_ptr<Packing>> packing(
         module, "Packing",
         "Disks and walls: positions, radii, box. No contacts, no load.\n\nPacking(positions, radii, length, *, "
         "lower=(\"fixed\", \"fixed\"), upper=(\"movable\", \"movable\"), fixed=[]): (n, 2) and (n,) floats, (Lx, Ly); "
@@ -120,13 +130,13 @@ void bind_packing(py::module_& module) {
              py::arg("lower") = std::array<std::string, 2>{"fixed", "fixed"},
              py::arg("upper") = std::array<std::string, 2>{"movable", "movable"},
              py::arg("fixed") = std::vector<bool>{})
-        .def("__len__", &Packing<2>::disk_count);
-    bind_grains(packing, [](const py::object& self) -> const Packing<2>& { return self.cast<const Packing<2>&>(); });
+        .def("__len__", &Packing::disk_count);
+    bind_grains(packing, [](const py::object& self) -> const Packing& { return self.cast<const Packing&>(); });
 }
 
 using StateClass = py::class_<PyState, std::shared_ptr<PyState>>;
 
-const State<2>& state_of(const py::object& self) {
+const State& state_of(const py::object& self) {
     return self.cast<const PyState&>().state;
 }
 
@@ -162,10 +172,14 @@ void bind_contacts(StateClass& state) {
 void bind_load(StateClass& state) {
     state
         .def_property_readonly(
-            "stress", [](const PyState& self) { return self.state.load.stress; },
+            "stress",
+            [](const PyState& self) { return per_axis(self.state.load.stress, self.state.packing.dimension); },
             "[sigma_1, sigma_2]: on the right and on the top wall; positive in compression.")
         .def_property_readonly(
-            "reference_length", [](const PyState& self) { return self.state.load.reference_length; },
+            "reference_length",
+            [](const PyState& self) {
+                return per_axis(self.state.load.reference_length, self.state.packing.dimension);
+            },
             "[Lx, Ly] at which nominal stress and strain are defined; length.")
         .def_property_readonly(
             "loaded_axis", [](const PyState& self) { return self.state.load.loaded_axis; },
@@ -190,8 +204,8 @@ void bind_load(StateClass& state) {
         .def_property_readonly(
             "external_force",
             [](const PyState& self) {
-                const State<2>& s = self.state;
-                const std::vector<double> force = on_dofs<2>(s.load.external_force(s.packing), DofMap<2>(s.packing));
+                const State& s = self.state;
+                const std::vector<double> force = on_dofs(s.load.external_force(s.packing), DofMap(s.packing));
                 return py::array_t<double>(static_cast<py::ssize_t>(force.size()), force.data());
             },
             "(N_f,) external force on each degree of freedom, stress x length, rounded to nearest.");
@@ -202,22 +216,20 @@ void bind_state_class(py::module_& module) {
         module, "State",
         "A packing with its contacts and its load. It does not change; arrays are read-only views of its memory.");
     state
-        .def_static("read", &read_any_state<2>, py::arg("path"), py::call_guard<py::gil_scoped_release>(),
+        .def_static("read", &read_any_state, py::arg("path"), py::call_guard<py::gil_scoped_release>(),
                     "Reads a state file or a plain vertex text. Raises BadInput with file, field, value.")
-        .def_static("parse", &parse_any_state<2>, py::arg("text"), py::arg("source") = "State",
+        .def_static("parse", &parse_any_state, py::arg("text"), py::arg("source") = "State",
                     py::call_guard<py::gil_scoped_release>(),
                     "Reads a state from the text of a file; `source` begins messages.")
         .def(
-            "text", [](const PyState& self) { return state_text<2>(self.state, self.forces); },
+            "text", [](const PyState& self) { return state_text(self.state, self.forces); },
             "The JSON text of the state file.")
         .def(
             "write",
-            [](const PyState& self, const std::filesystem::path& path) {
-                write_state<2>(path, self.state, self.forces);
-            },
+            [](const PyState& self, const std::filesystem::path& path) { write_state(path, self.state, self.forces); },
             py::arg("path"), "Writes a state file in one step: no partial file. Raises CannotWrite.")
         .def("__len__", [](const PyState& self) { return self.state.packing.disk_count(); });
-    bind_grains(state, [](const py::object& self) -> const Packing<2>& { return state_of(self).packing; });
+    bind_grains(state, [](const py::object& self) -> const Packing& { return state_of(self).packing; });
     bind_contacts(state);
     bind_load(state);
     state
@@ -233,10 +245,10 @@ void bind_state_class(py::module_& module) {
         .def(
             "with_stress",
             [](const PyState& self, std::array<double, 2> stress, std::optional<double> shear) {
-                State<2> changed = self.state;
-                changed.load.stress = stress;
+                State changed = self.state;
+                std::copy(stress.begin(), stress.end(), changed.load.stress.begin());
                 changed.load.shear[0] = shear.value_or(changed.load.shear[0]);
-                return parse_any_state<2>(state_text<2>(changed), "State");
+                return parse_any_state(state_text(changed), "State");
             },
             py::arg("stress"), py::arg("shear") = py::none(),
             "The same state under other stresses [sigma_1, sigma_2], and another shear stress on a tilt that moves.");
@@ -264,13 +276,13 @@ void bind_state(py::module_& module) {
                    ", h=" + std::to_string(self.hyperstaticity) + ", k=" + std::to_string(self.mechanisms) + ")";
         });
     module.def(
-        "count", [](const PyState& state) { return count_contacts<2>(state.state.packing, state.state.contacts); },
+        "count", [](const PyState& state) { return count_contacts(state.state.packing, state.state.contacts); },
         py::arg("state"), py::call_guard<py::gil_scoped_release>(),
         "Counting of the exact contact matrix of stored coordinates: count(state), or count(packing, contacts). An "
         "elimination mod p; the rank is exact where `rank_exact` is proved.");
     module.def(
         "count",
-        [](const Packing<2>& packing, const std::vector<std::pair<int, int>>& contacts) {
+        [](const Packing& packing, const std::vector<std::pair<int, int>>& contacts) {
             if (packing.cell.any()) {
                 throw Error(ErrorKind::bad_input,
                             "packing is a periodic cell, whose contacts name images, and pairs do "
@@ -280,7 +292,7 @@ void bind_state(py::module_& module) {
             for (const auto& pair : contacts) {
                 list.push_back(contact_of(pair));
             }
-            return count_contacts<2>(packing, list);
+            return count_contacts(packing, list);
         },
         py::arg("packing"), py::arg("contacts"), py::call_guard<py::gil_scoped_release>(),
         "Counting of the exact contact matrix of stored coordinates: count(state), or count(packing, contacts). An "

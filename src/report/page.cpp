@@ -47,7 +47,7 @@ std::int64_t disk_with_image(const Contact& contact, int disks) {
 }
 
 /// A contact as in equilibria.csv: two numbers, walls -1 to -4; a held coordinate is (its index, -9).
-void append_contact(Json& list, const Contact& contact, const Packing<2>& packing) {
+void append_contact(Json& list, const Contact& contact, const Packing& packing) {
     list.push_back(contact.i);
     switch (contact.kind) {
     case ContactKind::disk_disk: list.push_back(disk_with_image(contact, packing.disk_count())); break;
@@ -58,8 +58,8 @@ void append_contact(Json& list, const Contact& contact, const Packing<2>& packin
 }
 
 /// Forces of an equilibrium in double, or nothing.
-std::vector<double> forces_of(const State<2>& state) {
-    const auto structure = IsostaticStructure<2>::prove(state.packing, state.contacts);
+std::vector<double> forces_of(const State& state) {
+    const auto structure = IsostaticStructure::prove(state.packing, state.contacts);
     if (!structure.ok()) {
         return {};
     }
@@ -68,7 +68,7 @@ std::vector<double> forces_of(const State<2>& state) {
     return forces;
 }
 
-std::vector<double> difference(const State<2>& to, const State<2>& from) {
+std::vector<double> difference(const State& to, const State& from) {
     std::vector<double> moved(to.packing.q.size());
     std::transform(to.packing.q.begin(), to.packing.q.end(), from.packing.q.begin(), moved.begin(), std::minus<>());
     return moved;
@@ -102,7 +102,7 @@ struct Thinning {
 /// Writes the frames one after the other.
 class Frames {
   public:
-    explicit Frames(const Packing<2>& packing) {
+    explicit Frames(const Packing& packing) {
         const std::vector<double>& radius = packing.radius;
         resolution_ =
             std::accumulate(radius.begin(), radius.end(), 0.0) / static_cast<double>(radius.size()) / parts_of_radius;
@@ -110,7 +110,7 @@ class Frames {
     }
 
     void add(const WalkedVertex& vertex, const RunRecords& records) {
-        const State<2>& state = vertex.state;
+        const State& state = vertex.state;
         for (std::size_t k = 0; k < last_.size(); ++k) {
             const std::int64_t now = std::llround(state.packing.q[k] / resolution_);
             append_varint(moves_, now - last_[k]);
@@ -155,7 +155,7 @@ class Frames {
 
   private:
     /// Its number; -1: nothing moved, or it is not known what.
-    int add_arrows(const State<2>* from, const State<2>& to) {
+    int add_arrows(const State* from, const State& to) {
         if (from == nullptr) {
             return -1;
         }
@@ -174,7 +174,7 @@ class Frames {
         return static_cast<int>(longest_.size()) - 1;
     }
 
-    int add_forces(const State<2>& state) {
+    int add_forces(const State& state) {
         const std::vector<double> forces = forces_of(state);
         double sum = 0;
         int carrying = 0;
@@ -215,7 +215,7 @@ Json equilibria_json(const RunRecords& records) {
     return object;
 }
 
-Json events_json(const RunRecords& records, const Packing<2>& packing) {
+Json events_json(const RunRecords& records, const Packing& packing) {
     Json object;
     for (const char* name : {"equilibrium", "arc", "kind", "opened", "closed", "sigma2", "eps2", "displacement"}) {
         object[name] = Json::array();
@@ -234,8 +234,8 @@ Json events_json(const RunRecords& records, const Packing<2>& packing) {
     return object;
 }
 
-Json packing_json(const State<2>& state) {
-    const Packing<2>& packing = state.packing;
+Json packing_json(const State& state) {
+    const Packing& packing = state.packing;
     Json object;
     object["radii"] = std::vector<float>(packing.radius.begin(), packing.radius.end());
     object["fixed"] = packing.fixed;
@@ -276,11 +276,11 @@ Page run_page(const std::filesystem::path& directory, const std::function<void(s
     Page page;
     Json data = header_json(directory);
     std::optional<Frames> frames;
-    const std::optional<StateFile<2>> first = records.stored(0);
+    const std::optional<StateFile> first = records.stored(0);
     data["words"] = words_json(load_words(first && first->state.load.loads_tilt()));
     data["arcs"] = records.events.size();
     if (first) {
-        const Packing<2>& packing = first->state.packing;
+        const Packing& packing = first->state.packing;
         data["packing"] = packing_json(first->state);
         data["events"] = events_json(records, packing);
         frames.emplace(packing);

@@ -22,12 +22,12 @@ struct Point {
     double x = 0, y = 0;
 };
 
-Point centre(const State<2>& state, int disk) {
+Point centre(const State& state, int disk) {
     return {state.packing.coordinate(DiskId(disk), 0), state.packing.coordinate(DiskId(disk), 1)};
 }
 
 /// Foot of the normal on the wall of a contact; none for two disks.
-std::optional<Point> foot(const State<2>& state, const Contact& contact) {
+std::optional<Point> foot(const State& state, const Contact& contact) {
     if (contact.kind != ContactKind::lower_wall && contact.kind != ContactKind::upper_wall) {
         return std::nullopt;
     }
@@ -47,7 +47,7 @@ double mean_force(std::span<const double> forces) {
 }
 
 /// The same packing with its disks in the cell, and the images that its contacts then name.
-State<2> in_cell(State<2> state) {
+State in_cell(State state) {
     if (!state.packing.cell.any()) {
         return state;
     }
@@ -63,7 +63,7 @@ State<2> in_cell(State<2> state) {
 }
 
 /// m_x and m_y periods of a cell. \pre there are periodic axes
-Point periods(const Packing<2>& packing, double mx, double my) {
+Point periods(const Packing& packing, double mx, double my) {
     return {mx * packing.lattice(0, 0) + my * packing.lattice(0, 1), my * packing.lattice(1, 1)};
 }
 
@@ -76,13 +76,13 @@ Point operator-(Point a, Point b) {
 }
 
 /// Centre of the image of the second disk that a contact names. \pre two disks
-Point second_centre(const State<2>& state, const Contact& contact) {
+Point second_centre(const State& state, const Contact& contact) {
     const Point j = centre(state, contact.j);
     return contact.image.is_here() ? j : j + periods(state.packing, contact.image.m[0], contact.image.m[1]);
 }
 
 /// Corners of the cell, in order. Along an axis with walls it goes from wall to wall.
-std::array<Point, 4> corners(const Packing<2>& packing) {
+std::array<Point, 4> corners(const Packing& packing) {
     return {periods(packing, 0, 0), periods(packing, 1, 0), periods(packing, 1, 1), periods(packing, 0, 1)};
 }
 
@@ -91,11 +91,11 @@ struct Frame {
     Point low, high;
 };
 
-Frame frame_of(const State<2>& state) {
+Frame frame_of(const State& state) {
     Frame frame;
     if (state.packing.cell.any()) {
         constexpr double radii = 2.5; // a disk that touches one in the cell is shown
-        const std::array<bool, 2>& periodic = state.packing.cell.periodic;
+        const PerAxis<bool>& periodic = state.packing.cell.periodic;
         const Point room{periodic[0] ? radii * state.packing.max_radius() : 0,
                          periodic[1] ? radii * state.packing.max_radius() : 0};
         frame = {{HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL}};
@@ -122,7 +122,7 @@ Frame frame_of(const State<2>& state) {
 /// Writes shapes in picture units: 1000 across what is drawn, y downwards.
 class Canvas {
   public:
-    explicit Canvas(const State<2>& state) : frame_(frame_of(state)), scale_(1000 / (frame_.high.x - frame_.low.x)) {}
+    explicit Canvas(const State& state) : frame_(frame_of(state)), scale_(1000 / (frame_.high.x - frame_.low.x)) {}
 
     [[nodiscard]] double scale() const { return scale_; }
     [[nodiscard]] double height() const { return (frame_.high.y - frame_.low.y) * scale_; }
@@ -160,7 +160,7 @@ class Canvas {
 constexpr double wall_width = 8; // picture units
 
 /// Outside the box, so that no disk and no force is hidden.
-void draw_walls(Canvas& canvas, const State<2>& state) {
+void draw_walls(Canvas& canvas, const State& state) {
     constexpr double thickness = wall_width;
     const double out = thickness / 2 / canvas.scale();
     const auto& walls = state.packing.walls;
@@ -178,7 +178,7 @@ void draw_walls(Canvas& canvas, const State<2>& state) {
 }
 
 /// Dashed: the sides that repeat.
-void draw_cell(Canvas& canvas, const Packing<2>& packing) {
+void draw_cell(Canvas& canvas, const Packing& packing) {
     if (!packing.cell.any()) {
         return;
     }
@@ -191,8 +191,8 @@ void draw_cell(Canvas& canvas, const Packing<2>& packing) {
 }
 
 /// The disks, and in a cell their images: those beyond it are fainter.
-void draw_disks(Canvas& canvas, const State<2>& state, const std::vector<unsigned char>& rattler) {
-    const Packing<2>& packing = state.packing;
+void draw_disks(Canvas& canvas, const State& state, const std::vector<unsigned char>& rattler) {
+    const Packing& packing = state.packing;
     constexpr int around = 1; // images: the disks were put into the cell
     for (int i = 0; i < packing.disk_count(); ++i) {
         const auto s = static_cast<std::size_t>(i);
@@ -212,7 +212,7 @@ void draw_disks(Canvas& canvas, const State<2>& state, const std::vector<unsigne
 }
 
 /// Width of the line of a force 1.
-double width_of_force(const Canvas& canvas, const State<2>& state, std::span<const double> forces) {
+double width_of_force(const Canvas& canvas, const State& state, std::span<const double> forces) {
     constexpr double width_at_mean = 0.2; // of the mean radius
     double radius = 0;
     for (const double r : state.packing.radius) {
@@ -221,7 +221,7 @@ double width_of_force(const Canvas& canvas, const State<2>& state, std::span<con
     return width_at_mean * radius * canvas.scale() / mean_force(forces);
 }
 
-void draw_contacts(Canvas& canvas, const State<2>& state, std::span<const double> forces) {
+void draw_contacts(Canvas& canvas, const State& state, std::span<const double> forces) {
     constexpr double hairline = 0.4;
     const double unit = width_of_force(canvas, state, forces);
     for (std::size_t l = 0; l < state.contacts.size(); ++l) {
@@ -243,7 +243,7 @@ void draw_contacts(Canvas& canvas, const State<2>& state, std::span<const double
 }
 
 /// Arrows that press on the walls that can move, with their stresses: outside the box.
-void draw_stresses(Canvas& canvas, const State<2>& state) {
+void draw_stresses(Canvas& canvas, const State& state) {
     constexpr double length = 34; // picture units
     constexpr double head = 9;
     const auto& walls = state.packing.walls;
@@ -272,7 +272,7 @@ void draw_stresses(Canvas& canvas, const State<2>& state) {
 }
 
 /// Lines of known forces below the box.
-void draw_scale(Canvas& canvas, const State<2>& state, std::span<const double> forces) {
+void draw_scale(Canvas& canvas, const State& state, std::span<const double> forces) {
     const double unit = width_of_force(canvas, state, forces);
     const double mean = mean_force(forces);
     double at = canvas.low().x;
@@ -288,7 +288,7 @@ void draw_scale(Canvas& canvas, const State<2>& state, std::span<const double> f
 
 } // namespace
 
-std::vector<unsigned char> rattler_flags(const State<2>& state, std::span<const double> forces) {
+std::vector<unsigned char> rattler_flags(const State& state, std::span<const double> forces) {
     assert(forces.size() == state.contacts.size());
     std::vector<unsigned char> flags(state.packing.radius.size(), 1);
     for (std::size_t l = 0; l < state.contacts.size(); ++l) {
@@ -304,8 +304,8 @@ std::vector<unsigned char> rattler_flags(const State<2>& state, std::span<const 
     return flags;
 }
 
-std::string force_picture(const State<2>& stored, std::span<const double> forces, const std::string& caption) {
-    const State<2> state = in_cell(stored);
+std::string force_picture(const State& stored, std::span<const double> forces, const std::string& caption) {
+    const State state = in_cell(stored);
     Canvas canvas(state);
     std::vector<unsigned char> rattler(state.packing.radius.size(), 0);
     if (!forces.empty()) {
@@ -359,7 +359,7 @@ struct VtkLines {
     std::size_t ends = 0;
 };
 
-VtkLines vtk_lines(const State<2>& state, std::span<const double> forces, std::vector<Point>& points) {
+VtkLines vtk_lines(const State& state, std::span<const double> forces, std::vector<Point>& points) {
     VtkLines made;
     for (std::size_t l = 0; l < state.contacts.size(); ++l) {
         const Contact& contact = state.contacts[l];
@@ -394,7 +394,7 @@ VtkLines vtk_lines(const State<2>& state, std::span<const double> forces, std::v
 
 } // namespace
 
-std::string vtk_text(const State<2>& state, std::span<const double> forces, const std::string& title,
+std::string vtk_text(const State& state, std::span<const double> forces, const std::string& title,
                      std::span<const double> displacement) {
     const auto disks = state.packing.radius.size();
     std::vector<Point> points;

@@ -16,16 +16,16 @@ namespace isostat {
 /// it. `forces`: one per contact, or empty (contacts are then hairlines, no disk is marked as a rattler). `caption` is
 /// a line below. The text depends on nothing but the arguments. A cell: its sides that repeat are dashed, the disks are
 /// moved into it, images beyond it are fainter, and a contact with an image is drawn from both sides.
-std::string force_picture(const State<2>& state, std::span<const double> forces, const std::string& caption);
+std::string force_picture(const State& state, std::span<const double> forces, const std::string& caption);
 
 /// VTK legacy file (ASCII POLYDATA): a point and a vertex per disk with `radius` and `rattler`, a line per contact with
 /// `force`; contacts with walls end in extra points of radius 0 on the wall, those with images at the
 /// centre of the image, of radius 0 too. The last line, of force 0, is the outline of a cell. 17 digits.
 /// `displacement`: empty, or two per disk: `displacement`, 0 on the extra points.
-std::string vtk_text(const State<2>& state, std::span<const double> forces, const std::string& title,
+std::string vtk_text(const State& state, std::span<const double> forces, const std::string& title,
                      std::span<const double> displacement = {});
 
 /// 1 for disks without a contact of non-zero force. \pre forces.size() == state.contacts.size()
-std::vector<unsigned char> rattler_flags(const State<2>& state, std::span<const double> forces);
+std::vector<unsigned char> rattler_flags(const State& state, std::span<const double> forces);
 
 } // namespace isostat

@@ -45,11 +45,11 @@ class Writer {
         }
     }
     void picture(const fs::path& path, const std::string& name) {
-        StateFile<2> file = read_any_state<2>(path);
+        StateFile file = read_any_state(path);
         if (file.forces.empty()) {
             file.forces = solve_forces(file.state, path);
         }
-        const State<2>& state = file.state;
+        const State& state = file.state;
         const std::string caption =
             fmt::format("equilibrium {}, {} disks, {} = {:.6g}", state.equilibrium, state.packing.disk_count(),
                         load_words(state.load.loads_tilt()).ratio_sign, state.load.ratio());
@@ -103,7 +103,7 @@ class Writer {
     }
 
   private:
-    std::vector<double> solve_forces(const State<2>& state, const fs::path& path) {
+    std::vector<double> solve_forces(const State& state, const fs::path& path) {
         const auto inspection = inspect_vertex(state);
         if (!inspection.ok()) {
             note(fmt::format("{}: the picture shows no forces: {}", path.string(), inspection.failure().message()));
@@ -114,7 +114,7 @@ class Writer {
         return forces;
     }
     /// From the first state written.
-    std::vector<double> displacement(const State<2>& state) {
+    std::vector<double> displacement(const State& state) {
         const std::vector<double>& q = state.packing.q;
         if (first_.size() != q.size()) {
             first_ = q;
@@ -209,7 +209,7 @@ ReportResult report_run(const fs::path& directory, const fs::path& output, const
         writer.note(note);
     }
     const std::vector<fs::path> states = stored_states(directory, content);
-    const LoadWords& words = load_words(!states.empty() && read_any_state<2>(states.front()).state.load.loads_tilt());
+    const LoadWords& words = load_words(!states.empty() && read_any_state(states.front()).state.load.loads_tilt());
     if (options.pictures || options.vtk) {
         if (options.pictures) {
             for (const Chart& chart : make_charts(rows, names, words, options.pdf)) {

@@ -64,7 +64,7 @@ class Walk {
             here_ = kept->second;
             return;
         }
-        if (std::optional<StateFile<2>> file = records_.stored(previous)) {
+        if (std::optional<StateFile> file = records_.stored(previous)) {
             here_ = std::move(file->state);
         }
     }
@@ -86,10 +86,10 @@ class Walk {
 
     /// Goes through the arcs of one rearrangement; `line`: the equilibrium that it leads to. False: stop.
     bool rearrange(Events events, const EquilibriumLine* line) {
-        const std::optional<State<2>> from = here_;
+        const std::optional<State> from = here_;
         for (std::size_t k = events.first; k < events.end && here_; ++k) {
             const EventRecord& event = records_.events[k];
-            const State<2> before = *here_;
+            const State before = *here_;
             if (!step(event)) {
                 notes_.push_back(fmt::format("equilibrium {} from its arc {} on", event.equilibrium, event.arc));
                 forget();
@@ -108,11 +108,11 @@ class Walk {
     }
 
     /// An equilibrium without arcs, or one that the arcs were not followed to.
-    bool stand(const EquilibriumLine& line, const std::optional<State<2>>& from) {
+    bool stand(const EquilibriumLine& line, const std::optional<State>& from) {
         const int number = line.integer("number");
         bool relisted = false;
         if (!here_ || number == 0) {
-            std::optional<StateFile<2>> file = records_.stored(number);
+            std::optional<StateFile> file = records_.stored(number);
             if (!file) {
                 notes_.push_back(fmt::format("equilibrium {}", number));
                 return true;
@@ -168,9 +168,9 @@ class Walk {
     const RunRecords& records_;
     const WalkVisitor& visit_;
     std::set<int> branches_; ///< equilibria that later segments start from
-    std::map<int, State<2>> kept_;
+    std::map<int, State> kept_;
     std::size_t next_ = 0;
-    std::optional<State<2>> here_; ///< nothing: lost
+    std::optional<State> here_; ///< nothing: lost
     std::shared_ptr<const Solver> solver_;
     std::vector<std::string> notes_;
 };

@@ -12,11 +12,11 @@ namespace isostat {
 
 /// A vertex on the way. References are good during the call only.
 struct WalkedVertex {
-    const State<2>& state;
+    const State& state;
     const checker::EventRecord* arc = nullptr;    ///< the arc that ended here; none: no arc did, or it is not known
     const EquilibriumLine* equilibrium = nullptr; ///< none: on the way
-    const State<2>* from = nullptr;               ///< where the arc began
-    const State<2>* start = nullptr;              ///< where the rearrangement began; none: not known
+    const State* from = nullptr;                  ///< where the arc began
+    const State* start = nullptr;                 ///< where the rearrangement began; none: not known
     bool relisted = false;                        ///< the order of the contacts is new: a stored state was read
 };
 

@@ -17,35 +17,34 @@ namespace {
 using Residue = std::uint64_t;
 
 /// What a column is made of, in numbers of any kind.
-template <int Dim, class Number> struct Arms {
-    std::array<Number, static_cast<std::size_t>(Dim)> r;      ///< x_j - x_i + A m
-    std::array<Number, static_cast<std::size_t>(Dim)> period; ///< A m
+template <class Number> struct Arms {
+    PerAxis<Number> r;      ///< x_j - x_i + A m
+    PerAxis<Number> period; ///< A m
 };
 
-template <int Dim, class Number, class At, class Minus>
-Arms<Dim, Number> arms_of(const Contact& contact, int disks, At at, Minus minus) {
-    Arms<Dim, Number> arms;
-    arms.r = Separation<Dim>(contact, disks).of_disks(at, minus);
+template <class Number, class At, class Minus>
+Arms<Number> arms_of(const Contact& contact, const Layout& layout, At at, Minus minus) {
+    Arms<Number> arms;
+    arms.r = Separation(contact, layout).of_disks(at, minus);
     // A disk and its own image are A m apart.
-    arms.period = Separation<Dim>(Contact(ContactKind::disk_disk, 0, 0, contact.image), disks).of_disks(at, minus);
+    arms.period = Separation(Contact(ContactKind::disk_disk, 0, 0, contact.image), layout).of_disks(at, minus);
     return arms;
 }
 
 /// The cell held: only the disks have degrees of freedom.
-template <int Dim> Packing<Dim> in_fixed_cell(Packing<Dim> packing) {
-    packing.cell.period_moves.fill(false);
-    packing.cell.tilt_moves.fill(false);
+Packing in_fixed_cell(Packing packing) {
+    packing.cell.move(false, false);
     return packing;
 }
 
 /// visit(row, entry) of one column, ascending. `product`, `sum`, `negative`: of the numbers.
-template <int Dim, class Number, class Ring, class Visit>
-void for_each_strained_entry(const DofMap<Dim>& dofs, const Contact& contact, const Arms<Dim, Number>& arms,
-                             Strain strain, const Ring& ring, Visit visit) {
+template <class Number, class Ring, class Visit>
+void for_each_strained_entry(const DofMap& dofs, const Contact& contact, const Arms<Number>& arms, Strain strain,
+                             const Ring& ring, Visit visit) {
     for (const bool second : {false, true}) {
-        for (std::size_t a = 0; a < Dim && contact.i != contact.j; ++a) {
+        for (std::size_t a = 0; a < dofs.layout().axes() && contact.i != contact.j; ++a) {
             const auto disk = static_cast<std::size_t>(second ? contact.j : contact.i);
-            if (const int dof = dofs.dof_of(Dim * disk + a); dof >= 0) {
+            if (const int dof = dofs.dof_of(dofs.layout().axes() * disk + a); dof >= 0) {
                 visit(dof, second ? ring.negative(arms.r[a]) : arms.r[a]);
             }
         }
@@ -53,8 +52,8 @@ void for_each_strained_entry(const DofMap<Dim>& dofs, const Contact& contact, co
     const int first = dofs.dof_count();
     int row = 0;
     Number trace = ring.zero();
-    for (std::size_t a = 0; a < Dim && strain != Strain::none; ++a) {
-        const std::size_t last = strain == Strain::full ? static_cast<std::size_t>(Dim) : a + 1;
+    for (std::size_t a = 0; a < dofs.layout().axes() && strain != Strain::none; ++a) {
+        const std::size_t last = strain == Strain::full ? dofs.layout().axes() : a + 1;
         for (std::size_t b = a; b < last; ++b) {
             const Number entry = ring.negative(ring.product(arms.r[a], arms.period[b]));
             if (strain == Strain::isotropic) {
@@ -113,18 +112,17 @@ const char* to_string(Strain strain) {
     return word_of(strain, words);
 }
 
-template <int Dim>
-sparse::Matrix<std::uint64_t> exact_strained_matrix(const Packing<Dim>& packing, const std::vector<Contact>& contacts,
+sparse::Matrix<std::uint64_t> exact_strained_matrix(const Packing& packing, const std::vector<Contact>& contacts,
                                                     Strain strain) {
     assert(packing.cell.all());
-    const DofMap<Dim> dofs(in_fixed_cell(packing));
+    const DofMap dofs(in_fixed_cell(packing));
     sparse::Matrix<std::uint64_t> matrix;
-    matrix.rows = dofs.dof_count() + strain_count<Dim>(strain);
+    matrix.rows = dofs.dof_count() + strain_count(strain, packing.dimension);
     matrix.cols = static_cast<int>(contacts.size());
     matrix.start.push_back(0);
     for (const Contact& contact : contacts) {
         const auto at = [&](std::size_t k) -> Residue { return exact::residue(packing.q[k]); };
-        const auto arms = arms_of<Dim, Residue>(contact, packing.disk_count(), at, ResidueRing::difference);
+        const auto arms = arms_of<Residue>(contact, packing.layout(), at, ResidueRing::difference);
         for_each_strained_entry(dofs, contact, arms, strain, ResidueRing(), [&](int row, Residue entry) {
             matrix.row.push_back(row);
             matrix.value.push_back(entry);
@@ -134,15 +132,14 @@ sparse::Matrix<std::uint64_t> exact_strained_matrix(const Packing<Dim>& packing,
     return matrix;
 }
 
-template <int Dim>
-exact::NumberMatrix strained_matrix(const Packing<Dim>& packing, const std::function<exact::Number(std::size_t)>& at,
+exact::NumberMatrix strained_matrix(const Packing& packing, const std::function<exact::Number(std::size_t)>& at,
                                     const std::vector<Contact>& contacts, Strain strain) {
     assert(packing.cell.all());
-    const DofMap<Dim> dofs(in_fixed_cell(packing));
+    const DofMap dofs(in_fixed_cell(packing));
     exact::NumberMatrix matrix;
-    matrix.rows = dofs.dof_count() + strain_count<Dim>(strain);
+    matrix.rows = dofs.dof_count() + strain_count(strain, packing.dimension);
     for (const Contact& contact : contacts) {
-        const auto arms = arms_of<Dim, exact::Number>(contact, packing.disk_count(), at, std::minus<>());
+        const auto arms = arms_of<exact::Number>(contact, packing.layout(), at, std::minus<>());
         auto& column = matrix.column.emplace_back();
         for_each_strained_entry(dofs, contact, arms, strain, NumberRing(), [&](int row, const exact::Number& entry) {
             if (!entry.is_zero()) {
@@ -153,12 +150,11 @@ exact::NumberMatrix strained_matrix(const Packing<Dim>& packing, const std::func
     return matrix;
 }
 
-template <int Dim>
-Counting count_strained(const Packing<Dim>& packing, const std::vector<Contact>& contacts, Strain strain) {
+Counting count_strained(const Packing& packing, const std::vector<Contact>& contacts, Strain strain) {
     const auto matrix = exact_strained_matrix(packing, contacts, strain);
     const int rank = matrix.rows == 0 || matrix.cols == 0 ? 0 : exact::rank(matrix);
     return settled(counted(matrix.rows, matrix.cols, rank), [&] {
-        return strained_matrix<Dim>(
+        return strained_matrix(
             packing, [&](std::size_t k) { return exact::Number::from_double(packing.q[k]); }, contacts, strain);
     });
 }
@@ -167,7 +163,7 @@ Counting count_matrix(const exact::NumberMatrix& matrix) {
     return settled(counted(matrix.rows, matrix.cols(), exact::rank_bound(matrix).rank), [&] { return matrix; });
 }
 
-template <int Dim> StrainCounts count_strains(const Packing<Dim>& packing, const std::vector<Contact>& contacts) {
+StrainCounts count_strains(const Packing& packing, const std::vector<Contact>& contacts) {
     StrainCounts counts;
     std::transform(strains.begin(), strains.end(), counts.begin(),
                    [&](Strain strain) { return count_strained(packing, contacts, strain); });
@@ -188,19 +184,12 @@ std::vector<int> untouched(int disks, const std::vector<Contact>& pairs) {
     return out;
 }
 
-template <int Dim> Packing<Dim> without_disks(Packing<Dim> packing, const std::vector<int>& disks) {
+Packing without_disks(Packing packing, const std::vector<int>& disks) {
     packing.fixed.resize(packing.radius.size(), 0);
     for (const int disk : disks) {
         packing.fixed[static_cast<std::size_t>(disk)] = 1;
     }
     return packing;
 }
-
-template exact::NumberMatrix strained_matrix<2>(const Packing<2>&, const std::function<exact::Number(std::size_t)>&,
-                                                const std::vector<Contact>&, Strain);
-template sparse::Matrix<std::uint64_t> exact_strained_matrix<2>(const Packing<2>&, const std::vector<Contact>&, Strain);
-template Counting count_strained<2>(const Packing<2>&, const std::vector<Contact>&, Strain);
-template StrainCounts count_strains<2>(const Packing<2>&, const std::vector<Contact>&);
-template Packing<2> without_disks<2>(Packing<2>, const std::vector<int>&);
 
 } // namespace isostat

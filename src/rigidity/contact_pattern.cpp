@@ -23,7 +23,7 @@ struct Level {
 };
 
 /// Per coordinate of the disks: 0, or the number of the level that it is at. Empty when no two disks share one.
-template <int Dim> std::vector<int> shared_levels(const Packing<Dim>& packing, const std::vector<Contact>& contacts) {
+std::vector<int> shared_levels(const Packing& packing, const std::vector<Contact>& contacts) {
     std::vector<std::pair<Level, int>> held; // with the coordinate
     const int disks = packing.disk_count();
     for (const Contact& contact : contacts) {
@@ -32,15 +32,15 @@ template <int Dim> std::vector<int> shared_levels(const Packing<Dim>& packing, c
         }
         const auto i = static_cast<std::size_t>(contact.i);
         if (contact.kind == ContactKind::lower_wall || contact.kind == ContactKind::upper_wall) {
-            held.push_back(
-                {{contact.j, contact.kind == ContactKind::upper_wall, packing.radius[i]}, Dim * contact.i + contact.j});
-        } else if (contact.kind == ContactKind::held && contact.i < Dim * disks) {
-            held.push_back({{contact.i % Dim, false, packing.q[i]}, contact.i});
+            held.push_back({{contact.j, contact.kind == ContactKind::upper_wall, packing.radius[i]},
+                            packing.dimension * contact.i + contact.j});
+        } else if (contact.kind == ContactKind::held && contact.i < packing.dimension * disks) {
+            held.push_back({{contact.i % packing.dimension, false, packing.q[i]}, contact.i});
         }
     }
-    for (int k = 0; k < Dim * disks && !packing.fixed.empty(); ++k) {
-        if (packing.is_fixed(DiskId(k / Dim))) {
-            held.push_back({{k % Dim, false, packing.q[static_cast<std::size_t>(k)]}, k});
+    for (int k = 0; k < packing.dimension * disks && !packing.fixed.empty(); ++k) {
+        if (packing.is_fixed(DiskId(k / packing.dimension))) {
+            held.push_back({{k % packing.dimension, false, packing.q[static_cast<std::size_t>(k)]}, k});
         }
     }
     std::sort(held.begin(), held.end());
@@ -81,48 +81,48 @@ int most_held(int disks, int dim, const std::vector<Contact>& contacts) {
 
 /// Which row stands for a coordinate when another disk is pinned than the one of `dofs`: forces of finite loads are
 /// the same (proofs/cells.md, C1), and where a rattler is pinned no pattern tells that the rest does not press on it.
-template <int Dim> class Repinned {
+class Repinned {
   public:
-    Repinned(const Packing<Dim>& packing, const DofMap<Dim>& dofs, const std::vector<Contact>& contacts)
+    Repinned(const Packing& packing, const DofMap& dofs, const std::vector<Contact>& contacts)
         : packing_(packing), dofs_(dofs) {
         for (int i = 0; i < packing.disk_count() && packing.cell.any() && was_ < 0; ++i) {
             was_ = is_pinned(i) ? i : -1;
         }
-        is_ = was_ < 0 ? -1 : most_held(packing.disk_count(), Dim, contacts);
+        is_ = was_ < 0 ? -1 : most_held(packing.disk_count(), packing.dimension, contacts);
     }
     [[nodiscard]] bool changes() const { return is_ >= 0 && is_ != was_; }
     /// -1: no row.
     [[nodiscard]] int row(std::size_t coordinate) const {
-        const int disk = static_cast<int>(coordinate) / Dim;
-        const std::size_t axis = coordinate % Dim;
+        const int disk = static_cast<int>(coordinate) / packing_.dimension;
+        const std::size_t axis = coordinate % packing_.axes();
         if (!changes() || disk >= packing_.disk_count() || !packing_.cell.periodic[axis]) {
             return dofs_.dof_of(coordinate);
         }
         return disk == is_    ? -1
-               : disk == was_ ? dofs_.dof_of(static_cast<std::size_t>(Dim * is_) + axis)
+               : disk == was_ ? dofs_.dof_of(packing_.layout().of_disk(is_) + axis)
                               : dofs_.dof_of(coordinate);
     }
 
   private:
     [[nodiscard]] bool is_pinned(int disk) const {
-        for (std::size_t a = 0; a < Dim; ++a) {
-            if (packing_.cell.periodic[a] && dofs_.dof_of(static_cast<std::size_t>(Dim * disk) + a) < 0) {
+        for (std::size_t a = 0; a < packing_.axes(); ++a) {
+            if (packing_.cell.periodic[a] && dofs_.dof_of(packing_.layout().of_disk(disk) + a) < 0) {
                 return true;
             }
         }
         return false;
     }
-    const Packing<Dim>& packing_;
-    const DofMap<Dim>& dofs_;
+    const Packing& packing_;
+    const DofMap& dofs_;
     int was_ = -1;
     int is_ = -1;
 };
 
 } // namespace
 
-template <int Dim> std::vector<int> touched_rows(const DofMap<Dim>& dofs, const Contact& contact) {
+std::vector<int> touched_rows(const DofMap& dofs, const Contact& contact) {
     std::vector<int> rows;
-    Separation<Dim>(contact, dofs.disk_count()).for_each_coordinate([&](std::size_t coordinate, std::size_t, int) {
+    Separation(contact, dofs.layout()).for_each_coordinate([&](std::size_t coordinate, std::size_t, int) {
         if (const int dof = dofs.dof_of(coordinate); dof >= 0) {
             rows.push_back(dof);
         }
@@ -130,30 +130,29 @@ template <int Dim> std::vector<int> touched_rows(const DofMap<Dim>& dofs, const 
     return rows;
 }
 
-template <int Dim>
-ContactPattern::ContactPattern(const Packing<Dim>& packing, const DofMap<Dim>& dofs,
-                               const std::vector<Contact>& contacts, const sparse::Matrix<double>& matrix,
-                               const std::vector<int>& matching, bool perturbed)
+ContactPattern::ContactPattern(const Packing& packing, const DofMap& dofs, const std::vector<Contact>& contacts,
+                               const sparse::Matrix<double>& matrix, const std::vector<int>& matching, bool perturbed)
     : start_(&matrix.start), row_(&matrix.row), matched_(&matching) {
     const std::vector<int> level = perturbed ? std::vector<int>() : shared_levels(packing, contacts);
-    const Repinned<Dim> pinned(packing, dofs, contacts);
+    const Repinned pinned(packing, dofs, contacts);
     if (level.empty() && !pinned.changes()) {
         return;
     }
     Parts parts;
     for (const Contact& contact : contacts) {
-        const auto of = [&](int disk, int axis) { return level[static_cast<std::size_t>(Dim * disk + axis)]; };
-        const auto vanishes = [&](int axis) { // of a tilt: 0, what it moves along (Dim = 2)
+        const auto of = [&](int disk, int axis) {
+            return level[static_cast<std::size_t>(packing.axes() * disk + axis)];
+        };
+        const auto vanishes = [&](int axis) { // of a tilt: 0, what it moves along (packing.dimension = 2)
             return contact.kind == ContactKind::disk_disk && !level.empty() && of(contact.i, axis) != 0 &&
                    of(contact.i, axis) == of(contact.j, axis) && !is_displaced(contact, axis);
         };
-        Separation<Dim>(contact, packing.disk_count())
-            .for_each_coordinate([&](std::size_t coordinate, std::size_t, int) {
-                const int mu = pinned.row(coordinate);
-                if (mu >= 0 && !vanishes(static_cast<int>(coordinate) % Dim)) {
-                    parts.row.push_back(mu);
-                }
-            });
+        Separation(contact, packing.layout()).for_each_coordinate([&](std::size_t coordinate, std::size_t, int) {
+            const int mu = pinned.row(coordinate);
+            if (mu >= 0 && !vanishes(static_cast<int>(coordinate) % packing.dimension)) {
+                parts.row.push_back(mu);
+            }
+        });
         parts.start.push_back(static_cast<int>(parts.row.size()));
     }
     if (pinned.changes() || parts.row.size() < matrix.row.size()) {
@@ -161,7 +160,7 @@ ContactPattern::ContactPattern(const Packing<Dim>& packing, const DofMap<Dim>& d
         if (!parts.matched.empty()) { // else no vertex with these contacts is regular, and nothing will be said of one
             own_ = std::move(parts);
             for (int mu = 0; pinned.changes() && mu < matrix.rows; ++mu) {
-                rows_of_disks_ += dofs.coordinate_of(mu) < Dim * packing.disk_count() ? 1 : 0;
+                rows_of_disks_ += dofs.coordinate_of(mu) < packing.dimension * packing.disk_count() ? 1 : 0;
             }
         }
     }
@@ -202,9 +201,5 @@ std::vector<unsigned char> ContactPattern::carrying_without(ContactId opens, int
     return repaired.empty() ? std::vector<unsigned char>(size, 1)
                             : sparse::structural_nonzeros(replaced_start, replaced_row, repaired, other_rows);
 }
-
-template std::vector<int> touched_rows<2>(const DofMap<2>&, const Contact&);
-template ContactPattern::ContactPattern(const Packing<2>&, const DofMap<2>&, const std::vector<Contact>&,
-                                        const sparse::Matrix<double>&, const std::vector<int>&, bool);
 
 } // namespace isostat

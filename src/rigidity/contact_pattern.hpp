@@ -15,7 +15,7 @@
 namespace isostat {
 
 /// The degrees of freedom on which a contact can act, ascending: by the indices alone, wherever the grains are.
-template <int Dim> std::vector<int> touched_rows(const DofMap<Dim>& dofs, const Contact& contact);
+std::vector<int> touched_rows(const DofMap& dofs, const Contact& contact);
 
 /// The pattern of the contact matrix at the true vertex: the entries that the contacts can have by their indices (those
 /// of `contact_matrix`, a stored 0 among them), without those that are 0 at every true vertex: components along an axis
@@ -25,13 +25,11 @@ template <int Dim> std::vector<int> touched_rows(const DofMap<Dim>& dofs, const 
 class ContactPattern {
   public:
     /// `perturbed`: the radii are R_i + eps rho_i; then equal ones are not equal, and nothing is left out.
-    template <int Dim>
-    ContactPattern(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure, bool perturbed = false)
+    ContactPattern(const Packing& packing, const IsostaticStructure& structure, bool perturbed = false)
         : ContactPattern(packing, structure.dofs(), structure.contacts(), structure.matrix(), structure.matching(),
                          perturbed) {}
     /// The same from the parts of a structure, which must outlive it.
-    template <int Dim>
-    ContactPattern(const Packing<Dim>& packing, const DofMap<Dim>& dofs, const std::vector<Contact>& contacts,
+    ContactPattern(const Packing& packing, const DofMap& dofs, const std::vector<Contact>& contacts,
                    const sparse::Matrix<double>& matrix, const std::vector<int>& matching, bool perturbed = false);
 
     /// Per contact: 1 when its force can be other than 0 under a load on `rows`; 0: a structural zero. Cost O(N).
@@ -63,9 +61,5 @@ class ContactPattern {
     /// For a load on these rows.
     [[nodiscard]] View for_load(std::span<const int> rows) const;
 };
-
-extern template std::vector<int> touched_rows<2>(const DofMap<2>&, const Contact&);
-extern template ContactPattern::ContactPattern(const Packing<2>&, const DofMap<2>&, const std::vector<Contact>&,
-                                               const sparse::Matrix<double>&, const std::vector<int>&, bool);
 
 } // namespace isostat

@@ -9,9 +9,9 @@
 
 namespace isostat {
 
-template <int Dim> Counting count_contacts(const Packing<Dim>& packing, const std::vector<Contact>& contacts) {
+Counting count_contacts(const Packing& packing, const std::vector<Contact>& contacts) {
     require_floating_point();
-    const DofMap<Dim> dofs(packing);
+    const DofMap dofs(packing);
     Counting counting;
     counting.dof_count = dofs.dof_count();
     counting.contact_count = static_cast<int>(contacts.size());
@@ -44,7 +44,5 @@ template <int Dim> Counting count_contacts(const Packing<Dim>& packing, const st
     }
     return counting;
 }
-
-template Counting count_contacts<2>(const Packing<2>&, const std::vector<Contact>&);
 
 } // namespace isostat

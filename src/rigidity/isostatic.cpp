@@ -32,18 +32,18 @@ template <class Value> sparse::Matrix<Value> empty_matrix(int rows, std::size_t 
 }
 
 /// Normal from the first disk to the second, the bits of `gap_gradient`, inline; of other contacts nothing.
-template <int Dim> inline std::array<double, Dim> unit_normal(const Packing<Dim>& packing, const Contact& contact) {
+inline PerAxis<double> unit_normal(const Packing& packing, const Contact& contact) {
     if (contact.kind != ContactKind::disk_disk) {
         return {};
     }
-    std::array<double, Dim> normal = separation<Dim>(packing.q, contact);
+    PerAxis<double> normal = separation(packing.layout(), packing.q, contact);
     double square = 0;
     for (const double component : normal) {
         square += component * component;
     }
     const double length = std::sqrt(square);
     if (!(length > 0x1p-450 && length < 0x1p500)) { // squares under- or overflow
-        return direction<Dim>(normal);
+        return direction(normal);
     }
     for (double& component : normal) {
         component /= length;
@@ -53,8 +53,8 @@ template <int Dim> inline std::array<double, Dim> unit_normal(const Packing<Dim>
 
 /// H with columns scaled by the distance of the centres, over the field with `modulus` elements; `reduce` maps a double
 /// to it.
-template <int Dim, class Value, class Reduce>
-sparse::Matrix<Value> reduced_contact_matrix(const Packing<Dim>& packing, const DofMap<Dim>& dofs,
+template <class Value, class Reduce>
+sparse::Matrix<Value> reduced_contact_matrix(const Packing& packing, const DofMap& dofs,
                                              const std::vector<Contact>& contacts, Value modulus, Reduce reduce) {
     std::vector<Value> residue(packing.q.size());
     for (std::size_t k = 0; k < residue.size(); ++k) {
@@ -63,8 +63,8 @@ sparse::Matrix<Value> reduced_contact_matrix(const Packing<Dim>& packing, const 
     const auto subtract = [modulus](Value a, Value b) { return a >= b ? a - b : a + (modulus - b); };
     auto matrix = empty_matrix<Value>(dofs.dof_count(), contacts.size());
     for (const Contact& contact : contacts) {
-        const Separation<Dim> separation(contact, packing.disk_count());
-        std::array<Value, Dim> normal; // times the distance of the centres; of a wall 1
+        const Separation separation(contact, packing.layout());
+        PerAxis<Value> normal; // times the distance of the centres; of a wall 1
         normal.fill(1);
         if (contact.kind == ContactKind::disk_disk) {
             normal = separation.of_disks([&](std::size_t k) { return residue[k]; }, subtract);
@@ -87,20 +87,20 @@ sparse::Matrix<Value> reduced_contact_matrix(const Packing<Dim>& packing, const 
 } // namespace
 
 /// Rows grow with the coordinates, and a separation names them in order.
-template <int Dim>
-sparse::Matrix<double> contact_matrix(const Packing<Dim>& packing, const DofMap<Dim>& dofs,
+sparse::Matrix<double> contact_matrix(const Packing& packing, const DofMap& dofs,
                                       const std::vector<Contact>& contacts) {
     sparse::Matrix<double> matrix;
     matrix.rows = dofs.dof_count();
     matrix.cols = static_cast<int>(contacts.size());
     matrix.start.resize(contacts.size() + 1);
-    const std::size_t most = 2 * Dim + (packing.cell.any() ? Dim + Cell<Dim>::tilts : std::size_t{0});
+    const std::size_t most =
+        2 * packing.axes() + (packing.cell.any() ? packing.axes() + packing.tilts() : std::size_t{0});
     matrix.row.resize(most * contacts.size());
     matrix.value.resize(most * contacts.size());
     std::size_t end = 0;
     for (std::size_t l = 0; l < contacts.size(); ++l) {
         const Contact& contact = contacts[l];
-        Separation<Dim>(contact, packing.disk_count())
+        Separation(contact, packing.layout())
             .for_each_entry(dofs, unit_normal(packing, contact), [&](int dof, double entry) {
                 matrix.row[end] = dof;
                 matrix.value[end] = entry;
@@ -113,22 +113,18 @@ sparse::Matrix<double> contact_matrix(const Packing<Dim>& packing, const DofMap<
     return matrix;
 }
 
-template <int Dim>
-sparse::Matrix<std::uint64_t> exact_contact_matrix(const Packing<Dim>& packing, const DofMap<Dim>& dofs,
+sparse::Matrix<std::uint64_t> exact_contact_matrix(const Packing& packing, const DofMap& dofs,
                                                    const std::vector<Contact>& contacts) {
     return reduced_contact_matrix(packing, dofs, contacts, exact::mersenne61, exact::residue);
 }
 
-template <int Dim>
-Result<IsostaticStructure<Dim>> IsostaticStructure<Dim>::prove(const Packing<Dim>& packing,
-                                                               std::vector<Contact> contacts) {
+Result<IsostaticStructure> IsostaticStructure::prove(const Packing& packing, std::vector<Contact> contacts) {
     require_floating_point();
-    auto proof = RankProof<Dim>::begin(packing, std::move(contacts));
+    auto proof = RankProof::begin(packing, std::move(contacts));
     return proof.ok() ? proof.value().conclude() : proof.failure();
 }
 
-template <int Dim>
-Result<RankProof<Dim>> RankProof<Dim>::begin(const Packing<Dim>& packing, std::vector<Contact> contacts) {
+Result<RankProof> RankProof::begin(const Packing& packing, std::vector<Contact> contacts) {
     if (packing.q.size() > most_coordinates) { // the one place where structures begin: what is exchanged keeps its size
         throw Error(
             ErrorKind::bad_input,
@@ -136,8 +132,8 @@ Result<RankProof<Dim>> RankProof<Dim>::begin(const Packing<Dim>& packing, std::v
                         packing.disk_count(), packing.q.size(), most_coordinates));
     }
     RankProof proof;
-    IsostaticStructure<Dim>& structure = proof.structure_;
-    structure.dofs_ = std::make_shared<const DofMap<Dim>>(packing);
+    IsostaticStructure& structure = proof.structure_;
+    structure.dofs_ = std::make_shared<const DofMap>(packing);
     const int dof_count = structure.dofs_->dof_count();
     const int contact_count = static_cast<int>(contacts.size());
     if (dof_count == 0) {
@@ -174,29 +170,28 @@ Result<RankProof<Dim>> RankProof<Dim>::begin(const Packing<Dim>& packing, std::v
     return proof;
 }
 
-template <int Dim> bool RankProof<Dim>::is_regular() {
+bool RankProof::is_regular() {
     if (elimination_.pending()) {
         rank_ = elimination_.get();
     }
     return rank_ == structure_.size();
 }
 
-template <int Dim> Result<IsostaticStructure<Dim>> RankProof<Dim>::conclude() {
+Result<IsostaticStructure> RankProof::conclude() {
     if (!is_regular()) {
         return failed(FailureKind::not_isostatic,
                       "the rank of the contact matrix mod 2^61-1 is {}, N_f = N = {}: not proved regular", rank_,
                       structure_.size());
     }
-    IsostaticStructure<Dim> proved = structure_;
+    IsostaticStructure proved = structure_;
     proved.evidence_ = RegularityEvidence::elimination;
     return proved;
 }
 
-template <int Dim>
-std::optional<ExchangedContacts<Dim>>
-IsostaticStructure<Dim>::exchange(const IsostaticStructure& previous, const Packing<Dim>& packing, ContactId slot,
-                                  const Contact& contact, const ExchangedContacts<Dim>* guess) {
-    ExchangedContacts<Dim> next;
+std::optional<ExchangedContacts> IsostaticStructure::exchange(const IsostaticStructure& previous,
+                                                              const Packing& packing, ContactId slot,
+                                                              const Contact& contact, const ExchangedContacts* guess) {
+    ExchangedContacts next;
     next.slot_ = static_cast<int>(slot.index());
     next.contacts_ = previous.contacts_;
     next.contacts_[slot.index()] = contact;
@@ -209,16 +204,15 @@ IsostaticStructure<Dim>::exchange(const IsostaticStructure& previous, const Pack
     return next.matching_.empty() ? std::nullopt : std::optional(std::move(next));
 }
 
-template <int Dim>
-IsostaticStructure<Dim> IsostaticStructure<Dim>::exchanged(ExchangedContacts<Dim> contacts,
-                                                           [[maybe_unused]] const RegularityProof& proof) {
+IsostaticStructure IsostaticStructure::exchanged(ExchangedContacts contacts,
+                                                 [[maybe_unused]] const RegularityProof& proof) {
     assert(proof.matrix_ == contacts.matrix_.get() && proof.sigma_min() > 0);
     IsostaticStructure structure = without_proof(std::move(contacts));
     structure.evidence_ = RegularityEvidence::singular_value;
     return structure;
 }
 
-template <int Dim> IsostaticStructure<Dim> IsostaticStructure<Dim>::without_proof(ExchangedContacts<Dim> contacts) {
+IsostaticStructure IsostaticStructure::without_proof(ExchangedContacts contacts) {
     IsostaticStructure structure;
     structure.contacts_ = std::move(contacts.contacts_);
     structure.dofs_ = std::move(contacts.dofs_);
@@ -228,11 +222,5 @@ template <int Dim> IsostaticStructure<Dim> IsostaticStructure<Dim>::without_proo
     structure.evidence_ = RegularityEvidence::none;
     return structure;
 }
-
-template sparse::Matrix<double> contact_matrix<2>(const Packing<2>&, const DofMap<2>&, const std::vector<Contact>&);
-template sparse::Matrix<std::uint64_t> exact_contact_matrix<2>(const Packing<2>&, const DofMap<2>&,
-                                                               const std::vector<Contact>&);
-template class IsostaticStructure<2>;
-template class RankProof<2>;
 
 } // namespace isostat

@@ -21,14 +21,11 @@ namespace isostat {
 /// Contact matrix H (N_f x N, column l = minus the gap gradient of contact l, unit normals, rows = degrees of freedom).
 /// The pattern follows from the contacts alone: a component that is 0 here is stored as 0. H f = F_ext; G = H^T gives
 /// approach velocities.
-template <int Dim>
-sparse::Matrix<double> contact_matrix(const Packing<Dim>& packing, const DofMap<Dim>& dofs,
-                                      const std::vector<Contact>& contacts);
+sparse::Matrix<double> contact_matrix(const Packing& packing, const DofMap& dofs, const std::vector<Contact>& contacts);
 
 /// The same matrix exactly, mod 2^61 - 1: every column multiplied by the distance of the centres (entries x_j - x_i of
 /// the stored doubles, no rounding, no square root), which keeps the rank. Same pattern as `contact_matrix`.
-template <int Dim>
-sparse::Matrix<std::uint64_t> exact_contact_matrix(const Packing<Dim>& packing, const DofMap<Dim>& dofs,
+sparse::Matrix<std::uint64_t> exact_contact_matrix(const Packing& packing, const DofMap& dofs,
                                                    const std::vector<Contact>& contacts);
 
 /// The ordering of a matrix, made by the first who asks; others wait for it.
@@ -47,8 +44,7 @@ class OrderingOnDemand {
 };
 
 /// Contact list and matrix after the exchange of one contact. Nothing is proved of it: it is what a proof is asked for.
-template <int Dim> class ExchangedContacts {
-    static_assert(has_dimension<Dim>());
+class ExchangedContacts {
 
   public:
     [[nodiscard]] const std::vector<Contact>& contacts() const { return contacts_; }
@@ -61,9 +57,9 @@ template <int Dim> class ExchangedContacts {
     [[nodiscard]] bool predicted() const { return predicted_; }
 
   private:
-    template <int> friend class IsostaticStructure;
+    friend class IsostaticStructure;
     std::vector<Contact> contacts_;
-    std::shared_ptr<const DofMap<Dim>> dofs_;
+    std::shared_ptr<const DofMap> dofs_;
     std::shared_ptr<const sparse::Matrix<double>> matrix_;
     std::vector<int> matching_;
     int slot_ = 0;
@@ -78,7 +74,7 @@ class RegularityProof {
 
   private:
     friend struct RegularityProver; // of the room verified
-    template <int> friend class IsostaticStructure;
+    friend class IsostaticStructure;
     RegularityProof(const sparse::Matrix<double>& matrix, double sigma_min) : matrix_(&matrix), sigma_min_(sigma_min) {}
     const sparse::Matrix<double>* matrix_;
     double sigma_min_;
@@ -100,8 +96,7 @@ inline constexpr std::size_t most_coordinates = 1'000'000;
 /// one, each from a proof: every double-precision solve asks for it, hence none can be done without the proof. It says
 /// nothing of the true equilibrium near the stored configuration. The one way around the gate is named for what it is,
 /// `without_proof`, and the evidence says so for ever.
-template <int Dim> class IsostaticStructure {
-    static_assert(has_dimension<Dim>());
+class IsostaticStructure {
 
   public:
     /// By elimination mod p (statement T4): the full exact check.
@@ -109,24 +104,23 @@ template <int Dim> class IsostaticStructure {
     /// deficient (the message gives N_f, N and the rank found; a deficiency mod p is evidence, chance n/p ~ 4e-15 of
     /// being false, not proof). Throws `Error(bad_input)` beyond `most_coordinates`. Cost: one symbolic analysis + one
     /// elimination mod p, about 10 ms at n = 4900.
-    static Result<IsostaticStructure> prove(const Packing<Dim>& packing, std::vector<Contact> contacts);
+    static Result<IsostaticStructure> prove(const Packing& packing, std::vector<Contact> contacts);
 
     /// The list of `previous` with the contact at `slot` replaced, at a new configuration of the same grains. Nothing
     /// when the new pattern is structurally singular. `guess`: the same exchange at another configuration, if it is at
     /// hand; the result does not depend on it. Cost: the matrix, and one augmenting path unless the guess has it.
-    static std::optional<ExchangedContacts<Dim>> exchange(const IsostaticStructure& previous,
-                                                          const Packing<Dim>& packing, ContactId slot,
-                                                          const Contact& contact,
-                                                          const ExchangedContacts<Dim>* guess = nullptr);
+    static std::optional<ExchangedContacts> exchange(const IsostaticStructure& previous, const Packing& packing,
+                                                     ContactId slot, const Contact& contact,
+                                                     const ExchangedContacts* guess = nullptr);
     /// By a positive lower bound of its smallest singular value (statement T3 with V8, or V1). \pre the proof is of
     /// this matrix.
-    static IsostaticStructure exchanged(ExchangedContacts<Dim> contacts, const RegularityProof& proof);
+    static IsostaticStructure exchanged(ExchangedContacts contacts, const RegularityProof& proof);
     /// Taken for regular, without proof (`evidence() == RegularityEvidence::none`): for steering ahead of the proofs. A
     /// bound of its inverse, if asked for, is proved all the same or not at all.
-    static IsostaticStructure without_proof(ExchangedContacts<Dim> contacts);
+    static IsostaticStructure without_proof(ExchangedContacts contacts);
 
     [[nodiscard]] const std::vector<Contact>& contacts() const { return contacts_; }
-    [[nodiscard]] const DofMap<Dim>& dofs() const { return *dofs_; }
+    [[nodiscard]] const DofMap& dofs() const { return *dofs_; }
     [[nodiscard]] const sparse::Matrix<double>& matrix() const { return *matrix_; }
     /// The same, for those who may outlive the structure.
     [[nodiscard]] const std::shared_ptr<const sparse::Matrix<double>>& shared_matrix() const { return matrix_; }
@@ -139,10 +133,10 @@ template <int Dim> class IsostaticStructure {
     [[nodiscard]] const sparse::Ordering& ordering() const { return ordering_->get(); }
 
   private:
-    template <int> friend class RankProof;
+    friend class RankProof;
     IsostaticStructure() = default;
     std::vector<Contact> contacts_;
-    std::shared_ptr<const DofMap<Dim>> dofs_;
+    std::shared_ptr<const DofMap> dofs_;
     std::shared_ptr<const sparse::Matrix<double>> matrix_;
     std::vector<int> matching_;
     RegularityEvidence evidence_ = RegularityEvidence::elimination;
@@ -150,29 +144,22 @@ template <int Dim> class IsostaticStructure {
 };
 
 /// `IsostaticStructure::prove` while other work goes on with the same matrix: the elimination is a task.
-template <int Dim> class RankProof {
+class RankProof {
   public:
     /// Failures that need no elimination: N != N_f, or a structurally singular pattern. Throws as `prove` does.
-    static Result<RankProof> begin(const Packing<Dim>& packing, std::vector<Contact> contacts);
+    static Result<RankProof> begin(const Packing& packing, std::vector<Contact> contacts);
     /// With evidence `none`: whatever is made of it must be thrown away unless `conclude` agrees.
-    [[nodiscard]] const IsostaticStructure<Dim>& unproved() const { return structure_; }
+    [[nodiscard]] const IsostaticStructure& unproved() const { return structure_; }
     /// Whether the rank is full; waits for the elimination.
     [[nodiscard]] bool is_regular();
     /// The same structure, with the same shared matrix, proved regular, or the failure of `prove`.
-    [[nodiscard]] Result<IsostaticStructure<Dim>> conclude();
+    [[nodiscard]] Result<IsostaticStructure> conclude();
 
   private:
     RankProof() = default;
-    IsostaticStructure<Dim> structure_;
+    IsostaticStructure structure_;
     Future<int> elimination_;
     int rank_ = -1;
 };
-
-extern template sparse::Matrix<double> contact_matrix<2>(const Packing<2>&, const DofMap<2>&,
-                                                         const std::vector<Contact>&);
-extern template sparse::Matrix<std::uint64_t> exact_contact_matrix<2>(const Packing<2>&, const DofMap<2>&,
-                                                                      const std::vector<Contact>&);
-extern template class IsostaticStructure<2>;
-extern template class RankProof<2>;
 
 } // namespace isostat

@@ -66,11 +66,11 @@ class Turning {
 };
 
 /// Disks and walls as nodes, pairs that touch as edges, and the cycles that close however the classes turn.
-template <int Dim> class Linkage {
-    static_assert(Dim == 2);
+class Linkage {
+    static_assert(plane == 2);
 
   public:
-    Linkage(const Packing<Dim>& packing, const std::vector<Contact>& touching)
+    Linkage(const Packing& packing, const std::vector<Contact>& touching)
         : packing_(packing), disks_(packing.disk_count()), touching_(touching), turning_(touching.size()) {
         for (std::size_t e = 0; e < touching.size(); ++e) {
             for (const auto& [from, to] : {ends(e), std::pair{ends(e).second, ends(e).first}}) {
@@ -87,7 +87,7 @@ template <int Dim> class Linkage {
     /// Dimension of the motions in which classes turn and what hangs together moves, if all cycles close; else -1.
     [[nodiscard]] int motions() const {
         int count = turning_.count();
-        for (int axis = 0; axis < Dim; ++axis) {
+        for (int axis = 0; axis < plane; ++axis) {
             const int pieces = pieces_that_move(axis);
             if (pieces < 0) {
                 return -1;
@@ -100,13 +100,13 @@ template <int Dim> class Linkage {
     [[nodiscard]] int free() const {
         int count = 0;
         for (const auto& [node, neighbours] : beside_) {
-            count += node < disks_ ? Dim : is_ground(node) ? 0 : 1;
+            count += node < disks_ ? plane : is_ground(node) ? 0 : 1;
         }
         return count;
     }
 
   private:
-    /// A closed way: edges, ascending, with the direction in which they are passed; along one axis or (Dim) all.
+    /// A closed way: edges, ascending, with the direction in which they are passed; along one axis or (d) all.
     struct Cell {
         int axis;
         std::vector<std::pair<std::size_t, int>> way;
@@ -147,14 +147,14 @@ template <int Dim> class Linkage {
                 if (touch(j, l)) {
                     turning_.join(first, last, false);
                     turning_.join(first, edge(j, l), false);
-                    add_cell(Dim, {i, j, l});
+                    add_cell(plane, {i, j, l});
                 }
                 for (const auto& [k, second] : beside_.at(j)) {
                     if (k > i && k < disks_ && k != l && touch(k, l) && bar(i, j) == bar(k, l) &&
                         bar(j, k) == bar(l, i)) {
                         turning_.join(first, edge(k, l), false);
                         turning_.join(second, last, false);
-                        add_cell(Dim, {i, j, k, l});
+                        add_cell(plane, {i, j, k, l});
                     }
                 }
             }
@@ -224,7 +224,7 @@ template <int Dim> class Linkage {
         matrix.rows = static_cast<int>(touching_.size());
         matrix.start.push_back(0);
         for (const Cell& cell : cells_) {
-            if (cell.axis != Dim && cell.axis != axis) {
+            if (cell.axis != plane && cell.axis != axis) {
                 continue;
             }
             for (const auto& [e, direction] : cell.way) {
@@ -237,7 +237,7 @@ template <int Dim> class Linkage {
         return matrix.cols == 0 ? 0 : exact::rank(matrix);
     }
 
-    const Packing<Dim>& packing_;
+    const Packing& packing_;
     int disks_;
     const std::vector<Contact>& touching_;
     std::map<int, std::map<int, std::size_t>> beside_; ///< edges by their ends
@@ -247,8 +247,7 @@ template <int Dim> class Linkage {
 
 } // namespace
 
-template <int Dim>
-bool moves_as_linkage(const Packing<Dim>& packing, const std::vector<Contact>& among, const Contact& pair) {
+bool moves_as_linkage(const Packing& packing, const std::vector<Contact>& among, const Contact& pair) {
     std::vector<Contact> all = among;
     all.push_back(pair);
     const auto stands = [&packing](int i) { return packing.is_fixed(DiskId(static_cast<std::size_t>(i))); };
@@ -263,11 +262,9 @@ bool moves_as_linkage(const Packing<Dim>& packing, const std::vector<Contact>& a
     if (!touching) {
         return false;
     }
-    const Linkage<Dim> linkage(packing, *touching);
+    const Linkage linkage(packing, *touching);
     const int motions = linkage.motions();
     return motions >= 0 && motions == linkage.free() - static_cast<int>(among.size());
 }
-
-template bool moves_as_linkage<2>(const Packing<2>&, const std::vector<Contact>&, const Contact&);
 
 } // namespace isostat

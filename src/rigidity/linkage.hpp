@@ -18,9 +18,6 @@ namespace isostat {
 /// of `pair` stays 0 on every motion from there on which `among` stay closed and independent. It reads indices and
 /// radii alone, exactly. False says nothing: another list may do.
 /// \pre `pair` is not in `among`; neither is a pair twice. Cost: a rank of (contacts) x (triangles, parallelograms).
-template <int Dim>
-bool moves_as_linkage(const Packing<Dim>& packing, const std::vector<Contact>& among, const Contact& pair);
-
-extern template bool moves_as_linkage<2>(const Packing<2>&, const std::vector<Contact>&, const Contact&);
+bool moves_as_linkage(const Packing& packing, const std::vector<Contact>& among, const Contact& pair);
 
 } // namespace isostat

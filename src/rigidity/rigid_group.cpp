@@ -10,10 +10,10 @@ namespace isostat {
 namespace {
 
 /// Disks and walls that contacts join.
-template <int Dim> struct Group {
+struct Group {
     std::vector<unsigned char> disk;
-    std::array<bool, Dim> lower{};
-    std::array<bool, Dim> upper{};
+    PerAxis<bool> lower{};
+    PerAxis<bool> upper{};
 
     explicit Group(int disks) : disk(static_cast<std::size_t>(disks), 0) {}
     void add(const Contact& contact) {
@@ -28,17 +28,17 @@ template <int Dim> struct Group {
 
 /// Whether a coordinate of a disk counts as one that moves. That of a pinned disk does (proofs/cells.md, C1): a group
 /// that belongs to no cell may be moved as a whole.
-template <int Dim> bool counts(const DofMap<Dim>& dofs, std::size_t disk, std::size_t axis) {
-    return dofs.is_periodic(axis) || dofs.dof_of(Dim * disk + axis) >= 0;
+bool counts(const DofMap& dofs, std::size_t disk, std::size_t axis) {
+    return dofs.is_periodic(axis) || dofs.dof_of(plane * disk + axis) >= 0;
 }
 
 /// Translations along an axis and rotations that keep every gap in the group: none of them may move what is fixed.
-template <int Dim> int rigid_motions(const DofMap<Dim>& dofs, const Group<Dim>& group) {
-    static_assert(Dim == 2, "one rotation");
-    const std::size_t walls = Dim * group.disk.size();
+int rigid_motions(const DofMap& dofs, const Group& group) {
+    static_assert(plane == 2, "one rotation");
+    const std::size_t walls = plane * group.disk.size();
     int motions = 0;
     bool rotates = true;
-    for (std::size_t axis = 0; axis < Dim; ++axis) {
+    for (std::size_t axis = 0; axis < plane; ++axis) {
         bool moves = !group.lower[axis] && (!group.upper[axis] || dofs.dof_of(walls + axis) >= 0);
         rotates = rotates && !group.lower[axis] && !group.upper[axis];
         for (std::size_t i = 0; i < group.disk.size(); ++i) {
@@ -52,15 +52,15 @@ template <int Dim> int rigid_motions(const DofMap<Dim>& dofs, const Group<Dim>& 
 }
 
 /// Degrees of freedom of the group, less those.
-template <int Dim> int motions_to_hold(const DofMap<Dim>& dofs, const Group<Dim>& group) {
-    const std::size_t walls = static_cast<std::size_t>(Dim) * group.disk.size();
+int motions_to_hold(const DofMap& dofs, const Group& group) {
+    const std::size_t walls = plane * group.disk.size();
     int free = 0;
     for (std::size_t i = 0; i < group.disk.size(); ++i) {
-        for (std::size_t axis = 0; group.disk[i] != 0 && axis < Dim; ++axis) {
+        for (std::size_t axis = 0; group.disk[i] != 0 && axis < plane; ++axis) {
             free += counts(dofs, i, axis) ? 1 : 0;
         }
     }
-    for (std::size_t axis = 0; axis < Dim; ++axis) {
+    for (std::size_t axis = 0; axis < plane; ++axis) {
         free += group.upper[axis] && dofs.dof_of(walls + axis) >= 0 ? 1 : 0;
     }
     return free - rigid_motions(dofs, group);
@@ -68,30 +68,26 @@ template <int Dim> int motions_to_hold(const DofMap<Dim>& dofs, const Group<Dim>
 
 } // namespace
 
-template <int Dim>
-bool moves_as_one(const DofMap<Dim>& dofs, int disks, const std::vector<Contact>& among, const Contact& pair) {
+bool moves_as_one(const DofMap& dofs, int disks, const std::vector<Contact>& among, const Contact& pair) {
     std::vector<Contact> all = among;
     all.push_back(pair);
     if (!unwound(disks, all)) {
         return false;
     }
-    Group<Dim> group(disks);
+    Group group(disks);
     std::for_each(all.begin(), all.end(), [&](const Contact& c) { group.add(c); });
     return static_cast<int>(among.size()) == motions_to_hold(dofs, group);
 }
 
-template <int Dim> bool carries_alone(const DofMap<Dim>& dofs, const std::vector<Contact>& carrying, int axis) {
-    if (axis < 0 || axis >= Dim || !unwound(dofs.disk_count(), carrying)) {
+bool carries_alone(const DofMap& dofs, const std::vector<Contact>& carrying, int axis) {
+    if (axis < 0 || axis >= plane || !unwound(dofs.disk_count(), carrying)) {
         return false;
     }
-    Group<Dim> group(dofs.disk_count());
+    Group group(dofs.disk_count());
     std::for_each(carrying.begin(), carrying.end(), [&](const Contact& c) { group.add(c); });
     const auto a = static_cast<std::size_t>(axis);
     return group.lower[a] && group.upper[a] && // no translation along the load, and no rotation
            static_cast<int>(carrying.size()) == motions_to_hold(dofs, group);
 }
-
-template bool carries_alone<2>(const DofMap<2>&, const std::vector<Contact>&, int);
-template bool moves_as_one<2>(const DofMap<2>&, int, const std::vector<Contact>&, const Contact&);
 
 } // namespace isostat

@@ -16,22 +16,14 @@ namespace isostat {
 /// Rows: the degrees of freedom of the disks that are not fixed, without those of the pinned one; then the entries of
 /// E. Column of a contact: |r| times minus the gradient of its gap, exactly, mod 2^61 - 1: r on the disks as in
 /// `exact_contact_matrix`, - r_a (A m)_b on E_ab. \pre every axis is periodic
-template <int Dim>
-sparse::Matrix<std::uint64_t> exact_strained_matrix(const Packing<Dim>& packing, const std::vector<Contact>& contacts,
+sparse::Matrix<std::uint64_t> exact_strained_matrix(const Packing& packing, const std::vector<Contact>& contacts,
                                                     Strain strain);
 
 /// The same matrix in the field, of coordinates `at(k)`, k as in `Packing::q`; `packing` says which there are.
-template <int Dim>
-exact::NumberMatrix strained_matrix(const Packing<Dim>& packing, const std::function<exact::Number(std::size_t)>& at,
+exact::NumberMatrix strained_matrix(const Packing& packing, const std::function<exact::Number(std::size_t)>& at,
                                     const std::vector<Contact>& contacts, Strain strain);
 
 /// What the matrix counts: its kernel is sought where its rank mod p is not as high as rows and columns allow.
 Counting count_matrix(const exact::NumberMatrix& matrix);
-
-extern template exact::NumberMatrix strained_matrix<2>(const Packing<2>&,
-                                                       const std::function<exact::Number(std::size_t)>&,
-                                                       const std::vector<Contact>&, Strain);
-extern template sparse::Matrix<std::uint64_t> exact_strained_matrix<2>(const Packing<2>&, const std::vector<Contact>&,
-                                                                       Strain);
 
 } // namespace isostat

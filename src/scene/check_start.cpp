@@ -16,15 +16,15 @@ namespace isostat {
 namespace {
 
 /// One self-stress per contact that depends on those before it, as the contacts that take part: for a message.
-template <int Dim> std::string self_stresses(const State<Dim>& state) {
-    const DofMap<Dim> dofs(state.packing);
+std::string self_stresses(const State& state) {
+    const DofMap dofs(state.packing);
     const std::vector<int> independent =
         exact::independent_columns(exact_contact_matrix(state.packing, dofs, state.contacts));
     std::vector<Contact> kept;
     for (const int l : independent) {
         kept.push_back(state.contacts[static_cast<std::size_t>(l)]);
     }
-    const auto structure = IsostaticStructure<Dim>::prove(state.packing, kept);
+    const auto structure = IsostaticStructure::prove(state.packing, kept);
     if (!structure.ok()) {
         return {};
     }
@@ -36,7 +36,7 @@ template <int Dim> std::string self_stresses(const State<Dim>& state) {
             continue;
         }
         std::vector<double> force(kept.size(), 0.0); // unit force in contact l, balanced by the others
-        const GapGradient<Dim> g = gap_gradient(state.packing, state.contacts[l]);
+        const GapGradient g = gap_gradient(state.packing, state.contacts[l]);
         for (std::size_t k = 0; k < static_cast<std::size_t>(g.count); ++k) {
             const int dof = dofs.dof_of(static_cast<std::size_t>(g.coordinate[k]));
             if (dof >= 0) {
@@ -44,9 +44,9 @@ template <int Dim> std::string self_stresses(const State<Dim>& state) {
             }
         }
         factorisation.solve_forces(force);
-        text += fmt::format("{}{{{}", text.empty() ? "" : ", ", to_string<Dim>(state.contacts[l]));
+        text += fmt::format("{}{{{}", text.empty() ? "" : ", ", to_string(state.contacts[l]));
         for (std::size_t c = 0; c < kept.size(); ++c) {
-            text += std::abs(force[c]) > 1e-9 ? " " + to_string<Dim>(kept[c]) : "";
+            text += std::abs(force[c]) > 1e-9 ? " " + to_string(kept[c]) : "";
         }
         text += "}";
     }
@@ -55,14 +55,14 @@ template <int Dim> std::string self_stresses(const State<Dim>& state) {
 
 } // namespace
 
-template <int Dim> void check_start(const State<Dim>& state, const std::string& source, bool hyperstatic_allowed) {
+void check_start(const State& state, const std::string& source, bool hyperstatic_allowed) {
     const auto bad = [&](const std::string& what) {
         throw Error(ErrorKind::bad_input, fmt::format("{}: {}", source, what));
     };
     validate(state.packing, source);
     require_pressed_sides(state.packing, state.load, true, source);
     if (const auto pair = fixed_overlap(state.packing)) {
-        bad(fmt::format("{} overlap, and cannot move: expected every gap >= 0", to_string<Dim>(*pair)));
+        bad(fmt::format("{} overlap, and cannot move: expected every gap >= 0", to_string(*pair)));
     }
     // Far above the rounding of a vertex (1e-15) and far below any gap that matters to a user's eye.
     const double visible = 1e-6 * state.packing.min_radius();
@@ -70,13 +70,12 @@ template <int Dim> void check_start(const State<Dim>& state, const std::string& 
     if (admissible.verdict == Verdict::refuted) {
         bad(fmt::format("grains overlap: the gap of {} is {:.6g}: expected every gap >= 0 (isostat snap makes the "
                         "equilibrium next to soft grains)",
-                        to_string<Dim>(admissible.worst), admissible.worst_gap));
+                        to_string(admissible.worst), admissible.worst_gap));
     }
     for (const Contact& contact : state.contacts) {
         const double opening = gap(state.packing, contact);
         if (std::abs(opening) > visible) {
-            bad(fmt::format("the gap of the listed contact {} is {:.6g}: expected 0", to_string<Dim>(contact),
-                            opening));
+            bad(fmt::format("the gap of the listed contact {} is {:.6g}: expected 0", to_string(contact), opening));
         }
     }
     const Counting count = count_contacts(state.packing, state.contacts);
@@ -102,7 +101,5 @@ template <int Dim> void check_start(const State<Dim>& state, const std::string& 
                         count.dof_count, count.contact_count, count.rank, count.hyperstaticity, count.mechanisms));
     }
 }
-
-template void check_start<2>(const State<2>&, const std::string&, bool);
 
 } // namespace isostat

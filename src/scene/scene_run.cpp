@@ -25,36 +25,36 @@ RunStatus status_of(FailureKind kind) {
 }
 
 /// Calls two observers one after the other: the files first.
-class Both final : public RunObserver<2> {
+class Both final : public RunObserver {
   public:
-    Both(RunObserver<2>& first, RunObserver<2>& second) : first_(first), second_(second) {}
-    void on_segment(int number, const Segment& goal, int made, const State<2>& from) override {
+    Both(RunObserver& first, RunObserver& second) : first_(first), second_(second) {}
+    void on_segment(int number, const Segment& goal, int made, const State& from) override {
         first_.on_segment(number, goal, made, from);
         second_.on_segment(number, goal, made, from);
     }
-    void on_arc(const ArcRecord<2>& arc) override {
+    void on_arc(const ArcRecord& arc) override {
         first_.on_arc(arc);
         second_.on_arc(arc);
     }
-    void on_equilibrium(const EquilibriumRecord<2>& record, const State<2>& state,
+    void on_equilibrium(const EquilibriumRecord& record, const State& state,
                         const std::vector<double>& forces) override {
         first_.on_equilibrium(record, state, forces);
         second_.on_equilibrium(record, state, forces);
     }
 
   private:
-    RunObserver<2>& first_;
-    RunObserver<2>& second_;
+    RunObserver& first_;
+    RunObserver& second_;
 };
 
 } // namespace
 
-State<2> start_of_scene(State<2> state, const Scene& scene, const std::string& source) {
+State start_of_scene(State state, const Scene& scene, const std::string& source) {
     if (scene.load_kind) {
         state.load.kind = *scene.load_kind;
     }
     if (scene.loads_tilt) {
-        const Cell<2>& cell = state.packing.cell;
+        const Cell& cell = state.packing.cell;
         if (*scene.loads_tilt && !(cell.any() && cell.tilt_moves[0])) {
             throw Error(ErrorKind::bad_input,
                         fmt::format("{}: no tilt moves, and 'loaded' in [load] of {} is \"tilt\": "
@@ -64,7 +64,7 @@ State<2> start_of_scene(State<2> state, const Scene& scene, const std::string& s
         state.load.loaded_axis = *scene.loads_tilt ? 2 : 1;
     }
     if (scene.infinitesimal_seed) {
-        state.load.infinitesimal = generic_infinitesimal<2>(state.packing.radius, *scene.infinitesimal_seed);
+        state.load.infinitesimal = generic_infinitesimal(state.packing.radius, *scene.infinitesimal_seed);
         balance(state.load.infinitesimal, state.packing.cell);
     }
     state.equilibrium = 0;
@@ -86,12 +86,12 @@ State<2> start_of_scene(State<2> state, const Scene& scene, const std::string& s
     return state;
 }
 
-State<2> start_from_file(const Scene& scene) {
-    return start_of_scene(read_any_state<2>(scene.start).state, scene, scene.start.string());
+State start_from_file(const Scene& scene) {
+    return start_of_scene(read_any_state(scene.start).state, scene, scene.start.string());
 }
 
 std::string provenance_of(const Scene& scene, const std::string& program, const std::string& command,
-                          const PreparationReport<2>& report) {
+                          const PreparationReport& report) {
     Json provenance;
     provenance["program"] = program;
     provenance["command"] = command;
@@ -121,7 +121,7 @@ RunHeader header_of(const Scene& scene, const std::string& program, const std::s
     return header;
 }
 
-std::string advice(const Scene& scene, const Failure& failure, const Packing<2>& packing) {
+std::string advice(const Scene& scene, const Failure& failure, const Packing& packing) {
     std::vector<double> radius = packing.radius;
     const bool can_choose = !scene.run.chooses();
     std::sort(radius.begin(), radius.end());
@@ -151,9 +151,9 @@ SceneEnding ending_of(const Failure& failure, const std::string& where) {
             failure};
 }
 
-SceneEnding play_scene(const Scene& scene, State<2> state, RunDirectory& directory, const std::string& program,
-                       RunCounters& counters, const std::atomic<bool>& stop, RunObserver<2>& further) {
-    Programme<2> programme;
+SceneEnding play_scene(const Scene& scene, State state, RunDirectory& directory, const std::string& program,
+                       RunCounters& counters, const std::atomic<bool>& stop, RunObserver& further) {
+    Programme programme;
     programme.steps = scene.programme;
     programme.source = scene.file;
     programme.stored = [&](int equilibrium) { return directory.stored(equilibrium); };
@@ -179,7 +179,7 @@ SceneEnding play_scene(const Scene& scene, State<2> state, RunDirectory& directo
     if (options.certify >= CertifyLevel::states) {
         certifier.emplace(directory.path(), program, counters, both);
     }
-    RunObserver<2>& observer = certifier ? static_cast<RunObserver<2>&>(*certifier) : both;
+    RunObserver& observer = certifier ? static_cast<RunObserver&>(*certifier) : both;
     const ProgrammeOutcome outcome = play(programme, state, options, counters, observer);
     if (outcome.failure) {
         SceneEnding ending = ending_of(*outcome.failure, fmt::format("segment \"{}\": ", outcome.segment));

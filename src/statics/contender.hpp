@@ -22,11 +22,11 @@ struct Contender {
     double multiplier = 0; ///< of a held coordinate, with its sign
 };
 
-template <int Dim> Named<Dim> name(const Statics<Dim>& statics, ContactId l) {
-    return named<Dim>(statics.structure().contacts()[l.index()]);
+inline Named name(const Statics& statics, ContactId l) {
+    return named(statics.structure().contacts()[l.index()]);
 }
 
-template <int Dim> bool is_held(const Statics<Dim>& statics, ContactId l) {
+inline bool is_held(const Statics& statics, ContactId l) {
     return statics.structure().contacts()[l.index()].kind == ContactKind::held;
 }
 
@@ -34,19 +34,16 @@ template <int Dim> bool is_held(const Statics<Dim>& statics, ContactId l) {
 using Quantity = std::function<ForceExpression(ContactId)>;
 
 /// What a choice among contenders needs besides them.
-template <int Dim> struct Choice {
+struct Choice {
     OpeningRule rule = OpeningRule::most_negative;
     std::uint64_t random_bits = 0;
     Quantity quantity;
-    const Turn<Dim>* turn = nullptr;            ///< at a power turn: struts order their ends
-    PerturbedStatics<Dim>* perturbed = nullptr; ///< first-order terms order ties, and are written to its log
+    const Turn* turn = nullptr;            ///< at a power turn: struts order their ends
+    PerturbedStatics* perturbed = nullptr; ///< first-order terms order ties, and are written to its log
 };
 
 /// Picks by the rule among contenders that all carry a proved negative force, or are in one class of forces that vanish
 /// together. Failure: `tie`, naming them; `undecided`.
-template <int Dim>
-Result<Opening> pick(Statics<Dim>& statics, std::vector<Contender> contenders, const Choice<Dim>& choice);
-
-extern template Result<Opening> pick<2>(Statics<2>&, std::vector<Contender>, const Choice<2>&);
+Result<Opening> pick(Statics& statics, std::vector<Contender> contenders, const Choice& choice);
 
 } // namespace isostat

@@ -61,14 +61,12 @@ struct ZeroHolds {
 /// when the first-order terms do not tell either, and for held coordinates that vanish. Where ties
 /// are chosen (C1) a force whose first-order term is not told from 0 opens nothing, and equal keys are ordered by the
 /// infinitesimal loads, then by the names of the contacts.
-template <int Dim>
-Result<OpeningDecision> decide_opening(Statics<Dim>& statics, double sigma, OpeningRule rule, const ZeroHolds& zero,
-                                       std::uint64_t random_bits, PerturbedStatics<Dim>* perturbed = nullptr);
+Result<OpeningDecision> decide_opening(Statics& statics, double sigma, OpeningRule rule, const ZeroHolds& zero,
+                                       std::uint64_t random_bits, PerturbedStatics* perturbed = nullptr);
 
 /// The same with `fresh_hold` only, or without any when it is not valid.
-template <int Dim>
-Result<OpeningDecision> decide_opening(Statics<Dim>& statics, double sigma, OpeningRule rule, ContactId fresh_hold,
-                                       std::uint64_t random_bits, PerturbedStatics<Dim>* perturbed = nullptr) {
+inline Result<OpeningDecision> decide_opening(Statics& statics, double sigma, OpeningRule rule, ContactId fresh_hold,
+                                              std::uint64_t random_bits, PerturbedStatics* perturbed = nullptr) {
     return decide_opening(statics, sigma, rule, fresh_hold.valid() ? ZeroHolds{fresh_hold, {}} : ZeroHolds{},
                           random_bits, perturbed);
 }
@@ -90,12 +88,6 @@ struct LoadLimit {
 /// Failure: `tie` when two forces vanish at loads that cannot be ordered, and that no structural argument ties
 /// together. With `perturbed`: the first-order terms of the loads tell which is first; `undecided` when they do not,
 /// or, where ties are chosen, the infinitesimal loads tell, then the names.
-template <int Dim>
-Result<LoadLimit> find_limit(Statics<Dim>& statics, double sigma, int direction,
-                             PerturbedStatics<Dim>* perturbed = nullptr);
-
-extern template Result<OpeningDecision> decide_opening<2>(Statics<2>&, double, OpeningRule, const ZeroHolds&,
-                                                          std::uint64_t, PerturbedStatics<2>*);
-extern template Result<LoadLimit> find_limit<2>(Statics<2>&, double, int, PerturbedStatics<2>*);
+Result<LoadLimit> find_limit(Statics& statics, double sigma, int direction, PerturbedStatics* perturbed = nullptr);
 
 } // namespace isostat

@@ -26,8 +26,7 @@ double scale_of(const std::vector<double>& x) {
 
 /// The programme: variables are the velocities of the degrees of freedom, a row per contact says that its first-order
 /// gap is not negative.
-template <int Dim>
-void load_programme(ClpSimplex& simplex, const Packing<Dim>& packing, const DofMap<Dim>& dofs, const Load<Dim>& load,
+void load_programme(ClpSimplex& simplex, const Packing& packing, const DofMap& dofs, const Load& load,
                     const std::vector<Contact>& contacts, const std::vector<double>& rho) {
     const std::vector<double> force = load.external_force(packing);
     const double force_size = scale_of(force);
@@ -45,7 +44,7 @@ void load_programme(ClpSimplex& simplex, const Packing<Dim>& packing, const DofM
     std::vector<double> lower; // gradient . v >= rho_i + rho_j
     for (std::size_t l = 0; l < contacts.size(); ++l) {
         const Contact& c = contacts[l];
-        const GapGradient<Dim> g = gap_gradient(packing, c);
+        const GapGradient g = gap_gradient(packing, c);
         for (std::size_t k = 0; k < static_cast<std::size_t>(g.count); ++k) {
             const int dof = dofs.dof_of(static_cast<std::size_t>(g.coordinate[k]));
             if (dof >= 0) {
@@ -66,11 +65,10 @@ void load_programme(ClpSimplex& simplex, const Packing<Dim>& packing, const DofM
 
 } // namespace
 
-template <int Dim>
-Result<std::vector<Contact>> first_order_backbone(const Packing<Dim>& packing, const Load<Dim>& load,
+Result<std::vector<Contact>> first_order_backbone(const Packing& packing, const Load& load,
                                                   const std::vector<Contact>& contacts,
                                                   const std::vector<double>& rho) {
-    const DofMap<Dim> dofs(packing);
+    const DofMap dofs(packing);
     ClpSimplex simplex;
     load_programme(simplex, packing, dofs, load, contacts, rho);
     simplex.setPrimalTolerance(tolerance);
@@ -100,8 +98,5 @@ Result<std::vector<Contact>> first_order_backbone(const Packing<Dim>& packing, c
     }
     return kept;
 }
-
-template Result<std::vector<Contact>> first_order_backbone<2>(const Packing<2>&, const Load<2>&,
-                                                              const std::vector<Contact>&, const std::vector<double>&);
 
 } // namespace isostat

@@ -17,11 +17,7 @@ namespace isostat {
 /// the other contacts, which the caller must prove. In the order of `contacts`.
 /// Failure: `undecided` when Clp finds no support of the load or keeps another number of contacts than N_f (neither
 /// proves that there is none), `not_converged`.
-template <int Dim>
-Result<std::vector<Contact>> first_order_backbone(const Packing<Dim>& packing, const Load<Dim>& load,
+Result<std::vector<Contact>> first_order_backbone(const Packing& packing, const Load& load,
                                                   const std::vector<Contact>& contacts, const std::vector<double>& rho);
-
-extern template Result<std::vector<Contact>>
-first_order_backbone<2>(const Packing<2>&, const Load<2>&, const std::vector<Contact>&, const std::vector<double>&);
 
 } // namespace isostat

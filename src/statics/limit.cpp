@@ -21,9 +21,9 @@ Comparison proved_larger(double margin) {
 }
 
 /// Which force vanishes first when the loaded stress changes in one direction: contacts, by number.
-template <int Dim> class LimitContest final : public Contest {
+class LimitContest final : public Contest {
   public:
-    LimitContest(Statics<Dim>& statics, double sigma, int direction, PerturbedStatics<Dim>* perturbed)
+    LimitContest(Statics& statics, double sigma, int direction, PerturbedStatics* perturbed)
         : statics_(statics), contacts_(statics.structure().contacts()), sigma_(sigma), direction_(direction),
           perturbed_(perturbed) {
         for (std::size_t l = 0; l < contacts_.size(); ++l) {
@@ -53,7 +53,7 @@ template <int Dim> class LimitContest final : public Contest {
     Order rate_sign(ContactId l);
     [[nodiscard]] bool carried_by_others(const Enclosure& slope) const;
     [[nodiscard]] Failure open_rate(ContactId l, const Order& order) const;
-    [[nodiscard]] Named<Dim> name_of(ContactId l) const { return name(statics_, l); }
+    [[nodiscard]] Named name_of(ContactId l) const { return name(statics_, l); }
     /// Largest slope: what a zero slope is compared with.
     [[nodiscard]] double slope_size() const;
     /// The force at the limit, wherever within its error that is.
@@ -61,17 +61,17 @@ template <int Dim> class LimitContest final : public Contest {
     Result<Comparison> with_a_rate_of_order_eps(ContactId l, const Order& rate);
     Result<Comparison> at_first_order(ContactId l, ContactId first, const Order& order);
 
-    Statics<Dim>& statics_;
+    Statics& statics_;
     const std::vector<Contact>& contacts_;
     double sigma_;
     int direction_;
-    PerturbedStatics<Dim>* perturbed_;
+    PerturbedStatics* perturbed_;
     std::vector<ContactId> candidates_; ///< that could limit: their slopes are not structural zeros
     LoadLimit limit_;
     std::vector<unsigned char> in_class_; ///< of contacts: vanish with the limiting one for structural reasons
 };
 
-template <int Dim> Order LimitContest<Dim>::rate_sign(ContactId l) {
+Order LimitContest::rate_sign(ContactId l) {
     Enclosure slope = statics_.slope(l);
     if (!slope.decided() && statics_.rung() == Rung::double_bound && statics_.climb()) {
         slope = statics_.slope(l);
@@ -86,7 +86,7 @@ template <int Dim> Order LimitContest<Dim>::rate_sign(ContactId l) {
 }
 
 /// Contacts that carry all of the change of the load, as far as they can be told from the others, are counted (R3).
-template <int Dim> bool LimitContest<Dim>::carried_by_others(const Enclosure& slope) const {
+bool LimitContest::carried_by_others(const Enclosure& slope) const {
     constexpr double nothing = 1e-15; // of the largest: a guess, what it leaves out or takes in makes the count fail
     const double least = nothing * slope_size();
     if (!(slope.radius < least)) {
@@ -98,19 +98,20 @@ template <int Dim> bool LimitContest<Dim>::carried_by_others(const Enclosure& sl
             carrying.push_back(contacts_[l]);
         }
     }
-    const DofMap<Dim>& dofs = statics_.structure().dofs();
+    const DofMap& dofs = statics_.structure().dofs();
     const int row = statics_.loaded_wall_row();
-    return row >= 0 && carries_alone(dofs, carrying, dofs.coordinate_of(row) - Dim * dofs.disk_count());
+    return row >= 0 &&
+           carries_alone(dofs, carrying, dofs.coordinate_of(row) - dofs.layout().dimension * dofs.disk_count());
 }
 
-template <int Dim> Failure LimitContest<Dim>::open_rate(ContactId l, const Order& order) const {
+Failure LimitContest::open_rate(ContactId l, const Order& order) const {
     return failed(FailureKind::undecided,
                   "the sign of the slope of the force in contact {} is not decided with {} bits: {:.3g}, proved to "
                   "{:.3g}",
                   name_of(l), order.bits, statics_.slope(l).value, statics_.slope(l).radius);
 }
 
-template <int Dim> double LimitContest<Dim>::slope_size() const {
+double LimitContest::slope_size() const {
     double size = 0;
     for (int l = 0; l < statics_.structure().size(); ++l) {
         size = std::max(size, std::abs(statics_.slope(ContactId(l)).value));
@@ -118,7 +119,7 @@ template <int Dim> double LimitContest<Dim>::slope_size() const {
     return size;
 }
 
-template <int Dim> Result<std::optional<std::size_t>> LimitContest<Dim>::guess() {
+Result<std::optional<std::size_t>> LimitContest::guess() {
     std::optional<std::size_t> first;
     double smallest = infinity;
     for (const ContactId l : candidates_) {
@@ -155,7 +156,7 @@ template <int Dim> Result<std::optional<std::size_t>> LimitContest<Dim>::guess()
     return first;
 }
 
-template <int Dim> Result<std::optional<std::size_t>> LimitContest<Dim>::stand(std::size_t best) {
+Result<std::optional<std::size_t>> LimitContest::stand(std::size_t best) {
     const ContactId first(best);
     const Order rate = rate_sign(first);
     if (!rate.decided) {
@@ -190,7 +191,7 @@ template <int Dim> Result<std::optional<std::size_t>> LimitContest<Dim>::stand(s
     return std::optional(best);
 }
 
-template <int Dim> Enclosure LimitContest<Dim>::at_limit(ContactId l) const {
+Enclosure LimitContest::at_limit(ContactId l) const {
     Enclosure f = statics_.force(l, limit_.stress);
     f.radius += std::abs(statics_.slope(l).value) * limit_.stress_error * (1 + 8 * u) +
                 statics_.slope(l).radius * limit_.stress_error;
@@ -198,7 +199,7 @@ template <int Dim> Enclosure LimitContest<Dim>::at_limit(ContactId l) const {
 }
 
 /// Everything outside the class is still positive at the limit, hence on the whole interval (forces are affine).
-template <int Dim> Result<Comparison> LimitContest<Dim>::compare(std::size_t rival, std::size_t best) {
+Result<Comparison> LimitContest::compare(std::size_t rival, std::size_t best) {
     const ContactId l(rival);
     const ContactId first(best);
     if (in_class_[rival] != 0 || is_held(statics_, l) || statics_.is_structural_zero(l)) {
@@ -230,7 +231,7 @@ template <int Dim> Result<Comparison> LimitContest<Dim>::compare(std::size_t riv
 }
 
 /// A force that vanishes in the base is then affine in the load at first order.
-template <int Dim> Result<Comparison> LimitContest<Dim>::with_a_rate_of_order_eps(ContactId l, const Order& rate) {
+Result<Comparison> LimitContest::with_a_rate_of_order_eps(ContactId l, const Order& rate) {
     const Order zero = statics_.sign(statics_.force_expression(l, sigma_));
     if (zero.decided && zero.sign > 0 && is_tie(rate, slope_size())) {
         return Comparison{};
@@ -250,8 +251,7 @@ template <int Dim> Result<Comparison> LimitContest<Dim>::with_a_rate_of_order_ep
     return result;
 }
 
-template <int Dim>
-Result<Comparison> LimitContest<Dim>::at_first_order(ContactId l, ContactId first, const Order& order) {
+Result<Comparison> LimitContest::at_first_order(ContactId l, ContactId first, const Order& order) {
     const Enclosure mine = perturbed_->limit_rate(first, limit_.stress, limit_.stress_error);
     const Enclosure other = perturbed_->limit_rate(l, limit_.stress, limit_.stress_error);
     return by_first_order({"limit", contacts_[first.index()], mine, contacts_[l.index()], other}, order,
@@ -262,7 +262,7 @@ Result<Comparison> LimitContest<Dim>::at_first_order(ContactId l, ContactId firs
 }
 
 /// Within a class of forces that vanish together: the infinitesimal loads decide which one reaches zero first.
-template <int Dim> Result<Opening> first_of_class(Statics<Dim>& statics, const std::vector<ContactId>& members) {
+Result<Opening> first_of_class(Statics& statics, const std::vector<ContactId>& members) {
     std::vector<Contender> contenders;
     for (const ContactId l : members) {
         if (is_held(statics, l)) {
@@ -273,7 +273,7 @@ template <int Dim> Result<Opening> first_of_class(Statics<Dim>& statics, const s
             members.size() == 1 ? Enclosure{0, 0} : quotient(statics.infinitesimal(l), {std::abs(b.value), b.radius});
         contenders.push_back({l, key, key, infinity, 0});
     }
-    Choice<Dim> choice;
+    Choice choice;
     choice.quantity = [&statics](ContactId l) {
         ForceExpression e = statics.infinitesimal_expression(l);
         e.divisor_part = statics.slope_expression(l).part;
@@ -284,7 +284,7 @@ template <int Dim> Result<Opening> first_of_class(Statics<Dim>& statics, const s
 
 /// Which of several forces that vanish at one load, as far as first-order terms tell, ends the interval: the
 /// infinitesimal loads say, or the names. The contest then stands with that one.
-template <int Dim> std::optional<Failure> choose(Statics<Dim>& statics, LimitContest<Dim>& contest, Minimum& minimum) {
+std::optional<Failure> choose(Statics& statics, LimitContest& contest, Minimum& minimum) {
     const auto found = choosable(contest, minimum);
     if (!found.ok()) {
         return found.failure();
@@ -318,9 +318,8 @@ LoadLimit unbounded(int direction, Rung rung) {
 
 } // namespace
 
-template <int Dim>
-Result<LoadLimit> find_limit(Statics<Dim>& statics, double sigma, int direction, PerturbedStatics<Dim>* perturbed) {
-    LimitContest<Dim> contest(statics, sigma, direction, perturbed);
+Result<LoadLimit> find_limit(Statics& statics, double sigma, int direction, PerturbedStatics* perturbed) {
+    LimitContest contest(statics, sigma, direction, perturbed);
     const auto guess = contest.guess();
     if (!guess.ok()) {
         return guess.failure();
@@ -361,7 +360,5 @@ Result<LoadLimit> find_limit(Statics<Dim>& statics, double sigma, int direction,
     }
     return limit;
 }
-
-template Result<LoadLimit> find_limit<2>(Statics<2>&, double, int, PerturbedStatics<2>*);
 
 } // namespace isostat

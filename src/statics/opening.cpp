@@ -14,9 +14,9 @@ namespace {
 using roundoff::infinity;
 
 /// One stage of the lexicographic decision: all contacts with a finite force, or all without.
-template <int Dim> class Stage {
+class Stage {
   public:
-    Stage(Statics<Dim>& statics, bool finite, double sigma, const ZeroHolds& idle, Choice<Dim> choice)
+    Stage(Statics& statics, bool finite, double sigma, const ZeroHolds& idle, Choice choice)
         : statics_(statics), contacts_(statics.structure().contacts()), finite_(finite), sigma_(sigma), idle_(idle),
           choice_(std::move(choice)) {
         choice_.quantity = [this](ContactId l) { return quantity(l); };
@@ -42,7 +42,7 @@ template <int Dim> class Stage {
     }
 
   private:
-    [[nodiscard]] Named<Dim> name_of(ContactId l) const { return name(statics_, l); }
+    [[nodiscard]] Named name_of(ContactId l) const { return name(statics_, l); }
     [[nodiscard]] Enclosure value(ContactId l) const {
         return finite_ ? statics_.force(l, sigma_) : statics_.infinitesimal(l);
     }
@@ -77,14 +77,14 @@ template <int Dim> class Stage {
     /// A held coordinate is let go in the direction in which it pushes.
     std::optional<Failure> let_go(Opening& opening);
 
-    Statics<Dim>& statics_;
+    Statics& statics_;
     const std::vector<Contact>& contacts_;
     bool finite_;
     double sigma_;
     const ZeroHolds& idle_;
-    Choice<Dim> choice_;
+    Choice choice_;
     ZeroHolds zero_;
-    std::optional<Turn<Dim>> turn_;
+    std::optional<Turn> turn_;
     std::vector<Contender> negative_;
     std::vector<Contender> doubtful_; ///< forces whose signs the enclosures do not prove
     bool without_force_ = false;      ///< there are contacts whose force is 0 at the turn itself
@@ -93,7 +93,7 @@ template <int Dim> class Stage {
     OpeningDecision decision_;
 };
 
-template <int Dim> void Stage<Dim>::find_zero_holds() {
+void Stage::find_zero_holds() {
     zero_ = idle_;
     for (std::size_t l = 0; l < contacts_.size(); ++l) {
         const ContactId id(l);
@@ -103,7 +103,7 @@ template <int Dim> void Stage<Dim>::find_zero_holds() {
     }
 }
 
-template <int Dim> void Stage<Dim>::sort_by_sign() {
+void Stage::sort_by_sign() {
     for (std::size_t index = 0; index < contacts_.size(); ++index) {
         const ContactId l(index);
         if (statics_.is_structural_zero(l) == finite_ || idle_.has(l)) {
@@ -124,7 +124,7 @@ template <int Dim> void Stage<Dim>::sort_by_sign() {
 
 /// A doubtful sign matters when no force is negative, when the rule needs the whole list, or when it could be the
 /// smallest.
-template <int Dim> void Stage<Dim>::leave_out_what_cannot_open() {
+void Stage::leave_out_what_cannot_open() {
     if (negative_.empty() || choice_.rule != OpeningRule::most_negative) {
         return;
     }
@@ -135,7 +135,7 @@ template <int Dim> void Stage<Dim>::leave_out_what_cannot_open() {
     std::erase_if(doubtful_, [&](const Contender& d) { return (d.force - least).positive(); });
 }
 
-template <int Dim> std::optional<Failure> Stage<Dim>::settle(const Contender& doubtful) {
+std::optional<Failure> Stage::settle(const Contender& doubtful) {
     const ContactId l = doubtful.contact;
     const Order order = statics_.sign(quantity(l));
     if (choice_.perturbed != nullptr && needs_first_order(order, choice_.perturbed->size())) {
@@ -161,7 +161,7 @@ template <int Dim> std::optional<Failure> Stage<Dim>::settle(const Contender& do
     return std::nullopt;
 }
 
-template <int Dim> std::optional<Failure> Stage<Dim>::settle_at_first_order(ContactId l, const Order& order) {
+std::optional<Failure> Stage::settle_at_first_order(ContactId l, const Order& order) {
     const Enclosure f1 = choice_.perturbed->force(l);
     const bool held = is_held(statics_, l);
     const bool stays_zero = !held && !f1.positive() && choice_.perturbed->chooses(); // it opens nothing (C1 d)
@@ -190,7 +190,7 @@ template <int Dim> std::optional<Failure> Stage<Dim>::settle_at_first_order(Cont
     return std::nullopt;
 }
 
-template <int Dim> Result<OpeningDecision> Stage<Dim>::nothing_opens() {
+Result<OpeningDecision> Stage::nothing_opens() {
     if (!zeros_.empty()) {
         return failed(finite_ ? FailureKind::tie : FailureKind::undecided,
                       "the {}force is exactly 0, and not for a structural reason, in: {}",
@@ -212,7 +212,7 @@ template <int Dim> Result<OpeningDecision> Stage<Dim>::nothing_opens() {
     return decision_;
 }
 
-template <int Dim> Result<OpeningDecision> Stage<Dim>::open() {
+Result<OpeningDecision> Stage::open() {
     if (!turn_ && !zero_.others.empty()) {
         turn_.emplace(statics_, zero_);
     }
@@ -234,7 +234,7 @@ template <int Dim> Result<OpeningDecision> Stage<Dim>::open() {
     return decision_;
 }
 
-template <int Dim> std::optional<Failure> Stage<Dim>::let_go(Opening& opening) {
+std::optional<Failure> Stage::let_go(Opening& opening) {
     const ContactId l = opening.contact;
     if (!is_held(statics_, l)) {
         return std::nullopt;
@@ -251,15 +251,14 @@ template <int Dim> std::optional<Failure> Stage<Dim>::let_go(Opening& opening) {
 
 } // namespace
 
-template <int Dim>
-Result<OpeningDecision> decide_opening(Statics<Dim>& statics, double sigma, OpeningRule rule, const ZeroHolds& zero,
-                                       std::uint64_t random_bits, PerturbedStatics<Dim>* perturbed) {
-    auto finite = Stage<Dim>(statics, true, sigma, zero, {rule, random_bits, {}, nullptr, perturbed}).decide();
+Result<OpeningDecision> decide_opening(Statics& statics, double sigma, OpeningRule rule, const ZeroHolds& zero,
+                                       std::uint64_t random_bits, PerturbedStatics* perturbed) {
+    auto finite = Stage(statics, true, sigma, zero, {rule, random_bits, {}, nullptr, perturbed}).decide();
     if (!finite.ok() || finite.value().opening) {
         return finite;
     }
     // The loads are smaller than every power of eps: no first-order terms.
-    auto infinitesimal = Stage<Dim>(statics, false, sigma, zero, {rule, random_bits, {}, nullptr, nullptr}).decide();
+    auto infinitesimal = Stage(statics, false, sigma, zero, {rule, random_bits, {}, nullptr, nullptr}).decide();
     if (infinitesimal.ok()) {
         infinitesimal.value().perturbed = finite.value().perturbed;
         infinitesimal.value().zeros = finite.value().zeros;
@@ -267,8 +266,5 @@ Result<OpeningDecision> decide_opening(Statics<Dim>& statics, double sigma, Open
     }
     return infinitesimal;
 }
-
-template Result<OpeningDecision> decide_opening<2>(Statics<2>&, double, OpeningRule, const ZeroHolds&, std::uint64_t,
-                                                   PerturbedStatics<2>*);
 
 } // namespace isostat

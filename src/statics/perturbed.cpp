@@ -24,12 +24,11 @@ Enclosure sum(const Enclosure& a, const Enclosure& b) {
 
 } // namespace
 
-template <int Dim>
-PerturbedStatics<Dim>::PerturbedStatics(const FirstOrder<Dim>& first, Statics<Dim>& statics, const Load<Dim>& load,
-                                        Enclosure stress_rate, bool choose)
+PerturbedStatics::PerturbedStatics(const FirstOrder& first, Statics& statics, const Load& load, Enclosure stress_rate,
+                                   bool choose)
     : first_(&first), statics_(&statics), load_(load), stress_rate_(stress_rate), choose_(choose) {}
 
-template <int Dim> std::vector<Enclosure> PerturbedStatics<Dim>::terms(double sigma, double sigma_error) const {
+std::vector<Enclosure> PerturbedStatics::terms(double sigma, double sigma_error) const {
     const auto n = static_cast<std::size_t>(statics_->structure().size());
     std::vector<Enclosure> f0(n);
     std::vector<unsigned char> zero(n);
@@ -42,12 +41,12 @@ template <int Dim> std::vector<Enclosure> PerturbedStatics<Dim>::terms(double si
             f0[l].radius += sigma_error * (std::abs(slope.value) + slope.radius) * (1 + 8 * u);
         }
     }
-    Load<Dim> load = load_;
+    Load load = load_;
     load.loaded_stress() = sigma;
     return first_->forces(f0, zero, load, sigma_error);
 }
 
-template <int Dim> Enclosure PerturbedStatics<Dim>::force(ContactId contact) {
+Enclosure PerturbedStatics::force(ContactId contact) {
     if (present_rung_ != statics_->rung()) { // better forces
         present_ = terms(load_.loaded_stress(), 0);
         present_rung_ = statics_->rung();
@@ -62,7 +61,7 @@ template <int Dim> Enclosure PerturbedStatics<Dim>::force(ContactId contact) {
     return present_[contact.index()];
 }
 
-template <int Dim> Enclosure PerturbedStatics<Dim>::force_at(ContactId contact, double sigma, double sigma_error) {
+Enclosure PerturbedStatics::force_at(ContactId contact, double sigma, double sigma_error) {
     if (elsewhere_.empty() || elsewhere_sigma_ != sigma || elsewhere_error_ != sigma_error) {
         elsewhere_ = terms(sigma, sigma_error);
         elsewhere_sigma_ = sigma;
@@ -71,7 +70,7 @@ template <int Dim> Enclosure PerturbedStatics<Dim>::force_at(ContactId contact, 
     return elsewhere_[contact.index()];
 }
 
-template <int Dim> Enclosure PerturbedStatics<Dim>::limit_rate(ContactId contact, double sigma, double sigma_error) {
+Enclosure PerturbedStatics::limit_rate(ContactId contact, double sigma, double sigma_error) {
     const Enclosure f = force_at(contact, sigma, sigma_error);
     const Enclosure b = statics_->slope(contact);
     const double smallest = std::abs(b.value) - b.radius;
@@ -82,7 +81,7 @@ template <int Dim> Enclosure PerturbedStatics<Dim>::limit_rate(ContactId contact
     return {value, (f.radius + std::abs(value) * b.radius) / smallest * (1 + 16 * u) + 4 * u * std::abs(value)};
 }
 
-template <int Dim> double PerturbedStatics<Dim>::size() {
+double PerturbedStatics::size() {
     if (size_ == 0) {
         const double sigma = load_.loaded_stress();
         for (int l = 0; l < statics_->structure().size(); ++l) {
@@ -91,7 +90,5 @@ template <int Dim> double PerturbedStatics<Dim>::size() {
     }
     return size_;
 }
-
-template class PerturbedStatics<2>;
 
 } // namespace isostat

@@ -13,11 +13,10 @@ namespace isostat {
 
 /// First-order terms of the forces of one vertex, at the present load whose stress is sigma + eps sigma1. The arguments
 /// must outlive the object.
-template <int Dim> class PerturbedStatics {
+class PerturbedStatics {
   public:
     /// `stress_rate`: sigma1 (0, radius 0, for a load that was given). `choose`: see `chooses`.
-    PerturbedStatics(const FirstOrder<Dim>& first, Statics<Dim>& statics, const Load<Dim>& load, Enclosure stress_rate,
-                     bool choose);
+    PerturbedStatics(const FirstOrder& first, Statics& statics, const Load& load, Enclosure stress_rate, bool choose);
 
     /// f1 at the present load; {0, 0} for structural zeros. Cost: one solve, once per rung of `statics`.
     [[nodiscard]] Enclosure force(ContactId contact);
@@ -36,9 +35,9 @@ template <int Dim> class PerturbedStatics {
   private:
     [[nodiscard]] std::vector<Enclosure> terms(double sigma, double sigma_error) const;
 
-    const FirstOrder<Dim>* first_;
-    Statics<Dim>* statics_;
-    Load<Dim> load_;
+    const FirstOrder* first_;
+    Statics* statics_;
+    Load load_;
     Enclosure stress_rate_;
     bool choose_;
     std::vector<Enclosure> present_;
@@ -48,7 +47,5 @@ template <int Dim> class PerturbedStatics {
     double elsewhere_error_ = -1;
     double size_ = 0;
 };
-
-extern template class PerturbedStatics<2>;
 
 } // namespace isostat

@@ -12,9 +12,9 @@ namespace {
 using roundoff::infinity;
 
 /// The contenders in the order of the rule.
-template <int Dim> class OpeningContest final : public Contest {
+class OpeningContest final : public Contest {
   public:
-    OpeningContest(Statics<Dim>& statics, std::vector<Contender>& contenders, const Choice<Dim>& choice)
+    OpeningContest(Statics& statics, std::vector<Contender>& contenders, const Choice& choice)
         : statics_(statics), contenders_(contenders), choice_(choice),
           least_(choice.rule == OpeningRule::least_negative) {
         for (Contender& c : contenders_) {
@@ -97,9 +97,9 @@ template <int Dim> class OpeningContest final : public Contest {
         return f1;
     }
 
-    Statics<Dim>& statics_;
+    Statics& statics_;
     std::vector<Contender>& contenders_;
-    const Choice<Dim>& choice_;
+    const Choice& choice_;
     bool least_;
     bool strut_ = false;
     std::vector<StrutMate> mates_; ///< of the one that stands
@@ -113,8 +113,7 @@ std::optional<std::size_t> rule_place(OpeningRule rule, std::size_t count, std::
 }
 
 /// Ordered by name, so that the choice does not depend on the order of the contact list.
-template <int Dim>
-Opening pick_by_name(const Statics<Dim>& statics, std::vector<Contender>& contenders, std::size_t place) {
+Opening pick_by_name(const Statics& statics, std::vector<Contender>& contenders, std::size_t place) {
     std::sort(contenders.begin(), contenders.end(), [&](const Contender& a, const Contender& b) {
         const auto& contacts = statics.structure().contacts();
         return contacts[a.contact.index()] < contacts[b.contact.index()];
@@ -124,9 +123,8 @@ Opening pick_by_name(const Statics<Dim>& statics, std::vector<Contender>& conten
 }
 
 /// One of those that first-order terms do not order: by the infinitesimal loads, or by name.
-template <int Dim>
-std::optional<Failure> choose(Statics<Dim>& statics, const std::vector<Contender>& contenders,
-                              OpeningContest<Dim>& contest, OpeningRule rule, Minimum& minimum) {
+std::optional<Failure> choose(Statics& statics, const std::vector<Contender>& contenders, OpeningContest& contest,
+                              OpeningRule rule, Minimum& minimum) {
     const auto members = choosable(contest, minimum);
     if (!members.ok()) {
         return members.failure();
@@ -142,7 +140,7 @@ std::optional<Failure> choose(Statics<Dim>& statics, const std::vector<Contender
         again.push_back({contenders[k].contact, f, f, infinity, 0});
     }
     const auto infinitesimal = [&](ContactId l) { return statics.infinitesimal_expression(l); };
-    const Result<Opening> by_loads = pick(statics, again, Choice<Dim>{rule, 0, infinitesimal, nullptr, nullptr});
+    const Result<Opening> by_loads = pick(statics, again, Choice{rule, 0, infinitesimal, nullptr, nullptr});
     const ContactId first = by_loads.ok() ? by_loads.value().contact : pick_by_name(statics, again, 0).contact;
     const auto chosen =
         std::find_if(contenders.begin(), contenders.end(), [first](const Contender& c) { return c.contact == first; });
@@ -156,12 +154,11 @@ std::optional<Failure> choose(Statics<Dim>& statics, const std::vector<Contender
 
 } // namespace
 
-template <int Dim>
-Result<Opening> pick(Statics<Dim>& statics, std::vector<Contender> contenders, const Choice<Dim>& choice) {
+Result<Opening> pick(Statics& statics, std::vector<Contender> contenders, const Choice& choice) {
     if (const auto place = rule_place(choice.rule, contenders.size(), choice.random_bits)) {
         return pick_by_name(statics, contenders, *place);
     }
-    OpeningContest<Dim> contest(statics, contenders, choice);
+    OpeningContest contest(statics, contenders, choice);
     const auto guess =
         std::min_element(contenders.begin(), contenders.end(),
                          [](const Contender& a, const Contender& b) { return a.key.value < b.key.value; });
@@ -191,7 +188,5 @@ Result<Opening> pick(Statics<Dim>& statics, std::vector<Contender> contenders, c
     }
     return opening;
 }
-
-template Result<Opening> pick<2>(Statics<2>&, std::vector<Contender>, const Choice<2>&);
 
 } // namespace isostat

@@ -15,13 +15,12 @@ using roundoff::u;
 
 } // namespace
 
-template <int Dim>
-Statics<Dim>::Statics(const Packing<Dim>& packing, const Load<Dim>& load, const IsostaticStructure<Dim>& structure,
-                      const Factorisation& factorisation, const InverseBound& inverse, StaticsHints<Dim> hints)
+Statics::Statics(const Packing& packing, const Load& load, const IsostaticStructure& structure,
+                 const Factorisation& factorisation, const InverseBound& inverse, StaticsHints hints)
     : packing_(&packing), structure_(&structure), factorisation_(&factorisation), inverse_(&inverse),
       sigma_(load.loaded_stress()), ladder_(packing, structure, factorisation, inverse, hints.ladder, hints.vertex),
       pattern_(packing, structure) {
-    const DofMap<Dim>& dofs = structure.dofs();
+    const DofMap& dofs = structure.dofs();
     // Under true stresses a wall's force follows the length of the other wall.
     const bool follows = load.kind == LoadKind::true_stress;
     const double stress = std::abs(*std::max_element(load.stress.begin(), load.stress.end(),
@@ -44,7 +43,7 @@ Statics<Dim>::Statics(const Packing<Dim>& packing, const Load<Dim>& load, const 
 }
 
 /// Forces at a stress as far as they are known: at another one only with the slopes.
-template <int Dim> std::vector<double> Statics<Dim>::guess(double sigma) const {
+std::vector<double> Statics::guess(double sigma) const {
     const std::span<const double> a = ladder_.known(present);
     std::vector<double> forces(a.begin(), a.end());
     if (sigma != sigma_ && !forces.empty()) {
@@ -59,7 +58,7 @@ template <int Dim> std::vector<double> Statics<Dim>::guess(double sigma) const {
     return forces;
 }
 
-template <int Dim> void Statics<Dim>::find_backbone() {
+void Statics::find_backbone() {
     std::vector<int> loaded = loaded_rows_;
     if (loaded_wall_row_ >= 0) {
         loaded.push_back(loaded_wall_row_); // also when its stress is 0 now
@@ -69,12 +68,12 @@ template <int Dim> void Statics<Dim>::find_backbone() {
     backbone_ = pattern_.carrying(loaded, sloped_);
 }
 
-template <int Dim> void Statics<Dim>::perturb_radii() {
+void Statics::perturb_radii() {
     pattern_ = ContactPattern(*packing_, *structure_, true);
     find_backbone();
 }
 
-template <int Dim> std::vector<ContactId> Statics<Dim>::vanish_with(ContactId opens) const {
+std::vector<ContactId> Statics::vanish_with(ContactId opens) const {
     const std::vector<unsigned char> others = pattern_.carrying_without(opens, loaded_wall_row_, loaded_rows_);
     std::vector<ContactId> members;
     for (std::size_t l = 0; l < others.size(); ++l) {
@@ -85,19 +84,19 @@ template <int Dim> std::vector<ContactId> Statics<Dim>::vanish_with(ContactId op
     return members;
 }
 
-template <int Dim> void Statics<Dim>::set_shift(std::shared_ptr<const LoadShift> shift, double bound) {
+void Statics::set_shift(std::shared_ptr<const LoadShift> shift, double bound) {
     shift_ = std::move(shift);
     shift_bound_ = bound;
     ladder_.without_exact_numbers();
 }
 
-template <int Dim> std::shared_ptr<const LoadShift> Statics<Dim>::zero_of(ContactId contact, double sigma) {
+std::shared_ptr<const LoadShift> Statics::zero_of(ContactId contact, double sigma) {
     ForceExpression e = force_expression(contact, sigma);
     e.shift = nullptr;
     return ladder_.zero_of(e);
 }
 
-template <int Dim> Enclosure Statics<Dim>::force(ContactId contact, double sigma) const {
+Enclosure Statics::force(ContactId contact, double sigma) const {
     const std::size_t l = contact.index();
     if (backbone_[l] == 0) {
         return {0, 0};
@@ -122,11 +121,11 @@ template <int Dim> Enclosure Statics<Dim>::force(ContactId contact, double sigma
             (a.bound + std::abs(distance.x[0]) * b.bound) * (1 + 4 * u) + 0x1p-96 * size + 2 * u * std::abs(value)};
 }
 
-template <int Dim> bool Statics<Dim>::slope_is_zero(ContactId contact) const {
+bool Statics::slope_is_zero(ContactId contact) const {
     return sloped_[contact.index()] == 0;
 }
 
-template <int Dim> Enclosure Statics<Dim>::slope(ContactId contact) const {
+Enclosure Statics::slope(ContactId contact) const {
     const std::size_t l = contact.index();
     if (slope_is_zero(contact)) {
         return {0, 0};
@@ -135,17 +134,17 @@ template <int Dim> Enclosure Statics<Dim>::slope(ContactId contact) const {
     return {b.value[l], b.bound + (b.low.empty() ? 0.0 : std::abs(b.low[l]) * (1 + 2 * u))};
 }
 
-template <int Dim> Enclosure Statics<Dim>::infinitesimal(ContactId contact) const {
+Enclosure Statics::infinitesimal(ContactId contact) const {
     const ForceSolution& g = ladder_.solution(infinitesimal_part);
     const std::size_t l = contact.index();
     return {g.value[l], g.bound + (g.low.empty() ? 0.0 : std::abs(g.low[l]) * (1 + 2 * u))};
 }
 
-template <int Dim> int Statics<Dim>::backbone_count() const {
+int Statics::backbone_count() const {
     return static_cast<int>(std::count_if(backbone_.begin(), backbone_.end(), [](unsigned char c) { return c != 0; }));
 }
 
-template <int Dim> ForceExpression Statics<Dim>::force_expression(ContactId contact, double sigma) const {
+ForceExpression Statics::force_expression(ContactId contact, double sigma) const {
     ForceExpression e;
     e.contact = contact;
     e.part = present;
@@ -156,28 +155,28 @@ template <int Dim> ForceExpression Statics<Dim>::force_expression(ContactId cont
     return e;
 }
 
-template <int Dim> ForceExpression Statics<Dim>::slope_expression(ContactId contact) const {
+ForceExpression Statics::slope_expression(ContactId contact) const {
     ForceExpression e;
     e.contact = contact;
     e.part = unit;
     return e;
 }
 
-template <int Dim> ForceExpression Statics<Dim>::infinitesimal_expression(ContactId contact) const {
+ForceExpression Statics::infinitesimal_expression(ContactId contact) const {
     ForceExpression e;
     e.contact = contact;
     e.part = infinitesimal_part;
     return e;
 }
 
-template <int Dim> ForceExpression Statics<Dim>::distance_expression(ContactId contact, double sigma) const {
+ForceExpression Statics::distance_expression(ContactId contact, double sigma) const {
     ForceExpression e = force_expression(contact, sigma);
     e.shift = nullptr; // the same for all that are compared
     e.divisor_part = unit;
     return e;
 }
 
-template <int Dim> Order Statics<Dim>::sign(const ForceExpression& a) {
+Order Statics::sign(const ForceExpression& a) {
     Order order = ladder_.sign(a);
     while (!order.decided && ladder_.climb()) {
         order = ladder_.sign(a);
@@ -185,7 +184,7 @@ template <int Dim> Order Statics<Dim>::sign(const ForceExpression& a) {
     return order;
 }
 
-template <int Dim> Order Statics<Dim>::compare(const ForceExpression& a, const ForceExpression& b) {
+Order Statics::compare(const ForceExpression& a, const ForceExpression& b) {
     Order order = ladder_.compare(a, b);
     while (!order.decided && ladder_.climb()) {
         order = ladder_.compare(a, b);
@@ -193,7 +192,7 @@ template <int Dim> Order Statics<Dim>::compare(const ForceExpression& a, const F
     return order;
 }
 
-template <int Dim> double Statics<Dim>::bound(double sigma) const {
+double Statics::bound(double sigma) const {
     double largest = 0;
     for (std::size_t l = 0; l < backbone_.size(); ++l) {
         largest = std::max(largest, force(ContactId(l), sigma).radius);
@@ -201,19 +200,17 @@ template <int Dim> double Statics<Dim>::bound(double sigma) const {
     return largest;
 }
 
-template <int Dim> double Statics<Dim>::residual(double sigma) const {
+double Statics::residual(double sigma) const {
     return ladder_.solution(present).residual +
            (sigma == sigma_ ? 0.0 : std::abs(sigma - sigma_) * ladder_.solution(unit).residual);
 }
 
-template <int Dim> std::vector<double> Statics<Dim>::external_force(double sigma) const {
+std::vector<double> Statics::external_force(double sigma) const {
     std::vector<double> force = ladder_.force(present);
     for (std::size_t mu = 0; mu < force.size(); ++mu) {
         force[mu] += (sigma - sigma_) * ladder_.force(unit)[mu];
     }
     return force;
 }
-
-template class Statics<2>;
 
 } // namespace isostat

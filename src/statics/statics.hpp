@@ -16,16 +16,16 @@
 
 namespace isostat {
 
-template <int Dim> class Statics;
+class Statics;
 
 /// What the statics of a vertex may be told besides.
-template <int Dim> struct StaticsHints {
+struct StaticsHints {
     LadderOptions ladder{};
     /// Every answer is about the true vertex that it encloses; null: about the stored configuration (ForceLadder).
     const VertexEnclosure* vertex = nullptr;
     /// Of a neighbouring vertex with the contacts in the same places: its forces are where the solves start. Not used
     /// afterwards.
-    const Statics<Dim>* near = nullptr;
+    const Statics* near = nullptr;
     std::vector<double> forces{}; ///< empty, or a better guess of the finite parts
 };
 
@@ -33,15 +33,14 @@ template <int Dim> struct StaticsHints {
 /// stress (paper: alpha_l sigma_1 + beta_l (sigma_2 - sigma_1), unit_l = beta_l), for the exact matrix of the stored
 /// configuration and eps > 0 infinitesimal. sigma is the loaded stress (sigma_2). Forces: stress x length; positive in
 /// compression.
-template <int Dim> class Statics {
-    static_assert(has_dimension<Dim>());
+class Statics {
 
   public:
     /// Solves for the present load; the slopes and the infinitesimal parts are solved when they are first asked for
     /// (most vertices of a rearrangement need neither). The arguments must outlive the object. Cost: 2 solves, and 2
     /// for each part asked for.
-    Statics(const Packing<Dim>& packing, const Load<Dim>& load, const IsostaticStructure<Dim>& structure,
-            const Factorisation& factorisation, const InverseBound& inverse, StaticsHints<Dim> hints = {});
+    Statics(const Packing& packing, const Load& load, const IsostaticStructure& structure,
+            const Factorisation& factorisation, const InverseBound& inverse, StaticsHints hints = {});
 
     /// Finite part at the loaded stress sigma (taken as exact).
     [[nodiscard]] Enclosure force(ContactId contact, double sigma) const;
@@ -93,7 +92,7 @@ template <int Dim> class Statics {
     /// max |H f - F| as computed for the finite part at sigma.
     [[nodiscard]] double residual(double sigma) const;
 
-    [[nodiscard]] const IsostaticStructure<Dim>& structure() const { return *structure_; }
+    [[nodiscard]] const IsostaticStructure& structure() const { return *structure_; }
     [[nodiscard]] const Factorisation& factorisation() const { return *factorisation_; }
     [[nodiscard]] const InverseBound& inverse() const { return *inverse_; }
     /// Rows that carry a finite load other than the loaded wall's, and the loaded wall's row (-1: it cannot move).
@@ -108,12 +107,12 @@ template <int Dim> class Statics {
     [[nodiscard]] std::vector<double> guess(double sigma) const;
     void find_backbone();
 
-    const Packing<Dim>* packing_;
-    const IsostaticStructure<Dim>* structure_;
+    const Packing* packing_;
+    const IsostaticStructure* structure_;
     const Factorisation* factorisation_;
     const InverseBound* inverse_;
-    double sigma_;            ///< sigma_0
-    ForceLadder<Dim> ladder_; ///< right-hand sides: at sigma_0, unit, infinitesimal
+    double sigma_;       ///< sigma_0
+    ForceLadder ladder_; ///< right-hand sides: at sigma_0, unit, infinitesimal
     std::vector<int> loaded_rows_;
     int loaded_wall_row_ = -1;
     std::vector<unsigned char> backbone_;
@@ -122,7 +121,5 @@ template <int Dim> class Statics {
     double shift_bound_ = 0;
     std::vector<unsigned char> sloped_; ///< what a stress on the loaded wall can reach
 };
-
-extern template class Statics<2>;
 
 } // namespace isostat

@@ -88,14 +88,14 @@ struct ContactGraph {
     }
 };
 
-template <int Dim> struct Disks {
+struct Disks {
     std::vector<unsigned char> free; ///< every coordinate moves, carries no finite load and is not held with a force
     std::vector<unsigned char> held; ///< with an infinitesimal force that is not known
     std::size_t count = 0;
 
-    Disks(const Statics<Dim>& statics, const ZeroHolds& zero) {
+    Disks(const Statics& statics, const ZeroHolds& zero) {
         const auto& contacts = statics.structure().contacts();
-        const DofMap<Dim>& dofs = statics.structure().dofs();
+        const DofMap& dofs = statics.structure().dofs();
         for (const Contact& c : contacts) {
             if (c.kind != ContactKind::held) {
                 count = std::max(
@@ -104,12 +104,12 @@ template <int Dim> struct Disks {
         }
         free.assign(count, 1);
         for (std::size_t i = 0; i < count; ++i) {
-            for (std::size_t a = 0; a < Dim; ++a) {
-                free[i] = dofs.dof_of(Dim * i + a) < 0 ? 0 : free[i];
+            for (std::size_t a = 0; a < plane; ++a) {
+                free[i] = dofs.dof_of(plane * i + a) < 0 ? 0 : free[i];
             }
         }
         const auto tie = [&](int coordinate) {
-            const auto disk = static_cast<std::size_t>(coordinate) / Dim;
+            const auto disk = static_cast<std::size_t>(coordinate) / plane;
             if (disk < count) {
                 free[disk] = 0;
             }
@@ -124,7 +124,7 @@ template <int Dim> struct Disks {
         }
         held.assign(count, 0);
         for (const ContactId l : zero.others) {
-            const auto disk = static_cast<std::size_t>(contacts[l.index()].i) / Dim;
+            const auto disk = static_cast<std::size_t>(contacts[l.index()].i) / plane;
             if (zero.fresh && disk < count && !statics.is_structural_zero(l)) {
                 held[disk] = 1;
             }
@@ -133,25 +133,25 @@ template <int Dim> struct Disks {
 };
 
 /// Forces of unit contacts and infinitesimal loads on one disk.
-template <int Dim> using Vector = std::array<double, Dim>;
+using Vector = PerAxis<double>;
 
 /// The force on the disk of a unit force in the contact.
-template <int Dim> Vector<Dim> push(const Statics<Dim>& statics, std::size_t contact, std::size_t disk) {
+Vector push(const Statics& statics, std::size_t contact, std::size_t disk) {
     const sparse::Matrix<double>& h = statics.structure().matrix();
-    const DofMap<Dim>& dofs = statics.structure().dofs();
-    Vector<Dim> on{};
+    const DofMap& dofs = statics.structure().dofs();
+    Vector on{};
     for (int e = h.start[contact]; e < h.start[contact + 1]; ++e) {
         const auto s = static_cast<std::size_t>(e);
         const auto coordinate = static_cast<std::size_t>(dofs.coordinate_of(h.row[s]));
-        if (coordinate / Dim == disk) {
-            on[coordinate % Dim] += h.value[s];
+        if (coordinate / plane == disk) {
+            on[coordinate % plane] += h.value[s];
         }
     }
     return on;
 }
 
 /// How far normals at the turn may be from the stored ones, and what rounding of sums over all contacts adds (S4).
-template <int Dim> double doubt_of(const Statics<Dim>& statics) {
+double doubt_of(const Statics& statics) {
     using roundoff::u;
     return 2 * statics.normal_uncertainty() + (static_cast<double>(statics.structure().size()) + 512) * u;
 }
@@ -159,31 +159,31 @@ template <int Dim> double doubt_of(const Statics<Dim>& statics) {
 /// What the infinitesimal loads come to when the disks that carry no finite force at the turn are taken away with their
 /// contacts (S4 (c)): free disks that two contacts, not in one line, hold. Each is done once, in an order in which two
 /// contacts are left of it.
-template <int Dim> struct Bare {
-    static_assert(Dim == 2);
+struct Bare {
+    static_assert(plane == 2);
     std::vector<unsigned char> gone; ///< of contacts
-    std::vector<Vector<Dim>> load;   ///< of each disk: its own, and what the disks that are gone press on it with
+    std::vector<Vector> load;        ///< of each disk: its own, and what the disks that are gone press on it with
     std::vector<double> error;       ///< of the latter, in length
 
-    Bare(const Statics<Dim>& statics, const Disks<Dim>& disks, const ZeroHolds& zero)
+    Bare(const Statics& statics, const Disks& disks, const ZeroHolds& zero)
         : gone(statics.structure().contacts().size(), 0), load(disks.count), error(disks.count, 0) {
-        const DofMap<Dim>& dofs = statics.structure().dofs();
+        const DofMap& dofs = statics.structure().dofs();
         const std::vector<double>& g = statics.infinitesimal_force();
         for (std::size_t row = 0; row < g.size(); ++row) {
             const auto coordinate = static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(row)));
-            if (coordinate / Dim < disks.count) {
-                load[coordinate / Dim][coordinate % Dim] = g[row];
+            if (coordinate / plane < disks.count) {
+                load[coordinate / plane][coordinate % plane] = g[row];
             }
         }
         const auto& contacts = statics.structure().contacts();
         for (const ContactId l : zero.others) {
             const auto coordinate = static_cast<std::size_t>(contacts[l.index()].i);
-            if (coordinate / Dim < disks.count) {
+            if (coordinate / plane < disks.count) {
                 // Structurally 0 in the finite forces wherever the mechanism stands: as solved, at the moved turn too.
                 const Enclosure part = statics.infinitesimal(l);
-                load[coordinate / Dim][coordinate % Dim] -=
-                    part.value * push(statics, l.index(), coordinate / Dim)[coordinate % Dim];
-                error[coordinate / Dim] += part.radius;
+                load[coordinate / plane][coordinate % plane] -=
+                    part.value * push(statics, l.index(), coordinate / plane)[coordinate % plane];
+                error[coordinate / plane] += part.radius;
             }
         }
         std::vector<std::vector<std::size_t>> at(disks.count);
@@ -221,16 +221,16 @@ template <int Dim> struct Bare {
 
   private:
     /// False when the two contacts may be in one line at the turn.
-    bool take_away(const Statics<Dim>& statics, std::size_t disk, std::size_t a, std::size_t b) {
-        const Vector<Dim> n = push(statics, a, disk);
-        const Vector<Dim> m = push(statics, b, disk);
+    bool take_away(const Statics& statics, std::size_t disk, std::size_t a, std::size_t b) {
+        const Vector n = push(statics, a, disk);
+        const Vector m = push(statics, b, disk);
         const double cross = n[0] * m[1] - n[1] * m[0];
         // Far more than the place of the turn is off by; the normals of a strut fail by many orders.
         constexpr double well_apart = 0x1p-16;
         if (!(std::abs(cross) > well_apart + 8 * statics.normal_uncertainty())) {
             return false;
         }
-        const Vector<Dim>& g = load[disk];
+        const Vector& g = load[disk];
         const double in_a = (g[0] * m[1] - g[1] * m[0]) / cross;
         const double in_b = (n[0] * g[1] - n[1] * g[0]) / cross;
         // Singular values of two unit columns: the smaller is at least |cross| / sqrt 2, at the turn 3/4 of that.
@@ -243,23 +243,22 @@ template <int Dim> struct Bare {
         return true;
     }
 
-    void pass_on(const Statics<Dim>& statics, std::size_t contact, std::size_t from, double force, double wrong) {
+    void pass_on(const Statics& statics, std::size_t contact, std::size_t from, double force, double wrong) {
         gone[contact] = 1;
         const Contact& c = statics.structure().contacts()[contact];
         if (c.kind != ContactKind::disk_disk) {
             return;
         }
         const auto to = static_cast<std::size_t>(static_cast<std::size_t>(c.i) == from ? c.j : c.i);
-        const Vector<Dim> on = push(statics, contact, to);
-        for (std::size_t k = 0; k < Dim; ++k) {
+        const Vector on = push(statics, contact, to);
+        for (std::size_t k = 0; k < plane; ++k) {
             load[to][k] -= force * on[k];
         }
         error[to] += wrong;
     }
 };
 
-template <int Dim>
-ContactGraph graph_of(const Statics<Dim>& statics, const Disks<Dim>& disks, const std::vector<unsigned char>& gone) {
+ContactGraph graph_of(const Statics& statics, const Disks& disks, const std::vector<unsigned char>& gone) {
     const auto& contacts = statics.structure().contacts();
     ContactGraph graph;
     graph.ground = disks.count;
@@ -288,20 +287,19 @@ ContactGraph graph_of(const Statics<Dim>& statics, const Disks<Dim>& disks, cons
 }
 
 /// f_b - f_a per unit of the infinitesimal loads, the disks `inside` being cut off by the contacts a and b.
-template <int Dim>
-Enclosure excess_over(const Statics<Dim>& statics, std::size_t a, std::size_t b,
-                      const std::vector<unsigned char>& inside, const Bare<Dim>& bare) {
-    Vector<Dim> from_a{};
-    Vector<Dim> from_b{};
-    Vector<Dim> load{};
+Enclosure excess_over(const Statics& statics, std::size_t a, std::size_t b, const std::vector<unsigned char>& inside,
+                      const Bare& bare) {
+    Vector from_a{};
+    Vector from_b{};
+    Vector load{};
     double size = 0;
     double error = 0;
-    const auto add = [](Vector<Dim>& sum, const Vector<Dim>& v) {
-        for (std::size_t k = 0; k < Dim; ++k) {
+    const auto add = [](Vector& sum, const Vector& v) {
+        for (std::size_t k = 0; k < plane; ++k) {
             sum[k] += v[k];
         }
     };
-    const auto ends = [&](std::size_t contact, Vector<Dim>& sum) { // of a unit force on the group
+    const auto ends = [&](std::size_t contact, Vector& sum) { // of a unit force on the group
         const Contact& c = statics.structure().contacts()[contact];
         for (const int disk : {c.i, c.kind == ContactKind::disk_disk ? c.j : -1}) {
             if (disk >= 0 && inside[static_cast<std::size_t>(disk)] != 0) {
@@ -322,7 +320,7 @@ Enclosure excess_over(const Statics<Dim>& statics, std::size_t a, std::size_t b,
     }
     double value = 0;
     double bend = 0;
-    for (std::size_t k = 0; k < Dim; ++k) {
+    for (std::size_t k = 0; k < plane; ++k) {
         value -= 0.5 * load[k] * (from_a[k] - from_b[k]);
         bend += std::abs(from_a[k] + from_b[k]);
     }
@@ -334,29 +332,28 @@ constexpr auto none = static_cast<std::size_t>(-1);
 
 } // namespace
 
-template <int Dim> struct Turn<Dim>::Parts {
-    Disks<Dim> disks;
-    Bare<Dim> bare;
+struct Turn::Parts {
+    Disks disks;
+    Bare bare;
     ContactGraph graph;
     std::vector<unsigned char> alone; ///< what a single contact cuts off leaves it without force
 };
 
-template <int Dim>
-Turn<Dim>::Turn(const Statics<Dim>& statics, ZeroHolds zero) : statics_(statics), zero_(std::move(zero)) {
-    const Disks<Dim> disks(statics, zero_);
-    Bare<Dim> bare(statics, disks, zero_);
+Turn::Turn(const Statics& statics, ZeroHolds zero) : statics_(statics), zero_(std::move(zero)) {
+    const Disks disks(statics, zero_);
+    Bare bare(statics, disks, zero_);
     ContactGraph graph = graph_of(statics, disks, bare.gone);
     std::vector<unsigned char> alone = graph.bridges(none);
     parts_ = std::make_unique<const Parts>(Parts{disks, std::move(bare), std::move(graph), std::move(alone)});
 }
 
-template <int Dim> Turn<Dim>::~Turn() = default;
+Turn::~Turn() = default;
 
-template <int Dim> bool Turn<Dim>::carries_nothing(ContactId contact) const {
+bool Turn::carries_nothing(ContactId contact) const {
     return parts_->bare.gone[contact.index()] != 0 || parts_->alone[contact.index()] != 0;
 }
 
-template <int Dim> std::vector<StrutMate> Turn<Dim>::mates(ContactId of) const {
+std::vector<StrutMate> Turn::mates(ContactId of) const {
     const ContactGraph& graph = parts_->graph;
     std::vector<StrutMate> mates;
     if (graph.leads[of.index()] == 0 || carries_nothing(of)) {
@@ -375,13 +372,13 @@ template <int Dim> std::vector<StrutMate> Turn<Dim>::mates(ContactId of) const {
         if (inside[graph.ground] != 0) {
             continue;
         }
-        const Disks<Dim>& disks = parts_->disks;
+        const Disks& disks = parts_->disks;
         inside.resize(disks.count);
         Enclosure excess;
         if (!zero_.fresh) {
             excess = statics_.infinitesimal(ContactId(l)) - statics_.infinitesimal(of);
         } else {
-            excess = excess_over<Dim>(statics_, of.index(), l, inside, parts_->bare);
+            excess = excess_over(statics_, of.index(), l, inside, parts_->bare);
             for (std::size_t i = 0; i < disks.count; ++i) {
                 if (inside[i] != 0 && disks.held[i] != 0) {
                     excess.radius = std::numeric_limits<double>::infinity();
@@ -392,7 +389,5 @@ template <int Dim> std::vector<StrutMate> Turn<Dim>::mates(ContactId of) const {
     }
     return mates;
 }
-
-template class Turn<2>;
 
 } // namespace isostat

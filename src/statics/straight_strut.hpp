@@ -18,10 +18,10 @@ struct StrutMate {
 /// A vertex where coordinates are held without a finite force. Uses the graph of the contacts and their normals, no
 /// forces but for the infinitesimal ones of `zero.others`. Cost: two depth-first searches, O(N), and as much again for
 /// each call of `mates`.
-template <int Dim> class Turn {
+class Turn {
   public:
     /// `statics` must outlive it.
-    Turn(const Statics<Dim>& statics, ZeroHolds zero);
+    Turn(const Statics& statics, ZeroHolds zero);
     Turn(const Turn&) = delete;
     Turn& operator=(const Turn&) = delete;
     ~Turn();
@@ -41,11 +41,9 @@ template <int Dim> class Turn {
 
   private:
     struct Parts;
-    const Statics<Dim>& statics_;
+    const Statics& statics_;
     ZeroHolds zero_;
     std::unique_ptr<const Parts> parts_;
 };
-
-extern template class Turn<2>;
 
 } // namespace isostat

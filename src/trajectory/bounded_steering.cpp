@@ -11,14 +11,14 @@ namespace isostat {
 namespace {
 
 /// Cost of the solves of a vertex and of the arc from it, in passes of fresh factors.
-template <int Dim> double cost_of_solves(const Vertex<Dim>& vertex, int arc_passes) {
+double cost_of_solves(const Vertex& vertex, int arc_passes) {
     constexpr double proofs = 3; // passes of the bound and the enclosure
     return (arc_passes + vertex.factorisation.passes() + proofs) * vertex.factorisation.approximate().relative_cost();
 }
 
 /// New factors are due when this vertex cost more than the average since the last ones, their making included: the rule
 /// that keeps that average smallest. It counts operations, never seconds.
-template <int Dim> bool new_factors_are_due(const Vertex<Dim>& vertex, double cost) {
+bool new_factors_are_due(const Vertex& vertex, double cost) {
     constexpr double factorisation_in_passes = 90; // KLU: analysis and factorisation, measured for n = 1936, 4900
     const int exchanges = vertex.factorisation.approximate().exchanges();
     return exchanges > 0 && cost * (exchanges + 1) > factorisation_in_passes + vertex.cost_before + cost;
@@ -26,10 +26,8 @@ template <int Dim> bool new_factors_are_due(const Vertex<Dim>& vertex, double co
 
 } // namespace
 
-template <int Dim>
-BoundedSteering<Dim>::BoundedSteering(std::shared_ptr<const Vertex<Dim>> from, ArcStart<Dim> start,
-                                      Result<Departure<Dim>> departure, double step_fraction,
-                                      CandidateList<Dim>& candidates)
+BoundedSteering::BoundedSteering(std::shared_ptr<const Vertex> from, ArcStart start, Result<Departure> departure,
+                                 double step_fraction, CandidateList& candidates)
     : vertex_(std::move(from)), from_(*vertex_), start_(std::move(start)), candidates_(candidates),
       opened_(from_.structure.contacts()[start_.opening.contact.index()]), departure_(std::move(departure)) {
     arc_options_.step_fraction = step_fraction;
@@ -43,7 +41,7 @@ BoundedSteering<Dim>::BoundedSteering(std::shared_ptr<const Vertex<Dim>> from, A
 
 /// Rattlers turn far from arc to arc: factors taken over predict their curvature badly. They are few, so that their own
 /// block costs next to nothing.
-template <int Dim> void BoundedSteering<Dim>::refresh() {
+void BoundedSteering::refresh() {
     const Opening& opening = start_.opening;
     if (opening.infinitesimal && !from_.factorisation.is_fresh()) {
         fresh_ = Factorisation::of_moving_block(from_.structure, static_cast<int>(opening.contact.index()));
@@ -53,21 +51,21 @@ template <int Dim> void BoundedSteering<Dim>::refresh() {
     }
 }
 
-template <int Dim> Result<Arc<Dim>> BoundedSteering<Dim>::attempt() {
+Result<Arc> BoundedSteering::attempt() {
     if (next_to_) {
-        Arc<Dim> none;
+        Arc none;
         none.end = from_.packing;
         none.closed = *next_to_;
         return none;
     }
     const Opening& opening = start_.opening;
-    const ArcOrigin<Dim> origin{from_.packing, from_.structure, fresh_ ? *fresh_ : from_.factorisation, opening.contact,
-                                opening.direction};
-    return follow_arc(origin, PowerLoad<Dim>{start_.load, opening.infinitesimal, start_.kind == ArcKind::limit},
-                      candidates_, arc_options_);
+    const ArcOrigin origin{from_.packing, from_.structure, fresh_ ? *fresh_ : from_.factorisation, opening.contact,
+                           opening.direction};
+    return follow_arc(origin, PowerLoad{start_.load, opening.infinitesimal, start_.kind == ArcKind::limit}, candidates_,
+                      arc_options_);
 }
 
-template <int Dim> Result<ArcProposal<Dim>> BoundedSteering<Dim>::propose() {
+Result<ArcProposal> BoundedSteering::propose() {
     constexpr int most_proposals = 8;
     if (proposals_ == most_proposals) {
         return Failure{FailureKind::undecided, "the order of the first contacts that close was not settled"};
@@ -99,16 +97,16 @@ template <int Dim> Result<ArcProposal<Dim>> BoundedSteering<Dim>::propose() {
     return proposal(std::move(arc.value()));
 }
 
-template <int Dim> void BoundedSteering<Dim>::improve_end(Arc<Dim>& path) const {
+void BoundedSteering::improve_end(Arc& path) const {
     auto end = precise_end(
-        RoughEnd<Dim>{from_.structure, start_.opening.contact, path.closed, path.end, path.tangent, path.displacement});
+        RoughEnd{from_.structure, start_.opening.contact, path.closed, path.end, path.tangent, path.displacement});
     if (end) {
         path.end = std::move(*end);
     }
 }
 
-template <int Dim> ArcProposal<Dim> BoundedSteering<Dim>::proposal(Arc<Dim> path) const {
-    ArcProposal<Dim> arc;
+ArcProposal BoundedSteering::proposal(Arc path) const {
+    ArcProposal arc;
     arc.record.step = start_.step;
     arc.record.kind = start_.kind;
     arc.record.opened = opened_;
@@ -121,7 +119,7 @@ template <int Dim> ArcProposal<Dim> BoundedSteering<Dim>::proposal(Arc<Dim> path
     arc.resting = departure_.value().resting;
     arc.taken_to_rest = departure_.value().taken_to_rest;
     arc.settled = departure_.value().settled;
-    arc.contacts = IsostaticStructure<Dim>::exchange(from_.structure, arc.end, start_.opening.contact, path.closed);
+    arc.contacts = IsostaticStructure::exchange(from_.structure, arc.end, start_.opening.contact, path.closed);
     if (arc.contacts) {
         const ApproximateInverse& old = from_.factorisation.approximate();
         const double cost = cost_of_solves(from_, fresh_ ? 0 : path.passes);
@@ -134,15 +132,15 @@ template <int Dim> ArcProposal<Dim> BoundedSteering<Dim>::proposal(Arc<Dim> path
 }
 
 /// What may be wrong with a proposal that was refused, and what is proposed in its place.
-template <int Dim> struct BoundedSteering<Dim>::Remedy {
-    bool (*applies)(const BoundedSteering&, const ArcProof<Dim>&);
-    void (*propose)(BoundedSteering&, const ArcProof<Dim>&);
+struct BoundedSteering::Remedy {
+    bool (*applies)(const BoundedSteering&, const ArcProof&);
+    void (*propose)(BoundedSteering&, const ArcProof&);
 };
 
 /// In the order in which they are tried.
-template <int Dim> auto BoundedSteering<Dim>::remedies() -> const std::vector<Remedy>& {
+auto BoundedSteering::remedies() -> const std::vector<Remedy>& {
     using S = BoundedSteering;
-    using Proof = ArcProof<Dim>;
+    using Proof = ArcProof;
     static const std::vector<Remedy> table{
         // Another contact closed before: that one closes.
         {[](const S&, const Proof& p) { return p.closed_before.has_value(); },
@@ -184,17 +182,15 @@ template <int Dim> auto BoundedSteering<Dim>::remedies() -> const std::vector<Re
     return table;
 }
 
-template <int Dim> auto BoundedSteering<Dim>::remedy(const ArcProof<Dim>& refused) const -> const Remedy* {
+auto BoundedSteering::remedy(const ArcProof& refused) const -> const Remedy* {
     const auto& all = remedies();
     const auto first = std::find_if(all.begin(), all.end(), [&](const Remedy& r) { return r.applies(*this, refused); });
     return first == all.end() ? nullptr : &*first;
 }
 
-template <int Dim> void BoundedSteering<Dim>::revise(const ArcProof<Dim>& refused) {
+void BoundedSteering::revise(const ArcProof& refused) {
     remedy(refused)->propose(*this, refused);
     proposed_ = false;
 }
-
-template class BoundedSteering<2>;
 
 } // namespace isostat

@@ -13,43 +13,41 @@ namespace isostat {
 /// (the table in bounded_steering.cpp). Failures besides those of `follow_arc`: that of `departure`; that of an end for
 /// which nothing better was found; `undecided` when the order of the contacts that close is not settled in a few
 /// proposals.
-template <int Dim> class BoundedSteering final : public Steering<Dim> {
+class BoundedSteering final : public Steering {
   public:
     /// `departure`: of the pairs that touch; none overlaps at second order. The candidates and the load must outlive
     /// the steering; the first are made anew where the arc leaves their reach.
-    BoundedSteering(std::shared_ptr<const Vertex<Dim>> from, ArcStart<Dim> start, Result<Departure<Dim>> departure,
-                    double step_fraction, CandidateList<Dim>& candidates);
+    BoundedSteering(std::shared_ptr<const Vertex> from, ArcStart start, Result<Departure> departure,
+                    double step_fraction, CandidateList& candidates);
 
     [[nodiscard]] bool goes_on() const override { return !proposed_; }
-    Result<ArcProposal<Dim>> propose() override;
-    [[nodiscard]] bool may_revise(const ArcProof<Dim>& refused) const override { return remedy(refused) != nullptr; }
-    void revise(const ArcProof<Dim>& refused) override;
+    Result<ArcProposal> propose() override;
+    [[nodiscard]] bool may_revise(const ArcProof& refused) const override { return remedy(refused) != nullptr; }
+    void revise(const ArcProof& refused) override;
 
   private:
     struct Remedy;
     static const std::vector<Remedy>& remedies();
     /// The first that applies; null: none does.
-    [[nodiscard]] const Remedy* remedy(const ArcProof<Dim>& refused) const;
+    [[nodiscard]] const Remedy* remedy(const ArcProof& refused) const;
     void refresh();
-    Result<Arc<Dim>> attempt();
-    [[nodiscard]] ArcProposal<Dim> proposal(Arc<Dim> path) const;
-    void improve_end(Arc<Dim>& path) const;
+    Result<Arc> attempt();
+    [[nodiscard]] ArcProposal proposal(Arc path) const;
+    void improve_end(Arc& path) const;
 
-    std::shared_ptr<const Vertex<Dim>> vertex_;
-    const Vertex<Dim>& from_; ///< the same
-    ArcStart<Dim> start_;
-    CandidateList<Dim>& candidates_;
+    std::shared_ptr<const Vertex> vertex_;
+    const Vertex& from_; ///< the same
+    ArcStart start_;
+    CandidateList& candidates_;
     Contact opened_;
     ArcOptions arc_options_;
     std::optional<Contact> next_to_; ///< closes on a way of length O(eps)
-    Result<Departure<Dim>> departure_;
+    Result<Departure> departure_;
     std::optional<Factorisation> fresh_; ///< instead of the factors of the vertex
     bool precisely_ = false;             ///< the end of the arc in more digits
     std::optional<Failure> refused_;     ///< of the last end that was to be bettered, or passed by
     int proposals_ = 0;
     bool proposed_ = false;
 };
-
-extern template class BoundedSteering<2>;
 
 } // namespace isostat

@@ -17,7 +17,7 @@ constexpr double dd_unit = 0x1p-98; // granted to one operation in double-double
 constexpr double above = 1 + 1e-10; // of sums of at most 10^6 bounds
 
 /// A true vertex as far as it is known: within `radius` (2-norm) of packing.q + correction.
-template <int Dim> struct Place {
+struct Place {
     const std::vector<double>& q;
     const std::vector<double>& correction; ///< empty: none
     double radius;
@@ -40,9 +40,7 @@ struct Sum {
 };
 
 /// F . (to - from).
-template <int Dim>
-Enclosure work(const Vertex<Dim>& start, const Place<Dim>& from, const Place<Dim>& to, const Load<Dim>& load,
-               bool infinitesimal) {
+Enclosure work(const Vertex& start, const Place& from, const Place& to, const Load& load, bool infinitesimal) {
     Sum sum;
     const std::vector<double>& on_disks = infinitesimal ? load.infinitesimal : load.disk_force;
     double terms = 4;
@@ -82,14 +80,12 @@ dd_real log_of_ratio(const dd_real& a, const dd_real& b, double& error) {
 }
 
 /// Phi(from) - Phi(to).
-template <int Dim>
-Enclosure decrease_of_phi(const Vertex<Dim>& start, const Place<Dim>& from, const Place<Dim>& to,
-                          const Load<Dim>& load) {
+Enclosure decrease_of_phi(const Vertex& start, const Place& from, const Place& to, const Load& load) {
     dd_real value = 0.0;
     double radius = 0;
     double size = 0;
-    for (std::size_t a = 0; a < Dim; ++a) {
-        const std::size_t k = Dim * start.packing.radius.size() + a;
+    for (std::size_t a = 0; a < start.packing.axes(); ++a) {
+        const std::size_t k = start.packing.axes() * start.packing.radius.size() + a;
         if (start.structure.dofs().dof_of(k) < 0) {
             continue;
         }
@@ -98,7 +94,7 @@ Enclosure decrease_of_phi(const Vertex<Dim>& start, const Place<Dim>& from, cons
         value += term;
         size += std::abs(term.x[0]);
         // |ln x - ln y| <= |x - y| / min(x, y); nothing is known of a length that may be 0.
-        const auto moved = [&](const Place<Dim>& at) {
+        const auto moved = [&](const Place& at) {
             const double least = at[k].x[0] - at.radius;
             return least > 0 ? at.radius / least : std::numeric_limits<double>::infinity();
         };
@@ -109,9 +105,8 @@ Enclosure decrease_of_phi(const Vertex<Dim>& start, const Place<Dim>& from, cons
 }
 
 /// What -F.q, or Phi, loses on the way, as an interval of at least `bits`.
-template <int Dim>
-PreciseInterval decrease_between(const PreciseVertex<Dim>& from, const PreciseVertex<Dim>& to, const Vertex<Dim>& start,
-                                 const Load<Dim>& load, bool infinitesimal, int bits) {
+PreciseInterval decrease_between(const PreciseVertex& from, const PreciseVertex& to, const Vertex& start,
+                                 const Load& load, bool infinitesimal, int bits) {
     PreciseInterval sum(bits);
     const auto exactly = [bits](double x) { return difference(x, 0, bits); };
     const std::vector<double>& on_disks = infinitesimal ? load.infinitesimal : load.disk_force;
@@ -137,11 +132,10 @@ PreciseInterval decrease_between(const PreciseVertex<Dim>& from, const PreciseVe
 }
 
 /// In MPFR, until the sign is known; `rough` where that says no more.
-template <int Dim>
-Enclosure precise_decrease(const Vertex<Dim>& from, const Vertex<Dim>& to, const Load<Dim>& load, bool infinitesimal,
+Enclosure precise_decrease(const Vertex& from, const Vertex& to, const Load& load, bool infinitesimal,
                            const Enclosure& rough) {
-    PreciseVertex<Dim> a(from.packing, from.structure, from.factorisation, from.inverse);
-    PreciseVertex<Dim> b(to.packing, to.structure, to.factorisation, to.inverse);
+    PreciseVertex a(from.packing, from.structure, from.factorisation, from.inverse);
+    PreciseVertex b(to.packing, to.structure, to.factorisation, to.inverse);
     Enclosure best = rough;
     constexpr LadderOptions ladder;
     for (int bits = ladder.first_bits; bits <= ladder.max_bits && !best.decided(); bits *= 2) {
@@ -156,7 +150,7 @@ Enclosure precise_decrease(const Vertex<Dim>& from, const Vertex<Dim>& to, const
 
 } // namespace
 
-template <int Dim> WorkOfArc work_of(const Load<Dim>& load, const Packing<Dim>& from, const Packing<Dim>& to) {
+WorkOfArc work_of(const Load& load, const Packing& from, const Packing& to) {
     WorkOfArc work;
     load.for_each_force(from, [&](std::size_t k, double f) {
         work.value += f * (to.q[k] - from.q[k]);
@@ -165,32 +159,31 @@ template <int Dim> WorkOfArc work_of(const Load<Dim>& load, const Packing<Dim>& 
     return work;
 }
 
-template <int Dim> bool has_potential(const Load<Dim>& load, bool infinitesimal) {
+bool has_potential(const Load& load, bool infinitesimal) {
     return infinitesimal || load.kind == LoadKind::nominal ||
            std::all_of(load.disk_force.begin(), load.disk_force.end(), [](double f) { return f == 0; });
 }
 
-template <int Dim> Enclosure work_between(const Vertex<Dim>& from, const Vertex<Dim>& to, const Load<Dim>& load) {
+Enclosure work_between(const Vertex& from, const Vertex& to, const Load& load) {
     static const std::vector<double> none;
-    return work(from, Place<Dim>{from.packing.q, none, from.enclosure.distance()},
-                Place<Dim>{to.packing.q, none, to.enclosure.distance()}, load, false);
+    return work(from, Place{from.packing.q, none, from.enclosure.distance()},
+                Place{to.packing.q, none, to.enclosure.distance()}, load, false);
 }
 
-template <int Dim>
-Enclosure potential_decrease(const Vertex<Dim>& from, const Vertex<Dim>& to, const Load<Dim>& load, bool infinitesimal,
+Enclosure potential_decrease(const Vertex& from, const Vertex& to, const Load& load, bool infinitesimal,
                              double wanted) {
     assert(has_potential(load, infinitesimal));
     const bool phi = load.kind == LoadKind::true_stress && !infinitesimal;
-    const auto between = [&](const Place<Dim>& a, const Place<Dim>& b) {
+    const auto between = [&](const Place& a, const Place& b) {
         return phi ? decrease_of_phi(from, a, b, load) : work(from, a, b, load, infinitesimal);
     };
     static const std::vector<double> none;
-    const Enclosure rough = between(Place<Dim>{from.packing.q, none, from.enclosure.distance()},
-                                    Place<Dim>{to.packing.q, none, to.enclosure.distance()});
+    const Enclosure rough = between(Place{from.packing.q, none, from.enclosure.distance()},
+                                    Place{to.packing.q, none, to.enclosure.distance()});
     if (rough.decided() && rough.radius <= wanted) {
         return rough;
     }
-    const auto nearer = [](const Vertex<Dim>& v) {
+    const auto nearer = [](const Vertex& v) {
         return enclose_vertex_double_double(v.packing, v.structure, v.factorisation, v.inverse);
     };
     const VertexEnclosure a = nearer(from);
@@ -199,14 +192,9 @@ Enclosure potential_decrease(const Vertex<Dim>& from, const Vertex<Dim>& to, con
         return rough;
     }
     const Enclosure near =
-        between(Place<Dim>{from.packing.q, a.correction, a.radius}, Place<Dim>{to.packing.q, b.correction, b.radius});
+        between(Place{from.packing.q, a.correction, a.radius}, Place{to.packing.q, b.correction, b.radius});
     const bool at_once = from.perturbed && from.packing.q == to.packing.q; // of length O(eps): it is 0
     return near.decided() || at_once ? near : precise_decrease(from, to, load, infinitesimal, near);
 }
-
-template Enclosure work_between<2>(const Vertex<2>&, const Vertex<2>&, const Load<2>&);
-template WorkOfArc work_of<2>(const Load<2>&, const Packing<2>&, const Packing<2>&);
-template bool has_potential<2>(const Load<2>&, bool);
-template Enclosure potential_decrease<2>(const Vertex<2>&, const Vertex<2>&, const Load<2>&, bool, double);
 
 } // namespace isostat

@@ -8,7 +8,7 @@
 namespace isostat {
 
 /// Dead loads have one, and so have true stresses without forces on disks, and whatever moves rattlers only.
-template <int Dim> bool has_potential(const Load<Dim>& load, bool infinitesimal);
+bool has_potential(const Load& load, bool infinitesimal);
 
 /// Of dead loads W(from) - W(to), W = -F.q; of true stresses Phi(from) - Phi(to), Phi = sum sigma_a ln L_a over the
 /// movable walls; when `infinitesimal` (only rattlers moved) -g.q in place of W, whatever the finite load. `value` is
@@ -16,12 +16,11 @@ template <int Dim> bool has_potential(const Load<Dim>& load, bool infinitesimal)
 /// double-double, then to MPFR with 256 to 4096 bits; to double-double where `radius` would be above `wanted`, too.
 /// \pre `has_potential`, and both enclosures proved.
 /// Cost: O(n); in double-double two solves at each end, in MPFR one for every 30 bits or so.
-template <int Dim>
-Enclosure potential_decrease(const Vertex<Dim>& from, const Vertex<Dim>& to, const Load<Dim>& load, bool infinitesimal,
+Enclosure potential_decrease(const Vertex& from, const Vertex& to, const Load& load, bool infinitesimal,
                              double wanted = std::numeric_limits<double>::infinity());
 
 /// The work of dead loads between the two true vertices, whatever moved. Cost: O(n).
-template <int Dim> Enclosure work_between(const Vertex<Dim>& from, const Vertex<Dim>& to, const Load<Dim>& load);
+Enclosure work_between(const Vertex& from, const Vertex& to, const Load& load);
 
 /// F(from) . (to - from) as records show it, in double: of dead loads the decrease of W. `size`: of the terms. No
 /// bound.
@@ -29,11 +28,6 @@ struct WorkOfArc {
     double value = 0;
     double size = 0;
 };
-template <int Dim> WorkOfArc work_of(const Load<Dim>& load, const Packing<Dim>& from, const Packing<Dim>& to);
-
-extern template Enclosure work_between<2>(const Vertex<2>&, const Vertex<2>&, const Load<2>&);
-extern template WorkOfArc work_of<2>(const Load<2>&, const Packing<2>&, const Packing<2>&);
-extern template bool has_potential<2>(const Load<2>&, bool);
-extern template Enclosure potential_decrease<2>(const Vertex<2>&, const Vertex<2>&, const Load<2>&, bool, double);
+WorkOfArc work_of(const Load& load, const Packing& from, const Packing& to);
 
 } // namespace isostat

@@ -11,8 +11,8 @@ namespace isostat {
 namespace {
 
 /// "the arc that opens 1-2 and closes 3-4".
-template <int Dim> Words names(const ArcRecord<Dim>& record) {
-    return words("the arc that opens {} and closes {}", named<Dim>(record.opened), named<Dim>(record.closed));
+Words names(const ArcRecord& record) {
+    return words("the arc that opens {} and closes {}", named(record.opened), named(record.closed));
 }
 
 } // namespace
@@ -28,9 +28,8 @@ ArcKind kind_of(const Contact& opened, bool infinitesimal) {
     return opened.kind == ContactKind::held ? ArcKind::release : infinitesimal ? ArcKind::rattler : ArcKind::tension;
 }
 
-template <int Dim>
-FloatingSteering<Dim>::FloatingSteering(const Origin& from, const ArcStart<Dim>& start, const RunOptions& options,
-                                        CandidateList<Dim> candidates)
+FloatingSteering::FloatingSteering(const Origin& from, const ArcStart& start, const RunOptions& options,
+                                   CandidateList candidates)
     : packing_(&from.packing), structure_(&from.structure), factorisation_(&from.factorisation), start_(start),
       load_(*start.load), candidates_(std::move(candidates)) {
     arc_options_.step_fraction = options.step_fraction;
@@ -38,7 +37,7 @@ FloatingSteering<Dim>::FloatingSteering(const Origin& from, const ArcStart<Dim>&
 }
 
 /// How far it goes in vain depends on the threads: its work is counted when the arc is recorded.
-template <int Dim> Result<ArcProposal<Dim>> FloatingSteering<Dim>::propose() {
+Result<ArcProposal> FloatingSteering::propose() {
     WorkCounts work{};
     const CountingIn counting(&work);
     auto arc = next();
@@ -48,9 +47,9 @@ template <int Dim> Result<ArcProposal<Dim>> FloatingSteering<Dim>::propose() {
     return arc;
 }
 
-template <int Dim> Result<ArcProposal<Dim>> FloatingSteering<Dim>::next() {
-    ArcProposal<Dim> arc;
-    ArcRecord<Dim>& record = arc.record;
+Result<ArcProposal> FloatingSteering::next() {
+    ArcProposal arc;
+    ArcRecord& record = arc.record;
     record.step = start_.step;
     record.kind = start_.kind;
     record.opened = structure_->contacts()[start_.opening.contact.index()];
@@ -81,16 +80,16 @@ template <int Dim> Result<ArcProposal<Dim>> FloatingSteering<Dim>::next() {
 }
 
 /// With the arc that was begun beside the choice of what opens, if it was.
-template <int Dim> Result<Arc<Dim>> FloatingSteering<Dim>::follow(Prediction& prediction) {
+Result<Arc> FloatingSteering::follow(Prediction& prediction) {
     const Opening& opening = start_.opening;
-    const PowerLoad<Dim> power{&load_, opening.infinitesimal, start_.kind == ArcKind::limit};
+    const PowerLoad power{&load_, opening.infinitesimal, start_.kind == ArcKind::limit};
     // Rattlers turn far from arc to arc: factors taken over predict their curvature badly.
     std::optional<Factorisation> block;
     if (opening.infinitesimal) {
         block = Factorisation::of_moving_block(*structure_, static_cast<int>(opening.contact.index()));
     }
     const auto attempt = [&](const Factorisation& factors) {
-        return follow_arc(ArcOrigin<Dim>{*packing_, *structure_, factors, opening.contact, opening.direction}, power,
+        return follow_arc(ArcOrigin{*packing_, *structure_, factors, opening.contact, opening.direction}, power,
                           candidates_, arc_options_);
     };
     auto* departure = here_ ? here_->departure(opening) : nullptr;
@@ -101,10 +100,10 @@ template <int Dim> Result<Arc<Dim>> FloatingSteering<Dim>::follow(Prediction& pr
         if (departure == nullptr) {
             return attempt(block ? *block : *factorisation_);
         }
-        const std::unique_ptr<ArcDeparture<Dim>> begun = departure->arc.get();
+        const std::unique_ptr<ArcDeparture> begun = departure->arc.get();
         prediction.end = begun->expected();
         if (prediction.end) {
-            prediction.vertex = Future<PredictedVertex<Dim>>([this, &end = *prediction.end] {
+            prediction.vertex = Future<PredictedVertex>([this, &end = *prediction.end] {
                 return predict(*structure_, here_->loaded(), here_->force, factorisation_->approximate(), load_,
                                start_.opening.contact, end);
             });
@@ -118,8 +117,7 @@ template <int Dim> Result<Arc<Dim>> FloatingSteering<Dim>::follow(Prediction& pr
     return arc;
 }
 
-template <int Dim>
-std::optional<Failure> FloatingSteering<Dim>::check_work(const ArcRecord<Dim>& record, const Arc<Dim>& path) const {
+std::optional<Failure> FloatingSteering::check_work(const ArcRecord& record, const Arc& path) const {
     const WorkOfArc work = work_of(load_, *packing_, path.end);
     if (load_.kind == LoadKind::nominal && work.value < -1e-12 * work.size) {
         return failed(FailureKind::undecided, "W increased by {:.6g} along {}", -work.value, names(record));
@@ -128,15 +126,14 @@ std::optional<Failure> FloatingSteering<Dim>::check_work(const ArcRecord<Dim>& r
 }
 
 /// The vertex at the end of the path: from now on it is `here_`.
-template <int Dim>
-std::optional<Failure> FloatingSteering<Dim>::arrive(ArcProposal<Dim>& arc, Arc<Dim>& path, Prediction& prediction) {
-    std::optional<PredictedVertex<Dim>> predicted;
+std::optional<Failure> FloatingSteering::arrive(ArcProposal& arc, Arc& path, Prediction& prediction) {
+    std::optional<PredictedVertex> predicted;
     if (prediction.end && prediction.end->closes == path.closed) {
         predicted = prediction.vertex.get();
     }
     prediction.vertex = {}; // it reads this vertex
-    auto next = IsostaticStructure<Dim>::exchange(*structure_, path.end, start_.opening.contact, path.closed,
-                                                  predicted && predicted->contacts ? &*predicted->contacts : nullptr);
+    auto next = IsostaticStructure::exchange(*structure_, path.end, start_.opening.contact, path.closed,
+                                             predicted && predicted->contacts ? &*predicted->contacts : nullptr);
     if (!next) {
         return failed(FailureKind::undecided, "the contacts are structurally singular at the end of {}",
                       names(arc.record));
@@ -146,15 +143,15 @@ std::optional<Failure> FloatingSteering<Dim>::arrive(ArcProposal<Dim>& arc, Arc<
     }
     ApproximateInverse approximate = operator_at(*next, path.passes + prediction.passes);
     arc.contacts = *next;
-    auto unproved = IsostaticStructure<Dim>::without_proof(std::move(*next));
+    auto unproved = IsostaticStructure::without_proof(std::move(*next));
     if (rule_.due(approximate)) {
         refactorisation_.begin(approximate, unproved.shared_matrix());
     }
     std::vector<double> guess = here_ ? std::move(here_->force) : std::vector<double>();
-    here_ = std::make_unique<FloatingVertex<Dim>>(
-        typename FloatingVertex<Dim>::Arrival{std::move(path.end), std::move(unproved), approximate, std::move(guess),
-                                              std::move(path.open), predicted ? &*predicted : nullptr},
-        typename FloatingVertex<Dim>::Context{load_, candidates_, arc_options_});
+    here_ = std::make_unique<FloatingVertex>(
+        FloatingVertex::Arrival{std::move(path.end), std::move(unproved), approximate, std::move(guess),
+                                std::move(path.open), predicted ? &*predicted : nullptr},
+        FloatingVertex::Context{load_, candidates_, arc_options_});
     arc.approximate = std::move(approximate);
     packing_ = &here_->packing;
     structure_ = &here_->structure;
@@ -164,8 +161,7 @@ std::optional<Failure> FloatingSteering<Dim>::arrive(ArcProposal<Dim>& arc, Arc<
 
 /// An operator close to the inverse, after an arc that cost so many passes: renewed, or the one before with one more
 /// exchange.
-template <int Dim>
-ApproximateInverse FloatingSteering<Dim>::operator_at(const ExchangedContacts<Dim>& next, int passes) {
+ApproximateInverse FloatingSteering::operator_at(const ExchangedContacts& next, int passes) {
     rule_.add(passes, factorisation_->approximate());
     if (auto renewed = refactorisation_.after(next.slot(), next.matrix())) {
         rule_.restart();
@@ -174,7 +170,7 @@ ApproximateInverse FloatingSteering<Dim>::operator_at(const ExchangedContacts<Di
     return factorisation_->approximate().exchanged(next.slot(), next.matrix());
 }
 
-template <int Dim> std::optional<Failure> FloatingSteering<Dim>::check_power(const ArcRecord<Dim>& record) const {
+std::optional<Failure> FloatingSteering::check_power(const ArcRecord& record) const {
     if (record.power_turn) {
         return std::nullopt;
     }
@@ -188,12 +184,12 @@ template <int Dim> std::optional<Failure> FloatingSteering<Dim>::check_power(con
 }
 
 /// What opens next; nothing: it ends here.
-template <int Dim> void FloatingSteering<Dim>::choose(ArcProposal<Dim>& arc) {
+void FloatingSteering::choose(ArcProposal& arc) {
     // The ends of a straight strut carry one force at a power turn: only a proof orders them.
     const auto chosen = arc.record.power_turn ? std::optional<Opening>() : here_->choose();
     if (!chosen) {
         const ContactId hold = arc.record.power_turn ? start_.opening.contact : ContactId();
-        arc.last = SteeredEnd<Dim>{here_->packing, structure_->contacts(), hold, candidates_.triangulation};
+        arc.last = SteeredEnd{here_->packing, structure_->contacts(), hold, candidates_.triangulation};
         return;
     }
     start_.opening = *chosen;
@@ -201,7 +197,5 @@ template <int Dim> void FloatingSteering<Dim>::choose(ArcProposal<Dim>& arc) {
     ++start_.step;
     ended_ = false;
 }
-
-template class FloatingSteering<2>;
 
 } // namespace isostat

@@ -21,11 +21,10 @@ constexpr double safety = 30;
 
 } // namespace
 
-template <int Dim>
-FloatingVertex<Dim>::FloatingVertex(Arrival arrival, const Context& context)
+FloatingVertex::FloatingVertex(Arrival arrival, const Context& context)
     : packing(std::move(arrival.packing)), structure(std::move(arrival.structure)),
       factorisation(structure, arrival.approximate), context_(context) {
-    const DofMap<Dim>& dofs = structure.dofs();
+    const DofMap& dofs = structure.dofs();
     force = on_dofs(context.load.external_force(packing), dofs);
     const std::vector<double> unit = on_dofs(context.load.unit_force(packing), dofs);
     for (std::size_t mu = 0; mu < force.size(); ++mu) {
@@ -64,26 +63,26 @@ FloatingVertex<Dim>::FloatingVertex(Arrival arrival, const Context& context)
     take_backbone();
 }
 
-template <int Dim> void FloatingVertex<Dim>::take_backbone() {
+void FloatingVertex::take_backbone() {
     if (pending_backbone_.pending()) {
         backbone_ = pending_backbone_.get();
     }
 }
 
-template <int Dim> void FloatingVertex<Dim>::depart(const Arrival& arrival, std::size_t opens) {
+void FloatingVertex::depart(const Arrival& arrival, std::size_t opens) {
     departure_.reset(new Departure{ContactId(opens), Factorisation(structure, arrival.approximate), {}});
 }
 
-template <int Dim> void FloatingVertex<Dim>::begin_arc(const Arrival& arrival) {
-    departure_->arc = Future<std::unique_ptr<ArcDeparture<Dim>>>([this, &there = *departure_, open = arrival.open] {
-        return std::make_unique<ArcDeparture<Dim>>(
-            ArcOrigin<Dim>{packing, structure, there.factorisation, there.opened},
-            PowerLoad<Dim>{&context_.load, false, false}, context_.candidates, context_.arc, open);
+void FloatingVertex::begin_arc(const Arrival& arrival) {
+    departure_->arc = Future<std::unique_ptr<ArcDeparture>>([this, &there = *departure_, open = arrival.open] {
+        return std::make_unique<ArcDeparture>(ArcOrigin{packing, structure, there.factorisation, there.opened},
+                                              PowerLoad{&context_.load, false, false}, context_.candidates,
+                                              context_.arc, open);
     });
 }
 
 /// The finite forces, as accurate as the choice of what opens needs them; the arc that opens it is begun on the way.
-template <int Dim> void FloatingVertex<Dim>::solve(const Arrival& arrival) {
+void FloatingVertex::solve(const Arrival& arrival) {
     const auto enough = [&](std::span<const double> f, double error) {
         take_backbone();
         error_ = safety * error;
@@ -99,7 +98,7 @@ template <int Dim> void FloatingVertex<Dim>::solve(const Arrival& arrival) {
     error_ = safety * factorisation.solve_forces_until(force, arrival.guess, enough);
 }
 
-template <int Dim> const std::vector<double>& FloatingVertex<Dim>::infinitesimal() {
+const std::vector<double>& FloatingVertex::infinitesimal() {
     if (infinitesimal_.empty()) {
         infinitesimal_ = on_dofs(context_.load.infinitesimal, structure.dofs());
         factorisation.solve_forces_from(infinitesimal_, {}, accuracy);
@@ -107,7 +106,7 @@ template <int Dim> const std::vector<double>& FloatingVertex<Dim>::infinitesimal
     return infinitesimal_;
 }
 
-template <int Dim> typename FloatingVertex<Dim>::Departure* FloatingVertex<Dim>::departure(const Opening& opening) {
+FloatingVertex::Departure* FloatingVertex::departure(const Opening& opening) {
     // Fresh factors, if solving asked for some, are better.
     const bool useful = departure_ && departure_->opened == opening.contact && !opening.infinitesimal &&
                         opening.direction > 0 && !factorisation.is_fresh();
@@ -117,12 +116,12 @@ template <int Dim> typename FloatingVertex<Dim>::Departure* FloatingVertex<Dim>:
     return departure_.get();
 }
 
-template <int Dim> std::optional<Opening> FloatingVertex<Dim>::choose() {
+std::optional<Opening> FloatingVertex::choose() {
     const auto chosen = stage(true);
     return chosen ? chosen : stage(false);
 }
 
-template <int Dim> bool FloatingVertex<Dim>::compressive(std::size_t l, bool of_infinitesimal) {
+bool FloatingVertex::compressive(std::size_t l, bool of_infinitesimal) {
     if (!of_infinitesimal && error_ > 0 && std::abs(force[l]) <= error_) {
         std::vector<double> better = load_on_dofs_;
         factorisation.solve_forces_from(better, force, accuracy);
@@ -134,7 +133,7 @@ template <int Dim> bool FloatingVertex<Dim>::compressive(std::size_t l, bool of_
 
 /// Whether that is the most negative finite force for all forces within the error; if it is none: whether there is none
 /// for all.
-template <int Dim> bool FloatingVertex<Dim>::clear(std::span<const double> f, std::size_t chosen) const {
+bool FloatingVertex::clear(std::span<const double> f, std::size_t chosen) const {
     const double bar = chosen < f.size() ? signed_size(structure.contacts()[chosen], f[chosen]) + 2 * error_ : error_;
     if (chosen < f.size() && bar >= error_) {
         return false; // it may be 0
@@ -148,7 +147,7 @@ template <int Dim> bool FloatingVertex<Dim>::clear(std::span<const double> f, st
 }
 
 /// Among the finite forces, or the infinitesimal ones of the structural zeros: the most negative one.
-template <int Dim> std::optional<Opening> FloatingVertex<Dim>::stage(bool finite) {
+std::optional<Opening> FloatingVertex::stage(bool finite) {
     if (!finite && std::find(backbone_.begin(), backbone_.end(), 0) == backbone_.end()) {
         return std::nullopt;
     }
@@ -165,7 +164,5 @@ template <int Dim> std::optional<Opening> FloatingVertex<Dim>::stage(bool finite
     opening.direction = contacts[best].kind == ContactKind::held && f[best] >= 0 ? -1 : +1;
     return opening;
 }
-
-template class FloatingVertex<2>;
 
 } // namespace isostat

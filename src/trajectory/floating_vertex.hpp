@@ -17,27 +17,27 @@
 namespace isostat {
 
 /// A vertex on the way. Nothing is proved of it.
-template <int Dim> class FloatingVertex {
+class FloatingVertex {
   public:
     /// What the steering has for each of its vertices. Must outlive them.
     struct Context {
-        const Load<Dim>& load;
-        CandidateList<Dim>& candidates; ///< made anew when less is left of their reach than an arc needs
+        const Load& load;
+        CandidateList& candidates; ///< made anew when less is left of their reach than an arc needs
         const ArcOptions& arc;
     };
     /// What the arc that leads here brings.
     struct Arrival {
-        Packing<Dim> packing;
-        IsostaticStructure<Dim> structure;
+        Packing packing;
+        IsostaticStructure structure;
         const ApproximateInverse& approximate; ///< close to the inverse of its matrix
         std::vector<double> guess;             ///< forces in the same slots
         std::vector<Contact> open;             ///< see `Arc`
-        PredictedVertex<Dim>* predicted;       ///< of the same pattern, or null
+        PredictedVertex* predicted;            ///< of the same pattern, or null
     };
     FloatingVertex(Arrival arrival, const Context& context);
 
-    Packing<Dim> packing;
-    IsostaticStructure<Dim> structure;
+    Packing packing;
+    IsostaticStructure structure;
     Factorisation factorisation;
     std::vector<double> force; ///< finite forces
 
@@ -53,7 +53,7 @@ template <int Dim> class FloatingVertex {
     struct Departure {
         ContactId opened;
         Factorisation factorisation;
-        Future<std::unique_ptr<ArcDeparture<Dim>>> arc;
+        Future<std::unique_ptr<ArcDeparture>> arc;
     };
     [[nodiscard]] Departure* departure(const Opening& opening);
     /// What has the most negative force, and opens; nothing: no force is negative.
@@ -79,7 +79,5 @@ template <int Dim> class FloatingVertex {
     double error_ = 0;                     ///< of the finite forces, with a margin; 0: they are as accurate as they get
     std::unique_ptr<Departure> departure_; ///< last: it uses the rest
 };
-
-extern template class FloatingVertex<2>;
 
 } // namespace isostat

@@ -11,8 +11,8 @@
 
 namespace isostat {
 
-template <int Dim> void require_followed(const State<Dim>& state, const std::string& source) {
-    const Cell<Dim>& cell = state.packing.cell;
+void require_followed(const State& state, const std::string& source) {
+    const Cell& cell = state.packing.cell;
     if (!cell.any()) {
         return;
     }
@@ -29,10 +29,11 @@ template <int Dim> void require_followed(const State<Dim>& state, const std::str
             "true stresses have no potential where the tilt moves, and nothing would tell where a run leads: expected "
             "dead loads, kind = \"nominal\", or a tilt that does not move");
     }
-    for (std::size_t a = 0; a < Dim; ++a) {
+    for (std::size_t a = 0; a < static_cast<std::size_t>(cell.dimension); ++a) {
         const auto balanced = [&](const std::vector<double>& forces, const char* what) {
             dd_real sum = 0.0;
-            for (std::size_t k = a; k < forces.size() && cell.periodic[a]; k += Dim) {
+            for (std::size_t k = a; k < forces.size() && cell.periodic[a];
+                 k += static_cast<std::size_t>(cell.dimension)) {
                 sum += forces[k];
             }
             if (!(sum == 0.0)) {
@@ -45,7 +46,5 @@ template <int Dim> void require_followed(const State<Dim>& state, const std::str
         balanced(state.load.disk_force, "forces on disks");
     }
 }
-
-template void require_followed<2>(const State<2>&, const std::string&);
 
 } // namespace isostat

@@ -29,8 +29,7 @@ double norm_of(const std::vector<double>& x) {
 
 /// d2W/ds2 = -sum f_l |u_t|^2 / d_l along the mechanism that moves the held coordinate in column `slot` at unit rate:
 /// with the kept gaps at rest, grad W = sum f_l grad h_l and grad h_l . q'' = -|u_t|^2 / d_l. At the true vertex.
-template <int Dim>
-Enclosure curvature_of_potential(const Vertex<Dim>& vertex, const std::vector<double>& forces, std::size_t slot,
+Enclosure curvature_of_potential(const Vertex& vertex, const std::vector<double>& forces, std::size_t slot,
                                  double sigma) {
     const auto& contacts = vertex.structure.contacts();
     std::vector<double> on_dofs(contacts.size(), 0.0);
@@ -47,7 +46,7 @@ Enclosure curvature_of_potential(const Vertex<Dim>& vertex, const std::vector<do
     // |v - v~| <= |G v~ - e| / sigma_min: bounded here through the residual, row by row.
     double residual = 0;
     for (std::size_t l = 0; l < contacts.size(); ++l) {
-        const GapGradient<Dim> g = gap_gradient(vertex.packing, contacts[l]);
+        const GapGradient g = gap_gradient(vertex.packing, contacts[l]);
         double rate = l == slot ? 1.0 : 0.0;
         double size = rate;
         for (int k = 0; k < g.count; ++k) {
@@ -95,7 +94,7 @@ int most_contacts(int disks, const std::vector<Contact>& contacts) {
 }
 
 /// 2-norm of the forces: what a change of the matrix acts on.
-template <int Dim> double force_norm(const Vertex<Dim>& vertex, double sigma) {
+double force_norm(const Vertex& vertex, double sigma) {
     double sum = 0;
     for (int l = 0; l < vertex.structure.size(); ++l) {
         const double f = vertex.statics.force(ContactId(l), sigma).value;
@@ -105,7 +104,7 @@ template <int Dim> double force_norm(const Vertex<Dim>& vertex, double sigma) {
 }
 
 /// The potential of the load falls where W does: dead loads; true stresses >= 0 without forces on disks (S2, S5).
-template <int Dim> bool falls_with_work(const Load<Dim>& load) {
+bool falls_with_work(const Load& load) {
     const auto not_zero = [](double f) { return f != 0; };
     return load.kind == LoadKind::nominal ||
            (std::none_of(load.disk_force.begin(), load.disk_force.end(), not_zero) &&
@@ -113,10 +112,9 @@ template <int Dim> bool falls_with_work(const Load<Dim>& load) {
 }
 
 /// Signs of the forces, multipliers of what is held, and what the potential does along one mechanism.
-template <int Dim>
-void judge_forces(MechanismInspection<Dim>& inspection, Vertex<Dim>& vertex, const State<Dim>& state) {
+void judge_forces(MechanismInspection& inspection, Vertex& vertex, const State& state) {
     const double sigma = state.load.loaded_stress();
-    EquilibriumRecord<Dim>& record = inspection.record;
+    EquilibriumRecord& record = inspection.record;
     record.verdict = Verdict::refuted; // not isostatic
     vertex.statics.climb();
     bool positive = true;
@@ -137,7 +135,7 @@ void judge_forces(MechanismInspection<Dim>& inspection, Vertex<Dim>& vertex, con
             at_rest = at_rest && std::abs(f.value) <= f.radius + uncertain;
             if (std::abs(f.value) > f.radius + uncertain && inspection.remark.empty()) {
                 inspection.remark = fmt::format("not an equilibrium: the mechanism moves, force {:.6g} on the {}",
-                                                f.value, to_string<Dim>(inspection.contacts[l]));
+                                                f.value, to_string(inspection.contacts[l]));
             }
         }
     }
@@ -160,40 +158,39 @@ void judge_forces(MechanismInspection<Dim>& inspection, Vertex<Dim>& vertex, con
 
 } // namespace
 
-template <int Dim>
-Result<MechanismInspection<Dim>> inspect_mechanism(const State<Dim>& state, const Counting& counting) {
+Result<MechanismInspection> inspect_mechanism(const State& state, const Counting& counting) {
     require_floating_point();
     require_box(state.packing, "state", "what a mechanism does");
-    MechanismInspection<Dim> inspection;
+    MechanismInspection inspection;
     inspection.contacts = state.contacts;
-    const DofMap<Dim> dofs(state.packing);
+    const DofMap dofs(state.packing);
     for (const int dof : counting.free_dofs) {
         inspection.contacts.push_back({ContactKind::held, dofs.coordinate_of(dof), 0});
     }
     InverseBoundCache cache;
-    auto made = Vertex<Dim>::make(state.packing, inspection.contacts, state.load, cache);
+    auto made = Vertex::make(state.packing, inspection.contacts, state.load, cache);
     if (!made.ok()) {
         return made.failure();
     }
-    Vertex<Dim>& vertex = *made.value();
+    Vertex& vertex = *made.value();
     const double sigma = state.load.loaded_stress();
     inspection.rattlers = rattlers(vertex);
-    CandidateList<Dim> candidates = find_candidates(state.packing, candidate_fraction);
+    CandidateList candidates = find_candidates(state.packing, candidate_fraction);
     KeptCandidates kept;
     auto gaps = vertex.check_gaps(candidates, kept);
     if (!gaps.ok()) {
         inspection.remark = gaps.failure().message();
     } else if (gaps.value().negative) {
-        inspection.remark = fmt::format("{} overlap", to_string<Dim>(*gaps.value().negative));
+        inspection.remark = fmt::format("{} overlap", to_string(*gaps.value().negative));
     } else if (const auto pair = fixed_overlap(state.packing)) {
-        inspection.remark = fmt::format("{} overlap, and cannot move", to_string<Dim>(*pair));
+        inspection.remark = fmt::format("{} overlap, and cannot move", to_string(*pair));
     }
     inspection.forces = finite_forces(vertex, state.load);
     for (std::size_t l = 0; l < inspection.contacts.size(); ++l) {
         inspection.structural_zero.push_back(vertex.statics.is_structural_zero(ContactId(l)) ? 1 : 0);
     }
     judge_forces(inspection, vertex, state);
-    EquilibriumRecord<Dim>& record = inspection.record;
+    EquilibriumRecord& record = inspection.record;
     record.number = state.equilibrium;
     record.stress = sigma;
     record.dof_count = counting.dof_count;
@@ -212,7 +209,5 @@ Result<MechanismInspection<Dim>> inspect_mechanism(const State<Dim>& state, cons
     }
     return inspection;
 }
-
-template Result<MechanismInspection<2>> inspect_mechanism<2>(const State<2>&, const Counting&);
 
 } // namespace isostat

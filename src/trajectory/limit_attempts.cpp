@@ -8,7 +8,7 @@ namespace isostat {
 
 using roundoff::infinity;
 
-template <int Dim> Result<Reached<Dim>> LimitAttempts<Dim>::begin(Attempt<Dim>& attempt) {
+Result<Reached> LimitAttempts::begin(Attempt& attempt) {
     RunCounters& counters = recorder_.counters;
     const RunCounters before = counters;
     auto reached = follow_(attempt);
@@ -25,21 +25,19 @@ template <int Dim> Result<Reached<Dim>> LimitAttempts<Dim>::begin(Attempt<Dim>& 
 
 /// The first double beyond the limit; none: it is not known that well. The nearest double may lie before the limit: the
 /// force that opens is then still positive, by roundings, and on a way as short as those the potential grows.
-template <int Dim> std::optional<double> LimitAttempts<Dim>::beyond() {
-    auto found = find_limit<Dim>(statics_, sigma_, direction_, nullptr);
+std::optional<double> LimitAttempts::beyond() {
+    auto found = find_limit(statics_, sigma_, direction_, nullptr);
     const auto known = [&] {
         const double size = std::abs(found.value().stress);
         return found.value().stress_error <= std::nextafter(size, infinity) - size;
     };
     while (found.ok() && !known() && statics_.climb()) {
-        found = find_limit<Dim>(statics_, sigma_, direction_, nullptr);
+        found = find_limit(statics_, sigma_, direction_, nullptr);
     }
     if (!found.ok() || !known()) {
         return std::nullopt;
     }
     return std::nextafter(found.value().stress + direction_ * found.value().stress_error, direction_ * infinity);
 }
-
-template class LimitAttempts<2>;
 
 } // namespace isostat

@@ -10,13 +10,13 @@
 namespace isostat {
 
 /// A rearrangement as it was begun.
-template <int Dim> struct Attempt {
+struct Attempt {
     Opening opening;
     ArcKind kind = ArcKind::limit;
-    LimitLoad<Dim> at;
+    LimitLoad at;
     bool begun = false; ///< an arc was recorded
     /// Its first arc is not decided.
-    [[nodiscard]] bool in_vain(const Result<Reached<Dim>>& reached) const {
+    [[nodiscard]] bool in_vain(const Result<Reached>& reached) const {
         return !reached.ok() && reached.failure().kind == FailureKind::undecided && !begun;
     }
 };
@@ -24,25 +24,23 @@ template <int Dim> struct Attempt {
 /// Follows an attempt at a limit of the statics. In vain, and without first-order terms, it may begin with the load
 /// rounded away from `sigma` in `direction`; `attempt` is then that one. `follow` carries one out and sets its `begun`;
 /// counters of `recorder` are those of the attempt that is returned. Failure: that of the last attempt.
-template <int Dim> class LimitAttempts {
+class LimitAttempts {
   public:
-    using Follow = std::function<Result<Reached<Dim>>(Attempt<Dim>&)>;
+    using Follow = std::function<Result<Reached>(Attempt&)>;
     /// All must outlive the attempts.
-    LimitAttempts(Statics<Dim>& statics, double sigma, int direction, Recorder<Dim>& recorder, Follow follow)
+    LimitAttempts(Statics& statics, double sigma, int direction, Recorder& recorder, Follow follow)
         : statics_(statics), sigma_(sigma), direction_(direction), recorder_(recorder), follow_(std::move(follow)) {}
 
-    Result<Reached<Dim>> begin(Attempt<Dim>& attempt);
+    Result<Reached> begin(Attempt& attempt);
 
   private:
     std::optional<double> beyond();
 
-    Statics<Dim>& statics_;
+    Statics& statics_;
     double sigma_;
     int direction_;
-    Recorder<Dim>& recorder_;
+    Recorder& recorder_;
     Follow follow_;
 };
-
-extern template class LimitAttempts<2>;
 
 } // namespace isostat

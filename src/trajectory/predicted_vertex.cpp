@@ -19,12 +19,11 @@ std::size_t most_negative(std::span<const double> f, const std::vector<Contact>&
     return best;
 }
 
-template <int Dim>
-PredictedVertex<Dim> predict(const IsostaticStructure<Dim>& from, const std::vector<int>& loaded,
-                             const std::vector<double>& force, const ApproximateInverse& approximate,
-                             const Load<Dim>& load, ContactId opens, const typename ArcDeparture<Dim>::Expected& end) {
-    PredictedVertex<Dim> predicted;
-    predicted.contacts = IsostaticStructure<Dim>::exchange(from, end.end, opens, end.closes);
+PredictedVertex predict(const IsostaticStructure& from, const std::vector<int>& loaded,
+                        const std::vector<double>& force, const ApproximateInverse& approximate, const Load& load,
+                        ContactId opens, const ArcDeparture::Expected& end) {
+    PredictedVertex predicted;
+    predicted.contacts = IsostaticStructure::exchange(from, end.end, opens, end.closes);
     if (!predicted.contacts) {
         return predicted;
     }
@@ -33,7 +32,7 @@ PredictedVertex<Dim> predict(const IsostaticStructure<Dim>& from, const std::vec
     predicted.backbone =
         ContactPattern(end.end, from.dofs(), predicted.contacts->contacts(), h, predicted.contacts->matching())
             .carrying(loaded);
-    const auto structure = IsostaticStructure<Dim>::without_proof(*predicted.contacts);
+    const auto structure = IsostaticStructure::without_proof(*predicted.contacts);
     const Factorisation factorisation(structure, approximate.exchanged(predicted.contacts->slot(), h));
     predicted.force = on_dofs(load.external_force(end.end), structure.dofs());
     // One pass mostly finds out which force is most negative.
@@ -45,9 +44,5 @@ PredictedVertex<Dim> predict(const IsostaticStructure<Dim>& from, const std::vec
     }
     return predicted;
 }
-
-template PredictedVertex<2> predict<2>(const IsostaticStructure<2>&, const std::vector<int>&,
-                                       const std::vector<double>&, const ApproximateInverse&, const Load<2>&, ContactId,
-                                       const ArcDeparture<2>::Expected&);
 
 } // namespace isostat

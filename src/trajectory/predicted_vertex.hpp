@@ -26,8 +26,8 @@ std::size_t most_negative(std::span<const double> f, const std::vector<Contact>&
 
 /// The vertex at the end of an arc as the start of the arc predicts it. A guess: what is made of it is checked
 /// against the vertex, or refined there.
-template <int Dim> struct PredictedVertex {
-    std::optional<ExchangedContacts<Dim>> contacts;
+struct PredictedVertex {
+    std::optional<ExchangedContacts> contacts;
     std::vector<int> loaded;             ///< degrees of freedom, as at the start
     std::vector<unsigned char> backbone; ///< with these
     std::vector<double> force;           ///< rough
@@ -37,13 +37,8 @@ template <int Dim> struct PredictedVertex {
 
 /// `from`: the start, with the degrees of freedom loaded there, its forces, and an operator close to the inverse of its
 /// matrix. Cost: one exchange, and two applications of that.
-template <int Dim>
-PredictedVertex<Dim> predict(const IsostaticStructure<Dim>& from, const std::vector<int>& loaded,
-                             const std::vector<double>& force, const ApproximateInverse& approximate,
-                             const Load<Dim>& load, ContactId opens, const typename ArcDeparture<Dim>::Expected& end);
-
-extern template PredictedVertex<2> predict<2>(const IsostaticStructure<2>&, const std::vector<int>&,
-                                              const std::vector<double>&, const ApproximateInverse&, const Load<2>&,
-                                              ContactId, const ArcDeparture<2>::Expected&);
+PredictedVertex predict(const IsostaticStructure& from, const std::vector<int>& loaded,
+                        const std::vector<double>& force, const ApproximateInverse& approximate, const Load& load,
+                        ContactId opens, const ArcDeparture::Expected& end);
 
 } // namespace isostat

@@ -5,7 +5,7 @@
 
 namespace isostat {
 
-Segment segment_of(const ProgrammeStep& step, const Load<2>& load, const std::string& source) {
+Segment segment_of(const ProgrammeStep& step, const Load& load, const std::string& source) {
     Segment segment;
     segment.name = step.name;
     segment.equilibria = step.equilibria;
@@ -26,9 +26,8 @@ Segment segment_of(const ProgrammeStep& step, const Load<2>& load, const std::st
     return segment;
 }
 
-template <int Dim>
-ProgrammeOutcome play(const Programme<Dim>& programme, State<Dim>& state, const RunOptions& options,
-                      RunCounters& counters, RunObserver<Dim>& observer) {
+ProgrammeOutcome play(const Programme& programme, State& state, const RunOptions& options, RunCounters& counters,
+                      RunObserver& observer) {
     int made = programme.made;
     for (std::size_t s = programme.first; s < programme.steps.size(); ++s, made = 0) {
         const ProgrammeStep& step = programme.steps[s];
@@ -50,15 +49,12 @@ ProgrammeOutcome play(const Programme<Dim>& programme, State<Dim>& state, const 
         if (segment.equilibria) {
             *segment.equilibria -= made;
         }
-        const SegmentOutcome outcome =
-            run_segment<Dim>(state, segment, static_cast<int>(s), options, counters, observer);
+        const SegmentOutcome outcome = run_segment(state, segment, static_cast<int>(s), options, counters, observer);
         if (!outcome.completed) {
             return {outcome.failure, step.name, {}};
         }
     }
     return {};
 }
-
-template ProgrammeOutcome play<2>(const Programme<2>&, State<2>&, const RunOptions&, RunCounters&, RunObserver<2>&);
 
 } // namespace isostat

@@ -19,7 +19,7 @@ namespace {
 /// Relative accuracy of forces on the way: what records say of them, and far more than most decisions need.
 constexpr double enough_to_decide = 1e-12;
 
-template <int Dim> double size_of_work(const Load<Dim>& load, const Vertex<Dim>& from) {
+double size_of_work(const Load& load, const Vertex& from) {
     double size = 0;
     for (const WallForce& wall : load.wall_forces(from.packing)) {
         size += std::abs(wall.stress * wall.length * from.packing.q[static_cast<std::size_t>(wall.coordinate)]);
@@ -29,15 +29,14 @@ template <int Dim> double size_of_work(const Load<Dim>& load, const Vertex<Dim>&
 
 /// Of the work of an arc under dead loads: a bound that a record should have (`record_tolerance`, proofs/checker.md,
 /// accepts some more).
-template <int Dim> double wanted_bound(const Load<Dim>& load, const Vertex<Dim>& from) {
+double wanted_bound(const Load& load, const Vertex& from) {
     constexpr double enough = 4e-10;
     return enough * size_of_work(load, from);
 }
 
 /// As rounded coordinates tell, with the distance to what is proved of it; where that is too far, what is proved.
 /// `decrease`: of the potential, when the finite loads decided.
-template <int Dim>
-void record_work(ArcRecord<Dim>& record, const Vertex<Dim>& from, const Vertex<Dim>& to, const Load<Dim>& load,
+void record_work(ArcRecord& record, const Vertex& from, const Vertex& to, const Load& load,
                  const std::optional<Enclosure>& decrease) {
     record.work = work_of(load, from.packing, to.packing).value;
     if (load.kind == LoadKind::nominal) {
@@ -54,7 +53,7 @@ void record_work(ArcRecord<Dim>& record, const Vertex<Dim>& from, const Vertex<D
 
 /// Pairs that touch at the start of an arc and at its end: grains that make one body, and all when nothing moves, the
 /// contact that opens among them.
-template <int Dim> ZeroGaps touch_still(const Vertex<Dim>& from, const ArcProposal<Dim>& arc) {
+ZeroGaps touch_still(const Vertex& from, const ArcProposal& arc) {
     ZeroGaps still;
     for (const auto& pair : from.perturbed ? from.perturbed->zero : ZeroGaps()) {
         if (arc.stays || std::find(arc.resting.begin(), arc.resting.end(), pair.first) != arc.resting.end()) {
@@ -69,8 +68,7 @@ template <int Dim> ZeroGaps touch_still(const Vertex<Dim>& from, const ArcPropos
 
 /// A bound of a force that tells its sign, but that no record should have: `verify` accepts a thousandth of the largest
 /// force (`force_tolerance`, proofs/checker.md). Contacts that are nearly singular have such bounds in double.
-template <int Dim>
-bool says_too_little(const Statics<Dim>& statics, const Enclosure& f, double stress, bool infinitesimal) {
+bool says_too_little(const Statics& statics, const Enclosure& f, double stress, bool infinitesimal) {
     constexpr double enough = 9e-4;
     if (!(f.radius > enough * std::abs(f.value))) {
         return false;
@@ -84,14 +82,14 @@ bool says_too_little(const Statics<Dim>& statics, const Enclosure& f, double str
     return f.radius > enough * largest;
 }
 
-template <int Dim> bool overlaps_at_first_order(const Vertex<Dim>& vertex) {
+bool overlaps_at_first_order(const Vertex& vertex) {
     return vertex.perturbed && std::any_of(vertex.perturbed->touching.begin(), vertex.perturbed->touching.end(),
                                            [](const auto& pair) { return pair.second.negative(); });
 }
 
 /// The end as near its true vertex as the grid allows, where doubles left it farther away: the lists that follow at
 /// these coordinates may be nearly singular.
-template <int Dim> std::optional<Packing<Dim>> nearer(const Vertex<Dim>& vertex) {
+std::optional<Packing> nearer(const Vertex& vertex) {
     const double far = 64 * grid_step(vertex.packing);
     if (vertex.enclosure.distance() <= far) {
         return std::nullopt;
@@ -101,7 +99,7 @@ template <int Dim> std::optional<Packing<Dim>> nearer(const Vertex<Dim>& vertex)
     if (there.verdict != Verdict::proved || !(largest(there.correction) > far)) {
         return std::nullopt;
     }
-    Packing<Dim> at = vertex.packing;
+    Packing at = vertex.packing;
     for (std::size_t k = 0; k < at.q.size(); ++k) {
         at.q[k] += there.correction[k];
     }
@@ -111,7 +109,7 @@ template <int Dim> std::optional<Packing<Dim>> nearer(const Vertex<Dim>& vertex)
 
 /// A grid that became coarser rounds what a held coordinate is counted from, or the coordinate: then it is held
 /// elsewhere at the end of the arc, and the end belongs to another curve.
-template <int Dim> bool holds_elsewhere(const Vertex<Dim>& from, const ArcProposal<Dim>& arc) {
+bool holds_elsewhere(const Vertex& from, const ArcProposal& arc) {
     const std::vector<Contact>& contacts = from.structure.contacts();
     const std::vector<double>& before = from.packing.q;
     bool holds = arc.record.closed.kind == ContactKind::held;
@@ -131,32 +129,29 @@ template <int Dim> bool holds_elsewhere(const Vertex<Dim>& from, const ArcPropos
 
 } // namespace
 
-template <int Dim> void ArcProof<Dim>::count(const Decision& decision) {
+void ArcProof::count(const Decision& decision) {
     decisions.push_back(decision);
     record.margin = std::min(record.margin, decision.margin);
     record.decided_by = std::max(record.decided_by, decision.rung);
 }
 
-template <int Dim>
-void Prover<Dim>::start_at(const Packing<Dim>& packing, const std::shared_ptr<const RegularTriangulation<Dim>>& near) {
+void Prover::start_at(const Packing& packing, const std::shared_ptr<const RegularTriangulation>& near) {
     if (candidates_.reference != packing.q || candidates_.contacts.empty()) { // else it would be the same list
         candidates_ = find_candidates(packing, candidate_fraction, near ? near : candidates_.triangulation);
     }
     bounds_.forget();
 }
 
-template <int Dim>
-Result<std::shared_ptr<Vertex<Dim>>> Prover<Dim>::vertex(Packing<Dim> packing, std::vector<Contact> contacts,
-                                                         const LimitLoad<Dim>& at) {
-    auto made = Vertex<Dim>::make(std::move(packing), std::move(contacts), at.load, bounds_, ladder());
+Result<std::shared_ptr<Vertex>> Prover::vertex(Packing packing, std::vector<Contact> contacts, const LimitLoad& at) {
+    auto made = Vertex::make(std::move(packing), std::move(contacts), at.load, bounds_, ladder());
     if (!made.ok()) {
         return made.failure();
     }
     ties_->attach(*made.value(), at);
-    return std::shared_ptr<Vertex<Dim>>(std::move(made.value()));
+    return std::shared_ptr<Vertex>(std::move(made.value()));
 }
 
-template <int Dim> LadderOptions Prover<Dim>::ladder() const {
+LadderOptions Prover::ladder() const {
     LadderOptions options;
     if (options_->chooses()) {
         options.first_bits = 280;
@@ -165,16 +160,14 @@ template <int Dim> LadderOptions Prover<Dim>::ladder() const {
     return options;
 }
 
-template <int Dim>
-Result<OpeningDecision> Prover<Dim>::decide(Vertex<Dim>& vertex, double stress, const ZeroHolds& zero,
-                                            long step) const {
+Result<OpeningDecision> Prover::decide(Vertex& vertex, double stress, const ZeroHolds& zero, long step) const {
     auto decision = decide_opening(vertex.statics, stress, options_->rule, zero, bits_for(options_->rule_seed, step),
                                    vertex.first_order());
     if (!decision.ok() || !decision.value().opening) {
         return decision;
     }
     Opening& opening = *decision.value().opening;
-    Statics<Dim>& statics = vertex.statics;
+    Statics& statics = vertex.statics;
     if (statics.structure().contacts()[opening.contact.index()].kind != ContactKind::held) {
         while (says_too_little(statics, opening.force, stress, opening.infinitesimal) && statics.climb()) {
             opening.force =
@@ -184,11 +177,9 @@ Result<OpeningDecision> Prover<Dim>::decide(Vertex<Dim>& vertex, double stress, 
     return decision;
 }
 
-template <int Dim>
-ArcProof<Dim> Prover<Dim>::prove(const Vertex<Dim>& from, ArcProposal<Dim> arc, const Opening& opening,
-                                 const LimitLoad<Dim>& at) {
-    ArcProof<Dim> proof;
-    ArcRecord<Dim>& record = proof.record;
+ArcProof Prover::prove(const Vertex& from, ArcProposal arc, const Opening& opening, const LimitLoad& at) {
+    ArcProof proof;
+    ArcRecord& record = proof.record;
     record = arc.record;
     record.force = opening.force.value;
     record.force_bound =
@@ -218,12 +209,10 @@ ArcProof<Dim> Prover<Dim>::prove(const Vertex<Dim>& from, ArcProposal<Dim> arc, 
 }
 
 /// The vertex at the end, and no gap closed before.
-template <int Dim>
-std::optional<Failure> Prover<Dim>::reach(ArcProof<Dim>& proof, const Vertex<Dim>& from, ArcProposal<Dim>& arc,
-                                          const LimitLoad<Dim>& at) {
+std::optional<Failure> Prover::reach(ArcProof& proof, const Vertex& from, ArcProposal& arc, const LimitLoad& at) {
     const auto at_end = [&](const Failure& failure) {
-        return located(failure, words("at the end of the arc that opens {} and closes {}",
-                                      named<Dim>(proof.record.opened), named<Dim>(proof.record.closed)));
+        return located(failure, words("at the end of the arc that opens {} and closes {}", named(proof.record.opened),
+                                      named(proof.record.closed)));
     };
     if (holds_elsewhere(from, arc)) {
         return at_end(Failure{FailureKind::undecided, "coordinates are held, and the grid became coarser: where they "
@@ -231,7 +220,7 @@ std::optional<Failure> Prover<Dim>::reach(ArcProof<Dim>& proof, const Vertex<Dim
     }
     LadderOptions options = ladder();
     options.first_accuracy = ties_->settles() ? 0 : enough_to_decide; // ties are told from zeros at full accuracy
-    auto made = Vertex<Dim>::exchanged(from, arc, at.load, bounds_, options);
+    auto made = Vertex::exchanged(from, arc, at.load, bounds_, options);
     if (!made.ok()) {
         if (from.perturbed && from.perturbed->statics.chooses() && !arc.stays) {
             proof.list_for_end = list_for_the_end(from, arc, at.stress());
@@ -240,7 +229,7 @@ std::optional<Failure> Prover<Dim>::reach(ArcProof<Dim>& proof, const Vertex<Dim
     }
     proof.vertex = std::move(made.value());
     if (auto end = ties_->settles() && !arc.stays ? nearer(*proof.vertex) : std::nullopt) {
-        auto again = Vertex<Dim>::make(std::move(*end), proof.vertex->structure.contacts(), at.load, bounds_, options);
+        auto again = Vertex::make(std::move(*end), proof.vertex->structure.contacts(), at.load, bounds_, options);
         if (again.ok()) {
             proof.vertex = std::move(again.value());
         }
@@ -256,7 +245,7 @@ std::optional<Failure> Prover<Dim>::reach(ArcProof<Dim>& proof, const Vertex<Dim
         return at_end(failed(FailureKind::undecided,
                              "{} overlap: they touch where it begins, and neither the rate nor the second derivative "
                              "of their gap is told from 0 there",
-                             named<Dim>(*proof.closed_before)));
+                             named(*proof.closed_before)));
     }
     if (proof.closed_before) {
         return std::nullopt;
@@ -267,36 +256,34 @@ std::optional<Failure> Prover<Dim>::reach(ArcProof<Dim>& proof, const Vertex<Dim
     return arrive(proof, arc.settled, {arc.opening.contact, arc.stays, resting, overlapped}, found.value());
 }
 
-template <int Dim>
-Result<std::shared_ptr<Vertex<Dim>>> Prover<Dim>::exchange(const Vertex<Dim>& from, const ListExchange& exchange,
-                                                           const LimitLoad<Dim>& at) {
-    ArcProposal<Dim> arc;
+Result<std::shared_ptr<Vertex>> Prover::exchange(const Vertex& from, const ListExchange& exchange,
+                                                 const LimitLoad& at) {
+    ArcProposal arc;
     arc.record.opened = from.structure.contacts()[exchange.leaves.index()];
     arc.record.closed = exchange.enters;
     arc.opening.contact = exchange.leaves;
     arc.end = from.packing;
     arc.stays = arc.relists = true;
-    arc.contacts = IsostaticStructure<Dim>::exchange(from.structure, arc.end, exchange.leaves, exchange.enters);
+    arc.contacts = IsostaticStructure::exchange(from.structure, arc.end, exchange.leaves, exchange.enters);
     if (arc.contacts) {
         arc.approximate = from.factorisation.approximate().exchanged(arc.contacts->slot(), arc.contacts->matrix());
         arc.cost_before = from.cost_before;
     }
-    ArcProof<Dim> proof;
+    ArcProof proof;
     proof.record = arc.record;
     if (auto failure = reach(proof, from, arc, at)) {
         return *failure;
     }
     if (proof.closed_before) {
-        return failed(FailureKind::undecided, "where {} gives way to {}: {} overlap", named<Dim>(arc.record.opened),
-                      named<Dim>(arc.record.closed), named<Dim>(*proof.closed_before));
+        return failed(FailureKind::undecided, "where {} gives way to {}: {} overlap", named(arc.record.opened),
+                      named(arc.record.closed), named(*proof.closed_before));
     }
     return proof.vertex;
 }
 
 /// Pairs that touch at the end, at first order.
-template <int Dim>
-std::optional<Failure> Prover<Dim>::arrive(ArcProof<Dim>& proof, std::vector<TieDecision> settled, const Way& way,
-                                           const typename Vertex<Dim>::Gaps& gaps) const {
+std::optional<Failure> Prover::arrive(ArcProof& proof, std::vector<TieDecision> settled, const Way& way,
+                                      const Vertex::Gaps& gaps) const {
     if (!gaps.zero.empty()) {
         auto arrival = isostat::arrive(*proof.vertex, gaps.zero, way);
         if (!arrival.ok()) {
@@ -314,10 +301,8 @@ std::optional<Failure> Prover<Dim>::arrive(ArcProof<Dim>& proof, std::vector<Tie
     return std::nullopt;
 }
 
-template <int Dim>
-std::optional<Failure> Prover<Dim>::descend(ArcProof<Dim>& proof, const Vertex<Dim>& from, const Opening& opening,
-                                            const Load<Dim>& load) {
-    const Vertex<Dim>& to = *proof.vertex;
+std::optional<Failure> Prover::descend(ArcProof& proof, const Vertex& from, const Opening& opening, const Load& load) {
+    const Vertex& to = *proof.vertex;
     if (!has_potential(load, opening.infinitesimal)) {
         proof.record.work = work_of(load, from.packing, to.packing).value;
         return std::nullopt;
@@ -336,20 +321,18 @@ std::optional<Failure> Prover<Dim>::descend(ArcProof<Dim>& proof, const Vertex<D
     if (decrease.negative()) {
         return failed(FailureKind::undecided,
                       "the potential rises by {:.6g}, known to {:.3g}, along the arc that opens {} and closes {}",
-                      -decrease.value, decrease.radius, named<Dim>(proof.record.opened),
-                      named<Dim>(proof.record.closed));
+                      -decrease.value, decrease.radius, named(proof.record.opened), named(proof.record.closed));
     }
     return failed(FailureKind::undecided,
                   "the potential is not proved to decrease along the arc that opens {} and closes {}: by "
                   "{:.6g}, known to {:.3g}",
-                  named<Dim>(proof.record.opened), named<Dim>(proof.record.closed), decrease.value, decrease.radius);
+                  named(proof.record.opened), named(proof.record.closed), decrease.value, decrease.radius);
 }
 
 /// F.t = f_c (G t)_c at the event, and the new gap closes: the power is positive there iff the new force is.
-template <int Dim>
-std::optional<Failure> Prover<Dim>::power(ArcProof<Dim>& proof, const Opening& opening, double stress) {
-    Vertex<Dim>& to = *proof.vertex;
-    ArcRecord<Dim>& record = proof.record;
+std::optional<Failure> Prover::power(ArcProof& proof, const Opening& opening, double stress) {
+    Vertex& to = *proof.vertex;
+    ArcRecord& record = proof.record;
     const ContactId closed = opening.contact; // in the same slot
     const auto force = [&] {
         return opening.infinitesimal ? to.statics.infinitesimal(closed) : to.statics.force(closed, stress);
@@ -359,7 +342,7 @@ std::optional<Failure> Prover<Dim>::power(ArcProof<Dim>& proof, const Opening& o
     record.power_bound = f.radius;
     if (to.perturbed && !opening.infinitesimal && !f.decided() && !to.statics.is_structural_zero(closed)) {
         const Order order = to.statics.sign(to.statics.force_expression(closed, stress));
-        PerturbedStatics<Dim>& side = to.perturbed->statics;
+        PerturbedStatics& side = to.perturbed->statics;
         if ((!order.decided || order.sign == 0) && is_tie(order, side.size())) {
             f = side.force(closed);
             const bool stays_zero = !f.positive() && side.chooses(); // such a force opens nothing (C1 d)
@@ -367,7 +350,7 @@ std::optional<Failure> Prover<Dim>::power(ArcProof<Dim>& proof, const Opening& o
                 return failed(FailureKind::undecided,
                               "the new force in {} vanishes, and its first-order term is {:.6g} +- "
                               "{:.3g}: the power of the load is not proved positive at the end of the arc",
-                              named<Dim>(record.closed), f.value, f.radius);
+                              named(record.closed), f.value, f.radius);
             }
             record.perturbed.push_back({"force",
                                         record.closed,
@@ -398,41 +381,38 @@ std::optional<Failure> Prover<Dim>::power(ArcProof<Dim>& proof, const Opening& o
         return failed(FailureKind::undecided,
                       "the power of the load along the arc that opens {} and closes {} is not proved "
                       "positive at its end: force {:.3g} in the new contact, proved to {:.3g}",
-                      named<Dim>(record.opened), named<Dim>(record.closed), f.value, f.radius);
+                      named(record.opened), named(record.closed), f.value, f.radius);
     }
     proof.count({DecisionKind::power, f.margin(), to.statics.rung()});
     return std::nullopt;
 }
 
 /// Level `arcs`: the certificate does not depend on how the arc was found, and an arc without one stays in the run.
-template <int Dim>
-void Prover<Dim>::certify(ArcProof<Dim>& proof, const Vertex<Dim>& from, const Opening& opening,
-                          const Load<Dim>& load) const {
+void Prover::certify(ArcProof& proof, const Vertex& from, const Opening& opening, const Load& load) const {
     const auto begin = std::chrono::steady_clock::now();
     // Factors of its own: those of the run count their use, and only fresh ones leave what does not move at exactly 0.
-    const Vertex<Dim>& to = *proof.vertex;
+    const Vertex& to = *proof.vertex;
     const Factorisation first(from.structure);
     const Factorisation last(to.structure);
-    const auto vertex = [](const Vertex<Dim>& v, const Factorisation& factorisation) {
-        return ArcVertex<Dim>{v.packing, v.structure, factorisation, v.inverse, v.enclosure};
+    const auto vertex = [](const Vertex& v, const Factorisation& factorisation) {
+        return ArcVertex{v.packing, v.structure, factorisation, v.inverse, v.enclosure};
     };
     proof.record.certificate =
         certify_arc(vertex(from, first), opening.contact, opening.direction, vertex(to, last),
-                    PowerLoad<Dim>{&load, opening.infinitesimal, proof.record.kind == ArcKind::limit}, candidates_);
+                    PowerLoad{&load, opening.infinitesimal, proof.record.kind == ArcKind::limit}, candidates_);
     proof.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-template <int Dim>
-EndProof<Dim> Prover<Dim>::prove_end(typename Vertex<Dim>::Beginning beginning, const LimitLoad<Dim>& limit,
-                                     ContactId hold, const std::vector<ContactId>& zeros, long step) {
-    EndProof<Dim> proof;
-    auto made = Vertex<Dim>::make(std::move(beginning), limit.load, bounds_, ladder());
+EndProof Prover::prove_end(Vertex::Beginning beginning, const LimitLoad& limit, ContactId hold,
+                           const std::vector<ContactId>& zeros, long step) {
+    EndProof proof;
+    auto made = Vertex::make(std::move(beginning), limit.load, bounds_, ladder());
     if (!made.ok()) {
         proof.failure = made.failure();
         return proof;
     }
     proof.vertex = std::move(made.value());
-    Vertex<Dim>& vertex = *proof.vertex;
+    Vertex& vertex = *proof.vertex;
     ties_->attach(vertex, {limit.load}); // the load is again the stored one, if the forces allow it
     auto found = gaps(vertex);
     if (!found.ok()) {
@@ -459,7 +439,7 @@ EndProof<Dim> Prover<Dim>::prove_end(typename Vertex<Dim>::Beginning beginning, 
     return proof;
 }
 
-template <int Dim> Result<OpeningDecision> Prover<Dim>::ask_again(Vertex<Dim>& vertex, double stress) const {
+Result<OpeningDecision> Prover::ask_again(Vertex& vertex, double stress) const {
     auto decision = decide_opening(vertex.statics, stress, options_->rule, ContactId(), 0, vertex.first_order());
     if (vertex.perturbed) {
         vertex.perturbed->statics.log.clear();
@@ -470,7 +450,7 @@ template <int Dim> Result<OpeningDecision> Prover<Dim>::ask_again(Vertex<Dim>& v
     return decision;
 }
 
-template <int Dim> std::optional<ArcProof<Dim>> ProofChain<Dim>::prove(ArcProposal<Dim>& arc) {
+std::optional<ArcProof> ProofChain::prove(ArcProposal& arc) {
     const auto same = [](const Opening& a, const Opening& b) {
         return a.contact == b.contact && a.direction == b.direction && a.infinitesimal == b.infinitesimal;
     };
@@ -479,7 +459,7 @@ template <int Dim> std::optional<ArcProof<Dim>> ProofChain<Dim>::prove(ArcPropos
     }
     const WorkCounts steering = arc.work;
     WorkCounts counts{};
-    ArcProof<Dim> proof;
+    ArcProof proof;
     {
         const CountingIn counting(&counts);
         proof = prover_.prove(*from_, std::move(arc), *due_, at_);
@@ -494,9 +474,5 @@ template <int Dim> std::optional<ArcProof<Dim>> ProofChain<Dim>::prove(ArcPropos
     due_ = proof.next->value().opening;
     return proof;
 }
-
-template struct ArcProof<2>;
-template class Prover<2>;
-template class ProofChain<2>;
 
 } // namespace isostat

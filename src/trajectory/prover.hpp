@@ -28,10 +28,10 @@ struct Decision {
 };
 
 /// What was found out about the end of a proposed arc.
-template <int Dim> struct ArcProof {
-    ArcRecord<Dim> record;
+struct ArcProof {
+    ArcRecord record;
     std::vector<Decision> decisions;             ///< that were made
-    std::shared_ptr<Vertex<Dim>> vertex;         ///< the end; null: nothing was proved of it
+    std::shared_ptr<Vertex> vertex;              ///< the end; null: nothing was proved of it
     std::optional<ListExchange> list_for_end;    ///< its contacts are dependent: with this list before the arc not so
     std::optional<Contact> closed_before;        ///< the arc does not end there: this one closed first
     bool reached = false;                        ///< no gap is closed before
@@ -48,13 +48,13 @@ template <int Dim> struct ArcProof {
 };
 
 /// What was found out about a vertex as an equilibrium, as far as there was need of it.
-template <int Dim> struct EndProof {
-    std::shared_ptr<Vertex<Dim>> vertex;
-    typename Vertex<Dim>::Gaps gaps;
+struct EndProof {
+    std::shared_ptr<Vertex> vertex;
+    Vertex::Gaps gaps;
     std::optional<Failure> failure; ///< of the vertex, its gaps or its load: then nothing else is there
-    std::optional<Result<OpeningDecision>> decision;     ///< none: a gap is negative
-    std::optional<Result<Description<Dim>>> description; ///< of an equilibrium only
-    WorkCounts work{};                                   ///< to be counted when it is taken
+    std::optional<Result<OpeningDecision>> decision; ///< none: a gap is negative
+    std::optional<Result<Description>> description;  ///< of an equilibrium only
+    WorkCounts work{};                               ///< to be counted when it is taken
 };
 
 /// A failure of an arc or at its end, where N = N_f: a rank that is not proved full is no proof that it is smaller, and
@@ -68,85 +68,76 @@ inline Failure not_proved(Failure failure) {
 
 /// Owns what successive proofs leave for the next ones: candidates, which of them are contacts, bounds of the inverse.
 /// Nothing else touches these, whatever thread the prover works on; one thread at a time.
-template <int Dim> class Prover {
+class Prover {
   public:
     /// Both must outlive the prover.
-    Prover(const RunOptions& options, const TieSettling<Dim>& ties) : options_(&options), ties_(&ties) {}
+    Prover(const RunOptions& options, const TieSettling& ties) : options_(&options), ties_(&ties) {}
     /// Another one, which keeps nothing of what was before.
     [[nodiscard]] Prover another() const { return {*options_, *ties_}; }
 
     /// Keeps nothing of what was before but a complete list of candidates at the packing, if it has that: what follows
     /// does not depend on the past, so that a resumed run goes the same way. `near`: see `find_candidates`.
-    void start_at(const Packing<Dim>& packing, const std::shared_ptr<const RegularTriangulation<Dim>>& near = nullptr);
+    void start_at(const Packing& packing, const std::shared_ptr<const RegularTriangulation>& near = nullptr);
     /// Lent to steering that starts from the vertices of this prover, on its thread.
-    [[nodiscard]] CandidateList<Dim>& candidates() { return candidates_; }
+    [[nodiscard]] CandidateList& candidates() { return candidates_; }
 
     /// A vertex from nothing: full exact elimination, fresh factors and bound.
-    Result<std::shared_ptr<Vertex<Dim>>> vertex(Packing<Dim> packing, std::vector<Contact> contacts,
-                                                const LimitLoad<Dim>& at);
+    Result<std::shared_ptr<Vertex>> vertex(Packing packing, std::vector<Contact> contacts, const LimitLoad& at);
     /// `known`: pairs that touch, as far as that is known before.
-    Result<typename Vertex<Dim>::Gaps> gaps(Vertex<Dim>& vertex, const ZeroGaps& known = {}) {
+    Result<Vertex::Gaps> gaps(Vertex& vertex, const ZeroGaps& known = {}) {
         return vertex.check_gaps(candidates_, kept_, ties_->settles() ? &known : nullptr);
     }
     /// Whether the arc from a vertex, which starts with what was proved to open there, ends where it is proposed to,
     /// and what opens there: regularity, true vertex, order of the gaps, descent, power, next opening.
-    ArcProof<Dim> prove(const Vertex<Dim>& from, ArcProposal<Dim> arc, const Opening& opening,
-                        const LimitLoad<Dim>& at);
+    ArcProof prove(const Vertex& from, ArcProposal arc, const Opening& opening, const LimitLoad& at);
 
     /// The same configuration with another list (C3). Failures: those of `Vertex::exchanged` and `arrive`.
-    Result<std::shared_ptr<Vertex<Dim>>> exchange(const Vertex<Dim>& from, const ListExchange& exchange,
-                                                  const LimitLoad<Dim>& at);
+    Result<std::shared_ptr<Vertex>> exchange(const Vertex& from, const ListExchange& exchange, const LimitLoad& at);
 
     /// Whether a vertex, proved from nothing, is an equilibrium. `limit`: that the rearrangement started from; `zeros`:
     /// forces that vanish in the base; `hold`: held just now. The list of candidates is that at the vertex.
-    EndProof<Dim> prove_end(typename Vertex<Dim>::Beginning beginning, const LimitLoad<Dim>& limit, ContactId hold,
-                            const std::vector<ContactId>& zeros, long step);
+    EndProof prove_end(Vertex::Beginning beginning, const LimitLoad& limit, ContactId hold,
+                       const std::vector<ContactId>& zeros, long step);
     /// Asks again what made a vertex an equilibrium: after a resume the statics then stand on the same rung. With first
     /// order the answer must be the same with the load that the state stores.
-    Result<OpeningDecision> ask_again(Vertex<Dim>& vertex, double stress) const;
+    Result<OpeningDecision> ask_again(Vertex& vertex, double stress) const;
     /// What opens, by the rule of the run; `step`: of the arc that led there.
-    Result<OpeningDecision> decide(Vertex<Dim>& vertex, double stress, const ZeroHolds& zero, long step) const;
+    Result<OpeningDecision> decide(Vertex& vertex, double stress, const ZeroHolds& zero, long step) const;
 
   private:
     /// How far signs climb: of ties that are chosen no farther than it takes to call them ties.
     [[nodiscard]] LadderOptions ladder() const;
-    void certify(ArcProof<Dim>& proof, const Vertex<Dim>& from, const Opening& opening, const Load<Dim>& load) const;
-    std::optional<Failure> reach(ArcProof<Dim>& proof, const Vertex<Dim>& from, ArcProposal<Dim>& arc,
-                                 const LimitLoad<Dim>& at);
-    std::optional<Failure> arrive(ArcProof<Dim>& proof, std::vector<TieDecision> settled, const Way& way,
-                                  const typename Vertex<Dim>::Gaps& gaps) const;
-    static std::optional<Failure> descend(ArcProof<Dim>& proof, const Vertex<Dim>& from, const Opening& opening,
-                                          const Load<Dim>& load);
-    static std::optional<Failure> power(ArcProof<Dim>& proof, const Opening& opening, double stress);
+    void certify(ArcProof& proof, const Vertex& from, const Opening& opening, const Load& load) const;
+    std::optional<Failure> reach(ArcProof& proof, const Vertex& from, ArcProposal& arc, const LimitLoad& at);
+    std::optional<Failure> arrive(ArcProof& proof, std::vector<TieDecision> settled, const Way& way,
+                                  const Vertex::Gaps& gaps) const;
+    static std::optional<Failure> descend(ArcProof& proof, const Vertex& from, const Opening& opening,
+                                          const Load& load);
+    static std::optional<Failure> power(ArcProof& proof, const Opening& opening, double stress);
 
     const RunOptions* options_;
-    const TieSettling<Dim>* ties_;
-    CandidateList<Dim> candidates_;
+    const TieSettling* ties_;
+    CandidateList candidates_;
     KeptCandidates kept_; ///< of `candidates_`
     InverseBoundCache bounds_;
 };
 
 /// Proofs of successive arcs, each from the end of the one before. One that does not agree ends it.
-template <int Dim> class ProofChain {
+class ProofChain {
   public:
-    ProofChain(Prover<Dim>& prover, std::shared_ptr<const Vertex<Dim>> from, const Opening& opening,
-               const LimitLoad<Dim>& at)
+    ProofChain(Prover& prover, std::shared_ptr<const Vertex> from, const Opening& opening, const LimitLoad& at)
         : prover_(prover), from_(std::move(from)), due_(opening), at_(at) {}
     /// Nothing: it does not agree.
-    std::optional<ArcProof<Dim>> prove(ArcProposal<Dim>& arc);
+    std::optional<ArcProof> prove(ArcProposal& arc);
     /// The proof that did not agree, if it got so far.
-    [[nodiscard]] std::optional<ArcProof<Dim>>& refused() { return refused_; }
+    [[nodiscard]] std::optional<ArcProof>& refused() { return refused_; }
 
   private:
-    Prover<Dim>& prover_;
-    std::shared_ptr<const Vertex<Dim>> from_;
+    Prover& prover_;
+    std::shared_ptr<const Vertex> from_;
     std::optional<Opening> due_; ///< what opens at `from_`
-    const LimitLoad<Dim>& at_;
-    std::optional<ArcProof<Dim>> refused_;
+    const LimitLoad& at_;
+    std::optional<ArcProof> refused_;
 };
-
-extern template struct ArcProof<2>;
-extern template class Prover<2>;
-extern template class ProofChain<2>;
 
 } // namespace isostat

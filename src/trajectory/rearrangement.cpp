@@ -17,28 +17,27 @@ constexpr std::size_t most_exchanges = 1000; ///< of lists at one place
 
 } // namespace
 
-template <int Dim> void Standing<Dim>::move_to(std::shared_ptr<Vertex<Dim>> to, const Opening& opens) {
+void Standing::move_to(std::shared_ptr<Vertex> to, const Opening& opens) {
     const ArcKind begins = kind_of(to->structure.contacts()[opens.contact.index()], opens.infinitesimal);
     *this = {std::move(to), opens, begins};
 }
 
-template <int Dim>
-Rearrangement<Dim>::Rearrangement(Start start, Prover<Dim>& prover, Recorder<Dim>& recorder)
+Rearrangement::Rearrangement(Start start, Prover& prover, Recorder& recorder)
     : prover_(prover), recorder_(recorder), at_(std::move(start.at)),
       here_{std::move(start.vertex), start.opening, start.kind},
       tilts_at_start_(here_.vertex->packing.q.begin() +
-                          static_cast<std::ptrdiff_t>(here_.vertex->packing.length_at(Dim)),
+                          static_cast<std::ptrdiff_t>(here_.vertex->packing.length_at(here_.vertex->packing.axes())),
                       here_.vertex->packing.q.end()) {}
 
-template <int Dim> std::string Rearrangement<Dim>::where(int arc) const {
+std::string Rearrangement::where(int arc) const {
     return fmt::format("arc {} of the rearrangement at sigma = {:.17g}", arc, at_.stress());
 }
 
-template <int Dim> std::string Rearrangement<Dim>::at_equilibrium() const {
+std::string Rearrangement::at_equilibrium() const {
     return fmt::format("equilibrium at sigma = {:.17g}", at_.stress());
 }
 
-template <int Dim> Result<Reached<Dim>> Rearrangement<Dim>::run() {
+Result<Reached> Rearrangement::run() {
     if (auto failure = follow_arcs()) {
         return *failure;
     }
@@ -49,17 +48,17 @@ template <int Dim> Result<Reached<Dim>> Rearrangement<Dim>::run() {
     if (auto failure = judge(*end_)) {
         return *failure;
     }
-    return Reached<Dim>{std::move(*end_), arcs_};
+    return Reached{std::move(*end_), arcs_};
 }
 
 /// The other rules choose by differences that floating steering does not resolve.
-template <int Dim> bool Rearrangement<Dim>::floats() const {
+bool Rearrangement::floats() const {
     return !options().at_first_order() && options().rule == OpeningRule::most_negative && !here_.by_steps &&
            here_.resting.empty();
 }
 
 /// Propose, prove, record, decide, until no force is negative.
-template <int Dim> std::optional<Failure> Rearrangement<Dim>::follow_arcs() {
+std::optional<Failure> Rearrangement::follow_arcs() {
     constexpr std::size_t window = 6; // proposals ahead of their proofs
     while (!ended_) {
         if (auto failure = cap()) {
@@ -68,8 +67,8 @@ template <int Dim> std::optional<Failure> Rearrangement<Dim>::follow_arcs() {
         if (!steering_) {
             begin_steering();
         }
-        ProofChain<Dim> chain(prover_, here_.vertex, here_.opening, at_);
-        Proofs proofs([&](ArcProposal<Dim>& arc) { return chain.prove(arc); }, ahead_ ? window : 0);
+        ProofChain chain(prover_, here_.vertex, here_.opening, at_);
+        Proofs proofs([&](ArcProposal& arc) { return chain.prove(arc); }, ahead_ ? window : 0);
         const int before = arcs_;
         proposed_ = 0;
         steered_to_.reset();
@@ -81,8 +80,8 @@ template <int Dim> std::optional<Failure> Rearrangement<Dim>::follow_arcs() {
                 return failure;
             }
         }
-        Prover<Dim> other = prover_.another();
-        std::optional<EndProof<Dim>> end;
+        Prover other = prover_.another();
+        std::optional<EndProof> end;
         if (ahead_ && steered_to_ && !steered_to_->fresh_hold.valid() && !proofs.ended()) {
             end = prove_end(other, std::move(*steered_to_)); // the last proofs may say that it is none
         }
@@ -94,7 +93,7 @@ template <int Dim> std::optional<Failure> Rearrangement<Dim>::follow_arcs() {
             prover_ = std::move(other);
             end_ = std::move(end);
         }
-        ArcProof<Dim>* refused = chain.refused() ? &*chain.refused() : nullptr;
+        ArcProof* refused = chain.refused() ? &*chain.refused() : nullptr;
         if (auto failure = act(answer(refused, !failed), refused, failed, arcs_ > before)) {
             return failure;
         }
@@ -102,7 +101,7 @@ template <int Dim> std::optional<Failure> Rearrangement<Dim>::follow_arcs() {
     return std::nullopt;
 }
 
-template <int Dim> std::optional<Failure> Rearrangement<Dim>::cap() const {
+std::optional<Failure> Rearrangement::cap() const {
     if (recorder_.stopped()) {
         return failed(FailureKind::interrupted,
                       "stopped after {} arcs of a rearrangement at sigma = "
@@ -119,29 +118,29 @@ template <int Dim> std::optional<Failure> Rearrangement<Dim>::cap() const {
 }
 
 /// From where the rearrangement stands, ahead of the proofs or not; then the list there may become another one.
-template <int Dim> void Rearrangement<Dim>::begin_steering() {
+void Rearrangement::begin_steering() {
     ahead_ = floats();
     const long step = recorder_.counters.steps + 1;
     if (ahead_) {
-        const Vertex<Dim>& from = *here_.vertex;
-        steering_ = std::make_unique<FloatingSteering<Dim>>(
-            typename FloatingSteering<Dim>::Origin{from.packing, from.structure, from.factorisation},
-            ArcStart<Dim>{here_.opening, here_.kind, step, &at_.load, {}}, options(), prover_.candidates());
+        const Vertex& from = *here_.vertex;
+        steering_ = std::make_unique<FloatingSteering>(
+            FloatingSteering::Origin{from.packing, from.structure, from.factorisation},
+            ArcStart{here_.opening, here_.kind, step, &at_.load, {}}, options(), prover_.candidates());
         return;
     }
     if (arcs_ == 0) {
         take_log(*here_.vertex, here_.settled);
     }
     auto departure = depart();
-    steering_ = std::make_unique<BoundedSteering<Dim>>(
-        here_.vertex, ArcStart<Dim>{here_.opening, here_.kind, step, &at_.load, here_.settled}, std::move(departure),
-        options().step_fraction, prover_.candidates());
+    steering_ = std::make_unique<BoundedSteering>(here_.vertex,
+                                                  ArcStart{here_.opening, here_.kind, step, &at_.load, here_.settled},
+                                                  std::move(departure), options().step_fraction, prover_.candidates());
 }
 
 /// What becomes of pairs that touch, on a list with which the contact can open (C3): `here_` may get another one.
-template <int Dim> Result<Departure<Dim>> Rearrangement<Dim>::depart() {
+Result<Departure> Rearrangement::depart() {
     if (!here_.vertex->perturbed || here_.vertex->perturbed->touching.empty()) {
-        return Departure<Dim>{};
+        return Departure{};
     }
     while (true) {
         auto departure = isostat::depart(*here_.vertex, here_.opening.contact, here_.opening.direction);
@@ -151,7 +150,7 @@ template <int Dim> Result<Departure<Dim>> Rearrangement<Dim>::depart() {
         const BentPair& bent = *departure.value().overlaps;
         if (here_.settled.size() >= most_exchanges) {
             return failed(FailureKind::undecided, "{} lists were exchanged where pairs touch, and {} would overlap",
-                          here_.settled.size(), named<Dim>(bent.pair));
+                          here_.settled.size(), named(bent.pair));
         }
         const auto exchange = give_way(*here_.vertex, here_.opening, bent, at_.stress());
         if (!exchange.ok()) {
@@ -164,7 +163,7 @@ template <int Dim> Result<Departure<Dim>> Rearrangement<Dim>::depart() {
 }
 
 /// The same place with another list.
-template <int Dim> std::optional<Failure> Rearrangement<Dim>::relist(const ListExchange& exchange) {
+std::optional<Failure> Rearrangement::relist(const ListExchange& exchange) {
     auto next = prover_.exchange(*here_.vertex, exchange, at_);
     if (!next.ok()) {
         return next.failure();
@@ -174,7 +173,7 @@ template <int Dim> std::optional<Failure> Rearrangement<Dim>::relist(const ListE
     return std::nullopt;
 }
 
-template <int Dim> std::optional<Failure> Rearrangement<Dim>::propose(Proofs& proofs) {
+std::optional<Failure> Rearrangement::propose(Proofs& proofs) {
     auto arc = steering_->propose();
     if (!arc.ok()) {
         return arc.failure();
@@ -185,7 +184,7 @@ template <int Dim> std::optional<Failure> Rearrangement<Dim>::propose(Proofs& pr
     return std::nullopt;
 }
 
-template <int Dim> std::optional<Failure> Rearrangement<Dim>::record(Proofs& proofs) {
+std::optional<Failure> Rearrangement::record(Proofs& proofs) {
     while (!recorder_.stopped()) {
         auto proof = proofs.next();
         if (!proof) {
@@ -202,8 +201,8 @@ template <int Dim> std::optional<Failure> Rearrangement<Dim>::record(Proofs& pro
     return std::nullopt;
 }
 
-template <int Dim> std::optional<Failure> Rearrangement<Dim>::decide(ArcProof<Dim>& proof) {
-    const ArcRecord<Dim>& record = proof.record;
+std::optional<Failure> Rearrangement::decide(ArcProof& proof) {
+    const ArcRecord& record = proof.record;
     const OpeningDecision& decision = proof.next->value();
     recorder_.counters.tally.structural_ties += decision.opening && decision.opening->straight_strut ? 1 : 0;
     if (std::abs(record.strain) > options().max_strain) {
@@ -228,22 +227,23 @@ template <int Dim> std::optional<Failure> Rearrangement<Dim>::decide(ArcProof<Di
 }
 
 /// A dead shear force may do work without bound: W has no minimum along the tilt.
-template <int Dim> std::optional<Failure> Rearrangement<Dim>::flows(const ArcProof<Dim>& proof) const {
-    const Packing<Dim>& now = proof.vertex->packing;
-    for (std::size_t k = now.length_at(Dim); k < now.q.size(); ++k) {
-        const double shear = (now.q[k] - tilts_at_start_[k - now.length_at(Dim)]) / now.length(Dim - 1);
+std::optional<Failure> Rearrangement::flows(const ArcProof& proof) const {
+    const Packing& now = proof.vertex->packing;
+    for (std::size_t k = now.length_at(now.axes()); k < now.q.size(); ++k) {
+        const double shear =
+            (now.q[k] - tilts_at_start_[k - now.length_at(now.axes())]) / now.length(now.dimension - 1);
         if (std::abs(shear) > options().max_strain) {
             return failed(FailureKind::flows,
                           "a shear of {:.6g} after {} arcs at a constant load, sigma = {:.17g}: the tilt went from "
                           "{:.6g} to {:.6g} without an equilibrium (cap max_strain = {:.6g})",
-                          std::abs(shear), arcs_, at_.stress(), tilts_at_start_[k - now.length_at(Dim)], now.q[k],
-                          options().max_strain);
+                          std::abs(shear), arcs_, at_.stress(), tilts_at_start_[k - now.length_at(now.axes())],
+                          now.q[k], options().max_strain);
         }
     }
     return std::nullopt;
 }
 
-template <int Dim> auto Rearrangement<Dim>::answer(const ArcProof<Dim>* refused, bool proposed) const -> Answer {
+auto Rearrangement::answer(const ArcProof* refused, bool proposed) const -> Answer {
     if (ahead_) {
         return Answer::by_steps;
     }
@@ -267,9 +267,8 @@ template <int Dim> auto Rearrangement<Dim>::answer(const ArcProof<Dim>* refused,
 }
 
 /// `any`: arcs that were proposed before this one agreed.
-template <int Dim>
-std::optional<Failure> Rearrangement<Dim>::act(Answer answer, ArcProof<Dim>* refused,
-                                               const std::optional<Failure>& not_proposed, bool any) {
+std::optional<Failure> Rearrangement::act(Answer answer, ArcProof* refused, const std::optional<Failure>& not_proposed,
+                                          bool any) {
     if (refused != nullptr) {
         count_all(refused->work);
     }
@@ -304,7 +303,7 @@ std::optional<Failure> Rearrangement<Dim>::act(Answer answer, ArcProof<Dim>* ref
 
 /// It turned back where it stood, or went up: its multiplier is noise, and there is no descent. Released once more it
 /// would do so for ever.
-template <int Dim> std::optional<Failure> Rearrangement<Dim>::set_aside(const ArcRecord<Dim>& record) {
+std::optional<Failure> Rearrangement::set_aside(const ArcRecord& record) {
     here_.resting.push_back(here_.opening.contact);
     ZeroHolds zero{std::nullopt, here_.resting};
     if (here_.fresh_hold.valid()) {
@@ -318,7 +317,7 @@ template <int Dim> std::optional<Failure> Rearrangement<Dim>::set_aside(const Ar
         return failed(FailureKind::undecided,
                       "{}: every force is positive, and the multiplier of {} is 0 as far as the power "
                       "turn is located: whether and where it moves is not decided",
-                      where(arcs_ + 1), named<Dim>(record.opened));
+                      where(arcs_ + 1), named(record.opened));
     }
     here_.opening = *again.value().opening;
     here_.kind =
@@ -327,19 +326,19 @@ template <int Dim> std::optional<Failure> Rearrangement<Dim>::set_aside(const Ar
     return std::nullopt;
 }
 
-template <int Dim> SteeredEnd<Dim> Rearrangement<Dim>::at_here() const {
+SteeredEnd Rearrangement::at_here() const {
     return {here_.vertex->packing, here_.vertex->structure.contacts(), here_.fresh_hold, {}};
 }
 
 /// The end is proved from nothing that the way to it left: full exact elimination, fresh factors and bound. A resumed
 /// run starts from the same bits.
-template <int Dim> EndProof<Dim> Rearrangement<Dim>::prove_end(Prover<Dim>& prover, SteeredEnd<Dim> end) {
-    EndProof<Dim> proof;
+EndProof Rearrangement::prove_end(Prover& prover, SteeredEnd end) {
+    EndProof proof;
     WorkCounts work{};
     {
         const CountingIn counting(&work);
         Task listing([&prover, packing = end.packing, near = end.triangulation] { prover.start_at(packing, near); });
-        auto begun = Vertex<Dim>::begin(std::move(end.packing), std::move(end.contacts));
+        auto begun = Vertex::begin(std::move(end.packing), std::move(end.contacts));
         listing.finish();
         if (begun.ok()) {
             proof =
@@ -352,12 +351,12 @@ template <int Dim> EndProof<Dim> Rearrangement<Dim>::prove_end(Prover<Dim>& prov
     return proof;
 }
 
-template <int Dim> std::optional<Failure> Rearrangement<Dim>::judge(const EndProof<Dim>& end) const {
+std::optional<Failure> Rearrangement::judge(const EndProof& end) const {
     if (end.failure) {
         return located(not_proved(*end.failure), at_equilibrium());
     }
     if (end.gaps.negative) {
-        return failed(FailureKind::overlap, "{}: {} overlap", at_equilibrium(), named<Dim>(*end.gaps.negative));
+        return failed(FailureKind::overlap, "{}: {} overlap", at_equilibrium(), named(*end.gaps.negative));
     }
     const Result<OpeningDecision>& decision = *end.decision;
     if (decision.ok() && !decision.value().opening) {
@@ -367,8 +366,5 @@ template <int Dim> std::optional<Failure> Rearrangement<Dim>::judge(const EndPro
                   options().at_first_order() ? "the load as it is stored" : "fresh factors and bounds",
                   decision.ok() ? Words() : words(": {}", decision.failure()));
 }
-
-template struct Standing<2>;
-template class Rearrangement<2>;
 
 } // namespace isostat

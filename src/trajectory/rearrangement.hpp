@@ -14,16 +14,16 @@
 namespace isostat {
 
 /// Where a rearrangement ended: an equilibrium, proved from nothing that the way to it left.
-template <int Dim> struct Reached {
-    EndProof<Dim> proof;
+struct Reached {
+    EndProof proof;
     int arcs = 0;
 };
 
 /// Where a rearrangement stands, and what is known there.
-template <int Dim> struct Standing {
-    std::shared_ptr<Vertex<Dim>> vertex; ///< the last one that was proved
-    Opening opening;                     ///< what opens there
-    ArcKind kind = ArcKind::limit;       ///< of the arc that it begins
+struct Standing {
+    std::shared_ptr<Vertex> vertex; ///< the last one that was proved
+    Opening opening;                ///< what opens there
+    ArcKind kind = ArcKind::limit;  ///< of the arc that it begins
     /// Why this one opens, and lists that were exchanged. Recorded with the arc.
     std::vector<TieDecision> settled{};
     ContactId fresh_hold{};           ///< of the power turn that ended there
@@ -32,7 +32,7 @@ template <int Dim> struct Standing {
     bool by_steps = false;            ///< the next arc must be proved before going on
 
     /// To what opens at `vertex`, of which nothing else is known.
-    void move_to(std::shared_ptr<Vertex<Dim>> to, const Opening& opens);
+    void move_to(std::shared_ptr<Vertex> to, const Opening& opens);
 };
 
 /// One rearrangement under a constant load (paper, section 2.3): a contact opens, the grains move until another one
@@ -40,19 +40,19 @@ template <int Dim> struct Standing {
 /// steering, *proved*, *recorded*, and its end *decides* what opens. Floating steering goes ahead of the proofs, by a
 /// window; where one does not agree the arc is proposed again by bounded steering, window 0. With first-order ties, and
 /// by rules whose choice steering does not resolve, bounded steering proposes every arc.
-template <int Dim> class Rearrangement {
+class Rearrangement {
   public:
     struct Start {
-        std::shared_ptr<Vertex<Dim>> vertex;
+        std::shared_ptr<Vertex> vertex;
         Opening opening;
         ArcKind kind = ArcKind::limit; ///< of the first arc
-        LimitLoad<Dim> at;
+        LimitLoad at;
     };
     /// All must outlive the rearrangement.
-    Rearrangement(Start start, Prover<Dim>& prover, Recorder<Dim>& recorder);
+    Rearrangement(Start start, Prover& prover, Recorder& recorder);
 
     /// Once.
-    Result<Reached<Dim>> run();
+    Result<Reached> run();
     /// Recorded so far.
     [[nodiscard]] int arcs() const { return arcs_; }
 
@@ -62,13 +62,13 @@ template <int Dim> class Rearrangement {
     std::optional<Failure> follow_arcs();
     [[nodiscard]] std::optional<Failure> cap() const;
     void begin_steering();
-    Result<Departure<Dim>> depart();
+    Result<Departure> depart();
     std::optional<Failure> relist(const ListExchange& exchange);
-    using Proofs = Pipeline<ArcProposal<Dim>, ArcProof<Dim>>;
+    using Proofs = Pipeline<ArcProposal, ArcProof>;
     std::optional<Failure> propose(Proofs& proofs);
     std::optional<Failure> record(Proofs& proofs);
-    std::optional<Failure> decide(ArcProof<Dim>& proof);
-    [[nodiscard]] std::optional<Failure> flows(const ArcProof<Dim>& proof) const;
+    std::optional<Failure> decide(ArcProof& proof);
+    [[nodiscard]] std::optional<Failure> flows(const ArcProof& proof) const;
     /// What becomes of the last arc that was proposed.
     enum class Answer {
         agreed,       ///< it is recorded: the next one begins at its end
@@ -80,31 +80,27 @@ template <int Dim> class Rearrangement {
         set_aside,    ///< a held coordinate that was released stays, and another opens
         refused       ///< the rearrangement ends: it is not proved
     };
-    [[nodiscard]] Answer answer(const ArcProof<Dim>* refused, bool proposed) const;
-    std::optional<Failure> act(Answer answer, ArcProof<Dim>* refused, const std::optional<Failure>& not_proposed,
-                               bool any);
-    std::optional<Failure> set_aside(const ArcRecord<Dim>& record);
-    [[nodiscard]] SteeredEnd<Dim> at_here() const;
-    EndProof<Dim> prove_end(Prover<Dim>& prover, SteeredEnd<Dim> end);
-    [[nodiscard]] std::optional<Failure> judge(const EndProof<Dim>& end) const;
+    [[nodiscard]] Answer answer(const ArcProof* refused, bool proposed) const;
+    std::optional<Failure> act(Answer answer, ArcProof* refused, const std::optional<Failure>& not_proposed, bool any);
+    std::optional<Failure> set_aside(const ArcRecord& record);
+    [[nodiscard]] SteeredEnd at_here() const;
+    EndProof prove_end(Prover& prover, SteeredEnd end);
+    [[nodiscard]] std::optional<Failure> judge(const EndProof& end) const;
     [[nodiscard]] std::string where(int arc) const;
     [[nodiscard]] std::string at_equilibrium() const;
 
-    Prover<Dim>& prover_;
-    Recorder<Dim>& recorder_;
-    LimitLoad<Dim> at_;
-    Standing<Dim> here_;
+    Prover& prover_;
+    Recorder& recorder_;
+    LimitLoad at_;
+    Standing here_;
     std::vector<double> tilts_at_start_;
     int arcs_ = 0;
-    bool ended_ = false;                        ///< no force is negative where it is
-    bool ahead_ = false;                        ///< the steering goes ahead of the proofs
-    int proposed_ = 0;                          ///< arcs by it
-    std::unique_ptr<Steering<Dim>> steering_;   ///< refers to `here_.vertex`
-    std::optional<SteeredEnd<Dim>> steered_to_; ///< by `steering_`, if it came to an end
-    std::optional<EndProof<Dim>> end_;
+    bool ended_ = false;                   ///< no force is negative where it is
+    bool ahead_ = false;                   ///< the steering goes ahead of the proofs
+    int proposed_ = 0;                     ///< arcs by it
+    std::unique_ptr<Steering> steering_;   ///< refers to `here_.vertex`
+    std::optional<SteeredEnd> steered_to_; ///< by `steering_`, if it came to an end
+    std::optional<EndProof> end_;
 };
-
-extern template struct Standing<2>;
-extern template class Rearrangement<2>;
 
 } // namespace isostat

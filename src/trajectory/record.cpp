@@ -15,7 +15,7 @@ namespace isostat {
 namespace {
 
 /// |f . (G v) - F . v| / sum |F_i v_i| for a fixed pseudo-random v: both sides of the theorem of virtual power.
-template <int Dim> double virtual_power_error(const Vertex<Dim>& vertex, double sigma) {
+double virtual_power_error(const Vertex& vertex, double sigma) {
     const sparse::Matrix<double>& h = vertex.structure.matrix();
     std::mt19937_64 random(20000731);
     std::vector<double> v(static_cast<std::size_t>(h.rows));
@@ -46,7 +46,7 @@ constexpr double dd_rounding = 0x1p-96;
 constexpr double rounded_up = 1 + 0x1p-40; ///< covers the rounding of a bound
 
 /// As near to the true vertex as is known.
-template <int Dim> VertexEnclosure at_true_vertex(const Vertex<Dim>& vertex) {
+VertexEnclosure at_true_vertex(const Vertex& vertex) {
     VertexEnclosure at = vertex.enclosure;
     if (at.correction.empty() && !at.step.empty() && at.step_radius < at.radius) {
         at.correction.assign(vertex.packing.q.size(), 0.0);
@@ -65,8 +65,8 @@ Enclosure shown(const dd_real& value, double error) {
 }
 
 /// Coordinates of a true vertex in double-double.
-template <int Dim> struct TrueCoordinates {
-    const Vertex<Dim>& vertex;
+struct TrueCoordinates {
+    const Vertex& vertex;
     const VertexEnclosure& at;
 
     [[nodiscard]] dd_real operator[](std::size_t k) const {
@@ -78,13 +78,13 @@ template <int Dim> struct TrueCoordinates {
     }
 };
 
-template <int Dim> Enclosure length_of(const TrueCoordinates<Dim>& q, std::size_t axis) {
-    const std::size_t k = Dim * q.vertex.packing.radius.size() + axis;
+Enclosure length_of(const TrueCoordinates& q, std::size_t axis) {
+    const std::size_t k = q.vertex.packing.length_at(axis);
     return shown(q[k], q.error(k));
 }
 
-template <int Dim> Enclosure strain_of(const TrueCoordinates<Dim>& q, const Load<Dim>& load, std::size_t axis) {
-    const std::size_t k = Dim * q.vertex.packing.radius.size() + axis;
+Enclosure strain_of(const TrueCoordinates& q, const Load& load, std::size_t axis) {
+    const std::size_t k = q.vertex.packing.length_at(axis);
     const double at_rest = load.at_rest(static_cast<int>(axis));
     const double reference = load.strain_length(static_cast<int>(axis));
     if (!(reference > 0)) {
@@ -95,8 +95,7 @@ template <int Dim> Enclosure strain_of(const TrueCoordinates<Dim>& q, const Load
 }
 
 /// Of dead loads on the degrees of freedom; true stresses have none: an infinite bound.
-template <int Dim>
-void record_potential(EquilibriumRecord<Dim>& record, const TrueCoordinates<Dim>& q, const Load<Dim>& load) {
+void record_potential(EquilibriumRecord& record, const TrueCoordinates& q, const Load& load) {
     dd_real sum = 0.0;
     double error = load.kind == LoadKind::nominal ? 0 : std::numeric_limits<double>::infinity();
     const auto add = [&](const dd_real& force, std::size_t k) {
@@ -120,7 +119,7 @@ void record_potential(EquilibriumRecord<Dim>& record, const TrueCoordinates<Dim>
 
 } // namespace
 
-template <int Dim> std::vector<int> rattlers(const Vertex<Dim>& vertex) {
+std::vector<int> rattlers(const Vertex& vertex) {
     std::vector<unsigned char> carries(vertex.packing.radius.size(), 0);
     const auto& contacts = vertex.structure.contacts();
     for (std::size_t l = 0; l < contacts.size(); ++l) {
@@ -141,7 +140,7 @@ template <int Dim> std::vector<int> rattlers(const Vertex<Dim>& vertex) {
     return list;
 }
 
-template <int Dim> std::vector<double> finite_forces(const Vertex<Dim>& vertex, const Load<Dim>& load) {
+std::vector<double> finite_forces(const Vertex& vertex, const Load& load) {
     std::vector<double> forces(static_cast<std::size_t>(vertex.structure.size()));
     for (std::size_t l = 0; l < forces.size(); ++l) {
         forces[l] = vertex.statics.force(ContactId(l), load.loaded_stress()).value;
@@ -155,13 +154,13 @@ template <int Dim> std::vector<double> finite_forces(const Vertex<Dim>& vertex, 
 constexpr double vague = 1e-6;
 constexpr double sharp = 1e-10;
 
-template <int Dim> Result<LoadLimit> well_known_limit(Vertex<Dim>& vertex, const Load<Dim>& load, int direction) {
+Result<LoadLimit> well_known_limit(Vertex& vertex, const Load& load, int direction) {
     const double sigma = load.loaded_stress();
     double largest = 0;
     for (const double stress : load.stress) {
         largest = std::max(largest, std::abs(stress));
     }
-    PerturbedStatics<Dim>* const side = vertex.first_order();
+    PerturbedStatics* const side = vertex.first_order();
     const std::size_t settled = side != nullptr ? side->log.size() : 0;
     auto limit = find_limit(vertex.statics, sigma, direction, side);
     const auto worse_than = [&](double accuracy) {
@@ -186,10 +185,9 @@ template <int Dim> Result<LoadLimit> well_known_limit(Vertex<Dim>& vertex, const
 }
 
 /// Both ends of the supported interval.
-template <int Dim>
-std::optional<Failure> describe_limits(Description<Dim>& description, Vertex<Dim>& vertex, const Load<Dim>& load) {
+std::optional<Failure> describe_limits(Description& description, Vertex& vertex, const Load& load) {
     constexpr Contact none{ContactKind::disk_disk, -1, -1};
-    EquilibriumRecord<Dim>& record = description.record;
+    EquilibriumRecord& record = description.record;
     for (const int direction : {-1, +1}) {
         double& stress = direction > 0 ? record.stress_high : record.stress_low;
         Contact& opens = direction > 0 ? record.opens_high : record.opens_low;
@@ -214,18 +212,18 @@ std::optional<Failure> describe_limits(Description<Dim>& description, Vertex<Dim
     return std::nullopt;
 }
 
-template <int Dim> Result<Description<Dim>> describe(Vertex<Dim>& vertex, const Load<Dim>& load) {
-    Description<Dim> description;
-    EquilibriumRecord<Dim>& record = description.record;
+Result<Description> describe(Vertex& vertex, const Load& load) {
+    Description description;
+    EquilibriumRecord& record = description.record;
     record.margin = std::numeric_limits<double>::infinity();
     record.decided_by = Rung::combinatorial;
     const double sigma = load.loaded_stress();
     record.stress = sigma;
     record.sigma1 = load.other_stress();
     description.vertex = at_true_vertex(vertex);
-    const TrueCoordinates<Dim> q{vertex, description.vertex};
-    const Cell<Dim>& cell = vertex.packing.cell;
-    for (std::size_t a = 0; a < Dim + (cell.any() && cell.tilt_moves[0] ? 1 : 0); ++a) {
+    const TrueCoordinates q{vertex, description.vertex};
+    const Cell& cell = vertex.packing.cell;
+    for (std::size_t a = 0; a < vertex.packing.axes() + (cell.any() && cell.tilt_moves[0] ? 1 : 0); ++a) {
         const Enclosure length = length_of(q, a);
         const Enclosure strain = strain_of(q, load, a);
         record.length.push_back(length.value);
@@ -274,9 +272,8 @@ template <int Dim> Result<Description<Dim>> describe(Vertex<Dim>& vertex, const 
     return description;
 }
 
-template <int Dim>
-std::optional<Failure> record_smallest_gap(EquilibriumRecord<Dim>& record, const Vertex<Dim>& vertex,
-                                           const VertexEnclosure& at, const CandidateList<Dim>& candidates) {
+std::optional<Failure> record_smallest_gap(EquilibriumRecord& record, const Vertex& vertex, const VertexEnclosure& at,
+                                           const CandidateList& candidates) {
     const auto look = [&](const std::vector<Contact>& pairs) {
         record.min_gap_contact = {ContactKind::disk_disk, -1, -1};
         Enclosure smallest{std::numeric_limits<double>::infinity(), 0};
@@ -306,36 +303,36 @@ std::optional<Failure> record_smallest_gap(EquilibriumRecord<Dim>& record, const
     return std::nullopt;
 }
 
-template <int Dim>
-std::optional<Failure> check_equilibrium(const EquilibriumRecord<Dim>& record, const Vertex<Dim>& vertex,
-                                         const Load<Dim>& load, const CandidateList<Dim>& candidates) {
+std::optional<Failure> check_equilibrium(const EquilibriumRecord& record, const Vertex& vertex, const Load& load,
+                                         const CandidateList& candidates) {
     // No two grains overlap by more than the uncertainty of the stored configuration, all pairs included.
     const double allowance = 4 * vertex.enclosure.distance();
     const Admissibility admissible = certify_admissible(vertex.packing, allowance, &candidates);
     if (admissible.verdict != Verdict::proved) {
         return failed(FailureKind::overlap, "equilibrium at sigma = {:.17g}: {} overlap, gap {:.6g}",
-                      load.loaded_stress(), named<Dim>(admissible.worst), admissible.worst_gap);
+                      load.loaded_stress(), named(admissible.worst), admissible.worst_gap);
     }
-    const Packing<Dim>& packing = vertex.packing;
+    const Packing& packing = vertex.packing;
     const bool plain = load.disk_force.empty() && packing.fixed.empty();
-    const bool walled = packing.cell.any() || packing.walls == Walls<Dim>::box(); // nothing is free as a whole
-    const int expected = vertex.structure.dofs().dof_count() - Dim * record.rattlers;
+    const bool walled =
+        packing.cell.any() || packing.walls == Walls::box(packing.dimension); // nothing is free as a whole
+    const int expected = vertex.structure.dofs().dof_count() - packing.dimension * record.rattlers;
     if (plain && walled && record.held == 0 && record.backbone != expected) {
         return failed(FailureKind::undecided,
                       "backbone of {} contacts with {} rattlers: expected N_f - {} rattlers = {}", record.backbone,
-                      record.rattlers, Dim, expected);
+                      record.rattlers, packing.dimension, expected);
     }
     return std::nullopt;
 }
 
-template <int Dim> void record_strain(ArcRecord<Dim>& record, const Vertex<Dim>& end, const Load<Dim>& load) {
+void record_strain(ArcRecord& record, const Vertex& end, const Load& load) {
     const VertexEnclosure at = at_true_vertex(end);
-    const Enclosure strain = strain_of(TrueCoordinates<Dim>{end, at}, load, static_cast<std::size_t>(load.loaded_axis));
+    const Enclosure strain = strain_of(TrueCoordinates{end, at}, load, static_cast<std::size_t>(load.loaded_axis));
     record.strain = strain.value;
     record.strain_bound = strain.radius;
 }
 
-template <int Dim> void record_path(ArcRecord<Dim>& record, const Arc<Dim>& path) {
+void record_path(ArcRecord& record, const Arc& path) {
     record.closed = path.closed;
     record.power_turn = path.kind == ArcEnd::power_turn;
     record.held_at = record.power_turn ? path.end.q[static_cast<std::size_t>(path.closed.i)] : 0;
@@ -343,15 +340,5 @@ template <int Dim> void record_path(ArcRecord<Dim>& record, const Arc<Dim>& path
     record.displacement = path.displacement;
     record.steps = path.steps;
 }
-
-template std::optional<Failure> record_smallest_gap<2>(EquilibriumRecord<2>&, const Vertex<2>&, const VertexEnclosure&,
-                                                       const CandidateList<2>&);
-template std::optional<Failure> check_equilibrium<2>(const EquilibriumRecord<2>&, const Vertex<2>&, const Load<2>&,
-                                                     const CandidateList<2>&);
-template void record_strain<2>(ArcRecord<2>&, const Vertex<2>&, const Load<2>&);
-template void record_path<2>(ArcRecord<2>&, const Arc<2>&);
-template Result<Description<2>> describe<2>(Vertex<2>&, const Load<2>&);
-template std::vector<int> rattlers<2>(const Vertex<2>&);
-template std::vector<double> finite_forces<2>(const Vertex<2>&, const Load<2>&);
 
 } // namespace isostat

@@ -7,21 +7,21 @@
 
 namespace isostat {
 
-template <int Dim> void Recorder<Dim>::count(const Decision& decision) {
+void Recorder::count(const Decision& decision) {
     counters.tally.perturbed[static_cast<std::size_t>(decision.kind)] += decision.perturbed ? 1 : 0;
     counters.tally.count(decision.kind, decision.margin, decision.rung);
     margin_ = std::min(margin_, decision.margin);
     rung_ = std::max(rung_, decision.rung);
 }
 
-template <int Dim> void Recorder<Dim>::count(const ArcProof<Dim>& proof) {
+void Recorder::count(const ArcProof& proof) {
     for (const Decision& decision : proof.decisions) {
         count(decision);
     }
 }
 
-template <int Dim> std::optional<Failure> Recorder<Dim>::record(ArcProof<Dim>& proof, int arc, double stress) {
-    ArcRecord<Dim>& record = proof.record;
+std::optional<Failure> Recorder::record(ArcProof& proof, int arc, double stress) {
+    ArcRecord& record = proof.record;
     const long choices =
         counters.tally.choices + std::count_if(record.perturbed.begin(), record.perturbed.end(),
                                                [](const auto& tie) { return tie.choice != TieChoice::none; });
@@ -29,7 +29,7 @@ template <int Dim> std::optional<Failure> Recorder<Dim>::record(ArcProof<Dim>& p
         return failed(FailureKind::undecided,
                       "the arc that opens {} and closes {} rests on choice {} of the run (cap "
                       "max_choices = {})",
-                      named<Dim>(record.opened), named<Dim>(record.closed), choices, options.max_choices);
+                      named(record.opened), named(record.closed), choices, options.max_choices);
     }
     counters.tally.choices = choices;
     record.step = ++counters.steps;
@@ -44,12 +44,12 @@ template <int Dim> std::optional<Failure> Recorder<Dim>::record(ArcProof<Dim>& p
     return std::nullopt;
 }
 
-template <int Dim> void Recorder<Dim>::take_margin(EquilibriumRecord<Dim>& record) {
+void Recorder::take_margin(EquilibriumRecord& record) {
     record.margin = std::exchange(margin_, std::numeric_limits<double>::infinity());
     record.decided_by = std::exchange(rung_, Rung::combinatorial);
 }
 
-template <int Dim> void Recorder<Dim>::count(const ArcCertificate& certificate, double seconds) {
+void Recorder::count(const ArcCertificate& certificate, double seconds) {
     ArcTally& tally = counters.arcs;
     const bool proved = certificate.verdict == Verdict::proved;
     (proved ? tally.certified : tally.undecided)++;
@@ -65,7 +65,5 @@ template <int Dim> void Recorder<Dim>::count(const ArcCertificate& certificate, 
     lower(tally.gap_margin, certificate.gap_margin);
     tally.seconds += seconds;
 }
-
-template class Recorder<2>;
 
 } // namespace isostat

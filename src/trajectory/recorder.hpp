@@ -7,32 +7,30 @@
 namespace isostat {
 
 /// Counts what was decided, and tells the observer. For the thread that records only.
-template <int Dim> class Recorder {
+class Recorder {
   public:
     /// All must outlive the recorder.
-    Recorder(const RunOptions& asked, RunCounters& counted, RunObserver<Dim>& told)
+    Recorder(const RunOptions& asked, RunCounters& counted, RunObserver& told)
         : options(asked), counters(counted), observer(told) {}
 
     const RunOptions& options;
     RunCounters& counters;
-    RunObserver<Dim>& observer;
+    RunObserver& observer;
 
     [[nodiscard]] bool stopped() const { return options.stop != nullptr && options.stop->load(); }
     void count(const Decision& decision);
     /// Its decisions.
-    void count(const ArcProof<Dim>& proof);
+    void count(const ArcProof& proof);
     /// An arc that happened: numbered, counted and shown. Failure: it rests on more choices than are left; it is not
     /// recorded then.
-    std::optional<Failure> record(ArcProof<Dim>& proof, int arc, double stress);
+    std::optional<Failure> record(ArcProof& proof, int arc, double stress);
     /// Smallest margin and highest rung of the decisions since the last call, into the record of an equilibrium.
-    void take_margin(EquilibriumRecord<Dim>& record);
+    void take_margin(EquilibriumRecord& record);
 
   private:
     void count(const ArcCertificate& certificate, double seconds);
     double margin_ = std::numeric_limits<double>::infinity();
     Rung rung_ = Rung::combinatorial;
 };
-
-extern template class Recorder<2>;
 
 } // namespace isostat

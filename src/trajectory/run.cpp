@@ -22,9 +22,9 @@ namespace {
 using roundoff::infinity;
 
 /// One segment: from equilibrium to limit load, and by a rearrangement to the next equilibrium.
-template <int Dim> class Run {
+class Run {
   public:
-    Run(State<Dim>& state, const Segment& segment, int number, Recorder<Dim> recorder)
+    Run(State& state, const Segment& segment, int number, Recorder recorder)
         : state_(state), segment_(segment), number_(number), recorder_(std::move(recorder)),
           counters_(recorder_.counters), seconds_before_(counters_.seconds) {}
 
@@ -32,7 +32,7 @@ template <int Dim> class Run {
 
   private:
     [[nodiscard]] bool resumed() const { return counters_.equilibria != 0 || counters_.steps != 0; }
-    [[nodiscard]] LimitLoad<Dim> load() const { return {state_.load}; }
+    [[nodiscard]] LimitLoad load() const { return {state_.load}; }
     [[nodiscard]] double sigma() const { return state_.load.loaded_stress(); }
     [[nodiscard]] double elapsed() const {
         return seconds_before_ + std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
@@ -40,33 +40,33 @@ template <int Dim> class Run {
 
     std::optional<Failure> start();
     std::optional<Failure> resume();
-    std::optional<Failure> first_equilibrium(const SegmentStart<Dim>& start);
+    std::optional<Failure> first_equilibrium(const SegmentStart& start);
     std::optional<Failure> still_equilibrium();
     std::optional<Failure> reload();
     /// True: the goal of the segment is reached.
     Result<bool> next_equilibrium();
     Result<LoadLimit> find_limit();
     Result<bool> reach_stress(const LoadLimit& limit);
-    Result<Reached<Dim>> follow(Attempt<Dim>& attempt);
-    std::optional<Failure> rearrange(const Opening& opening, ArcKind kind, LimitLoad<Dim> at);
-    std::optional<Failure> report(int arcs, std::optional<Result<Description<Dim>>> known = std::nullopt);
+    Result<Reached> follow(Attempt& attempt);
+    std::optional<Failure> rearrange(const Opening& opening, ArcKind kind, LimitLoad at);
+    std::optional<Failure> report(int arcs, std::optional<Result<Description>> known = std::nullopt);
 
-    State<Dim>& state_;
+    State& state_;
     const Segment& segment_;
     int number_;
-    Recorder<Dim> recorder_;
+    Recorder recorder_;
     RunCounters& counters_;
     double seconds_before_;
     std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
-    std::unique_ptr<const TieSettling<Dim>> ties_ = tie_settling(state_, recorder_.options);
-    Prover<Dim> prover_{recorder_.options, *ties_};
-    std::shared_ptr<Vertex<Dim>> vertex_;
-    EquilibriumRecord<Dim> record_;                  ///< of `vertex_`
+    std::unique_ptr<const TieSettling> ties_ = tie_settling(state_, recorder_.options);
+    Prover prover_{recorder_.options, *ties_};
+    std::shared_ptr<Vertex> vertex_;
+    EquilibriumRecord record_;                       ///< of `vertex_`
     std::array<std::optional<LoadLimit>, 2> limits_; ///< of `vertex_`, as `describe` found them
     int made_ = -1; ///< equilibria of the segment; a start that is no equilibrium yet makes one that does not count
 };
 
-template <int Dim> SegmentOutcome Run<Dim>::run() {
+SegmentOutcome Run::run() {
     SegmentOutcome outcome;
     outcome.failure = start();
     made_ = 0;
@@ -87,7 +87,7 @@ template <int Dim> SegmentOutcome Run<Dim>::run() {
     return outcome;
 }
 
-template <int Dim> std::optional<Failure> Run<Dim>::start() {
+std::optional<Failure> Run::start() {
     auto begun = start_segment(state_, prover_, *ties_, resumed());
     if (!begun.ok()) {
         return located(begun.failure(), "start");
@@ -98,7 +98,7 @@ template <int Dim> std::optional<Failure> Run<Dim>::start() {
 
 /// The same questions as when the equilibrium was found: the statics then stand on the same rung, and the run goes on
 /// with the same bits.
-template <int Dim> std::optional<Failure> Run<Dim>::resume() {
+std::optional<Failure> Run::resume() {
     if (auto failure = still_equilibrium()) {
         return failure;
     }
@@ -112,7 +112,7 @@ template <int Dim> std::optional<Failure> Run<Dim>::resume() {
 }
 
 /// Rearranged at its own load where a force is negative.
-template <int Dim> std::optional<Failure> Run<Dim>::first_equilibrium(const SegmentStart<Dim>& start) {
+std::optional<Failure> Run::first_equilibrium(const SegmentStart& start) {
     recorder_.count({DecisionKind::gaps, start.gaps.margin, start.gaps.rung});
     auto decided = prover_.decide(*vertex_, sigma(), {}, 0);
     if (!decided.ok()) {
@@ -132,7 +132,7 @@ template <int Dim> std::optional<Failure> Run<Dim>::first_equilibrium(const Segm
 }
 
 /// What the state stores says of `vertex_`; with first-order terms it must be an equilibrium again.
-template <int Dim> std::optional<Failure> Run<Dim>::still_equilibrium() {
+std::optional<Failure> Run::still_equilibrium() {
     auto decision = prover_.ask_again(*vertex_, sigma());
     if (!ties_->settles() || (decision.ok() && !decision.value().opening)) {
         return std::nullopt;
@@ -143,7 +143,7 @@ template <int Dim> std::optional<Failure> Run<Dim>::still_equilibrium() {
 }
 
 /// The same vertex under another load, which is meant as it is stored.
-template <int Dim> std::optional<Failure> Run<Dim>::reload() {
+std::optional<Failure> Run::reload() {
     ties_->load_is_stored();
     const auto touching = vertex_->perturbed->touching;
     const ZeroGaps zero = vertex_->perturbed->zero;
@@ -157,7 +157,7 @@ template <int Dim> std::optional<Failure> Run<Dim>::reload() {
     return still_equilibrium();
 }
 
-template <int Dim> Result<bool> Run<Dim>::next_equilibrium() {
+Result<bool> Run::next_equilibrium() {
     if (recorder_.stopped()) {
         return failed(FailureKind::interrupted, "stopped at equilibrium {}", counters_.equilibria);
     }
@@ -187,7 +187,7 @@ template <int Dim> Result<bool> Run<Dim>::next_equilibrium() {
     opening.margin = limit.margin;
     opening.rung = limit.rung;
     opening.perturbed = limit.perturbed;
-    LimitLoad<Dim> at = load();
+    LimitLoad at = load();
     at.set_stress(limit.stress);
     ties_->set_limit(at, *vertex_, limit.opens, limit.stress_error);
     ++counters_.equilibria;
@@ -203,7 +203,7 @@ template <int Dim> Result<bool> Run<Dim>::next_equilibrium() {
 /// Where the statics have climbed since `describe`, the same question has an answer with other bits; a resumed run,
 /// whose statics climb at other moments, must find the same. With first-order terms ties are written to the log once
 /// more.
-template <int Dim> Result<LoadLimit> Run<Dim>::find_limit() {
+Result<LoadLimit> Run::find_limit() {
     if (vertex_->perturbed) {
         vertex_->perturbed->statics.log.clear();
     }
@@ -215,7 +215,7 @@ template <int Dim> Result<LoadLimit> Run<Dim>::find_limit() {
 }
 
 /// The stress that the segment is to reach, if it lies before the limit: an equilibrium of its own. True: it does.
-template <int Dim> Result<bool> Run<Dim>::reach_stress(const LoadLimit& limit) {
+Result<bool> Run::reach_stress(const LoadLimit& limit) {
     if (!segment_.to_stress) {
         return false;
     }
@@ -241,24 +241,24 @@ template <int Dim> Result<bool> Run<Dim>::reach_stress(const LoadLimit& limit) {
     return true;
 }
 
-template <int Dim> Result<Reached<Dim>> Run<Dim>::follow(Attempt<Dim>& attempt) {
+Result<Reached> Run::follow(Attempt& attempt) {
     prover_.start_at(vertex_->packing);
-    Rearrangement<Dim> rearrangement({vertex_, attempt.opening, attempt.kind, attempt.at}, prover_, recorder_);
+    Rearrangement rearrangement({vertex_, attempt.opening, attempt.kind, attempt.at}, prover_, recorder_);
     auto reached = rearrangement.run();
     attempt.begun = rearrangement.arcs() > 0;
     return reached;
 }
 
-template <int Dim> std::optional<Failure> Run<Dim>::rearrange(const Opening& opening, ArcKind kind, LimitLoad<Dim> at) {
-    Attempt<Dim> attempt{opening, kind, std::move(at)};
-    LimitAttempts<Dim> attempts(vertex_->statics, sigma(), segment_.direction, recorder_,
-                                [this](Attempt<Dim>& a) { return follow(a); });
+std::optional<Failure> Run::rearrange(const Opening& opening, ArcKind kind, LimitLoad at) {
+    Attempt attempt{opening, kind, std::move(at)};
+    LimitAttempts attempts(vertex_->statics, sigma(), segment_.direction, recorder_,
+                           [this](Attempt& a) { return follow(a); });
     auto reached = kind == ArcKind::limit ? attempts.begin(attempt) : follow(attempt);
     if (!reached.ok()) {
         return reached.failure();
     }
-    const Load<Dim> load = attempt.at.load;
-    Reached<Dim>& there = reached.value();
+    const Load load = attempt.at.load;
+    Reached& there = reached.value();
     vertex_ = std::move(there.proof.vertex);
     state_.load = load;
     state_.packing = vertex_->packing;
@@ -266,12 +266,12 @@ template <int Dim> std::optional<Failure> Run<Dim>::rearrange(const Opening& ope
     return report(there.arcs, std::move(there.proof.description));
 }
 
-template <int Dim> std::optional<Failure> Run<Dim>::report(int arcs, std::optional<Result<Description<Dim>>> known) {
+std::optional<Failure> Run::report(int arcs, std::optional<Result<Description>> known) {
     auto described = known ? std::move(*known) : describe(*vertex_, state_.load);
     if (!described.ok()) {
         return located(described.failure(), fmt::format("equilibrium at sigma = {:.17g}", sigma()));
     }
-    EquilibriumRecord<Dim>& record = described.value().record;
+    EquilibriumRecord& record = described.value().record;
     limits_ = described.value().limit;
     if (auto failure = record_smallest_gap(record, *vertex_, described.value().vertex, prover_.candidates())) {
         return located(*failure, fmt::format("equilibrium at sigma = {:.17g}", sigma()));
@@ -296,9 +296,8 @@ template <int Dim> std::optional<Failure> Run<Dim>::report(int arcs, std::option
 
 } // namespace
 
-template <int Dim>
-SegmentOutcome run_segment(State<Dim>& state, const Segment& segment, int segment_number, const RunOptions& options,
-                           RunCounters& counters, RunObserver<Dim>& observer) {
+SegmentOutcome run_segment(State& state, const Segment& segment, int segment_number, const RunOptions& options,
+                           RunCounters& counters, RunObserver& observer) {
     require_floating_point();
     require_followed(state, "state");
     const double stress = state.load.loaded_stress();
@@ -308,10 +307,7 @@ SegmentOutcome run_segment(State<Dim>& state, const Segment& segment, int segmen
                               "which is {:.17g}",
                               *segment.to_stress, stress)};
     }
-    return Run<Dim>(state, segment, segment_number, {options, counters, observer}).run();
+    return Run(state, segment, segment_number, {options, counters, observer}).run();
 }
-
-template SegmentOutcome run_segment<2>(State<2>&, const Segment&, int, const RunOptions&, RunCounters&,
-                                       RunObserver<2>&);
 
 } // namespace isostat

@@ -7,7 +7,7 @@ namespace isostat {
 
 namespace {
 
-template <int Dim> Result<SegmentStart<Dim>> prove_start(const State<Dim>& state, Prover<Dim>& prover) {
+Result<SegmentStart> prove_start(const State& state, Prover& prover) {
     auto vertex = prover.vertex(state.packing, state.contacts, {state.load});
     if (!vertex.ok()) {
         return vertex.failure();
@@ -16,12 +16,12 @@ template <int Dim> Result<SegmentStart<Dim>> prove_start(const State<Dim>& state
     if (!gaps.ok()) {
         return gaps.failure();
     }
-    return SegmentStart<Dim>{std::move(vertex.value()), std::move(gaps.value())};
+    return SegmentStart{std::move(vertex.value()), std::move(gaps.value())};
 }
 
 /// True: a choice was made.
-template <int Dim> Result<bool> choose_contacts(State<Dim>& state, Prover<Dim>& prover, const TieSettling<Dim>& ties) {
-    const auto dofs = static_cast<std::size_t>(DofMap<Dim>(state.packing).dof_count());
+Result<bool> choose_contacts(State& state, Prover& prover, const TieSettling& ties) {
+    const auto dofs = static_cast<std::size_t>(DofMap(state.packing).dof_count());
     const bool hyperstatic = state.contacts.size() > dofs;
     if (hyperstatic) {
         if (auto failure = ties.choose_contacts()) {
@@ -48,9 +48,7 @@ template <int Dim> Result<bool> choose_contacts(State<Dim>& state, Prover<Dim>& 
 
 } // namespace
 
-template <int Dim>
-Result<SegmentStart<Dim>> start_segment(State<Dim>& state, Prover<Dim>& prover, const TieSettling<Dim>& ties,
-                                        bool resumed) {
+Result<SegmentStart> start_segment(State& state, Prover& prover, const TieSettling& ties, bool resumed) {
     prover.start_at(state.packing);
     bool chosen = false;
     if (ties.settles() && !resumed) {
@@ -64,9 +62,9 @@ Result<SegmentStart<Dim>> start_segment(State<Dim>& state, Prover<Dim>& prover, 
     if (!start.ok()) {
         return start;
     }
-    SegmentStart<Dim>& begun = start.value();
+    SegmentStart& begun = start.value();
     if (begun.gaps.negative) {
-        return failed(FailureKind::overlap, "{} overlap", named<Dim>(*begun.gaps.negative));
+        return failed(FailureKind::overlap, "{} overlap", named(*begun.gaps.negative));
     }
     if (auto failure = ties.resume(*begun.vertex, begun.gaps.zero)) {
         return *failure;
@@ -74,7 +72,5 @@ Result<SegmentStart<Dim>> start_segment(State<Dim>& state, Prover<Dim>& prover, 
     begun.chosen = chosen || !begun.gaps.zero.empty();
     return start;
 }
-
-template Result<SegmentStart<2>> start_segment<2>(State<2>&, Prover<2>&, const TieSettling<2>&, bool);
 
 } // namespace isostat

@@ -19,11 +19,11 @@
 namespace isostat {
 
 /// What an arc starts with.
-template <int Dim> struct ArcStart {
+struct ArcStart {
     Opening opening;
     ArcKind kind = ArcKind::limit;
     long step = 0; ///< number of the arc in the run
-    const Load<Dim>* load = nullptr;
+    const Load* load = nullptr;
     std::vector<TieDecision> settled; ///< ties on the way to its opening
 };
 
@@ -31,35 +31,35 @@ template <int Dim> struct ArcStart {
 ArcKind kind_of(const Contact& opened, bool infinitesimal);
 
 /// Where steering found no negative force. Nothing is proved of it.
-template <int Dim> struct SteeredEnd {
-    Packing<Dim> packing;
+struct SteeredEnd {
+    Packing packing;
     std::vector<Contact> contacts;
     ContactId fresh_hold; ///< valid: the last arc ended at a power turn, and holds this coordinate
-    std::shared_ptr<const RegularTriangulation<Dim>> triangulation; ///< of a configuration near
+    std::shared_ptr<const RegularTriangulation> triangulation; ///< of a configuration near
 };
 
 /// An arc that was followed, and its end. A guess in every part: a prover says what is true of it.
-template <int Dim> struct ArcProposal {
-    ArcRecord<Dim> record; ///< as far as the path tells
-    Opening opening;       ///< that it starts with
-    Packing<Dim> end;
-    std::vector<double> tangent;                    ///< there, on coordinates
-    std::optional<ExchangedContacts<Dim>> contacts; ///< there; none: structurally singular
-    std::optional<ApproximateInverse> approximate;  ///< of their matrix
-    std::vector<double> forces;                     ///< the finite ones; empty: not known
-    double cost_before = 0;                         ///< see `Vertex`
-    bool ahead = false;                             ///< nothing is proved of its start either
+struct ArcProposal {
+    ArcRecord record; ///< as far as the path tells
+    Opening opening;  ///< that it starts with
+    Packing end;
+    std::vector<double> tangent;                   ///< there, on coordinates
+    std::optional<ExchangedContacts> contacts;     ///< there; none: structurally singular
+    std::optional<ApproximateInverse> approximate; ///< of their matrix
+    std::vector<double> forces;                    ///< the finite ones; empty: not known
+    double cost_before = 0;                        ///< see `Vertex`
+    bool ahead = false;                            ///< nothing is proved of its start either
     /// With first-order terms:
-    bool stays = false;                  ///< the way is of length O(eps)
-    bool relists = false;                ///< only the list changes, and pairs that touch may overlap at first order
-    std::vector<Contact> resting;        ///< pairs that touch all along
-    std::vector<Contact> taken_to_rest;  ///< pairs that seem to: the gaps at the end tell
-    std::vector<TieDecision> settled;    ///< ties at the start of the way
-    std::optional<SteeredEnd<Dim>> last; ///< no force is negative at the end
-    WorkCounts work{};                   ///< to be counted when it is recorded
+    bool stays = false;                 ///< the way is of length O(eps)
+    bool relists = false;               ///< only the list changes, and pairs that touch may overlap at first order
+    std::vector<Contact> resting;       ///< pairs that touch all along
+    std::vector<Contact> taken_to_rest; ///< pairs that seem to: the gaps at the end tell
+    std::vector<TieDecision> settled;   ///< ties at the start of the way
+    std::optional<SteeredEnd> last;     ///< no force is negative at the end
+    WorkCounts work{};                  ///< to be counted when it is recorded
 };
 
-template <int Dim> struct ArcProof;
+struct ArcProof;
 
 /// Proposes arc after arc. The two kinds differ in what a proposal starts from:
 /// - `BoundedSteering`: a vertex that is proved, and the opening that was proved to be the one; it knows the next arc
@@ -67,7 +67,7 @@ template <int Dim> struct ArcProof;
 /// - `FloatingSteering`: the end of the proposal before, as refined double precision knows it. Goes ahead of every
 ///   proof; *no rank, no sign and no order of what it proposes is proved or even bounded*, and one that took a wrong
 ///   turn does not know.
-template <int Dim> class Steering {
+class Steering {
   public:
     Steering() = default;
     Steering(const Steering&) = delete;
@@ -76,11 +76,11 @@ template <int Dim> class Steering {
     /// It knows what the next arc starts with.
     [[nodiscard]] virtual bool goes_on() const = 0;
     /// The next arc. \pre goes_on(). Failures: those of `follow_arc`, and what each kind adds.
-    virtual Result<ArcProposal<Dim>> propose() = 0;
+    virtual Result<ArcProposal> propose() = 0;
     /// The last proposal was refused: whether there is another one for the same arc.
-    [[nodiscard]] virtual bool may_revise(const ArcProof<Dim>& /*refused*/) const { return false; }
+    [[nodiscard]] virtual bool may_revise(const ArcProof& /*refused*/) const { return false; }
     /// It comes next. \pre may_revise
-    virtual void revise(const ArcProof<Dim>& /*refused*/) {}
+    virtual void revise(const ArcProof& /*refused*/) {}
 };
 
 } // namespace isostat

@@ -13,17 +13,15 @@
 
 namespace isostat {
 
-template <int Dim>
-Vertex<Dim>::Vertex(Packing<Dim> p, RankProof<Dim>& proof, Factorisation factors, const Load<Dim>& load,
-                    InverseBoundCache& cache, LadderOptions options)
+Vertex::Vertex(Packing p, RankProof& proof, Factorisation factors, const Load& load, InverseBoundCache& cache,
+               LadderOptions options)
     : packing(std::move(p)), structure(proof.unproved()), factorisation(std::move(factors)),
       inverse(bound_inverse(structure, factorisation, cache, [&] { return proof.is_regular(); })),
       enclosure(enclose_vertex(packing, structure, factorisation, inverse)),
       statics(packing, load, structure, factorisation, inverse, {options, &enclosure}), ladder(options) {}
 
-template <int Dim>
-Vertex<Dim>::Vertex(Packing<Dim> p, IsostaticStructure<Dim> s, ApproximateInverse approximate,
-                    const InverseBound& bound, const Load<Dim>& load, StaticsHints<Dim> hints)
+Vertex::Vertex(Packing p, IsostaticStructure s, ApproximateInverse approximate, const InverseBound& bound,
+               const Load& load, StaticsHints hints)
     : packing(std::move(p)), structure(std::move(s)), factorisation(structure, std::move(approximate)), inverse(bound),
       enclosure(enclose_vertex(packing, structure, factorisation, inverse)),
       statics(packing, load, structure, factorisation, inverse,
@@ -34,15 +32,14 @@ namespace {
 
 /// Bounds of a vertex ask for exact differences (proofs/cells.md, C2), and for entries of the contact matrix that are
 /// multiples by a power of two.
-template <int Dim>
-std::optional<Failure> is_not_exact(const Packing<Dim>& packing, const std::vector<Contact>& contacts) {
+std::optional<Failure> is_not_exact(const Packing& packing, const std::vector<Contact>& contacts) {
     const auto far =
         std::find_if(contacts.begin(), contacts.end(), [](const Contact& c) { return is_beyond(c, farthest_contact); });
     if (far != contacts.end()) {
         return failed(FailureKind::undecided,
                       "a run takes contacts with images up to {} periods away, and {} is farther: write the state with "
                       "its disks put into the cell",
-                      farthest_contact, named<Dim>(*far));
+                      farthest_contact, named(*far));
     }
     if (!is_on_grid(packing)) {
         return failed(FailureKind::undecided, "a part of the cell that does not move is not on the grid of the "
@@ -53,7 +50,7 @@ std::optional<Failure> is_not_exact(const Packing<Dim>& packing, const std::vect
 
 } // namespace
 
-template <int Dim> std::optional<Failure> Vertex<Dim>::lacking() {
+std::optional<Failure> Vertex::lacking() {
     if (packing.cell.any()) {
         if (auto failure = is_not_exact(packing, structure.contacts())) {
             return failure;
@@ -76,9 +73,8 @@ template <int Dim> std::optional<Failure> Vertex<Dim>::lacking() {
     return std::nullopt;
 }
 
-template <int Dim>
-Result<typename Vertex<Dim>::Beginning> Vertex<Dim>::begin(Packing<Dim> packing, std::vector<Contact> contacts) {
-    auto rank = RankProof<Dim>::begin(packing, std::move(contacts));
+Result<Vertex::Beginning> Vertex::begin(Packing packing, std::vector<Contact> contacts) {
+    auto rank = RankProof::begin(packing, std::move(contacts));
     if (!rank.ok()) {
         return rank.failure();
     }
@@ -86,10 +82,8 @@ Result<typename Vertex<Dim>::Beginning> Vertex<Dim>::begin(Packing<Dim> packing,
     return Beginning{std::move(packing), std::move(rank.value()), std::move(factors)};
 }
 
-template <int Dim>
-Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::make(Packing<Dim> packing, std::vector<Contact> contacts,
-                                                       const Load<Dim>& load, InverseBoundCache& cache,
-                                                       LadderOptions options) {
+Result<std::unique_ptr<Vertex>> Vertex::make(Packing packing, std::vector<Contact> contacts, const Load& load,
+                                             InverseBoundCache& cache, LadderOptions options) {
     auto begun = begin(std::move(packing), std::move(contacts));
     if (!begun.ok()) {
         return begun.failure();
@@ -97,10 +91,9 @@ Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::make(Packing<Dim> packing, std
     return make(std::move(begun.value()), load, cache, options);
 }
 
-template <int Dim>
-Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::make(Beginning beginning, const Load<Dim>& load,
-                                                       InverseBoundCache& cache, LadderOptions options) {
-    RankProof<Dim>& rank = beginning.rank;
+Result<std::unique_ptr<Vertex>> Vertex::make(Beginning beginning, const Load& load, InverseBoundCache& cache,
+                                             LadderOptions options) {
+    RankProof& rank = beginning.rank;
     std::unique_ptr<Vertex> vertex(
         new Vertex(std::move(beginning.packing), rank, std::move(beginning.factorisation), load, cache, options));
     auto proved = rank.conclude();
@@ -118,10 +111,8 @@ Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::make(Beginning beginning, cons
     return vertex;
 }
 
-template <int Dim>
-Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::exchanged(const Vertex& from, ArcProposal<Dim>& arc,
-                                                            const Load<Dim>& load, InverseBoundCache& cache,
-                                                            LadderOptions options) {
+Result<std::unique_ptr<Vertex>> Vertex::exchanged(const Vertex& from, ArcProposal& arc, const Load& load,
+                                                  InverseBoundCache& cache, LadderOptions options) {
     if (arc.contacts) {
         auto made = prove(from, arc, load, cache, options);
         if (!made.ok() || made.value() != nullptr) {
@@ -135,10 +126,8 @@ Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::exchanged(const Vertex& from, 
 }
 
 /// Nothing when no bound was proved in doubles.
-template <int Dim>
-Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::prove(const Vertex& from, ArcProposal<Dim>& arc,
-                                                        const Load<Dim>& load, InverseBoundCache& cache,
-                                                        LadderOptions options) {
+Result<std::unique_ptr<Vertex>> Vertex::prove(const Vertex& from, ArcProposal& arc, const Load& load,
+                                              InverseBoundCache& cache, LadderOptions options) {
     std::vector<double> mechanism(static_cast<std::size_t>(from.structure.size()), 0.0);
     for (std::size_t mu = 0; mu < mechanism.size() && !arc.tangent.empty(); ++mu) {
         mechanism[mu] =
@@ -152,8 +141,8 @@ Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::prove(const Vertex& from, ArcP
         return std::unique_ptr<Vertex>();
     }
     std::unique_ptr<Vertex> vertex(new Vertex(
-        arc.end, IsostaticStructure<Dim>::exchanged(std::move(*arc.contacts), bound->proof),
-        std::move(*arc.approximate), bound->bound, load, {options, nullptr, &from.statics, std::move(arc.forces)}));
+        arc.end, IsostaticStructure::exchanged(std::move(*arc.contacts), bound->proof), std::move(*arc.approximate),
+        bound->bound, load, {options, nullptr, &from.statics, std::move(arc.forces)}));
     vertex->cost_before = arc.cost_before;
     if (auto failure = vertex->lacking()) {
         return *failure;
@@ -170,7 +159,7 @@ const ZeroGaps::value_type* find(const ZeroGaps& pairs, const Contact& contact) 
 }
 
 /// A candidate with an image that is farther away than the grid allows for (C2).
-template <int Dim> std::optional<Failure> too_far(const Packing<Dim>& packing, const std::vector<Contact>& candidates) {
+std::optional<Failure> too_far(const Packing& packing, const std::vector<Contact>& candidates) {
     const auto far = packing.cell.any() ? std::find_if(candidates.begin(), candidates.end(),
                                                        [](const Contact& c) { return is_beyond(c, farthest_image); })
                                         : candidates.end();
@@ -179,14 +168,12 @@ template <int Dim> std::optional<Failure> too_far(const Packing<Dim>& packing, c
     }
     return failed(FailureKind::undecided,
                   "{} may touch, more than {} periods away: write the state with its disks put into the cell",
-                  named<Dim>(*far), farthest_image);
+                  named(*far), farthest_image);
 }
 
 } // namespace
 
-template <int Dim>
-Result<typename Vertex<Dim>::Gaps> Vertex<Dim>::check_gaps(CandidateList<Dim>& candidates, KeptCandidates& kept,
-                                                           const ZeroGaps* known) {
+Result<Vertex::Gaps> Vertex::check_gaps(CandidateList& candidates, KeptCandidates& kept, const ZeroGaps* known) {
     if (!candidates.covers(packing, 1.001 * enclosure.distance())) {
         candidates = find_candidates(packing, candidate_fraction, candidates.triangulation);
     }
@@ -227,9 +214,8 @@ Result<typename Vertex<Dim>::Gaps> Vertex<Dim>::check_gaps(CandidateList<Dim>& c
     return gaps;
 }
 
-template <int Dim>
-std::optional<Failure> Vertex<Dim>::settle_gaps(const std::vector<Contact>& doubtful, const ZeroGaps* known,
-                                                Gaps& gaps) const {
+std::optional<Failure> Vertex::settle_gaps(const std::vector<Contact>& doubtful, const ZeroGaps* known,
+                                           Gaps& gaps) const {
     const auto told = [known](const Contact& contact) { // that it touches
         return known == nullptr ? nullptr : find(*known, contact);
     };
@@ -259,7 +245,7 @@ std::optional<Failure> Vertex<Dim>::settle_gaps(const std::vector<Contact>& doub
             gaps.zero.emplace_back(contact, order);
             continue;
         }
-        names += words("{}{} ({})", names.empty() ? "" : ", ", named<Dim>(contact),
+        names += words("{}{} ({})", names.empty() ? "" : ", ", named(contact),
                        order.decided ? Words("exactly 0") : words("0 to {} bits", order.bits));
     }
     if (!names.empty()) {
@@ -268,7 +254,5 @@ std::optional<Failure> Vertex<Dim>::settle_gaps(const std::vector<Contact>& doub
     }
     return std::nullopt;
 }
-
-template class Vertex<2>;
 
 } // namespace isostat

@@ -22,14 +22,13 @@ namespace isostat {
 using ZeroGaps = std::vector<std::pair<Contact, Order>>;
 
 /// The first-order side of a vertex whose radii are R_i + eps rho_i.
-template <int Dim> struct FirstOrderVertex {
+struct FirstOrderVertex {
     /// `rate`: first-order term of the stress. `choose`: what first-order terms do not tell is chosen (C1).
-    FirstOrderVertex(FirstOrder<Dim> terms, Statics<Dim>& forces, const Load<Dim>& load, const Enclosure& rate,
-                     bool choose)
+    FirstOrderVertex(FirstOrder terms, Statics& forces, const Load& load, const Enclosure& rate, bool choose)
         : first(std::move(terms)), statics(first, forces, load, rate, choose), stress_rate(rate) {}
-    FirstOrder<Dim> first;
+    FirstOrder first;
     const std::vector<double>* rho = nullptr; ///< its direction
-    PerturbedStatics<Dim> statics;            ///< refers to `first`
+    PerturbedStatics statics;                 ///< refers to `first`
     Enclosure stress_rate;
     /// Pairs that touch in the base without being contacts, with their first-order gaps, proved positive; where ties
     /// are chosen, not proved negative.
@@ -39,42 +38,41 @@ template <int Dim> struct FirstOrderVertex {
     std::vector<ContactId> zeros; ///< of an equilibrium: forces that vanish in the base, as `OpeningDecision` says
 };
 
-template <int Dim> struct ArcProposal;
+struct ArcProposal;
 
 /// Configuration, proved structure, factors, bounds and statics of one vertex. Not movable: the parts refer to each
 /// other.
-template <int Dim> class Vertex {
+class Vertex {
   public:
     /// Proves the rank, factorises, bounds the inverse, solves the statics and encloses the true vertex.
     /// Failures: `not_isostatic`; `undecided` when no bound of the inverse or no true vertex near the stored one was
     /// proved.
-    static Result<std::unique_ptr<Vertex>> make(Packing<Dim> packing, std::vector<Contact> contacts,
-                                                const Load<Dim>& load, InverseBoundCache& cache,
-                                                LadderOptions options = {});
+    static Result<std::unique_ptr<Vertex>> make(Packing packing, std::vector<Contact> contacts, const Load& load,
+                                                InverseBoundCache& cache, LadderOptions options = {});
     /// The same in two steps: what a motion from the vertex needs, of which nothing is proved, and the proofs.
     struct Beginning {
-        Packing<Dim> packing;
-        RankProof<Dim> rank;
+        Packing packing;
+        RankProof rank;
         Factorisation factorisation;
     };
-    static Result<Beginning> begin(Packing<Dim> packing, std::vector<Contact> contacts);
-    static Result<std::unique_ptr<Vertex>> make(Beginning beginning, const Load<Dim>& load, InverseBoundCache& cache,
+    static Result<Beginning> begin(Packing packing, std::vector<Contact> contacts);
+    static Result<std::unique_ptr<Vertex>> make(Beginning beginning, const Load& load, InverseBoundCache& cache,
                                                 LadderOptions options = {});
     /// The vertex at the end of a proposed arc: one contact of `from` exchanged. The regularity of the new structure
     /// and the bound of its inverse are proved together, by the cheapest of: the bound of `from` carried over (V8), a
     /// Cholesky factorisation (V1), everything anew as in `make`. What the proposal brings are guesses, all but the
     /// configuration and the contacts; what is used is taken out of it.
-    static Result<std::unique_ptr<Vertex>> exchanged(const Vertex& from, ArcProposal<Dim>& arc, const Load<Dim>& load,
+    static Result<std::unique_ptr<Vertex>> exchanged(const Vertex& from, ArcProposal& arc, const Load& load,
                                                      InverseBoundCache& cache, LadderOptions options);
     Vertex(const Vertex&) = delete;
     Vertex& operator=(const Vertex&) = delete;
 
-    Packing<Dim> packing;
-    IsostaticStructure<Dim> structure;
+    Packing packing;
+    IsostaticStructure structure;
     Factorisation factorisation;
     InverseBound inverse;
     VertexEnclosure enclosure;
-    Statics<Dim> statics;
+    Statics statics;
     LadderOptions ladder;   ///< of signs that must climb
     double cost_before = 0; ///< of the vertices since the factorisation, in passes of fresh factors, without this one
 
@@ -91,19 +89,19 @@ template <int Dim> class Vertex {
     /// With `known` they are returned instead; `undecided` when too few bits say that a gap is 0. Not asked again of
     /// pairs that are known to touch.
     /// `kept`: for the next vertices with the same list.
-    Result<Gaps> check_gaps(CandidateList<Dim>& candidates, KeptCandidates& kept, const ZeroGaps* known = nullptr);
+    Result<Gaps> check_gaps(CandidateList& candidates, KeptCandidates& kept, const ZeroGaps* known = nullptr);
 
     /// Under `ties = "choose"` only.
-    std::unique_ptr<FirstOrderVertex<Dim>> perturbed;
-    [[nodiscard]] PerturbedStatics<Dim>* first_order() { return perturbed ? &perturbed->statics : nullptr; }
+    std::unique_ptr<FirstOrderVertex> perturbed;
+    [[nodiscard]] PerturbedStatics* first_order() { return perturbed ? &perturbed->statics : nullptr; }
 
   private:
     /// Nothing is proved unless the proof is concluded.
-    Vertex(Packing<Dim> p, RankProof<Dim>& proof, Factorisation factors, const Load<Dim>& load,
-           InverseBoundCache& cache, LadderOptions options);
-    Vertex(Packing<Dim> p, IsostaticStructure<Dim> s, ApproximateInverse approximate, const InverseBound& bound,
-           const Load<Dim>& load, StaticsHints<Dim> hints);
-    static Result<std::unique_ptr<Vertex>> prove(const Vertex& from, ArcProposal<Dim>& arc, const Load<Dim>& load,
+    Vertex(Packing p, RankProof& proof, Factorisation factors, const Load& load, InverseBoundCache& cache,
+           LadderOptions options);
+    Vertex(Packing p, IsostaticStructure s, ApproximateInverse approximate, const InverseBound& bound, const Load& load,
+           StaticsHints hints);
+    static Result<std::unique_ptr<Vertex>> prove(const Vertex& from, ArcProposal& arc, const Load& load,
                                                  InverseBoundCache& cache, LadderOptions options);
     /// Signs of the gaps that double-double left open, with as many bits as the ladder has, put into `gaps`; or the
     /// tie.
@@ -111,7 +109,5 @@ template <int Dim> class Vertex {
     /// What every vertex needs, or why not.
     std::optional<Failure> lacking();
 };
-
-extern template class Vertex<2>;
 
 } // namespace isostat

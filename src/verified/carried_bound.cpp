@@ -136,9 +136,8 @@ double balancing_forces(const sparse::Matrix<double>& h, const std::vector<doubl
 
 } // namespace
 
-template <int Dim>
-std::optional<ProvedExchange> carry_bound(const IsostaticStructure<Dim>& before, const InverseBound& bound,
-                                          const ExchangedContacts<Dim>& after, const ApproximateInverse& inverse,
+std::optional<ProvedExchange> carry_bound(const IsostaticStructure& before, const InverseBound& bound,
+                                          const ExchangedContacts& after, const ApproximateInverse& inverse,
                                           std::vector<double> mechanism, double worth) {
     if (bound.verdict != Verdict::proved || before.size() != after.matrix().cols) {
         return std::nullopt;
@@ -174,9 +173,5 @@ std::optional<ProvedExchange> carry_bound(const IsostaticStructure<Dim>& before,
     const InverseBound carried{Verdict::proved, sigma, InverseBound::Route::carried, started_with};
     return ProvedExchange{carried, RegularityProver::proof(h, sigma)};
 }
-
-template std::optional<ProvedExchange> carry_bound<2>(const IsostaticStructure<2>&, const InverseBound&,
-                                                      const ExchangedContacts<2>&, const ApproximateInverse&,
-                                                      std::vector<double>, double);
 
 } // namespace isostat

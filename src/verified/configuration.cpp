@@ -35,8 +35,7 @@ double VertexEnclosure::distance() const {
     return (radius + norm_above(size)) * (1 + 0x1p-50);
 }
 
-template <int Dim>
-VertexEnclosure enclose_vertex(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+VertexEnclosure enclose_vertex(const Packing& packing, const IsostaticStructure& structure,
                                const InverseBound& inverse) {
     VertexEnclosure vertex;
     vertex.radius = std::numeric_limits<double>::infinity();
@@ -65,15 +64,14 @@ VertexEnclosure enclose_vertex(const Packing<Dim>& packing, const IsostaticStruc
     return vertex;
 }
 
-template <int Dim>
-VertexEnclosure enclose_vertex_double_double(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+VertexEnclosure enclose_vertex_double_double(const Packing& packing, const IsostaticStructure& structure,
                                              const Factorisation& factorisation, const InverseBound& inverse) {
     VertexEnclosure vertex = enclose_vertex(packing, structure, inverse);
     if (!in_range_of_products(packing)) {
         return vertex;
     }
-    const EnclosedVertex<Dim, dd_real> found(Arithmetic<dd_real>(), packing, structure, factorisation,
-                                             Neighbourhood::of(packing, structure.contacts(), inverse));
+    const EnclosedVertex<dd_real> found(Arithmetic<dd_real>(), packing, structure, factorisation,
+                                        Neighbourhood::of(packing, structure.contacts(), inverse));
     std::vector<double> correction;
     std::vector<double> lost;
     for (const dd_real& p : found.at().correction()) {
@@ -90,8 +88,7 @@ VertexEnclosure enclose_vertex_double_double(const Packing<Dim>& packing, const 
     return vertex;
 }
 
-template <int Dim>
-Enclosure gap_at_vertex(const Packing<Dim>& packing, const VertexEnclosure& vertex, const Contact& contact) {
+Enclosure gap_at_vertex(const Packing& packing, const VertexEnclosure& vertex, const Contact& contact) {
     if (contact.kind == ContactKind::held) {
         return {0, 0};
     }
@@ -102,7 +99,7 @@ Enclosure gap_at_vertex(const Packing<Dim>& packing, const VertexEnclosure& vert
         return {h, (weight * vertex.radius + 8 * u * (std::abs(h) + d)) * (1 + 4 * u)};
     }
     using A = Arithmetic<dd_real>;
-    const CorrectedConfiguration<Dim, dd_real, std::span<const double>> at(A(), packing, vertex.correction);
+    const CorrectedConfiguration<dd_real, std::span<const double>> at(A(), packing, vertex.correction);
     const double value = A::rounded(at.gap(contact));
     return {value,
             (weight * vertex.radius + 16 * A::unit() * (std::abs(value) + d) + 2 * u * std::abs(value)) * (1 + 4 * u)};
@@ -111,7 +108,7 @@ Enclosure gap_at_vertex(const Packing<Dim>& packing, const VertexEnclosure& vert
 namespace {
 
 /// Gap at an enclosed vertex.
-template <int Dim> PreciseInterval gap_at(const EnclosedVertex<Dim, Real>& vertex, const Contact& contact) {
+PreciseInterval gap_at(const EnclosedVertex<Real>& vertex, const Contact& contact) {
     const Arithmetic<Real>& a = vertex.at().arithmetic();
     const Real h = vertex.at().gap(contact);
     const UpperBound radius = 16 * a.unit() * (a.size(h) + target(vertex.at().packing(), contact)) +
@@ -124,7 +121,7 @@ template <int Dim> PreciseInterval gap_at(const EnclosedVertex<Dim, Real>& verte
 namespace {
 
 /// What one enclosure of the vertex says of a gap.
-template <int Dim> Order sign_at(const EnclosedVertex<Dim, Real>& vertex, const Contact& contact) {
+Order sign_at(const EnclosedVertex<Real>& vertex, const Contact& contact) {
     const PreciseInterval gap_there = gap_at(vertex, contact);
     Order order{false, 0, 0, Rung::multiprecision, vertex.at().arithmetic().bits()};
     if (gap_there.positive() || gap_there.negative()) {
@@ -141,8 +138,7 @@ template <int Dim> Order sign_at(const EnclosedVertex<Dim, Real>& vertex, const 
 
 } // namespace
 
-template <int Dim>
-std::vector<Order> gap_signs_at_vertex(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+std::vector<Order> gap_signs_at_vertex(const Packing& packing, const IsostaticStructure& structure,
                                        const Factorisation& factorisation, const InverseBound& inverse,
                                        const std::vector<Contact>& candidates, const LadderOptions& options) {
     std::vector<Order> orders(candidates.size());
@@ -151,7 +147,7 @@ std::vector<Order> gap_signs_at_vertex(const Packing<Dim>& packing, const Isosta
     const Neighbourhood at_q = Neighbourhood::of(packing, structure.contacts(), inverse);
     for (int bits = options.first_bits; bits <= options.max_bits && std::any_of(orders.begin(), orders.end(), open);
          bits *= 2) {
-        const EnclosedVertex<Dim, Real> vertex(Arithmetic<Real>(bits), packing, structure, factorisation, at_q, start);
+        const EnclosedVertex<Real> vertex(Arithmetic<Real>(bits), packing, structure, factorisation, at_q, start);
         if (!vertex.exists()) {
             break;
         }
@@ -177,21 +173,10 @@ std::vector<Order> gap_signs_at_vertex(const Packing<Dim>& packing, const Isosta
     return orders;
 }
 
-template <int Dim>
-Order gap_sign_at_vertex(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+Order gap_sign_at_vertex(const Packing& packing, const IsostaticStructure& structure,
                          const Factorisation& factorisation, const InverseBound& inverse, const Contact& contact,
                          const LadderOptions& options) {
     return gap_signs_at_vertex(packing, structure, factorisation, inverse, {contact}, options)[0];
 }
-
-template Order gap_sign_at_vertex<2>(const Packing<2>&, const IsostaticStructure<2>&, const Factorisation&,
-                                     const InverseBound&, const Contact&, const LadderOptions&);
-template std::vector<Order> gap_signs_at_vertex<2>(const Packing<2>&, const IsostaticStructure<2>&,
-                                                   const Factorisation&, const InverseBound&,
-                                                   const std::vector<Contact>&, const LadderOptions&);
-template VertexEnclosure enclose_vertex<2>(const Packing<2>&, const IsostaticStructure<2>&, const InverseBound&);
-template VertexEnclosure enclose_vertex_double_double<2>(const Packing<2>&, const IsostaticStructure<2>&,
-                                                         const Factorisation&, const InverseBound&);
-template Enclosure gap_at_vertex<2>(const Packing<2>&, const VertexEnclosure&, const Contact&);
 
 } // namespace isostat

@@ -31,42 +31,28 @@ struct VertexEnclosure {
 };
 
 /// Rung double_bound: gaps in double, radius about 1e-15 sqrt(N) / sigma_min. Cost O(N).
-template <int Dim>
-VertexEnclosure enclose_vertex(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+VertexEnclosure enclose_vertex(const Packing& packing, const IsostaticStructure& structure,
                                const InverseBound& inverse);
 
 /// The same with a much smaller radius: gaps without rounding to speak of, and the Newton step itself instead of its
 /// worst case (statement V4 (e)); the true vertex is then about as far as that step, some 1e-14 sqrt(N), whatever
 /// sigma_min is. Cost: 2 or 3 passes and O(N). `factorisation` makes guesses and is not trusted.
-template <int Dim>
-VertexEnclosure enclose_vertex(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+VertexEnclosure enclose_vertex(const Packing& packing, const IsostaticStructure& structure,
                                const Factorisation& factorisation, const InverseBound& inverse);
 
 /// Rung double_double: one or two corrections, gaps in double-double; radius about 1e-29 / sigma_min. Cost: two solves
 /// and O(N).
-template <int Dim>
-VertexEnclosure enclose_vertex_double_double(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+VertexEnclosure enclose_vertex_double_double(const Packing& packing, const IsostaticStructure& structure,
                                              const Factorisation& factorisation, const InverseBound& inverse);
 
 /// Gap of any candidate at the true vertex.
-template <int Dim>
-Enclosure gap_at_vertex(const Packing<Dim>& packing, const VertexEnclosure& vertex, const Contact& contact);
+Enclosure gap_at_vertex(const Packing& packing, const VertexEnclosure& vertex, const Contact& contact);
 
 /// Sign of the gap of a candidate at the true vertex, beyond double-double: the vertex in MPFR with first_bits ...
 /// max_bits bits, then, when every kept gap is exactly 0 at the stored configuration (which is then the true one),
 /// exact numbers. sign 0: the candidate touches, proved. Cost: N gaps and a solve per 30 bits or so.
-template <int Dim>
-Order gap_sign_at_vertex(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+Order gap_sign_at_vertex(const Packing& packing, const IsostaticStructure& structure,
                          const Factorisation& factorisation, const InverseBound& inverse, const Contact& contact,
                          const LadderOptions& options = {});
-
-extern template Order gap_sign_at_vertex<2>(const Packing<2>&, const IsostaticStructure<2>&, const Factorisation&,
-                                            const InverseBound&, const Contact&, const LadderOptions&);
-extern template VertexEnclosure enclose_vertex<2>(const Packing<2>&, const IsostaticStructure<2>&, const InverseBound&);
-extern template VertexEnclosure enclose_vertex<2>(const Packing<2>&, const IsostaticStructure<2>&, const Factorisation&,
-                                                  const InverseBound&);
-extern template VertexEnclosure enclose_vertex_double_double<2>(const Packing<2>&, const IsostaticStructure<2>&,
-                                                                const Factorisation&, const InverseBound&);
-extern template Enclosure gap_at_vertex<2>(const Packing<2>&, const VertexEnclosure&, const Contact&);
 
 } // namespace isostat

@@ -18,14 +18,14 @@ template <class T> struct BoundedVector {
 /// H* f = F and its transpose, H* the contact matrix that is meant, by refinement with residuals in T and corrections
 /// of the factors in double, until an iteration does not halve the bound. Cost per iteration: a product with the matrix
 /// and a solve. The arguments must outlive the object.
-template <int Dim, class T> class ContactSystem {
+template <class T> class ContactSystem {
   public:
     using A = Arithmetic<T>;
     using Bound = typename A::Bound;
-    using Place = CorrectedConfiguration<Dim, T>;
+    using Place = CorrectedConfiguration<T>;
 
     /// H* is that of the true vertex. \pre it exists.
-    ContactSystem(const EnclosedVertex<Dim, T>& vertex, const IsostaticStructure<Dim>& structure,
+    ContactSystem(const EnclosedVertex<T>& vertex, const IsostaticStructure& structure,
                   const Factorisation& factorisation)
         : arithmetic_(vertex.at().arithmetic()), packing_(vertex.at().packing()), structure_(structure),
           factorisation_(factorisation), matrix_(vertex.at().contact_matrix(structure, Place::Divided::by_lengths)),
@@ -33,7 +33,7 @@ template <int Dim, class T> class ContactSystem {
           sigma_(vertex.sigma()) {}
     /// |H* - H| <= uncertainty, H the unit normals at `place`; `sigma` > 0 a lower bound of the smallest singular value
     /// of H*.
-    ContactSystem(const Place& place, const IsostaticStructure<Dim>& structure, const Factorisation& factorisation,
+    ContactSystem(const Place& place, const IsostaticStructure& structure, const Factorisation& factorisation,
                   double sigma, double uncertainty)
         : arithmetic_(place.arithmetic()), packing_(place.packing()), structure_(structure),
           factorisation_(factorisation), matrix_(place.contact_matrix(structure, Place::Divided::by_distances)),
@@ -67,8 +67,8 @@ template <int Dim, class T> class ContactSystem {
                                           bool transposed) const;
 
     A arithmetic_;
-    const Packing<Dim>& packing_;
-    const IsostaticStructure<Dim>& structure_;
+    const Packing& packing_;
+    const IsostaticStructure& structure_;
     const Factorisation& factorisation_;
     sparse::Matrix<T> matrix_;
     Bound radius_;
@@ -77,8 +77,8 @@ template <int Dim, class T> class ContactSystem {
     double largest_entry_ = largest_multiple(structure_.contacts()); ///< no entry of a matrix of contacts is larger
 };
 
-template <int Dim, class T>
-auto ContactSystem<Dim, T>::residual(const std::vector<T>& load, const std::vector<T>& x, bool transposed) const
+template <class T>
+auto ContactSystem<T>::residual(const std::vector<T>& load, const std::vector<T>& x, bool transposed) const
     -> Residual {
     const A& a = arithmetic_;
     const std::size_t n = load.size();
@@ -109,8 +109,7 @@ auto ContactSystem<Dim, T>::residual(const std::vector<T>& load, const std::vect
     return result;
 }
 
-template <int Dim, class T>
-auto ContactSystem<Dim, T>::turned(const std::vector<T>& x, bool transposed) const -> Bound {
+template <class T> auto ContactSystem<T>::turned(const std::vector<T>& x, bool transposed) const -> Bound {
     const A& a = arithmetic_;
     if (transposed || radius_ <= 0) { // |H* - A| |x|
         std::vector<Bound> size(x.size());
@@ -140,9 +139,9 @@ auto ContactSystem<Dim, T>::turned(const std::vector<T>& x, bool transposed) con
     return 2 * heaviest * radius_ * sum_slack;
 }
 
-template <int Dim, class T>
-BoundedVector<T> ContactSystem<Dim, T>::refine(const std::vector<T>& load, const Bound& load_error, std::vector<T> x,
-                                               bool transposed) const {
+template <class T>
+BoundedVector<T> ContactSystem<T>::refine(const std::vector<T>& load, const Bound& load_error, std::vector<T> x,
+                                          bool transposed) const {
     const A& a = arithmetic_;
     BoundedVector<T> best;
     std::vector<double> step(x.size());

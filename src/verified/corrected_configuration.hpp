@@ -16,16 +16,16 @@ namespace isostat {
 /// coordinates, whatever the distance from the origin. With an image x_j - x_i + A m of the doubles is formed first: it
 /// is exact in every arithmetic where they are on the grid, which is asked of a cell. `Correction`: how p is kept, one
 /// number per coordinate. Copies share the packing, which must outlive them.
-template <int Dim, class T, class Correction = std::vector<T>> class CorrectedConfiguration {
+template <class T, class Correction = std::vector<T>> class CorrectedConfiguration {
   public:
     /// p = 0.
-    CorrectedConfiguration(const Arithmetic<T>& arithmetic, const Packing<Dim>& packing)
+    CorrectedConfiguration(const Arithmetic<T>& arithmetic, const Packing& packing)
         : arithmetic_(arithmetic), packing_(&packing), correction_(packing.q.size(), arithmetic.number(0)) {}
-    CorrectedConfiguration(const Arithmetic<T>& arithmetic, const Packing<Dim>& packing, Correction correction)
+    CorrectedConfiguration(const Arithmetic<T>& arithmetic, const Packing& packing, Correction correction)
         : arithmetic_(arithmetic), packing_(&packing), correction_(std::move(correction)) {}
 
     [[nodiscard]] const Arithmetic<T>& arithmetic() const { return arithmetic_; }
-    [[nodiscard]] const Packing<Dim>& packing() const { return *packing_; }
+    [[nodiscard]] const Packing& packing() const { return *packing_; }
     [[nodiscard]] const Correction& correction() const { return correction_; }
     [[nodiscard]] T& correction(int coordinate) { return correction_[index(coordinate)]; }
     void correct(Correction correction) { correction_ = std::move(correction); }
@@ -45,11 +45,11 @@ template <int Dim, class T, class Correction = std::vector<T>> class CorrectedCo
     }
     /// Gap of a disk and a wall.
     [[nodiscard]] T wall_gap(const Contact& contact) const {
-        const std::size_t k = index(Dim * contact.i + contact.j);
+        const std::size_t k = packing_->layout().of_disk(contact.i) + index(contact.j);
         const double r = packing_->radius[index(contact.i)];
         return contact.kind == ContactKind::lower_wall
                    ? arithmetic_.difference(packing_->q[k], r) + moved(k)
-                   : difference(k, index(Dim * packing_->disk_count() + contact.j)) - number(r);
+                   : difference(k, packing_->length_at(index(contact.j))) - number(r);
     }
     /// Gap of any pair, within 8 unit (|gap| + D) and the rounding of a quotient and a root.
     [[nodiscard]] T gap(const Contact& contact) const {
@@ -61,8 +61,8 @@ template <int Dim, class T, class Correction = std::vector<T>> class CorrectedCo
         }
     }
     /// x_j - x_i + A m of two disks: the stored numbers first, which cancel where they are large, then the corrections.
-    [[nodiscard]] std::array<T, static_cast<std::size_t>(Dim)> separation(const Contact& pair) const {
-        const Separation<Dim> separation(pair, packing_->disk_count());
+    [[nodiscard]] PerAxis<T> separation(const Contact& pair) const {
+        const Separation separation(pair, packing_->layout());
         if (pair.image.is_here()) [[likely]] {
             return separation.of_centres([](std::size_t coordinate) { return coordinate; },
                                          [this](std::size_t to, std::size_t from) { return difference(from, to); });
@@ -83,7 +83,7 @@ template <int Dim, class T, class Correction = std::vector<T>> class CorrectedCo
     /// Columns of disk contacts are (x_j - x_i) divided by `by`. Lengths: A(c) = -DF(c)^T, the contact matrix where c
     /// is the true vertex (V6). Distances: the unit normals at c itself.
     enum class Divided : unsigned char { by_lengths, by_distances };
-    [[nodiscard]] sparse::Matrix<T> contact_matrix(const IsostaticStructure<Dim>& structure, Divided divided) const {
+    [[nodiscard]] sparse::Matrix<T> contact_matrix(const IsostaticStructure& structure, Divided divided) const {
         using std::sqrt;
         const sparse::Matrix<double>& h = structure.matrix();
         sparse::Matrix<T> matrix{h.rows, h.cols, h.start, h.row, {}};
@@ -100,8 +100,9 @@ template <int Dim, class T, class Correction = std::vector<T>> class CorrectedCo
             for (T& component : normal) {
                 component = component / by;
             }
-            Separation<Dim>(contact, packing_->disk_count())
-                .for_each_entry(structure.dofs(), normal, [&](int, const T& entry) { matrix.value.push_back(entry); });
+            Separation(contact, packing_->layout()).for_each_entry(structure.dofs(), normal, [&](int, const T& entry) {
+                matrix.value.push_back(entry);
+            });
         }
         return matrix;
     }
@@ -123,7 +124,7 @@ template <int Dim, class T, class Correction = std::vector<T>> class CorrectedCo
     }
 
     Arithmetic<T> arithmetic_;
-    const Packing<Dim>* packing_;
+    const Packing* packing_;
     Correction correction_;
 };
 

@@ -8,15 +8,15 @@ namespace {
 using roundoff::u;
 
 /// Normals of the stored configuration, in double.
-template <int Dim> class DoubleRung final : public IntervalRung<Dim> {
+class DoubleRung final : public IntervalRung {
   public:
-    DoubleRung(LadderProblem<Dim>& problem, double accuracy)
-        : IntervalRung<Dim>(problem, Rung::double_bound, 53, accuracy > 0), accuracy_(accuracy) {}
+    DoubleRung(LadderProblem& problem, double accuracy)
+        : IntervalRung(problem, Rung::double_bound, 53, accuracy > 0), accuracy_(accuracy) {}
 
     double normal_uncertainty() override { return this->problem_.stored_distance().uncertainty; }
 
-    std::unique_ptr<ForceRung<Dim>> next() override {
-        LadderProblem<Dim>& problem = this->problem_;
+    std::unique_ptr<ForceRung> next() override {
+        LadderProblem& problem = this->problem_;
         if (accuracy_ > 0) {
             return double_rung(problem, 0);
         }
@@ -38,10 +38,8 @@ template <int Dim> class DoubleRung final : public IntervalRung<Dim> {
 
 } // namespace
 
-template <int Dim> std::unique_ptr<ForceRung<Dim>> double_rung(LadderProblem<Dim>& problem, double accuracy) {
-    return std::make_unique<DoubleRung<Dim>>(problem, accuracy);
+std::unique_ptr<ForceRung> double_rung(LadderProblem& problem, double accuracy) {
+    return std::make_unique<DoubleRung>(problem, accuracy);
 }
-
-template std::unique_ptr<ForceRung<2>> double_rung<2>(LadderProblem<2>&, double);
 
 } // namespace isostat

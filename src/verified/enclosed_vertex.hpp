@@ -15,9 +15,7 @@ struct Neighbourhood {
     double lipschitz = 0;    ///< K of V4 (a), for the derivative of the gap functions F_l
     double inverse_norm = 0; ///< bound of |DF^-1| at q, V4 (b); infinity when nothing is known
 
-    template <int Dim>
-    static Neighbourhood of(const Packing<Dim>& packing, const std::vector<Contact>& contacts,
-                            const InverseBound& inverse) {
+    static Neighbourhood of(const Packing& packing, const std::vector<Contact>& contacts, const InverseBound& inverse) {
         using roundoff::u;
         const double relative_gap = worst_gap_ratio(packing, contacts);
         const bool known = inverse.verdict == Verdict::proved && relative_gap < 1e-3; // a NaN knows nothing
@@ -29,13 +27,13 @@ struct Neighbourhood {
 
 /// Newton's method from q + p with gaps in T and steps of the factors in double, until an iteration does not halve the
 /// radius; Newton-Kantorovich with the rounding of the gaps counted. Cost per iteration: N gaps and a solve.
-template <int Dim, class T> class EnclosedVertex {
+template <class T> class EnclosedVertex {
   public:
     using A = Arithmetic<T>;
     using Bound = typename A::Bound;
 
     /// `start`: p where the iteration begins, or empty.
-    EnclosedVertex(const A& arithmetic, const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+    EnclosedVertex(const A& arithmetic, const Packing& packing, const IsostaticStructure& structure,
                    const Factorisation& factorisation, const Neighbourhood& at_q, const std::vector<T>& start = {})
         : at_(arithmetic, packing), at_q_(at_q) {
         for (std::size_t c = 0; c < start.size(); ++c) {
@@ -47,7 +45,7 @@ template <int Dim, class T> class EnclosedVertex {
     }
     /// There is one within `radius` of `at`, alone within 1.7 / (derivative K); the members below mean nothing else.
     [[nodiscard]] bool exists() const { return exists_; }
-    [[nodiscard]] const CorrectedConfiguration<Dim, T>& at() const { return at_; }
+    [[nodiscard]] const CorrectedConfiguration<T>& at() const { return at_; }
     [[nodiscard]] const Bound& radius() const { return radius_; }   ///< 2-norm
     [[nodiscard]] const Bound& shift() const { return shift_; }     ///< bound of |p|
     [[nodiscard]] double derivative() const { return derivative_; } ///< beta: bound of |DF^-1| at q + p
@@ -73,9 +71,9 @@ template <int Dim, class T> class EnclosedVertex {
     }
     /// Takes the present place when its radius is less than half the best; false also where nothing is known.
     bool accept(const Bound& residual);
-    void enclose(const IsostaticStructure<Dim>& structure, const Factorisation& factorisation);
+    void enclose(const IsostaticStructure& structure, const Factorisation& factorisation);
 
-    CorrectedConfiguration<Dim, T> at_;
+    CorrectedConfiguration<T> at_;
     Neighbourhood at_q_;
     bool exists_ = false;
     Bound radius_ = std::numeric_limits<double>::infinity();
@@ -85,7 +83,7 @@ template <int Dim, class T> class EnclosedVertex {
     bool lost_ = false; ///< too far from q
 };
 
-template <int Dim, class T> bool EnclosedVertex<Dim, T>::accept(const Bound& residual) {
+template <class T> bool EnclosedVertex<T>::accept(const Bound& residual) {
     const double k = at_q_.lipschitz;
     std::vector<Bound> moved;
     for (const T& c : at_.correction()) {
@@ -112,8 +110,8 @@ template <int Dim, class T> bool EnclosedVertex<Dim, T>::accept(const Bound& res
     return true;
 }
 
-template <int Dim, class T>
-void EnclosedVertex<Dim, T>::enclose(const IsostaticStructure<Dim>& structure, const Factorisation& factorisation) {
+template <class T>
+void EnclosedVertex<T>::enclose(const IsostaticStructure& structure, const Factorisation& factorisation) {
     const A& a = at_.arithmetic();
     std::vector<T> accepted;
     std::vector<T> f;

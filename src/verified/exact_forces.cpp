@@ -49,18 +49,16 @@ long common_integers(const std::vector<mpq_class>& values, std::vector<mpz_class
 
 } // namespace
 
-template <int Dim>
-sparse::Matrix<mpz_class> ExactForces<Dim>::scaled(const Packing<Dim>& packing,
-                                                   const IsostaticStructure<Dim>& structure,
-                                                   std::vector<mpz_class>& square) {
+sparse::Matrix<mpz_class> ExactForces::scaled(const Packing& packing, const IsostaticStructure& structure,
+                                              std::vector<mpz_class>& square) {
     const sparse::Matrix<double>& h = structure.matrix();
-    const DofMap<Dim>& dofs = structure.dofs();
+    const DofMap& dofs = structure.dofs();
     sparse::Matrix<mpz_class> matrix{h.rows, h.cols, h.start, h.row, {}};
     matrix.value.resize(h.value.size());
     for (std::size_t l = 0; l < structure.contacts().size(); ++l) {
         const Contact& contact = structure.contacts()[l];
         std::vector<mpz_class> integers;
-        const Separation<Dim> separation(contact, packing.disk_count());
+        const Separation separation(contact, packing.layout());
         const bool pair = contact.kind == ContactKind::disk_disk;
         mpz_class sum = pair ? 0 : 1;
         if (pair) {
@@ -73,7 +71,7 @@ sparse::Matrix<mpz_class> ExactForces<Dim>::scaled(const Packing<Dim>& packing,
             }
         }
         square.push_back(sum);
-        std::array<mpz_class, static_cast<std::size_t>(Dim)> normal; // times the square root of `sum`
+        PerAxis<mpz_class> normal; // times the square root of `sum`
         std::copy(integers.begin(), integers.end(), normal.begin());
         auto entry = matrix.value.begin() + h.start[l];
         separation.for_each_entry(dofs, normal, [&](int, const mpz_class& value) { *entry++ = value; });
@@ -81,13 +79,11 @@ sparse::Matrix<mpz_class> ExactForces<Dim>::scaled(const Packing<Dim>& packing,
     return matrix;
 }
 
-template <int Dim>
-ExactForces<Dim>::ExactForces(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure)
+ExactForces::ExactForces(const Packing& packing, const IsostaticStructure& structure)
     : solver_(scaled(packing, structure, square_), structure.ordering()) {}
 
-template <int Dim>
-std::vector<mpq_class> ExactForces<Dim>::solve(const std::vector<double>& force,
-                                               std::span<const ExactProduct> products) const {
+std::vector<mpq_class> ExactForces::solve(const std::vector<double>& force,
+                                          std::span<const ExactProduct> products) const {
     std::vector<mpq_class> values(force.begin(), force.end());
     for (const ExactProduct& product : products) {
         values[static_cast<std::size_t>(product.row)] = -(mpq_class(product.a) * mpq_class(product.b));
@@ -110,7 +106,5 @@ std::vector<mpq_class> ExactForces<Dim>::solve(const std::vector<double>& force,
     }
     return unknown;
 }
-
-template class ExactForces<2>;
 
 } // namespace isostat

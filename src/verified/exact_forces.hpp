@@ -16,9 +16,9 @@ namespace isostat {
 /// The scaled system: column l of H times the distance of the centres and times a power of two has integer entries
 /// (stored doubles are dyadic), so f_l = unknown_l sqrt(square_l) with a rational unknown and an integer square.
 /// Signs are those of the unknowns, ratios of two right-hand sides in one contact are ratios of the unknowns.
-template <int Dim> class ExactForces {
+class ExactForces {
   public:
-    ExactForces(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure);
+    ExactForces(const Packing& packing, const IsostaticStructure& structure);
     /// \pre of the others
     [[nodiscard]] bool regular() const { return solver_.regular(); }
     /// unknown of H f = force, the doubles taken as exact but for the rows of `products`.
@@ -27,12 +27,10 @@ template <int Dim> class ExactForces {
     [[nodiscard]] const mpz_class& square(ContactId contact) const { return square_[contact.index()]; }
 
   private:
-    static sparse::Matrix<mpz_class> scaled(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+    static sparse::Matrix<mpz_class> scaled(const Packing& packing, const IsostaticStructure& structure,
                                             std::vector<mpz_class>& square);
     std::vector<mpz_class> square_;
     exact::RationalSolver solver_;
 };
-
-extern template class ExactForces<2>;
 
 } // namespace isostat

@@ -32,10 +32,10 @@ Order exact_order(int sign) {
 }
 
 /// Numbers x sqrt(s), x rational, s an integer: `ExactForces`.
-template <int Dim> class ExactRung final : public ForceRung<Dim> {
+class ExactRung final : public ForceRung {
   public:
-    ExactRung(LadderProblem<Dim>& problem, ExactForces<Dim> forces, double away)
-        : ForceRung<Dim>(problem, Rung::exact, 0), forces_(std::move(forces)), away_(away) {}
+    ExactRung(LadderProblem& problem, ExactForces forces, double away)
+        : ForceRung(problem, Rung::exact, 0), forces_(std::move(forces)), away_(away) {}
 
     Order sign(const ForceExpression& a) override {
         ForceExpression numerator = a; // divisors are positive
@@ -65,7 +65,7 @@ template <int Dim> class ExactRung final : public ForceRung<Dim> {
     }
     [[nodiscard]] double bound_exponent(const RightHandSide&) const override { return -infinity; }
     double normal_uncertainty() override { return away_; }
-    std::unique_ptr<ForceRung<Dim>> next() override { return nullptr; }
+    std::unique_ptr<ForceRung> next() override { return nullptr; }
 
   private:
     /// A number with the sign of the expression, and the square of the expression.
@@ -81,12 +81,12 @@ template <int Dim> class ExactRung final : public ForceRung<Dim> {
         return p.zero ? nothing_ : p.unknown[contact.index()];
     }
 
-    ExactForces<Dim> forces_;
+    ExactForces forces_;
     double away_;
     mpq_class nothing_ = 0;
 };
 
-template <int Dim> auto ExactRung<Dim>::value_of(const ForceExpression& e) -> Value {
+auto ExactRung::value_of(const ForceExpression& e) -> Value {
     mpq_class value = unknown(e.part, e.contact);
     if (e.slope_part >= 0 && e.at != e.from) {
         value += (mpq_class(e.at) - mpq_class(e.from)) * unknown(e.slope_part, e.contact);
@@ -101,7 +101,7 @@ template <int Dim> auto ExactRung<Dim>::value_of(const ForceExpression& e) -> Va
     return {value, value * value};
 }
 
-template <int Dim> void ExactRung<Dim>::solve(RightHandSide& part) {
+void ExactRung::solve(RightHandSide& part) {
     ForceSolution& s = part.solution;
     const std::size_t n = part.force.size();
     part.unknown = forces_.solve(part.force, part.terms.products);
@@ -120,7 +120,7 @@ template <int Dim> void ExactRung<Dim>::solve(RightHandSide& part) {
 
 /// Loads are numbers, and exact numbers would be about what is meant: the stored configuration is the true vertex, and
 /// the loads do not depend on it.
-template <int Dim> bool applies(const LadderProblem<Dim>& problem) {
+bool applies(const LadderProblem& problem) {
     const auto finite = [](const RightHandSide& part) {
         return std::all_of(part.force.begin(), part.force.end(), [](double f) { return std::isfinite(f); });
     };
@@ -143,16 +143,14 @@ template <int Dim> bool applies(const LadderProblem<Dim>& problem) {
 
 } // namespace
 
-template <int Dim> std::unique_ptr<ForceRung<Dim>> exact_rung(LadderProblem<Dim>& problem, ForceRung<Dim>& last) {
+std::unique_ptr<ForceRung> exact_rung(LadderProblem& problem, ForceRung& last) {
     if (!applies(problem)) {
         return nullptr;
     }
     count_work(Work::exact_solutions);
-    ExactForces<Dim> forces(problem.packing, problem.structure);
-    return forces.regular() ? std::make_unique<ExactRung<Dim>>(problem, std::move(forces), last.normal_uncertainty())
+    ExactForces forces(problem.packing, problem.structure);
+    return forces.regular() ? std::make_unique<ExactRung>(problem, std::move(forces), last.normal_uncertainty())
                             : nullptr;
 }
-
-template std::unique_ptr<ForceRung<2>> exact_rung<2>(LadderProblem<2>&, ForceRung<2>&);
 
 } // namespace isostat

@@ -35,11 +35,10 @@ double rounding(const Contact& contact) {
 
 /// Rounding of a relative velocity where periods are added: seven operations or less on each of two components. Without
 /// an image a component is one difference, and nothing of its size is lost.
-template <int Dim> double lost_to_periods(const std::vector<double>& v, const Contact& pair) {
+double lost_to_periods(const Layout& layout, const std::vector<double>& v, const Contact& pair) {
     double size = 0;
     if (!pair.image.is_here()) {
-        const int disks = static_cast<int>(v.size()) / Dim - 1;
-        Separation<Dim>(pair, disks).for_each_coordinate([&](std::size_t k, std::size_t, int multiple) {
+        Separation(pair, layout).for_each_coordinate([&](std::size_t k, std::size_t, int multiple) {
             size += std::abs(multiple * v[k]);
         });
     }
@@ -63,10 +62,9 @@ std::array<std::size_t, 2> grains_of(const Contact& c, std::size_t disks) {
 constexpr double carries_or_moves = 1e-8;
 
 /// a with row of the pair = sum a_l (row of l), in double.
-template <int Dim>
-std::vector<double> shares_of(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+std::vector<double> shares_of(const Packing& packing, const IsostaticStructure& structure,
                               const Factorisation& factorisation, const Contact& pair) {
-    const GapGradient<Dim> g = gap_gradient(packing, pair);
+    const GapGradient g = gap_gradient(packing, pair);
     std::vector<double> a(static_cast<std::size_t>(structure.size()), 0.0);
     for (int k = 0; k < g.count; ++k) {
         const auto e = static_cast<std::size_t>(k);
@@ -81,8 +79,7 @@ std::vector<double> shares_of(const Packing<Dim>& packing, const IsostaticStruct
 
 /// The contacts whose force balances that of a pair, as far as doubles tell: what is left out or taken in makes a count
 /// fail. None when `opened` is one of them, or a held coordinate.
-template <int Dim>
-std::vector<Contact> carriers(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+std::vector<Contact> carriers(const Packing& packing, const IsostaticStructure& structure,
                               const Factorisation& factorisation, ContactId opened, const Contact& pair) {
     const std::vector<double> a = shares_of(packing, structure, factorisation, pair);
     std::vector<Contact> list;
@@ -98,12 +95,11 @@ std::vector<Contact> carriers(const Packing<Dim>& packing, const IsostaticStruct
 }
 
 /// All contacts that stay closed when `opened` opens, among the grains of some contacts and of a pair.
-template <int Dim>
-std::vector<Contact> closed_among(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
-                                  ContactId opened, const std::vector<Contact>& some, const Contact& pair) {
+std::vector<Contact> closed_among(const Packing& packing, const IsostaticStructure& structure, ContactId opened,
+                                  const std::vector<Contact>& some, const Contact& pair) {
     const auto& contacts = structure.contacts();
     const std::size_t disks = packing.radius.size();
-    std::vector<unsigned char> in_body(disks + 2 * Dim, 0);
+    std::vector<unsigned char> in_body(disks + 2 * packing.dimension, 0);
     const auto join = [&](const Contact& c) {
         for (const std::size_t grain : grains_of(c, disks)) {
             in_body[grain] = 1;
@@ -124,14 +120,12 @@ std::vector<Contact> closed_among(const Packing<Dim>& packing, const IsostaticSt
 
 /// Where a disk is, seen from the first of a pair, and how it moves: from contact to contact, through images.
 struct Seen {
-    std::array<double, 2> place{};
-    std::array<double, 2> velocity{};
+    PerAxis<double> place{};
+    PerAxis<double> velocity{};
     /// The grain behind a contact: of its second disk, or (`sign` -1) of its first.
-    template <int Dim>
-    [[nodiscard]] Seen across(const Packing<Dim>& packing, const std::vector<double>& v, const Contact& c,
-                              int sign) const {
-        const auto d = separation<Dim>(packing.q, c);
-        const auto w = separation<Dim>(v, c);
+    [[nodiscard]] Seen across(const Packing& packing, const std::vector<double>& v, const Contact& c, int sign) const {
+        const auto d = separation(packing.layout(), packing.q, c);
+        const auto w = separation(packing.layout(), v, c);
         Seen other = *this;
         for (std::size_t a = 0; a < d.size(); ++a) {
             other.place[a] += sign * d[a];
@@ -143,13 +137,12 @@ struct Seen {
 
 /// Contacts that stay closed when `opened` opens and join, to the grains of a pair, grains that move with them as a
 /// body, as far as doubles tell; `v`: the motion. Walls are grains of a body that does not turn.
-template <int Dim>
-std::vector<Contact> moving_alike(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
-                                  ContactId opened, const std::vector<double>& v, const Contact& pair) {
+std::vector<Contact> moving_alike(const Packing& packing, const IsostaticStructure& structure, ContactId opened,
+                                  const std::vector<double>& v, const Contact& pair) {
     const std::size_t disks = packing.radius.size();
     const double fastest =
         std::abs(*std::max_element(v.begin(), v.end(), [](double a, double b) { return std::abs(a) < std::abs(b); }));
-    std::vector<std::optional<Seen>> body(disks + 2 * Dim); // of walls: nothing in it
+    std::vector<std::optional<Seen>> body(disks + 2 * packing.dimension); // of walls: nothing in it
     const auto grains = grains_of(pair, disks);
     body[grains[0]].emplace();
     double turn = 0;
@@ -202,8 +195,7 @@ std::vector<Contact> moving_alike(const Packing<Dim>& packing, const IsostaticSt
 /// Whether contacts that stay closed when `opened` opens make one body of the two grains of a pair. Any body may be
 /// tried: the grains whose contacts carry the force of the pair, and all contacts among them; the grains that move
 /// alike.
-template <int Dim>
-bool rests(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure, const Factorisation& factorisation,
+bool rests(const Packing& packing, const IsostaticStructure& structure, const Factorisation& factorisation,
            ContactId opened, const std::vector<double>& v, const Contact& pair) {
     const std::vector<Contact> carrying = carriers(packing, structure, factorisation, opened, pair);
     const auto as_one = [&](const std::vector<Contact>& among) {
@@ -215,10 +207,8 @@ bool rests(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure
 
 } // namespace
 
-template <int Dim>
-FirstOrder<Dim>::FirstOrder(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
-                            const Factorisation& factorisation, const InverseBound& inverse,
-                            const VertexEnclosure& enclosure, const std::vector<double>& rho)
+FirstOrder::FirstOrder(const Packing& packing, const IsostaticStructure& structure, const Factorisation& factorisation,
+                       const InverseBound& inverse, const VertexEnclosure& enclosure, const std::vector<double>& rho)
     : packing_(&packing), structure_(&structure), factorisation_(&factorisation), rho_(&rho) {
     assert(inverse.verdict == Verdict::proved && enclosure.verdict == Verdict::proved);
     assert(rho.size() == packing.radius.size());
@@ -242,9 +232,7 @@ FirstOrder<Dim>::FirstOrder(const Packing<Dim>& packing, const IsostaticStructur
 }
 
 /// v with G v = approach: |v - v*|_2 <= (|G v - approach| + |G - G*| |v|) / sigma_min.
-template <int Dim>
-typename FirstOrder<Dim>::Velocity FirstOrder<Dim>::velocity(const std::vector<double>& approach,
-                                                             double approach_error) const {
+FirstOrder::Velocity FirstOrder::velocity(const std::vector<double>& approach, double approach_error) const {
     const sparse::Matrix<double>& h = structure_->matrix();
     std::vector<double> v = approach;
     factorisation_->solve_velocities(v);
@@ -270,11 +258,11 @@ typename FirstOrder<Dim>::Velocity FirstOrder<Dim>::velocity(const std::vector<d
     return result;
 }
 
-template <int Dim> Enclosure FirstOrder<Dim>::gap_rate(const Contact& contact, const Velocity& velocity) const {
+Enclosure FirstOrder::gap_rate(const Contact& contact, const Velocity& velocity) const {
     if (contact.kind == ContactKind::held) {
         return {velocity.v[static_cast<std::size_t>(contact.i)], velocity.error};
     }
-    const GapGradient<Dim> g = gap_gradient(*packing_, contact);
+    const GapGradient g = gap_gradient(*packing_, contact);
     double sum = 0;
     double terms = 0;
     for (int k = 0; k < g.count; ++k) {
@@ -287,17 +275,17 @@ template <int Dim> Enclosure FirstOrder<Dim>::gap_rate(const Contact& contact, c
     double turned = 0; // the normal of the true vertex is another one
     if (contact.kind == ContactKind::disk_disk) {
         double square = 0;
-        for (const double r : separation<Dim>(velocity.v, contact)) {
+        for (const double r : separation(packing_->layout(), velocity.v, contact)) {
             square += r * r;
         }
         // |n - n*| <= 2 |x - x*| / d for the relative positions x
-        turned = (std::sqrt(square) + lost_to_periods<Dim>(velocity.v, contact)) * 2 * weight * away_ /
+        turned = (std::sqrt(square) + lost_to_periods(packing_->layout(), velocity.v, contact)) * 2 * weight * away_ /
                  (0.99 * target(*packing_, contact));
     }
     return {sum, (weight * velocity.error + turned + rounding(contact) * terms) * raise};
 }
 
-template <int Dim> Enclosure FirstOrder<Dim>::gap(const Contact& contact) const {
+Enclosure FirstOrder::gap(const Contact& contact) const {
     Enclosure c = gap_rate(contact, change_);
     if (contact.kind != ContactKind::held) {
         const double grown = touching_distance(*rho_, contact);
@@ -306,7 +294,7 @@ template <int Dim> Enclosure FirstOrder<Dim>::gap(const Contact& contact) const 
     return c;
 }
 
-template <int Dim> Enclosure FirstOrder<Dim>::rate(ContactId opened, int direction, const Contact& contact) const {
+Enclosure FirstOrder::rate(ContactId opened, int direction, const Contact& contact) const {
     // h_m = sum a_l h_l over the structure: the rate is a multiple of a_opened, which may be a structural zero.
     const std::vector<int> rows = touched_rows(structure_->dofs(), contact);
     if (ContactPattern(*packing_, *structure_, true).carrying(rows)[opened.index()] == 0) {
@@ -320,11 +308,11 @@ template <int Dim> Enclosure FirstOrder<Dim>::rate(ContactId opened, int directi
     return told ? rate : Enclosure{0, 0};
 }
 
-template <int Dim> std::vector<double> FirstOrder<Dim>::shares(const Contact& contact) const {
+std::vector<double> FirstOrder::shares(const Contact& contact) const {
     return shares_of(*packing_, *structure_, *factorisation_, contact);
 }
 
-template <int Dim> bool FirstOrder<Dim>::moves_as_linkage(ContactId opened, const Contact& contact) const {
+bool FirstOrder::moves_as_linkage(ContactId opened, const Contact& contact) const {
     const std::vector<Contact> carrying = carriers(*packing_, *structure_, *factorisation_, opened, contact);
     return !carrying.empty() &&
            (isostat::moves_as_linkage(*packing_, carrying, contact) ||
@@ -332,9 +320,8 @@ template <int Dim> bool FirstOrder<Dim>::moves_as_linkage(ContactId opened, cons
                                       contact));
 }
 
-template <int Dim>
-typename FirstOrder<Dim>::LoadChange FirstOrder<Dim>::load_change(const std::vector<Enclosure>& f0,
-                                                                  const Load<Dim>& load, double stress_error) const {
+FirstOrder::LoadChange FirstOrder::load_change(const std::vector<Enclosure>& f0, const Load& load,
+                                               double stress_error) const {
     const auto& contacts = structure_->contacts();
     const std::vector<double>& v = change_.v;
     LoadChange on{std::vector<double>(v.size(), 0.0), std::vector<double>(v.size(), 0.0)};
@@ -343,8 +330,8 @@ typename FirstOrder<Dim>::LoadChange FirstOrder<Dim>::load_change(const std::vec
         if (c.kind != ContactKind::disk_disk) {
             continue; // normals of walls do not turn
         }
-        const auto x = separation<Dim>(packing_->q, c);
-        const auto r = separation<Dim>(v, c);
+        const auto x = separation(packing_->layout(), packing_->q, c);
+        const auto r = separation(packing_->layout(), v, c);
         double square = 0;
         double dot = 0;
         double speed = 0;
@@ -357,11 +344,11 @@ typename FirstOrder<Dim>::LoadChange FirstOrder<Dim>::load_change(const std::vec
         speed = std::sqrt(speed);
         // dn = (r - n (n.r)) / d; relative errors of n and d at the true vertex, of r, and of the arithmetic.
         const double weight = separation_weight(c);
-        const double lost = lost_to_periods<Dim>(v, c);
+        const double lost = lost_to_periods(packing_->layout(), v, c);
         speed += lost;
         const double place = weight * away_ / d;
         const double off = (weight * change_.error + lost + speed * (6 * place + 40 * u)) / d * 1.01;
-        Separation<Dim>(c, packing_->disk_count()).for_each_coordinate([&](std::size_t k, std::size_t e, int sign) {
+        Separation(c, packing_->layout()).for_each_coordinate([&](std::size_t k, std::size_t e, int sign) {
             const double turn = (r[e] - x[e] * dot / square) / d;
             const double push = f0[l].value * turn;
             const double unknown = f0[l].radius * (std::abs(turn) + off) + std::abs(f0[l].value) * off;
@@ -370,11 +357,11 @@ typename FirstOrder<Dim>::LoadChange FirstOrder<Dim>::load_change(const std::vec
         });
     }
     if (load.kind == LoadKind::true_stress) { // the force on a wall follows the other length
-        static_assert(Dim == 2, "the product of the other lengths has one factor");
-        for (int a = 0; a < Dim; ++a) {
-            const auto wall = static_cast<std::size_t>(Dim * packing_->disk_count() + a);
-            const auto other = static_cast<std::size_t>(Dim * packing_->disk_count() + 1 - a);
-            const double stress = load.stress[static_cast<std::size_t>(a)];
+        assert(packing_->dimension == 2);     // the product of the other lengths has one factor
+        for (std::size_t a = 0; a < packing_->axes(); ++a) {
+            const std::size_t wall = packing_->length_at(a);
+            const std::size_t other = packing_->length_at(1 - a);
+            const double stress = load.stress[a];
             on.value[wall] -= stress * v[other];
             on.error[wall] += std::abs(stress) * (change_.error + 4 * u * std::abs(v[other])) +
                               stress_error * (std::abs(v[other]) + change_.error);
@@ -383,12 +370,11 @@ typename FirstOrder<Dim>::LoadChange FirstOrder<Dim>::load_change(const std::vec
     return on;
 }
 
-template <int Dim>
-std::vector<Enclosure> FirstOrder<Dim>::forces(const std::vector<Enclosure>& f0,
-                                               const std::vector<unsigned char>& structural_zero, const Load<Dim>& load,
-                                               double stress_error) const {
+std::vector<Enclosure> FirstOrder::forces(const std::vector<Enclosure>& f0,
+                                          const std::vector<unsigned char>& structural_zero, const Load& load,
+                                          double stress_error) const {
     const sparse::Matrix<double>& h = structure_->matrix();
-    const DofMap<Dim>& dofs = structure_->dofs();
+    const DofMap& dofs = structure_->dofs();
     const LoadChange on = load_change(f0, load, stress_error);
     const auto n = static_cast<std::size_t>(structure_->size());
     std::vector<double> b(n);
@@ -427,7 +413,5 @@ std::vector<Enclosure> FirstOrder<Dim>::forces(const std::vector<Enclosure>& f0,
     }
     return result;
 }
-
-template class FirstOrder<2>;
 
 } // namespace isostat

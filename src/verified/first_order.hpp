@@ -17,12 +17,11 @@ namespace isostat {
 /// contacts stay closed: v = dq/deps solves (G v)_l = -(rho_i + rho_j) (walls: -rho_i; held coordinates: 0).
 /// Arithmetic: double, bounds by |H^-1|_2 <= 1 / sigma_min with the distance of the stored from the true vertex
 /// included. The arguments must outlive the object. Cost: one solve, and one for each further question.
-template <int Dim> class FirstOrder {
+class FirstOrder {
   public:
     /// \pre inverse and enclosure proved; one rho per disk, taken as exact.
-    FirstOrder(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
-               const Factorisation& factorisation, const InverseBound& inverse, const VertexEnclosure& enclosure,
-               const std::vector<double>& rho);
+    FirstOrder(const Packing& packing, const IsostaticStructure& structure, const Factorisation& factorisation,
+               const InverseBound& inverse, const VertexEnclosure& enclosure, const std::vector<double>& rho);
 
     /// c_m: the gap of a pair that is no contact of the structure is h_m + eps c_m + O(eps^2).
     [[nodiscard]] Enclosure gap(const Contact& contact) const;
@@ -39,8 +38,8 @@ template <int Dim> class FirstOrder {
     /// and (true stresses) of the load along v. `f0`, `structural_zero`: one per contact; f1 is {0, 0} where the second
     /// says that the force vanishes for all positions of the grains. The loaded stress is known to `stress_error`.
     [[nodiscard]] std::vector<Enclosure> forces(const std::vector<Enclosure>& f0,
-                                                const std::vector<unsigned char>& structural_zero,
-                                                const Load<Dim>& load, double stress_error = 0) const;
+                                                const std::vector<unsigned char>& structural_zero, const Load& load,
+                                                double stress_error = 0) const;
 
   private:
     struct Velocity {
@@ -54,11 +53,10 @@ template <int Dim> class FirstOrder {
         std::vector<double> value; ///< on coordinates
         std::vector<double> error; ///< bound, component by component
     };
-    [[nodiscard]] LoadChange load_change(const std::vector<Enclosure>& f0, const Load<Dim>& load,
-                                         double stress_error) const;
+    [[nodiscard]] LoadChange load_change(const std::vector<Enclosure>& f0, const Load& load, double stress_error) const;
 
-    const Packing<Dim>* packing_;
-    const IsostaticStructure<Dim>* structure_;
+    const Packing* packing_;
+    const IsostaticStructure* structure_;
     const Factorisation* factorisation_;
     const std::vector<double>* rho_;
     double sigma_ = 0;       ///< lower bound of the smallest singular value at the true vertex
@@ -66,7 +64,5 @@ template <int Dim> class FirstOrder {
     double away_ = 0;        ///< |q - q*|_2
     Velocity change_;        ///< v
 };
-
-extern template class FirstOrder<2>;
 
 } // namespace isostat

@@ -8,12 +8,12 @@
 namespace isostat {
 
 /// Shared with the shifts made of it: the ladder may move, and end before them.
-template <int Dim> struct ForceLadder<Dim>::Implementation {
-    explicit Implementation(const LadderProblem<Dim>& of, double accuracy)
+struct ForceLadder::Implementation {
+    explicit Implementation(const LadderProblem& of, double accuracy)
         : problem(of), rung(double_rung(problem, accuracy)) {}
 
-    LadderProblem<Dim> problem;
-    std::unique_ptr<ForceRung<Dim>> rung;
+    LadderProblem problem;
+    std::unique_ptr<ForceRung> rung;
     bool exact_allowed = true;
 
     bool climb() {
@@ -37,7 +37,7 @@ template <int Dim> struct ForceLadder<Dim>::Implementation {
     class Zero;
 };
 
-template <int Dim> class ForceLadder<Dim>::Implementation::Zero final : public LoadShift {
+class ForceLadder::Implementation::Zero final : public LoadShift {
   public:
     Zero(std::shared_ptr<Implementation> ladder, const ForceExpression& force)
         : ladder_(std::move(ladder)), force_(force) {}
@@ -52,19 +52,18 @@ template <int Dim> class ForceLadder<Dim>::Implementation::Zero final : public L
     ForceExpression force_;
 };
 
-template <int Dim>
-ForceLadder<Dim>::ForceLadder(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
-                              const Factorisation& factorisation, const InverseBound& inverse, LadderOptions options,
-                              const VertexEnclosure* vertex)
-    : implementation_(std::make_shared<Implementation>(
-          LadderProblem<Dim>(packing, structure, factorisation, inverse, options, vertex),
-          factorisation.is_fresh() ? 0 : options.first_accuracy)) {}
+ForceLadder::ForceLadder(const Packing& packing, const IsostaticStructure& structure,
+                         const Factorisation& factorisation, const InverseBound& inverse, LadderOptions options,
+                         const VertexEnclosure* vertex)
+    : implementation_(
+          std::make_shared<Implementation>(LadderProblem(packing, structure, factorisation, inverse, options, vertex),
+                                           factorisation.is_fresh() ? 0 : options.first_accuracy)) {}
 
-template <int Dim> ForceLadder<Dim>::~ForceLadder() = default;
-template <int Dim> ForceLadder<Dim>::ForceLadder(ForceLadder&&) noexcept = default;
-template <int Dim> ForceLadder<Dim>& ForceLadder<Dim>::operator=(ForceLadder&&) noexcept = default;
+ForceLadder::~ForceLadder() = default;
+ForceLadder::ForceLadder(ForceLadder&&) noexcept = default;
+ForceLadder& ForceLadder::operator=(ForceLadder&&) noexcept = default;
 
-template <int Dim> int ForceLadder<Dim>::add(std::vector<double> force, LoadTerms terms, std::vector<double> guess) {
+int ForceLadder::add(std::vector<double> force, LoadTerms terms, std::vector<double> guess) {
     RightHandSide part;
     part.zero = std::all_of(force.begin(), force.end(), [](double f) { return f == 0; }) &&
                 std::all_of(terms.products.begin(), terms.products.end(), [](const ExactProduct& p) {
@@ -77,19 +76,19 @@ template <int Dim> int ForceLadder<Dim>::add(std::vector<double> force, LoadTerm
     return static_cast<int>(implementation_->problem.parts.size()) - 1;
 }
 
-template <int Dim> const std::vector<double>& ForceLadder<Dim>::force(int part) const {
+const std::vector<double>& ForceLadder::force(int part) const {
     return implementation_->problem.part(part).force;
 }
 
-template <int Dim> const ForceSolution& ForceLadder<Dim>::solution(int part) const {
+const ForceSolution& ForceLadder::solution(int part) const {
     return implementation_->solved(part).solution;
 }
 
-template <int Dim> std::span<const double> ForceLadder<Dim>::known(int part) const {
+std::span<const double> ForceLadder::known(int part) const {
     return implementation_->problem.part(part).solution.value;
 }
 
-template <int Dim> std::string ForceLadder<Dim>::digits(int part, ContactId contact, int bits) const {
+std::string ForceLadder::digits(int part, ContactId contact, int bits) const {
     const RightHandSide& p = implementation_->solved(part);
     const Real value = p.zero ? Real() : implementation_->rung->digits(p, contact, std::max(bits, 2));
     char* text = nullptr;
@@ -99,40 +98,40 @@ template <int Dim> std::string ForceLadder<Dim>::digits(int part, ContactId cont
     return result;
 }
 
-template <int Dim> double ForceLadder<Dim>::bound_exponent(int part) const {
+double ForceLadder::bound_exponent(int part) const {
     const RightHandSide& p = implementation_->solved(part);
     return p.zero ? -std::numeric_limits<double>::infinity() : implementation_->rung->bound_exponent(p);
 }
 
-template <int Dim> bool ForceLadder<Dim>::climb() {
+bool ForceLadder::climb() {
     return implementation_->climb();
 }
 
-template <int Dim> Rung ForceLadder<Dim>::rung() const {
+Rung ForceLadder::rung() const {
     return implementation_->rung->rung();
 }
 
-template <int Dim> int ForceLadder<Dim>::bits() const {
+int ForceLadder::bits() const {
     return implementation_->rung->bits();
 }
 
-template <int Dim> double ForceLadder<Dim>::normal_uncertainty() const {
+double ForceLadder::normal_uncertainty() const {
     return implementation_->rung->normal_uncertainty();
 }
 
-template <int Dim> void ForceLadder<Dim>::without_exact_numbers() {
+void ForceLadder::without_exact_numbers() {
     implementation_->exact_allowed = false;
 }
 
-template <int Dim> std::shared_ptr<const LoadShift> ForceLadder<Dim>::zero_of(const ForceExpression& force) const {
+std::shared_ptr<const LoadShift> ForceLadder::zero_of(const ForceExpression& force) const {
     return std::make_shared<typename Implementation::Zero>(implementation_, force);
 }
 
-template <int Dim> Order ForceLadder<Dim>::sign(const ForceExpression& a) const {
+Order ForceLadder::sign(const ForceExpression& a) const {
     return implementation_->rung->sign(a);
 }
 
-template <int Dim> Order ForceLadder<Dim>::compare(const ForceExpression& a, const ForceExpression& b) const {
+Order ForceLadder::compare(const ForceExpression& a, const ForceExpression& b) const {
     return implementation_->rung->compare(a, b);
 }
 
@@ -142,7 +141,5 @@ bool is_tie(const Order& order, double size) {
     }
     return size > 0 && order.exponent <= std::log2(size) - tie_bits;
 }
-
-template class ForceLadder<2>;
 
 } // namespace isostat

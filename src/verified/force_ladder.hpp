@@ -54,13 +54,11 @@ struct LoadTerms {
 /// The rungs in floating point need the bound of the inverse (V3) and are skipped when there is none or when a climb
 /// gained nothing; exact numbers need only the proof of rank that `structure` is. Solutions are computed when asked
 /// for. The arguments must outlive the object.
-template <int Dim> class ForceLadder {
-    static_assert(has_dimension<Dim>());
+class ForceLadder {
 
   public:
-    ForceLadder(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
-                const Factorisation& factorisation, const InverseBound& inverse, LadderOptions options = {},
-                const VertexEnclosure* vertex = nullptr);
+    ForceLadder(const Packing& packing, const IsostaticStructure& structure, const Factorisation& factorisation,
+                const InverseBound& inverse, LadderOptions options = {}, const VertexEnclosure* vertex = nullptr);
     ~ForceLadder();
     ForceLadder(ForceLadder&&) noexcept;
     ForceLadder& operator=(ForceLadder&&) noexcept;
@@ -104,7 +102,5 @@ template <int Dim> class ForceLadder {
     struct Implementation;
     std::shared_ptr<Implementation> implementation_; ///< with the results of `zero_of`
 };
-
-extern template class ForceLadder<2>;
 
 } // namespace isostat

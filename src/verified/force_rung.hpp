@@ -9,10 +9,10 @@
 namespace isostat {
 
 /// What one arithmetic knows of the solutions, and of expressions in them. The problem must outlive the rung.
-template <int Dim> class ForceRung {
+class ForceRung {
   public:
     /// `rough`: estimated solutions (`first_accuracy`) are enough.
-    ForceRung(LadderProblem<Dim>& problem, Rung rung, int bits, bool rough = false)
+    ForceRung(LadderProblem& problem, Rung rung, int bits, bool rough = false)
         : problem_(problem), rung_(rung), bits_(bits), rough_(rough) {}
     ForceRung(const ForceRung&) = delete;
     ForceRung& operator=(const ForceRung&) = delete;
@@ -40,7 +40,7 @@ template <int Dim> class ForceRung {
     virtual std::unique_ptr<ForceRung> next() = 0;
 
   protected:
-    LadderProblem<Dim>& problem_;
+    LadderProblem& problem_;
 
   private:
     void solve_anew(RightHandSide& part);
@@ -53,23 +53,15 @@ template <int Dim> class ForceRung {
 };
 
 /// `accuracy` > 0: solutions to this relative accuracy, estimated, are enough.
-template <int Dim> std::unique_ptr<ForceRung<Dim>> double_rung(LadderProblem<Dim>& problem, double accuracy);
+std::unique_ptr<ForceRung> double_rung(LadderProblem& problem, double accuracy);
 /// Null when lengths or loads leave the range in which products of doubles are exact, or when no true vertex was
 /// enclosed in double-double, though one is meant.
-template <int Dim> std::unique_ptr<ForceRung<Dim>> double_double_rung(LadderProblem<Dim>& problem);
+std::unique_ptr<ForceRung> double_double_rung(LadderProblem& problem);
 /// Null when no true vertex was enclosed to so many bits, though one is meant. `start`: a correction of the stored
 /// coordinates near it, or empty.
-template <int Dim>
-std::unique_ptr<ForceRung<Dim>> multiprecision_rung(LadderProblem<Dim>& problem, int bits,
-                                                    const std::vector<Real>& start = {});
+std::unique_ptr<ForceRung> multiprecision_rung(LadderProblem& problem, int bits, const std::vector<Real>& start = {});
 /// Null when exact numbers would be too expensive, would not be about what is meant, or when the matrix is not regular.
 /// `last`: the rung before, which says how far normals are from those that are meant.
-template <int Dim> std::unique_ptr<ForceRung<Dim>> exact_rung(LadderProblem<Dim>& problem, ForceRung<Dim>& last);
-
-extern template class ForceRung<2>;
-extern template std::unique_ptr<ForceRung<2>> double_rung<2>(LadderProblem<2>&, double);
-extern template std::unique_ptr<ForceRung<2>> double_double_rung<2>(LadderProblem<2>&);
-extern template std::unique_ptr<ForceRung<2>> multiprecision_rung<2>(LadderProblem<2>&, int, const std::vector<Real>&);
-extern template std::unique_ptr<ForceRung<2>> exact_rung<2>(LadderProblem<2>&, ForceRung<2>&);
+std::unique_ptr<ForceRung> exact_rung(LadderProblem& problem, ForceRung& last);
 
 } // namespace isostat

@@ -71,8 +71,7 @@ Residual residual_in_double(const sparse::Matrix<double>& h, const std::vector<d
 
 } // namespace
 
-template <int Dim>
-ForceSolution solve_forces(const IsostaticStructure<Dim>& structure, const Factorisation& factorisation,
+ForceSolution solve_forces(const IsostaticStructure& structure, const Factorisation& factorisation,
                            const InverseBound& inverse, const std::vector<double>& force, std::span<const double> guess,
                            double accuracy) {
     const sparse::Matrix<double>& h = structure.matrix();
@@ -100,8 +99,5 @@ ForceSolution solve_forces(const IsostaticStructure<Dim>& structure, const Facto
                                                         : std::numeric_limits<double>::infinity();
     return solution;
 }
-
-template ForceSolution solve_forces<2>(const IsostaticStructure<2>&, const Factorisation&, const InverseBound&,
-                                       const std::vector<double>&, std::span<const double>, double);
 
 } // namespace isostat

@@ -28,8 +28,7 @@ struct ForceSolution {
 /// is infinite. Each component of `force` may be off by its own rounding (unit 2^-53). Cost: two solves. With
 /// `accuracy` > 0 and factors taken over the solve stops at that relative accuracy, estimated, and is not refined:
 /// fewer passes, and the larger bound that its residual gives. `guess`: empty, or where the iteration starts.
-template <int Dim>
-ForceSolution solve_forces(const IsostaticStructure<Dim>& structure, const Factorisation& factorisation,
+ForceSolution solve_forces(const IsostaticStructure& structure, const Factorisation& factorisation,
                            const InverseBound& inverse, const std::vector<double>& force,
                            std::span<const double> guess = {}, double accuracy = 0);
 
@@ -39,8 +38,5 @@ struct ExactProduct {
     double a = 0;
     double b = 0;
 };
-
-extern template ForceSolution solve_forces<2>(const IsostaticStructure<2>&, const Factorisation&, const InverseBound&,
-                                              const std::vector<double>&, std::span<const double>, double);
 
 } // namespace isostat

@@ -17,7 +17,7 @@ PreciseInterval unknown_interval(mpfr_prec_t bits) {
 
 } // namespace
 
-template <int Dim> void ForceRung<Dim>::solve_anew(RightHandSide& part) {
+void ForceRung::solve_anew(RightHandSide& part) {
     ForceSolution& s = part.solution;
     if (part.zero) {
         const std::size_t n = part.force.size();
@@ -30,7 +30,7 @@ template <int Dim> void ForceRung<Dim>::solve_anew(RightHandSide& part) {
     s.bits = bits_;
 }
 
-template <int Dim> PreciseInterval IntervalRung<Dim>::enclosed(const RightHandSide& part, std::size_t l) const {
+PreciseInterval IntervalRung::enclosed(const RightHandSide& part, std::size_t l) const {
     Real value(low_bits);
     mpfr_set_d(value.get(), part.solution.value[l], MPFR_RNDN);
     PreciseInterval result(value, Real(part.solution.bound, 53), low_bits);
@@ -41,13 +41,13 @@ template <int Dim> PreciseInterval IntervalRung<Dim>::enclosed(const RightHandSi
     return result;
 }
 
-template <int Dim> PreciseInterval IntervalRung<Dim>::component(int part, std::size_t l) {
+PreciseInterval IntervalRung::component(int part, std::size_t l) {
     RightHandSide& p = this->problem_.part(part);
     this->bring(p);
     return p.zero ? PreciseInterval(low_bits) : enclosed(p, l);
 }
 
-template <int Dim> PreciseInterval IntervalRung<Dim>::evaluate(const ForceExpression& e) {
+PreciseInterval IntervalRung::evaluate(const ForceExpression& e) {
     const std::size_t l = e.contact.index();
     PreciseInterval value = component(e.part, l);
     if (e.slope_part >= 0 && (e.at != e.from || e.shift != nullptr)) {
@@ -67,7 +67,7 @@ template <int Dim> PreciseInterval IntervalRung<Dim>::evaluate(const ForceExpres
     return value;
 }
 
-template <int Dim> Order IntervalRung<Dim>::order_of(const PreciseInterval& value) const {
+Order IntervalRung::order_of(const PreciseInterval& value) const {
     Order order{false, 0, 0, this->rung(), this->bits()};
     if (value.positive() || value.negative()) {
         order.decided = true;
@@ -86,21 +86,21 @@ template <int Dim> Order IntervalRung<Dim>::order_of(const PreciseInterval& valu
     return order;
 }
 
-template <int Dim> Order IntervalRung<Dim>::sign(const ForceExpression& a) {
+Order IntervalRung::sign(const ForceExpression& a) {
     return order_of(evaluate(a));
 }
 
-template <int Dim> Order IntervalRung<Dim>::compare(const ForceExpression& a, const ForceExpression& b) {
+Order IntervalRung::compare(const ForceExpression& a, const ForceExpression& b) {
     return order_of(evaluate(a) - evaluate(b));
 }
 
-template <int Dim> PreciseInterval IntervalRung<Dim>::zero_of(const ForceExpression& force, int) {
+PreciseInterval IntervalRung::zero_of(const ForceExpression& force, int) {
     const PreciseInterval slope = component(force.slope_part, force.contact.index());
     const PreciseInterval quotient = evaluate(force) / magnitude(slope);
     return slope.positive() ? -quotient : quotient;
 }
 
-template <int Dim> Real IntervalRung<Dim>::digits(const RightHandSide& part, ContactId contact, int bits) const {
+Real IntervalRung::digits(const RightHandSide& part, ContactId contact, int bits) const {
     const std::size_t l = contact.index();
     Real sum(2200); // exact for any two doubles
     mpfr_set_d(sum.get(), part.solution.value[l], MPFR_RNDN);
@@ -110,11 +110,8 @@ template <int Dim> Real IntervalRung<Dim>::digits(const RightHandSide& part, Con
     return value;
 }
 
-template <int Dim> double IntervalRung<Dim>::bound_exponent(const RightHandSide& part) const {
+double IntervalRung::bound_exponent(const RightHandSide& part) const {
     return std::log2(part.solution.bound) + 1e-12;
 }
-
-template class ForceRung<2>;
-template class IntervalRung<2>;
 
 } // namespace isostat

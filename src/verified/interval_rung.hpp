@@ -8,9 +8,9 @@ namespace isostat {
 constexpr mpfr_prec_t low_bits = 160; ///< of comparisons on the rungs double and double-double, and of exact roots
 
 /// Expressions as intervals, made of what the rung knows of single components.
-template <int Dim> class IntervalRung : public ForceRung<Dim> {
+class IntervalRung : public ForceRung {
   public:
-    using ForceRung<Dim>::ForceRung;
+    using ForceRung::ForceRung;
     Order sign(const ForceExpression& a) final;
     Order compare(const ForceExpression& a, const ForceExpression& b) final;
     PreciseInterval zero_of(const ForceExpression& force, int bits) final;
@@ -26,7 +26,5 @@ template <int Dim> class IntervalRung : public ForceRung<Dim> {
     PreciseInterval evaluate(const ForceExpression& e);
     [[nodiscard]] Order order_of(const PreciseInterval& value) const;
 };
-
-extern template class IntervalRung<2>;
 
 } // namespace isostat

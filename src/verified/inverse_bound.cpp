@@ -147,8 +147,7 @@ CholeskyOutcome by_cholesky(const sparse::Matrix<double>& unscaled, const Approx
 
 } // namespace
 
-template <int Dim>
-InverseBound bound_inverse(const IsostaticStructure<Dim>& structure, const Factorisation& factorisation,
+InverseBound bound_inverse(const IsostaticStructure& structure, const Factorisation& factorisation,
                            InverseBoundCache& cache, const std::function<bool()>& worth_more, int row_limit) {
     require_floating_point();
     const sparse::Matrix<double>& h = structure.matrix();
@@ -176,8 +175,7 @@ InverseBound bound_inverse(const IsostaticStructure<Dim>& structure, const Facto
     return h.rows <= row_limit ? by_rows(h, factorisation) : InverseBound{};
 }
 
-template <int Dim>
-std::optional<ProvedExchange> bound_exchanged(const ExchangedContacts<Dim>& contacts, const ApproximateInverse& inverse,
+std::optional<ProvedExchange> bound_exchanged(const ExchangedContacts& contacts, const ApproximateInverse& inverse,
                                               InverseBoundCache& cache) {
     const InverseBound bound = by_cholesky(contacts.matrix(), inverse, cache).bound;
     if (bound.verdict != Verdict::proved) {
@@ -185,10 +183,5 @@ std::optional<ProvedExchange> bound_exchanged(const ExchangedContacts<Dim>& cont
     }
     return ProvedExchange{bound, RegularityProver::proof(contacts.matrix(), bound.sigma_min)};
 }
-
-template std::optional<ProvedExchange> bound_exchanged<2>(const ExchangedContacts<2>&, const ApproximateInverse&,
-                                                          InverseBoundCache&);
-template InverseBound bound_inverse<2>(const IsostaticStructure<2>&, const Factorisation&, InverseBoundCache&,
-                                       const std::function<bool()>&, int);
 
 } // namespace isostat

@@ -53,8 +53,7 @@ struct InverseBoundCache {
 /// R ~ H^-1 row by row from the LU factors, |H^-1| <= |R| / (1 - |I - R H|) in the 1 and the infinity norm (statement
 /// V2); one solve per row, tried when size <= `row_limit`. The second and third take long: where the structure is not
 /// proved yet, `worth_more` is asked first, and false ends it with `undecided`.
-template <int Dim>
-InverseBound bound_inverse(const IsostaticStructure<Dim>& structure, const Factorisation& factorisation,
+InverseBound bound_inverse(const IsostaticStructure& structure, const Factorisation& factorisation,
                            InverseBoundCache& cache, const std::function<bool()>& worth_more = {},
                            int row_limit = 20000);
 
@@ -67,8 +66,7 @@ struct ProvedExchange {
 /// By Cholesky (statement V1), for a matrix that is not known to be regular yet. `inverse` guesses the shift and proves
 /// nothing. Nothing when the factorisation fails or rounding hides sigma_min: then ask `IsostaticStructure::prove`.
 /// Cost: 2 ms at n = 1936, 9 ms at n = 4900.
-template <int Dim>
-std::optional<ProvedExchange> bound_exchanged(const ExchangedContacts<Dim>& contacts, const ApproximateInverse& inverse,
+std::optional<ProvedExchange> bound_exchanged(const ExchangedContacts& contacts, const ApproximateInverse& inverse,
                                               InverseBoundCache& cache);
 
 /// The bound of the structure before carried over an exchange (statement V8 in proofs/exchange.md): the kept rows of G
@@ -77,17 +75,8 @@ std::optional<ProvedExchange> bound_exchanged(const ExchangedContacts<Dim>& cont
 /// `mechanism` (on degrees of freedom) is a guess of the null vector of the kept rows at the end, `inverse` makes the
 /// other guesses; neither is trusted. Nothing when the grains moved too far, or when less than `worth` of the last
 /// bound that was not carried is left. Cost: 2 to 4 passes.
-template <int Dim>
-std::optional<ProvedExchange> carry_bound(const IsostaticStructure<Dim>& before, const InverseBound& bound,
-                                          const ExchangedContacts<Dim>& after, const ApproximateInverse& inverse,
+std::optional<ProvedExchange> carry_bound(const IsostaticStructure& before, const InverseBound& bound,
+                                          const ExchangedContacts& after, const ApproximateInverse& inverse,
                                           std::vector<double> mechanism, double worth = 0.02);
-
-extern template std::optional<ProvedExchange> bound_exchanged<2>(const ExchangedContacts<2>&, const ApproximateInverse&,
-                                                                 InverseBoundCache&);
-extern template std::optional<ProvedExchange> carry_bound<2>(const IsostaticStructure<2>&, const InverseBound&,
-                                                             const ExchangedContacts<2>&, const ApproximateInverse&,
-                                                             std::vector<double>, double);
-extern template InverseBound bound_inverse<2>(const IsostaticStructure<2>&, const Factorisation&, InverseBoundCache&,
-                                              const std::function<bool()>&, int);
 
 } // namespace isostat

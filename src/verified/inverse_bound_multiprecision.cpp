@@ -108,14 +108,13 @@ double sigma_by_rows(const sparse::Matrix<Real>& h, const sparse::Ordering& orde
 
 } // namespace
 
-template <int Dim>
-InverseBound bound_inverse_multiprecision(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
-                                          int size_limit, int max_bits) {
+InverseBound bound_inverse_multiprecision(const Packing& packing, const IsostaticStructure& structure, int size_limit,
+                                          int max_bits) {
     if (structure.size() > size_limit) {
         return {};
     }
     for (int bits = 128; bits <= max_bits; bits *= 2) {
-        using Place = CorrectedConfiguration<Dim, Real>;
+        using Place = CorrectedConfiguration<Real>;
         const sparse::Matrix<Real> h =
             Place(Arithmetic<Real>(bits), packing).contact_matrix(structure, Place::Divided::by_distances);
         const double sigma = sigma_by_rows(h, structure.ordering(), bits);
@@ -125,7 +124,5 @@ InverseBound bound_inverse_multiprecision(const Packing<Dim>& packing, const Iso
     }
     return {};
 }
-
-template InverseBound bound_inverse_multiprecision<2>(const Packing<2>&, const IsostaticStructure<2>&, int, int);
 
 } // namespace isostat

@@ -10,10 +10,7 @@ namespace isostat {
 /// factors in MPFR with 128, 256, ... `max_bits` bits, then |H^-1|_2 <= sqrt(|R|_1 |R|_inf) / (1 - |R H - I|) with the
 /// rounding of the entries and products included (statement V2 with the unit 2^-bits). `undecided` when N_f exceeds
 /// `size_limit`, or at the cap. Cost: N_f solves with `bits` bits; N_f = 200, sigma_min = 1e-40: about 0.1 s.
-template <int Dim>
-InverseBound bound_inverse_multiprecision(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+InverseBound bound_inverse_multiprecision(const Packing& packing, const IsostaticStructure& structure,
                                           int size_limit = 400, int max_bits = 4096);
-
-extern template InverseBound bound_inverse_multiprecision<2>(const Packing<2>&, const IsostaticStructure<2>&, int, int);
 
 } // namespace isostat

@@ -49,7 +49,7 @@ void round_to_pairs(const std::vector<Real>& x, const Real& error, ForceSolution
     solution.bound = bound.above();
 }
 
-template <int Dim> double LadderProblem<Dim>::normal_rate() {
+double LadderProblem::normal_rate() {
     if (!normal_rate_) {
         normal_rate_ = vertex == nullptr       ? 0
                        : vertex->lipschitz > 0 ? isostat::normal_rate(vertex->lipschitz)
@@ -58,7 +58,7 @@ template <int Dim> double LadderProblem<Dim>::normal_rate() {
     return *normal_rate_;
 }
 
-template <int Dim> auto LadderProblem<Dim>::stored_distance() -> const Distance& {
+auto LadderProblem::stored_distance() -> const Distance& {
     if (!stored_distance_) {
         stored_distance_.emplace();
         if (vertex != nullptr) {
@@ -71,7 +71,7 @@ template <int Dim> auto LadderProblem<Dim>::stored_distance() -> const Distance&
     return *stored_distance_;
 }
 
-template <int Dim> void LadderProblem<Dim>::solve_in_double(RightHandSide& part, double accuracy) const {
+void LadderProblem::solve_in_double(RightHandSide& part, double accuracy) const {
     ForceSolution& s = part.solution;
     if (!s.value.empty() && !part.rough) {
         return;
@@ -86,7 +86,7 @@ template <int Dim> void LadderProblem<Dim>::solve_in_double(RightHandSide& part,
     }
 }
 
-template <int Dim> void LadderProblem<Dim>::inflate(RightHandSide& part) {
+void LadderProblem::inflate(RightHandSide& part) {
     if (vertex == nullptr) {
         return;
     }
@@ -103,7 +103,5 @@ template <int Dim> void LadderProblem<Dim>::inflate(RightHandSide& part) {
     const double residual = s.bound * sigma + turned + part.terms.rate * here.away;
     s.bound = residual / left * (1 + 16 * u);
 }
-
-template class LadderProblem<2>;
 
 } // namespace isostat

@@ -24,14 +24,14 @@ struct RightHandSide {
 };
 
 /// The arguments of a ladder and its right-hand sides.
-template <int Dim> class LadderProblem {
+class LadderProblem {
   public:
-    LadderProblem(const Packing<Dim>& p, const IsostaticStructure<Dim>& s, const Factorisation& f,
-                  const InverseBound& bound, const LadderOptions& limits, const VertexEnclosure* v)
+    LadderProblem(const Packing& p, const IsostaticStructure& s, const Factorisation& f, const InverseBound& bound,
+                  const LadderOptions& limits, const VertexEnclosure* v)
         : packing(p), structure(s), factorisation(f), inverse(bound), options(limits), vertex(v) {}
 
-    const Packing<Dim>& packing;
-    const IsostaticStructure<Dim>& structure;
+    const Packing& packing;
+    const IsostaticStructure& structure;
     const Factorisation& factorisation;
     const InverseBound& inverse;
     LadderOptions options;
@@ -61,7 +61,5 @@ template <int Dim> class LadderProblem {
 
 /// Rounds a vector of MPFR numbers to value + low, the rounding included in the bound.
 void round_to_pairs(const std::vector<Real>& x, const Real& error, ForceSolution& solution);
-
-extern template class LadderProblem<2>;
 
 } // namespace isostat

@@ -54,7 +54,7 @@ struct Constraint {
 };
 
 /// Of two disks at the distance `distance` of their centres, by coordinates; d = R_i + R_j.
-template <std::size_t Dim> Constraint between_disks(const std::array<Pair, Dim>& distance, Pair d) {
+Constraint between_disks(const PerAxis<Pair>& distance, Pair d) {
     constexpr double underflow = 0x1p-1000; // far above 16 * 2^-1074, which is slow to multiply with
     const Pair target_square = exact_square(d.sum);
     Pair value{-target_square.sum, -(target_square.error + 2 * d.sum * d.error)};
@@ -69,20 +69,19 @@ template <std::size_t Dim> Constraint between_disks(const std::array<Pair, Dim>&
 }
 
 /// x_j - x_i + A m: of an image it is one double, exact on the grid (proofs/cells.md, C2).
-template <int Dim, class At, class Minus>
-std::array<Pair, Dim> distance_of(const Separation<Dim>& separation, const Contact& contact, At at, Minus minus) {
+template <class At, class Minus>
+PerAxis<Pair> distance_of(const Separation& separation, const Contact& contact, At at, Minus minus) {
     if (contact.image.is_here()) [[likely]] {
         return separation.of_centres(at, minus);
     }
     const auto r = separation.of_disks(at, std::minus<>());
-    std::array<Pair, Dim> distance{};
+    PerAxis<Pair> distance{};
     std::transform(r.begin(), r.end(), distance.begin(), [](double x) { return Pair{x}; });
     return distance;
 }
 
 /// \pre with periodic axes: the packing is on its grid
-template <int Dim>
-Constraints constraints(const Packing<Dim>& packing, const std::vector<Contact>& contacts, double scale) {
+Constraints constraints(const Packing& packing, const std::vector<Contact>& contacts, double scale) {
     const std::size_t n = contacts.size();
     Constraints result{std::vector<double>(n), std::vector<double>(n)};
     std::vector<int> count(packing.radius.size(), 0);
@@ -94,7 +93,7 @@ Constraints constraints(const Packing<Dim>& packing, const std::vector<Contact>&
     double largest = 0;
     for (std::size_t l = 0; l < n; ++l) {
         const auto i = static_cast<std::size_t>(contacts[l].i);
-        const Separation<Dim> separation(contacts[l], packing.disk_count());
+        const Separation separation(contacts[l], packing.layout());
         Constraint found;
         switch (contacts[l].kind) {
         case ContactKind::disk_disk: {
@@ -211,8 +210,7 @@ VertexEnclosure newton(const Constraints& at, const sparse::Matrix<double>& h, c
 
 } // namespace
 
-template <int Dim>
-VertexEnclosure enclose_vertex(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+VertexEnclosure enclose_vertex(const Packing& packing, const IsostaticStructure& structure,
                                const Factorisation& factorisation, const InverseBound& inverse) {
     const std::optional<double> scale = scale_of(packing.q);
     const bool rounded = packing.cell.any() && !is_on_grid(packing);
@@ -237,8 +235,5 @@ VertexEnclosure enclose_vertex(const Packing<Dim>& packing, const IsostaticStruc
     }
     return vertex;
 }
-
-template VertexEnclosure enclose_vertex<2>(const Packing<2>&, const IsostaticStructure<2>&, const Factorisation&,
-                                           const InverseBound&);
 
 } // namespace isostat

@@ -7,38 +7,38 @@
 
 namespace isostat {
 
-template <int Dim> struct PreciseFirstOrder<Dim>::Rung {
+struct PreciseFirstOrder::Rung {
     Rung(int bits, const PreciseFirstOrder& of, const std::vector<Real>& start)
         : vertex(Arithmetic<Real>(bits), of.packing_, of.structure_, of.factorisation_,
                  Neighbourhood::of(of.packing_, of.structure_.contacts(), of.inverse_), start) {
         if (vertex.exists() && vertex.sigma() > 0) {
-            system = std::make_unique<ContactSystem<Dim, Real>>(vertex, of.structure_, of.factorisation_);
+            system = std::make_unique<ContactSystem<Real>>(vertex, of.structure_, of.factorisation_);
         }
     }
-    EnclosedVertex<Dim, Real> vertex;
-    std::unique_ptr<ContactSystem<Dim, Real>> system; ///< null: nothing is known
+    EnclosedVertex<Real> vertex;
+    std::unique_ptr<ContactSystem<Real>> system; ///< null: nothing is known
 };
 
 namespace {
 
 /// Rate of the gap of a pair that touches at the true vertex, on a motion on the degrees of freedom.
-template <int Dim>
-PreciseInterval gap_rate(const EnclosedVertex<Dim, Real>& vertex, const DofMap<Dim>& dofs,
-                         const BoundedVector<Real>& motion, const Contact& pair) {
+PreciseInterval gap_rate(const EnclosedVertex<Real>& vertex, const DofMap& dofs, const BoundedVector<Real>& motion,
+                         const Contact& pair) {
     const Arithmetic<Real>& a = vertex.at().arithmetic();
     const auto component = [&](std::size_t coordinate) {
         const int dof = dofs.dof_of(coordinate);
         return dof < 0 ? a.number(0) : motion.value[static_cast<std::size_t>(dof)];
     };
     const UpperBound unknown = separation_weight(pair) * motion.bound;
+    const Layout layout = vertex.at().packing().layout();
     if (pair.kind != ContactKind::disk_disk) {
-        const Real v = component(static_cast<std::size_t>(Dim * pair.i + pair.j));
-        const auto wall = static_cast<std::size_t>(Dim * vertex.at().packing().disk_count() + pair.j);
+        const Real v = component(layout.of_disk(pair.i) + static_cast<std::size_t>(pair.j));
+        const std::size_t wall = layout.of_length(static_cast<std::size_t>(pair.j));
         const Real rate = pair.kind == ContactKind::lower_wall ? v : component(wall) - v;
         return {rate, (unknown + a.unit() * (a.size(v) + a.size(rate))).real(), a.bits()};
     }
     const auto x = vertex.at().separation(pair);
-    const Separation<Dim> separation(pair, vertex.at().packing().disk_count());
+    const Separation separation(pair, layout);
     const auto w = separation.of_disks(component, [](const Real& to, const Real& from) -> Real { return to - from; });
     Real sum = a.number(0);
     UpperBound speed(0);
@@ -61,9 +61,8 @@ PreciseInterval gap_rate(const EnclosedVertex<Dim, Real>& vertex, const DofMap<D
 }
 
 /// Part of the second derivative of a gap of 0 that its velocity makes: (|w|^2 - (n.w)^2) / D, w the relative velocity.
-template <int Dim>
-PreciseInterval turning(const EnclosedVertex<Dim, Real>& vertex, const DofMap<Dim>& dofs,
-                        const BoundedVector<Real>& motion, const Contact& pair) {
+PreciseInterval turning(const EnclosedVertex<Real>& vertex, const DofMap& dofs, const BoundedVector<Real>& motion,
+                        const Contact& pair) {
     const Arithmetic<Real>& a = vertex.at().arithmetic();
     if (pair.kind != ContactKind::disk_disk) {
         return PreciseInterval(a.bits());
@@ -81,7 +80,7 @@ PreciseInterval turning(const EnclosedVertex<Dim, Real>& vertex, const DofMap<Di
         size += a.size(d);
     }
     const auto w =
-        Separation<Dim>(pair, vertex.at().packing().disk_count())
+        Separation(pair, vertex.at().packing().layout())
             .of_disks(component, [](const PreciseInterval& to, const PreciseInterval& from) -> PreciseInterval {
                 return to - from;
             });
@@ -98,15 +97,14 @@ PreciseInterval turning(const EnclosedVertex<Dim, Real>& vertex, const DofMap<Di
 
 } // namespace
 
-template <int Dim>
-PreciseFirstOrder<Dim>::PreciseFirstOrder(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
-                                          const Factorisation& factorisation, const InverseBound& inverse,
-                                          const LadderOptions& options)
+PreciseFirstOrder::PreciseFirstOrder(const Packing& packing, const IsostaticStructure& structure,
+                                     const Factorisation& factorisation, const InverseBound& inverse,
+                                     const LadderOptions& options)
     : packing_(packing), structure_(structure), factorisation_(factorisation), inverse_(inverse), options_(options) {}
 
-template <int Dim> PreciseFirstOrder<Dim>::~PreciseFirstOrder() = default;
+PreciseFirstOrder::~PreciseFirstOrder() = default;
 
-template <int Dim> typename PreciseFirstOrder<Dim>::Rung* PreciseFirstOrder<Dim>::rung(int number) {
+PreciseFirstOrder::Rung* PreciseFirstOrder::rung(int number) {
     const auto index = static_cast<std::size_t>(number);
     while (rungs_.size() <= index) {
         const int bits = options_.first_bits << rungs_.size();
@@ -116,8 +114,7 @@ template <int Dim> typename PreciseFirstOrder<Dim>::Rung* PreciseFirstOrder<Dim>
     return rungs_[index]->system ? rungs_[index].get() : nullptr;
 }
 
-template <int Dim>
-Enclosure PreciseFirstOrder<Dim>::climb(const std::vector<Sum>& approach, const Sum& grown, const Contact& pair) {
+Enclosure PreciseFirstOrder::climb(const std::vector<Sum>& approach, const Sum& grown, const Contact& pair) {
     Enclosure result{0, std::numeric_limits<double>::infinity()};
     for (int number = 0; options_.first_bits << number <= options_.max_bits && !result.decided(); ++number) {
         const Rung* at = rung(number);
@@ -142,9 +139,7 @@ Enclosure PreciseFirstOrder<Dim>::climb(const std::vector<Sum>& approach, const 
     return result;
 }
 
-template <int Dim>
-typename PreciseFirstOrder<Dim>::Sum PreciseFirstOrder<Dim>::grown(const std::vector<double>& rho,
-                                                                   const Contact& pair) {
+PreciseFirstOrder::Sum PreciseFirstOrder::grown(const std::vector<double>& rho, const Contact& pair) {
     switch (pair.kind) {
     case ContactKind::held: return {0, 0};
     case ContactKind::disk_disk: return {rho[static_cast<std::size_t>(pair.i)], rho[static_cast<std::size_t>(pair.j)]};
@@ -152,13 +147,13 @@ typename PreciseFirstOrder<Dim>::Sum PreciseFirstOrder<Dim>::grown(const std::ve
     }
 }
 
-template <int Dim> Enclosure PreciseFirstOrder<Dim>::rate(ContactId opened, int direction, const Contact& pair) {
+Enclosure PreciseFirstOrder::rate(ContactId opened, int direction, const Contact& pair) {
     std::vector<Sum> approach(structure_.contacts().size(), Sum{0, 0});
     approach[opened.index()][0] = -direction;
     return climb(approach, {0, 0}, pair);
 }
 
-template <int Dim> Enclosure PreciseFirstOrder<Dim>::bend(ContactId opened, int direction, const Contact& pair) {
+Enclosure PreciseFirstOrder::bend(ContactId opened, int direction, const Contact& pair) {
     const Rung* at = rung(0);
     const Enclosure unknown{0, std::numeric_limits<double>::infinity()};
     if (at == nullptr) {
@@ -190,7 +185,7 @@ template <int Dim> Enclosure PreciseFirstOrder<Dim>::bend(ContactId opened, int 
         .rounded();
 }
 
-template <int Dim> Enclosure PreciseFirstOrder<Dim>::gap(const std::vector<double>& rho, const Contact& pair) {
+Enclosure PreciseFirstOrder::gap(const std::vector<double>& rho, const Contact& pair) {
     std::vector<Sum> approach;
     for (const Contact& c : structure_.contacts()) {
         const Sum sum = grown(rho, c);
@@ -198,7 +193,5 @@ template <int Dim> Enclosure PreciseFirstOrder<Dim>::gap(const std::vector<doubl
     }
     return climb(approach, grown(rho, pair), pair);
 }
-
-template class PreciseFirstOrder<2>;
 
 } // namespace isostat

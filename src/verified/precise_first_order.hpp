@@ -16,10 +16,10 @@ namespace isostat {
 /// The answers of `FirstOrder::rate` and `FirstOrder::gap` with first_bits ... max_bits bits, until the sign is told
 /// (statement V6: motions at the true vertex in MPFR). The arguments must outlive the object. Cost: a vertex per rung
 /// for all questions, and per question a motion: N products and a solve per 30 bits or so.
-template <int Dim> class PreciseFirstOrder {
+class PreciseFirstOrder {
   public:
-    PreciseFirstOrder(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
-                      const Factorisation& factorisation, const InverseBound& inverse, const LadderOptions& options);
+    PreciseFirstOrder(const Packing& packing, const IsostaticStructure& structure, const Factorisation& factorisation,
+                      const InverseBound& inverse, const LadderOptions& options);
     PreciseFirstOrder(const PreciseFirstOrder&) = delete;
     PreciseFirstOrder& operator=(const PreciseFirstOrder&) = delete;
     ~PreciseFirstOrder();
@@ -40,14 +40,12 @@ template <int Dim> class PreciseFirstOrder {
     /// Null: no vertex was enclosed with so many bits.
     Rung* rung(int number);
 
-    const Packing<Dim>& packing_;
-    const IsostaticStructure<Dim>& structure_;
+    const Packing& packing_;
+    const IsostaticStructure& structure_;
     const Factorisation& factorisation_;
     const InverseBound& inverse_;
     LadderOptions options_;
     std::vector<std::unique_ptr<Rung>> rungs_;
 };
-
-extern template class PreciseFirstOrder<2>;
 
 } // namespace isostat

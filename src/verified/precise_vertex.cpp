@@ -2,13 +2,13 @@
 
 namespace isostat {
 
-template <int Dim> bool PreciseVertex<Dim>::enclose(int bits) {
+bool PreciseVertex::enclose(int bits) {
     const std::vector<Real> start = vertex_ ? vertex_->at().correction() : std::vector<Real>();
     vertex_.emplace(Arithmetic<Real>(bits), packing_, structure_, factorisation_, at_q_, start);
     return vertex_->exists();
 }
 
-template <int Dim> PreciseInterval PreciseVertex<Dim>::operator[](std::size_t k) const {
+PreciseInterval PreciseVertex::operator[](std::size_t k) const {
     const int bits = vertex_->at().arithmetic().bits();
     PreciseInterval stored = difference(packing_.q[k], 0, bits);
     if (structure_.dofs().dof_of(k) < 0) {
@@ -16,7 +16,5 @@ template <int Dim> PreciseInterval PreciseVertex<Dim>::operator[](std::size_t k)
     }
     return stored + PreciseInterval(vertex_->at().correction()[k], vertex_->radius().real(), bits);
 }
-
-template class PreciseVertex<2>;
 
 } // namespace isostat

@@ -8,10 +8,10 @@
 namespace isostat {
 
 /// Statement V5 with any number of bits. The arguments must outlive it.
-template <int Dim> class PreciseVertex {
+class PreciseVertex {
   public:
-    PreciseVertex(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
-                  const Factorisation& factorisation, const InverseBound& inverse)
+    PreciseVertex(const Packing& packing, const IsostaticStructure& structure, const Factorisation& factorisation,
+                  const InverseBound& inverse)
         : packing_(packing), structure_(structure), factorisation_(factorisation),
           at_q_(Neighbourhood::of(packing, structure.contacts(), inverse)) {}
 
@@ -23,13 +23,11 @@ template <int Dim> class PreciseVertex {
     [[nodiscard]] PreciseInterval operator[](std::size_t k) const;
 
   private:
-    const Packing<Dim>& packing_;
-    const IsostaticStructure<Dim>& structure_;
+    const Packing& packing_;
+    const IsostaticStructure& structure_;
     const Factorisation& factorisation_;
     Neighbourhood at_q_;
-    std::optional<EnclosedVertex<Dim, Real>> vertex_;
+    std::optional<EnclosedVertex<Real>> vertex_;
 };
-
-extern template class PreciseVertex<2>;
 
 } // namespace isostat

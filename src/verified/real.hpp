@@ -16,7 +16,8 @@ namespace isostat {
 /// functions do not round down or up.
 class Real {
   public:
-    explicit Real(mpfr_prec_t bits = 53) {
+    Real() : Real(53) {}
+    explicit Real(mpfr_prec_t bits) {
         mpfr_init2(x_, bits);
         mpfr_set_zero(x_, 1);
     }
@@ -81,6 +82,7 @@ inline Real sqrt(Real a) {
 /// A real number between low and high; all operations round outwards, with `bits` of the object. NaN: nothing is known.
 class PreciseInterval {
   public:
+    PreciseInterval() = default;
     explicit PreciseInterval(mpfr_prec_t bits) : low(bits), high(bits) {}
     /// value +- radius, radius >= 0.
     PreciseInterval(const Real& value, const Real& radius, mpfr_prec_t bits) : PreciseInterval(bits) {

@@ -23,28 +23,26 @@ Real sum_of(const Arithmetic<Real>& arithmetic, double high, double low) {
 }
 
 /// The contact matrix in double-double or MPFR, at the true vertex enclosed with as many digits when that is meant.
-template <int Dim, class T> class RefinedRung final : public IntervalRung<Dim> {
+template <class T> class RefinedRung final : public IntervalRung {
   public:
     using A = Arithmetic<T>;
     static constexpr bool in_pairs = std::is_same_v<T, dd_real>; ///< two doubles hold every digit
 
-    RefinedRung(LadderProblem<Dim>& problem, const A& arithmetic, std::optional<EnclosedVertex<Dim, T>> vertex,
-                int bits)
-        : IntervalRung<Dim>(problem, A::rung, bits), vertex_(std::move(vertex)),
-          system_(vertex_
-                      ? ContactSystem<Dim, T>(*vertex_, problem.structure, problem.factorisation)
-                      : ContactSystem<Dim, T>(CorrectedConfiguration<Dim, T>(arithmetic, problem.packing),
-                                              problem.structure, problem.factorisation, problem.inverse.sigma_min, 0)) {
+    RefinedRung(LadderProblem& problem, const A& arithmetic, std::optional<EnclosedVertex<T>> vertex, int bits)
+        : IntervalRung(problem, A::rung, bits), vertex_(std::move(vertex)),
+          system_(vertex_ ? ContactSystem<T>(*vertex_, problem.structure, problem.factorisation)
+                          : ContactSystem<T>(CorrectedConfiguration<T>(arithmetic, problem.packing), problem.structure,
+                                             problem.factorisation, problem.inverse.sigma_min, 0)) {
         count_work(in_pairs ? Work::double_double : Work::multiprecision);
     }
 
     double normal_uncertainty() override {
         return vertex_ ? this->problem_.normal_rate() * above(vertex_->distance()) : 0;
     }
-    std::unique_ptr<ForceRung<Dim>> next() override;
+    std::unique_ptr<ForceRung> next() override;
     [[nodiscard]] Real digits(const RightHandSide& part, ContactId contact, int bits) const override {
         if constexpr (in_pairs) {
-            return IntervalRung<Dim>::digits(part, contact, bits);
+            return IntervalRung::digits(part, contact, bits);
         }
         Real value(bits);
         mpfr_set(value.get(), part.refined.value[contact.index()].get(), MPFR_RNDN);
@@ -52,7 +50,7 @@ template <int Dim, class T> class RefinedRung final : public IntervalRung<Dim> {
     }
     [[nodiscard]] double bound_exponent(const RightHandSide& part) const override {
         if constexpr (in_pairs) {
-            return IntervalRung<Dim>::bound_exponent(part);
+            return IntervalRung::bound_exponent(part);
         }
         Real logarithm(64);
         mpfr_log2(logarithm.get(), part.refined.bound.real().get(), MPFR_RNDU);
@@ -66,19 +64,19 @@ template <int Dim, class T> class RefinedRung final : public IntervalRung<Dim> {
     void take(BoundedVector<T> solved, RightHandSide& part) const;
     [[nodiscard]] PreciseInterval enclosed(const RightHandSide& part, std::size_t l) const override {
         if constexpr (in_pairs) {
-            return IntervalRung<Dim>::enclosed(part, l);
+            return IntervalRung::enclosed(part, l);
         }
         return {part.refined.value[l], part.refined.bound.real(), this->bits() + 32};
     }
     /// The bits were used: more of them will tell more.
     [[nodiscard]] bool converged() const;
 
-    std::optional<EnclosedVertex<Dim, T>> vertex_; ///< none: the stored configuration is meant
-    ContactSystem<Dim, T> system_;
+    std::optional<EnclosedVertex<T>> vertex_; ///< none: the stored configuration is meant
+    ContactSystem<T> system_;
 };
 
 /// Products are exact.
-template <int Dim, class T> std::vector<T> RefinedRung<Dim, T>::load(const RightHandSide& part) const {
+template <class T> std::vector<T> RefinedRung<T>::load(const RightHandSide& part) const {
     const A& a = system_.arithmetic();
     std::vector<T> force;
     force.reserve(part.force.size());
@@ -91,7 +89,7 @@ template <int Dim, class T> std::vector<T> RefinedRung<Dim, T>::load(const Right
     return force;
 }
 
-template <int Dim, class T> std::vector<T> RefinedRung<Dim, T>::guess(const RightHandSide& part) const {
+template <class T> std::vector<T> RefinedRung<T>::guess(const RightHandSide& part) const {
     const ForceSolution& s = part.solution;
     if constexpr (!in_pairs) {
         if (!part.refined.value.empty()) {
@@ -106,7 +104,7 @@ template <int Dim, class T> std::vector<T> RefinedRung<Dim, T>::guess(const Righ
     return x;
 }
 
-template <int Dim, class T> void RefinedRung<Dim, T>::solve(RightHandSide& part) {
+template <class T> void RefinedRung<T>::solve(RightHandSide& part) {
     this->problem_.solve_in_double(part, 0);
     const double rate = part.terms.rate;
     const double error = rate == 0 || !vertex_ ? 0 : rate * above(vertex_->distance()) * (1 + 4 * u);
@@ -118,7 +116,7 @@ template <int Dim, class T> void RefinedRung<Dim, T>::solve(RightHandSide& part)
     take(std::move(solved), part);
 }
 
-template <int Dim, class T> void RefinedRung<Dim, T>::take(BoundedVector<T> solved, RightHandSide& part) const {
+template <class T> void RefinedRung<T>::take(BoundedVector<T> solved, RightHandSide& part) const {
     ForceSolution& s = part.solution;
     s.residual = solved.residual;
     if constexpr (in_pairs) {
@@ -134,7 +132,7 @@ template <int Dim, class T> void RefinedRung<Dim, T>::take(BoundedVector<T> solv
     }
 }
 
-template <int Dim, class T> bool RefinedRung<Dim, T>::converged() const {
+template <class T> bool RefinedRung<T>::converged() const {
     const auto& parts = this->problem_.parts;
     return std::all_of(parts.begin(), parts.end(), [&](const RightHandSide& part) {
         const ForceSolution& s = part.solution;
@@ -149,7 +147,7 @@ template <int Dim, class T> bool RefinedRung<Dim, T>::converged() const {
     });
 }
 
-template <int Dim, class T> std::unique_ptr<ForceRung<Dim>> RefinedRung<Dim, T>::next() {
+template <class T> std::unique_ptr<ForceRung> RefinedRung<T>::next() {
     const LadderOptions& options = this->problem_.options;
     if constexpr (in_pairs) {
         return options.first_bits > options.max_bits ? nullptr
@@ -164,10 +162,10 @@ template <int Dim, class T> std::unique_ptr<ForceRung<Dim>> RefinedRung<Dim, T>:
 }
 
 /// Null when no true vertex was enclosed, though one is meant.
-template <int Dim, class T>
-std::unique_ptr<ForceRung<Dim>> refined_rung(LadderProblem<Dim>& problem, const Arithmetic<T>& arithmetic,
-                                             const std::vector<T>& start, int bits) {
-    std::optional<EnclosedVertex<Dim, T>> vertex;
+template <class T>
+std::unique_ptr<ForceRung> refined_rung(LadderProblem& problem, const Arithmetic<T>& arithmetic,
+                                        const std::vector<T>& start, int bits) {
+    std::optional<EnclosedVertex<T>> vertex;
     if (problem.vertex != nullptr) {
         vertex.emplace(arithmetic, problem.packing, problem.structure, problem.factorisation,
                        Neighbourhood::of(problem.packing, problem.structure.contacts(), problem.inverse), start);
@@ -175,26 +173,21 @@ std::unique_ptr<ForceRung<Dim>> refined_rung(LadderProblem<Dim>& problem, const 
             return nullptr;
         }
     }
-    return std::make_unique<RefinedRung<Dim, T>>(problem, arithmetic, std::move(vertex), bits);
+    return std::make_unique<RefinedRung<T>>(problem, arithmetic, std::move(vertex), bits);
 }
 
 } // namespace
 
-template <int Dim> std::unique_ptr<ForceRung<Dim>> double_double_rung(LadderProblem<Dim>& problem) {
+std::unique_ptr<ForceRung> double_double_rung(LadderProblem& problem) {
     const auto& parts = problem.parts;
     const bool loads = std::all_of(parts.begin(), parts.end(), [](const RightHandSide& part) {
         return part.zero || in_range_of_products(norm_above(part.force));
     });
-    return loads && in_range_of_products(problem.packing) ? refined_rung<Dim, dd_real>(problem, {}, {}, 106) : nullptr;
+    return loads && in_range_of_products(problem.packing) ? refined_rung<dd_real>(problem, {}, {}, 106) : nullptr;
 }
 
-template <int Dim>
-std::unique_ptr<ForceRung<Dim>> multiprecision_rung(LadderProblem<Dim>& problem, int bits,
-                                                    const std::vector<Real>& start) {
-    return refined_rung<Dim, Real>(problem, Arithmetic<Real>(bits), start, bits);
+std::unique_ptr<ForceRung> multiprecision_rung(LadderProblem& problem, int bits, const std::vector<Real>& start) {
+    return refined_rung<Real>(problem, Arithmetic<Real>(bits), start, bits);
 }
-
-template std::unique_ptr<ForceRung<2>> double_double_rung<2>(LadderProblem<2>&);
-template std::unique_ptr<ForceRung<2>> multiprecision_rung<2>(LadderProblem<2>&, int, const std::vector<Real>&);
 
 } // namespace isostat

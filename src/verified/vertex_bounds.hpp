@@ -15,7 +15,7 @@
 namespace isostat {
 
 /// Sum of the radii of a contact: the length that scales the rounding of its gap.
-template <int Dim> double target(const Packing<Dim>& packing, const Contact& contact) {
+inline double target(const Packing& packing, const Contact& contact) {
     return touching_distance(packing.radius, contact);
 }
 
@@ -24,7 +24,7 @@ inline bool in_range_of_products(double size) {
     return size > 1e-100 && size < 1e100;
 }
 /// Of all lengths.
-template <int Dim> bool in_range_of_products(const Packing<Dim>& packing) {
+inline bool in_range_of_products(const Packing& packing) {
     const auto longer = [](double a, double b) { return std::abs(a) < std::abs(b); };
     return in_range_of_products(packing.min_radius()) &&
            std::abs(*std::max_element(packing.q.begin(), packing.q.end(), longer)) < 1e100;
@@ -84,7 +84,7 @@ class HeaviestSum {
 };
 
 /// K of proofs/cells.md: the root of the largest sum of w_l^4 / D_l^2 at a disk, or over the contacts with images.
-template <int Dim> double lipschitz_in_cell(const Packing<Dim>& packing, const std::vector<Contact>& contacts) {
+inline double lipschitz_in_cell(const Packing& packing, const std::vector<Contact>& contacts) {
     HeaviestSum sum(packing.radius.size());
     for (const Contact& contact : contacts) {
         if (contact.kind == ContactKind::disk_disk) {
@@ -97,7 +97,7 @@ template <int Dim> double lipschitz_in_cell(const Packing<Dim>& packing, const s
 
 /// Lipschitz constant of the derivative of F_l = (|r|^2 - D^2) / (2 D): 2 sqrt(z) / D_min, z the largest number
 /// of disk contacts of one disk (V4). 0 when there are only walls.
-template <int Dim> double lipschitz(const Packing<Dim>& packing, const std::vector<Contact>& contacts) {
+inline double lipschitz(const Packing& packing, const std::vector<Contact>& contacts) {
     if (packing.cell.any()) {
         return lipschitz_in_cell(packing, contacts);
     }
@@ -115,7 +115,7 @@ template <int Dim> double lipschitz(const Packing<Dim>& packing, const std::vect
 }
 
 /// Largest |gap| / D over the disk contacts.
-template <int Dim> double worst_gap_ratio(const Packing<Dim>& packing, const std::vector<Contact>& contacts) {
+inline double worst_gap_ratio(const Packing& packing, const std::vector<Contact>& contacts) {
     double worst = 0;
     for (const Contact& contact : contacts) {
         const double d = target(packing, contact);
@@ -130,15 +130,15 @@ template <int Dim> double worst_gap_ratio(const Packing<Dim>& packing, const std
 inline double normal_rate(double lipschitz_constant) {
     return 1.02 * lipschitz_constant;
 }
-template <int Dim> double normal_rate(const Packing<Dim>& packing, const std::vector<Contact>& contacts) {
+inline double normal_rate(const Packing& packing, const std::vector<Contact>& contacts) {
     return normal_rate(lipschitz(packing, contacts));
 }
 
 /// |(H(q) - H(q')) x|_2 <= turn_of_forces |q - q'| for the same normals as in `normal_rate`: 2 max_i sum_{l at i} |x_l|
 /// / D_l as in V6, in a cell the sums of C5; which is smaller than normal_rate |x|_2 by about the square root of the
 /// number of contacts.
-template <int Dim>
-double turn_of_forces(const Packing<Dim>& packing, const std::vector<Contact>& contacts, const std::vector<double>& x) {
+inline double turn_of_forces(const Packing& packing, const std::vector<Contact>& contacts,
+                             const std::vector<double>& x) {
     if (packing.cell.any()) {
         HeaviestSum heaviest(packing.radius.size());
         for (std::size_t l = 0; l < contacts.size(); ++l) {

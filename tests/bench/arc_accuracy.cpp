@@ -72,10 +72,10 @@ std::vector<double> velocity_at(const std::vector<double>& radius, const std::ve
     return out;
 }
 
-True truth_of(const Packing<2>& start, const std::vector<Contact>& contacts, std::size_t opened, const Packing<2>& end,
-              const std::vector<Contact>& end_contacts, const Load<2>& load) {
+True truth_of(const Packing& start, const std::vector<Contact>& contacts, std::size_t opened, const Packing& end,
+              const std::vector<Contact>& end_contacts, const Load& load) {
     True out;
-    const auto polished = [&](const Packing<2>& near, const std::vector<Contact>& list) {
+    const auto polished = [&](const Packing& near, const std::vector<Contact>& list) {
         return oracle::polish<dd_real>(near.radius, std::vector<dd_real>(near.q.begin(), near.q.end()), list, 1e-27,
                                        12);
     };
@@ -95,7 +95,7 @@ True truth_of(const Packing<2>& start, const std::vector<Contact>& contacts, std
     return out;
 }
 
-double position_error(const Packing<2>& packing, const True& truth) {
+double position_error(const Packing& packing, const True& truth) {
     double worst = 0;
     for (std::size_t c = 0; c < packing.q.size(); ++c) {
         worst = std::max(worst, length_of(truth.end[c] - packing.q[c]));
@@ -150,27 +150,27 @@ struct Followed {
 };
 
 /// The arcs of `run` from the equilibria on the way; fills `truth` when it is empty.
-Followed follow_again(const bench::Stretch& run, const std::vector<State<2>>& equilibria, const Choice& choice,
+Followed follow_again(const bench::Stretch& run, const std::vector<State>& equilibria, const Choice& choice,
                       std::vector<True>& truth) {
     Followed out;
     const bool first_time = truth.empty();
     truth.resize(run.arcs.size());
     std::size_t equilibrium = 0;
-    std::unique_ptr<IsostaticStructure<2>> structure;
+    std::unique_ptr<IsostaticStructure> structure;
     std::optional<ApproximateInverse> inverse;
-    Packing<2> packing;
-    Load<2> load;
+    Packing packing;
+    Load load;
     std::vector<double> force;
-    CandidateList<2> candidates;
+    CandidateList candidates;
     double spent = 0;
     for (std::size_t a = 0; a < run.arcs.size(); ++a) {
-        const ArcRecord<2>& record = run.arcs[a];
+        const ArcRecord& record = run.arcs[a];
         if (record.kind == ArcKind::limit) {
-            const State<2>& state = equilibria[equilibrium++];
+            const State& state = equilibria[equilibrium++];
             packing = state.packing;
             load = state.load;
-            auto proved = IsostaticStructure<2>::prove(packing, state.contacts);
-            structure = std::make_unique<IsostaticStructure<2>>(std::move(proved.value()));
+            auto proved = IsostaticStructure::prove(packing, state.contacts);
+            structure = std::make_unique<IsostaticStructure>(std::move(proved.value()));
             inverse.emplace(structure->matrix());
             force.clear();
             candidates = find_candidates(packing, candidate_fraction);
@@ -190,9 +190,9 @@ Followed follow_again(const bench::Stretch& run, const std::vector<State<2>>& eq
             continue;
         }
         const auto slot = static_cast<std::size_t>(place - contacts.begin());
-        const Packing<2> start = packing;
+        const Packing start = packing;
         const std::vector<Contact> at_start = contacts;
-        const PowerLoad<2> power{&load, record.kind == ArcKind::rattler, record.kind == ArcKind::limit};
+        const PowerLoad power{&load, record.kind == ArcKind::rattler, record.kind == ArcKind::limit};
         ArcOptions options;
         const double begin = bench::cpu_milliseconds();
         const Factorisation factors(*structure, *inverse);
@@ -200,10 +200,10 @@ Followed follow_again(const bench::Stretch& run, const std::vector<State<2>>& eq
         if (power.infinitesimal) {
             block = Factorisation::of_moving_block(*structure, static_cast<int>(slot));
         }
-        auto arc = follow_arc(ArcOrigin<2>{packing, *structure, block ? *block : factors, ContactId(slot)}, power,
+        auto arc = follow_arc(ArcOrigin{packing, *structure, block ? *block : factors, ContactId(slot)}, power,
                               candidates, options);
         if (!arc.ok() || arc.value().closed != record.closed) {
-            arc = follow_arc(ArcOrigin<2>{packing, *structure, Factorisation(*structure), ContactId(slot)}, power,
+            arc = follow_arc(ArcOrigin{packing, *structure, Factorisation(*structure), ContactId(slot)}, power,
                              candidates, options);
         }
         if (!arc.ok() || arc.value().closed != record.closed) {
@@ -212,10 +212,10 @@ Followed follow_again(const bench::Stretch& run, const std::vector<State<2>>& eq
             continue;
         }
         packing = arc.value().end;
-        auto next = IsostaticStructure<2>::exchange(*structure, packing, ContactId(slot), record.closed);
+        auto next = IsostaticStructure::exchange(*structure, packing, ContactId(slot), record.closed);
         inverse = inverse->exchanges() + 1 < choice.serves ? inverse->exchanged(next->slot(), next->matrix())
                                                            : ApproximateInverse(next->matrix());
-        structure = std::make_unique<IsostaticStructure<2>>(IsostaticStructure<2>::without_proof(std::move(*next)));
+        structure = std::make_unique<IsostaticStructure>(IsostaticStructure::without_proof(std::move(*next)));
         const Factorisation there(*structure, *inverse);
         const std::vector<double> guess = force;
         force = load.external_force(packing);
@@ -244,7 +244,7 @@ Followed follow_again(const bench::Stretch& run, const std::vector<State<2>>& eq
 
 /// Errors of what a run records: the wall that moves at the end of each arc, the force that opens the next one, and all
 /// coordinates at equilibria.
-Errors recorded(const bench::Stretch& run, const std::vector<State<2>>& equilibria, const std::vector<True>& truth) {
+Errors recorded(const bench::Stretch& run, const std::vector<State>& equilibria, const std::vector<True>& truth) {
     Errors out;
     std::size_t equilibrium = 0;
     const double unit = equilibria[0].packing.min_radius();
@@ -252,7 +252,7 @@ Errors recorded(const bench::Stretch& run, const std::vector<State<2>>& equilibr
     const double reference = equilibria[0].load.reference_length[1];
     const True* before = nullptr;
     for (std::size_t a = 0; a < std::min(run.arcs.size(), truth.size()); ++a) {
-        const ArcRecord<2>& record = run.arcs[a];
+        const ArcRecord& record = run.arcs[a];
         if (record.kind == ArcKind::limit) {
             if (before != nullptr && before->known) {
                 out.equilibria.add(position_error(equilibria[equilibrium].packing, *before));
@@ -299,7 +299,7 @@ int main(int argc, char** argv) {
     // The levels in turn, then the arcs of `decisions` again.
     const std::vector<CertifyLevel> levels{CertifyLevel::decisions, CertifyLevel::arcs};
     std::vector<bench::Stretches> runs(levels.size());
-    std::vector<std::vector<State<2>>> states(levels.size());
+    std::vector<std::vector<State>> states(levels.size());
     for (int repeat = 0; repeat < repeats; ++repeat) {
         for (std::size_t k = 0; k < levels.size(); ++k) {
             bench::StretchOptions options;
@@ -307,7 +307,7 @@ int main(int argc, char** argv) {
             options.equilibria = equilibria;
             options.reference_every = 1;
             states[k].clear();
-            options.visit = [&](const State<2>& state) { states[k].push_back(state); };
+            options.visit = [&](const State& state) { states[k].push_back(state); };
             runs[k].runs.push_back(bench::run_stretch(*start, options));
             if (!runs[k].front().failure.empty()) {
                 fmt::print(stderr, "{}: {}\n", to_string(levels[k]), runs[k].front().failure);

@@ -38,12 +38,12 @@ struct Row {
 };
 
 /// Parts of the cost of an arc, at the last equilibrium; returns exact rank / UMFPACK.
-Sample parts(int n, const State<2>& state, bench::Table& table) {
-    const DofMap<2> dofs(state.packing);
+Sample parts(int n, const State& state, bench::Table& table) {
+    const DofMap dofs(state.packing);
     const auto residues = exact_contact_matrix(state.packing, dofs, state.contacts);
     const sparse::Ordering ordering(residues);
-    auto proved = IsostaticStructure<2>::prove(state.packing, state.contacts);
-    const IsostaticStructure<2>& structure = proved.value();
+    auto proved = IsostaticStructure::prove(state.packing, state.contacts);
+    const IsostaticStructure& structure = proved.value();
     const Factorisation factorisation(structure);
     InverseBoundCache cache;
     InverseBound inverse = bound_inverse(structure, factorisation, cache);
@@ -54,7 +54,7 @@ Sample parts(int n, const State<2>& state, bench::Table& table) {
                bench::milliseconds([&] { const Factorisation again(structure); }),
                bench::milliseconds([&] { inverse = bound_inverse(structure, factorisation, cache); }),
                bench::milliseconds(
-                   [&] { const Statics<2> again(state.packing, state.load, structure, factorisation, inverse); }),
+                   [&] { const Statics again(state.packing, state.load, structure, factorisation, inverse); }),
                bench::milliseconds([&] { (void)find_candidates(state.packing, 0.8); })});
     return rank.ratio();
 }
@@ -76,7 +76,7 @@ struct Levels {
     long states = 0, certified = 0;
     bench::Stretches enclosed;
 
-    void visit(const State<2>& state) {
+    void visit(const State& state) {
         ++states;
         certificate.add(
             bench::milliseconds([&] { certified += certify(state).verdict == Verdict::proved ? 1 : 0; }, 1).median());
@@ -173,7 +173,7 @@ int main(int argc, char** argv) {
             options.level = CertifyLevel::decisions;
             options.visit = {};
             if (with_levels) {
-                options.visit = [&levels](const State<2>& state) { levels.visit(state); };
+                options.visit = [&levels](const State& state) { levels.visit(state); };
             }
             row.proved.runs.push_back(bench::run_stretch(*begin_state, options));
             if (with_levels) {

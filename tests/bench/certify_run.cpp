@@ -26,7 +26,7 @@ using bench::Sample;
 
 namespace {
 
-bool cost(const std::string& name, const State<2>& state, int repeats, bench::Table& table) {
+bool cost(const std::string& name, const State& state, int repeats, bench::Table& table) {
     const auto matrix = bench::matrix_of(state);
     Certification c;
     const auto full = [&] { c = certify(state); };
@@ -46,11 +46,10 @@ bool cost(const std::string& name, const State<2>& state, int repeats, bench::Ta
 }
 
 /// Certifies what it is handed; the state is printed with 17 digits and read back first, as a user's would be.
-class Certifier final : public RunObserver<2> {
+class Certifier final : public RunObserver {
   public:
-    void on_equilibrium(const EquilibriumRecord<2>& record, const State<2>& state,
-                        const std::vector<double>&) override {
-        const State<2> stored = parse_state<2>(state_text(state), "state").state;
+    void on_equilibrium(const EquilibriumRecord& record, const State& state, const std::vector<double>&) override {
+        const State stored = parse_state(state_text(state), "state").state;
         Certification c;
         const Sample spent = bench::milliseconds([&] { c = certify(stored); }, 1);
         ++count;
@@ -84,7 +83,7 @@ class Certifier final : public RunObserver<2> {
     double total = 0, widest_radius = 0, smallest_sigma = 1e300;
     Sample time;
     std::map<Rung, int> vertex, forces, gaps, interval;
-    std::map<int, State<2>> keep;
+    std::map<int, State> keep;
 };
 
 std::string tally(const std::map<Rung, int>& counts) {
@@ -97,13 +96,13 @@ std::string tally(const std::map<Rung, int>& counts) {
 
 bool play(const std::string& file, int first, int repeats, bench::Table& costs, bench::Table& runs) {
     const Scene scene = read_scene(file);
-    PreparationReport<2> report;
-    auto prepared = prepare<2>(scene.preparation, report);
+    PreparationReport report;
+    auto prepared = prepare(scene.preparation, report);
     if (!prepared.ok()) {
         fmt::print(stderr, "{}: not prepared: {}\n", file, prepared.failure().message());
         return false;
     }
-    State<2> state = prepared.value();
+    State state = prepared.value();
     const std::string name = file.substr(file.find_last_of('/') + 1);
     bool good = cost(name + ", start", state, repeats, costs);
     Certifier certifier;
@@ -125,7 +124,7 @@ bool play(const std::string& file, int first, int repeats, bench::Table& costs, 
         const double before = certifier.total;
         SegmentOutcome outcome;
         const double begin = bench::cpu_milliseconds();
-        outcome = run_segment<2>(state, segment, number++, scene.run, counters, certifier);
+        outcome = run_segment(state, segment, number++, scene.run, counters, certifier);
         run_time += bench::cpu_milliseconds() - begin - (certifier.total - before);
         if (!outcome.completed) {
             fmt::print(stderr, "{}, segment {}: {}\n", name, number - 1, outcome.failure->message());

@@ -41,7 +41,7 @@ int main(int argc, char** argv) {
         Inspection inspection;
         const bench::Sample inspecting =
             bench::milliseconds([&] { inspection = inspect(packing).value(); }, repeats).over(1e3);
-        isostat::Packing<2> stored = approximate(packing);
+        isostat::Packing stored = approximate(packing);
         std::mt19937_64 random(1);
         for (double& r : stored.radius) {
             r *= 1 - 0.02 * static_cast<double>(random() >> 11) * 0x1p-53;

@@ -21,8 +21,8 @@ using namespace isostat;
 
 namespace {
 
-bool measure(const State<2>& state, int repeats, bench::Table& ratios, bench::Table& parts) {
-    const DofMap<2> dofs(state.packing);
+bool measure(const State& state, int repeats, bench::Table& ratios, bench::Table& parts) {
+    const DofMap dofs(state.packing);
     const sparse::Matrix<double> h = bench::matrix_of(state);
     const sparse::Matrix<std::uint64_t> residues = exact_contact_matrix(state.packing, dofs, state.contacts);
     const sparse::Ordering ordering(residues);

@@ -34,13 +34,13 @@ int write_start(int disks, std::uint64_t seed, const std::string& file) {
     options.disks = disks;
     options.seed = seed;
     options.max_programmes = 0; // only the dynamics
-    PreparationReport<2> report;
-    (void)prepare<2>(options, report);
+    PreparationReport report;
+    (void)prepare(options, report);
     if (!report.last) {
         return fail("the dynamics left nothing");
     }
-    const Packing<2>& packing = *report.last;
-    const std::vector<double> g = generic_infinitesimal<2>(packing.radius, report.infinitesimal_seed);
+    const Packing& packing = *report.last;
+    const std::vector<double> g = generic_infinitesimal(packing.radius, report.infinitesimal_seed);
     std::ofstream out(file);
     out << fmt::format("{} {} {:a}\n", disks, seed, options.infinitesimal_weight);
     for (std::size_t i = 0; i < packing.radius.size(); ++i) {
@@ -62,7 +62,7 @@ int solve(const std::string& file, int runs) {
     PreparationOptions options;
     in >> disks >> options.seed;
     options.infinitesimal_weight = number();
-    Packing<2> start;
+    Packing start;
     for (std::size_t i = 0; i < disks; ++i) {
         start.radius.push_back(number());
         for (int k = 0; k < 2; ++k) {
@@ -80,9 +80,9 @@ int solve(const std::string& file, int runs) {
     }
     std::vector<double> seconds;
     for (int run = 0; run < runs; ++run) {
-        PreparationReport<2> report;
+        PreparationReport report;
         const std::clock_t before = std::clock();
-        const auto vertex = find_vertex<2>(start, options, report);
+        const auto vertex = find_vertex(start, options, report);
         seconds.push_back(static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC);
         if (!vertex.ok()) {
             return fail(vertex.failure().message());
@@ -90,7 +90,7 @@ int solve(const std::string& file, int runs) {
         if (run + 1 == runs) {
             std::vector<std::string> contacts;
             for (const Contact& contact : vertex.value().contacts) {
-                contacts.push_back(fmt::format("\"{}\"", to_string<2>(contact)));
+                contacts.push_back(fmt::format("\"{}\"", to_string(contact)));
             }
             fmt::print("{{\"disks\": {}, \"seconds\": [{}], \"programmes\": {}, \"pivots\": {}, \"contacts\": [{}], "
                        "\"coordinates\": [{:.17g}]}}\n",

@@ -59,9 +59,9 @@ double log10_of(const mpf_class& x) {
 }
 
 /// All rungs of one structure; returns false when a bound is below an error.
-bool measure(const std::string& family, const Packing<2>& packing, const std::vector<Contact>& contacts,
+bool measure(const std::string& family, const Packing& packing, const std::vector<Contact>& contacts,
              const std::vector<double>& force, int repeats, std::vector<Line>& lines) {
-    const auto proved = IsostaticStructure<2>::prove(packing, contacts);
+    const auto proved = IsostaticStructure::prove(packing, contacts);
     if (!proved.ok()) {
         fmt::print("{}: {}\n", family, proved.failure().message());
         return true;
@@ -93,7 +93,7 @@ bool measure(const std::string& family, const Packing<2>& packing, const std::ve
     const double klu = bench::milliseconds([&] { bench::klu(proved.value().matrix()); }).median();
     const std::size_t first = lines.size();
     bool holds = true;
-    const auto line = [&](const ForceLadder<2>& ladder, int part) {
+    const auto line = [&](const ForceLadder& ladder, int part) {
         mpf_class worst(0, reference_bits);
         for (std::size_t l = 0; l < reference.size(); ++l) {
             const mpf_class f = read(ladder.digits(part, ContactId(l), static_cast<int>(reference_bits)));
@@ -122,7 +122,7 @@ bool measure(const std::string& family, const Packing<2>& packing, const std::ve
                     bound};
     };
     for (int repeat = 0; repeat < repeats; ++repeat) {
-        ForceLadder<2> ladder(packing, proved.value(), factorisation, inverse, options);
+        ForceLadder ladder(packing, proved.value(), factorisation, inverse, options);
         const int part = ladder.add(force);
         double spent = 0;
         std::size_t rung = first;
@@ -205,12 +205,12 @@ int main(int argc, char** argv) {
         const int n = std::atoi(word.c_str());
         PreparationOptions options;
         options.disks = n;
-        PreparationReport<2> report;
-        auto state = prepare<2>(options, report);
+        PreparationReport report;
+        auto state = prepare(options, report);
         if (state.ok()) {
-            const Packing<2>& packing = state.value().packing;
+            const Packing& packing = state.value().packing;
             const std::vector<double> on_coordinates = state.value().load.external_force(packing);
-            const DofMap<2> dofs(packing);
+            const DofMap dofs(packing);
             std::vector<double> force;
             for (int mu = 0; mu < dofs.dof_count(); ++mu) {
                 force.push_back(on_coordinates[static_cast<std::size_t>(dofs.coordinate_of(mu))]);

@@ -80,7 +80,7 @@ int main(int argc, char** argv) {
         PreparationOptions options;
         options.disks = n;
         options.seed = static_cast<std::uint64_t>(seed);
-        PreparationReport<2> report;
+        PreparationReport report;
         std::vector<Stage> seen;
         Sample wall;
         Sample cpu;
@@ -89,7 +89,7 @@ int main(int argc, char** argv) {
             report = {};
             const double wall_begin = wall_seconds();
             const double begin = process_seconds();
-            const auto result = prepare<2>(options, report);
+            const auto result = prepare(options, report);
             cpu.add(process_seconds() - begin);
             wall.add(wall_seconds() - wall_begin);
             if (!result.ok()) {

@@ -171,7 +171,7 @@ int main(int argc, char** argv) {
                 continue;
             }
         }
-        const int n = isostat::read_state<2>(state).state.packing.disk_count();
+        const int n = isostat::read_state(state).state.packing.disk_count();
         const Cost inspection = measure({settings.isostat, "inspect", state, "--json", "--threads", threads});
         scale.add(n, "inspection", inspection, 1, verdict(inspection, inspection.status == 0));
         const std::filesystem::path certificate = settings.work / "certificate.json";

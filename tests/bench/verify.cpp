@@ -35,7 +35,7 @@ struct Measured {
 
 /// A run from a state into a folder, until it has made so many arcs, and then its verification. Nothing: the run
 /// failed.
-std::optional<Measured> measure(State<2> state, long wanted) {
+std::optional<Measured> measure(State state, long wanted) {
     const std::filesystem::path folder =
         std::filesystem::temp_directory_path() / fmt::format("bench_verify.{}", ::getpid());
     std::filesystem::remove_all(folder);
@@ -51,7 +51,7 @@ std::optional<Measured> measure(State<2> state, long wanted) {
     bench::Sample klu;
     for (int segment = 0; segment < 60 && counters.steps < wanted; ++segment) {
         directory.begin_segment(segment, up, 0, state.equilibrium);
-        if (!run_segment<2>(state, up, segment, options, counters, directory).completed) {
+        if (!run_segment(state, up, segment, options, counters, directory).completed) {
             return {};
         }
         const auto matrix = bench::matrix_of(state);
@@ -93,7 +93,7 @@ int main(int argc, char** argv) {
     set_threads(1);
     bool good = true;
     for (const std::string& source : sources) {
-        const std::optional<State<2>> start = bench::start(source);
+        const std::optional<State> start = bench::start(source);
         if (!start) {
             return 1;
         }

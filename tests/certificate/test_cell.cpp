@@ -21,19 +21,19 @@ bool contains(const Interval& interval, double value, double width) {
 }
 
 /// The forces of a state, proved at its true vertex.
-void check_forces(const State<2>& state, const std::vector<double>& expected) {
+void check_forces(const State& state, const std::vector<double>& expected) {
     const Certification truth = certify(state);
     BOOST_TEST(truth.claims.vertex.has_value());
     BOOST_TEST_REQUIRE(truth.finite.size() == expected.size());
     for (std::size_t l = 0; l < expected.size(); ++l) {
         BOOST_TEST(contains(truth.finite[l], expected[l], 1e-10),
-                   isostat::to_string<2>(state.contacts[l]) << " in [" << truth.finite[l].lower << ", "
-                                                            << truth.finite[l].upper << "], not " << expected[l]);
+                   isostat::to_string(state.contacts[l]) << " in [" << truth.finite[l].lower << ", "
+                                                         << truth.finite[l].upper << "], not " << expected[l]);
     }
 }
 
-StateFile<2> first_equilibrium(const std::string& name) {
-    return isostat::read_any_state<2>(std::string(ISOSTAT_TEST_DATA) + "/cells/" + name + "_16.json");
+StateFile first_equilibrium(const std::string& name) {
+    return isostat::read_any_state(std::string(ISOSTAT_TEST_DATA) + "/cells/" + name + "_16.json");
 }
 
 void check_interval(const Certification& truth, double low, double high, double within) {
@@ -46,7 +46,7 @@ void check_interval(const Certification& truth, double low, double high, double 
 }
 
 /// The same contacts carry the same forces.
-void check_same_forces(const State<2>& a, const State<2>& b) {
+void check_same_forces(const State& a, const State& b) {
     const Certification one = certify(a);
     const Certification other = certify(b);
     BOOST_TEST((one.verdict == Verdict::proved));
@@ -61,7 +61,7 @@ void check_same_forces(const State<2>& a, const State<2>& b) {
 BOOST_AUTO_TEST_SUITE(cell)
 
 BOOST_AUTO_TEST_CASE(one_disk_bears_the_forces_of_its_periods) {
-    const State<2> state = cells::one_disk(2, 3);
+    const State state = cells::one_disk(2, 3);
     check_forces(state, {3, 2});
     const Certification truth = certify(state);
     BOOST_TEST((truth.verdict == Verdict::proved));
@@ -86,7 +86,7 @@ BOOST_AUTO_TEST_CASE(a_shear_beyond_what_the_tilt_bears_is_refuted) {
 }
 
 BOOST_AUTO_TEST_CASE(own_image_of_two_disks_takes_what_the_centred_rectangle_leaves) {
-    State<2> state = cells::two_disks(true, 5, 2);
+    State state = cells::two_disks(true, 5, 2);
     state.contacts.push_back(cells::across(0, 0, 1, 0));
     const double f1 = 5;
     const double f2 = 2;
@@ -106,8 +106,8 @@ BOOST_AUTO_TEST_CASE(own_image_of_two_disks_takes_what_the_centred_rectangle_lea
 }
 
 BOOST_AUTO_TEST_CASE(one_disk_in_a_channel) {
-    State<2> state = cells::in_cell({{1, 0.5, 1}}, {2, 2, 0}, false, 2, 3,
-                                    {cells::across(0, 0, 1, 0), crafted::bottom(0), crafted::top(0)});
+    State state = cells::in_cell({{1, 0.5, 1}}, {2, 2, 0}, false, 2, 3,
+                                 {cells::across(0, 0, 1, 0), crafted::bottom(0), crafted::top(0)});
     state.packing.cell = {{true, false}, {true, false}, {false}, 0};
     state.packing.walls.lower[1] = isostat::WallKind::fixed;
     state.packing.walls.upper[1] = isostat::WallKind::movable;
@@ -122,20 +122,20 @@ BOOST_AUTO_TEST_CASE(two_disks_in_a_channel_have_the_two_states_of_a_loop) {
     for (const auto& [large, small] : {std::pair(2.0, 1.0), {1.5, 0.8}, {1.0, 0.75}}) {
         BOOST_TEST_CONTEXT("radii " << large << ", " << small) {
             const auto channel = [&](double period, double height, double x, double y, std::vector<Contact> contacts) {
-                State<2> state = cells::in_cell({{large, 0, large}, {small, x, y}}, {period, height, 0}, false, 1, 1,
-                                                std::move(contacts));
+                State state = cells::in_cell({{large, 0, large}, {small, x, y}}, {period, height, 0}, false, 1, 1,
+                                             std::move(contacts));
                 state.packing.cell = {{true, false}, {true, false}, {false}, 0};
                 state.packing.walls.lower[1] = isostat::WallKind::fixed;
                 state.packing.walls.upper[1] = isostat::WallKind::movable;
                 return state;
             };
             const double width = 2 * std::sqrt(large * small);
-            const State<2> low = channel(2 * width, 2 * large, width, small,
-                                         {crafted::bottom(0), crafted::top(0), crafted::bottom(1),
-                                          cells::across(0, 1, 0, 0), cells::across(0, 1, -1, 0)});
+            const State low = channel(2 * width, 2 * large, width, small,
+                                      {crafted::bottom(0), crafted::top(0), crafted::bottom(1),
+                                       cells::across(0, 1, 0, 0), cells::across(0, 1, -1, 0)});
             const double tilt = (large - small) / (large + small); // of the line of centres
             const double pair = 1 / std::sqrt(1 - tilt * tilt);    // of which F1 is the part along x
-            State<2> pressed = low;
+            State pressed = low;
             pressed.load.stress[1] = 4;
             check_forces(pressed, {4 - 2 * pair * tilt, 4, 2 * pair * tilt, pair, pair});
             const double opens = (large - small) / std::sqrt(large * small);
@@ -146,9 +146,9 @@ BOOST_AUTO_TEST_CASE(two_disks_in_a_channel_have_the_two_states_of_a_loop) {
 
             const double reach = large + small;
             const double rise = std::sqrt(reach * reach - large * large);
-            State<2> high = channel(2 * large, large + rise + small, large, large + rise,
-                                    {crafted::bottom(0), crafted::top(1), cells::across(0, 1, 0, 0),
-                                     cells::across(0, 1, -1, 0), cells::across(0, 0, 1, 0)});
+            State high = channel(2 * large, large + rise + small, large, large + rise,
+                                 {crafted::bottom(0), crafted::top(1), cells::across(0, 1, 0, 0),
+                                  cells::across(0, 1, -1, 0), cells::across(0, 0, 1, 0)});
             const double back = 2 * rise / large;
             const double f2 = 0.5 * back;
             high.load.stress[1] = f2;
@@ -171,7 +171,7 @@ BOOST_AUTO_TEST_CASE(first_equilibria_of_an_independent_program) {
          {Known{"rect", 0.7027637466432636, 1.3794962837050024}, Known{"tilt", 0.9930651761293112, 1.8029080469581122},
           Known{"channel", 0.519226501649397, 1.0005767055665702}}) {
         BOOST_TEST_CONTEXT(known.name) {
-            const StateFile<2> file = first_equilibrium(known.name);
+            const StateFile file = first_equilibrium(known.name);
             const Certification truth = certify(file.state);
             BOOST_TEST((truth.verdict == Verdict::proved));
             BOOST_TEST(truth.counting.rank == static_cast<int>(file.state.contacts.size()));
@@ -186,13 +186,13 @@ BOOST_AUTO_TEST_CASE(first_equilibria_of_an_independent_program) {
 
 BOOST_AUTO_TEST_CASE(forces_do_not_depend_on_the_pin_the_representatives_the_names_the_basis_and_the_axes) {
     for (const char* name : {"rect", "tilt", "channel"}) {
-        const State<2> state = first_equilibrium(name).state;
-        State<2> other = state;
+        const State state = first_equilibrium(name).state;
+        State other = state;
         other.packing.cell.pin = 5;
         check_same_forces(state, other);
     }
     // Dead forces: in another basis F1 takes what the tilt had.
-    const State<2> tilt = first_equilibrium("tilt").state, rect = first_equilibrium("rect").state;
+    const State tilt = first_equilibrium("tilt").state, rect = first_equilibrium("rect").state;
     std::vector<isostat::Image> shift(tilt.packing.radius.size());
     shift[3] = cells::image(1, 0);
     shift[7] = cells::image(0, -1);
@@ -207,10 +207,9 @@ BOOST_AUTO_TEST_CASE(a_rattler_must_not_overlap_an_image) {
     // It rests on a disk and its image, under an infinitesimal force; there is room for it below the next images up to
     // a radius of sqrt 2 - 1.
     for (const double radius : {0.3, 0.5}) {
-        State<2> state =
-            cells::in_cell({{1, 0, 0}, {radius, 1, std::sqrt((2 + radius) * radius)}}, {2, 2, 0}, false, 2, 3,
-                           {cells::across(0, 0, 0, 1), cells::across(0, 0, 1, 0), cells::across(0, 1, 0, 0),
-                            cells::across(0, 1, -1, 0)});
+        State state = cells::in_cell({{1, 0, 0}, {radius, 1, std::sqrt((2 + radius) * radius)}}, {2, 2, 0}, false, 2, 3,
+                                     {cells::across(0, 0, 0, 1), cells::across(0, 0, 1, 0), cells::across(0, 1, 0, 0),
+                                      cells::across(0, 1, -1, 0)});
         state.load.infinitesimal = {0, 1, 0, -1};
         const Certification truth = certify(state);
         BOOST_TEST(truth.signs.structural_zero == 2);
@@ -219,7 +218,7 @@ BOOST_AUTO_TEST_CASE(a_rattler_must_not_overlap_an_image) {
 }
 
 BOOST_AUTO_TEST_CASE(jammed_in_words_that_the_counts_prove) {
-    const State<2> rect = first_equilibrium("rect").state;
+    const State rect = first_equilibrium("rect").state;
     const isostat::CellInspection r = isostat::inspect_cell(rect, certify(rect));
     BOOST_TEST((r.collective.verdict == Verdict::proved));
     BOOST_TEST((r.strict.verdict == Verdict::refuted)); // one shear of the cell is left
@@ -236,21 +235,19 @@ BOOST_AUTO_TEST_CASE(jammed_in_words_that_the_counts_prove) {
         BOOST_TEST(rows[s].mechanisms == k[s]);
         BOOST_TEST((rows[s].rank_exact == Verdict::proved));
     }
-    const State<2> tilt = first_equilibrium("tilt").state;
+    const State tilt = first_equilibrium("tilt").state;
     const isostat::CellInspection t = isostat::inspect_cell(tilt, certify(tilt));
     BOOST_TEST((t.collective.verdict == Verdict::proved));
     BOOST_TEST((t.strict.verdict == Verdict::proved)); // sigma_2 = 1 is a pressure, between 0.993 and 1.803
     BOOST_TEST(t.all[3].mechanisms == 0);
-    const State<2> square = cells::square_lattice(3, false);
+    const State square = cells::square_lattice(3, false);
     const isostat::CellInspection s = isostat::inspect_cell(square, certify(square));
     BOOST_TEST((s.collective.verdict == Verdict::undecided));
     BOOST_TEST(!s.backbone.has_value());
 }
 
 BOOST_AUTO_TEST_CASE(jammed_strictly_is_told_by_the_forces_under_a_pressure) {
-    const auto strict = [](const State<2>& state) {
-        return isostat::inspect_cell(state, certify(state)).strict.verdict;
-    };
+    const auto strict = [](const State& state) { return isostat::inspect_cell(state, certify(state)).strict.verdict; };
     // L = (2, sqrt 3), t = 1: under a pressure F1/F2 = sqrt 3/2, whatever the load of the state.
     BOOST_TEST((strict(cells::one_tilted_disk(1, 2 / std::sqrt(3.0), 0)) == Verdict::proved));
     BOOST_TEST((strict(cells::one_tilted_disk(1, 0.125, 0)) == Verdict::proved));
@@ -258,12 +255,12 @@ BOOST_AUTO_TEST_CASE(jammed_strictly_is_told_by_the_forces_under_a_pressure) {
     BOOST_TEST((strict(cells::one_disk(1, 1)) == Verdict::refuted));                // no tilt
     // Own image in a centred rectangle, X = 1.2, Y = 1.6: f = F1 - F2 X/Y, at F1/F2 = Y/X. With the image along the
     // longer period in its place, X = 1.6 and Y = 1.2 do not touch.
-    State<2> state = cells::two_disks(true, 5, 2);
+    State state = cells::two_disks(true, 5, 2);
     state.contacts.push_back(cells::across(0, 0, 1, 0));
     state.load.shear = {0.25};
     BOOST_TEST((strict(state) == Verdict::proved));
     // The tilted equilibrium at the end of its interval, above the pressure: the forces at the pressure are the same.
-    State<2> tilt = first_equilibrium("tilt").state;
+    State tilt = first_equilibrium("tilt").state;
     tilt.load.stress[1] = 1.75;
     BOOST_TEST((strict(tilt) == Verdict::proved));
     // Other reference lengths: the pressure is at another nominal stress.
@@ -275,8 +272,8 @@ BOOST_AUTO_TEST_CASE(jammed_strictly_is_told_by_the_forces_under_a_pressure) {
 BOOST_AUTO_TEST_CASE(an_own_image_that_touches_along_a_fixed_period_is_counted) {
     // The triangular lattice of one disk: its image along x touches, and L_x does not move. C7 (a) said: refuted.
     const auto one = [](double width) {
-        State<2> state = cells::in_cell({{1, 0.25, 0.5}}, {width, std::sqrt(4 - width * width / 4), width / 2}, true, 1,
-                                        1, {cells::across(0, 0, 0, 1), cells::across(0, 0, 1, -1)});
+        State state = cells::in_cell({{1, 0.25, 0.5}}, {width, std::sqrt(4 - width * width / 4), width / 2}, true, 1, 1,
+                                     {cells::across(0, 0, 0, 1), cells::across(0, 0, 1, -1)});
         state.packing.cell.period_moves[0] = false;
         return isostat::inspect_cell(state, certify(state));
     };
@@ -294,7 +291,7 @@ BOOST_AUTO_TEST_CASE(an_own_image_that_touches_along_a_fixed_period_is_counted) 
     }
     BOOST_TEST(apart.all[3].mechanisms == 1);
     // Along a column, L_y and the tilt at rest: two strains are short, an image closes one.
-    State<2> column = cells::in_cell({{1, 0, 0}}, {2, 2, 0}, false, 1, 1, {cells::across(0, 0, 1, 0)});
+    State column = cells::in_cell({{1, 0, 0}}, {2, 2, 0}, false, 1, 1, {cells::across(0, 0, 1, 0)});
     column.packing.cell.period_moves[1] = false;
     const isostat::CellInspection c = isostat::inspect_cell(column, certify(column));
     BOOST_TEST((c.collective.verdict == Verdict::proved));
@@ -305,7 +302,7 @@ BOOST_AUTO_TEST_CASE(an_own_image_that_touches_along_a_fixed_period_is_counted) 
 
 BOOST_AUTO_TEST_CASE(own_images_of_rattlers_leave_the_strict_answer_open) {
     // Rows of disks of radius 1 between rows of a disk that is as wide and bears nothing.
-    State<2> state = cells::in_cell({{1, 0, 0}, {1, 1, 4}}, {2, 8, 1}, true, 1, 1, {});
+    State state = cells::in_cell({{1, 0, 0}, {1, 1, 4}}, {2, 8, 1}, true, 1, 1, {});
     state.packing.cell.period_moves[0] = false;
     BOOST_TEST((isostat::inspect_cell(state, certify(state)).strict.verdict == Verdict::undecided));
     BOOST_TEST(isostat::inspect_cell(state, certify(state)).all[3].contact_count == 2);
@@ -320,21 +317,21 @@ BOOST_AUTO_TEST_CASE(states_with_a_mechanism_are_counted_not_followed) {
 
 namespace {
 
-State<2> isotropic(std::uint64_t seed) {
+State isotropic(std::uint64_t seed) {
     isostat::PreparationOptions options;
     options.disks = 30;
     options.seed = seed;
     options.aspect = 1.25;
     options.cell = isostat::PreparedCell::isotropic;
-    isostat::PreparationReport<2> report;
-    const auto state = isostat::prepare<2>(options, report);
+    isostat::PreparationReport report;
+    const auto state = isostat::prepare(options, report);
     BOOST_TEST_REQUIRE(state.ok());
     return state.value();
 }
 
 /// Power of the finite forces in a stretch of the whole cell, the disks at rest, and how far they are from balance on
 /// the disks: in doubles, with geometry of its own.
-std::array<double, 2> power_and_imbalance(const State<2>& state, const Certification& truth) {
+std::array<double, 2> power_and_imbalance(const State& state, const Certification& truth) {
     const auto& p = state.packing;
     std::vector<double> balance(2 * p.radius.size(), 0.0);
     double power = 0, imbalance = 0;
@@ -365,7 +362,7 @@ std::array<double, 2> power_and_imbalance(const State<2>& state, const Certifica
 
 BOOST_AUTO_TEST_CASE(a_cell_that_keeps_its_shape_bears_a_pressure) {
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-        const State<2> state = isotropic(seed);
+        const State state = isotropic(seed);
         const std::size_t n = state.packing.radius.size();
         BOOST_TEST(state.contacts.size() == 2 * n - 1);
         BOOST_TEST(std::abs(state.packing.length(1) / state.packing.length(0) - 1.25) < 1e-12);
@@ -380,7 +377,7 @@ BOOST_AUTO_TEST_CASE(a_cell_that_keeps_its_shape_bears_a_pressure) {
         BOOST_TEST((cell.collective.verdict == Verdict::proved));
         BOOST_TEST((cell.strict.verdict == Verdict::refuted));
         // C13 (a): the period along x alone gives the same forces, times one factor.
-        State<2> other = state;
+        State other = state;
         other.packing.cell.keeps_shape = false;
         other.packing.cell.period_moves = {true, false};
         const Certification along_x = certify(other);
@@ -401,7 +398,7 @@ BOOST_AUTO_TEST_CASE(a_cell_that_keeps_its_shape_bears_a_pressure) {
 }
 
 BOOST_AUTO_TEST_CASE(a_cell_that_keeps_its_shape_is_not_pulled) {
-    State<2> pulled = isotropic(1);
+    State pulled = isotropic(1);
     pulled.load.stress = {-1, -1};
     BOOST_TEST((certify(pulled).verdict == Verdict::refuted));
 }

@@ -25,13 +25,13 @@ std::string all(const std::vector<std::string>& sentences) {
     return text;
 }
 
-oracle::Truth known_truth(const State<2>& state) {
+oracle::Truth known_truth(const State& state) {
     oracle::Truth truth(state);
     BOOST_REQUIRE_MESSAGE(truth.known, truth.why);
     return truth;
 }
 
-void check_end(const LoadEndClaim& end, const oracle::Truth::End& limit, const State<2>& state) {
+void check_end(const LoadEndClaim& end, const oracle::Truth::End& limit, const State& state) {
     BOOST_TEST(end.unbounded == limit.unbounded);
     if (end.unbounded || limit.unbounded) {
         return;
@@ -43,7 +43,7 @@ void check_end(const LoadEndClaim& end, const oracle::Truth::End& limit, const S
 }
 
 /// The independent checker contradicts no claim, and confirms nearly all; returns how many it leaves open.
-int open_for_the_checker(const State<2>& state, const Certification& c) {
+int open_for_the_checker(const State& state, const Certification& c) {
     const Certificate certificate{state, "state", sha256(""), "test", c.claims};
     int open = 0;
     for (const ClaimCheck& check : verify(certificate).checks) {
@@ -55,7 +55,7 @@ int open_for_the_checker(const State<2>& state, const Certification& c) {
 
 /// Every claim that is made holds for the true vertex; returns whether all were made. `open`: claims that the checker
 /// may leave undecided (gaps and forces that are equal for a geometric reason, forces below its resolution).
-bool check_claims(const State<2>& state, const Certification& c, int open = 0) {
+bool check_claims(const State& state, const Certification& c, int open = 0) {
     BOOST_TEST(open_for_the_checker(state, c) <= open);
     const CertificateClaims& claims = c.claims;
     const std::size_t n = state.contacts.size();
@@ -78,7 +78,7 @@ bool check_claims(const State<2>& state, const Certification& c, int open = 0) {
         const auto& g = truth.infinitesimal;
         std::size_t next = 0;
         for (std::size_t l = 0; l < n; ++l) {
-            BOOST_TEST_CONTEXT("contact " << to_string<2>(state.contacts[l])) {
+            BOOST_TEST_CONTEXT("contact " << to_string(state.contacts[l])) {
                 if (next < forces.structural_zeros.size() && forces.structural_zeros[next] == static_cast<int>(l)) {
                     BOOST_TEST(abs(f[l]) < Real("1e-60"));
                     BOOST_TEST(contains(forces.infinitesimal[next], g[l]));
@@ -127,9 +127,9 @@ bool check_claims(const State<2>& state, const Certification& c, int open = 0) {
 }
 
 /// A state with every free coordinate moved by up to `size`.
-State<2> shaken(State<2> state, double size, unsigned seed) {
+State shaken(State state, double size, unsigned seed) {
     std::mt19937 random(seed);
-    const DofMap<2> dofs(state.packing);
+    const DofMap dofs(state.packing);
     for (std::size_t k = 0; k < state.packing.q.size(); ++k) {
         if (dofs.dof_of(k) >= 0) {
             state.packing.q[k] += size * (static_cast<double>(random()) * 0x1p-31 - 1);
@@ -140,9 +140,9 @@ State<2> shaken(State<2> state, double size, unsigned seed) {
 
 /// A free disk of radius 1 held by two fixed ones on its left and right, a little below it (height h), under a force
 /// that presses it down.
-State<2> between_two(double h) {
-    State<2> state;
-    state.packing.walls = Walls<2>::none();
+State between_two(double h) {
+    State state;
+    state.packing.walls = Walls::none();
     const double side = std::sqrt(1 + h * h) * 2 - 1;
     state.packing.radius = {side, side, 1};
     state.packing.q = {-2, 0, 2, 0, 0, 2 * h, 0, 0};
@@ -157,17 +157,17 @@ State<2> between_two(double h) {
     return state;
 }
 
-State<2> prepared(int n, std::uint64_t seed) {
+State prepared(int n, std::uint64_t seed) {
     PreparationOptions options;
     options.disks = n;
     options.seed = seed;
-    PreparationReport<2> report;
-    auto state = prepare<2>(options, report);
-    return state.ok() ? state.value() : State<2>{};
+    PreparationReport report;
+    auto state = prepare(options, report);
+    return state.ok() ? state.value() : State{};
 }
 
-State<2> sample(const std::string& name) {
-    return read_state<2>(std::string(ISOSTAT_TEST_DATA) + "/" + name).state;
+State sample(const std::string& name) {
+    return read_state(std::string(ISOSTAT_TEST_DATA) + "/" + name).state;
 }
 
 /// With contact l added to the known forces of two disks: F1 = 1, radii 1 and r.
@@ -183,7 +183,7 @@ BOOST_AUTO_TEST_CASE(the_samples_certify) {
     for (const auto& [name, positive, zero] :
          {std::tuple("vertex100.txt", 188, 14), std::tuple("vertex400.txt", 760, 42),
           std::tuple("vertex1936.txt", 3664, 210)}) {
-        const State<2> state = sample(name);
+        const State state = sample(name);
         const Certification c = certify(state);
         BOOST_TEST((c.verdict == Verdict::proved), name << ": " << all(c.claims.undecided));
         BOOST_TEST(c.signs.positive == positive);
@@ -193,7 +193,7 @@ BOOST_AUTO_TEST_CASE(the_samples_certify) {
 }
 
 BOOST_AUTO_TEST_CASE(closed_forms_of_one_two_and_three_disks_lie_in_the_claimed_intervals) {
-    for (const State<2>& state :
+    for (const State& state :
          {one_disk(1.5, 0.25), two_disks(1, 1.1, 1, 1.5), two_disks(1, 2, 1, 1), two_disks(1, 5, 2, 3),
           three_disks(1, 1, 1.5, 3, 1), three_disks(1, 1.0625, 1.5, 3, 1), three_disks(1, 1, 0.5, 3, 1)}) {
         const Certification c = certify(state);
@@ -201,7 +201,7 @@ BOOST_AUTO_TEST_CASE(closed_forms_of_one_two_and_three_disks_lie_in_the_claimed_
         BOOST_TEST(check_claims(state, c, symmetric ? 3 : 0), all(c.claims.undecided));
     }
     const Real root2 = sqrt(Real(2));
-    const State<2> two = two_disks(1, 2, 1, 1);
+    const State two = two_disks(1, 2, 1, 1);
     const CertificateClaims claims = certify(two).claims;
     BOOST_REQUIRE((claims.forces && claims.load_interval && claims.gaps));
     const Real t = 1 / (2 * root2);
@@ -216,7 +216,7 @@ BOOST_AUTO_TEST_CASE(closed_forms_of_one_two_and_three_disks_lie_in_the_claimed_
     BOOST_TEST((claims.gaps->where == left(1) || claims.gaps->where == top(0)));
     BOOST_TEST(Real(claims.gaps->smallest) <= 2 * root2 - 1);
     // Three disks: both ends, the lower one a class of five forces that vanish with the load.
-    const State<2> three = three_disks(1, 1, 1.5, 3, 1);
+    const State three = three_disks(1, 1, 1.5, 3, 1);
     const CertificateClaims c = certify(three).claims;
     BOOST_REQUIRE(c.load_interval);
     BOOST_TEST(contains(c.load_interval->high.stress, 3 * 2 * sqrt(Real(1.5) * Real(3.5))));
@@ -229,12 +229,12 @@ BOOST_AUTO_TEST_CASE(every_interval_contains_the_value_at_the_true_vertex_of_ran
     int tried = 0;
     for (const int n : {1, 2, 3, 5, 8, 12}) {
         for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-            const State<2> state = prepared(n, seed);
+            const State state = prepared(n, seed);
             if (state.contacts.empty()) {
                 continue;
             }
             for (const double size : {0.0, 1e-13, 1e-10, 1e-7, 1e-5}) {
-                const State<2> moved = shaken(state, size, static_cast<unsigned>(seed));
+                const State moved = shaken(state, size, static_cast<unsigned>(seed));
                 BOOST_TEST_CONTEXT("n = " << n << ", seed " << seed << ", moved by " << size) {
                     const Certification c = certify(moved);
                     ++tried;
@@ -249,12 +249,12 @@ BOOST_AUTO_TEST_CASE(every_interval_contains_the_value_at_the_true_vertex_of_ran
 
 BOOST_AUTO_TEST_CASE(intervals_and_a_strict_minimum_hold_under_true_stresses) {
     for (const double size : {0.0, 3e-11, 1e-9, 1e-6}) {
-        State<2> state = shaken(two_disks(1, 2, 1, 1.25), size, 5);
+        State state = shaken(two_disks(1, 2, 1, 1.25), size, 5);
         state.load.kind = LoadKind::true_stress;
         const Certification c = certify(state);
         check_claims(state, c);
         // The force is stress times a length that is itself known to a radius only.
-        State<2> one = shaken(one_disk(1.5, 0.25), size, 5);
+        State one = shaken(one_disk(1.5, 0.25), size, 5);
         one.load.kind = LoadKind::true_stress;
         check_claims(one, certify(one));
         BOOST_TEST((c.claims.forces && c.claims.load_interval && c.claims.gaps), all(c.claims.undecided));
@@ -266,7 +266,7 @@ BOOST_AUTO_TEST_CASE(intervals_and_a_strict_minimum_hold_under_true_stresses) {
 BOOST_AUTO_TEST_CASE(a_moved_vertex_is_found_again_and_its_distance_is_covered) {
     for (const double size : {1e-12, 1e-9, 1e-6, 1e-4, 1e-3}) {
         for (unsigned seed = 1; seed <= 10; ++seed) {
-            const State<2> state = shaken(three_disks(1, 1.0625, 1.5, 3, 1), size, seed);
+            const State state = shaken(three_disks(1, 1.0625, 1.5, 3, 1), size, seed);
             const Certification c = certify(state);
             BOOST_TEST(check_claims(state, c), all(c.claims.undecided));
             if (c.claims.vertex) {
@@ -275,7 +275,7 @@ BOOST_AUTO_TEST_CASE(a_moved_vertex_is_found_again_and_its_distance_is_covered) 
         }
     }
     // n = 100, every coordinate off by up to 1e-6: the vertex is the same one.
-    const State<2> state = sample("vertex100.txt");
+    const State state = sample("vertex100.txt");
     const Certification moved = certify(shaken(state, 1e-6, 3));
     BOOST_TEST((moved.verdict == Verdict::proved), all(moved.claims.undecided));
     BOOST_REQUIRE(moved.claims.vertex);
@@ -298,7 +298,7 @@ BOOST_AUTO_TEST_CASE(radii_hold_where_a_second_vertex_is_near) {
     for (const double h : {0.5, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5}) {
         for (const double shift : {0.0, 1e-12, 1e-9 * h, 1e-4 * h, 1e-2 * h}) {
             for (const double sign : {-1.0, 1.0}) {
-                State<2> state = between_two(h);
+                State state = between_two(h);
                 state.packing.q[5] += sign * shift;
                 const Certification c = certify(state);
                 BOOST_TEST_CONTEXT("h = " << h << ", moved by " << sign * shift) {
@@ -319,7 +319,7 @@ BOOST_AUTO_TEST_CASE(radii_hold_where_a_second_vertex_is_near) {
 BOOST_AUTO_TEST_CASE(a_force_near_zero_is_decided_by_a_higher_rung_or_not_at_all) {
     // The contact of disk 1 with the bottom carries F2 - t F1: here 0 to the last digit of a double, but t is
     // irrational.
-    State<2> state = two_disks(1, 2, 1, two_disks_limit(2));
+    State state = two_disks(1, 2, 1, two_disks_limit(2));
     CertifyOptions only_double;
     only_double.highest = Rung::double_bound;
     const Certification low = certify(state, only_double);
@@ -332,7 +332,7 @@ BOOST_AUTO_TEST_CASE(a_force_near_zero_is_decided_by_a_higher_rung_or_not_at_all
     BOOST_TEST((high.verdict == (force > 0 ? Verdict::proved : Verdict::refuted)), all(high.claims.undecided));
     check_claims(state, high);
     for (const double next : {0.0, 1.0}) { // the doubles beside it: one on each side of the true limit
-        State<2> beside = state;
+        State beside = state;
         beside.load.stress[1] = std::nextafter(state.load.stress[1], next);
         const Real f = known_truth(beside).force[5];
         const Certification c = certify(beside);
@@ -342,29 +342,29 @@ BOOST_AUTO_TEST_CASE(a_force_near_zero_is_decided_by_a_higher_rung_or_not_at_all
     }
     // 1e-25 beside 1 needs the corrected vertex, 1e-60 needs MPFR, an exact 0 is never claimed.
     for (const auto& [size, rung] : {std::pair(1e-25, Rung::double_double), std::pair(1e-60, Rung::multiprecision)}) {
-        const State<2> small = one_disk(1, size);
+        const State small = one_disk(1, size);
         const Certification c = certify(small);
         BOOST_TEST(check_claims(small, c, size < 1e-30 ? 3 : 0), all(c.claims.undecided));
         BOOST_REQUIRE(c.claims.forces);
         BOOST_TEST((c.claims.forces->rung == rung));
-        State<2> pulled = small;
+        State pulled = small;
         pulled.load.stress[1] = -size;
         BOOST_TEST((certify(pulled).verdict == Verdict::refuted));
     }
-    const State<2> none = one_disk(1, 0);
+    const State none = one_disk(1, 0);
     const Certification zero = certify(none);
     BOOST_TEST((zero.verdict == Verdict::undecided));
     BOOST_TEST((!zero.claims.forces && !zero.claims.stable && zero.claims.vertex));
 }
 
 BOOST_AUTO_TEST_CASE(negative_forces_refute_and_so_does_a_rattler_pulled_off_its_contacts) {
-    State<2> state = two_disks(1, 2, 1, 0.3); // below the limit 0.354
+    State state = two_disks(1, 2, 1, 0.3); // below the limit 0.354
     const Certification c = certify(state);
     BOOST_TEST((c.verdict == Verdict::refuted));
     BOOST_TEST(c.signs.negative == 1);
     BOOST_TEST((c.claims.vertex && c.claims.gaps && !c.claims.forces && !c.claims.load_interval && !c.claims.stable));
     check_claims(state, c);
-    State<2> rattling = sample("vertex100.txt");
+    State rattling = sample("vertex100.txt");
     const Certification before = certify(rattling);
     BOOST_REQUIRE((before.claims.forces && !before.claims.forces->structural_zeros.empty()));
     const auto zero = static_cast<std::size_t>(before.claims.forces->structural_zeros.front());
@@ -382,7 +382,7 @@ BOOST_AUTO_TEST_CASE(negative_forces_refute_and_so_does_a_rattler_pulled_off_its
 }
 
 BOOST_AUTO_TEST_CASE(overlaps_at_the_true_vertex_refute) {
-    const State<2> state = two_disks(1, 7, 1, 5); // disk 1 is larger than (3 + 2 sqrt 2) R0: it cuts the left wall
+    const State state = two_disks(1, 7, 1, 5); // disk 1 is larger than (3 + 2 sqrt 2) R0: it cuts the left wall
     const Certification c = certify(state);
     BOOST_TEST((c.verdict == Verdict::refuted));
     BOOST_TEST((!c.claims.gaps && !c.claims.stable && c.claims.vertex));
@@ -390,7 +390,7 @@ BOOST_AUTO_TEST_CASE(overlaps_at_the_true_vertex_refute) {
     // Open by less than the position is known to in double, tangent, overlapping by as little.
     const double critical = 3 + 2 * std::sqrt(2.0);
     for (const double off : {-1e-14, 0.0, 1e-14}) {
-        const State<2> near = two_disks(1, critical + off, 1, 5);
+        const State near = two_disks(1, critical + off, 1, 5);
         const Certification n = certify(near);
         const Real h = known_truth(near).gap(left(1));
         BOOST_TEST((n.verdict == (h > 0 ? Verdict::proved : Verdict::refuted)), all(n.claims.undecided));
@@ -399,12 +399,12 @@ BOOST_AUTO_TEST_CASE(overlaps_at_the_true_vertex_refute) {
 }
 
 BOOST_AUTO_TEST_CASE(claims_scale_with_the_units_and_end_where_doubles_do) {
-    const State<2> state = three_disks(1, 1.0625, 1.5, 3, 1);
+    const State state = three_disks(1, 1.0625, 1.5, 3, 1);
     const CertificateClaims claims = certify(state).claims;
     BOOST_REQUIRE(claims.forces);
     for (const auto& [length, stress] :
          {std::pair(200, -200), std::pair(-200, 300), std::pair(320, -320), std::pair(-330, 330)}) {
-        State<2> scaled = state;
+        State scaled = state;
         const auto stretch = [l = length](double& x) { x = std::ldexp(x, l); };
         std::for_each(scaled.packing.radius.begin(), scaled.packing.radius.end(), stretch);
         std::for_each(scaled.packing.q.begin(), scaled.packing.q.end(), stretch);
@@ -422,7 +422,7 @@ BOOST_AUTO_TEST_CASE(claims_scale_with_the_units_and_end_where_doubles_do) {
     }
     // Squares of these lengths are 0 or infinite in doubles: nothing may be concluded from them.
     for (const int length : {-560, -400, 400, 560}) {
-        State<2> scaled = state;
+        State scaled = state;
         const auto stretch = [length](double& x) { x = std::ldexp(x, length); };
         std::for_each(scaled.packing.radius.begin(), scaled.packing.radius.end(), stretch);
         std::for_each(scaled.packing.q.begin(), scaled.packing.q.end(), stretch);
@@ -430,13 +430,13 @@ BOOST_AUTO_TEST_CASE(claims_scale_with_the_units_and_end_where_doubles_do) {
         BOOST_TEST((c.verdict == Verdict::undecided));
         BOOST_TEST((!c.claims.counting && !c.claims.vertex && !c.claims.stable));
     }
-    State<2> faint = state;
+    State faint = state;
     faint.load.stress = {3e-310, 1e-310};
     BOOST_TEST((certify(faint).verdict == Verdict::undecided));
 }
 
 BOOST_AUTO_TEST_CASE(a_rattler_a_million_times_smaller_is_decided_by_the_infinitesimal_loads) {
-    State<2> state = two_disks(1, 2, 1, 1);
+    State state = two_disks(1, 2, 1, 1);
     const double r = 1e-6;
     state.packing.radius.push_back(r);
     state.packing.q.insert(state.packing.q.begin() + 4, {r, r}); // in the corner, below disk 0
@@ -454,7 +454,7 @@ BOOST_AUTO_TEST_CASE(a_rattler_a_million_times_smaller_is_decided_by_the_infinit
 BOOST_AUTO_TEST_CASE(an_exact_tie_of_two_contacts_leaves_the_end_of_the_interval_open) {
     // Both base disks are lifted: their contacts with the bottom open at twice the lift.
     for (const double lift : {0.375, 0.3, 0.2, 0.17, 0.1, 0.05}) {
-        State<2> state = three_disks(1, 1, 1.5, 3, 1);
+        State state = three_disks(1, 1, 1.5, 3, 1);
         state.load.disk_force = {0, lift, 0, lift, 0, 0};
         const Certification tie = certify(state);
         check_claims(state, tie, 2);
@@ -477,7 +477,7 @@ BOOST_AUTO_TEST_CASE(no_vertex_is_claimed_where_there_is_none_or_a_double_one) {
     // Two disks that a third between them can just reach at once (a double root: its mechanism is at rest), or cannot.
     for (const double missing : {0.0, 1e-12, 1e-6, 1e-3}) {
         for (double y = 1e-1; y > 1e-12; y /= 10) {
-            State<2> state = between_two(0.5);
+            State state = between_two(0.5);
             state.packing.radius = {1 - missing, 1, 1};
             state.packing.q[5] = y;
             const Certification c = certify(state);
@@ -489,7 +489,7 @@ BOOST_AUTO_TEST_CASE(no_vertex_is_claimed_where_there_is_none_or_a_double_one) {
 }
 
 BOOST_AUTO_TEST_CASE(structures_that_are_not_isostatic_get_their_exact_counts_and_nothing_else) {
-    const auto only_counting = [](const State<2>& state, int rank, int h, int k) {
+    const auto only_counting = [](const State& state, int rank, int h, int k) {
         const Certification c = certify(state);
         BOOST_TEST((c.verdict == Verdict::refuted), all(c.claims.undecided));
         BOOST_REQUIRE(c.claims.counting);
@@ -502,15 +502,15 @@ BOOST_AUTO_TEST_CASE(structures_that_are_not_isostatic_get_their_exact_counts_an
     };
     only_counting(square_lattice(3), 20, 4, 0);
     only_counting(triangular_patch(2, 3), 14, 3, 0);
-    State<2> fewer = two_disks(1, 2, 1, 1);
+    State fewer = two_disks(1, 2, 1, 1);
     fewer.contacts.pop_back();
     only_counting(fewer, 5, 0, 1);
     // A disk exactly between two fixed ones: N = N_f, singular, h = k = 1; the kernel is checked in rationals.
-    State<2> strut = between_two(0.5);
+    State strut = between_two(0.5);
     strut.packing.radius = {1, 1, 1};
     strut.packing.q[5] = 0;
     only_counting(strut, 1, 1, 1);
-    State<2> lattice = square_lattice(3); // h and k: only the kernel can tell
+    State lattice = square_lattice(3); // h and k: only the kernel can tell
     std::erase_if(lattice.contacts, [](const Contact& c) { return c.i == 4 || c.j == 4; });
     const Certification c = certify(lattice);
     BOOST_REQUIRE(c.claims.counting);
@@ -519,7 +519,7 @@ BOOST_AUTO_TEST_CASE(structures_that_are_not_isostatic_get_their_exact_counts_an
 }
 
 BOOST_AUTO_TEST_CASE(a_state_that_holds_a_coordinate_claims_nothing) {
-    State<2> state = two_disks(1, 2, 1, 1);
+    State state = two_disks(1, 2, 1, 1);
     state.contacts.back() = {ContactKind::held, 3, 0}; // y of disk 1 in place of its contact with the bottom
     const Certification c = certify(state);
     BOOST_TEST((c.verdict == Verdict::undecided));
@@ -533,12 +533,12 @@ BOOST_AUTO_TEST_CASE(claims_hold_for_many_small_packings, *boost::unit_test::lab
     int tried = 0;
     for (const int n : {2, 3, 4, 6}) {
         for (std::uint64_t seed = 100; seed < 140; ++seed) {
-            const State<2> state = prepared(n, seed);
+            const State state = prepared(n, seed);
             if (state.contacts.empty()) {
                 continue;
             }
             for (const double size : {0.0, 5e-11, 1e-6}) {
-                State<2> moved = shaken(state, size, static_cast<unsigned>(seed));
+                State moved = shaken(state, size, static_cast<unsigned>(seed));
                 moved.load.stress[1] *= 1 + 0.1 * static_cast<double>(seed % 7); // past the end of some intervals
                 BOOST_TEST_CONTEXT("n = " << n << ", seed " << seed << ", moved by " << size) {
                     const Certification c = certify(moved);
@@ -561,9 +561,9 @@ BOOST_AUTO_TEST_CASE(every_equilibrium_of_a_biaxial_run_at_n_100_certifies, *boo
     BOOST_REQUIRE_MESSAGE(run.outcome.completed, run.why());
     const Played back = play(run.state, -1, {}, 1.0);
     BOOST_REQUIRE_MESSAGE(back.outcome.completed, back.why());
-    std::vector<State<2>> states = run.records.states;
+    std::vector<State> states = run.records.states;
     states.insert(states.end(), back.records.states.begin(), back.records.states.end());
-    std::vector<EquilibriumRecord<2>> records = run.records.equilibria;
+    std::vector<EquilibriumRecord> records = run.records.equilibria;
     records.insert(records.end(), back.records.equilibria.begin(), back.records.equilibria.end());
     BOOST_TEST(states.size() > 25U);
     for (std::size_t k = 0; k < states.size(); ++k) {

@@ -18,15 +18,15 @@ using namespace crafted;
 
 namespace {
 
-State<2> stored(const std::string& name) {
-    return read_state<2>(scratch::data("definition/" + name + ".json")).state;
+State stored(const std::string& name) {
+    return read_state(scratch::data("definition/" + name + ".json")).state;
 }
 
 /// What the engine of runs says: the contact that opens, nothing for an equilibrium; undecided is a failure.
-Result<OpeningDecision> decided(const State<2>& state, std::optional<LoadLimit>* low = nullptr) {
+Result<OpeningDecision> decided(const State& state, std::optional<LoadLimit>* low = nullptr) {
     const Regular at(state);
     const VertexEnclosure vertex = enclose_vertex(state.packing, at.structure, at.factorisation, at.inverse);
-    Statics<2> statics(state.packing, state.load, at.structure, at.factorisation, at.inverse, {{}, &vertex});
+    Statics statics(state.packing, state.load, at.structure, at.factorisation, at.inverse, {{}, &vertex});
     const double sigma = state.load.loaded_stress();
     auto decision = decide_opening(statics, sigma, OpeningRule::most_negative, ContactId(), 0);
     if (low != nullptr) {
@@ -55,7 +55,7 @@ constexpr std::array<Known, 9> known_states{{{"load-product", Verdict::refuted},
                                              {"11-same-height-refuted", Verdict::proved},
                                              {"fixed-pair", Verdict::refuted}}};
 
-std::vector<ClaimCheck> checks(const State<2>& state, const CertificateClaims& claims) {
+std::vector<ClaimCheck> checks(const State& state, const CertificateClaims& claims) {
     return verify({state, "state", sha256(""), "test", claims}).checks;
 }
 
@@ -73,7 +73,7 @@ Verdict of_claim(const std::vector<ClaimCheck>& all, const std::string& claim) {
 BOOST_AUTO_TEST_SUITE(certificate)
 
 BOOST_DATA_TEST_CASE(inspection_certificate_checker_and_runs_give_one_answer, known_states, known) {
-    const State<2> state = stored(known.name);
+    const State state = stored(known.name);
     const auto inspection = inspect_vertex(state);
     BOOST_REQUIRE(inspection.ok());
     BOOST_TEST((inspection.value().record.verdict == known.verdict), inspection.value().remark);
@@ -108,12 +108,12 @@ BOOST_DATA_TEST_CASE(inspection_certificate_checker_and_runs_give_one_answer, kn
 BOOST_AUTO_TEST_CASE(the_load_is_the_exact_product_on_every_rung) {
     // Where a force is 0 but for what rounding does to stress times length, the sign is that of the exact product; with
     // the length that the rounded product has, it is the other one.
-    const State<2> state = stored("load-product");
+    const State state = stored("load-product");
     const auto rounded = decided(state);
     BOOST_REQUIRE(rounded.ok());
     BOOST_REQUIRE(rounded.value().opening.has_value());
     BOOST_TEST((rounded.value().opening->rung >= Rung::double_double));
-    State<2> exact = state;
+    State exact = state;
     for (std::size_t a = 0; a < 2; ++a) { // stresses that are the rounded products, lengths 1
         exact.load.stress[a] = state.load.stress[a] * state.load.reference_length[1 - a];
         exact.load.reference_length[1 - a] = 1;
@@ -125,32 +125,32 @@ BOOST_AUTO_TEST_CASE(the_load_is_the_exact_product_on_every_rung) {
 }
 
 BOOST_AUTO_TEST_CASE(the_state_that_is_inspected_is_the_one_that_is_given) {
-    const State<2> state = stored("01-overlap"); // a fixed disk, and a wall that is absent with a length of 1e15
+    const State state = stored("01-overlap"); // a fixed disk, and a wall that is absent with a length of 1e15
     const auto inspection = inspect_vertex(state);
     BOOST_REQUIRE(inspection.ok());
     BOOST_TEST((inspection.value().record.verdict == Verdict::refuted));
     BOOST_TEST(inspection.value().remark.find("0-1 overlap") != std::string::npos, inspection.value().remark);
-    State<2> apart = state;
+    State apart = state;
     apart.packing.q[2] = 2.5;
     BOOST_TEST((inspect_vertex(apart).value().record.verdict == Verdict::proved));
 }
 
 BOOST_AUTO_TEST_CASE(pairs_that_cannot_move_must_not_overlap_either) {
-    State<2> state = stored("fixed-pair");
+    State state = stored("fixed-pair");
     const Certification overlapping = certify(state);
     BOOST_TEST(!overlapping.claims.gaps.has_value());
     BOOST_TEST(!overlapping.claims.stable);
     BOOST_REQUIRE(!overlapping.refuted.empty());
     BOOST_TEST(overlapping.refuted.front().find("2-3") != std::string::npos, overlapping.refuted.front());
     // A claim from elsewhere is refused by the checker.
-    State<2> apart = state;
+    State apart = state;
     apart.packing.q[6] = apart.packing.q[4] + 0.5; // 0.2 + 0.2 < 0.5
     const Certification free = certify(apart);
     BOOST_TEST((free.verdict == Verdict::proved));
     BOOST_TEST((of_claim(checks(apart, free.claims), "gaps") == Verdict::proved));
     BOOST_TEST((of_claim(checks(state, free.claims), "gaps") == Verdict::refuted));
     // A fixed disk in a wall that does not move.
-    State<2> sunk = apart;
+    State sunk = apart;
     sunk.packing.q[4] = std::nextafter(0.2, 0.0);
     BOOST_TEST((certify(sunk).verdict == Verdict::refuted));
     BOOST_TEST((of_claim(checks(sunk, free.claims), "gaps") == Verdict::refuted));
@@ -159,7 +159,7 @@ BOOST_AUTO_TEST_CASE(pairs_that_cannot_move_must_not_overlap_either) {
 }
 
 BOOST_AUTO_TEST_CASE(true_stresses_without_loads_on_disks_have_a_strict_minimum) {
-    State<2> state = two_disks(1, 2, 1, 1.5);
+    State state = two_disks(1, 2, 1, 1.5);
     state.load.kind = LoadKind::true_stress;
     const Certification free = certify(state);
     BOOST_TEST(free.claims.stable);
@@ -176,7 +176,7 @@ BOOST_AUTO_TEST_CASE(true_stresses_without_loads_on_disks_have_a_strict_minimum)
 }
 
 BOOST_AUTO_TEST_CASE(where_nothing_can_move_there_is_no_equilibrium) {
-    const State<2> state = stored("09-no-dof");
+    const State state = stored("09-no-dof");
     const Certification truth = certify(state);
     BOOST_TEST((truth.verdict == Verdict::refuted));
     BOOST_REQUIRE(truth.claims.counting.has_value());
@@ -184,7 +184,7 @@ BOOST_AUTO_TEST_CASE(where_nothing_can_move_there_is_no_equilibrium) {
     const auto inspection = inspect_vertex(state);
     BOOST_TEST(!inspection.ok());
     BOOST_TEST((inspection.failure().kind == FailureKind::not_isostatic));
-    State<2> sunk = state;
+    State sunk = state;
     sunk.packing.q[0] = 0.5;
     BOOST_TEST(certify(sunk).refuted.size() == 2U); // and it overlaps
 }

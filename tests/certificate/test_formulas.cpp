@@ -14,7 +14,7 @@ using namespace crafted;
 
 namespace {
 
-State<2> pushed(State<2> state, double size) {
+State pushed(State state, double size) {
     for (std::size_t k = 0; k < state.packing.q.size(); ++k) {
         state.packing.q[k] += size * std::sin(7.0 * static_cast<double>(k));
     }
@@ -32,14 +32,14 @@ void check_above(double value, double least, double slack) {
 
 /// Two disks pushed off their vertex; beta is such that beta K eta = h in T9.
 struct Worse {
-    State<2> state = pushed(two_disks(1, 2, 1, 1), 1e-9);
-    std::unique_ptr<Centre<2>> centre = std::move(Centre<2>::make(state.packing, state.contacts).value());
+    State state = pushed(two_disks(1, 2, 1, 1), 1e-9);
+    std::unique_ptr<Centre> centre = std::move(Centre::make(state.packing, state.contacts).value());
     double k = 2.0 / 3;  ///< K of V4: one contact, lengths 1 + 2
     double residual = 0; ///< |F|
     double beta = 0;
     double radius = 0; ///< 1.18 eta
-    std::optional<Subject<2>> subject;
-    std::unique_ptr<TrueVertex<2>> vertex;
+    std::optional<Subject> subject;
+    std::unique_ptr<TrueVertex> vertex;
 
     explicit Worse(double h, LoadKind kind = LoadKind::nominal) {
         state.load.kind = kind;
@@ -86,10 +86,10 @@ BOOST_AUTO_TEST_SUITE(certificate)
 
 BOOST_AUTO_TEST_CASE(the_centre_has_the_constants_of_V4) {
     for (const double size : {0.0, 1e-5}) {
-        const State<2> state = pushed(read_state<2>(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state, size);
-        const auto made = Centre<2>::make(state.packing, state.contacts);
+        const State state = pushed(read_state(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state, size);
+        const auto made = Centre::make(state.packing, state.contacts);
         BOOST_TEST_REQUIRE(made.ok());
-        const Centre<2>& centre = *made.value();
+        const Centre& centre = *made.value();
         std::vector<int> count(state.packing.radius.size(), 0);
         double smallest = 1e300;
         double ratio = 0;
@@ -191,8 +191,8 @@ BOOST_AUTO_TEST_CASE(pairs_beyond_the_list_are_as_far_as_its_reach_less_the_way_
     // Disk 2 is 1e-10 off its true place, and disk 3 stands where the list just ends: whatever is not listed may come
     // nearer than that. Disk 6 carries so little that the vertex is known in double-double, hence far better than
     // 1e-10.
-    State<2> state;
-    state.packing.walls = Walls<2>::none();
+    State state;
+    state.packing.walls = Walls::none();
     state.packing.radius = {3, 3, 2, 1, 3, 3, 2};
     state.packing.q = {-3, 0, 3, 0, 0, 4 + 1e-10, 0, 0, -3, -90, 3, -90, 0, -86, 0, 0};
     state.packing.fixed = {1, 1, 0, 1, 1, 1, 0};
@@ -209,15 +209,15 @@ BOOST_AUTO_TEST_CASE(pairs_beyond_the_list_are_as_far_as_its_reach_less_the_way_
 }
 
 BOOST_AUTO_TEST_CASE(what_the_grid_moved_the_pinned_disk_by_is_part_of_the_radius_in_a_cell) {
-    State<2> state = read_any_state<2>(scratch::data("cells/tilt_16.json")).state;
+    State state = read_any_state(scratch::data("cells/tilt_16.json")).state;
     snap_to_grid(state.packing);
-    const auto centre = std::move(Centre<2>::make(state.packing, state.contacts).value());
+    const auto centre = std::move(Centre::make(state.packing, state.contacts).value());
     const auto radius = [&](double off_the_grid) {
-        State<2> stored = state;
+        State stored = state;
         const auto pin = static_cast<std::size_t>(state.packing.cell.pin);
         stored.packing.q[2 * pin] += off_the_grid;
         stored.packing.q[2 * (pin + 1)] -= off_the_grid;
-        const auto vertex = in_double(Subject<2>(stored, centre->structure), *centre);
+        const auto vertex = in_double(Subject(stored, centre->structure), *centre);
         BOOST_TEST_REQUIRE(vertex->exists());
         return vertex->radius();
     };
@@ -228,8 +228,8 @@ BOOST_AUTO_TEST_CASE(what_the_grid_moved_the_pinned_disk_by_is_part_of_the_radiu
 BOOST_AUTO_TEST_CASE(pairs_beyond_the_list_of_a_cell_have_the_weight_of_C4) {
     // One disk and its images in a cell of fixed tilt, off its vertex by 1e-10. The tilt is such that the nearest pair
     // is just inside the list: then what is claimed is the reach of the list, less C4's weight times the distance.
-    State<2> state = cells::in_cell({{0.5, 0.25, 0.5}}, {1, 1, 0}, false, 1, 1,
-                                    {cells::across(0, 0, 0, 1), cells::across(0, 0, 1, 0)});
+    State state = cells::in_cell({{0.5, 0.25, 0.5}}, {1, 1, 0}, false, 1, 1,
+                                 {cells::across(0, 0, 0, 1), cells::across(0, 0, 1, 0)});
     const double reach = find_candidates(state.packing, 0.82).reach;
     const double tilt = std::ldexp(std::round(std::ldexp(1 - std::pow(1 + reach - 1e-11, 2) / 2, 45)), -45);
     const double off = 1e-10;

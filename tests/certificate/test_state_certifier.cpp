@@ -12,8 +12,8 @@ namespace {
 
 /// Two disks in a box, and what a run would say of them if it were wrong.
 struct Claimed {
-    State<2> state = crafted::two_disks(1, 2, 1, 1);
-    EquilibriumRecord<2> record;
+    State state = crafted::two_disks(1, 2, 1, 1);
+    EquilibriumRecord record;
     RunCounters counters;
     crafted::Recorder next;
     scratch::Folder folder;
@@ -35,12 +35,12 @@ BOOST_AUTO_TEST_SUITE(certificate)
 // What a run left at 0 it calls an equilibrium of the finite loads: what the infinitesimal ones do there is no
 // refutation.
 BOOST_AUTO_TEST_CASE(a_force_that_a_run_left_at_zero_is_not_refuted_by_the_infinitesimal_loads) {
-    State<2> state = parse_state<2>(R"({"format": "isostat-state", "version": 1, "disks": [[1, 1, 1]],
+    State state = parse_state(R"({"format": "isostat-state", "version": 1, "disks": [[1, 1, 1]],
         "length": [10, 2], "walls": {"lower": ["fixed", "fixed"], "upper": ["absent", "movable"]},
         "load": {"kind": "nominal", "stress": [1, 1], "loaded_axis": 1, "reference_length": [1, 1]},
         "infinitesimal": [[1, -1]], "contacts": [[0, "left"], [0, "bottom"], [0, "top"]]})",
-                                    "state")
-                         .state;
+                              "state")
+                      .state;
     BOOST_TEST((certify(state).verdict == Verdict::refuted));
     state.perturbation.emplace().rho = {0.1};
     BOOST_TEST((certify(state).verdict == Verdict::refuted));

@@ -32,7 +32,7 @@ inline Matrix dense(const isostat::oracle::SquareMatrix<Real>& matrix) {
     });
 }
 
-inline isostat::LoadEndClaim load_end(const State<2>& state, const Truth::End& end) {
+inline isostat::LoadEndClaim load_end(const State& state, const Truth::End& end) {
     return end.unbounded
                ? isostat::LoadEndClaim{true, {}, {}}
                : isostat::LoadEndClaim{false, around(end.stress, slack * std::max<Real>(1, std::abs(end.stress))),
@@ -40,7 +40,7 @@ inline isostat::LoadEndClaim load_end(const State<2>& state, const Truth::End& e
 }
 
 /// All claims about a state near an isostatic equilibrium.
-inline Certificate certificate(const State<2>& state) {
+inline Certificate certificate(const State& state) {
     const Truth truth(state);
     BOOST_REQUIRE_MESSAGE(truth.known, truth.why);
     Certificate made;

@@ -10,8 +10,8 @@ using isostat::WallKind;
 
 /// Three disks under the load and a fourth, small one that only rests in the corner: its two forces are structural
 /// zeros.
-inline State<2> with_a_rattler() {
-    State<2> state = crafted::three_disks(1, 1.1, 1.3, 1, 1.5);
+inline State with_a_rattler() {
+    State state = crafted::three_disks(1, 1.1, 1.3, 1, 1.5);
     const std::vector<double> lengths(state.packing.q.end() - 2, state.packing.q.end());
     state.packing.q.resize(state.packing.q.size() - 2);
     state.packing.radius.push_back(0.1);
@@ -26,8 +26,8 @@ inline State<2> with_a_rattler() {
 }
 
 /// The first of the three disks cannot move, and has no contacts with the walls.
-inline State<2> with_a_fixed_disk() {
-    State<2> state = crafted::three_disks(1, 1.1, 1.3, 1, 1.5);
+inline State with_a_fixed_disk() {
+    State state = crafted::three_disks(1, 1.1, 1.3, 1, 1.5);
     state.packing.fixed = {1, 0, 0};
     std::erase(state.contacts, crafted::left(0));
     std::erase(state.contacts, crafted::bottom(0));
@@ -35,9 +35,9 @@ inline State<2> with_a_fixed_disk() {
 }
 
 /// Two disks in a corner without upper walls, under forces on the disks.
-inline State<2> in_a_corner() {
-    State<2> state = crafted::in_box({{1, 1, 1}, {0.5, 0.5, 1 + std::sqrt(2.0)}}, 0, 0, 1, 1,
-                                     {crafted::left(0), crafted::bottom(0), crafted::left(1), crafted::pair(0, 1)});
+inline State in_a_corner() {
+    State state = crafted::in_box({{1, 1, 1}, {0.5, 0.5, 1 + std::sqrt(2.0)}}, 0, 0, 1, 1,
+                                  {crafted::left(0), crafted::bottom(0), crafted::left(1), crafted::pair(0, 1)});
     state.packing.walls.upper = {WallKind::absent, WallKind::absent};
     state.load.disk_force = {-1, -0.5, 0, -1};
     return state;
@@ -45,11 +45,11 @@ inline State<2> in_a_corner() {
 
 /// A disk between two fixed ones, its centre above their line by `height`, no walls. At height 0 the two normals are
 /// parallel: rank 1.
-inline State<2> between_two(double height) {
-    State<2> state =
+inline State between_two(double height) {
+    State state =
         crafted::in_box({{1, 0, 0}, {1, 4, 0}, {1, 2, 0}}, 0, 0, 1, 1, {crafted::pair(0, 2), crafted::pair(1, 2)});
     state.packing.q[5] = height;
-    state.packing.walls = isostat::Walls<2>::none();
+    state.packing.walls = isostat::Walls::none();
     state.packing.fixed = {1, 1, 0};
     return state;
 }

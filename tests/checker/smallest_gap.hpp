@@ -8,7 +8,7 @@
 namespace small_states {
 
 /// The gaps that the sweep lists are those of the stored coordinates, the smallest of `pairs` among them.
-inline void lists_the_smallest_gap(const isostat::State<2>& state, const std::vector<isostat::Contact>& pairs) {
+inline void lists_the_smallest_gap(const isostat::State& state, const std::vector<isostat::Contact>& pairs) {
     using namespace isostat::checker;
     const Problem problem(state);
     TrueVertex vertex;

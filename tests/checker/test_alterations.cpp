@@ -121,7 +121,7 @@ std::vector<ClaimAlteration> alterations_of_claims(const Certificate& original) 
     add("smallest gap without end", [](Certificate& c) { c.claims.gaps->smallest = huge; });
     for (const Contact& pair : oracle::all_pairs(original.state.packing)) {
         if (pair != original.claims.gaps->where && original.state.packing.disk_count() < 10) {
-            add("nearest pair " + to_string<2>(pair), [=](Certificate& c) { c.claims.gaps->where = pair; });
+            add("nearest pair " + to_string(pair), [=](Certificate& c) { c.claims.gaps->where = pair; });
         }
     }
 
@@ -145,7 +145,7 @@ std::vector<ClaimAlteration> alterations_of_claims(const Certificate& original) 
             if (contact != ((*original.claims.load_interval).*end).opens) {
                 // Whatever the stress is said to be: another contact does not open there.
                 add(
-                    which + " opens " + to_string<2>(contact),
+                    which + " opens " + to_string(contact),
                     [=](Certificate& c) {
                         ((*c.claims.load_interval).*end).opens = contact;
                         ((*c.claims.load_interval).*end).stress = {-huge, huge};
@@ -241,7 +241,7 @@ BOOST_AUTO_TEST_CASE(no_altered_state_of_a_small_packing_verifies) {
 
 // A sample of each kind of alteration.
 BOOST_AUTO_TEST_CASE(no_altered_claim_or_state_of_a_hundred_disks_verifies) {
-    const Certificate original = maker::certificate(read_state<2>(scratch::data("vertex100.txt")).state);
+    const Certificate original = maker::certificate(read_state(scratch::data("vertex100.txt")).state);
     BOOST_REQUIRE((verify(original).verdict == Verdict::proved));
     std::vector<ClaimAlteration> all = alterations_of_claims(original);
     for (ClaimAlteration& alteration : alterations_of_the_state(original)) {

@@ -18,7 +18,7 @@ using namespace isostat;
 
 namespace {
 
-void check_bounds(const State<2>& state, CheckerArithmetic arithmetic) {
+void check_bounds(const State& state, CheckerArithmetic arithmetic) {
     const isostat::checker::Problem problem(state);
     const isostat::checker::Solver solver(problem);
     const isostat::checker::InverseBound bound = isostat::checker::bound_inverse(problem, solver, arithmetic);
@@ -48,7 +48,7 @@ void check_bounds(const State<2>& state, CheckerArithmetic arithmetic) {
     BOOST_TEST(bound.residual_column < 1e-9);
 }
 
-void check_sharper(const State<2>& state) {
+void check_sharper(const State& state) {
     isostat::checker::Place place;
     BOOST_REQUIRE(!isostat::checker::make_place(state, place));
     const isostat::checker::Rational radius = place.evidence->vertex.radius;
@@ -80,7 +80,7 @@ BOOST_AUTO_TEST_CASE(bounds_of_the_inverse_agree_with_a_dense_inverse) {
         check_bounds(small_states::with_a_rattler(), arithmetic);
         check_bounds(small_states::with_a_fixed_disk(), arithmetic);
         if (arithmetic != CheckerArithmetic::rational) {
-            check_bounds(read_state<2>(scratch::data("vertex100.txt")).state, arithmetic);
+            check_bounds(read_state(scratch::data("vertex100.txt")).state, arithmetic);
         }
     }
 }
@@ -99,7 +99,7 @@ BOOST_AUTO_TEST_CASE(a_vertex_is_found_where_K4_has_its_condition_and_nowhere_el
     using isostat::checker::Rational;
     const double h = 0x1p-5;
     for (const double target : {0.1, 0.5, 0.9, 0.99, 1.01, 1.1, 1.5, 1.9, 2.5}) { // of 2 kappa eta
-        State<2> state = small_states::between_two(h);
+        State state = small_states::between_two(h);
         const double row_sum = 1 / (h * 0.8); // about what K15 gives
         const double off = target / (16 * row_sum * row_sum);
         const double x = std::sqrt(4 - h * h + 2 * off);
@@ -132,7 +132,7 @@ BOOST_AUTO_TEST_CASE(a_vertex_is_found_where_K4_has_its_condition_and_nowhere_el
 // hundred times more.
 BOOST_AUTO_TEST_CASE(forces_hold_at_every_point_of_the_enclosure) {
     namespace checker = isostat::checker;
-    const State<2> state = crafted::three_disks(1, 1.1, 1.3, 1, 1.5);
+    const State state = crafted::three_disks(1, 1.1, 1.3, 1, 1.5);
     const isostat::checker::Problem problem(state);
     const isostat::checker::Solver solver(problem);
     const isostat::checker::InverseBound inverse =
@@ -173,7 +173,7 @@ BOOST_AUTO_TEST_CASE(forces_hold_at_every_point_of_the_enclosure) {
 // The same for motions (K12).
 BOOST_AUTO_TEST_CASE(motions_hold_at_every_point_of_the_enclosure) {
     namespace checker = isostat::checker;
-    const State<2> state = crafted::three_disks(1, 1.1, 1.3, 1, 1.5);
+    const State state = crafted::three_disks(1, 1.1, 1.3, 1, 1.5);
     isostat::checker::Evidence wide(state, CheckerArithmetic::fixed64);
     isostat::checker::Evidence point(state, CheckerArithmetic::fixed64);
     BOOST_REQUIRE(wide.vertex.found);
@@ -226,7 +226,7 @@ BOOST_AUTO_TEST_CASE(the_sweep_finds_the_smallest_gap) {
     std::mt19937_64 random(11);
     std::uniform_real_distribution<double> place(0.5, 40);
     for (int trial = 0; trial < testing::scaled(2000); ++trial) {
-        State<2> state = small_states::with_a_rattler();
+        State state = small_states::with_a_rattler();
         const auto disks = static_cast<std::size_t>(2 + trial % 7);
         state.contacts.clear();
         state.packing.radius.assign(disks, 0.4);

@@ -19,9 +19,9 @@ using namespace isostat;
 
 namespace {
 
-State<2> channel_disk() {
-    State<2> state = cells::in_cell({{1, 0.5, 1}}, {2, 2, 0}, false, 2, 3,
-                                    {cells::across(0, 0, 1, 0), crafted::bottom(0), crafted::top(0)});
+State channel_disk() {
+    State state = cells::in_cell({{1, 0.5, 1}}, {2, 2, 0}, false, 2, 3,
+                                 {cells::across(0, 0, 1, 0), crafted::bottom(0), crafted::top(0)});
     state.packing.cell = {{true, false}, {true, false}, {false}, 0};
     state.packing.walls.lower[1] = WallKind::fixed;
     state.packing.walls.upper[1] = WallKind::movable;
@@ -30,27 +30,27 @@ State<2> channel_disk() {
 
 /// Two disks of a centred rectangle under a shear, with an own image. Inversion makes the forces equal in pairs: the
 /// ends of the interval are ties that no counting explains.
-State<2> sheared_rectangle() {
-    State<2> state = cells::two_disks(true, 5, 2);
+State sheared_rectangle() {
+    State state = cells::two_disks(true, 5, 2);
     state.contacts.push_back(cells::across(0, 0, 1, 0));
     state.load.shear = {0.3};
     return state;
 }
 
 /// A small disk that rests on another one and an image of it.
-State<2> with_a_rattler(double radius) {
-    State<2> state = cells::in_cell(
+State with_a_rattler(double radius) {
+    State state = cells::in_cell(
         {{1, 0, 0}, {radius, 1, std::sqrt((2 + radius) * radius)}}, {2, 2, 0}, false, 2, 3,
         {cells::across(0, 0, 0, 1), cells::across(0, 0, 1, 0), cells::across(0, 1, 0, 0), cells::across(0, 1, -1, 0)});
     state.load.infinitesimal = {0, 1, 0, -1};
     return state;
 }
 
-State<2> of_file(const std::string& name) {
-    return read_any_state<2>(std::string(ISOSTAT_TEST_DATA) + "/cells/" + name + "_16.json").state;
+State of_file(const std::string& name) {
+    return read_any_state(std::string(ISOSTAT_TEST_DATA) + "/cells/" + name + "_16.json").state;
 }
 
-std::vector<State<2>> small_cells() {
+std::vector<State> small_cells() {
     return {cells::one_disk(2, 3), cells::one_tilted_disk(2, 1, 0.25), channel_disk(), with_a_rattler(0.3)};
 }
 
@@ -62,7 +62,7 @@ void is_proved(const Verification& verification) {
     BOOST_TEST((verification.verdict == Verdict::proved));
 }
 
-Certificate proved(const State<2>& state) {
+Certificate proved(const State& state) {
     Certificate made;
     made.state = state;
     made.input = "state";
@@ -97,7 +97,7 @@ ClaimCheck check_of(const Verification& verification, const std::string& claim) 
 BOOST_AUTO_TEST_SUITE(checker)
 
 BOOST_AUTO_TEST_CASE(every_arithmetic_proves_small_cells) {
-    for (const State<2>& state : small_cells()) {
+    for (const State& state : small_cells()) {
         for (const CheckerArithmetic arithmetic :
              {CheckerArithmetic::automatic, CheckerArithmetic::singular_value, CheckerArithmetic::rows,
               CheckerArithmetic::fixed64, CheckerArithmetic::gmp, CheckerArithmetic::rational}) {
@@ -107,7 +107,7 @@ BOOST_AUTO_TEST_CASE(every_arithmetic_proves_small_cells) {
 }
 
 BOOST_AUTO_TEST_CASE(ties_by_inversion_are_claimed_by_nobody) {
-    const State<2> state = sheared_rectangle();
+    const State state = sheared_rectangle();
     Certificate made = maker::certificate(state);
     BOOST_TEST((check_of(verify(made), "load_interval").verdict == Verdict::undecided));
     const Certification result = certify(state);
@@ -121,12 +121,12 @@ BOOST_AUTO_TEST_CASE(ties_by_inversion_are_claimed_by_nobody) {
 }
 
 BOOST_AUTO_TEST_CASE(what_is_certified_in_a_cell_verifies) {
-    std::vector<State<2>> states = small_cells();
+    std::vector<State> states = small_cells();
     for (const char* name : {"rect", "tilt", "channel"}) {
         states.push_back(of_file(name));
         is_proved(verify(maker::certificate(states.back())));
     }
-    for (const State<2>& state : states) {
+    for (const State& state : states) {
         const std::string text = certificate_text(proved(state));
         const Certificate read = parse_certificate(text, "text");
         BOOST_TEST(certificate_text(read) == text);
@@ -137,8 +137,8 @@ BOOST_AUTO_TEST_CASE(what_is_certified_in_a_cell_verifies) {
 
 BOOST_AUTO_TEST_CASE(claims_do_not_depend_on_pin_or_representatives) {
     for (const char* name : {"rect", "tilt", "channel"}) {
-        const State<2> state = of_file(name);
-        State<2> other = state;
+        const State state = of_file(name);
+        State other = state;
         other.packing.cell.pin = 5;
         std::vector<Image> shift(state.packing.radius.size());
         shift[3] = cells::image(1, 0);
@@ -207,7 +207,7 @@ BOOST_AUTO_TEST_CASE(forged_certificates_of_cells_do_not_verify) {
         }
     }
     for (const char* name : {"rect", "tilt"}) { // where the lengths are those of reference it is the same load
-        State<2> state = of_file(name);
+        State state = of_file(name);
         state.load.reference_length[0] *= 1 + 0x1p-10;
         Certificate forged = proved(state);
         forged.state.load.kind = LoadKind::true_stress;
@@ -219,8 +219,8 @@ BOOST_AUTO_TEST_CASE(forged_certificates_of_cells_do_not_verify) {
 }
 
 BOOST_AUTO_TEST_CASE(another_pin_or_shear_is_another_state) {
-    const State<2> state = of_file("tilt");
-    State<2> other = state;
+    const State state = of_file("tilt");
+    State other = state;
     other.packing.cell.pin = 5;
     BOOST_TEST(state_difference(state, other) == "the cell");
     other = state;
@@ -239,7 +239,7 @@ BOOST_AUTO_TEST_CASE(an_overlap_with_an_image_is_refuted) {
 // An own image that cannot move is no pair for the smallest gap, but must not overlap.
 BOOST_AUTO_TEST_CASE(own_images_at_rest_must_not_overlap) {
     const auto gaps_of = [](double period) {
-        State<2> state = cells::in_cell({{1, 0, 0}}, {2, period, 0}, false, 1, 1, {cells::across(0, 0, 1, 0)});
+        State state = cells::in_cell({{1, 0, 0}}, {2, period, 0}, false, 1, 1, {cells::across(0, 0, 1, 0)});
         state.packing.cell.period_moves = {true, false};
         return check_of(verify(maker::certificate(state)), "gaps");
     };
@@ -250,7 +250,7 @@ BOOST_AUTO_TEST_CASE(own_images_at_rest_must_not_overlap) {
 }
 
 BOOST_AUTO_TEST_CASE(cells_with_too_many_images_are_left_undecided) {
-    State<2> state = cells::one_tilted_disk(2, 1, 0.25);
+    State state = cells::one_tilted_disk(2, 1, 0.25);
     Certificate certificate = proved(state);
     certificate.state.packing.q.back() += 60 * certificate.state.packing.lattice(0, 0); // another basis of the lattice
     for (Contact& c : certificate.state.contacts) {
@@ -274,7 +274,7 @@ BOOST_AUTO_TEST_CASE(the_sweep_finds_the_smallest_gap_among_images) {
         for (int i = 0; i < n; ++i) {
             disks.push_back({0.05 + 0.1 * (1 + from(random)), lx * from(random), ly * from(random)});
         }
-        State<2> state = cells::in_cell(disks, {lx, ly, from(random)}, sample % 3 == 0, 1, 1, {});
+        State state = cells::in_cell(disks, {lx, ly, from(random)}, sample % 3 == 0, 1, 1, {});
         if (sample % 4 == 3) {
             state.packing.cell = {{sample % 8 == 3, sample % 8 != 3}, {false, false}, {false}, 0};
             state.packing.cell.period_moves = state.packing.cell.periodic;
@@ -292,7 +292,7 @@ BOOST_AUTO_TEST_CASE(the_sweep_finds_the_smallest_gap_among_images) {
 // The vertex may be anywhere in its enclosure, the cell too.
 BOOST_AUTO_TEST_CASE(forces_in_a_cell_hold_at_every_point_of_the_enclosure) {
     namespace checker = isostat::checker;
-    for (const State<2>& state : {cells::one_tilted_disk(2, 1, 0.25), sheared_rectangle(), of_file("tilt")}) {
+    for (const State& state : {cells::one_tilted_disk(2, 1, 0.25), sheared_rectangle(), of_file("tilt")}) {
         const checker::Problem problem(state);
         const checker::Solver solver(problem);
         const checker::InverseBound inverse = checker::bound_inverse(problem, solver, CheckerArithmetic::fixed64);
@@ -328,9 +328,9 @@ BOOST_AUTO_TEST_CASE(forces_in_a_cell_hold_at_every_point_of_the_enclosure) {
 BOOST_AUTO_TEST_CASE(the_derivative_changes_by_at_most_its_curvature) {
     namespace checker = isostat::checker;
     std::mt19937_64 random(5);
-    std::vector<State<2>> states = small_cells();
+    std::vector<State> states = small_cells();
     states.push_back(of_file("tilt"));
-    for (const State<2>& state : states) {
+    for (const State& state : states) {
         const checker::Problem problem(state);
         checker::Integer farthest_row = 0;
         checker::Integer farthest_column = 0;
@@ -370,7 +370,7 @@ BOOST_AUTO_TEST_CASE(a_disk_between_images_carries_force_where_they_are_on_one_l
         const double first = std::sqrt(1.5 * 1.5 - y * y);
         const double second = std::sqrt(1.2 * 1.2 - y * y);
         const double period = first + second + 1.7;
-        State<2> state =
+        State state =
             cells::in_cell({{1, 0, 0}, {0.5, first, y}, {0.7, first + second - period, 2}}, {period, 2, 0}, false, 1, 1,
                            {cells::across(0, 1, 0, 0),
                             cells::across(1, 2, 1, -1),

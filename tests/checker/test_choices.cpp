@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Plays one segment under `choose` into a folder; how it ends does not matter.
-void play(const State<2>& state, int equilibria, const fs::path& folder, std::uint64_t seed = 1) {
+void play(const State& state, int equilibria, const fs::path& folder, std::uint64_t seed = 1) {
     RunOptions options;
     options.ties = TiePolicy::choose;
     options.ties_seed = seed;
@@ -56,7 +56,7 @@ BOOST_AUTO_TEST_SUITE(checker)
 BOOST_AUTO_TEST_CASE(a_forged_choice_is_refused) {
     const scratch::Folder scratch_folder;
     const fs::path folder = scratch_folder / "run";
-    State<2> state = crafted::mirror_forces();
+    State state = crafted::mirror_forces();
     state.perturbation.emplace();
     state.perturbation->rho.assign(state.packing.radius.size(), 0.5);
     play(state, -1, folder);
@@ -93,14 +93,14 @@ BOOST_AUTO_TEST_CASE(a_forged_choice_is_refused) {
 /// bounds so wide that nothing is told apart, the record calls it a choice.
 void call_it_a_choice(const fs::path& folder, const std::vector<double>& rho, double bound) {
     for (const char* name : {"eq_000000.json", "eq_000001.json", "last.json"}) {
-        StateFile<2> file = read_state<2>(folder / "states" / name);
+        StateFile file = read_state(folder / "states" / name);
         file.state.perturbation->rho = rho;
         for (auto* list : {&file.state.perturbation->open, &file.state.perturbation->zero}) {
             for (auto& [contact, term] : *list) {
                 term = {0, bound};
             }
         }
-        write_state<2>(folder / "states" / name, file.state, file.forces);
+        write_state(folder / "states" / name, file.state, file.forces);
     }
     json::Json event = json::Json::parse(scratch::read(folder / "events.jsonl"));
     for (json::Json& tie : event["perturbed"]) {
@@ -115,7 +115,7 @@ void call_it_a_choice(const fs::path& folder, const std::vector<double>& rho, do
 }
 
 BOOST_AUTO_TEST_CASE(bounds_so_wide_that_they_say_nothing_are_no_evidence_of_a_tie) {
-    const State<2> start = read_state<2>(fs::path(ISOSTAT_EXAMPLES) / "ties/two-forces.json").state;
+    const State start = read_state(fs::path(ISOSTAT_EXAMPLES) / "ties/two-forces.json").state;
     const scratch::Folder scratch_folder;
     std::map<bool, std::pair<fs::path, std::vector<double>>> runs; // by what opens
     for (std::uint64_t seed = 1; runs.size() < 2 && seed < 10; ++seed) {
@@ -123,7 +123,7 @@ BOOST_AUTO_TEST_CASE(bounds_so_wide_that_they_say_nothing_are_no_evidence_of_a_t
         play(start, -1, folder, seed);
         BOOST_REQUIRE((verify_run(folder).verdict == Verdict::proved));
         const bool one = scratch::read(folder / "events.jsonl").find("\"opened\":\"1-bottom\"") != std::string::npos;
-        runs[one] = {folder, read_state<2>(folder / "states/eq_000000.json").state.perturbation->rho};
+        runs[one] = {folder, read_state(folder / "states/eq_000000.json").state.perturbation->rho};
     }
     int told_apart = 0;
     for (const bool one : {false, true}) {
@@ -170,7 +170,7 @@ BOOST_AUTO_TEST_CASE(the_way_of_a_square_of_disks_is_replayed) {
 BOOST_AUTO_TEST_CASE(rows_that_change_their_lists_where_they_are_and_spread_are_replayed_and_proved) {
     const scratch::Folder scratch_folder;
     const fs::path folder = scratch_folder / "run";
-    State<2> state = crafted::pile(5, 4);
+    State state = crafted::pile(5, 4);
     state.load.reference_length = {16, 4}; // the same forces; strains stay below the cap
     state.load.stress = {0.25, 0.25};
     play(state, 3, folder);
@@ -199,7 +199,7 @@ BOOST_AUTO_TEST_CASE(rows_that_change_their_lists_where_they_are_and_spread_are_
 BOOST_AUTO_TEST_CASE(a_choice_in_a_run_that_chooses_nothing_is_refused) {
     const scratch::Folder scratch_folder;
     const fs::path folder = scratch_folder / "run";
-    State<2> state = crafted::mirror_gaps();
+    State state = crafted::mirror_gaps();
     state.perturbation.emplace();
     state.perturbation->rho.assign(state.packing.radius.size(), 0.5);
     play(state, 1, folder);

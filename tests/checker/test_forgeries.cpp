@@ -21,24 +21,24 @@ using played::towards;
 namespace {
 
 /// Certificates of the equilibria, as a run of level `arcs` has them.
-class Certifying final : public RunObserver<2> {
+class Certifying final : public RunObserver {
   public:
     explicit Certifying(RunDirectory& next) : next_(next) {}
-    void on_arc(const ArcRecord<2>& arc) override { next_.on_arc(arc); }
-    void on_equilibrium(const EquilibriumRecord<2>& record, const State<2>& state,
+    void on_arc(const ArcRecord& arc) override { next_.on_arc(arc); }
+    void on_equilibrium(const EquilibriumRecord& record, const State& state,
                         const std::vector<double>& forces) override {
         write(next_.path(), record.number, state);
-        EquilibriumRecord<2> certified = record;
+        EquilibriumRecord certified = record;
         certified.certified = Verdict::proved;
         next_.on_equilibrium(certified, state, forces);
     }
-    static void write(const fs::path& run, int number, const State<2>& state) {
+    static void write(const fs::path& run, int number, const State& state) {
         Certificate certificate;
         certificate.input = "equilibrium";
         certificate.program = "test";
         certificate.state = state;
         certificate.state.provenance.clear();
-        certificate.input_hash = sha256(state_text<2>(certificate.state));
+        certificate.input_hash = sha256(state_text(certificate.state));
         certificate.claims = certify(certificate.state).claims;
         write_certificate(run / "certificates" / ("eq_00000" + std::to_string(number) + ".json"), certificate);
     }
@@ -47,7 +47,7 @@ class Certifying final : public RunObserver<2> {
     RunDirectory& next_;
 };
 
-void play(const State<2>& start, const std::vector<Segment>& segments, const fs::path& folder,
+void play(const State& start, const std::vector<Segment>& segments, const fs::path& folder,
           CertifyLevel level = CertifyLevel::arcs, TiePolicy ties = TiePolicy::stop) {
     const bool arcs = level == CertifyLevel::arcs;
     RunOptions options;
@@ -65,12 +65,12 @@ void play(const State<2>& start, const std::vector<Segment>& segments, const fs:
     RunDirectory directory(folder, header, RunDirectory::Mode::fresh, counters);
     directory.store_start(start);
     Certifying certifying(directory);
-    RunObserver<2>& observer = arcs ? static_cast<RunObserver<2>&>(certifying) : directory;
-    State<2> state = start;
+    RunObserver& observer = arcs ? static_cast<RunObserver&>(certifying) : directory;
+    State state = start;
     for (std::size_t k = 0; k < segments.size(); ++k) {
         directory.begin_segment(static_cast<int>(k), segments[k], 0, counters.equilibria);
         const SegmentOutcome outcome =
-            run_segment<2>(state, segments[k], static_cast<int>(k), options, counters, observer);
+            run_segment(state, segments[k], static_cast<int>(k), options, counters, observer);
         const bool played = outcome.completed || ties == TiePolicy::choose; // a lattice may end at its walls
         BOOST_REQUIRE_MESSAGE(played, (outcome.failure ? outcome.failure->message() : ""));
     }
@@ -78,8 +78,8 @@ void play(const State<2>& start, const std::vector<Segment>& segments, const fs:
 }
 
 /// Two forces that vanish together, which nothing but the infinitesimal loads orders.
-State<2> equal_forces() {
-    State<2> state = crafted::mirror_forces();
+State equal_forces() {
+    State state = crafted::mirror_forces();
     state.perturbation.emplace();
     state.perturbation->rho.assign(state.packing.radius.size(), 0.5);
     return state;
@@ -87,15 +87,15 @@ State<2> equal_forces() {
 
 /// Disk 0 swings around the fixed disk 2 between fixed disks; `last` is where the fifth disk stands: in the way, or
 /// just beside it.
-State<2> swing(double x, double y) {
-    return parse_state<2>(R"({"format": "isostat-state", "version": 1, "walls": {"lower": ["absent", "absent"], "upper":
+State swing(double x, double y) {
+    return parse_state(R"({"format": "isostat-state", "version": 1, "walls": {"lower": ["absent", "absent"], "upper":
 ["absent", "movable"]}, "load": {"kind": "nominal", "stress": [1, 1], "loaded_axis": 1, "reference_length": [1, 13]},
 "disk_force": [[0.3, 0], [0, 0], [0, 0], [0, 0], [0, 0]], "disks": [[1, 8.585786437626904, 11.414213562373096],
 [0.3, 7.415786437626905, 10.847556699712808], [1, 10.0, 10.0], [0.3, 12.907160852994403, 9.9367358990906], [0.3, )" +
-                              Json(x).dump() + ", " + Json(y).dump() +
-                              R"(]], "length": [20, 12.414213562373096], "fixed": [1, 2, 3, 4],
+                           Json(x).dump() + ", " + Json(y).dump() +
+                           R"(]], "length": [20, 12.414213562373096], "fixed": [1, 2, 3, 4],
 "infinitesimal": [[0.1, -1], [0, 0], [0, 0], [0, 0], [0, 0]], "contacts": [[0, "top"], [0, 1], [0, 2]]})",
-                          "swing")
+                       "swing")
         .state;
 }
 
@@ -147,7 +147,7 @@ struct Sample {
 
 std::vector<Sample> samples() {
     const auto of_cell = [](const char* name, int pin) {
-        State<2> state = read_any_state<2>(scratch::data(std::string("cells/") + name)).state;
+        State state = read_any_state(scratch::data(std::string("cells/") + name)).state;
         state.packing.cell.pin = pin;
         snap_to_grid(state.packing);
         return state;
@@ -165,7 +165,7 @@ std::vector<Sample> samples() {
          arcs},
         {"a box, a turn",
          [](const fs::path& f) {
-             play(read_state<2>(fs::path(ISOSTAT_EXAMPLES) / "turns/three-disks.json").state, {towards(-1)}, f,
+             play(read_state(fs::path(ISOSTAT_EXAMPLES) / "turns/three-disks.json").state, {towards(-1)}, f,
                   L::decisions);
          },
          looked_at},
@@ -257,7 +257,8 @@ std::string said_of(const fs::path& original, const std::function<void(const fs:
 
 BOOST_AUTO_TEST_SUITE(checker)
 
-BOOST_AUTO_TEST_CASE(some_altered_fields_of_signed_runs_are_refused_or_undecided_or_listed_on_the_page) {
+BOOST_AUTO_TEST_CASE(some_altered_fields_of_signed_runs_are_refused_or_undecided_or_listed_on_the_page,
+                     *boost::unit_test::label("slow")) {
     altered_run::Counts counts;
     const scratch::Folder folder;
     for (const Sample& sample : samples()) {
@@ -399,17 +400,17 @@ BOOST_AUTO_TEST_CASE(what_a_row_says_of_its_own_errors_is_checked) {
 // are those of the run in which it is not there, and overlap is nowhere but on the way.
 BOOST_AUTO_TEST_CASE(a_disk_that_passes_through_another_one_is_not_proved) {
     const scratch::Folder folder;
-    const State<2> near = swing(12.990813884605371, 11.394639418507785);
+    const State near = swing(12.990813884605371, 11.394639418507785);
     play(swing(12.991722005007981, 11.395062882006048), {towards(-1)}, folder / "far");
     play(near, {towards(-1)}, folder / "near");
     BOOST_REQUIRE(words(verify_run(folder / "far")) == "proved");
     BOOST_REQUIRE(words(verify_run(folder / "near")) == "proved");
     const fs::path run = folder / "far";
     for (const char* name : {"eq_000000.json", "eq_000001.json", "last.json"}) {
-        StateFile<2> file = read_state<2>(run / "states" / name);
+        StateFile file = read_state(run / "states" / name);
         file.state.packing.q[8] = near.packing.q[8];
         file.state.packing.q[9] = near.packing.q[9];
-        write_state<2>(run / "states" / name, file.state, file.forces);
+        write_state(run / "states" / name, file.state, file.forces);
         if (name[0] == 'e') {
             Certifying::write(run, name[8] - '0', file.state);
         }
@@ -419,7 +420,7 @@ BOOST_AUTO_TEST_CASE(a_disk_that_passes_through_another_one_is_not_proved) {
         return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
     };
     for (const std::size_t row : {1, 2}) {
-        const State<2> state = read_state<2>(run / ("states/eq_00000" + std::to_string(row - 1) + ".json")).state;
+        const State state = read_state(run / ("states/eq_00000" + std::to_string(row - 1) + ".json")).state;
         const std::vector<std::string> fields = fields_of(run, row);
         const auto nearest = isostat::checker::contact_of_columns(
             std::stoi(fields[column("min_gap_i")]), std::stoi(fields[column("min_gap_j")]), state.packing);

@@ -20,8 +20,8 @@ void play(std::uint64_t seed, int equilibria, const fs::path& folder) {
     options.diameters.kind = RadiiLaw::equal;
     options.jitter = 1e-9;
     options.seed = seed;
-    PreparationReport<2> report;
-    auto prepared = prepare<2>(options, report);
+    PreparationReport report;
+    auto prepared = prepare(options, report);
     BOOST_REQUIRE(prepared.ok());
     BOOST_REQUIRE(played::into(folder, prepared.value(), {played::towards(equilibria)}).completed);
 }
@@ -30,7 +30,8 @@ void play(std::uint64_t seed, int equilibria, const fs::path& folder) {
 
 BOOST_AUTO_TEST_SUITE(checker)
 
-BOOST_AUTO_TEST_CASE(ends_near_another_branch_are_proved_and_what_contradicts_them_is_not) {
+BOOST_AUTO_TEST_CASE(ends_near_another_branch_are_proved_and_what_contradicts_them_is_not,
+                     *boost::unit_test::label("slow")) {
     const scratch::Folder scratch_folder;
     // The arc in question leads to the last equilibrium: it opens this contact.
     for (const auto& [seed, equilibria, opened] :

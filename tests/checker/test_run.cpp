@@ -15,7 +15,7 @@ using namespace isostat;
 namespace {
 
 /// Plays segments, each given by its equilibria, from a state into a folder.
-void play_and_store(const State<2>& start, const std::vector<int>& segments, const std::filesystem::path& folder,
+void play_and_store(const State& start, const std::vector<int>& segments, const std::filesystem::path& folder,
                     OpeningRule rule = OpeningRule::most_negative, TiePolicy ties = TiePolicy::stop) {
     RunOptions options;
     options.rule = rule;
@@ -56,8 +56,8 @@ Alteration scaled(const std::string& events, int line, const std::string& name, 
     return {"events.jsonl", line, "\"" + name + "\":" + old, "\"" + name + "\":" + changed.str(), ""};
 }
 
-State<2> of_cell(const std::string& name, int pin) {
-    State<2> state = read_any_state<2>(scratch::data("cells/" + name + ".json")).state;
+State of_cell(const std::string& name, int pin) {
+    State state = read_any_state(scratch::data("cells/" + name + ".json")).state;
     state.packing.cell.pin = pin;
     snap_to_grid(state.packing);
     return state;
@@ -183,7 +183,7 @@ BOOST_AUTO_TEST_SUITE(checker)
 
 BOOST_AUTO_TEST_CASE(progress_counts_every_arc_and_every_equilibrium_once) {
     const scratch::Folder folder;
-    play_and_store(read_state<2>(scratch::data("vertex100.txt")).state, {2}, folder / "run");
+    play_and_store(read_state(scratch::data("vertex100.txt")).state, {2}, folder / "run");
     int arcs = 0;
     int equilibria = 0;
     VerificationProgress last;
@@ -260,7 +260,7 @@ BOOST_AUTO_TEST_CASE(a_run_by_contact_numbers_is_verified_and_no_other_rule_fits
 // Under true stresses the load changes along an arc: the derivatives of the power count that.
 BOOST_AUTO_TEST_CASE(power_turns_under_true_stresses_are_found_and_replayed) {
     const scratch::Folder folder;
-    State<2> start = prepared(36, 3);
+    State start = prepared(36, 3);
     start.load.kind = LoadKind::true_stress;
     play_and_store(start, {4}, folder / "run", OpeningRule::least_index);
     const RunVerification run = verify_run(folder / "run");
@@ -270,7 +270,7 @@ BOOST_AUTO_TEST_CASE(power_turns_under_true_stresses_are_found_and_replayed) {
 
 BOOST_AUTO_TEST_CASE(a_run_of_a_hundred_disks_is_replayed_and_altered_records_are_named) {
     const scratch::Folder folder;
-    play_and_store(read_state<2>(scratch::data("vertex100.txt")).state, {3, -1}, folder / "run");
+    play_and_store(read_state(scratch::data("vertex100.txt")).state, {3, -1}, folder / "run");
     const RunVerification run = played::proved(folder / "run");
     BOOST_TEST(run.equilibria_proved == 5);
     BOOST_TEST_MESSAGE(run.arcs << " arcs");
@@ -300,8 +300,8 @@ BOOST_AUTO_TEST_CASE(a_run_of_a_hundred_disks_is_replayed_and_altered_records_ar
         const std::size_t at = text.find("\"" + key + "\":\"") + key.size() + 4;
         return text.substr(at, text.find('"', at) - at);
     };
-    const State<2> first = read_state<2>(folder / "run/states/eq_000000.json").state;
-    const std::string kept = to_string<2>(first.contacts[5]);
+    const State first = read_state(folder / "run/states/eq_000000.json").state;
+    const std::string kept = to_string(first.contacts[5]);
     BOOST_REQUIRE(kept != name_in("opened", tension));
     finds(folder / "run",
           {"events.jsonl", tension, "\"opened\":\"" + name_in("opened", tension), "\"opened\":\"" + kept, ""});
@@ -324,9 +324,9 @@ BOOST_AUTO_TEST_CASE(a_run_of_a_hundred_disks_is_replayed_and_altered_records_ar
     refutes_a_row_before(folder / "run", tension);
     // Another stored state, by a coordinate and by a contact.
     const std::filesystem::path stored = folder / "run/states/eq_000001.json";
-    const State<2> state = read_state<2>(stored).state;
+    const State state = read_state(stored).state;
     for (const bool coordinate : {true, false}) {
-        State<2> altered = state;
+        State altered = state;
         if (coordinate) {
             altered.packing.q[7] += 1e-7;
         } else {
@@ -403,7 +403,7 @@ BOOST_AUTO_TEST_CASE(runs_in_periodic_cells_are_replayed_whichever_disk_is_pinne
 }
 
 BOOST_AUTO_TEST_CASE(true_stresses_and_forces_on_disks_in_cells_are_replayed) {
-    const auto is_replayed = [&](const State<2>& state) {
+    const auto is_replayed = [&](const State& state) {
         const scratch::Folder folder;
         play_and_store(state, {3}, folder / "run");
         const RunVerification run = verify_run(folder / "run");
@@ -412,11 +412,11 @@ BOOST_AUTO_TEST_CASE(true_stresses_and_forces_on_disks_in_cells_are_replayed) {
         BOOST_TEST(run.arcs_proved == run.arcs);
     };
     for (const char* name : {"rect_16", "channel_16"}) {
-        State<2> state = of_cell(name, 0);
+        State state = of_cell(name, 0);
         state.load.kind = LoadKind::true_stress;
         is_replayed(state);
     }
-    State<2> state = of_cell("rect_16", 0);
+    State state = of_cell("rect_16", 0);
     state.load.disk_force.assign(32, 0.0);
     state.load.disk_force[4] = 0.125;
     state.load.disk_force[10] = -0.125;
@@ -452,9 +452,9 @@ BOOST_AUTO_TEST_CASE(altered_records_of_a_run_in_a_cell_are_named) {
     }
     // Another stored state: the tilt, an image, the pinned disk.
     const std::filesystem::path stored = run / "states/eq_000001.json";
-    const State<2> state = read_any_state<2>(stored).state;
+    const State state = read_any_state(stored).state;
     for (const int what : {0, 1, 2}) {
-        State<2> altered = state;
+        State altered = state;
         if (what == 0) {
             altered.packing.q[altered.packing.tilt_at(0, 1)] += 1e-7;
         } else if (what == 1) {

@@ -19,7 +19,7 @@ using isostat::checker::Solver;
 
 namespace {
 
-void agrees_with_a_dense_one(const State<2>& state) {
+void agrees_with_a_dense_one(const State& state) {
     const Problem problem(state);
     const Eigen::MatrixXd a = dense::derivative(problem).cast<double>();
     const double sigma = Eigen::JacobiSVD<Eigen::MatrixXd>(a).singularValues().minCoeff();
@@ -41,8 +41,8 @@ void agrees_with_a_dense_one(const State<2>& state) {
     }
 }
 
-State<2> sample(const char* name) {
-    return read_state<2>(scratch::data(name)).state;
+State sample(const char* name) {
+    return read_state(scratch::data(name)).state;
 }
 
 Verdict about_vertex(const Certificate& certificate, CheckerArithmetic arithmetic) {
@@ -79,11 +79,11 @@ BOOST_AUTO_TEST_CASE(a_singular_value_that_approaches_zero_is_never_overstated) 
 
 // One contact twice: the rounding of an approximate factor must not make a regular matrix of it.
 BOOST_AUTO_TEST_CASE(a_singular_matrix_of_a_large_state_has_no_bound) {
-    State<2> state = sample("vertex400.txt");
+    State state = sample("vertex400.txt");
     const auto is_pair = [](const Contact& c) { return c.kind == ContactKind::disk_disk; };
     const auto first = std::find_if(state.contacts.begin(), state.contacts.end(), is_pair);
     for (int other = 1; other < 200; ++other) {
-        State<2> singular = state;
+        State singular = state;
         singular.contacts[static_cast<std::size_t>(first - state.contacts.begin() + other)] = *first;
         const Problem problem(singular);
         BOOST_TEST(!smallest_singular_value(problem).has_value(), other);
@@ -93,7 +93,7 @@ BOOST_AUTO_TEST_CASE(a_singular_matrix_of_a_large_state_has_no_bound) {
 // K15 counts sums of at most 2^16 products of an upper wall: beyond, 128 bits are not known to hold them.
 BOOST_AUTO_TEST_CASE(a_wall_with_more_than_2_to_the_16_contacts_has_no_singular_value) {
     for (const int disks : {0x10000 - 1, 0x10000, 0x10000 + 1}) {
-        State<2> state = crafted::one_disk(1, 1);
+        State state = crafted::one_disk(1, 1);
         state.packing.walls.upper[0] = WallKind::absent;
         state.packing.radius.assign(static_cast<std::size_t>(disks), 1);
         state.packing.q.clear();
@@ -109,7 +109,7 @@ BOOST_AUTO_TEST_CASE(a_wall_with_more_than_2_to_the_16_contacts_has_no_singular_
 
 BOOST_AUTO_TEST_CASE(lengths_scale) {
     for (const int exponent : {-900, -60, 60, 900}) {
-        State<2> state = small_states::with_a_rattler();
+        State state = small_states::with_a_rattler();
         const isostat::checker::Rational one = smallest_singular_value(Problem(state)).value();
         for (std::vector<double>* lengths : {&state.packing.q, &state.packing.radius}) {
             for (double& x : *lengths) {
@@ -125,7 +125,7 @@ BOOST_AUTO_TEST_CASE(lengths_scale) {
 BOOST_AUTO_TEST_CASE(a_claim_beyond_the_singular_value_is_decided_row_by_row) {
     int by_rows = 0;
     int by_singular_value = 0;
-    for (const State<2>& state :
+    for (const State& state :
          {crafted::one_disk(1, 1), crafted::three_disks(1, 1.1, 1.3, 1, 1), small_states::with_a_rattler(),
           small_states::in_a_corner(), crafted::two_disks(1, 2, 1, 1), crafted::two_disks(1, 40, 1, 1),
           crafted::two_disks(1, 1.01, 1, 1), sample("vertex100.txt")}) {

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double inf = std::numeric_limits<double>::infinity();
 
-void is_proved(const State<2>& state, CheckerArithmetic arithmetic = CheckerArithmetic::automatic) {
+void is_proved(const State& state, CheckerArithmetic arithmetic = CheckerArithmetic::automatic) {
     const Verification verification = verify(maker::certificate(state), arithmetic);
     for (const ClaimCheck& check : verification.checks) {
         BOOST_TEST((check.verdict == Verdict::proved),
@@ -99,7 +99,7 @@ BOOST_AUTO_TEST_CASE(two_disks_with_the_tightest_claims) {
 BOOST_AUTO_TEST_CASE(the_pair_named_is_the_nearest_to_2_to_the_minus_46_of_the_largest_coordinate) {
     for (const auto& [units, verdict] : {std::pair(-1, Verdict::proved), std::pair(1, Verdict::proved),
                                          std::pair(3, Verdict::refuted), std::pair(100, Verdict::refuted)}) {
-        State<2> state = small_states::between_two(1);
+        State state = small_states::between_two(1);
         state.packing.radius = {3, 3, 2, 1, 1};
         state.packing.q = {-3, 0, 3, 0, 0, 4, 0, 8, 4 + units * 0x1p-47 * 8, 4, 0, 0};
         state.packing.fixed = {1, 1, 0, 1, 1};
@@ -112,7 +112,7 @@ BOOST_AUTO_TEST_CASE(the_pair_named_is_the_nearest_to_2_to_the_minus_46_of_the_l
 }
 
 BOOST_AUTO_TEST_CASE(the_distance_to_the_true_vertex_is_known_from_both_sides) {
-    State<2> state = crafted::two_disks(1, 2, 1, 1.5);
+    State state = crafted::two_disks(1, 2, 1, 1.5);
     const double shift = 0x1p-12;
     state.packing.q[0] += shift; // the disk in the corner is off the wall by this much; nothing else must move
     Certificate certificate = maker::certificate(state);
@@ -156,7 +156,7 @@ BOOST_AUTO_TEST_CASE(a_contact_that_opens_later_is_refuted_as_the_end_of_the_int
 }
 
 BOOST_AUTO_TEST_CASE(true_stresses_have_forces_and_a_potential_of_their_own) {
-    State<2> state = crafted::three_disks(1, 1.1, 1.3, 1, 1);
+    State state = crafted::three_disks(1, 1.1, 1.3, 1, 1);
     state.load.kind = LoadKind::true_stress;
     const Verification verification = verify(maker::certificate(state));
     for (const char* claim : {"counting", "vertex", "forces", "gaps", "load_interval", "stable"}) {
@@ -165,7 +165,7 @@ BOOST_AUTO_TEST_CASE(true_stresses_have_forces_and_a_potential_of_their_own) {
 }
 
 BOOST_AUTO_TEST_CASE(held_coordinates_are_undecided) {
-    State<2> state = crafted::two_disks(1, 2, 1, 1.5);
+    State state = crafted::two_disks(1, 2, 1, 1.5);
     Certificate certificate = maker::certificate(state);
     certificate.state.contacts[0] = {ContactKind::held, 0, 0};
     for (const ClaimCheck& check : verify(certificate).checks) {
@@ -221,7 +221,7 @@ BOOST_AUTO_TEST_CASE(a_family_that_approaches_a_singular_matrix) {
 // Scaled by powers of two, moved far from the origin: the same answers.
 BOOST_AUTO_TEST_CASE(scales_from_tiny_to_huge) {
     for (const int exponent : {-900, -400, -60, 60, 400, 900}) {
-        State<2> state = small_states::with_a_rattler();
+        State state = small_states::with_a_rattler();
         for (double& x : state.packing.q) {
             x = std::ldexp(x, exponent);
         }

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Plays one segment into a folder, every state stored; how it ends does not matter.
-void play(const State<2>& state, const Segment& segment, Ties ties, std::uint64_t seed, const fs::path& folder) {
+void play(const State& state, const Segment& segment, Ties ties, std::uint64_t seed, const fs::path& folder) {
     RunOptions options;
     crafted::settle(options, ties);
     options.ties_seed = seed;
@@ -71,8 +71,7 @@ BOOST_AUTO_TEST_SUITE(checker)
 BOOST_AUTO_TEST_CASE(power_turn_held_coordinate_and_release_are_replayed_and_altered_ones_are_found) {
     const scratch::Folder scratch_folder;
     const fs::path folder = scratch_folder / "run";
-    play(read_state<2>(fs::path(ISOSTAT_EXAMPLES) / "turns/three-disks.json").state, towards(-1), Ties::stop, 1,
-         folder);
+    play(read_state(fs::path(ISOSTAT_EXAMPLES) / "turns/three-disks.json").state, towards(-1), Ties::stop, 1, folder);
     is_proved(folder);
     BOOST_TEST(verify_run(folder).turns_checked == 1);
     const std::string events = scratch::read(folder / "events.jsonl");
@@ -94,11 +93,10 @@ BOOST_AUTO_TEST_CASE(a_contact_that_is_passed_on_the_way_is_found) {
     // The turning arc closes 3-bottom; said to close another pair, the record is wrong.
     const scratch::Folder scratch_folder;
     const fs::path folder = scratch_folder / "run";
-    play(read_state<2>(fs::path(ISOSTAT_EXAMPLES) / "turns/four-disks.json").state, towards(-1), Ties::stop, 1, folder);
+    play(read_state(fs::path(ISOSTAT_EXAMPLES) / "turns/four-disks.json").state, towards(-1), Ties::stop, 1, folder);
     if (verify_run(folder).arcs == 0) {
         const fs::path other = scratch_folder / "up";
-        play(read_state<2>(fs::path(ISOSTAT_EXAMPLES) / "turns/four-disks.json").state, towards(1), Ties::stop, 1,
-             other);
+        play(read_state(fs::path(ISOSTAT_EXAMPLES) / "turns/four-disks.json").state, towards(1), Ties::stop, 1, other);
         is_proved(other);
         return;
     }

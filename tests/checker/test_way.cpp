@@ -17,7 +17,7 @@ Moving rolling(double angle, double x, double y) {
     Moving moving;
     moving.state = crafted::in_box({{1, 10 + 2 * std::cos(angle), 10 + 2 * std::sin(angle)}, {1, 10, 10}, {0.5, x, y}},
                                    30, 30, 1, 1, {});
-    moving.state.packing.walls = Walls<2>::none();
+    moving.state.packing.walls = Walls::none();
     moving.state.packing.fixed = {0, 1, 1};
     moving.kept = {crafted::pair(0, 1)};
     moving.coordinates = {0, 1};
@@ -61,8 +61,8 @@ struct Rolled {
 
   private:
     void make(Place& place, double angle, int other, double off) const {
-        State<2> state = rolling(angle, 0, 0).state;
-        Packing<2>& packing = state.packing;
+        State state = rolling(angle, 0, 0).state;
+        Packing& packing = state.packing;
         packing.radius = {1, 1, 0.05, 0.05, 1, 2, 2};
         packing.fixed = {0, 1, 1, 1, 0, 1, 1};
         packing.q.resize(4);
@@ -224,7 +224,7 @@ BOOST_AUTO_TEST_CASE(a_way_in_a_channel_is_proved_unless_a_pair_of_images_meets_
                 if (clearance > 0) {
                     BOOST_TEST(said == "");
                 } else {
-                    BOOST_TEST(said.find("the gap of " + to_string<2>(roll.passing())) != std::string::npos, said);
+                    BOOST_TEST(said.find("the gap of " + to_string(roll.passing())) != std::string::npos, said);
                 }
             }
         }

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Plays one segment up, or down, as the program does; how it ends does not matter.
-void play_whole(State<2> state, int equilibria, const RunOptions& options, const fs::path& folder) {
+void play_whole(State state, int equilibria, const RunOptions& options, const fs::path& folder) {
     RunHeader header;
     header.program = "test";
     header.settings = played::settings(options);
@@ -30,7 +30,7 @@ void play_whole(State<2> state, int equilibria, const RunOptions& options, const
     directory.store_start(state);
     const Segment segment = played::towards(equilibria);
     directory.begin_segment(0, segment, 0, 0);
-    const SegmentOutcome outcome = run_segment<2>(state, segment, 0, options, counters, directory);
+    const SegmentOutcome outcome = run_segment(state, segment, 0, options, counters, directory);
     directory.finish(outcome.completed ? RunStatus::completed : RunStatus::failed,
                      outcome.completed ? "" : outcome.failure->message());
 }
@@ -54,8 +54,8 @@ std::string larger(const std::string& entry) {
 }
 
 /// Its sigma2 is above what the contacts bear.
-State<2> overloaded(double factor) {
-    State<2> state = prepared(14, 3);
+State overloaded(double factor) {
+    State state = prepared(14, 3);
     state.load.stress[1] *= factor;
     return state;
 }
@@ -79,10 +79,10 @@ BOOST_AUTO_TEST_CASE(the_way_from_a_start_that_is_no_equilibrium_is_replayed) {
     BOOST_TEST(wrong("events.jsonl", "\"kind\":\"tension\"", "\"kind\":\"limit\"") != "");
     // Another contact opens first: then equilibrium 0 would have another list.
     const std::string start = scratch::read(folder / "run/start.json");
-    const State<2> given = read_state<2>(folder / "run/start.json").state;
-    State<2> other = given;
+    const State given = read_state(folder / "run/start.json").state;
+    State other = given;
     other.contacts.pop_back();
-    write_state<2>(folder / "run/start.json", other);
+    write_state(folder / "run/start.json", other);
     forger::seal(folder / "run");
     BOOST_TEST(verify_run(folder / "run").wrong.find("start.json has other contacts") != std::string::npos);
     scratch::write(folder / "run/start.json", start);
@@ -127,7 +127,7 @@ BOOST_AUTO_TEST_CASE(a_run_from_a_state_stored_at_a_limit_is_replayed_at_the_loa
     RunOptions options;
     options.ties = TiePolicy::choose;
     play_whole(crafted::mirror_forces(), -1, options, folder / "first");
-    const State<2> reached = read_state<2>(folder / "first/states/eq_000001.json").state;
+    const State reached = read_state(folder / "first/states/eq_000001.json").state;
     BOOST_TEST_REQUIRE((reached.perturbation && reached.perturbation->load_zero.i >= 0));
     play_whole(reached, 1, options, folder / "second");
     const RunVerification run = verify_run(folder / "second");
@@ -138,11 +138,11 @@ BOOST_AUTO_TEST_CASE(a_run_from_a_state_stored_at_a_limit_is_replayed_at_the_loa
     // A force that vanishes at another load is not the one that is meant.
     const ExactLoad meant = meant_load(reached);
     BOOST_TEST((meant.shift.lower != 0 && meant.shift.upper != 0));
-    State<2> elsewhere = reached;
+    State elsewhere = reached;
     elsewhere.load.loaded_stress() *= 1 + 1e-6;
     const ExactLoad stored = meant_load(elsewhere);
     BOOST_TEST((stored.shift.lower == 0 && stored.shift.upper == 0));
-    write_state<2>(folder / "second/states/eq_000000.json", elsewhere, {});
+    write_state(folder / "second/states/eq_000000.json", elsewhere, {});
     forger::seal(folder / "second");
     BOOST_TEST((verify_run(folder / "second").verdict != Verdict::proved));
 }
@@ -150,13 +150,13 @@ BOOST_AUTO_TEST_CASE(a_run_from_a_state_stored_at_a_limit_is_replayed_at_the_loa
 // Phi = sum sigma_a ln L_a falls from an equilibrium to the next one, and grows on the way back.
 BOOST_AUTO_TEST_CASE(under_true_stresses_an_arc_on_which_phi_grows_is_refuted) {
     const scratch::Folder folder;
-    State<2> start = prepared(14, 5);
+    State start = prepared(14, 5);
     start.load.kind = LoadKind::true_stress;
     play_whole(start, 1, {}, folder / "run");
     std::array<Place, 2> place;
-    const State<2> end = read_state<2>(folder / "run/states/eq_000001.json").state;
+    const State end = read_state(folder / "run/states/eq_000001.json").state;
     for (std::size_t k = 0; k < 2; ++k) {
-        State<2> state = k == 1 ? end : read_state<2>(folder / "run/states/eq_000000.json").state;
+        State state = k == 1 ? end : read_state(folder / "run/states/eq_000000.json").state;
         state.load = end.load;
         (void)make_place(std::move(state), place[k]);
         BOOST_TEST_REQUIRE(place[k].evidence->vertex.found);
@@ -168,7 +168,7 @@ BOOST_AUTO_TEST_CASE(under_true_stresses_an_arc_on_which_phi_grows_is_refuted) {
                              [](const Range& a, const Range& b) { return a.lower < b.lower; }) -
             forces.begin());
         EventRecord event;
-        event.closed = to_string<2>(to.state->contacts[l]);
+        event.closed = to_string(to.state->contacts[l]);
         event.power = forces[l].lower.get_d();
         event.power_bound = 1e-9 * event.power;
         const double reference = to.state->load.reference_length[1];

@@ -44,7 +44,7 @@ const std::string two = state_text(crafted::two_disks(1, 2, 1, 1));
 BOOST_AUTO_TEST_SUITE(cli)
 
 BOOST_AUTO_TEST_CASE(overlapping_disks) {
-    isostat::State<2> state = crafted::two_disks(1, 2, 1, 1);
+    isostat::State state = crafted::two_disks(1, 2, 1, 1);
     state.packing.q[2] -= 0.5;
     run_refuses(state_text(state), {"overlap", "0-1", "-0.4659", "expected every gap >= 0"});
     const scratch::Folder folder;
@@ -126,7 +126,7 @@ BOOST_AUTO_TEST_CASE(contradictory_programmes) {
     expect(run({"run", (folder / "s.toml").string(), "-o", (folder / "out").string()}), 65,
            {"s.toml", "no [[programme]]"});
     // Only the start file tells that 1.5 is behind.
-    isostat::State<2> state = crafted::two_disks(1, 2, 1, 2);
+    isostat::State state = crafted::two_disks(1, 2, 1, 2);
     scratch::write(folder / "start.json", state_text(state));
     scratch::write(folder / "f.toml", scene_from("start.json", "[[programme]]\ndo = \"up\"\nto = 1.5\n"));
     expect(run({"run", (folder / "f.toml").string(), "-o", (folder / "out").string()}), 65,

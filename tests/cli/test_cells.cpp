@@ -18,7 +18,7 @@ const std::string rectangle = scratch::data("cells/rect_16.json");
 
 /// The disks of the rectangle as LAMMPS would dump them.
 std::string dump() {
-    const isostat::Packing<2> packing = isostat::read_any_state<2>(rectangle).state.packing;
+    const isostat::Packing packing = isostat::read_any_state(rectangle).state.packing;
     std::string text = fmt::format("ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n{}\nITEM: BOX BOUNDS pp pp pp\n0 {}\n0 "
                                    "{}\n-1 1\nITEM: ATOMS id x y radius\n",
                                    packing.disk_count(), packing.length(0), packing.length(1));
@@ -30,7 +30,7 @@ std::string dump() {
 
 /// The same disks of the file as soft grains would leave them: every length but the radii shorter by this part.
 std::string soft_dump(const std::string& state, double part) {
-    const isostat::Packing<2> p = isostat::read_any_state<2>(state).state.packing;
+    const isostat::Packing p = isostat::read_any_state(state).state.packing;
     const double tilt = (1 - part) * p.lattice(0, 1);
     std::string text = fmt::format(
         "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n{}\nITEM: BOX BOUNDS xy xz yz pp pp pp\n0 {} {}\n0 {} 0\n-1 1 0\n"
@@ -115,7 +115,7 @@ BOOST_AUTO_TEST_CASE(a_run_of_a_cell_is_written_resumed_and_replayed) {
     expect(run({"run", scene, "-o", out}), 0);
     says(run({"verify", out}), 0, {"ends proved, way looked at"});
     BOOST_TEST(contains(scratch::read(folder / "out" / "events.jsonl"), "\"opened\":\"3-8(1,0)\""));
-    const auto state = isostat::read_any_state<2>(folder / "out" / "states" / "last.json").state;
+    const auto state = isostat::read_any_state(folder / "out" / "states" / "last.json").state;
     BOOST_TEST(std::abs(state.packing.lattice(0, 1) - -0.9095404261907584) < 1e-9);
 }
 
@@ -157,7 +157,7 @@ BOOST_AUTO_TEST_CASE(a_run_that_changes_the_shear_is_written_resumed_and_replaye
     says(play("loaded = \"tilt\"", tilted), 0, {"shear/sigma2"});
     says(run({"verify", (folder / "out").string()}), 0, {"verdict        proved"});
     const auto last = folder / "out" / "states" / "last.json";
-    const auto state = isostat::read_any_state<2>(last).state;
+    const auto state = isostat::read_any_state(last).state;
     BOOST_TEST(state.load.loaded_axis == 2);
     BOOST_TEST(state.load.shear[0] == -0.01 * state.load.stress[1]);
     BOOST_TEST(contains(scratch::read(folder / "out" / "figures" / "staircase.gp"), "shear strain"));
@@ -188,7 +188,7 @@ BOOST_AUTO_TEST_CASE(a_prepared_cell_begins_at_no_shear_strain_and_the_words_are
                           "[[programme]]\ndo = \"up\"\nequilibria = 4\n[[programme]]\ndo = \"to\"\nto = 0\n");
     const auto out = folder / "out";
     expect(run({"run", scene, "-o", out.string()}), 0);
-    const auto start = isostat::read_any_state<2>(out / "states" / "eq_000000.json").state;
+    const auto start = isostat::read_any_state(out / "states" / "eq_000000.json").state;
     BOOST_TEST(start.packing.lattice(0, 1) != 0);
     BOOST_TEST(start.load.reference_tilt[0] == start.packing.lattice(0, 1));
     const auto first = row_of(out / "equilibria.csv", 0), later = row_of(out / "equilibria.csv", 4);
@@ -237,7 +237,7 @@ BOOST_AUTO_TEST_CASE(a_rectangle_is_prepared_and_followed_under_true_stresses) {
 
 BOOST_AUTO_TEST_CASE(a_dead_shear_that_flows_ends_as_flows) {
     const scratch::Folder folder;
-    isostat::State<2> state = cells::one_tilted_disk(1, 1, 0.5);
+    isostat::State state = cells::one_tilted_disk(1, 1, 0.5);
     state.load.reference_length = {2, std::sqrt(3.0)};
     isostat::write_state(folder / "disk.json", state);
     const std::string scene = (folder / "flow.toml").string();
@@ -255,11 +255,11 @@ BOOST_AUTO_TEST_CASE(periodic_packings_of_other_programs_become_states) {
         for (const double part : {1e-12, 1e-6, 1e-4}) {
             BOOST_TEST_CONTEXT(name << ", overlap " << part) {
                 const std::string from = scratch::data(std::string("cells/") + name + ".json");
-                const isostat::State<2> state = isostat::read_any_state<2>(from).state;
+                const isostat::State state = isostat::read_any_state(from).state;
                 scratch::write(file, soft_dump(from, part));
                 const auto json = json_of(run({"import", file, "-o", made, "--json"}));
                 BOOST_TEST(json.at("verdict") == "proved");
-                const isostat::Packing<2> found = isostat::read_any_state<2>(made).state.packing;
+                const isostat::Packing found = isostat::read_any_state(made).state.packing;
                 BOOST_TEST((found.cell.tilt_moves == state.packing.cell.tilt_moves));
                 for (std::size_t k = 32; k < 35; ++k) {
                     BOOST_TEST(std::abs(found.q[k] - state.packing.q[k]) < 1e-11);
@@ -270,10 +270,10 @@ BOOST_AUTO_TEST_CASE(periodic_packings_of_other_programs_become_states) {
         }
     }
     expect(run({"import", file, "-o", made, "--cell", "rectangular"}), 0); // its tilt stays
-    BOOST_TEST(isostat::read_any_state<2>(made).state.contacts.size() == 32);
+    BOOST_TEST(isostat::read_any_state(made).state.contacts.size() == 32);
     const std::string moved = (folder / "moved.json").string();
     expect(run({"import", made, "-o", moved, "--jitter", "1e-6"}), 0); // a state has its own cell
-    BOOST_TEST(!isostat::read_any_state<2>(moved).state.packing.cell.tilt_moves[0]);
+    BOOST_TEST(!isostat::read_any_state(moved).state.packing.cell.tilt_moves[0]);
 }
 
 BOOST_AUTO_TEST_CASE(a_cell_that_keeps_its_shape_is_prepared_read_and_not_followed) {
@@ -284,13 +284,13 @@ BOOST_AUTO_TEST_CASE(a_cell_that_keeps_its_shape_is_prepared_read_and_not_follow
     says(run({"inspect", in("made.json")}), 0, {"it keeps its shape", "N_f   79", "jammed collectively      proved"});
     expect(run({"certify", in("made.json"), "-o", in("c.json")}), 0);
     expect(run({"verify", in("c.json"), "--input", in("made.json")}), 0);
-    const isostat::Packing<2> made = isostat::read_any_state<2>(in("made.json")).state.packing;
+    const isostat::Packing made = isostat::read_any_state(in("made.json")).state.packing;
     // Soft grains of it, and the list of the widest range of thresholds: the same shape, and the same size.
     for (const double part : {1e-9, 1e-5}) {
         scratch::write(in("soft.dump"), soft_dump(in("made.json"), part));
         expect(run({"import", in("soft.dump"), "-o", in("back.json"), "--cell", "isotropic", "--contacts", "plateau"}),
                0);
-        const isostat::State<2> back = isostat::read_any_state<2>(in("back.json")).state;
+        const isostat::State back = isostat::read_any_state(in("back.json")).state;
         BOOST_TEST(back.packing.cell.keeps_shape);
         BOOST_TEST(back.contacts.size() == 79);
         BOOST_TEST(std::abs(back.packing.length(0) - made.length(0)) < 1e-11);
@@ -304,17 +304,17 @@ BOOST_AUTO_TEST_CASE(lists_and_channels_of_other_programs_become_states) {
     const scratch::Folder folder;
     const auto in = [&](const char* name) { return (folder / name).string(); };
     for (const char* name : {"rect_16", "tilt_16"}) {
-        const isostat::State<2> state =
-            isostat::read_any_state<2>(scratch::data(std::string("cells/") + name + ".json")).state;
+        const isostat::State state =
+            isostat::read_any_state(scratch::data(std::string("cells/") + name + ".json")).state;
         scratch::write(in("soft.dump"), soft_dump(scratch::data(std::string("cells/") + name + ".json"), 1e-7));
         expect(run({"import", in("soft.dump"), "-o", in("made.json"), "--contacts", "plateau"}), 0);
-        BOOST_TEST((isostat::read_any_state<2>(in("made.json")).state.packing.cell.tilt_moves ==
-                    state.packing.cell.tilt_moves));
+        BOOST_TEST(
+            (isostat::read_any_state(in("made.json")).state.packing.cell.tilt_moves == state.packing.cell.tilt_moves));
         expect(run({"import", in("soft.dump"), "-o", in("made.json"), "--threshold", "1e-9"}), 0);
     }
     // Periodic along x, walls at the bounds along y.
-    const isostat::State<2> channel = isostat::read_any_state<2>(scratch::data("cells/channel_16.json")).state;
-    const isostat::Packing<2>& p = channel.packing;
+    const isostat::State channel = isostat::read_any_state(scratch::data("cells/channel_16.json")).state;
+    const isostat::Packing& p = channel.packing;
     BOOST_TEST_REQUIRE(p.cell.periodic[0]);
     std::string text = fmt::format("ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n{}\nITEM: BOX BOUNDS pp ff pp\n0 {}\n0 {}"
                                    "\n-1 1\nITEM: ATOMS id x y radius\n",
@@ -325,7 +325,7 @@ BOOST_AUTO_TEST_CASE(lists_and_channels_of_other_programs_become_states) {
     scratch::write(in("channel.dump"), text);
     for (const char* contacts : {"nearest", "plateau"}) {
         says(run({"import", in("channel.dump"), "-o", in("made.json"), "--contacts", contacts}), 0, {"walls along y"});
-        const isostat::Packing<2> found = isostat::read_any_state<2>(in("made.json")).state.packing;
+        const isostat::Packing found = isostat::read_any_state(in("made.json")).state.packing;
         BOOST_TEST((found.cell.periodic == p.cell.periodic));
         BOOST_TEST((found.walls == p.walls));
         BOOST_TEST(std::abs(found.length(0) - p.length(0)) < 1e-11);
@@ -340,12 +340,12 @@ BOOST_AUTO_TEST_CASE(lists_and_channels_of_other_programs_become_states) {
 BOOST_AUTO_TEST_CASE(what_is_exported_of_a_cell_is_imported_again) {
     const scratch::Folder folder;
     const std::string made = (folder / "made.json").string();
-    const isostat::Packing<2> stored = isostat::read_any_state<2>(rectangle).state.packing;
+    const isostat::Packing stored = isostat::read_any_state(rectangle).state.packing;
     for (const std::string end : {"data", "xyz"}) {
         const std::string file = (folder / ("disks." + end)).string();
         expect(run({"export", rectangle, "-o", file}), 0);
         expect(run({"import", file, "-o", made, end == "data" ? "--periodic" : "--json"}), 0);
-        const isostat::Packing<2> found = isostat::read_any_state<2>(made).state.packing;
+        const isostat::Packing found = isostat::read_any_state(made).state.packing;
         BOOST_TEST(std::abs(found.length(0) - stored.length(0)) < 1e-12);
         BOOST_TEST(std::abs(found.length(1) - stored.length(1)) < 1e-12);
     }
@@ -388,16 +388,16 @@ BOOST_AUTO_TEST_CASE(soft_frames_of_a_cell_snap_with_their_contacts_and_forces) 
             scratch::write(file, soft_dump(from, 1e-5)); // the pairs that overlap are the contacts
             const auto snapped = says(run({"snap", file, "-o", made}), 0, {"snap      vertex"});
             BOOST_TEST(!contains(snapped.out, "forces "), snapped.out); // the file has none
-            const isostat::Packing<2> found = isostat::read_any_state<2>(made).state.packing;
-            const isostat::Packing<2> stored = isostat::read_any_state<2>(from).state.packing;
+            const isostat::Packing found = isostat::read_any_state(made).state.packing;
+            const isostat::Packing stored = isostat::read_any_state(from).state.packing;
             for (std::size_t k = 32; k < 35; ++k) {
                 BOOST_TEST(std::abs(found.q[k] - stored.q[k]) < 1e-11);
             }
             expect(run({"certify", made, "-o", (folder / "c.json").string()}), 0);
             // A state: its forces are compared.
-            isostat::StateFile<2> state = isostat::read_any_state<2>(from);
+            isostat::StateFile state = isostat::read_any_state(from);
             const auto forces_of = [&] {
-                isostat::write_state<2>(folder / "state.json", state.state, state.forces);
+                isostat::write_state(folder / "state.json", state.state, state.forces);
                 const auto out = run({"snap", (folder / "state.json").string(), "-o", made, "--json"});
                 expect(out, 0);
                 return nlohmann::json::parse(out.out).at("forces");
@@ -408,9 +408,9 @@ BOOST_AUTO_TEST_CASE(soft_frames_of_a_cell_snap_with_their_contacts_and_forces) 
             const auto wrong = forces_of();
             BOOST_TEST(wrong.at("rest").get<double>() * wrong.at("mean").get<double>() == 0.2 * *strongest,
                        boost::test_tools::tolerance(1e-6));
-            BOOST_TEST(wrong.at("contact") ==
-                       isostat::to_string<2>(
-                           state.state.contacts[static_cast<std::size_t>(strongest - state.forces.begin())]));
+            BOOST_TEST(
+                wrong.at("contact") ==
+                isostat::to_string(state.state.contacts[static_cast<std::size_t>(strongest - state.forces.begin())]));
         }
     }
 }
@@ -429,7 +429,7 @@ BOOST_AUTO_TEST_CASE(crafted_packings_in_cells_become_states_or_the_reason_is_sa
         says({"inspect", state}, "isostatic equilibrium    proved");
     }
     // The shear stress of the file is that of the state: F2/sqrt(3) + T, F2/sqrt(3) - T.
-    const auto forces = isostat::read_any_state<2>(state).state.load;
+    const auto forces = isostat::read_any_state(state).state.load;
     BOOST_TEST(std::abs(forces.shear[0] * forces.reference_length[0] - 0.5) < 1e-15);
     expect(run({"import", packings + "cell_hexagonal_largest.toml", "-o", state}), 1, {"h = 5, k = 0"});
     expect(run({"import", packings + "cell_one_disk_tilted.toml", "-o", state, "--cell", "tilted"}), 64, {"no --cell"});

@@ -24,7 +24,7 @@ BOOST_AUTO_TEST_CASE(a_sample_certifies_and_its_certificate_is_verified) {
     const isostat::Certificate certificate = isostat::read_certificate(output);
     BOOST_TEST(certificate.input == "vertex100.txt");
     BOOST_TEST(certificate.input_hash == isostat::sha256(scratch::read(input)));
-    BOOST_TEST((certificate.state.packing.q == isostat::read_state<2>(input).state.packing.q)); // bit for bit
+    BOOST_TEST((certificate.state.packing.q == isostat::read_state(input).state.packing.q)); // bit for bit
     expect(run({"verify", output}), 0);
     // The same state gives the same bytes.
     const Outcome again = run({"certify", input, "-o", (folder / "again.json").string(), "--json"});
@@ -35,7 +35,7 @@ BOOST_AUTO_TEST_CASE(a_sample_certifies_and_its_certificate_is_verified) {
 
 BOOST_AUTO_TEST_CASE(forces_in_the_file_are_compared_and_never_used) {
     const scratch::Folder folder;
-    const auto state = isostat::read_any_state<2>(scratch::data("vertex100.txt")).state;
+    const auto state = isostat::read_any_state(scratch::data("vertex100.txt")).state;
     nlohmann::json file = nlohmann::json::parse(state_text(state));
     file["forces"] = std::vector<double>(state.contacts.size(), 2.0);
     scratch::write(folder / "state.json", file.dump());
@@ -52,7 +52,7 @@ BOOST_AUTO_TEST_CASE(forces_in_the_file_are_compared_and_never_used) {
 
 BOOST_AUTO_TEST_CASE(certify_answers_refuted_and_undecided_with_the_reason_and_still_writes_what_is_proved) {
     const scratch::Folder folder;
-    const auto certify = [&folder](const std::string& name, const isostat::State<2>& state) {
+    const auto certify = [&folder](const std::string& name, const isostat::State& state) {
         scratch::write(folder / (name + ".json"), state_text(state));
         return run({"certify", (folder / (name + ".json")).string(), "-o", (folder / (name + ".cert")).string()});
     };
@@ -70,7 +70,7 @@ BOOST_AUTO_TEST_CASE(certify_answers_refuted_and_undecided_with_the_reason_and_s
 
 BOOST_AUTO_TEST_CASE(inspect_states_the_rank_as_stored_and_what_is_proved_of_the_true_configuration) {
     const scratch::Folder folder;
-    isostat::State<2> state = crafted::two_disks(1, 2, 1, 1);
+    isostat::State state = crafted::two_disks(1, 2, 1, 1);
     scratch::write(folder / "good.json", state_text(state));
     says(run({"inspect", (folder / "good.json").string()}), 0,
          {"rank, stored coordinates 6 (exact)", "true configuration       exists within", "6 positive, 0 exactly 0"});

@@ -64,7 +64,7 @@ BOOST_AUTO_TEST_CASE(inspect_tells_the_closed_form_of_two_disks) {
 
 BOOST_AUTO_TEST_CASE(inspect_refutes_what_is_no_isostatic_equilibrium) {
     const scratch::Folder folder;
-    const auto status = [&](const isostat::State<2>& state) {
+    const auto status = [&](const isostat::State& state) {
         scratch::write(folder / "s.json", state_text(state));
         return run({"inspect", (folder / "s.json").string(), "--json"});
     };
@@ -72,7 +72,7 @@ BOOST_AUTO_TEST_CASE(inspect_refutes_what_is_no_isostatic_equilibrium) {
     expect(lattice, 1);
     BOOST_TEST(json::parse(lattice.out)["h"] == 4);
     BOOST_TEST(json::parse(lattice.out)["verdict"] == "refuted");
-    isostat::State<2> open = crafted::two_disks(1, 2, 1, 1);
+    isostat::State open = crafted::two_disks(1, 2, 1, 1);
     open.contacts.pop_back();
     const Outcome mechanism = status(open);
     expect(mechanism, 1);
@@ -86,8 +86,8 @@ BOOST_AUTO_TEST_CASE(import_keeps_every_number_of_a_vertex_text_and_proves_it) {
     const scratch::Folder folder;
     const std::string target = (folder / "state.json").string();
     expect(run({"import", scratch::data("vertex100.txt"), "-o", target}), 0);
-    const isostat::State<2> a = isostat::read_state<2>(scratch::data("vertex100.txt")).state;
-    const isostat::State<2> b = isostat::read_state<2>(target).state;
+    const isostat::State a = isostat::read_state(scratch::data("vertex100.txt")).state;
+    const isostat::State b = isostat::read_state(target).state;
     BOOST_TEST((a.packing.q == b.packing.q));
     BOOST_TEST((a.packing.radius == b.packing.radius));
     BOOST_TEST((a.load.infinitesimal == b.load.infinitesimal));
@@ -113,8 +113,8 @@ BOOST_AUTO_TEST_CASE(prepare_makes_a_state_with_its_history_and_the_same_bits_ag
     expect(quiet, 0);
     BOOST_TEST(quiet.out.empty());
     BOOST_TEST(quiet.err.empty());
-    const isostat::State<2> a = isostat::read_state<2>(first).state;
-    const isostat::State<2> b = isostat::read_state<2>(second).state;
+    const isostat::State a = isostat::read_state(first).state;
+    const isostat::State b = isostat::read_state(second).state;
     BOOST_TEST((a.packing.q == b.packing.q));
     BOOST_TEST((a.contacts == b.contacts));
     BOOST_TEST(a.contacts.size() == 52U);

@@ -131,7 +131,7 @@ BOOST_AUTO_TEST_CASE(sizes_beyond_the_arithmetic_are_bad_input_and_sizes_at_its_
 
 BOOST_AUTO_TEST_CASE(a_packing_in_which_nothing_can_move_is_answered_by_every_command) {
     const scratch::Folder folder;
-    isostat::State<2> state = crafted::one_disk(1, 1);
+    isostat::State state = crafted::one_disk(1, 1);
     state.packing.fixed = {1};
     state.packing.walls.upper.fill(isostat::WallKind::fixed);
     state.contacts.clear();

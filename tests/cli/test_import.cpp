@@ -17,8 +17,8 @@ const std::string crafted_files = std::string(ISOSTAT_EXAMPLES) + "/packings/";
 
 /// The sample of 100 disks as soft grains would leave it: every length but the radii is shorter by this part.
 struct Soft {
-    State<2> state = read_state<2>(scratch::data("vertex100.txt")).state;
-    Packing<2> packing = state.packing;
+    State state = read_state(scratch::data("vertex100.txt")).state;
+    Packing packing = state.packing;
     std::string box;
 
     explicit Soft(double part) {
@@ -81,7 +81,7 @@ BOOST_AUTO_TEST_CASE(soft_grains_end_at_the_vertex_that_they_came_from) {
             const std::string rows = scratch::read(moved);
             BOOST_TEST(std::count(rows.begin(), rows.end(), '\n') == 101);
             // The vertex is that of the sample: its file has the disks in the opposite order.
-            const Packing<2> found = read_state<2>(folder / "s.json").state.packing;
+            const Packing found = read_state(folder / "s.json").state.packing;
             for (std::size_t a = 0; a < 2; ++a) {
                 BOOST_TEST(std::abs(found.length(static_cast<int>(a)) -
                                     soft.state.packing.length(static_cast<int>(a))) < 1e-11);
@@ -95,7 +95,7 @@ BOOST_AUTO_TEST_CASE(an_imported_state_runs_under_its_load) {
     const scratch::Folder folder;
     const Soft soft(1e-6);
     expect(import_text(folder, soft.table(), {"--box", soft.box, "--stress", "2,2.01", "--load", "true"}), 0);
-    const State<2> state = read_state<2>(folder / "s.json").state;
+    const State state = read_state(folder / "s.json").state;
     BOOST_TEST(state.load.stress[0] == 2.0);
     BOOST_TEST(state.load.stress[1] == 2 * (2.01 / 2));
     BOOST_TEST((state.load.kind == LoadKind::true_stress));
@@ -111,7 +111,7 @@ BOOST_AUTO_TEST_CASE(soft_grains_of_yade_end_at_the_vertex_that_they_came_from) 
     const std::string box = "0:6.797743980394215,0:6.804741233269178";
     scratch::write(folder / "prepared.toml", "[packing]\ndisks = 20\n");
     expect(run({"prepare", (folder / "prepared.toml").string(), "-o", start, "-q"}), 0);
-    const State<2> from = read_state<2>(start).state;
+    const State from = read_state(start).state;
     for (const std::string contacts : {"plateau", "nearest"}) {
         BOOST_TEST_CONTEXT(contacts) {
             const auto answer = json_of(import_text(folder, scratch::read(scratch::data("yade20.txt")),
@@ -121,7 +121,7 @@ BOOST_AUTO_TEST_CASE(soft_grains_of_yade_end_at_the_vertex_that_they_came_from) 
             const double moved = answer.at("moved").at("backbone").get<double>();
             BOOST_TEST(moved > 1e-6); // overlaps and digits
             BOOST_TEST(moved < 1e-4);
-            std::vector<Contact> found = read_state<2>(out).state.contacts, expected = from.contacts;
+            std::vector<Contact> found = read_state(out).state.contacts, expected = from.contacts;
             std::sort(found.begin(), found.end());
             std::sort(expected.begin(), expected.end());
             BOOST_TEST((found == expected));
@@ -180,7 +180,7 @@ BOOST_AUTO_TEST_CASE(a_jitter_makes_equal_disks_different) {
     const scratch::Folder folder;
     const std::string lattice = "x,y,r\n1,1,1\n3,1,1\n1,3,1\n3,3,1\n";
     expect(import_text(folder, lattice, {"--box", "0:4,0:4", "--contacts", "nearest", "--jitter", "1e-3"}), 0);
-    const State<2> state = read_state<2>(folder / "s.json").state;
+    const State state = read_state(folder / "s.json").state;
     BOOST_TEST(state.packing.radius[0] != state.packing.radius[1]);
     BOOST_TEST(std::abs(state.packing.radius[0] - 1) <= 1e-3);
     // A state keeps its load.
@@ -189,7 +189,7 @@ BOOST_AUTO_TEST_CASE(a_jitter_makes_equal_disks_different) {
     scratch::write(folder / "grid.json", scratch::replaced(state_text(state), "\"nominal\",\"stress\":[1.0,1.0]",
                                                            "\"true\",\"stress\":[3.0,3.5]"));
     expect(run({"import", (folder / "grid.json").string(), "--jitter", "1e-6", "--contacts", "nearest", "-o", out}), 0);
-    const State<2> again = read_state<2>(out).state;
+    const State again = read_state(out).state;
     BOOST_TEST(again.load.stress[0] == 3.0);
     BOOST_TEST(again.load.stress[1] == 3.5);
     BOOST_TEST((again.load.kind == LoadKind::true_stress));
@@ -203,7 +203,7 @@ BOOST_AUTO_TEST_CASE(crafted_packings_keep_their_contacts_or_are_refused) {
     const std::string out = (folder / "s.json").string();
     expect(run({"import", crafted_files + "two_disks.toml", "-o", out}), 0);
     expect(run({"inspect", out}), 0);
-    BOOST_TEST(read_state<2>(out).state.contacts.size() == 6U);
+    BOOST_TEST(read_state(out).state.contacts.size() == 6U);
     fs::remove(out);
     expect(run({"import", crafted_files + "square_lattice_2.toml", "-o", out}), 1, {"h = 2", "isostatic"});
     expect(run({"import", crafted_files + "two_disks_past_the_limit.toml", "-o", out}), 1, {"force", "1-bottom"});
@@ -215,7 +215,7 @@ BOOST_AUTO_TEST_CASE(crafted_packings_keep_their_contacts_or_are_refused) {
 BOOST_AUTO_TEST_CASE(what_is_exported_comes_back_as_the_same_vertex) {
     const scratch::Folder folder;
     const std::string from = scratch::data("vertex100.txt"), back = (folder / "back.json").string();
-    const State<2> state = read_state<2>(from).state;
+    const State state = read_state(from).state;
     const std::string box = fmt::format("0:{},0:{}", state.packing.length(0), state.packing.length(1));
     for (const std::string end : {"data", "xyz", "csv"}) {
         BOOST_TEST_CONTEXT(end) {
@@ -242,10 +242,10 @@ BOOST_AUTO_TEST_CASE(a_run_is_exported_as_frames_with_displacements) {
     BOOST_REQUIRE(second != std::string::npos);
     BOOST_TEST(text.find("\n100\n", second + 1) == std::string::npos);
     BOOST_TEST(contains(text, ":displacement:R:3"));
-    const Packing<2> last = read_state<2>(folder / "run/states/eq_000002.json").state.packing;
+    const Packing last = read_state(folder / "run/states/eq_000002.json").state.packing;
     ForeignOptions options;
     options.walls = ForeignWalls::box;
-    const Packing<2> read = read_foreign(folder / "run.xyz", options).packing;
+    const Packing read = read_foreign(folder / "run.xyz", options).packing;
     BOOST_TEST((read.q == last.q));
     BOOST_TEST((read.radius == last.radius));
 }

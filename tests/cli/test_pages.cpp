@@ -176,7 +176,7 @@ BOOST_AUTO_TEST_CASE(the_page_of_files_has_every_column_and_every_field) {
     for (const auto& [file, names] : tables) {
         same({names.begin(), names.end()}, first_column(table(page, "column of `" + file + "`")), file);
     }
-    isostat::ArcRecord<2> arc;
+    isostat::ArcRecord arc;
     arc.opened = arc.closed = {isostat::ContactKind::disk_disk, 0, 1};
     arc.power_turn = true;
     arc.certificate.emplace();

@@ -117,7 +117,7 @@ void forge_rest(const fs::path& folder) {
 }
 
 /// Without jitter they are prepared where more pairs touch than are contacts, and the run chooses.
-BOOST_AUTO_TEST_CASE(equal_disks_are_prepared_and_followed_where_ties_are_chosen) {
+BOOST_AUTO_TEST_CASE(equal_disks_are_prepared_and_followed_where_ties_are_chosen, *boost::unit_test::label("slow")) {
     struct Sample {
         int disks, seed, status;
     };
@@ -141,7 +141,7 @@ BOOST_AUTO_TEST_CASE(equal_disks_are_prepared_and_followed_where_ties_are_chosen
 
 /// Seed 2: pairs that touch overlap as stored, by their distance to the vertex. 3 and 12: the linear programmes keep
 /// contacts that are nearly dependent.
-BOOST_AUTO_TEST_CASE(a_hundred_equal_disks_are_prepared_where_ties_are_chosen) {
+BOOST_AUTO_TEST_CASE(a_hundred_equal_disks_are_prepared_where_ties_are_chosen, *boost::unit_test::label("slow")) {
     for (const int seed : {2, 3, 12}) {
         BOOST_TEST_CONTEXT("seed " << seed) {
             const scratch::Folder folder;

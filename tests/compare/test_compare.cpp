@@ -105,7 +105,7 @@ BOOST_AUTO_TEST_CASE(a_contact_that_nearly_closes_for_rigid_grains_is_a_tie_and_
         compare::SeriesReader reader(folder + "/series.toml");
         compare::CompareOptions options;
         options.bundle = 0;
-        options.start = read_any_state<2>(folder + "/start.json").state;
+        options.start = read_any_state(folder + "/start.json").state;
         const Comparison result = compare::compare(reader, options);
         BOOST_TEST_REQUIRE(result.departure.has_value());
         BOOST_TEST(result.departure->opened.size() == 1U);
@@ -181,12 +181,12 @@ BOOST_AUTO_TEST_CASE(rattlers_rest_where_the_member_says) {
     compare::CompareOptions options;
     options.bundle = 4;
     const Comparison result = copy.compare(options);
-    const State<2>& start = result.path.front().state;
+    const State& start = result.path.front().state;
     compare::Snap snap = compare::snap({start.packing, result.path.front().contacts, start.load});
     BOOST_TEST_REQUIRE((snap.outcome == compare::SnapOutcome::vertex), snap.reason);
     const auto heights = [&](double up) {
         std::vector<double> g(2 * start.packing.radius.size());
-        const std::vector<double> generic = generic_infinitesimal<2>(start.packing.radius, 1);
+        const std::vector<double> generic = generic_infinitesimal(start.packing.radius, 1);
         for (std::size_t i = 0; i < g.size(); ++i) {
             g[i] = -up * generic[i];
         }

@@ -235,16 +235,16 @@ BOOST_AUTO_TEST_CASE(a_frame_in_motion_is_on_the_arc_of_the_exact_run_whose_cont
         BOOST_TEST((f.status == FrameStatus::moving) == !f.nearest_arc.empty());
     }
     // Of a run from the vertex of the first frame, told arc by arc: the frame that has the contacts of one of them.
-    struct Told final : RunObserver<2> {
-        void on_equilibrium(const EquilibriumRecord<2>& /*record*/, const State<2>& state,
+    struct Told final : RunObserver {
+        void on_equilibrium(const EquilibriumRecord& /*record*/, const State& state,
                             const std::vector<double>& /*forces*/) override {
             start = start ? start : std::optional(state);
         }
-        void on_arc(const ArcRecord<2>& arc) override { arcs.push_back(arc); }
-        std::optional<State<2>> start;
-        std::vector<ArcRecord<2>> arcs;
+        void on_arc(const ArcRecord& arc) override { arcs.push_back(arc); }
+        std::optional<State> start;
+        std::vector<ArcRecord> arcs;
     } told;
-    State<2> state = result.path.front().state;
+    State state = result.path.front().state;
     Segment far;
     far.equilibria = 4;
     RunCounters counters;

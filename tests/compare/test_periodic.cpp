@@ -24,12 +24,12 @@ class PeriodicSeries {
     /// \p flips: periods that are added to the tilt of each frame, which is the same lattice; none: as it is.
     PeriodicSeries(const std::string& name, const std::vector<double>& loads, std::vector<int> flips = {})
         : flips_(std::move(flips)) {
-        State<2> state = read_any_state<2>(scratch::data("cells/" + name + ".json")).state;
+        State state = read_any_state(scratch::data("cells/" + name + ".json")).state;
         snap_to_grid(state.packing);
         tilted_ = state.packing.cell.tilt_moves[0];
-        reference_ = state.load.reference_length;
+        reference_ = {state.load.reference_length[0], state.load.reference_length[1]};
         RunCounters counters;
-        RunObserver<2> nobody;
+        RunObserver nobody;
         for (const double load : loads) {
             Segment segment;
             if (load == state.load.stress[1]) {
@@ -37,7 +37,7 @@ class PeriodicSeries {
             } else {
                 segment.to_stress = load;
             }
-            const SegmentOutcome outcome = run_segment<2>(state, segment, 0, {}, counters, nobody);
+            const SegmentOutcome outcome = run_segment(state, segment, 0, {}, counters, nobody);
             BOOST_REQUIRE_MESSAGE(!outcome.failure, outcome.failure->message());
             add(state);
         }
@@ -54,7 +54,7 @@ class PeriodicSeries {
         return out;
     }
 
-    [[nodiscard]] Comparison compare(const std::optional<State<2>>& start = {}) const {
+    [[nodiscard]] Comparison compare(const std::optional<State>& start = {}) const {
         scratch::write(*folder_ / "disks.dump", disks);
         scratch::write(*folder_ / "contacts.dump", contacts);
         scratch::write(*folder_ / "frames.csv", frames);
@@ -73,12 +73,12 @@ class PeriodicSeries {
     }
 
   private:
-    void add(const State<2>& state) {
+    void add(const State& state) {
         const std::vector<Contact> list = compare::carrying(state, certify(state));
         const compare::Snap exact = compare::snap({state.packing, list, state.load});
         const auto soft = compare::soften(exact.backbone, state.load.stress[1], stiffness);
         BOOST_REQUIRE(soft.has_value());
-        Packing<2> packing = exact.packing; // rattlers where they have room
+        Packing packing = exact.packing; // rattlers where they have room
         for (std::size_t b = 0; b < exact.disks.size(); ++b) {
             std::copy_n(&soft->packing.q[2 * b], 2, &packing.q[2 * static_cast<std::size_t>(exact.disks[b])]);
         }
@@ -149,7 +149,7 @@ BOOST_AUTO_TEST_CASE(a_box_that_is_flipped_by_whole_periods_is_the_same_lattice)
         BOOST_TEST(found.frames[3].reason.find("by 3 periods along x") != std::string::npos);
     }
     // The start of the exact run is described by another tilt than all frames.
-    const State<2> start = read_any_state<2>(scratch::data("cells/tilt_16.json")).state;
+    const State start = read_any_state(scratch::data("cells/tilt_16.json")).state;
     const Comparison from = PeriodicSeries("tilt_16", loads, {1, 1, 1, 1}).compare(start);
     for (std::size_t k = 0; k < loads.size(); ++k) {
         BOOST_TEST(compare::to_string(from.frames[k].status) == compare::to_string(expected.frames[k].status),

@@ -22,9 +22,9 @@ namespace {
 
 /// An equilibrium of 100 disks, without rattlers' contacts, pushed to the place of soft grains of that stiffness.
 struct Sample {
-    State<2> state = read_state<2>(scratch::data("vertex100.txt")).state;
+    State state = read_state(scratch::data("vertex100.txt")).state;
     std::vector<Contact> list = compare::carrying(state, certify(state));
-    State<2> backbone = compare::snap({state.packing, list, state.load}).backbone;
+    State backbone = compare::snap({state.packing, list, state.load}).backbone;
 
     [[nodiscard]] SoftState soft(double stiffness, std::vector<double>* forces = nullptr) const {
         const Snap exact = compare::snap({state.packing, list, state.load});
@@ -46,7 +46,7 @@ struct Sample {
 };
 
 Sample of_cell(const std::string& name) {
-    return {read_any_state<2>(scratch::data("cells/" + name + ".json")).state};
+    return {read_any_state(scratch::data("cells/" + name + ".json")).state};
 }
 
 } // namespace
@@ -141,8 +141,8 @@ BOOST_AUTO_TEST_CASE(forces_are_split_into_what_is_left_and_what_the_overlaps_ch
 
 /// The self-stress of a list with h = 1, largest component 1, by dense elimination.
 std::vector<double> self_stress_of(const Snap& snap, const SoftState& soft) {
-    const Packing<2> packing = compare::of_disks(soft.packing, snap.disks);
-    const auto h = contact_matrix(packing, DofMap<2>(packing), snap.backbone.contacts);
+    const Packing packing = compare::of_disks(soft.packing, snap.disks);
+    const auto h = contact_matrix(packing, DofMap(packing), snap.backbone.contacts);
     const Eigen::MatrixXd dense = Eigen::Map<const Eigen::SparseMatrix<double>>(
         h.rows, h.cols, h.entries(), h.start.data(), h.row.data(), h.value.data());
     const Eigen::MatrixXd kernel = Eigen::FullPivLU<Eigen::MatrixXd>(dense).kernel();

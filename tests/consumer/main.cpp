@@ -7,13 +7,13 @@
 int main() {
     using namespace isostat;
     const Scene scene = parse_scene("[packing]\ndisks = 16\n", "inline", "");
-    PreparationReport<2> report;
-    const auto prepared = prepare<2>(scene.preparation, report);
+    PreparationReport report;
+    const auto prepared = prepare(scene.preparation, report);
     if (!prepared.ok()) {
         std::printf("%s\n", prepared.failure().message().c_str());
         return 1;
     }
-    const State<2> state = parse_state<2>(state_text(prepared.value()), "text").state;
+    const State state = parse_state(state_text(prepared.value()), "text").state;
     const auto inspection = inspect_vertex(state);
     if (!inspection.ok() || !inspection.value().equilibrium) {
         return 1;

@@ -10,7 +10,7 @@ using namespace isostat::oracle;
 namespace {
 
 /// Every pair and wall of the packing.
-std::vector<Contact> every_contact(const Packing<2>& packing) {
+std::vector<Contact> every_contact(const Packing& packing) {
     std::vector<Contact> all;
     for (int i = 0; i < packing.disk_count(); ++i) {
         for (int j = i + 1; j < packing.disk_count(); ++j) {
@@ -30,8 +30,8 @@ std::vector<Contact> every_contact(const Packing<2>& packing) {
 }
 
 /// Two-sided: nothing below the reach is missing, nothing above it (beyond rounding) is listed.
-void check_against_every_pair(const Packing<2>& packing, double fraction) {
-    const CandidateList<2> list = find_candidates(packing, fraction);
+void check_against_every_pair(const Packing& packing, double fraction) {
+    const CandidateList list = find_candidates(packing, fraction);
     BOOST_TEST(std::is_sorted(list.contacts.begin(), list.contacts.end()));
     BOOST_TEST(list.reach == fraction * packing.min_radius());
     const std::set<Contact> listed(list.contacts.begin(), list.contacts.end());
@@ -51,7 +51,7 @@ void check_against_every_pair(const Packing<2>& packing, double fraction) {
 }
 
 /// The verdict of every pair by rationals.
-Verdict exact_verdict(const Packing<2>& packing, double allowance) {
+Verdict exact_verdict(const Packing& packing, double allowance) {
     for (const Contact& contact : every_contact(packing)) {
         if (gap_minus_bound_sign(packing, contact, -allowance) < 0) {
             return Verdict::refuted;
@@ -60,7 +60,7 @@ Verdict exact_verdict(const Packing<2>& packing, double allowance) {
     return Verdict::proved;
 }
 
-void check_verdict(const Packing<2>& packing, double allowance) {
+void check_verdict(const Packing& packing, double allowance) {
     const Admissibility result = certify_admissible(packing, allowance);
     BOOST_TEST((result.verdict == exact_verdict(packing, allowance)));
     if (result.verdict == Verdict::refuted) {
@@ -68,8 +68,8 @@ void check_verdict(const Packing<2>& packing, double allowance) {
     }
 }
 
-Packing<2> pair_at(double x, double y, double r0, double r1) {
-    Packing<2> packing = empty_cluster();
+Packing pair_at(double x, double y, double r0, double r1) {
+    Packing packing = empty_cluster();
     append(packing, 0, 0, r0);
     append(packing, x, y, r1);
     return packing;
@@ -86,7 +86,7 @@ BOOST_AUTO_TEST_CASE(lists_are_complete_in_random_clusters_at_any_size_ratio) {
             for (int repeat = 0; repeat < (n < 100 ? 6 : 1); ++repeat) {
                 // Tangent disks, and gaps up to the reach of the theorem and beyond.
                 const double widest = repeat % 3 == 0 ? 0 : repeat % 3 == 1 ? 0.9 : 3;
-                Packing<2> packing = grown_cluster(n, ratio, random, [&] { return random.real(0, widest); });
+                Packing packing = grown_cluster(n, ratio, random, [&] { return random.real(0, widest); });
                 BOOST_TEST((near_pairs(packing, 0.82 * packing.min_radius()).triangulation != nullptr));
                 check_against_every_pair(packing, 0.82);
                 if (n < 100) {
@@ -110,10 +110,10 @@ BOOST_AUTO_TEST_CASE(lists_are_complete_in_lattices_with_cocircular_squares) {
 
 BOOST_AUTO_TEST_CASE(square_of_four_disks_is_the_limit_of_the_theorem) {
     // The diagonals of four tangent equal disks have gap 2 (sqrt 2 - 1) R = 0.8284 R: beyond the largest fraction.
-    const CandidateList<2> list = find_candidates(square_lattice(2, 2), 0.82);
+    const CandidateList list = find_candidates(square_lattice(2, 2), 0.82);
     BOOST_TEST(list.contacts.size() == 4U);
     // Slightly compressed into a rhombus, one diagonal is below 0.82 R and must be found.
-    Packing<2> rhombus = empty_cluster();
+    Packing rhombus = empty_cluster();
     const double half = 1 + 0.5 * 0.8199;
     const double other = std::sqrt(4 - half * half);
     append(rhombus, half, 0, 1);
@@ -125,7 +125,7 @@ BOOST_AUTO_TEST_CASE(square_of_four_disks_is_the_limit_of_the_theorem) {
 }
 
 BOOST_AUTO_TEST_CASE(one_two_and_collinear_disks) {
-    Packing<2> one = empty_cluster();
+    Packing one = empty_cluster();
     append(one, 3, 4, 2);
     BOOST_TEST(find_candidates(one, 0.5).contacts.empty());
     enclose(one, 0);
@@ -133,7 +133,7 @@ BOOST_AUTO_TEST_CASE(one_two_and_collinear_disks) {
     BOOST_TEST(find_candidates(pair_at(3, 4, 2, 3), 0.5).contacts.size() == 1U);
     BOOST_TEST(find_candidates(pair_at(30, 40, 2, 3), 0.5).contacts.empty());
     for (const bool along_x : {true, false}) {
-        Packing<2> line = empty_cluster();
+        Packing line = empty_cluster();
         for (int i = 0; i < 20; ++i) { // not in the order of the line
             const double s = 2.25 * ((7 * i) % 20);
             append(line, along_x ? s : 0.5, along_x ? 0.5 : s, 1);
@@ -147,7 +147,7 @@ BOOST_AUTO_TEST_CASE(overlapping_packings_are_still_searched_completely) {
     // The theorem does not apply: hidden disks, disks inside others, coincident centres.
     Random random(7);
     for (int repeat = 0; repeat < testing::scaled(40); ++repeat) {
-        Packing<2> packing = empty_cluster();
+        Packing packing = empty_cluster();
         for (int i = 0; i < 40; ++i) {
             append(packing, random.real(0, 10), random.real(0, 10), random.real(0.2, 2));
         }
@@ -162,9 +162,9 @@ BOOST_AUTO_TEST_CASE(overlapping_packings_are_still_searched_completely) {
 BOOST_AUTO_TEST_CASE(sweep_and_triangulation_give_the_same_list) {
     Random random(99);
     for (const double ratio : {1.0, 3.0, 50.0}) {
-        const Packing<2> packing = grown_cluster(300, ratio, random, [&] { return random.real(0, 0.5); });
+        const Packing packing = grown_cluster(300, ratio, random, [&] { return random.real(0, 0.5); });
         const double reach = 0.82 * packing.min_radius();
-        const NearPairs<2> by_triangulation = near_pairs(packing, reach);
+        const NearPairs by_triangulation = near_pairs(packing, reach);
         BOOST_REQUIRE(by_triangulation.triangulation != nullptr);
         BOOST_TEST((by_triangulation.pairs == near_pairs_by_sweep(packing, reach)));
     }
@@ -172,7 +172,7 @@ BOOST_AUTO_TEST_CASE(sweep_and_triangulation_give_the_same_list) {
 
 BOOST_AUTO_TEST_CASE(extreme_units_and_size_ratios_fall_back_on_the_sweep) {
     for (const double scale : {0x1p-1000, 0x1p-500, 0x1p-40, 1.0, 0x1p40, 0x1p500, 0x1p1000}) {
-        Packing<2> packing = square_lattice(4, 2.25 * scale);
+        Packing packing = square_lattice(4, 2.25 * scale);
         std::fill(packing.radius.begin(), packing.radius.end(), scale);
         check_against_every_pair(packing, 0.82);
         check_verdict(packing, 0);
@@ -181,7 +181,7 @@ BOOST_AUTO_TEST_CASE(extreme_units_and_size_ratios_fall_back_on_the_sweep) {
         packing.q[1] = std::nextafter(packing.q[1], packing.q[3]);
         check_verdict(packing, 0);
     }
-    Packing<2> giant = pair_at(1e9 + 1, 0, 1e9, 1);
+    Packing giant = pair_at(1e9 + 1, 0, 1e9, 1);
     append(giant, 1e9 + 1, 2.5, 1);
     check_against_every_pair(giant, 0.82);
     check_verdict(giant, 0);
@@ -189,7 +189,7 @@ BOOST_AUTO_TEST_CASE(extreme_units_and_size_ratios_fall_back_on_the_sweep) {
 
 BOOST_AUTO_TEST_CASE(a_disk_inside_another_is_found_though_no_edge_overlaps) {
     // The small disk is hidden in the triangulation; the others are apart.
-    Packing<2> packing = square_lattice(4, 2.25);
+    Packing packing = square_lattice(4, 2.25);
     append(packing, 2.3, 2.2, 0.25);
     BOOST_TEST((near_pairs(packing, 0.2).triangulation == nullptr));
     check_against_every_pair(packing, 0.82);
@@ -198,7 +198,7 @@ BOOST_AUTO_TEST_CASE(a_disk_inside_another_is_found_though_no_edge_overlaps) {
 
 BOOST_AUTO_TEST_CASE(deep_overlaps_without_hidden_disk_are_found) {
     // Equal disks on a step far below their diameter: no vertex is hidden, most overlapping pairs are no edges.
-    Packing<2> packing = square_lattice(6, 0.5);
+    Packing packing = square_lattice(6, 0.5);
     BOOST_TEST((near_pairs(packing, 0.5).triangulation == nullptr));
     check_against_every_pair(packing, 0.82);
     check_verdict(packing, 0);
@@ -207,11 +207,11 @@ BOOST_AUTO_TEST_CASE(deep_overlaps_without_hidden_disk_are_found) {
 
 BOOST_AUTO_TEST_CASE(powers_of_two_in_the_unit_change_nothing) {
     Random random(5);
-    Packing<2> packing = grown_cluster(80, 8, random, [&] { return random.real(0, 1); });
+    Packing packing = grown_cluster(80, 8, random, [&] { return random.real(0, 1); });
     enclose(packing, 0.25);
     const std::vector<Contact> reference = find_candidates(packing, 0.82).contacts;
     for (const int exponent : {-900, -560, -20, 20, 560, 900}) {
-        Packing<2> scaled = packing;
+        Packing scaled = packing;
         for (std::vector<double>* lengths : {&scaled.q, &scaled.radius}) {
             for (double& x : *lengths) {
                 x = std::ldexp(x, exponent);
@@ -223,11 +223,11 @@ BOOST_AUTO_TEST_CASE(powers_of_two_in_the_unit_change_nothing) {
 }
 
 BOOST_AUTO_TEST_CASE(fixed_disks_are_listed_only_against_what_can_move) {
-    Packing<2> packing = square_lattice(2, 2);
+    Packing packing = square_lattice(2, 2);
     enclose(packing, 0);
     packing.walls.upper[0] = WallKind::fixed;
     packing.fixed = {1, 1, 0, 0}; // disks 0 and 1: left column
-    const CandidateList<2> list = find_candidates(packing, 0.5);
+    const CandidateList list = find_candidates(packing, 0.5);
     const std::vector<Contact> expected = {{ContactKind::disk_disk, 0, 2},  {ContactKind::disk_disk, 1, 3},
                                            {ContactKind::disk_disk, 2, 3},  {ContactKind::lower_wall, 2, 1},
                                            {ContactKind::upper_wall, 1, 1}, {ContactKind::upper_wall, 2, 0},
@@ -238,14 +238,14 @@ BOOST_AUTO_TEST_CASE(fixed_disks_are_listed_only_against_what_can_move) {
 }
 
 BOOST_AUTO_TEST_CASE(a_list_covers_displacements_below_half_its_reach) {
-    Packing<2> packing = square_lattice(3, 2.5);
+    Packing packing = square_lattice(3, 2.5);
     enclose(packing, 0.25);
-    const CandidateList<2> list = find_candidates(packing, 0.5);
+    const CandidateList list = find_candidates(packing, 0.5);
     BOOST_TEST(list.covers(packing));
     BOOST_TEST(list.covers(packing, 0.49 * list.reach));
     BOOST_TEST(!list.covers(packing, 0.51 * list.reach));
     for (const std::size_t k : {std::size_t{0}, std::size_t{7}, packing.q.size() - 1}) {
-        Packing<2> moved = packing;
+        Packing moved = packing;
         moved.q[k] += 0.2499999;
         BOOST_TEST(list.covers(moved));
         moved.q[k] = packing.q[k] - 0.25;
@@ -253,11 +253,11 @@ BOOST_AUTO_TEST_CASE(a_list_covers_displacements_below_half_its_reach) {
         moved.q[k] = std::numeric_limits<double>::quiet_NaN();
         BOOST_TEST(!list.covers(moved));
     }
-    Packing<2> diagonal = packing;
+    Packing diagonal = packing;
     diagonal.q[4] += 0.2;
     diagonal.q[5] -= 0.2;
     BOOST_TEST(!list.covers(diagonal));
-    Packing<2> other = square_lattice(2, 2.5);
+    Packing other = square_lattice(2, 2.5);
     BOOST_TEST(!list.covers(other));
 }
 
@@ -271,11 +271,11 @@ BOOST_AUTO_TEST_CASE(exact_tangency_is_admissible_and_one_ulp_more_is_not) {
     BOOST_TEST((certify_admissible(pair_at(3, 4, 2.25, 3), 0.25).verdict == Verdict::proved));
     BOOST_TEST((certify_admissible(pair_at(3, 4, 2.25, 3), std::nextafter(0.25, 0.0)).verdict == Verdict::refuted));
     // Walls, likewise.
-    Packing<2> boxed = square_lattice(2, 2);
+    Packing boxed = square_lattice(2, 2);
     enclose(boxed, 0);
     BOOST_TEST((certify_admissible(boxed, 0).verdict == Verdict::proved));
     for (const int axis : {0, 1}) {
-        Packing<2> tight = boxed;
+        Packing tight = boxed;
         tight.length(axis) = std::nextafter(tight.length(axis), 0.0);
         const Admissibility refuted = certify_admissible(tight, 0);
         BOOST_TEST((refuted.verdict == Verdict::refuted));
@@ -287,7 +287,7 @@ BOOST_AUTO_TEST_CASE(exact_tangency_is_admissible_and_one_ulp_more_is_not) {
 
 BOOST_AUTO_TEST_CASE(overlaps_below_double_precision_are_seen) {
     // Far from the origin of the radii's exponents: the overlap is 2^-1000, invisible to double and double-double.
-    Packing<2> packing = pair_at(3, 4, 2, 3);
+    Packing packing = pair_at(3, 4, 2, 3);
     append(packing, 3, 4 + 3 + 1, 1);
     check_verdict(packing, 0);
     packing.q[0] = 0x1p-1000; // disk 0 moves towards the others
@@ -298,16 +298,16 @@ BOOST_AUTO_TEST_CASE(overlaps_below_double_precision_are_seen) {
     // A right triangle with 52-bit integer sides: double-double is full with the squares alone.
     const double m = 80000001;
     const double k = 31415926;
-    Packing<2> wide = pair_at(m * m - k * k, 2 * m * k, m * m, k * k);
+    Packing wide = pair_at(m * m - k * k, 2 * m * k, m * m, k * k);
     BOOST_TEST((certify_admissible(wide, 0).verdict == Verdict::proved));
     wide.q[0] = 0x1p-300;
     BOOST_TEST((certify_admissible(wide, 0).verdict == Verdict::refuted));
     wide.q[0] = -0x1p-300;
     BOOST_TEST((certify_admissible(wide, 0).verdict == Verdict::proved));
     // The same for a wall.
-    Packing<2> wall = empty_cluster();
+    Packing wall = empty_cluster();
     append(wall, 1, 1, 1);
-    wall.walls = Walls<2>::box();
+    wall.walls = Walls::box();
     wall.q = {1, 1, 2, 2};
     BOOST_TEST((certify_admissible(wall, 0).verdict == Verdict::proved));
     BOOST_TEST((certify_admissible(wall, 0x1p-1000).verdict == Verdict::proved));
@@ -322,7 +322,7 @@ BOOST_AUTO_TEST_CASE(verdicts_agree_with_rationals_on_tangent_clusters) {
     int proved = 0;
     for (int repeat = 0; repeat < testing::scaled(300); ++repeat) {
         const int n = 2 + random.integer(8);
-        Packing<2> packing = grown_cluster(n, repeat % 2 == 0 ? 1 : 20, random, [] { return 0; });
+        Packing packing = grown_cluster(n, repeat % 2 == 0 ? 1 : 20, random, [] { return 0; });
         const double allowance = repeat % 3 == 0 ? 0 : std::ldexp(packing.min_radius(), -48 - random.integer(8));
         check_verdict(packing, allowance);
         (exact_verdict(packing, allowance) == Verdict::proved ? proved : refuted) += 1;
@@ -332,7 +332,7 @@ BOOST_AUTO_TEST_CASE(verdicts_agree_with_rationals_on_tangent_clusters) {
 }
 
 BOOST_AUTO_TEST_CASE(worst_gap_is_the_smallest_gap_met) {
-    Packing<2> packing = square_lattice(3, 2.25);
+    Packing packing = square_lattice(3, 2.25);
     packing.q[0] += 0.125;
     const Admissibility result = certify_admissible(packing, 0);
     BOOST_TEST((result.verdict == Verdict::proved));

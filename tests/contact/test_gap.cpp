@@ -11,8 +11,8 @@ using namespace isostat::oracle;
 
 namespace {
 
-Packing<2> random_pair(Random& random, double scale) {
-    Packing<2> packing;
+Packing random_pair(Random& random, double scale) {
+    Packing packing;
     packing.radius = {random.real(0.5, 1) * scale, random.real(0.5, 1) * scale};
     packing.q = {random.real(0, 5) * scale,
                  random.real(0, 5) * scale,
@@ -29,7 +29,7 @@ struct Line {
     mpf_class x, y, distance;
 };
 
-Line line(const Packing<2>& packing) {
+Line line(const Packing& packing) {
     Line d{mpf_class(packing.q[2], 400) - packing.q[0], mpf_class(packing.q[3], 400) - packing.q[1], mpf_class(0, 400)};
     d.distance = sqrt(mpf_class(d.x * d.x + d.y * d.y));
     return d;
@@ -55,13 +55,13 @@ BOOST_AUTO_TEST_CASE(gaps_and_normals_keep_their_error_bounds) {
     Random random(51);
     for (int repeat = 0; repeat < testing::scaled(3000); ++repeat) {
         const double scale = repeat % 3 == 0 ? 1 : repeat % 3 == 1 ? 1e-8 : 1e8;
-        const Packing<2> packing = random_pair(random, scale);
+        const Packing packing = random_pair(random, scale);
         const Line d = line(packing);
         const mpf_class exact = d.distance - packing.radius[0] - packing.radius[1];
         // 4 ulp of the distance, one more for the sum of the radii, and the last subtraction.
         const double bound = 8 * u * d.distance.get_d() + u * (packing.radius[0] + packing.radius[1]);
         BOOST_TEST(std::abs(mpf_class(gap(packing, pair) - exact).get_d()) <= bound + u * std::abs(exact.get_d()));
-        const GapGradient<2> g = gap_gradient(packing, pair);
+        const GapGradient g = gap_gradient(packing, pair);
         BOOST_REQUIRE(g.count == 4);
         const std::array<mpf_class, 4> normal = {mpf_class(-d.x / d.distance), mpf_class(-d.y / d.distance),
                                                  mpf_class(d.x / d.distance), mpf_class(d.y / d.distance)};
@@ -75,14 +75,14 @@ BOOST_AUTO_TEST_CASE(gaps_and_normals_keep_their_error_bounds) {
 BOOST_AUTO_TEST_CASE(gradients_and_curvatures_are_derivatives_of_the_gap) {
     Random random(52);
     for (int repeat = 0; repeat < testing::scaled(300); ++repeat) {
-        const Packing<2> packing = random_pair(random, 1);
+        const Packing packing = random_pair(random, 1);
         std::vector<double> v(6);
         for (double& c : v) {
             c = random.real(-1, 1);
         }
         for (const Contact& contact : every_kind) {
             const auto along = [&](double t) {
-                Packing<2> moved = packing;
+                Packing moved = packing;
                 for (std::size_t k = 0; k < v.size(); ++k) {
                     moved.q[k] += t * v[k];
                 }
@@ -90,7 +90,7 @@ BOOST_AUTO_TEST_CASE(gradients_and_curvatures_are_derivatives_of_the_gap) {
             };
             const double distance = contact.kind == ContactKind::disk_disk ? line(packing).distance.get_d() : 1;
             const double t = 1e-4 * distance;
-            const GapGradient<2> g = gap_gradient(packing, contact);
+            const GapGradient g = gap_gradient(packing, contact);
             double slope = 0;
             for (int k = 0; k < g.count; ++k) {
                 const auto e = static_cast<std::size_t>(k);
@@ -107,7 +107,7 @@ BOOST_AUTO_TEST_CASE(gradients_and_curvatures_are_derivatives_of_the_gap) {
 }
 
 BOOST_AUTO_TEST_CASE(wall_gaps_of_snapped_coordinates) {
-    Packing<2> packing;
+    Packing packing;
     packing.radius = {0.5, 0.25};
     packing.q = {1, 2, 3, 4, 6, 7};
     BOOST_TEST(gap(packing, {ContactKind::lower_wall, 0, 0}) == 0.5);
@@ -115,30 +115,30 @@ BOOST_AUTO_TEST_CASE(wall_gaps_of_snapped_coordinates) {
     BOOST_TEST(gap(packing, {ContactKind::upper_wall, 0, 1}) == 4.5);
     BOOST_TEST(gap(packing, {ContactKind::upper_wall, 1, 0}) == 2.75);
     BOOST_TEST(gap(packing, {ContactKind::held, 3, 0}) == 0);
-    const GapGradient<2> lower = gap_gradient(packing, {ContactKind::lower_wall, 1, 1});
+    const GapGradient lower = gap_gradient(packing, {ContactKind::lower_wall, 1, 1});
     BOOST_TEST(lower.count == 1);
     BOOST_TEST(lower.coordinate[0] == 3);
     BOOST_TEST(lower.value[0] == 1);
-    const GapGradient<2> upper = gap_gradient(packing, {ContactKind::upper_wall, 1, 0});
+    const GapGradient upper = gap_gradient(packing, {ContactKind::upper_wall, 1, 0});
     BOOST_TEST(upper.count == 2);
     BOOST_TEST(upper.coordinate[0] == 2);
     BOOST_TEST(upper.value[0] == -1);
     BOOST_TEST(upper.coordinate[1] == 4);
     BOOST_TEST(upper.value[1] == 1);
-    const GapGradient<2> held = gap_gradient(packing, {ContactKind::held, 3, 0});
+    const GapGradient held = gap_gradient(packing, {ContactKind::held, 3, 0});
     BOOST_TEST(held.count == 1);
     BOOST_TEST(held.coordinate[0] == 3);
     BOOST_TEST(held.value[0] == 1);
 }
 
 BOOST_AUTO_TEST_CASE(contacts_have_names) {
-    BOOST_TEST(to_string<2>({ContactKind::disk_disk, 12, 40}) == "12-40");
-    BOOST_TEST(to_string<2>({ContactKind::lower_wall, 12, 0}) == "12-left");
-    BOOST_TEST(to_string<2>({ContactKind::lower_wall, 12, 1}) == "12-bottom");
-    BOOST_TEST(to_string<2>({ContactKind::upper_wall, 12, 0}) == "12-right");
-    BOOST_TEST(to_string<2>({ContactKind::upper_wall, 12, 1}) == "12-top");
-    BOOST_TEST(to_string<2>({ContactKind::held, 6, 0}).find("held x") == 0U);
-    BOOST_TEST(to_string<2>({ContactKind::held, 6, 0}).find('3') != std::string::npos);
+    BOOST_TEST(to_string({ContactKind::disk_disk, 12, 40}) == "12-40");
+    BOOST_TEST(to_string({ContactKind::lower_wall, 12, 0}) == "12-left");
+    BOOST_TEST(to_string({ContactKind::lower_wall, 12, 1}) == "12-bottom");
+    BOOST_TEST(to_string({ContactKind::upper_wall, 12, 0}) == "12-right");
+    BOOST_TEST(to_string({ContactKind::upper_wall, 12, 1}) == "12-top");
+    BOOST_TEST(to_string({ContactKind::held, 6, 0}).find("held x") == 0U);
+    BOOST_TEST(to_string({ContactKind::held, 6, 0}).find('3') != std::string::npos);
 }
 
 BOOST_AUTO_TEST_CASE(contact_sets_contain_exactly_their_members) {

@@ -13,7 +13,7 @@ using isostat::State;
 namespace {
 
 /// Every pair with a gap below `reach` among images up to 8 periods away, by the definition.
-std::vector<Contact> by_definition(const Packing<2>& packing, double reach) {
+std::vector<Contact> by_definition(const Packing& packing, double reach) {
     std::vector<Contact> pairs;
     const bool x = packing.cell.periodic[0];
     const bool y = packing.cell.periodic[1];
@@ -41,7 +41,7 @@ struct Draw {
 };
 
 /// Disks that do not overlap, some of them outside the cell.
-Packing<2> random_cell(const Draw& draw, std::mt19937_64& random) {
+Packing random_cell(const Draw& draw, std::mt19937_64& random) {
     const auto uniform = [&](double a, double b) {
         return a + (b - a) * static_cast<double>(random() >> 11) * 0x1p-53;
     };
@@ -52,7 +52,7 @@ Packing<2> random_cell(const Draw& draw, std::mt19937_64& random) {
     for (int tries = 0; static_cast<int>(disks.size()) < draw.disks && tries < 400; ++tries) {
         disks.push_back({uniform(draw.largest > 1 ? 0.3 : 0.6, draw.largest), uniform(-1.5, 2.5) * periods.x,
                          uniform(-1, 2) * periods.y});
-        State<2> state = cells::in_cell(disks, periods, draw.tilted, 1, 1, {});
+        State state = cells::in_cell(disks, periods, draw.tilted, 1, 1, {});
         if (draw.channel) {
             state.packing.cell.periodic[1] = state.packing.cell.period_moves[1] = false;
         }
@@ -61,7 +61,7 @@ Packing<2> random_cell(const Draw& draw, std::mt19937_64& random) {
             disks.pop_back();
         }
     }
-    Packing<2> packing = cells::in_cell(disks, periods, draw.tilted, 1, 1, {}).packing;
+    Packing packing = cells::in_cell(disks, periods, draw.tilted, 1, 1, {}).packing;
     if (draw.channel) {
         packing.cell.periodic[1] = packing.cell.period_moves[1] = false;
     }
@@ -83,7 +83,7 @@ BOOST_AUTO_TEST_CASE(pairs_are_all_found_in_cells_of_one_disk_and_more) {
          {Draw{1, 1, false, false}, Draw{1, 1, true, false}, Draw{2, 1, true, false}, Draw{2, 3, true, false},
           Draw{5, 1, true, false}, Draw{8, 3, true, false}, Draw{6, 1, false, true}}) {
         for (int k = 0; k < 25; ++k) {
-            const Packing<2> packing = random_cell(draw, random);
+            const Packing packing = random_cell(draw, random);
             const double reach = 0.82 * packing.min_radius();
             const auto wanted = by_definition(packing, reach);
             const auto found = isostat::near_pairs(packing, reach).pairs;
@@ -97,7 +97,7 @@ BOOST_AUTO_TEST_CASE(pairs_are_all_found_in_cells_of_one_disk_and_more) {
 
 BOOST_AUTO_TEST_CASE(a_flat_cell_has_images_several_periods_away) {
     // The disk touches itself two periods back and one up.
-    const State<2> state = cells::in_cell({{1, 0, 0}}, {2, std::sqrt(3.0), 5}, true, 1, 1, {});
+    const State state = cells::in_cell({{1, 0, 0}}, {2, std::sqrt(3.0), 5}, true, 1, 1, {});
     const auto found = isostat::near_pairs(state.packing, 0.5).pairs;
     const std::vector<Contact> wanted = by_definition(state.packing, 0.5);
     BOOST_TEST((found == wanted));
@@ -105,9 +105,9 @@ BOOST_AUTO_TEST_CASE(a_flat_cell_has_images_several_periods_away) {
 }
 
 BOOST_AUTO_TEST_CASE(overlaps_with_images_are_found) {
-    const State<2> touching = cells::one_disk(1, 1);
+    const State touching = cells::one_disk(1, 1);
     BOOST_TEST((isostat::certify_admissible(touching.packing, 0).verdict == isostat::Verdict::proved));
-    State<2> smaller = touching;
+    State smaller = touching;
     smaller.packing.length(0) = std::nextafter(2.0, 1.0);
     const auto result = isostat::certify_admissible(smaller.packing, 0);
     BOOST_TEST((result.verdict == isostat::Verdict::refuted));
@@ -115,7 +115,7 @@ BOOST_AUTO_TEST_CASE(overlaps_with_images_are_found) {
 }
 
 BOOST_AUTO_TEST_CASE(a_disk_and_its_image_in_a_period_that_stays_are_no_candidate) {
-    State<2> state = cells::one_disk(1, 1);
+    State state = cells::one_disk(1, 1);
     BOOST_TEST(isostat::find_candidates(state.packing, 0.8).contacts.size() == 2);
     state.packing.cell.period_moves = {true, false};
     const auto list = isostat::find_candidates(state.packing, 0.8).contacts;
@@ -126,7 +126,7 @@ BOOST_AUTO_TEST_CASE(a_disk_and_its_image_in_a_period_that_stays_are_no_candidat
 }
 
 BOOST_AUTO_TEST_CASE(representatives_far_away_are_refused) {
-    State<2> state = cells::one_disk(1, 1);
+    State state = cells::one_disk(1, 1);
     state.packing.q[0] = 70;
     BOOST_CHECK_THROW(isostat::near_pairs(state.packing, 0.5), isostat::Error);
 }
@@ -135,14 +135,14 @@ BOOST_AUTO_TEST_CASE(one_contact_has_one_name) {
     BOOST_TEST((cells::across(3, 1, 1, -1) == cells::across(1, 3, -1, 1)));
     BOOST_TEST((cells::across(2, 2, -1, 1) == cells::across(2, 2, 1, -1)));
     BOOST_TEST((cells::across(1, 3, 0, 0) != cells::across(1, 3, 1, 0)));
-    BOOST_TEST(isostat::to_string<2>(cells::across(3, 1, 1, -1)) == "1-3(-1,1)");
+    BOOST_TEST(isostat::to_string(cells::across(3, 1, 1, -1)) == "1-3(-1,1)");
 }
 
 BOOST_AUTO_TEST_CASE(a_nearest_pair_that_no_list_reaches_is_far) {
     // One disk that touches its image; the next image is a period further, in a cell that leans over `lean` heights.
     const auto next_pair = [](double lean) {
-        Packing<2> packing;
-        packing.walls = isostat::Walls<2>::none();
+        Packing packing;
+        packing.walls = isostat::Walls::none();
         packing.radius = {1};
         packing.q = {0, 0, 2, 100, 100 * lean};
         packing.cell = {{true, true}, {true, true}, {true}, 0};

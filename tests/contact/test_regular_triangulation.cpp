@@ -13,7 +13,7 @@ using namespace isostat::oracle;
 
 namespace {
 
-using Triangulation = RegularTriangulation<2>;
+using Triangulation = RegularTriangulation;
 using Edges = std::set<std::pair<int, int>>;
 
 Edges edges_of(const Triangulation& triangulation) {
@@ -23,7 +23,7 @@ Edges edges_of(const Triangulation& triangulation) {
 }
 
 /// Every coordinate by at most `distance`.
-Packing<2> moved(Packing<2> packing, double distance, Random& random) {
+Packing moved(Packing packing, double distance, Random& random) {
     for (double& x : packing.q) {
         x += random.real(-distance, distance);
     }
@@ -32,7 +32,7 @@ Packing<2> moved(Packing<2> packing, double distance, Random& random) {
 
 /// Whether some point has the same power with respect to i and j, and no smaller one with respect to any other disk:
 /// the definition of an edge, by rationals. The points of the radical line are c + t w; each disk k leaves a half-line.
-bool power_cells_meet(const Packing<2>& packing, int i, int j) {
+bool power_cells_meet(const Packing& packing, int i, int j) {
     const auto x = [&](int k) { return mpq_class(packing.q[static_cast<std::size_t>(2 * k)]); };
     const auto y = [&](int k) { return mpq_class(packing.q[static_cast<std::size_t>(2 * k + 1)]); };
     const auto weight = [&](int k) { // as rounded
@@ -71,7 +71,7 @@ bool power_cells_meet(const Packing<2>& packing, int i, int j) {
 }
 
 /// Every edge is one by definition.
-void check_edges(const Packing<2>& packing, const Triangulation& triangulation) {
+void check_edges(const Packing& packing, const Triangulation& triangulation) {
     int wrong = 0;
     for (const auto& [i, j] : edges_of(triangulation)) {
         wrong += power_cells_meet(packing, i, j) ? 0 : 1;
@@ -80,7 +80,7 @@ void check_edges(const Packing<2>& packing, const Triangulation& triangulation) 
 }
 
 /// And no pair that is near is left out.
-void check_complete(const Packing<2>& packing, const Triangulation& triangulation) {
+void check_complete(const Packing& packing, const Triangulation& triangulation) {
     check_edges(packing, triangulation);
     const double reach = 0.82 * packing.min_radius();
     const auto near = near_edges(packing, reach, triangulation);
@@ -96,7 +96,7 @@ BOOST_AUTO_TEST_CASE(edges_are_pairs_whose_power_cells_meet) {
     Random random(2022);
     for (const double ratio : {1.0, 4.0, 100.0}) {
         for (const int n : {1, 2, 3, 5, 30, 80}) {
-            const Packing<2> packing = grown_cluster(n, ratio, random, [&] { return random.real(0, 0.5); });
+            const Packing packing = grown_cluster(n, ratio, random, [&] { return random.real(0, 0.5); });
             const auto triangulation = Triangulation::build(packing);
             BOOST_REQUIRE(triangulation != nullptr);
             BOOST_TEST(triangulation->disk_count() == packing.disk_count());
@@ -112,12 +112,12 @@ BOOST_AUTO_TEST_CASE(a_triangulation_carried_to_where_disks_went_is_the_one_made
     int lost = 0;
     for (int repeat = 0; repeat < testing::scaled(150); ++repeat) {
         const double distance = std::ldexp(2.0, -(repeat % 10)); // 2 to 4e-3, the smallest radius being 1
-        const Packing<2> from = grown_cluster(50,
-                                              repeat % 3 == 0   ? 1
-                                              : repeat % 3 == 1 ? 2
-                                                                : 20,
-                                              random, [&] { return random.real(0, 0.5); });
-        const Packing<2> to = moved(from, 0.5 * distance, random);
+        const Packing from = grown_cluster(50,
+                                           repeat % 3 == 0   ? 1
+                                           : repeat % 3 == 1 ? 2
+                                                             : 20,
+                                           random, [&] { return random.real(0, 0.5); });
+        const Packing to = moved(from, 0.5 * distance, random);
         const auto before = Triangulation::build(from);
         const Edges edges_before = edges_of(*before);
         const auto carried = Triangulation::carry(before, to);
@@ -140,8 +140,8 @@ BOOST_AUTO_TEST_CASE(a_triangulation_carried_to_where_disks_went_is_the_one_made
 
 BOOST_AUTO_TEST_CASE(a_long_way_in_small_steps_is_carried_all_along) {
     Random random(2024);
-    Packing<2> packing = grown_cluster(100, 2, random, [&] { return random.real(0.3, 0.8); });
-    const Packing<2> start = packing;
+    Packing packing = grown_cluster(100, 2, random, [&] { return random.real(0.3, 0.8); });
+    const Packing start = packing;
     auto triangulation = Triangulation::build(packing);
     const Edges first = edges_of(*triangulation);
     for (int step = 0; step < 100; ++step) { // a shear of 1, in which no two disks come nearer than they are allowed
@@ -159,12 +159,12 @@ BOOST_AUTO_TEST_CASE(a_long_way_in_small_steps_is_carried_all_along) {
 
 BOOST_AUTO_TEST_CASE(squares_of_a_lattice_keep_either_diagonal) {
     // Every square is cocircular: both diagonals are regular, and a flip back and forth must not go on for ever.
-    const Packing<2> lattice = square_lattice(8, 2.25);
+    const Packing lattice = square_lattice(8, 2.25);
     const auto made = Triangulation::build(lattice);
     check_complete(lattice, *made);
     BOOST_TEST((Triangulation::carry(made, lattice) == made));
     for (const double slope : {0.03, -0.03}) {
-        Packing<2> sheared = lattice;
+        Packing sheared = lattice;
         for (std::size_t i = 0; i < sheared.radius.size(); ++i) {
             sheared.q[2 * i] += slope * sheared.q[2 * i + 1];
         }
@@ -179,27 +179,27 @@ BOOST_AUTO_TEST_CASE(squares_of_a_lattice_keep_either_diagonal) {
 
 BOOST_AUTO_TEST_CASE(a_list_does_not_depend_on_the_triangulation_it_is_carried_from) {
     Random random(2025);
-    const Packing<2> packing = grown_cluster(80, 3, random, [&] { return random.real(0, 0.5); });
+    const Packing packing = grown_cluster(80, 3, random, [&] { return random.real(0, 0.5); });
     const std::vector<Contact> expected = find_candidates(packing, 0.8).contacts;
     // Near, far, the same disks in other places (two of them exchanged, mirrored), other radii, another number.
-    Packing<2> exchanged = packing;
+    Packing exchanged = packing;
     std::swap(exchanged.q[0], exchanged.q[20]);
     std::swap(exchanged.q[1], exchanged.q[21]);
-    Packing<2> mirrored = packing;
+    Packing mirrored = packing;
     for (std::size_t i = 0; i < mirrored.radius.size(); ++i) {
         mirrored.q[2 * i] = -mirrored.q[2 * i];
     }
-    Packing<2> smaller = packing;
+    Packing smaller = packing;
     for (double& r : smaller.radius) {
         r *= random.real(0.5, 1);
     }
-    const Packing<2> fewer = grown_cluster(79, 3, random, [&] { return random.real(0, 0.5); });
-    const Packing<2> other = grown_cluster(80, 3, random, [&] { return random.real(0, 0.5); });
-    for (const Packing<2>& elsewhere :
+    const Packing fewer = grown_cluster(79, 3, random, [&] { return random.real(0, 0.5); });
+    const Packing other = grown_cluster(80, 3, random, [&] { return random.real(0, 0.5); });
+    for (const Packing& elsewhere :
          {packing, moved(packing, 1e-3, random), exchanged, mirrored, smaller, fewer, other}) {
         const auto from = Triangulation::build(elsewhere);
         BOOST_REQUIRE(from != nullptr);
-        const CandidateList<2> list = find_candidates(packing, 0.8, from);
+        const CandidateList list = find_candidates(packing, 0.8, from);
         BOOST_TEST((list.contacts == expected));
         BOOST_TEST((list.triangulation != nullptr));
     }
@@ -208,18 +208,18 @@ BOOST_AUTO_TEST_CASE(a_list_does_not_depend_on_the_triangulation_it_is_carried_f
 
 BOOST_AUTO_TEST_CASE(disks_that_come_to_overlap_are_swept) {
     Random random(2026);
-    const Packing<2> packing = grown_cluster(60, 2, random, [&] { return random.real(0, 0.5); });
+    const Packing packing = grown_cluster(60, 2, random, [&] { return random.real(0, 0.5); });
     const auto from = find_candidates(packing, 0.8).triangulation;
     BOOST_REQUIRE(from != nullptr);
     int swept = 0;
     for (int repeat = 0; repeat < testing::scaled(30); ++repeat) {
-        Packing<2> to = packing;
+        Packing to = packing;
         const auto i = static_cast<std::size_t>(random.integer(to.disk_count()));
         const auto j = static_cast<std::size_t>(random.integer(to.disk_count()));
         const double share = random.real(0, 1); // of the way from i to j
         to.q[2 * i] += share * (to.q[2 * j] - to.q[2 * i]);
         to.q[2 * i + 1] += share * (to.q[2 * j + 1] - to.q[2 * i + 1]);
-        const CandidateList<2> list = find_candidates(to, 0.8, from);
+        const CandidateList list = find_candidates(to, 0.8, from);
         BOOST_TEST((list.contacts == near_pairs_by_sweep(to, list.reach)));
         swept += list.triangulation ? 0 : 1;
     }
@@ -230,7 +230,7 @@ BOOST_AUTO_TEST_CASE(disks_that_come_to_overlap_are_swept) {
 BOOST_AUTO_TEST_CASE(a_disk_that_comes_to_be_hidden_is_not_carried) {
     // In the middle of six, beside the centre: hidden when the disk in the centre grows. No face turns over, but an
     // edge that is not regular has no place to go.
-    Packing<2> packing = empty_cluster();
+    Packing packing = empty_cluster();
     append(packing, 0, 0, 0.2);
     append(packing, 0.5, 0.0625, 0.2);
     for (int k = 0; k < 6; ++k) {
@@ -241,7 +241,7 @@ BOOST_AUTO_TEST_CASE(a_disk_that_comes_to_be_hidden_is_not_carried) {
     packing.radius[0] = 0.95;
     BOOST_TEST((Triangulation::build(packing) == nullptr));
     BOOST_TEST((Triangulation::carry(before, packing) == nullptr));
-    const CandidateList<2> list = find_candidates(packing, 0.8, before);
+    const CandidateList list = find_candidates(packing, 0.8, before);
     BOOST_TEST((list.contacts == near_pairs_by_sweep(packing, list.reach)));
 }
 
@@ -252,11 +252,11 @@ BOOST_AUTO_TEST_CASE(pairs_at_the_reach_are_listed_alike) {
     for (const double from : {0.0, -1.4, 1000.0}) {
         for (int ulps = -40; ulps <= 40; ++ulps) {
             for (const std::size_t axis : {std::size_t{0}, std::size_t{1}}) {
-                Packing<2> packing = empty_cluster();
+                Packing packing = empty_cluster();
                 append(packing, from, from, 1);
                 append(packing, from, from, 1);
                 packing.q[2 + axis] = from + (2.8 + ulps * 0x1p-51);
-                const NearPairs<2> pairs = near_pairs(packing, 0.8);
+                const NearPairs pairs = near_pairs(packing, 0.8);
                 BOOST_REQUIRE(pairs.triangulation != nullptr);
                 BOOST_TEST((pairs.pairs == near_pairs_by_sweep(packing, 0.8)));
                 ++(pairs.pairs.empty() ? apart : near);
@@ -269,21 +269,21 @@ BOOST_AUTO_TEST_CASE(pairs_at_the_reach_are_listed_alike) {
 
 BOOST_AUTO_TEST_CASE(equal_disks_in_one_place_are_not_taken_for_one) {
     Random random(2027);
-    Packing<2> packing = grown_cluster(30, 20, random, [&] { return random.real(0, 0.5); });
+    Packing packing = grown_cluster(30, 20, random, [&] { return random.real(0, 0.5); });
     append(packing, packing.q[0], packing.q[1], packing.radius[0]);
     BOOST_TEST((Triangulation::build(packing) == nullptr));
-    const CandidateList<2> list = find_candidates(packing, 0.8);
+    const CandidateList list = find_candidates(packing, 0.8);
     BOOST_TEST(std::binary_search(list.contacts.begin(), list.contacts.end(), Contact{ContactKind::disk_disk, 0, 30}));
     BOOST_TEST((list.contacts == near_pairs_by_sweep(packing, list.reach)));
 }
 
 BOOST_AUTO_TEST_CASE(samples_of_the_paper_are_triangulated_and_not_swept) {
     for (const std::string name : {"vertex100.txt", "vertex400.txt", "vertex1936.txt"}) {
-        const Packing<2> packing = read_state<2>(std::string(ISOSTAT_TEST_DATA) + "/" + name).state.packing;
-        const CandidateList<2> list = find_candidates(packing, 0.8);
+        const Packing packing = read_state(std::string(ISOSTAT_TEST_DATA) + "/" + name).state.packing;
+        const CandidateList list = find_candidates(packing, 0.8);
         BOOST_REQUIRE(list.triangulation != nullptr);
         Random random(7);
-        const Packing<2> near = moved(packing, 1e-9, random);
+        const Packing near = moved(packing, 1e-9, random);
         BOOST_TEST((find_candidates(near, 0.8, list.triangulation).triangulation == list.triangulation));
         BOOST_TEST((near_pairs(packing, list.reach).pairs == near_pairs_by_sweep(packing, list.reach)));
     }
@@ -292,10 +292,10 @@ BOOST_AUTO_TEST_CASE(samples_of_the_paper_are_triangulated_and_not_swept) {
 BOOST_AUTO_TEST_CASE(coordinates_far_larger_than_the_radii_are_listed_completely) {
     // Centres are rounded, and those of the outer disks too: they must not come to lie on others.
     for (const double away : {0x1p40, 0x1p60}) {
-        Packing<2> one = empty_cluster();
+        Packing one = empty_cluster();
         append(one, -away, away, 1);
         BOOST_TEST((Triangulation::build(one) != nullptr));
-        Packing<2> packing = square_lattice(3, 2.25);
+        Packing packing = square_lattice(3, 2.25);
         for (double& x : packing.q) {
             x -= away;
         }

@@ -17,7 +17,7 @@ constexpr Contact wall{ContactKind::lower_wall, 5, 0};
 BOOST_AUTO_TEST_CASE(a_failure_names_the_contacts_among_its_words) {
     std::string owner = "an owner that goes away";
     const Failure failure =
-        failed(FailureKind::tie, "{}: {} and {} (f = {:.3g})", owner, named<2>(pair), named<2>(wall), 0.12345);
+        failed(FailureKind::tie, "{}: {} and {} (f = {:.3g})", owner, named(pair), named(wall), 0.12345);
     owner.assign(owner.size(), '?');
     BOOST_TEST(failure.message() == "an owner that goes away: 3-8 and 5-left (f = 0.123)");
     BOOST_TEST((failure.contacts() == std::vector<Contact>{pair, wall}));
@@ -27,7 +27,7 @@ BOOST_AUTO_TEST_CASE(a_failure_names_the_contacts_among_its_words) {
 BOOST_AUTO_TEST_CASE(words_within_words_keep_what_they_name) {
     Words list;
     for (const Contact& contact : {pair, wall}) {
-        list += words("{}{}", list.empty() ? "" : ", ", named<2>(contact));
+        list += words("{}{}", list.empty() ? "" : ", ", named(contact));
     }
     const Failure inner = failed(FailureKind::undecided, "zero: {}", list);
     const Failure outer = located(failed(inner.kind, "class of {}: {}", 2, inner), words("arc {}", 4));

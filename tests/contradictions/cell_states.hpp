@@ -23,17 +23,17 @@ inline std::vector<double> cell_radii(int disks, Random& random) {
     return radii;
 }
 
-inline void draw_infinitesimal(State<2>& state, Random& random) {
+inline void draw_infinitesimal(State& state, Random& random) {
     state.load.infinitesimal.clear();
     for (std::size_t k = 0; k < 2 * state.packing.radius.size(); ++k) {
         state.load.infinitesimal.push_back(random.integer(8) == 0 ? 0.0 : random.real(-1, 0.3));
     }
-    isostat::balance<2>(state.load.infinitesimal, state.packing.cell);
+    isostat::balance(state.load.infinitesimal, state.packing.cell);
 }
 
 /// One more disk, in a void: it rests on two others, or on their images. \pre state at its vertex
-inline bool add_rattler(State<2>& state, Random& random) {
-    const State<2> before = state;
+inline bool add_rattler(State& state, Random& random) {
+    const State before = state;
     const auto& p = before.packing;
     const int count = p.disk_count();
     for (int tries = 0; tries < 60; ++tries) {
@@ -74,8 +74,8 @@ inline bool add_rattler(State<2>& state, Random& random) {
 }
 
 /// The shear at which the force of one contact vanishes, or a few ulps beside it.
-inline void shear_to_the_end(State<2>& state, const Truth& truth, Random& random) {
-    State<2> sheared = state;
+inline void shear_to_the_end(State& state, const Truth& truth, Random& random) {
+    State sheared = state;
     sheared.load.shear[0] += 1;
     const Truth other(sheared);
     const auto l = static_cast<std::size_t>(random.integer(static_cast<int>(state.contacts.size())));
@@ -86,7 +86,7 @@ inline void shear_to_the_end(State<2>& state, const Truth& truth, Random& random
     }
 }
 
-inline void stress_to_the_end(State<2>& state, const Truth& truth, Random& random) {
+inline void stress_to_the_end(State& state, const Truth& truth, Random& random) {
     const End& end = random.integer(2) == 0 ? truth.low : truth.high;
     if (!end.unbounded && abs(end.stress) > 1e-30) {
         state.load.stress[1] = a_few_ulps_from(static_cast<double>(end.stress), random);
@@ -105,7 +105,7 @@ inline CellOptions cell_options(CellKind kind, int disks, Random& random) {
 }
 
 /// A packing, perhaps with a rattler, described by whatever pin and representatives.
-inline std::optional<State<2>> in_small_cell(const CellOptions& options, Random& random) {
+inline std::optional<State> in_small_cell(const CellOptions& options, Random& random) {
     auto state = make_cell(options, random);
     if (!state) {
         return {};
@@ -125,20 +125,20 @@ inline std::optional<State<2>> in_small_cell(const CellOptions& options, Random&
 }
 
 /// Of one to six disks.
-inline std::optional<State<2>> in_small_cell(CellKind kind, Random& random) {
+inline std::optional<State> in_small_cell(CellKind kind, Random& random) {
     const CellOptions options = cell_options(kind, 1 + random.integer(5), random);
     return in_small_cell(options, random);
 }
 
 /// The length along x does not move; as often as not it is such that the images of the largest disk touch.
-inline std::optional<State<2>> in_cell_of_fixed_length(Random& random) {
+inline std::optional<State> in_cell_of_fixed_length(Random& random) {
     CellOptions options = cell_options(CellKind::tilted, 1 + random.integer(4), random);
     const double widest = 2 * *std::max_element(options.radii.begin(), options.radii.end());
     options.fixed_length = random.integer(2) == 0 ? widest : widest * random.real(1, 2);
     return in_small_cell(options, random);
 }
 
-inline std::optional<State<2>> cell_at_threshold(CellKind kind, Random& random) {
+inline std::optional<State> cell_at_threshold(CellKind kind, Random& random) {
     auto state = in_small_cell(kind, random);
     if (!state) {
         return {};
@@ -171,10 +171,10 @@ inline std::optional<State<2>> cell_at_threshold(CellKind kind, Random& random) 
 
 /// Cells whose doubles touch exactly, so that crafted inspection speaks of them: one disk in a rectangle, in a channel,
 /// in a tilted cell; two disks that also touch through their images. `fixed`: the length along x does not move.
-inline std::optional<State<2>> exact_cell(Random& random, bool fixed = false) {
-    State<2> state;
+inline std::optional<State> exact_cell(Random& random, bool fixed = false) {
+    State state;
     auto& p = state.packing;
-    p.walls = isostat::Walls<2>::none();
+    p.walls = isostat::Walls::none();
     const auto own = [&](int i, int x, int y) { return isostat::pair_of(i, i, {{std::int8_t(x), std::int8_t(y), 0}}); };
     const auto both = [&](int x, int y) { return isostat::pair_of(0, 1, {{std::int8_t(x), std::int8_t(y), 0}}); };
     switch (fixed ? 2 * random.integer(2) : random.integer(4)) {

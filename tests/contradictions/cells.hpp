@@ -34,7 +34,7 @@ class SoftCell {
         }
         const bool tilted = options.kind == CellKind::tilted;
         p.q.insert(p.q.end(), {side, side, tilted ? side * random.real(-0.4, 0.4) : 0});
-        p.walls = isostat::Walls<2>::none();
+        p.walls = isostat::Walls::none();
         const bool channel = options.kind == CellKind::channel;
         const auto walled = static_cast<std::size_t>(random.integer(2));
         p.cell = {{true, true}, {true, true}, {tilted}, random.integer(p.disk_count())};
@@ -135,7 +135,7 @@ class SoftCell {
         }
     }
 
-    Packing<2> packing;
+    Packing packing;
 
   private:
     [[nodiscard]] std::vector<double> forces() const {
@@ -175,12 +175,12 @@ class SoftCell {
 };
 
 /// The packing that a soft one is next to, when the overlaps are its contacts.
-inline std::optional<State<2>> hard(const SoftCell& soft, const CellOptions& options) {
-    State<2> state;
+inline std::optional<State> hard(const SoftCell& soft, const CellOptions& options) {
+    State state;
     state.packing = soft.packing;
     soft.overlaps([&](const Contact& c, double, const auto&) { state.contacts.push_back(c); });
     state.load.reference_length = {1, 1};
-    state.load.stress = options.force;
+    state.load.stress = {options.force[0], options.force[1]};
     state.load.shear = {options.kind == CellKind::tilted ? options.shear_force : 0};
     state.load.infinitesimal.assign(2 * options.radii.size(), 0.0);
     std::sort(state.contacts.begin(), state.contacts.end());
@@ -190,7 +190,7 @@ inline std::optional<State<2>> hard(const SoftCell& soft, const CellOptions& opt
 } // namespace detail
 
 /// An equilibrium, or nearly one; without rattlers, but for those that `find_vertex` puts to rest.
-inline std::optional<State<2>> make_cell(const CellOptions& options, Random& random) {
+inline std::optional<State> make_cell(const CellOptions& options, Random& random) {
     detail::SoftCell soft(options, random);
     if (!soft.relax()) {
         return {};
@@ -200,19 +200,19 @@ inline std::optional<State<2>> make_cell(const CellOptions& options, Random& ran
         isostat::PreparationOptions preparation;
         preparation.stress = options.force[0];
         preparation.ratio = options.force[1] / options.force[0];
-        isostat::PreparationReport<2> report;
-        Packing<2> apart = soft.packing; // no disk may overlap its own image
+        isostat::PreparationReport report;
+        Packing apart = soft.packing; // no disk may overlap its own image
         for (std::size_t k = 0; k < apart.q.size(); ++k) {
             apart.q[k] *= 1.01;
         }
-        const auto found = isostat::find_vertex<2>(apart, preparation, report);
+        const auto found = isostat::find_vertex(apart, preparation, report);
         state = found.ok() ? std::optional(found.value()) : std::nullopt;
     }
     return state;
 }
 
 /// Disks in the cell, but for some that are a period beside it, and another pin: the same packing.
-inline void describe_otherwise(State<2>& state, Random& random) {
+inline void describe_otherwise(State& state, Random& random) {
     const auto& p = state.packing;
     std::vector<isostat::Image> by;
     for (std::size_t i = 0; i < p.radius.size(); ++i) {

@@ -20,7 +20,7 @@ namespace detail {
 /// Velocities of the disks that carry a force, the first one at rest, and of the three lengths of the cell.
 class Motions {
   public:
-    Motions(const State<2>& state, const Truth& truth) : truth_(truth) {
+    Motions(const State& state, const Truth& truth) : truth_(truth) {
         const auto& contacts = state.contacts;
         std::vector<bool> carries(state.packing.radius.size(), false);
         for (std::size_t l = 0; l < contacts.size(); ++l) {
@@ -159,7 +159,7 @@ inline bool nearly_singular(const Truth& truth) {
 }
 
 /// Two answers of which one is proved and the other refuted, in words.
-inline std::vector<std::string> jamming_objections(const State<2>& state, const Truth& truth,
+inline std::vector<std::string> jamming_objections(const State& state, const Truth& truth,
                                                    const isostat::Certification& certified) {
     if (!state.packing.cell.all() || truth.equilibrium() <= 0 || nearly_singular(truth)) {
         return {};

@@ -145,8 +145,8 @@ inline std::optional<Pile> make_pile(const PileOptions& options, Random& random)
 }
 
 /// Walls around the pile, coordinates rounded; no load yet.
-inline State<2> state_of(const Pile& pile, const PileOptions& options) {
-    State<2> state;
+inline State state_of(const Pile& pile, const PileOptions& options) {
+    State state;
     auto& packing = state.packing;
     packing.radius = pile.radius;
     for (const auto& p : pile.at) {
@@ -157,7 +157,7 @@ inline State<2> state_of(const Pile& pile, const PileOptions& options) {
         packing.fixed = pile.fixed;
     }
     state.contacts = pile.contacts;
-    packing.walls = options.lower_walls ? isostat::Walls<2>::box() : isostat::Walls<2>::none();
+    packing.walls = options.lower_walls ? isostat::Walls::box() : isostat::Walls::none();
     packing.walls.upper.fill(options.upper_walls ? WallKind::movable : WallKind::absent);
     for (std::size_t axis = 0; axis < 2; ++axis) {
         std::size_t outermost = 0;
@@ -177,7 +177,7 @@ inline State<2> state_of(const Pile& pile, const PileOptions& options) {
 }
 
 /// Coordinates put on the true vertex, rounded to nearest. False: there is none nearby.
-inline bool polish(State<2>& state) {
+inline bool polish(State& state) {
     const Truth truth(state);
     if (!truth.known) {
         return false;
@@ -190,7 +190,7 @@ inline bool polish(State<2>& state) {
 
 /// The finite load that gives (almost: it is rounded) these forces at the true vertex: wall stresses for the reference
 /// lengths of the state, the rest as forces on the disks. `only_walls`: no force on a disk is written.
-inline void load_for(State<2>& state, const Truth& truth, const std::vector<double>& forces) {
+inline void load_for(State& state, const Truth& truth, const std::vector<double>& forces) {
     const std::size_t n = state.packing.radius.size();
     Vector external(2 * n + 2, Real(0));
     const auto add = [&](std::size_t coordinate, const Real& value) { external[coordinate] += value; };

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 using namespace isostat;
 
 struct RandomRun {
-    State<2> start;
+    State start;
     std::vector<Segment> segments;
     std::vector<double> change; ///< per segment: to which part more of its first load it goes; 0: equilibria count
     RunOptions options;
@@ -36,8 +36,8 @@ struct RandomRun {
 
 /// The records of a run as the program handed them out.
 struct Recorded {
-    EquilibriumRecord<2> record;
-    State<2> state;
+    EquilibriumRecord record;
+    State state;
     std::vector<double> forces;
 };
 
@@ -54,20 +54,20 @@ inline std::vector<double> random_radii(int disks, Random& random) {
     return radii;
 }
 
-inline std::optional<State<2>> prepared_start(Random& random) {
+inline std::optional<State> prepared_start(Random& random) {
     PreparationOptions options;
     const int most = random.integer(4) == 0 ? 60 : 14;
     options.disks = 2 + random.integer(most - 1);
     options.radii = random_radii(options.disks, random);
     options.seed = random.bits() >> 12;
     options.load = random.integer(5) == 0 ? LoadKind::true_stress : LoadKind::nominal;
-    PreparationReport<2> report;
-    auto made = prepare<2>(options, report);
+    PreparationReport report;
+    auto made = prepare(options, report);
     return made.ok() ? std::optional(made.value()) : std::nullopt;
 }
 
 /// A pile, perhaps with fixed disks and forces on disks: rearrangements may end with "every load is supported".
-inline std::optional<State<2>> piled_start(Random& random) {
+inline std::optional<State> piled_start(Random& random) {
     PileOptions options;
     options.disks = 2 + random.integer(7);
     options.fixed = random.integer(3);
@@ -86,7 +86,7 @@ inline std::optional<State<2>> piled_start(Random& random) {
 }
 
 /// A few disks in a cell or a channel, or some more that are prepared.
-inline std::optional<State<2>> start_in_cell(Random& random) {
+inline std::optional<State> start_in_cell(Random& random) {
     if (random.integer(4) != 0) {
         return in_small_cell(static_cast<CellKind>(random.integer(3)), random);
     }
@@ -95,8 +95,8 @@ inline std::optional<State<2>> start_in_cell(Random& random) {
     options.radii = random_radii(options.disks, random);
     options.seed = random.bits() >> 12;
     options.cell = random.integer(2) == 0 ? PreparedCell::rectangular : PreparedCell::tilted;
-    PreparationReport<2> report;
-    auto made = prepare<2>(options, report);
+    PreparationReport report;
+    auto made = prepare(options, report);
     return made.ok() ? std::optional(made.value()) : std::nullopt;
 }
 
@@ -112,7 +112,7 @@ inline void add_segment(RandomRun& run, Random& random) {
 }
 
 /// A disk that carries nothing as often as not.
-inline void draw_pin(State<2>& state, Random& random) {
+inline void draw_pin(State& state, Random& random) {
     const Truth truth(state);
     if (!state.packing.cell.any() || !truth.known) {
         return;
@@ -133,15 +133,15 @@ inline void draw_pin(State<2>& state, Random& random) {
 }
 
 /// Hands the records on, keeps those of equilibria, and stops during an arc.
-class Keeper final : public RunObserver<2> {
+class Keeper final : public RunObserver {
   public:
-    Keeper(RunObserver<2>& next, std::vector<Recorded>& records, std::atomic<bool>& stop, long at)
+    Keeper(RunObserver& next, std::vector<Recorded>& records, std::atomic<bool>& stop, long at)
         : next_(next), records_(records), stop_(stop), at_(at) {}
-    void on_arc(const ArcRecord<2>& arc) override {
+    void on_arc(const ArcRecord& arc) override {
         next_.on_arc(arc);
         stop_ = stop_ || arc.step == at_;
     }
-    void on_equilibrium(const EquilibriumRecord<2>& record, const State<2>& state,
+    void on_equilibrium(const EquilibriumRecord& record, const State& state,
                         const std::vector<double>& forces) override {
         records_.push_back({record, state, forces});
         next_.on_equilibrium(record, state, forces);
@@ -149,7 +149,7 @@ class Keeper final : public RunObserver<2> {
     [[nodiscard]] std::optional<Failure> objection() const override { return next_.objection(); }
 
   private:
-    RunObserver<2>& next_;
+    RunObserver& next_;
     std::vector<Recorded>& records_;
     std::atomic<bool>& stop_;
     long at_;
@@ -194,7 +194,7 @@ inline std::optional<RandomRun> random_run(std::uint64_t seed, bool in_cell, Dra
         snap_to_grid(start->packing);
     }
     try {
-        check_start<2>(*start, "start");
+        check_start(*start, "start");
     } catch (const Error&) {
         return {};
     }
@@ -236,7 +236,7 @@ inline bool play(RandomRun& run, const fs::path& folder, long stop_at, std::vect
     const bool resumes = fs::exists(folder);
     RunDirectory directory(folder, detail::header_of(run),
                            resumes ? RunDirectory::Mode::resume : RunDirectory::Mode::fresh, counters);
-    State<2> state = run.start;
+    State state = run.start;
     std::size_t first = 0;
     int made = 0;
     if (const auto& point = directory.checkpoint()) {
@@ -256,7 +256,7 @@ inline bool play(RandomRun& run, const fs::path& folder, long stop_at, std::vect
     if (options.certify >= CertifyLevel::states) {
         certifier.emplace(folder, "test", counters, directory);
     }
-    RunObserver<2>& next = certifier ? static_cast<RunObserver<2>&>(*certifier) : directory;
+    RunObserver& next = certifier ? static_cast<RunObserver&>(*certifier) : directory;
     detail::Keeper keeper(next, records, stop, stop_at);
     for (std::size_t s = first; s < run.segments.size(); ++s, made = 0) {
         if (run.change[s] > 0 && !run.segments[s].to_stress) {
@@ -267,7 +267,7 @@ inline bool play(RandomRun& run, const fs::path& folder, long stop_at, std::vect
         if (segment.equilibria) {
             *segment.equilibria -= made;
         }
-        const SegmentOutcome outcome = run_segment<2>(state, segment, static_cast<int>(s), options, counters, keeper);
+        const SegmentOutcome outcome = run_segment(state, segment, static_cast<int>(s), options, counters, keeper);
         if (!outcome.completed && outcome.failure->kind == FailureKind::interrupted) {
             return false; // no farewell: as after a kill
         }

@@ -7,7 +7,7 @@ namespace contradictions {
 
 struct StateClass {
     const char* name;
-    std::function<std::optional<State<2>>(Random&)> make;
+    std::function<std::optional<State>(Random&)> make;
     bool has_equilibria = true;
 };
 
@@ -28,19 +28,19 @@ inline double hardly_a_force(Random& random) {
     return random.integer(4) == 0 ? 0.0 : few(random) * std::ldexp(1.0, -50 - random.integer(14));
 }
 
-inline void infinitesimal_loads(State<2>& state, Random& random) {
+inline void infinitesimal_loads(State& state, Random& random) {
     for (double& g : state.load.infinitesimal) {
         g = random.integer(6) == 0 ? 0.0 : random.real(-1, 0.3);
     }
 }
 
 /// A pile at its vertex, with random infinitesimal loads and no finite ones yet.
-inline std::optional<State<2>> pile(const PileOptions& options, Random& random) {
+inline std::optional<State> pile(const PileOptions& options, Random& random) {
     const auto made = make_pile(options, random);
     if (!made) {
         return {};
     }
-    State<2> state = state_of(*made, options);
+    State state = state_of(*made, options);
     if (!polish(state)) {
         return {};
     }
@@ -56,7 +56,7 @@ inline PileOptions small(Random& random, double same = 0) {
 }
 
 /// Loads for forces from 0.1 to 2; `weak` of them hardly different from 0.
-inline std::optional<State<2>> load(std::optional<State<2>> state, Random& random, int weak) {
+inline std::optional<State> load(std::optional<State> state, Random& random, int weak) {
     if (!state) {
         return {};
     }
@@ -79,12 +79,12 @@ inline std::optional<State<2>> load(std::optional<State<2>> state, Random& rando
 }
 
 /// One disk in the corner; its load on the right wall balances a product of two stored numbers up to a few ulps.
-inline std::optional<State<2>> product(Random& random) {
-    State<2> state;
+inline std::optional<State> product(Random& random) {
+    State state;
     const double r = random.real(0.5, 1.5);
     state.packing.radius = {r};
     state.packing.q = {r, r, 2 * r, 2 * r};
-    state.packing.walls = isostat::Walls<2>::box();
+    state.packing.walls = isostat::Walls::box();
     for (int a = 0; a < 2; ++a) {
         state.contacts.push_back({ContactKind::lower_wall, 0, a});
         state.contacts.push_back({ContactKind::upper_wall, 0, a});
@@ -108,7 +108,7 @@ inline std::optional<State<2>> product(Random& random) {
 }
 
 /// Coordinates that differ by less than 1e-9 become equal as stored; radii of a wall row differ by a little.
-inline std::optional<State<2>> equal_as_stored(Random& random) {
+inline std::optional<State> equal_as_stored(Random& random) {
     PileOptions options = small(random, 0.8);
     options.disks = 2 + random.integer(3);
     auto state = load(pile(options, random), random, random.integer(3));
@@ -134,7 +134,7 @@ inline std::optional<State<2>> equal_as_stored(Random& random) {
 
 /// Fixed disks, some of them overlapping each other or just touching, with or without walls; q of absent walls is
 /// anything.
-inline std::optional<State<2>> with_fixed(Random& random, bool overlapping) {
+inline std::optional<State> with_fixed(Random& random, bool overlapping) {
     PileOptions options = small(random, 0.3);
     options.disks = 1 + random.integer(3);
     options.fixed = 2 + random.integer(2);
@@ -168,13 +168,13 @@ inline std::optional<State<2>> with_fixed(Random& random, bool overlapping) {
 }
 
 /// A disk between two fixed ones, off the straight line by 1e-1 to 1e-12, loaded across it.
-inline std::optional<State<2>> strut(Random& random) {
-    State<2> state;
+inline std::optional<State> strut(Random& random) {
+    State state;
     const double delta = std::pow(10.0, -random.real(1, 9)) * (random.integer(2) == 0 ? 1 : -1);
     const std::array<double, 3> r{random.real(0.5, 1), random.real(0.5, 1), random.real(0.5, 1)};
     state.packing.radius = {r[0], r[1], r[2]};
     state.packing.fixed = {1, 1, 0};
-    state.packing.walls = isostat::Walls<2>::none();
+    state.packing.walls = isostat::Walls::none();
     const double left = r[0] + r[2];
     const double right = r[1] + r[2];
     const double c1 = std::sqrt(1 - delta * delta);
@@ -191,7 +191,7 @@ inline std::optional<State<2>> strut(Random& random) {
 }
 
 /// The loaded stress at an end of the supported interval, or a few ulps beside it.
-inline std::optional<State<2>> at_the_end(Random& random) {
+inline std::optional<State> at_the_end(Random& random) {
     auto state = load(pile(small(random, 0.2), random), random, 0);
     if (!state) {
         return {};
@@ -207,7 +207,7 @@ inline std::optional<State<2>> at_the_end(Random& random) {
 }
 
 /// One more fixed disk that a disk of the pile nearly touches, or overlaps by as little.
-inline std::optional<State<2>> nearly_touching(Random& random) {
+inline std::optional<State> nearly_touching(Random& random) {
     PileOptions options = small(random, 0.2);
     options.fixed = 1;
     auto state = load(pile(options, random), random, 0);
@@ -232,7 +232,7 @@ inline std::optional<State<2>> nearly_touching(Random& random) {
 }
 
 /// Disks without finite load: the infinitesimal loads decide, some of which are 0 or act along a contact.
-inline std::optional<State<2>> infinitesimal_decides(Random& random) {
+inline std::optional<State> infinitesimal_decides(Random& random) {
     PileOptions options = small(random, 0.6);
     auto state = pile(options, random);
     if (!state) {
@@ -247,7 +247,7 @@ inline std::optional<State<2>> infinitesimal_decides(Random& random) {
     return state;
 }
 
-inline std::optional<State<2>> moved_by_ulps(std::optional<State<2>> state, Random& random) {
+inline std::optional<State> moved_by_ulps(std::optional<State> state, Random& random) {
     if (state) {
         for (double& x : state->packing.q) {
             x = ulps(x, few(random));
@@ -256,7 +256,7 @@ inline std::optional<State<2>> moved_by_ulps(std::optional<State<2>> state, Rand
     return state;
 }
 
-inline std::optional<State<2>> true_stresses(Random& random) {
+inline std::optional<State> true_stresses(Random& random) {
     auto state = pile(small(random, 0.3), random);
     if (state) {
         state->load.kind = isostat::LoadKind::true_stress;
@@ -276,13 +276,13 @@ inline std::optional<State<2>> true_stresses(Random& random) {
 }
 
 /// A coordinate held in place of one contact; its multiplier is 0, hardly different from 0, or anything.
-inline std::optional<State<2>> held_coordinate(Random& random) {
+inline std::optional<State> held_coordinate(Random& random) {
     auto state = pile(small(random, 0.2), random);
     if (!state) {
         return {};
     }
     for (int tries = 0; tries < 20; ++tries) {
-        State<2> other = *state;
+        State other = *state;
         const auto slot = static_cast<std::size_t>(random.integer(static_cast<int>(other.contacts.size())));
         const int coordinate = random.integer(static_cast<int>(other.packing.q.size()));
         other.contacts[slot] = {ContactKind::held, coordinate, 0};
@@ -302,8 +302,8 @@ inline std::optional<State<2>> held_coordinate(Random& random) {
 }
 
 /// Small integers and Pythagorean triples: exact as doubles, so that crafted inspection may speak of them.
-inline std::optional<State<2>> exact_lattice(Random& random) {
-    State<2> state;
+inline std::optional<State> exact_lattice(Random& random) {
+    State state;
     // Disk 0 in the corner, disk 1 up to the right of it at (3, 4), (4, 3), (5, 12), ... times a power of two.
     constexpr std::array<std::array<int, 3>, 4> triples{{{3, 4, 5}, {4, 3, 5}, {5, 12, 13}, {8, 15, 17}}};
     const auto& t = triples[static_cast<std::size_t>(random.integer(4))];
@@ -316,7 +316,7 @@ inline std::optional<State<2>> exact_lattice(Random& random) {
     }
     state.packing.radius = {r0, r1};
     state.packing.q = {r0, r0, x, y, x + r1, y + r1};
-    state.packing.walls = isostat::Walls<2>::box();
+    state.packing.walls = isostat::Walls::box();
     state.contacts = {{ContactKind::disk_disk, 0, 1},
                       {ContactKind::lower_wall, 0, 0},
                       {ContactKind::lower_wall, 0, 1},

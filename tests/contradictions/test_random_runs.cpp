@@ -37,7 +37,7 @@ class Comparison {
     }
     /// Ties are settled at first order: forces, and what follows from them, are not those of the stored load.
     void geometry() {
-        const Load<2>& load = state_.load;
+        const Load& load = state_.load;
         Real potential = 0;
         for (std::size_t a = 0; a < 2; ++a) {
             const Real length = truth_.q[2 * state_.packing.radius.size() + a];
@@ -79,7 +79,7 @@ class Comparison {
     void forces() {
         std::optional<std::size_t> smallest;
         for (std::size_t l = 0; l < forces_.size(); ++l) {
-            within("force of " + to_string<2>(state_.contacts[l]), forces_[l], e_.force_bound, truth_.force[l]);
+            within("force of " + to_string(state_.contacts[l]), forces_[l], e_.force_bound, truth_.force[l]);
             if (sign_of(truth_.force[l], truth_.force_scale) != 0 &&
                 (!smallest || truth_.force[l] < truth_.force[*smallest])) {
                 smallest = l;
@@ -97,7 +97,7 @@ class Comparison {
             const bool right = std::any_of(real.opens.begin(), real.opens.end(), [&](int l) {
                 return state_.contacts[static_cast<std::size_t>(l)] == opens;
             });
-            expect(right, std::string(name) + " opens another contact than " + to_string<2>(opens));
+            expect(right, std::string(name) + " opens another contact than " + to_string(opens));
         }
     }
     void singular_value() {
@@ -105,8 +105,8 @@ class Comparison {
         expect(e_.sigma_min_bound <= smallest * (1 + 1e-9) + 1e-14, "sigma_min_bound is above the singular value");
     }
 
-    const EquilibriumRecord<2>& e_;
-    const State<2>& state_;
+    const EquilibriumRecord& e_;
+    const State& state_;
     const std::vector<double>& forces_;
     const Truth& truth_;
     Results& results_;
@@ -174,7 +174,7 @@ long number_of(const char* name, long otherwise) {
 /// To the next equilibrium from a state that an earlier run came to.
 RandomRun run_from(const char* name, int direction) {
     RandomRun run;
-    run.start = read_state<2>(fs::path(ISOSTAT_TEST_DATA) / "contradictions" / name).state;
+    run.start = read_state(fs::path(ISOSTAT_TEST_DATA) / "contradictions" / name).state;
     run.segments.emplace_back();
     run.segments.back().direction = direction;
     run.segments.back().equilibria = 1;
@@ -296,7 +296,7 @@ BOOST_AUTO_TEST_CASE(a_stored_state_far_from_its_vertex_is_not_refuted) {
 BOOST_AUTO_TEST_CASE(a_start_far_from_its_vertex_is_not_refuted) {
     const RandomRun run = run_from("../definition/11-same-height-refuted.json", -1);
     const Again again(run);
-    write_state<2>(again.folder / "run" / "start.json", run.start); // as the program does
+    write_state(again.folder / "run" / "start.json", run.start); // as the program does
     (void)again.verified();
 }
 

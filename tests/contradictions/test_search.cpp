@@ -67,7 +67,7 @@ void check_verdict(const char* who, Verdict verdict, int truth, Objections& wron
     }
 }
 
-void check_claims(const CertificateClaims& claims, const State<2>& state, const Truth& truth, Objections& wrong) {
+void check_claims(const CertificateClaims& claims, const State& state, const Truth& truth, Objections& wrong) {
     if (claims.vertex && Real(claims.vertex->radius) < truth.moved) {
         wrong.push_back("the true vertex is " + text(truth.moved) + " away, claimed " +
                         std::to_string(claims.vertex->radius));
@@ -75,16 +75,16 @@ void check_claims(const CertificateClaims& claims, const State<2>& state, const 
     if (claims.forces) {
         for (std::size_t l = 0; l < claims.forces->finite.size(); ++l) {
             if (!inside(claims.forces->finite[l], truth.force[l], truth.force_scale)) {
-                wrong.push_back("force of " + to_string<2>(state.contacts[l]) + " is " + text(truth.force[l]));
+                wrong.push_back("force of " + to_string(state.contacts[l]) + " is " + text(truth.force[l]));
             }
         }
         for (std::size_t k = 0; k < claims.forces->structural_zeros.size(); ++k) {
             const auto l = static_cast<std::size_t>(claims.forces->structural_zeros[k]);
             if (sign_of(truth.force[l], truth.force_scale) != 0) {
-                wrong.push_back("force of " + to_string<2>(state.contacts[l]) + " is no zero: " + text(truth.force[l]));
+                wrong.push_back("force of " + to_string(state.contacts[l]) + " is no zero: " + text(truth.force[l]));
             }
             if (!inside(claims.forces->infinitesimal[k], truth.infinitesimal[l])) {
-                wrong.push_back("infinitesimal force of " + to_string<2>(state.contacts[l]) + " is " +
+                wrong.push_back("infinitesimal force of " + to_string(state.contacts[l]) + " is " +
                                 text(truth.infinitesimal[l]));
             }
         }
@@ -111,7 +111,7 @@ void check_claims(const CertificateClaims& claims, const State<2>& state, const 
                 return state.contacts[static_cast<std::size_t>(l)] == claim.opens;
             });
             if (!opens) {
-                wrong.push_back(std::string(name) + " end opens another contact than " + to_string<2>(claim.opens));
+                wrong.push_back(std::string(name) + " end opens another contact than " + to_string(claim.opens));
             }
         };
         end(claims.load_interval->low, truth.low, "lower");
@@ -120,8 +120,8 @@ void check_claims(const CertificateClaims& claims, const State<2>& state, const 
 }
 
 /// What `inspect` shows, number by number.
-void check_inspection(const Inspection<2>& inspection, const State<2>& state, const Truth& truth, Objections& wrong) {
-    const EquilibriumRecord<2>& r = inspection.record;
+void check_inspection(const Inspection& inspection, const State& state, const Truth& truth, Objections& wrong) {
+    const EquilibriumRecord& r = inspection.record;
     if (!inspection.truth.claims.vertex) {
         return;
     }
@@ -136,7 +136,7 @@ void check_inspection(const Inspection<2>& inspection, const State<2>& state, co
         const bool zero = inspection.structural_zero[l] != 0;
         const Real off = abs(Real(zero ? 0 : inspection.forces[l]) - truth.force[l]);
         if (off > Real(zero ? 0 : r.force_bound) + room) {
-            wrong.push_back("inspect: force of " + to_string<2>(state.contacts[l]) + " is " + text(truth.force[l]));
+            wrong.push_back("inspect: force of " + to_string(state.contacts[l]) + " is " + text(truth.force[l]));
         }
     }
     if (inspection.truth.claims.gaps) {
@@ -149,12 +149,12 @@ void check_inspection(const Inspection<2>& inspection, const State<2>& state, co
 }
 
 /// A short run: what it says of its start, and what it opens there.
-Verdict run_from(const State<2>& state, const Truth& truth, Count& tally, Objections& wrong) {
+Verdict run_from(const State& state, const Truth& truth, Count& tally, Objections& wrong) {
     if (!(state.load.stress[0] > 0 && state.load.stress[1] > 0)) {
         return Verdict::undecided;
     }
     try {
-        check_start<2>(state, "state");
+        check_start(state, "state");
     } catch (const Error&) { // a run takes no such start: contacts that look open as stored
         tally.refused += truth.at_rest() > 0 ? 1 : 0;
         return Verdict::undecided;
@@ -166,8 +166,8 @@ Verdict run_from(const State<2>& state, const Truth& truth, Count& tally, Object
     if (!arcs.empty() && arcs.front().equilibrium == 0) {
         const std::vector<Contact> right = truth.most_negative();
         if (std::find(right.begin(), right.end(), arcs.front().opened) == right.end()) {
-            wrong.push_back("a run opens " + to_string<2>(arcs.front().opened) + ", not " +
-                            (right.empty() ? "nothing" : to_string<2>(right.front())));
+            wrong.push_back("a run opens " + to_string(arcs.front().opened) + ", not " +
+                            (right.empty() ? "nothing" : to_string(right.front())));
         }
         return Verdict::refuted; // rearranged before it was one
     }
@@ -175,7 +175,7 @@ Verdict run_from(const State<2>& state, const Truth& truth, Count& tally, Object
 }
 
 /// The products of stress and length, exactly.
-isostat::crafted::ExactLoad exact_load(const State<2>& state) {
+isostat::crafted::ExactLoad exact_load(const State& state) {
     isostat::crafted::ExactLoad load;
     for (const WallForce& wall : state.load.wall_forces(state.packing)) {
         const auto axis = static_cast<std::size_t>(wall.coordinate) - state.packing.length_at(0);
@@ -189,7 +189,7 @@ isostat::crafted::ExactLoad exact_load(const State<2>& state) {
 }
 
 /// The same doubles as exact numbers, where they touch exactly.
-Verdict crafted_verdict(const State<2>& state) {
+Verdict crafted_verdict(const State& state) {
     if (state.load.kind != LoadKind::nominal) {
         return Verdict::undecided;
     }
@@ -206,7 +206,7 @@ Verdict crafted_verdict(const State<2>& state) {
 }
 
 /// Rank of the stored doubles: by `certify` modulo a prime, by crafted inspection in the field.
-void check_counts(const State<2>& state, const CertificateClaims& claims, Objections& wrong) {
+void check_counts(const State& state, const CertificateClaims& claims, Objections& wrong) {
     const bool held = std::any_of(state.contacts.begin(), state.contacts.end(),
                                   [](const Contact& c) { return c.kind == ContactKind::held; });
     if (held || !claims.counting) {
@@ -222,19 +222,19 @@ void check_counts(const State<2>& state, const CertificateClaims& claims, Object
     }
 }
 
-std::string file_of(const State<2>& state) {
-    return state_text<2>(state);
+std::string file_of(const State& state) {
+    return state_text(state);
 }
 
-Objections ask(const State<2>& state, const Truth& truth, bool run, Count& tally) {
+Objections ask(const State& state, const Truth& truth, bool run, Count& tally) {
     Objections wrong;
     const int equilibrium = truth.equilibrium();
     Answers answers;
-    const Result<Inspection<2>> inspection = inspect_vertex(state);
+    const Result<Inspection> inspection = inspect_vertex(state);
     if (inspection.ok()) {
         check_inspection(inspection.value(), state, truth, wrong);
         answers.inspect = inspection.value().record.verdict;
-        const EquilibriumRecord<2>& record = inspection.value().record;
+        const EquilibriumRecord& record = inspection.value().record;
         if (inspection.value().equilibrium != (record.verdict == Verdict::proved)) {
             wrong.emplace_back("inspect: equilibrium and verdict differ");
         }

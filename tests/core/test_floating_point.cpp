@@ -84,14 +84,14 @@ BOOST_AUTO_TEST_CASE(a_change_of_the_vector_unit_alone_is_a_defect) {
 #endif
 
 BOOST_AUTO_TEST_CASE(every_way_into_the_library_refuses_other_arithmetic) {
-    const State<2> state = ::crafted::two_disks(1, 2, 1, 1);
+    const State state = ::crafted::two_disks(1, 2, 1, 1);
     const std::string text = state_text(state);
     Certificate certificate;
     certificate.state = state;
     RunCounters counters;
-    struct Nothing final : RunObserver<2> {
-        void on_arc(const ArcRecord<2>& /*arc*/) override {}
-        void on_equilibrium(const EquilibriumRecord<2>& /*record*/, const State<2>& /*state*/,
+    struct Nothing final : RunObserver {
+        void on_arc(const ArcRecord& /*arc*/) override {}
+        void on_equilibrium(const EquilibriumRecord& /*record*/, const State& /*state*/,
                             const std::vector<double>& /*forces*/) override {}
     } nothing;
     const std::vector<std::pair<const char*, std::function<void()>>> ways{
@@ -100,20 +100,20 @@ BOOST_AUTO_TEST_CASE(every_way_into_the_library_refuses_other_arithmetic) {
         {"verify", [&] { (void)verify(certificate); }},
         {"count_contacts", [&] { (void)count_contacts(state.packing, state.contacts); }},
         {"certify_admissible", [&] { (void)certify_admissible(state.packing, 0); }},
-        {"prove", [&] { (void)IsostaticStructure<2>::prove(state.packing, state.contacts); }},
+        {"prove", [&] { (void)IsostaticStructure::prove(state.packing, state.contacts); }},
         {"run_segment",
          [&] {
-             State<2> moved = state;
-             (void)run_segment<2>(moved, Segment{}, 0, {}, counters, nothing);
+             State moved = state;
+             (void)run_segment(moved, Segment{}, 0, {}, counters, nothing);
          }},
         {"prepare",
          [&] {
-             PreparationReport<2> report;
-             (void)prepare<2>({}, report);
+             PreparationReport report;
+             (void)prepare({}, report);
          }},
         {"plateau", [&] { (void)isostat::crafted::plateau(state.packing, {0.1}); }},
         {"crafted::inspect", [&] { (void)isostat::crafted::inspect(isostat::crafted::exact_copy(state.packing)); }},
-        {"parse_state", [&] { (void)parse_state<2>(text, "text"); }},
+        {"parse_state", [&] { (void)parse_state(text, "text"); }},
         {"parse_vertex_text", [&] { (void)parse_vertex_text("1\n", "text"); }},
         {"parse_scene", [&] { (void)parse_scene("[packing]\ndisks = 4\n", "text", ""); }},
         {"parse_foreign", [&] { (void)parse_foreign("x y r\n0 0 1\n", "text", {}); }},

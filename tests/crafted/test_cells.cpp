@@ -224,7 +224,7 @@ BOOST_AUTO_TEST_CASE(rattlers_are_left_out_of_what_is_jammed) {
 /// How many independent mechanisms of the fixed cell lengthen some contact at second order: along them the radius
 /// grows. The squares of the relative velocities of all contacts, summed over the kernel of the matrix.
 int motions_that_lengthen(const ExactPacking& exact, const std::vector<Contact>& contacts) {
-    const isostat::Packing<2> packing = approximate(exact);
+    const isostat::Packing packing = approximate(exact);
     const auto disks = static_cast<Eigen::Index>(packing.disk_count());
     const auto count = static_cast<Eigen::Index>(contacts.size());
     Eigen::MatrixXd gradient = Eigen::MatrixXd::Zero(count, 2 * disks);
@@ -284,7 +284,7 @@ BOOST_AUTO_TEST_CASE(a_state_is_jammed_as_the_exact_packing_where_own_images_tou
         const Inspection exact = inspected(packing);
         BOOST_REQUIRE(exact.jamming.has_value());
         BOOST_TEST((exact.jamming->strict == rows.strict));
-        isostat::State<2> state;
+        isostat::State state;
         state.packing = approximate(packing);
         state.contacts = exact.contacts;
         state.load.stress = {1, 1};
@@ -298,8 +298,8 @@ BOOST_AUTO_TEST_CASE(a_state_is_jammed_as_the_exact_packing_where_own_images_tou
 
 BOOST_AUTO_TEST_CASE(a_stored_state_has_the_counts_of_its_stored_numbers) {
     for (const char* name : {"rect_16", "tilt_16"}) {
-        const isostat::State<2> state =
-            isostat::read_any_state<2>(std::string(ISOSTAT_TEST_DATA) + "/cells/" + name + ".json").state;
+        const isostat::State state =
+            isostat::read_any_state(std::string(ISOSTAT_TEST_DATA) + "/cells/" + name + ".json").state;
         const Inspection exact = inspect_contacts(exact_copy(state.packing), state.contacts);
         const StrainCounts stored = isostat::count_strains(state.packing, state.contacts);
         BOOST_REQUIRE(exact.strains.has_value());

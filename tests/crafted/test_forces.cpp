@@ -190,8 +190,8 @@ BOOST_AUTO_TEST_CASE(a_stored_vertex_is_isostatic_and_its_exact_forces_solve_the
     isostat::PreparationOptions options;
     options.disks = 12;
     options.seed = 3;
-    isostat::PreparationReport<2> report;
-    const auto state = isostat::prepare<2>(options, report);
+    isostat::PreparationReport report;
+    const auto state = isostat::prepare(options, report);
     BOOST_REQUIRE(state.ok());
     const auto& packing = state.value().packing;
     ExactPacking exact = exact_copy(packing);
@@ -201,7 +201,7 @@ BOOST_AUTO_TEST_CASE(a_stored_vertex_is_isostatic_and_its_exact_forces_solve_the
     BOOST_TEST(inspection.verdict() == "isostatic");
     BOOST_TEST((inspection.special_position == Verdict::refuted));
     BOOST_REQUIRE(inspection.forces_unique);
-    const isostat::DofMap<2> dofs(packing);
+    const isostat::DofMap dofs(packing);
     const auto matrix = isostat::contact_matrix(packing, dofs, inspection.contacts);
     std::vector<double> residual(26);
     for (std::size_t c = 0; c < 26; ++c) {
@@ -246,7 +246,7 @@ BOOST_AUTO_TEST_CASE(scenes_with_hardly_anything_in_them) {
     BOOST_TEST(answer.verdict() == "isostatic");
     // Movable walls that touch nothing are mechanisms.
     one.fixed = {0};
-    one.walls = isostat::Walls<2>::box();
+    one.walls = isostat::Walls::box();
     one.length = {Number(20), Number(20)};
     answer = inspected(one);
     BOOST_TEST(answer.dof_count == 4);

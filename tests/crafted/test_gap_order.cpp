@@ -20,9 +20,9 @@ double uniform(std::mt19937_64& random) {
 }
 
 /// Disks near a lattice: coordinates, radii and so gaps agree often, or differ in the last bits.
-Packing<2> near_lattice(std::mt19937_64& random, int m, double noise, bool walls) {
-    Packing<2> out;
-    out.walls = walls ? Walls<2>::box() : Walls<2>::none();
+Packing near_lattice(std::mt19937_64& random, int m, double noise, bool walls) {
+    Packing out;
+    out.walls = walls ? Walls::box() : Walls::none();
     const auto jitter = [&] { return random() % 2 == 0 ? 0.0 : noise * (uniform(random) - 0.5); };
     for (int i = 0; i < m; ++i) {
         for (int j = 0; j < m; ++j) {
@@ -35,27 +35,27 @@ Packing<2> near_lattice(std::mt19937_64& random, int m, double noise, bool walls
     return out;
 }
 
-std::vector<Contact> all_candidates(const Packing<2>& packing, double largest) {
+std::vector<Contact> all_candidates(const Packing& packing, double largest) {
     std::vector<Contact> out;
     for (int i = 0; i < packing.disk_count(); ++i) {
         for (int j = i + 1; j < packing.disk_count(); ++j) {
             out.push_back({ContactKind::disk_disk, i, j});
         }
-        if (!(packing.walls == Walls<2>::none())) {
+        if (!(packing.walls == Walls::none())) {
             for (int a = 0; a < 2; ++a) {
                 out.push_back({ContactKind::lower_wall, i, a});
                 out.push_back({ContactKind::upper_wall, i, a});
             }
         }
     }
-    std::erase_if(out, [&](const Contact& c) { return gap<2>(packing, c) > largest; });
+    std::erase_if(out, [&](const Contact& c) { return gap(packing, c) > largest; });
     return out;
 }
 
 /// The gap to 3000 bits: enough to tell any two of these apart, or to call them equal.
 class Gap {
   public:
-    Gap(const Packing<2>& packing, const Contact& c) {
+    Gap(const Packing& packing, const Contact& c) {
         mpfr_init2(value_, 3000);
         mpfr_t d;
         mpfr_init2(d, 3000);
@@ -128,7 +128,7 @@ BOOST_AUTO_TEST_CASE(the_order_of_gaps_is_that_of_3000_bits) {
     int equal = 0, close = 0;
     for (const double noise : {0.0, 1e-16, 1e-15, 1e-3}) {
         for (int sample = 0; sample < testing::scaled(3); ++sample) {
-            const Packing<2> packing = near_lattice(random, 4, noise, sample % 2 == 0);
+            const Packing packing = near_lattice(random, 4, noise, sample % 2 == 0);
             const GapOrder order(packing);
             const auto contacts = all_candidates(packing, 0.3);
             for (const Contact& a : contacts) {
@@ -137,7 +137,7 @@ BOOST_AUTO_TEST_CASE(the_order_of_gaps_is_that_of_3000_bits) {
                     const int expected = exact.compare(Gap(packing, b));
                     BOOST_REQUIRE_EQUAL(sign(order.compare(order.item(a), order.item(b))), expected);
                     equal += expected == 0 && a != b ? 1 : 0;
-                    close += expected != 0 && gap<2>(packing, a) == gap<2>(packing, b) ? 1 : 0;
+                    close += expected != 0 && gap(packing, a) == gap(packing, b) ? 1 : 0;
                 }
                 // The threshold reported is the smallest double that is not below the gap.
                 const double t = order.threshold_of(order.item(a));
@@ -155,8 +155,8 @@ BOOST_AUTO_TEST_CASE(the_order_of_gaps_is_that_of_3000_bits) {
 
 BOOST_AUTO_TEST_CASE(gaps_of_far_and_tiny_disks_are_ordered) {
     // The difference of the two gaps is far below the rounding of either, or is a denormal.
-    Packing<2> packing;
-    packing.walls = Walls<2>::none();
+    Packing packing;
+    packing.walls = Walls::none();
     packing.radius = {1, 1, 1, 1};
     packing.q = {1e15, 0, 1e15 + 2, 0, 0, 0, 2 + 0x1p-51, 0x1p-1060, 0, 0};
     const GapOrder order(packing);
@@ -172,7 +172,7 @@ BOOST_AUTO_TEST_CASE(peeling_agrees_with_excluding_contacts_for_every_initial_pa
     std::mt19937_64 random(12);
     int bridges = 0, rattlers = 0, carrying_contacts = 0;
     for (int sample = 0; sample < testing::scaled(60); ++sample) {
-        Packing<2> packing = near_lattice(random, 4, sample % 3 == 0 ? 0.0 : 0.2, sample % 2 == 0);
+        Packing packing = near_lattice(random, 4, sample % 3 == 0 ? 0.0 : 0.2, sample % 2 == 0);
         if (sample % 5 == 0) {
             packing.fixed.assign(packing.radius.size(), 0);
             packing.fixed[0] = packing.fixed[5] = 1;
@@ -218,8 +218,8 @@ BOOST_AUTO_TEST_CASE(peeling_agrees_with_excluding_contacts_for_every_initial_pa
 }
 
 BOOST_AUTO_TEST_CASE(two_disks_at_one_point_are_refused) {
-    Packing<2> packing;
-    packing.walls = Walls<2>::none();
+    Packing packing;
+    packing.walls = Walls::none();
     packing.radius = {1, 2};
     packing.q = {0.5, 0.5, 0.5, 0.5, 0, 0};
     BOOST_CHECK_THROW((void)peel(packing, {{ContactKind::disk_disk, 0, 1}}), isostat::Error);

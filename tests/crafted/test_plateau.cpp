@@ -24,7 +24,7 @@ std::vector<double> decades(int from, int to) {
     return out;
 }
 
-void shake(Packing<2>& packing, double size, std::uint64_t seed) {
+void shake(Packing& packing, double size, std::uint64_t seed) {
     std::mt19937_64 random(seed);
     for (double& x : packing.q) {
         x += size * (static_cast<double>(random() >> 11) * 0x1p-52 - 1);
@@ -32,7 +32,7 @@ void shake(Packing<2>& packing, double size, std::uint64_t seed) {
 }
 
 /// gap <= threshold, in rationals. The sum of the radii and the threshold is positive.
-bool closer(const Packing<2>& packing, const isostat::Contact& c, double threshold) {
+bool closer(const Packing& packing, const isostat::Contact& c, double threshold) {
     const auto number = [](double x) { return Number::from_double(x); };
     const auto i = static_cast<std::size_t>(c.i), j = static_cast<std::size_t>(c.j);
     const Number r = number(packing.radius[i]) + number(threshold);
@@ -48,7 +48,7 @@ bool closer(const Packing<2>& packing, const isostat::Contact& c, double thresho
     return (x * x + y * y - s * s).sign() <= 0;
 }
 
-Packing<2> rounded_example(const std::string& name) {
+Packing rounded_example(const std::string& name) {
     return approximate(read_packing(std::string(ISOSTAT_EXAMPLES) + "/packings/" + name).packing);
 }
 
@@ -58,7 +58,7 @@ BOOST_AUTO_TEST_SUITE(crafted_plateau)
 
 BOOST_AUTO_TEST_CASE(noise_moves_the_lower_end_of_the_plateau) {
     for (const double noise : {1e-9, 1e-6, 1e-3}) {
-        Packing<2> packing = rounded_example("three_disks_and_a_rattler.toml");
+        Packing packing = rounded_example("three_disks_and_a_rattler.toml");
         shake(packing, noise, 7);
         const Plateau answer = plateau(packing, decades(-12, -1));
         BOOST_REQUIRE_EQUAL(answer.ranges.size(), 1u);
@@ -83,7 +83,7 @@ BOOST_AUTO_TEST_CASE(noise_moves_the_lower_end_of_the_plateau) {
 
 BOOST_AUTO_TEST_CASE(an_end_of_the_plateau_is_the_gap_that_closes_it) {
     // The top disk is given 1e-3 of room to each of two fixed stops: at a threshold above it h = 1, then 2.
-    Packing<2> packing = rounded_example("three_disks.toml");
+    Packing packing = rounded_example("three_disks.toml");
     const double root = std::sqrt(3.0);
     for (const double side : {-1.0, 1.0}) {
         packing.radius.push_back(0.25);
@@ -100,7 +100,7 @@ BOOST_AUTO_TEST_CASE(an_end_of_the_plateau_is_the_gap_that_closes_it) {
 }
 
 BOOST_AUTO_TEST_CASE(ranges_lie_between_the_thresholds_and_are_told_beyond_the_rounding) {
-    Packing<2> packing = rounded_example("three_disks.toml");
+    Packing packing = rounded_example("three_disks.toml");
     shake(packing, 1e-7, 3);
     const Plateau whole = plateau(packing, -1e-3, 1e-3, 0);
     BOOST_REQUIRE_EQUAL(whole.ranges.size(), 1u);
@@ -126,7 +126,7 @@ BOOST_AUTO_TEST_CASE(ranges_lie_between_the_thresholds_and_are_told_beyond_the_r
 }
 
 BOOST_AUTO_TEST_CASE(a_lattice_has_no_plateau) {
-    Packing<2> packing = rounded_example("triangular_patch_3x3.toml");
+    Packing packing = rounded_example("triangular_patch_3x3.toml");
     shake(packing, 1e-8, 5);
     const Plateau answer = plateau(packing, {1e-6, 1e-5, 1e-4, 1e-3});
     BOOST_TEST(answer.ranges.empty());
@@ -155,10 +155,10 @@ BOOST_AUTO_TEST_CASE(a_prepared_packing_with_noise_is_isostatic_over_decades) {
     isostat::PreparationOptions options;
     options.disks = 100;
     options.seed = 4;
-    isostat::PreparationReport<2> report;
-    const auto state = isostat::prepare<2>(options, report);
+    isostat::PreparationReport report;
+    const auto state = isostat::prepare(options, report);
     BOOST_REQUIRE(state.ok());
-    Packing<2> packing = state.value().packing;
+    Packing packing = state.value().packing;
     shake(packing, 1e-9, 9);
     const Plateau answer = plateau(packing, decades(-11, -1));
     BOOST_REQUIRE(!answer.ranges.empty());
@@ -178,8 +178,8 @@ BOOST_AUTO_TEST_CASE(what_follows_from_monotony_is_what_an_elimination_says) {
     int proved = 0, hyperstatic = 0, skipped = 0;
     for (int sample = 0; sample < isostat::testing::scaled(40); ++sample) {
         // Disks on a lattice, moved and resized: some lists are isostatic, some have rattlers, some are special.
-        Packing<2> packing;
-        packing.walls = sample % 2 == 0 ? isostat::Walls<2>::box() : isostat::Walls<2>::none();
+        Packing packing;
+        packing.walls = sample % 2 == 0 ? isostat::Walls::box() : isostat::Walls::none();
         const double noise = sample % 4 < 2 ? 0.03 : 0;
         for (int i = 0; i < 16; ++i) {
             packing.q.push_back(0.5 + i % 4 + noise * static_cast<double>(random() % 1000) / 1000);
@@ -220,7 +220,7 @@ BOOST_AUTO_TEST_CASE(what_follows_from_monotony_is_what_an_elimination_says) {
             judge_holds(backbone, exact_copy(packing));
             int left = 0;
             std::vector<isostat::Contact> carrying;
-            Packing<2> rest = packing;
+            Packing rest = packing;
             rest.fixed.resize(16, 0);
             for (std::size_t l = 0; l < contacts.size(); ++l) {
                 if (backbone.carrying[l] != 0) {
@@ -253,7 +253,7 @@ BOOST_AUTO_TEST_CASE(what_follows_from_monotony_is_what_an_elimination_says) {
 
 BOOST_AUTO_TEST_CASE(equal_gaps_enter_together) {
     // Four tangent disks in their box: 12 gaps of exactly 0, one change of the list, h = 2.
-    Packing<2> packing;
+    Packing packing;
     packing.radius = {0.5, 0.5, 0.5, 0.5};
     packing.q = {0.5, 0.5, 1.5, 0.5, 0.5, 1.5, 1.5, 1.5, 2, 2};
     const Plateau answer = plateau(packing, -1e-300, 1e-300, 0);
@@ -267,7 +267,7 @@ BOOST_AUTO_TEST_CASE(equal_gaps_enter_together) {
 }
 
 BOOST_AUTO_TEST_CASE(lengths_beyond_the_squares_of_doubles_are_refused) {
-    Packing<2> packing = rounded_example("two_disks.toml");
+    Packing packing = rounded_example("two_disks.toml");
     packing.q[0] = 1e200;
     BOOST_CHECK_THROW((void)plateau(packing, {0.1}), isostat::Error);
     packing = rounded_example("two_disks.toml");

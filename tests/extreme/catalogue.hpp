@@ -44,11 +44,11 @@ class Clock {
 ///   overlaps by more than the rounding of the coordinates;
 /// - refuted: a force that is negative to 200 digits, or a pair that overlaps, or a matrix that is singular.
 /// Adds the row. Returns the inspection, if there is one.
-std::optional<Inspection<2>> inspect(const std::string& family, const std::string& parameter, const State<2>& state);
+std::optional<Inspection> inspect(const std::string& family, const std::string& parameter, const State& state);
 
 /// Prepares a packing and inspects it as above when it has at most `dense` disks
 /// (larger ones: no overlap by brute force or by the certificate, counting). A failure is a row with its reason.
-std::optional<State<2>> prepared(const std::string& family, const std::string& parameter,
-                                 const PreparationOptions& options);
+std::optional<State> prepared(const std::string& family, const std::string& parameter,
+                              const PreparationOptions& options);
 
 } // namespace extreme

@@ -74,7 +74,7 @@ struct Table {
 BOOST_TEST_GLOBAL_FIXTURE(Table);
 
 /// Overlaps of any pair beyond the rounding of the stored coordinates.
-bool admissible(const State<2>& state) {
+bool admissible(const State& state) {
     return certify_admissible(state.packing, 8 * grid_step(state.packing)).verdict == Verdict::proved;
 }
 
@@ -104,12 +104,12 @@ std::string reason_of(const Failure& failure, const std::string& outcome) {
 }
 
 /// At the true vertex, or where the coordinates are stored when there is none.
-oracle::Truth true_forces(const State<2>& state) {
+oracle::Truth true_forces(const State& state) {
     oracle::Truth truth(state);
     return truth.known ? truth : oracle::Truth(state, oracle::At::stored);
 }
 
-void check_proved(const State<2>& state, const Inspection<2>& inspection, Row& row) {
+void check_proved(const State& state, const Inspection& inspection, Row& row) {
     BOOST_TEST(inspection.record.hyperstaticity == 0);
     BOOST_TEST(inspection.record.mechanisms == 0);
     BOOST_TEST(admissible(state));
@@ -120,15 +120,15 @@ void check_proved(const State<2>& state, const Inspection<2>& inspection, Row& r
     const oracle::Truth truth = true_forces(state);
     BOOST_REQUIRE_MESSAGE(truth.known, "proved, but the matrix is singular");
     for (std::size_t l = 0; l < truth.force.size(); ++l) {
-        BOOST_TEST(truth.sign(l) == 1, "contact " << to_string<2>(state.contacts[l]));
+        BOOST_TEST(truth.sign(l) == 1, "contact " << to_string(state.contacts[l]));
         const double error = static_cast<double>(abs(truth.force[l] - oracle::Real(inspection.forces[l])));
         const double rounding = std::abs(inspection.forces[l]) * 0x1p-53; // of the printed double
-        BOOST_TEST(error <= inspection.record.force_bound + rounding, "contact " << to_string<2>(state.contacts[l]));
+        BOOST_TEST(error <= inspection.record.force_bound + rounding, "contact " << to_string(state.contacts[l]));
     }
     row.checked = "forces to 200 digits, exact non-overlap of all pairs";
 }
 
-void check_refuted(const State<2>& state, Row& row) {
+void check_refuted(const State& state, Row& row) {
     const oracle::Truth truth = true_forces(state);
     bool right = !truth.known || !admissible(state);
     for (std::size_t l = 0; l < truth.force.size(); ++l) {
@@ -152,7 +152,7 @@ void add(Row row) {
     rows().push_back(std::move(row));
 }
 
-std::optional<Inspection<2>> inspect(const std::string& family, const std::string& parameter, const State<2>& state) {
+std::optional<Inspection> inspect(const std::string& family, const std::string& parameter, const State& state) {
     BOOST_TEST_CONTEXT(family << ", " << parameter) {
         Row row;
         row.family = family;
@@ -174,8 +174,8 @@ std::optional<Inspection<2>> inspect(const std::string& family, const std::strin
             add(row);
             return std::nullopt;
         }
-        Inspection<2>& inspection = result.value();
-        const EquilibriumRecord<2>& record = inspection.record;
+        Inspection& inspection = result.value();
+        const EquilibriumRecord& record = inspection.record;
         row.outcome = to_string(record.verdict);
         row.reason = record.verdict == Verdict::proved ? "" : inspection.remark;
         if (row.reason.empty() && record.mechanisms > 0) {
@@ -199,15 +199,15 @@ std::optional<Inspection<2>> inspect(const std::string& family, const std::strin
     return std::nullopt;
 }
 
-std::optional<State<2>> prepared(const std::string& family, const std::string& parameter,
-                                 const PreparationOptions& options) {
+std::optional<State> prepared(const std::string& family, const std::string& parameter,
+                              const PreparationOptions& options) {
     Row row;
     row.family = family;
     row.parameter = parameter;
     row.disks = options.radii.empty() ? options.disks : static_cast<int>(options.radii.size());
     const Clock clock;
-    PreparationReport<2> report;
-    const auto result = prepare<2>(options, report);
+    PreparationReport report;
+    const auto result = prepare(options, report);
     if (result.ok()) {
         const double seconds = clock.seconds();
         const auto inspection = inspect(family, parameter, result.value());

@@ -9,9 +9,9 @@ using namespace isostat;
 
 namespace {
 
-std::optional<State<2>> prepared(const PreparationOptions& options) {
-    PreparationReport<2> report;
-    auto made = prepare<2>(options, report);
+std::optional<State> prepared(const PreparationOptions& options) {
+    PreparationReport report;
+    auto made = prepare(options, report);
     return made.ok() ? std::optional(made.value()) : std::nullopt;
 }
 
@@ -23,7 +23,7 @@ PreparationOptions disks_of(int count, double smallest = 1, double largest = 2) 
 }
 
 /// One row for a run; the state where it ends is a row of its own, checked to 200 digits. W never grows.
-void follow(const std::string& family, const std::string& parameter, State<2> state, const Segment& segment) {
+void follow(const std::string& family, const std::string& parameter, State state, const Segment& segment) {
     BOOST_TEST_CONTEXT(family << ", " << parameter) {
         RunOptions options;
         options.max_arcs = 2000;
@@ -34,7 +34,7 @@ void follow(const std::string& family, const std::string& parameter, State<2> st
         row.family = family;
         row.disks = state.packing.disk_count();
         const extreme::Clock clock;
-        const SegmentOutcome outcome = run_segment<2>(state, segment, 0, options, counters, records);
+        const SegmentOutcome outcome = run_segment(state, segment, 0, options, counters, records);
         row.seconds = clock.seconds();
         const auto found = static_cast<long>(records.equilibria.size());
         row.parameter = fmt::format("{} ({} arcs, {} equilibria)", parameter, records.arcs.size(), found);
@@ -134,7 +134,7 @@ BOOST_AUTO_TEST_CASE(soft_grains_of_any_stiffness_choose_their_step) {
         options.stiffness_ratio = kappa;
         options.max_steps = 400'000;
         const extreme::Clock clock;
-        SoftGrains<2> soft(start->packing, start->load, options);
+        SoftGrains soft(start->packing, start->load, options);
         const bool relaxed = soft.relax();
         row.seconds = clock.seconds();
         row.parameter = fmt::format("soft grains, stiffness / pressure = {:.0e} ({} steps of {:.2f} sqrt(m/K))", kappa,

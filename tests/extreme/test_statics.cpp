@@ -14,10 +14,10 @@ std::string power(double value) {
 }
 
 /// A state of free and fixed disks without walls under forces on the disks.
-State<2> cluster(const std::vector<DiskAt>& disks, std::vector<unsigned char> fixed, std::vector<double> forces,
-                 std::vector<Contact> contacts) {
-    State<2> state = in_box(disks, 0, 0, 0, 0, std::move(contacts));
-    state.packing.walls = Walls<2>::none();
+State cluster(const std::vector<DiskAt>& disks, std::vector<unsigned char> fixed, std::vector<double> forces,
+              std::vector<Contact> contacts) {
+    State state = in_box(disks, 0, 0, 0, 0, std::move(contacts));
+    state.packing.walls = Walls::none();
     state.packing.fixed = std::move(fixed);
     state.load.disk_force = std::move(forces);
     return state;
@@ -26,7 +26,7 @@ State<2> cluster(const std::vector<DiskAt>& disks, std::vector<unsigned char> fi
 /// Bead k = 1 ... m rests on bead k - 1 (bead 0 is fixed) and on a fixed disk, nearly in line with both, and carries
 /// bead k + 1 at a right angle; the last one carries the force 1. Each needle multiplies the force, by 1 / sin(2
 /// angle), the last one by 1 / (2 sin(angle)). Disks of radius 1; everything is moved by `offset` along both axes.
-State<2> needle_chain(int m, double angle, double offset) {
+State needle_chain(int m, double angle, double offset) {
     const double c = std::cos(angle);
     const double s = std::sin(angle);
     std::vector<DiskAt> disks{{1, offset, offset}};
@@ -54,7 +54,7 @@ State<2> needle_chain(int m, double angle, double offset) {
 
 /// Three disks of radius 1/2 between two fixed ones, on an arch that rises by `slope` per unit, under the weights for
 /// which it is the line of thrust (horizontal thrust 1).
-State<2> arch(double slope) {
+State arch(double slope) {
     const double steep = 2 * slope;
     const auto step = [](double tangent) {
         return std::pair{1 / std::hypot(1, tangent), tangent / std::hypot(1, tangent)};
@@ -108,10 +108,10 @@ BOOST_AUTO_TEST_CASE(two_disks_that_are_nearly_equal_nearly_let_go) {
 BOOST_AUTO_TEST_CASE(loads_next_to_the_limit) {
     PreparationOptions options;
     options.disks = 30;
-    PreparationReport<2> report;
-    const auto made = prepare<2>(options, report);
+    PreparationReport report;
+    const auto made = prepare(options, report);
     BOOST_REQUIRE(made.ok());
-    State<2> state = made.value();
+    State state = made.value();
     const auto start = inspect_vertex(state);
     BOOST_REQUIRE(start.ok());
     const double limit = start.value().record.stress_high;
@@ -133,7 +133,7 @@ BOOST_AUTO_TEST_CASE(needles_up_to_a_condition_number_of_1e15) {
     for (const int m : {1, 3, 5}) {
         for (int k = 1; k <= 15; k += m == 1 ? 1 : 2) {
             const double angle = 0.5 * std::pow(10.0, -static_cast<double>(k) / m);
-            const State<2> state = needle_chain(m, angle, 0);
+            const State state = needle_chain(m, angle, 0);
             const auto said = extreme::inspect("needles", fmt::format("{} in a chain, condition 1e{}", m, k), state);
             if (said && said->equilibrium) {
                 // The rounding of the fixed disks turns the needles by up to condition x 1e-16, and the force is as
@@ -167,7 +167,7 @@ BOOST_AUTO_TEST_CASE(packings_far_from_the_origin) {
 
 BOOST_AUTO_TEST_CASE(lattices_of_equal_disks_have_self_stresses) {
     for (const int m : {2, 3, 5, 8}) {
-        const State<2> state = square_lattice(m);
+        const State state = square_lattice(m);
         BOOST_TEST(!extreme::inspect("equal radii", fmt::format("square lattice {0} x {0}", m), state));
         const Counting counting = count_contacts(state.packing, state.contacts);
         BOOST_TEST(counting.hyperstaticity == 2 * m - 2); // closed form

@@ -9,17 +9,17 @@ namespace {
 
 constexpr int equilibria = 4;
 
-State<2> start() {
+State start() {
     PreparationOptions options;
     options.disks = 30;
     options.seed = 3;
-    PreparationReport<2> report;
-    auto made = prepare<2>(options, report);
+    PreparationReport report;
+    auto made = prepare(options, report);
     BOOST_REQUIRE(made.ok());
     return made.value();
 }
 
-State<2> scaled(State<2> state, double length, double stress) {
+State scaled(State state, double length, double stress) {
     for (std::vector<double>* list : {&state.packing.radius, &state.packing.q}) {
         for (double& x : *list) {
             x *= length;
@@ -34,7 +34,7 @@ State<2> scaled(State<2> state, double length, double stress) {
 }
 
 /// One row: a run of some equilibria in other units, compared with the run in the first ones.
-void compare(const std::string& unit, const Played& base, const State<2>& state, double length, double stress,
+void compare(const std::string& unit, const Played& base, const State& state, double length, double stress,
              bool same_bits) {
     extreme::inspect("units", unit + ", start", state);
     BOOST_TEST_CONTEXT(unit) {
@@ -92,7 +92,7 @@ void compare(const std::string& unit, const Played& base, const State<2>& state,
 BOOST_AUTO_TEST_SUITE(extreme_cases)
 
 BOOST_AUTO_TEST_CASE(units_that_are_powers_of_two_change_no_bit_and_others_no_event) {
-    const State<2> one = start();
+    const State one = start();
     const Played base = play(one, +1, equilibria);
     BOOST_REQUIRE_MESSAGE(base.outcome.completed, base.why());
     for (const int exponent : {-498, -300, -100, -10, 10, 100, 300, 498}) {

@@ -77,7 +77,7 @@ inline Count fuzz(const std::string& name, const std::string& text, int samples,
     return tally;
 }
 
-inline std::string unsound(const Packing<2>& packing) {
+inline std::string unsound(const Packing& packing) {
     const auto finite = [](double x) { return std::isfinite(x); };
     const auto positive = [](double r) { return r > 0 && std::isfinite(r); };
     const std::size_t lengths = packing.cell.any() ? 3 : 2; // with a tilt
@@ -91,7 +91,7 @@ inline std::string unsound(const Packing<2>& packing) {
     return std::all_of(packing.q.begin(), packing.q.end(), finite) ? "" : "a coordinate is not finite";
 }
 
-inline std::string unsound(const State<2>& state) {
+inline std::string unsound(const State& state) {
     if (std::string wrong = unsound(state.packing); !wrong.empty()) {
         return wrong;
     }

@@ -23,8 +23,8 @@ using namespace fuzz;
 namespace {
 
 /// The same numbers, bit for bit, when they are written and read again.
-std::string comes_back(const StateFile<2>& file) {
-    const State<2> again = parse_state<2>(state_text(file.state, file.forces), "FILE").state;
+std::string comes_back(const StateFile& file) {
+    const State again = parse_state(state_text(file.state, file.forces), "FILE").state;
     const auto same = [](const std::vector<double>& a, const std::vector<double>& b) {
         return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0);
     };
@@ -35,13 +35,13 @@ std::string comes_back(const StateFile<2>& file) {
 }
 
 std::string check_state(const std::string& text) {
-    const StateFile<2> file = parse_state<2>(text, "FILE");
+    const StateFile file = parse_state(text, "FILE");
     const std::string wrong = unsound(file.state);
     return wrong.empty() ? comes_back(file) : wrong;
 }
 
 std::string check_vertex(const std::string& text) {
-    const State<2> state = parse_vertex_text(text, "FILE");
+    const State state = parse_vertex_text(text, "FILE");
     std::size_t rows = 0;
     for (const std::string& line : lines_of(text)) {
         rows += has_content(line, " \t\r,") ? 1 : 0;
@@ -50,8 +50,8 @@ std::string check_vertex(const std::string& text) {
     return wrong.empty() ? rows_differ(state.packing.radius.size() + state.contacts.size() + 3, rows) : wrong;
 }
 
-State<2> small() {
-    State<2> state = ::crafted::two_disks(1, 2, 1, 1);
+State small() {
+    State state = ::crafted::two_disks(1, 2, 1, 1);
     state.packing.fixed = {0, 0};
     return state;
 }
@@ -62,9 +62,9 @@ BOOST_AUTO_TEST_SUITE(fuzz_own_files)
 
 BOOST_AUTO_TEST_CASE(mutated_states_and_vertices_are_refused_by_name_or_are_sound) {
     const std::string vertex = scratch::read(scratch::data("vertex100.txt"));
-    const std::string text = state_text<2>(small(), std::vector<double>(small().contacts.size(), 1.0));
+    const std::string text = state_text(small(), std::vector<double>(small().contacts.size(), 1.0));
     BOOST_TEST(fuzz::fuzz("state", text, 8000, check_state).refused > 1000);
-    BOOST_TEST(fuzz::fuzz("state of 100", state_text<2>(parse_vertex_text(vertex, "FILE")), 400, check_state).refused >
+    BOOST_TEST(fuzz::fuzz("state of 100", state_text(parse_vertex_text(vertex, "FILE")), 400, check_state).refused >
                50);
     BOOST_TEST(fuzz::fuzz("vertex", vertex, 1000, check_vertex).refused > 100);
     BOOST_TEST(
@@ -74,9 +74,9 @@ BOOST_AUTO_TEST_CASE(mutated_states_and_vertices_are_refused_by_name_or_are_soun
 
 BOOST_AUTO_TEST_CASE(mutated_states_of_cells_are_refused_by_name_or_are_sound_and_can_be_certified) {
     const auto check = [](const std::string& changed) {
-        const StateFile<2> file = parse_any_state<2>(changed, "FILE");
+        const StateFile file = parse_any_state(changed, "FILE");
         const std::string written = state_text(file.state, file.forces);
-        const StateFile<2> again = parse_any_state<2>(written, "FILE");
+        const StateFile again = parse_any_state(written, "FILE");
         if (state_text(again.state, again.forces) != written) {
             return std::string("it is not what is read again");
         }
@@ -87,22 +87,21 @@ BOOST_AUTO_TEST_CASE(mutated_states_of_cells_are_refused_by_name_or_are_sound_an
                                                                : unsound(file.state);
     };
     const std::vector<double> forces(3, 1.0);
-    BOOST_TEST(
-        fuzz::fuzz("tilted cell", state_text<2>(cells::one_tilted_disk(2, 1, 0.25), forces), 3000, check).refused >
-        500);
-    BOOST_TEST(fuzz::fuzz("rectangular cell", state_text<2>(cells::two_disks(false, 1, 1)), 3000, check).refused > 500);
+    BOOST_TEST(fuzz::fuzz("tilted cell", state_text(cells::one_tilted_disk(2, 1, 0.25), forces), 3000, check).refused >
+               500);
+    BOOST_TEST(fuzz::fuzz("rectangular cell", state_text(cells::two_disks(false, 1, 1)), 3000, check).refused > 500);
 }
 
 BOOST_AUTO_TEST_CASE(states_are_refused_wherever_they_are_cut) {
-    const std::string state = state_text<2>(small());
+    const std::string state = state_text(small());
     for (std::size_t size = 0; size + 2 < state.size(); ++size) {
-        BOOST_CHECK_THROW((void)parse_state<2>(state.substr(0, size), "FILE"), Error);
+        BOOST_CHECK_THROW((void)parse_state(state.substr(0, size), "FILE"), Error);
     }
 }
 
 BOOST_AUTO_TEST_CASE(mutated_states_that_are_accepted_can_be_certified) {
-    fuzz::fuzz("certified state", state_text<2>(small()), 1000, [](const std::string& changed) {
-        const State<2> state = parse_state<2>(changed, "FILE").state;
+    fuzz::fuzz("certified state", state_text(small()), 1000, [](const std::string& changed) {
+        const State state = parse_state(changed, "FILE").state;
         Certificate certificate;
         certificate.state = state;
         certificate.claims = certify(state).claims;

@@ -36,14 +36,14 @@ RunHeader header() {
 void play(const fs::path& folder) {
     RunCounters counters;
     RunDirectory directory(folder, header(), RunDirectory::Mode::fresh, counters);
-    State<2> state = ::crafted::two_disks(1, 2, 1, 1);
+    State state = ::crafted::two_disks(1, 2, 1, 1);
     Segment segment;
     segment.direction = -1;
     segment.equilibria = 1;
     RunOptions options;
     options.max_strain = 1e9;
     directory.begin_segment(0, segment, 0, 0);
-    const SegmentOutcome outcome = run_segment<2>(state, segment, 0, options, counters, directory);
+    const SegmentOutcome outcome = run_segment(state, segment, 0, options, counters, directory);
     BOOST_TEST_REQUIRE(outcome.completed);
     directory.finish(RunStatus::completed, "");
 }
@@ -83,7 +83,7 @@ std::size_t lines_with_something(const std::string& text) {
 
 BOOST_AUTO_TEST_SUITE(fuzz_records)
 
-BOOST_AUTO_TEST_CASE(mutated_records_are_refused_by_name_or_lose_no_row) {
+BOOST_AUTO_TEST_CASE(mutated_records_are_refused_by_name_or_lose_no_row, *boost::unit_test::label("slow")) {
     Damaged run;
     BOOST_TEST(run.fuzz("events.jsonl", 3000,
                         [&](const std::string& changed) {
@@ -106,7 +106,8 @@ BOOST_AUTO_TEST_CASE(mutated_records_are_refused_by_name_or_lose_no_row) {
                    .refused > 200);
 }
 
-BOOST_AUTO_TEST_CASE(mutated_tables_of_equilibria_are_refused_by_name_or_lose_no_row_in_reports) {
+BOOST_AUTO_TEST_CASE(mutated_tables_of_equilibria_are_refused_by_name_or_lose_no_row_in_reports,
+                     *boost::unit_test::label("slow")) {
     Damaged run;
     const Count tally = run.fuzz("equilibria.csv", 3000, [&](const std::string& changed) {
         const std::vector<EquilibriumRow> rows = read_equilibria(run.run / "equilibria.csv");
@@ -119,7 +120,7 @@ BOOST_AUTO_TEST_CASE(mutated_tables_of_equilibria_are_refused_by_name_or_lose_no
     BOOST_TEST(tally.refused > 500);
 }
 
-BOOST_AUTO_TEST_CASE(mutated_checkpoints_are_refused_by_name_or_are_resumed) {
+BOOST_AUTO_TEST_CASE(mutated_checkpoints_are_refused_by_name_or_are_resumed, *boost::unit_test::label("slow")) {
     Damaged run;
     const auto resume = [&](const std::string&) {
         // A resume changes files: of a copy.
@@ -159,7 +160,7 @@ BOOST_AUTO_TEST_CASE(mutated_checkpoints_are_refused_by_name_or_are_resumed) {
     BOOST_TEST(tally.refused > 100);
 }
 
-BOOST_AUTO_TEST_CASE(the_replay_of_mutated_records_ends_with_an_answer) {
+BOOST_AUTO_TEST_CASE(the_replay_of_mutated_records_ends_with_an_answer, *boost::unit_test::label("slow")) {
     Damaged run;
     const auto replay = [&](const std::string&) {
         (void)verify_run(run.run);

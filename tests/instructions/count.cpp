@@ -25,15 +25,15 @@ int main(int argc, char** argv) {
     if (level != "decisions" && level != "arcs") {
         return 64;
     }
-    struct : RunObserver<2> {
+    struct : RunObserver {
     } observer;
-    State<2> state = read_state<2>(argv[1]).state;
+    State state = read_state(argv[1]).state;
     RunCounters counters;
     Segment segment;
     segment.equilibria = std::atoi(argv[2]);
     RunOptions options;
     options.certify = level == "arcs" ? CertifyLevel::arcs : CertifyLevel::decisions;
-    const auto outcome = run_segment<2>(state, segment, 0, options, counters, observer);
+    const auto outcome = run_segment(state, segment, 0, options, counters, observer);
     fmt::print("{}\n", counters.steps);
     return outcome.completed ? 0 : 1;
 }

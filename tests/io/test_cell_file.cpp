@@ -14,14 +14,14 @@ using scratch::replaced;
 namespace {
 
 std::string tilted_text() {
-    State<2> state = cells::one_tilted_disk(2, 1, 0.25);
+    State state = cells::one_tilted_disk(2, 1, 0.25);
     state.load.infinitesimal = {0, 0};
     return state_text(state);
 }
 
 void refuses(const std::string& text, const std::vector<std::string>& words) {
     BOOST_TEST_CONTEXT(text) {
-        expect_bad_input([&] { (void)parse_any_state<2>(text, "cell.json"); }, words);
+        expect_bad_input([&] { (void)parse_any_state(text, "cell.json"); }, words);
     }
 }
 
@@ -40,9 +40,9 @@ std::string dump_of(const std::string& bounds, const std::string& atoms, int cou
 BOOST_AUTO_TEST_SUITE(cell_file)
 
 BOOST_AUTO_TEST_CASE(a_state_with_a_cell_comes_back) {
-    State<2> state = cells::one_tilted_disk(2, 1, 0.25);
+    State state = cells::one_tilted_disk(2, 1, 0.25);
     state.packing.cell.period_moves = {true, false};
-    const State<2> again = parse_any_state<2>(state_text(state), "cell.json").state;
+    const State again = parse_any_state(state_text(state), "cell.json").state;
     BOOST_TEST((again.packing.cell == state.packing.cell));
     BOOST_TEST((again.packing.walls == state.packing.walls));
     BOOST_TEST(again.packing.q == state.packing.q);
@@ -52,7 +52,7 @@ BOOST_AUTO_TEST_CASE(a_state_with_a_cell_comes_back) {
 }
 
 BOOST_AUTO_TEST_CASE(contacts_are_read_from_one_end) {
-    BOOST_TEST((parse_any_state<2>(tilted_text(), "cell.json").state.contacts[1] == cells::across(0, 0, 1, -1)));
+    BOOST_TEST((parse_any_state(tilted_text(), "cell.json").state.contacts[1] == cells::across(0, 0, 1, -1)));
     refuses(replaced(tilted_text(), "[0,0,[1,-1]]", "[0,0,[-1,1]]"), {"contacts[1]", "[0,0,[1,-1]]", "one spelling"});
 }
 
@@ -76,22 +76,22 @@ BOOST_AUTO_TEST_CASE(bad_cells_are_named) {
 }
 
 BOOST_AUTO_TEST_CASE(a_cell_that_keeps_its_shape_comes_back) {
-    State<2> state = cells::two_disks(false, 1, 1);
+    State state = cells::two_disks(false, 1, 1);
     state.packing.length(0) = 3;
     state.contacts.clear();
     state.packing.cell.keep_shape();
     const std::string text = state_text(state);
     BOOST_TEST(text.find("\"moves\":[\"scale\"]") != std::string::npos);
-    const State<2> again = parse_any_state<2>(text, "cell.json").state;
+    const State again = parse_any_state(text, "cell.json").state;
     BOOST_TEST((again.packing.cell == state.packing.cell));
-    BOOST_TEST(DofMap<2>(again.packing).dof_count() == 3);
+    BOOST_TEST(DofMap(again.packing).dof_count() == 3);
     BOOST_TEST(state_text(again) == text);
     refuses(replaced(text, "[\"scale\"]", "[\"scale\",\"x\"]"), {"cell.moves[0]", "alone"});
     refuses(replaced(text, "[\"periodic\",\"periodic\"]", "[\"periodic\",\"walls\"]"), {"every axis is periodic"});
-    State<2> wide = state; // it touches its own image along x
+    State wide = state; // it touches its own image along x
     wide.packing.length(0) = 2.4;
     refuses(state_text(wide), {"keeps its shape", "own image along x"});
-    State<2> pushed = state;
+    State pushed = state;
     pushed.load.disk_force = {1, 0, -1, 0};
     refuses(state_text(pushed), {"disk_force", "keeps its shape"});
 }
@@ -102,21 +102,21 @@ BOOST_AUTO_TEST_CASE(images_are_no_contacts_of_a_box) {
 }
 
 BOOST_AUTO_TEST_CASE(readers_that_take_boxes_only_say_so) {
-    expect_bad_input([] { (void)parse_state<2>(tilted_text(), "cell.json"); },
+    expect_bad_input([] { (void)parse_state(tilted_text(), "cell.json"); },
                      {"cell.json: a periodic cell", "takes boxes only so far"});
     const scratch::Folder folder;
     const auto path = folder.path() / "cell.json";
     write_atomically(path, tilted_text());
-    expect_bad_input([&] { (void)read_state<2>(path); }, {"a periodic cell"});
-    BOOST_TEST(read_any_state<2>(path).state.contacts.size() == 3);
+    expect_bad_input([&] { (void)read_state(path); }, {"a periodic cell"});
+    BOOST_TEST(read_any_state(path).state.contacts.size() == 3);
 }
 
 BOOST_AUTO_TEST_CASE(lammps_dumps_with_pp_boundaries_make_a_cell) {
     const auto file = read_foreign(dump_of("pp pp pp\n-1 1\n0 4\n0 1", "1 -0.5 0.25 0.5\n2 0.5 3.5 0.25\n", 2));
-    const Packing<2>& p = file.packing;
+    const Packing& p = file.packing;
     BOOST_TEST((p.cell.all()));
     BOOST_TEST(p.q == (std::vector<double>{0.5, 0.25, 1.5, 3.5, 2, 4, 0}));
-    BOOST_TEST(DofMap<2>(p).dof_count() == 2);
+    BOOST_TEST(DofMap(p).dof_count() == 2);
     expect_bad_input(
         [] { (void)parse_foreign(dump_of("pp pp pp\n-1 1\n0 4\n0 1", "1 -0.5 0.25 0.5\n", 1), "file", {}); },
         {"boundaries along x are periodic"});
@@ -126,7 +126,7 @@ BOOST_AUTO_TEST_CASE(triclinic_dumps_bound_the_whole_parallelogram) {
     // xlo = -1, xhi = 1, xy = -0.5: the bounds are -1.5 and 1.
     const auto file =
         read_foreign(dump_of("xy xz yz pp pp pp\n-1.5 1 -0.5\n0 4 0\n0 1 0", "1 -0.5 0.25 0.5\n2 1.25 4.25 0.25\n", 2));
-    const Packing<2>& p = file.packing;
+    const Packing& p = file.packing;
     BOOST_TEST(p.lattice(0, 0) == 2);
     BOOST_TEST(p.lattice(0, 1) == -0.5);
     // The second disk is one period up: (1.25 + 1 + 0.5, 0.25), and then one back.
@@ -140,24 +140,24 @@ BOOST_AUTO_TEST_CASE(lammps_data_is_periodic_when_stated) {
     expect_bad_input([&] { (void)read_foreign(data); }, {"tilted by 1", "--periodic"});
     ForeignOptions stated;
     stated.periodic = true;
-    const Packing<2> p = read_foreign(data, stated).packing;
+    const Packing p = read_foreign(data, stated).packing;
     BOOST_TEST(p.q == (std::vector<double>{0.75, 0.5, 2, 1.75, 1}));
 }
 
 BOOST_AUTO_TEST_CASE(extended_xyz_with_a_lattice_makes_a_cell) {
     const std::string text =
         "1\nLattice=\"2 0 0 1 1.75 0 0 0 1\" Properties=id:I:1:pos:R:3:radius:R:1\n7 0.75 0.5 0 1\n";
-    const Packing<2> p = read_foreign(text).packing;
+    const Packing p = read_foreign(text).packing;
     BOOST_TEST(p.q == (std::vector<double>{0.75, 0.5, 2, 1.75, 1}));
     const std::string strip =
         replaced(replaced(text, "2 0 0 1 1.75", "2 0 0 0 1.75"), "Properties", "pbc=\"T F F\" Properties");
-    const Packing<2> q = read_foreign(strip).packing;
+    const Packing q = read_foreign(strip).packing;
     BOOST_TEST(q.cell.periodic[0]);
     BOOST_TEST(!q.cell.periodic[1]);
 }
 
 BOOST_AUTO_TEST_CASE(disks_are_put_into_the_cell_by_whole_periods) {
-    State<2> state = cells::in_cell({{0.25, -0.5, 4.25}, {0.25, 0.75, 0.5}}, {2, 1.75, 1}, true, 1, 1, {});
+    State state = cells::in_cell({{0.25, -0.5, 4.25}, {0.25, 0.75, 0.5}}, {2, 1.75, 1}, true, 1, 1, {});
     const Wrapped wrapped = wrap_into_cell(state.packing);
     // (-0.5, 4.25) less two periods (1, 1.75) is (-2.5, 0.75), in fractions (-2.93 / 2, 0.43): two more along x.
     BOOST_TEST(state.packing.q == (std::vector<double>{1.5, 0.75, 0.75, 0.5, 2, 1.75, 1}));
@@ -172,9 +172,9 @@ BOOST_AUTO_TEST_CASE(disks_are_put_into_the_cell_by_whole_periods) {
 
 BOOST_AUTO_TEST_CASE(what_is_written_of_a_cell_is_read_bit_for_bit) {
     for (const char* name : {"rect_16", "tilt_16", "channel_16"}) {
-        const Packing<2> stored =
-            read_any_state<2>(std::string(ISOSTAT_TEST_DATA) + "/cells/" + name + ".json").state.packing;
-        Packing<2> wrapped = stored;
+        const Packing stored =
+            read_any_state(std::string(ISOSTAT_TEST_DATA) + "/cells/" + name + ".json").state.packing;
+        Packing wrapped = stored;
         BOOST_TEST(wrap_into_cell(wrapped).rounding > 0);
         for (const std::string format : {"lammps-data", "xyz"}) {
             BOOST_TEST_CONTEXT(name << " " << format) {
@@ -195,16 +195,16 @@ BOOST_AUTO_TEST_CASE(what_is_written_of_a_cell_is_read_bit_for_bit) {
             }
         }
     }
-    const State<2> one = cells::one_tilted_disk(2, 1, 0.25);
+    const State one = cells::one_tilted_disk(2, 1, 0.25);
     BOOST_TEST(lammps_data_text(one.packing, "t").find("\n0 2 xlo xhi\n") != std::string::npos);
     BOOST_TEST(lammps_data_text(one.packing, "t").find("\n1 0 0 xy xz yz\n") != std::string::npos);
-    State<2> out = cells::one_disk(1, 1);
+    State out = cells::one_disk(1, 1);
     BOOST_TEST(lammps_data_text(out.packing, "t").find("xy xz yz") == std::string::npos);
     out.packing.q[0] = -3.75; // two periods left of 0.25
     BOOST_TEST(lammps_data_text(out.packing, "t").ends_with("\n1 1 2 1 0.25 0.5 0 -2 0 0\n"));
     BOOST_TEST(
         csv_text(one.packing).starts_with("# box 0:2,0:1.7320508075688772, tilt 1, periodic along xy\nid,x,y,r\n"));
-    const Packing<2> box = ::crafted::two_disks(1, 2, 1, 1).packing;
+    const Packing box = ::crafted::two_disks(1, 2, 1, 1).packing;
     BOOST_TEST(lammps_data_text(box, "t").find("xy xz yz") == std::string::npos);
     BOOST_TEST(xyz_text(box, {}).find("pbc=\"F F F\"") != std::string::npos);
     BOOST_TEST(csv_text(box).find("periodic") == std::string::npos);
@@ -231,8 +231,8 @@ BOOST_AUTO_TEST_CASE(foreign_cells_that_are_none_are_named) {
 
 BOOST_AUTO_TEST_CASE(a_packing_that_is_isostatic_under_pressure_is_found_so) {
     // The first equilibrium in a rectangle with one contact less on the backbone: what a fixed shape needs.
-    const State<2> state = read_any_state<2>(std::string(ISOSTAT_TEST_DATA) + "/cells/rect_16.json").state;
-    Packing<2> packing = state.packing;
+    const State state = read_any_state(std::string(ISOSTAT_TEST_DATA) + "/cells/rect_16.json").state;
+    Packing packing = state.packing;
     packing.cell.period_moves = {false, false};
     const auto counts = [&](Strain strain) {
         return isostat::crafted::plateau(packing, {1e-9}, strain).steps.front().backbone;

@@ -111,7 +111,7 @@ BOOST_AUTO_TEST_CASE(absent_claims_and_infinite_radii_come_back) {
 BOOST_AUTO_TEST_CASE(a_certificate_survives_the_way_through_a_file) {
     const scratch::Folder folder;
     Certificate certificate = full_certificate();
-    certificate.state = read_state<2>(scratch::data("vertex100.txt")).state;
+    certificate.state = read_state(scratch::data("vertex100.txt")).state;
     certificate.claims.forces = {};
     certificate.claims.load_interval = {};
     certificate.claims.gaps = {};

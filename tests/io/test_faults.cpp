@@ -31,7 +31,7 @@ RunHeader faulty_header() {
 void play(const fs::path& path, RunDirectory::Mode mode, int equilibria) {
     RunCounters counters;
     RunDirectory directory(path, faulty_header(), mode, counters);
-    State<2> state = read_state<2>(scratch::data("vertex100.txt")).state;
+    State state = read_state(scratch::data("vertex100.txt")).state;
     int made = 0;
     if (const auto& point = directory.checkpoint()) {
         state = point->state;
@@ -45,7 +45,7 @@ void play(const fs::path& path, RunDirectory::Mode mode, int equilibria) {
     Segment part;
     part.equilibria = equilibria - made;
     directory.begin_segment(0, whole, made, state.equilibrium);
-    BOOST_REQUIRE(run_segment<2>(state, part, 0, RunOptions(), counters, directory).completed);
+    BOOST_REQUIRE(run_segment(state, part, 0, RunOptions(), counters, directory).completed);
     if (equilibria == goal) {
         directory.finish(RunStatus::completed, "");
     }

@@ -61,7 +61,7 @@ void expect_disks(const ForeignPacking& file, const std::string& format) {
         BOOST_TEST(file.packing.q[2 * small + 1] == 1.25);
         BOOST_TEST(file.packing.q[2 - 2 * small] == 2.0);
         BOOST_TEST(file.packing.q[3 - 2 * small] == 1.5);
-        BOOST_TEST((file.packing.walls == Walls<2>::none()));
+        BOOST_TEST((file.packing.walls == Walls::none()));
     }
 }
 
@@ -114,7 +114,7 @@ BOOST_AUTO_TEST_CASE(an_earlier_frame_is_read_from_a_file_cut_in_a_later_one) {
 BOOST_AUTO_TEST_CASE(walls_are_the_bounds_of_the_box_and_the_lower_ones_are_at_zero) {
     for (const std::string& text : {dump, data_file, xyz}) {
         const ForeignPacking box = read(text, with_walls(ForeignWalls::box));
-        BOOST_TEST((box.packing.walls == Walls<2>::box()));
+        BOOST_TEST((box.packing.walls == Walls::box()));
         const std::size_t small = box.packing.radius[0] < box.packing.radius[1] ? 0 : 1;
         BOOST_TEST(box.packing.q[2 * small] == 1.0);
         BOOST_TEST(box.packing.q[2 * small + 1] == 0.75);
@@ -321,7 +321,7 @@ BOOST_AUTO_TEST_CASE(a_first_row_that_is_no_row_of_names_is_a_disk) {
 }
 
 BOOST_AUTO_TEST_CASE(what_is_written_for_other_programs_is_read_bit_for_bit) {
-    const State<2> state = read_state<2>(scratch::data("vertex100.txt")).state;
+    const State state = read_state(scratch::data("vertex100.txt")).state;
     ForeignOptions options;
     options.walls = ForeignWalls::box;
     const auto same = [&](const std::string& text, const char* format) {

@@ -32,15 +32,15 @@ Segment up(int equilibria) {
 }
 
 /// Writes the records, and raises a flag during some rearrangement.
-class Stopper final : public RunObserver<2> {
+class Stopper final : public RunObserver {
   public:
     Stopper(RunDirectory& directory, std::atomic<bool>& stop, long at_step)
         : directory_(directory), stop_(stop), at_step_(at_step) {}
-    void on_arc(const ArcRecord<2>& arc) override {
+    void on_arc(const ArcRecord& arc) override {
         directory_.on_arc(arc);
         stop_ = stop_ || arc.step == at_step_;
     }
-    void on_equilibrium(const EquilibriumRecord<2>& r, const State<2>& s, const std::vector<double>& f) override {
+    void on_equilibrium(const EquilibriumRecord& r, const State& s, const std::vector<double>& f) override {
         directory_.on_equilibrium(r, s, f);
     }
 
@@ -57,7 +57,7 @@ bool play(const fs::path& path, RunDirectory::Mode mode, long stop_at, bool fini
     RunHeader head = header();
     head.checkpoint_seconds = checkpoint_seconds;
     RunDirectory directory(path, head, mode, counters);
-    State<2> state = read_state<2>(scratch::data("vertex100.txt")).state;
+    State state = read_state(scratch::data("vertex100.txt")).state;
     int made = 0;
     if (const auto& point = directory.checkpoint()) {
         state = point->state;
@@ -69,7 +69,7 @@ bool play(const fs::path& path, RunDirectory::Mode mode, long stop_at, bool fini
     options.stop = &stop;
     Stopper stopper(directory, stop, stop_at);
     directory.begin_segment(0, up(6), made, state.equilibrium);
-    const SegmentOutcome outcome = run_segment<2>(state, up(6 - made), 0, options, counters, stopper);
+    const SegmentOutcome outcome = run_segment(state, up(6 - made), 0, options, counters, stopper);
     if (finish) {
         directory.finish(outcome.completed ? RunStatus::completed : RunStatus::interrupted, "");
     }
@@ -92,7 +92,7 @@ BOOST_AUTO_TEST_CASE(a_run_leaves_records_states_and_a_summary) {
         BOOST_TEST(fs::exists(folder / ("run/states/" + std::string(name) + ".json")), name);
     }
     BOOST_TEST(!fs::exists(folder / "run/states/eq_000001.json"));
-    const StateFile<2> last = read_state<2>(folder / "run/states/last.json");
+    const StateFile last = read_state(folder / "run/states/last.json");
     BOOST_TEST(last.state.equilibrium == 6);
     BOOST_TEST(last.forces.size() == last.state.contacts.size());
     BOOST_TEST(last.state.load.stress[1] == rows[6].stress);
@@ -106,7 +106,7 @@ BOOST_AUTO_TEST_CASE(columns_are_named_before_the_first_equilibrium) {
         const RunCounters counters;
         RunDirectory directory(folder / "run", header(), RunDirectory::Mode::fresh, counters);
         directory.store_start(tilted ? cells::one_tilted_disk(2, 1, 0.25)
-                                     : read_state<2>(scratch::data("vertex100.txt")).state);
+                                     : read_state(scratch::data("vertex100.txt")).state);
         const std::string text = scratch::read(folder / "run/equilibria.csv");
         BOOST_TEST(text.starts_with("# "));
         BOOST_TEST(text.ends_with("\n"));
@@ -116,8 +116,8 @@ BOOST_AUTO_TEST_CASE(columns_are_named_before_the_first_equilibrium) {
 }
 
 BOOST_AUTO_TEST_CASE(every_row_has_the_columns_that_the_first_line_names_whatever_its_record_has_besides) {
-    const State<2> state = cells::one_tilted_disk(2, 1, 0.25);
-    EquilibriumRecord<2> record;
+    const State state = cells::one_tilted_disk(2, 1, 0.25);
+    EquilibriumRecord record;
     for (auto* three : {&record.strain, &record.length, &record.strain_bound, &record.length_bound}) {
         three->assign(3, 0.5);
     }
@@ -136,7 +136,7 @@ BOOST_AUTO_TEST_CASE(every_row_has_the_columns_that_the_first_line_names_whateve
             with.touching = touching;
             const RunCounters counters;
             RunDirectory directory(folder / "run", with, RunDirectory::Mode::fresh, counters);
-            directory.store_start(tilt ? state : read_state<2>(scratch::data("vertex100.txt")).state);
+            directory.store_start(tilt ? state : read_state(scratch::data("vertex100.txt")).state);
             BOOST_TEST(scratch::read(folder / "run/equilibria.csv") == header);
         }
     }

@@ -25,7 +25,7 @@ void check_bits(const std::vector<double>& a, const std::vector<double>& b) {
     }
 }
 
-void check_same(const State<2>& a, const State<2>& b) {
+void check_same(const State& a, const State& b) {
     check_bits(a.packing.radius, b.packing.radius);
     check_bits(a.packing.q, b.packing.q);
     check_bits(a.load.infinitesimal, b.load.infinitesimal);
@@ -49,7 +49,7 @@ std::string two_disk_text() {
 
 void refuses_state(const std::string& text, const std::vector<std::string>& words) {
     BOOST_TEST_CONTEXT(text) {
-        expect_bad_input([&] { (void)parse_state<2>(text, "crafted.json"); }, words);
+        expect_bad_input([&] { (void)parse_state(text, "crafted.json"); }, words);
     }
 }
 
@@ -62,13 +62,13 @@ BOOST_AUTO_TEST_CASE(rows_of_disks_are_in_the_order_of_their_version) {
         return R"({"format": "isostat-state", "version": )" + version + R"(, "length": [12, 11], "disks": [)" + disks +
                R"(], "contacts": [[0, "left"]]})";
     };
-    const Packing<2> packing = parse_state<2>(text("2", "[3, 4, 1], [9, 5, 2]"), "s").state.packing;
+    const Packing packing = parse_state(text("2", "[3, 4, 1], [9, 5, 2]"), "s").state.packing;
     BOOST_TEST((packing.radius == std::vector<double>{1, 2}));
     BOOST_TEST((packing.q == std::vector<double>{3, 4, 9, 5, 12, 11}));
-    const Packing<2> old = parse_state<2>(text("1", "[1, 3, 4], [2, 9, 5]"), "s").state.packing;
+    const Packing old = parse_state(text("1", "[1, 3, 4], [2, 9, 5]"), "s").state.packing;
     BOOST_TEST((old.radius == packing.radius));
     BOOST_TEST((old.q == packing.q));
-    State<2> state;
+    State state;
     state.packing = packing;
     const std::string written = state_text(state);
     BOOST_TEST(written.find("\"version\": 2") != std::string::npos);
@@ -80,7 +80,7 @@ BOOST_AUTO_TEST_CASE(rows_of_disks_are_in_the_order_of_their_version) {
 }
 
 BOOST_AUTO_TEST_CASE(a_state_comes_back_bit_for_bit) {
-    State<2> state = ::crafted::two_disks(1, 2, 0.1, 1.0 / 3);
+    State state = ::crafted::two_disks(1, 2, 0.1, 1.0 / 3);
     state.load.infinitesimal = {5e-324, -0.0, 1e308, std::nextafter(0.3, 1.0)};
     state.load.disk_force = {1e-300, 0.1 + 0.2, -7, 2.5};
     state.load.kind = LoadKind::true_stress;
@@ -91,23 +91,23 @@ BOOST_AUTO_TEST_CASE(a_state_comes_back_bit_for_bit) {
     state.equilibrium = 12;
     state.provenance = R"({"command":"isostat run \"a b\"","seed":18446744073709551615})";
     const std::vector<double> forces{1, 1e-17, 3, 0, -0.0, 0.1, 7};
-    const StateFile<2> back = parse_state<2>(state_text<2>(state, forces), "text");
+    const StateFile back = parse_state(state_text(state, forces), "text");
     check_same(state, back.state);
     check_bits(forces, back.forces);
 }
 
 BOOST_AUTO_TEST_CASE(the_direction_of_the_radii_and_first_order_terms_come_back) {
-    State<2> state = ::crafted::two_disks(1, 2, 1, 1);
+    State state = ::crafted::two_disks(1, 2, 1, 1);
     RadiusPerturbation& p = state.perturbation.emplace();
     p.seed = 7;
     p.rho = {0x1.8p-5, -0.25};
-    BOOST_TEST(!parse_state<2>(state_text(::crafted::two_disks(1, 2, 1, 1)), "s").state.perturbation.has_value());
-    BOOST_TEST(parse_state<2>(state_text(state), "s").state.perturbation->load_zero.i == -1);
+    BOOST_TEST(!parse_state(state_text(::crafted::two_disks(1, 2, 1, 1)), "s").state.perturbation.has_value());
+    BOOST_TEST(parse_state(state_text(state), "s").state.perturbation->load_zero.i == -1);
     p.load_zero = ::crafted::bottom(1);
     p.stress_rate = {0.1, 1e-17};
     p.open = {{::crafted::top(0), {0.3, 1e-15}}};
     p.zero = {{::crafted::pair(0, 1), {1.5, 0}}, {::crafted::left(0), {2, 3e-11}}};
-    const State<2> back = parse_state<2>(state_text(state), "s").state;
+    const State back = parse_state(state_text(state), "s").state;
     BOOST_TEST_REQUIRE(back.perturbation.has_value());
     const RadiusPerturbation& r = *back.perturbation;
     BOOST_TEST(r.seed == 7U);
@@ -127,7 +127,7 @@ BOOST_AUTO_TEST_CASE(the_direction_of_the_radii_and_first_order_terms_come_back)
 }
 
 BOOST_AUTO_TEST_CASE(every_bit_pattern_of_a_finite_number_comes_back) {
-    State<2> state = ::crafted::one_disk(1, 1);
+    State state = ::crafted::one_disk(1, 1);
     std::uint64_t bits = 88172645463325252ULL;
     for (int k = 0; k < 2000; ++k) {
         bits ^= bits << 13U;
@@ -136,23 +136,23 @@ BOOST_AUTO_TEST_CASE(every_bit_pattern_of_a_finite_number_comes_back) {
         const auto g = std::bit_cast<double>(bits);
         if (std::isfinite(g)) {
             state.load.infinitesimal = {g, -g};
-            check_bits(state.load.infinitesimal, parse_state<2>(state_text(state), "text").state.load.infinitesimal);
+            check_bits(state.load.infinitesimal, parse_state(state_text(state), "text").state.load.infinitesimal);
         }
     }
 }
 
 BOOST_AUTO_TEST_CASE(a_sample_survives_the_way_through_a_file) {
     const scratch::Folder folder;
-    const State<2> sample = read_state<2>(scratch::data("vertex100.txt")).state;
+    const State sample = read_state(scratch::data("vertex100.txt")).state;
     write_state(folder / "state.json", sample);
-    check_same(sample, read_state<2>(folder / "state.json").state);
+    check_same(sample, read_state(folder / "state.json").state);
 }
 
 BOOST_AUTO_TEST_CASE(hexadecimal_floats_are_numbers) {
     const std::string text =
         R"({"format": "isostat-state", "version": 1, "length": ["0x1p+1", 2], "disks": [["0x1p0", 1, "0x1.0p-0"]],
         "contacts": [[0, "left"], [0, "right"], [0, "bottom"], [0, "top"]], "infinitesimal": [["-0x1.8p-3", 1]]})";
-    const State<2> state = parse_state<2>(text, "text").state;
+    const State state = parse_state(text, "text").state;
     BOOST_TEST(state.packing.q[0] == 1.0);
     BOOST_TEST(state.packing.length(0) == 2.0);
     BOOST_TEST(state.load.infinitesimal[0] == -0.1875);
@@ -165,9 +165,9 @@ BOOST_AUTO_TEST_CASE(a_state_cut_short_anywhere_is_refused) {
     const std::string text = two_disk_text();
     const std::size_t end = text.rfind('}');
     for (std::size_t length = 0; length <= end; ++length) {
-        BOOST_CHECK_THROW((void)parse_state<2>(text.substr(0, length), "cut.json"), Error);
+        BOOST_CHECK_THROW((void)parse_state(text.substr(0, length), "cut.json"), Error);
     }
-    BOOST_CHECK_NO_THROW((void)parse_state<2>(text.substr(0, end + 1), "whole.json"));
+    BOOST_CHECK_NO_THROW((void)parse_state(text.substr(0, end + 1), "whole.json"));
     refuses_state(text.substr(0, text.size() / 2), {"crafted.json:", "truncated"});
     refuses_state(text + "}", {"crafted.json:", "JSON"});
     refuses_state(text + '\0' + "more", {"crafted.json:", "byte 0"});
@@ -175,7 +175,13 @@ BOOST_AUTO_TEST_CASE(a_state_cut_short_anywhere_is_refused) {
 
 BOOST_AUTO_TEST_CASE(an_empty_list_of_fixed_disks_is_none) {
     const std::string none = replaced(two_disk_text(), "\"contacts\"", "\"fixed\": [], \"contacts\"");
-    BOOST_TEST(parse_state<2>(none, "s").state.packing.fixed.empty());
+    BOOST_TEST(parse_state(none, "s").state.packing.fixed.empty());
+}
+
+BOOST_AUTO_TEST_CASE(a_state_of_spheres_is_refused_in_words) {
+    refuses_state(R"({"format": "isostat-state", "version": 2, "dimension": 3, "length": [4, 4, 4],
+                      "disks": [[1, 1, 1, 1], [1, 1, 3, 1]], "contacts": [[0, 1], [0, "left"]]})",
+                  {"dimension 3", "spheres are not written yet"});
 }
 
 BOOST_AUTO_TEST_CASE(bad_fields_are_named_with_their_value_and_what_was_expected) {
@@ -185,7 +191,7 @@ BOOST_AUTO_TEST_CASE(bad_fields_are_named_with_their_value_and_what_was_expected
     refuses_state(replaced(text, "\"version\": 2", "\"version\": 3"), {"version", "3"});
     refuses_state(replaced(text, "\"contacts\"", "\"contcts\""), {"unknown field 'contcts'"});
     refuses_state(replaced(text, "\"disks\"", "\"disk_force\""), {"'disks' is missing"});
-    refuses_state(replaced(text, "\"dimension\": 2", "\"dimension\": 3"), {"dimension", "3"});
+    refuses_state(replaced(text, "\"dimension\": 2", "\"dimension\": 3"), {"disks", "[x, y, z, radius]"});
     refuses_state(replaced(text, "\"nominal\"", "\"dead\""), {"load.kind", "dead", "nominal"});
     refuses_state(replaced(text, "[1.0,1.0]", "[1.0]"), {"load.stress", "2 values"});
     refuses_state(replaced(text, "\"loaded_axis\":1", "\"loaded_axis\":2"), {"load.loaded_axis", "2"});
@@ -226,7 +232,7 @@ BOOST_AUTO_TEST_CASE(entries_of_a_list_come_once_and_bounds_are_not_negative) {
 BOOST_AUTO_TEST_CASE(a_state_that_is_not_finite_is_not_written) {
     const scratch::Folder folder;
     for (const double value : {std::nan(""), std::numeric_limits<double>::infinity()}) {
-        State<2> state = ::crafted::two_disks(1, 2, 1, 1);
+        State state = ::crafted::two_disks(1, 2, 1, 1);
         state.packing.q[2] = value;
         expect_bad_input([&] { write_state(folder / "state.json", state); }, {"position", "finite"});
         state = ::crafted::two_disks(1, 2, 1, 1);
@@ -305,62 +311,60 @@ BOOST_AUTO_TEST_CASE(no_stress_presses_over_a_side_whose_wall_is_absent) {
     };
     const std::string present = R"("kind": "true", "reference_length": [4, 2])", dead = R"("reference_length": [4, 2])";
     for (const auto& [lower, upper] : {std::pair("fixed", "absent"), std::pair("absent", "fixed")}) {
-        expect_bad_input([&, l = lower, u = upper] { (void)parse_state<2>(state(l, u, present), "FILE"); },
+        expect_bad_input([&, l = lower, u = upper] { (void)parse_state(state(l, u, present), "FILE"); },
                          {"FILE", "\"true\"", "length along x", "absent", "expected nominal"});
-        expect_bad_input(
-            [&, l = lower, u = upper] { (void)parse_state<2>(state(l, u, R"("kind": "nominal")"), "FILE"); },
-            {"FILE", "no reference_length", "length along x"});
-        const State<2> stated = parse_state<2>(state(lower, upper, dead), "FILE").state;
+        expect_bad_input([&, l = lower, u = upper] { (void)parse_state(state(l, u, R"("kind": "nominal")"), "FILE"); },
+                         {"FILE", "no reference_length", "length along x"});
+        const State stated = parse_state(state(lower, upper, dead), "FILE").state;
         BOOST_TEST(stated.load.wall_forces(stated.packing).front().length == 4);
-        State<2> other = stated; // as [load] of a scene says it
+        State other = stated; // as [load] of a scene says it
         other.load.kind = LoadKind::true_stress;
         expect_bad_input([&] { isostat::check_start(other, "SCENE"); }, {"SCENE", "length along x"});
     }
     for (const std::string& load : {present, std::string(R"("kind": "nominal")")}) {
-        BOOST_TEST(parse_state<2>(state("fixed", "fixed", load), "FILE").state.load.reference_length[1] == 2);
+        BOOST_TEST(parse_state(state("fixed", "fixed", load), "FILE").state.load.reference_length[1] == 2);
     }
     // The right wall is pressed over the height, which both walls bound.
     const std::string beside =
         R"({"format": "isostat-state", "version": 2, "disks": [[1, 1, 1]], "length": [2, 2], "walls":
         {"lower": ["fixed", "fixed"], "upper": ["movable", "fixed"]}, "contacts": [], "load": {"kind": "true"}})";
-    BOOST_TEST((parse_state<2>(beside, "FILE").state.load.kind == LoadKind::true_stress));
+    BOOST_TEST((parse_state(beside, "FILE").state.load.kind == LoadKind::true_stress));
 }
 
 BOOST_AUTO_TEST_CASE(files_that_cannot_be_read_are_named) {
     const scratch::Folder folder;
-    expect_bad_input([&] { (void)read_state<2>(folder / "absent.json"); }, {"absent.json", "No such file"});
-    expect_bad_input([&] { (void)read_state<2>(folder.path()); }, {folder.path().string(), "directory"});
+    expect_bad_input([&] { (void)read_state(folder / "absent.json"); }, {"absent.json", "No such file"});
+    expect_bad_input([&] { (void)read_state(folder.path()); }, {folder.path().string(), "directory"});
     scratch::write(folder / "empty.json", "");
-    expect_bad_input([&] { (void)read_state<2>(folder / "empty.json"); }, {"empty.json", "empty"});
+    expect_bad_input([&] { (void)read_state(folder / "empty.json"); }, {"empty.json", "empty"});
     scratch::write(folder / "blank.json", " \n\n");
-    expect_bad_input([&] { (void)read_state<2>(folder / "blank.json"); }, {"blank.json", "empty"});
+    expect_bad_input([&] { (void)read_state(folder / "blank.json"); }, {"blank.json", "empty"});
 }
 
 BOOST_AUTO_TEST_CASE(what_a_failed_preparation_leaves_is_no_state) {
     const scratch::Folder folder;
     write_packing(folder / "left.json", ::crafted::two_disks(1, 2, 1, 1).packing, "stopped");
-    expect_bad_input([&] { (void)read_state<2>(folder / "left.json"); }, {"left.json", "isostat-packing"});
+    expect_bad_input([&] { (void)read_state(folder / "left.json"); }, {"left.json", "isostat-packing"});
 }
 
 BOOST_AUTO_TEST_CASE(a_field_that_comes_twice_is_named) {
     const std::string text = two_disk_text();
-    expect_bad_input(
-        [&] { (void)parse_state<2>(replaced(text, "\"length\"", "\"length\": [9, 9], \"length\""), "FILE"); },
-        {"FILE", "'length'", "twice"});
-    expect_bad_input([&] { (void)parse_state<2>(replaced(text, "\"kind\"", "\"kind\": \"true\", \"kind\""), "FILE"); },
+    expect_bad_input([&] { (void)parse_state(replaced(text, "\"length\"", "\"length\": [9, 9], \"length\""), "FILE"); },
+                     {"FILE", "'length'", "twice"});
+    expect_bad_input([&] { (void)parse_state(replaced(text, "\"kind\"", "\"kind\": \"true\", \"kind\""), "FILE"); },
                      {"FILE", "'kind'", "twice"});
 }
 
 BOOST_AUTO_TEST_CASE(nesting_has_an_end) {
     const std::string open(100'000, '['), close(100'000, ']');
-    expect_bad_input([&] { (void)parse_state<2>("{\"format\":" + open + close + "}", "FILE"); },
+    expect_bad_input([&] { (void)parse_state("{\"format\":" + open + close + "}", "FILE"); },
                      {"FILE", "deeper than 64"});
-    expect_bad_input([&] { (void)parse_state<2>("{\"format\":" + open, "FILE"); }, {"FILE"});
+    expect_bad_input([&] { (void)parse_state("{\"format\":" + open, "FILE"); }, {"FILE"});
     std::string objects;
     for (int k = 0; k < 100'000; ++k) {
         objects += "{\"a\":";
     }
-    expect_bad_input([&] { (void)parse_state<2>(objects, "FILE"); }, {"FILE", "deeper than 64"});
+    expect_bad_input([&] { (void)parse_state(objects, "FILE"); }, {"FILE", "deeper than 64"});
 }
 
 BOOST_AUTO_TEST_CASE(a_byte_order_mark_is_no_part_of_a_state) {
@@ -368,26 +372,25 @@ BOOST_AUTO_TEST_CASE(a_byte_order_mark_is_no_part_of_a_state) {
     for (const std::string& text : {two_disk_text(), scratch::read(scratch::data("vertex100.txt"))}) {
         scratch::write(folder / "plain", text);
         scratch::write(folder / "marked", "\xEF\xBB\xBF" + text);
-        StateFile<2> plain = read_state<2>(folder / "plain"), marked = read_state<2>(folder / "marked");
+        StateFile plain = read_state(folder / "plain"), marked = read_state(folder / "marked");
         marked.state.provenance = plain.state.provenance; // the name of the file
         check_same(marked.state, plain.state);
     }
     scratch::write(folder / "nothing", "\xEF\xBB\xBF\n");
-    expect_bad_input([&] { (void)read_state<2>(folder / "nothing"); }, {"nothing", "empty"});
+    expect_bad_input([&] { (void)read_state(folder / "nothing"); }, {"nothing", "empty"});
 }
 
 BOOST_AUTO_TEST_CASE(lengths_beyond_the_range_of_the_arithmetic_are_refused) {
     for (const char* radius : {"1e-200", "1e-151", "1e151", "1e200", "1e308", "5e-324"}) {
         expect_bad_input(
             [&] {
-                (void)parse_state<2>(
-                    replaced(two_disk_text(), "[1.0,1.0,1.0]", std::string("[1.0,1.0,") + radius + "]"), "FILE");
+                (void)parse_state(replaced(two_disk_text(), "[1.0,1.0,1.0]", std::string("[1.0,1.0,") + radius + "]"),
+                                  "FILE");
             },
             {"FILE", "radius of disk 0", "1e-150"});
     }
-    expect_bad_input(
-        [&] { (void)parse_state<2>(replaced(two_disk_text(), "[1.0,1.0,1.0]", "[-1e200,1.0,1.0]"), "FILE"); },
-        {"FILE", "x of disk 0", "1e+150"});
+    expect_bad_input([&] { (void)parse_state(replaced(two_disk_text(), "[1.0,1.0,1.0]", "[-1e200,1.0,1.0]"), "FILE"); },
+                     {"FILE", "x of disk 0", "1e+150"});
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -25,7 +25,7 @@ BOOST_AUTO_TEST_SUITE(io)
 
 BOOST_AUTO_TEST_CASE(the_samples_have_as_many_contacts_as_degrees_of_freedom) {
     for (const int n : {100, 400, 1936}) {
-        const State<2> state = read_state<2>(scratch::data("vertex" + std::to_string(n) + ".txt")).state;
+        const State state = read_state(scratch::data("vertex" + std::to_string(n) + ".txt")).state;
         BOOST_TEST(state.packing.disk_count() == n);
         BOOST_TEST(state.contacts.size() == static_cast<std::size_t>(2 * n + 2));
         BOOST_TEST(state.load.infinitesimal.size() == static_cast<std::size_t>(2 * n));
@@ -35,13 +35,13 @@ BOOST_AUTO_TEST_CASE(the_samples_have_as_many_contacts_as_degrees_of_freedom) {
         BOOST_TEST(state.load.reference_length[1] == state.packing.length(1));
         BOOST_TEST(std::is_sorted(state.contacts.begin(), state.contacts.end()));
         for (const Contact& contact : state.contacts) {
-            BOOST_TEST(std::abs(gap(state.packing, contact)) < 1e-13, to_string<2>(contact));
+            BOOST_TEST(std::abs(gap(state.packing, contact)) < 1e-13, to_string(contact));
         }
     }
 }
 
 BOOST_AUTO_TEST_CASE(rows_mean_what_the_format_says) {
-    const State<2> state = parse_vertex_text(two_disks, "v.txt");
+    const State state = parse_vertex_text(two_disks, "v.txt");
     BOOST_TEST(state.packing.radius[1] == 2.0);
     BOOST_TEST(state.packing.q[3] == 2.0);
     BOOST_TEST(state.packing.length(1) == 4.0);
@@ -56,7 +56,7 @@ BOOST_AUTO_TEST_CASE(names_after_the_number_of_disks_put_the_radius_last) {
     const std::string named = replaced(replaced(replaced(two_disks, "2\n1 1 1", "2 x y r gx gy\n1 1 1"),
                                                 "2 3.8284271247461903 2 0.2", "3.8284271247461903 2 2 0.2"),
                                        "# two disks\n", "");
-    const State<2> state = parse_vertex_text(named, "v.txt"), old = parse_vertex_text(two_disks, "v.txt");
+    const State state = parse_vertex_text(named, "v.txt"), old = parse_vertex_text(two_disks, "v.txt");
     BOOST_TEST((state.packing.radius == old.packing.radius));
     BOOST_TEST((state.packing.q == old.packing.q));
     BOOST_TEST((state.load.infinitesimal == old.load.infinitesimal));

@@ -12,8 +12,8 @@ BOOST_AUTO_TEST_SUITE(linear)
 
 namespace {
 
-State<2> vertex400() {
-    return read_state<2>(std::string(ISOSTAT_TEST_DATA) + "/vertex400.txt").state;
+State vertex400() {
+    return read_state(std::string(ISOSTAT_TEST_DATA) + "/vertex400.txt").state;
 }
 
 double largest(const std::vector<double>& x) {
@@ -81,8 +81,8 @@ void check_solves(const ApproximateInverse& inverse, const sparse::Matrix<double
 } // namespace
 
 BOOST_AUTO_TEST_CASE(exchanged_operators_solve_with_the_exchanged_matrix) {
-    const State<2> state = vertex400();
-    const auto h = contact_matrix(state.packing, DofMap<2>(state.packing), state.contacts);
+    const State state = vertex400();
+    const auto h = contact_matrix(state.packing, DofMap(state.packing), state.contacts);
     ApproximateInverse inverse(h); // its blocks: many of one contact, some of a few, one of most
     std::vector<int> slots;
     const std::vector<double> rhs = some_numbers(static_cast<std::size_t>(h.rows));
@@ -122,8 +122,8 @@ BOOST_AUTO_TEST_CASE(copies_of_fresh_factors_solve_side_by_side_like_one_alone, 
 }
 
 BOOST_AUTO_TEST_CASE(renewed_factors_are_those_of_the_new_matrix) {
-    const State<2> state = vertex400();
-    const auto h = contact_matrix(state.packing, DofMap<2>(state.packing), state.contacts);
+    const State state = vertex400();
+    const auto h = contact_matrix(state.packing, DofMap(state.packing), state.contacts);
     ApproximateInverse inverse(h);
     std::vector<int> slots;
     const std::vector<double> rhs = some_numbers(static_cast<std::size_t>(h.rows));
@@ -169,8 +169,8 @@ sparse::Matrix<double> with_grains_of(const sparse::Matrix<double>& h, int slot,
 } // namespace
 
 BOOST_AUTO_TEST_CASE(renewed_factors_take_over_the_order_until_they_have_filled_up) {
-    const State<2> state = vertex400();
-    sparse::Matrix<double> h = contact_matrix(state.packing, DofMap<2>(state.packing), state.contacts);
+    const State state = vertex400();
+    sparse::Matrix<double> h = contact_matrix(state.packing, DofMap(state.packing), state.contacts);
     const std::vector<double> rhs = some_numbers(static_cast<std::size_t>(h.rows));
     ApproximateInverse inverse(h);
     int dense = 0; // a contact that moves many grains
@@ -220,7 +220,7 @@ BOOST_AUTO_TEST_CASE(renewed_factors_take_over_the_order_until_they_have_filled_
 }
 
 BOOST_AUTO_TEST_CASE(solving_until_it_is_enough_says_how_far_it_is_from_the_solution) {
-    const State<2> state = vertex400();
+    const State state = vertex400();
     const auto proved = crafted::Regular::proved(state);
     const auto stale = disturbed(proved.matrix(), 1e-3);
     const Factorisation taken_over(proved, ApproximateInverse(stale));
@@ -251,7 +251,7 @@ BOOST_AUTO_TEST_CASE(solving_until_it_is_enough_says_how_far_it_is_from_the_solu
 }
 
 BOOST_AUTO_TEST_CASE(what_is_enough_scales_with_the_load) {
-    const State<2> state = vertex400();
+    const State state = vertex400();
     const auto proved = crafted::Regular::proved(state);
     const auto stale = disturbed(proved.matrix(), 1e-3);
     std::vector<double> errors;
@@ -272,7 +272,7 @@ BOOST_AUTO_TEST_CASE(what_is_enough_scales_with_the_load) {
 }
 
 BOOST_AUTO_TEST_CASE(when_old_factors_give_up_after_questions_the_forces_are_those_of_new_ones) {
-    const State<2> state = vertex400();
+    const State state = vertex400();
     const auto proved = crafted::Regular::proved(state);
     const Factorisation fresh(proved);
     const std::vector<double> load(static_cast<std::size_t>(proved.size()), 1.0);

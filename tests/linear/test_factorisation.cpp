@@ -13,22 +13,22 @@ using namespace isostat;
 using namespace crafted;
 
 // Without a structure there is no factorisation, and none is made by accident: from a proof, or by a name that says so.
-static_assert(!std::is_default_constructible_v<IsostaticStructure<2>>);
-static_assert(!std::is_constructible_v<IsostaticStructure<2>, const sparse::Matrix<double>&>);
-static_assert(!std::is_constructible_v<IsostaticStructure<2>, const Packing<2>&, const std::vector<Contact>&>);
-static_assert(!std::is_aggregate_v<IsostaticStructure<2>>);
+static_assert(!std::is_default_constructible_v<IsostaticStructure>);
+static_assert(!std::is_constructible_v<IsostaticStructure, const sparse::Matrix<double>&>);
+static_assert(!std::is_constructible_v<IsostaticStructure, const Packing&, const std::vector<Contact>&>);
+static_assert(!std::is_aggregate_v<IsostaticStructure>);
 static_assert(!std::is_default_constructible_v<Factorisation>);
 static_assert(!std::is_constructible_v<Factorisation, const sparse::Matrix<double>&>);
-static_assert(!std::is_constructible_v<Factorisation, const Packing<2>&>);
-static_assert(std::is_constructible_v<Factorisation, const IsostaticStructure<2>&>);
-static_assert(!std::is_constructible_v<Statics<2>, const Packing<2>&, const Load<2>&>);
+static_assert(!std::is_constructible_v<Factorisation, const Packing&>);
+static_assert(std::is_constructible_v<Factorisation, const IsostaticStructure&>);
+static_assert(!std::is_constructible_v<Statics, const Packing&, const Load&>);
 // A verdict is not a truth value.
 static_assert(!std::is_convertible_v<Verdict, bool>);
 
 BOOST_AUTO_TEST_SUITE(linear)
 
 BOOST_AUTO_TEST_CASE(several_right_hand_sides_are_solved_like_one_after_the_other) {
-    const State<2> state = three_disks(1, 1.2, 1.4, 1, 1);
+    const State state = three_disks(1, 1.2, 1.4, 1, 1);
     const auto proved = crafted::Regular::proved(state);
     const Factorisation factorisation(proved);
     const auto n = static_cast<std::size_t>(proved.size());
@@ -55,9 +55,9 @@ BOOST_AUTO_TEST_CASE(several_right_hand_sides_are_solved_like_one_after_the_othe
 }
 
 BOOST_AUTO_TEST_CASE(rattlers_move_in_a_block_of_their_own_and_the_rest_stays_at_exactly_0) {
-    const State<2> state = read_state<2>(std::string(ISOSTAT_TEST_DATA) + "/vertex400.txt").state;
+    const State state = read_state(std::string(ISOSTAT_TEST_DATA) + "/vertex400.txt").state;
     const auto proved = crafted::Regular::proved(state);
-    const IsostaticStructure<2>& structure = proved;
+    const IsostaticStructure& structure = proved;
     const Factorisation whole(structure);
     int blocks = 0;
     for (int slot = 0; slot < structure.size(); ++slot) {
@@ -84,7 +84,7 @@ BOOST_AUTO_TEST_CASE(rattlers_move_in_a_block_of_their_own_and_the_rest_stays_at
 }
 
 BOOST_AUTO_TEST_CASE(a_guess_changes_the_way_and_not_the_forces) {
-    const State<2> state = read_state<2>(std::string(ISOSTAT_TEST_DATA) + "/vertex400.txt").state;
+    const State state = read_state(std::string(ISOSTAT_TEST_DATA) + "/vertex400.txt").state;
     const auto proved = crafted::Regular::proved(state);
     const auto stale = disturbed(proved.matrix(), 1e-3);
     const Factorisation fresh(proved);
@@ -111,7 +111,7 @@ BOOST_AUTO_TEST_CASE(a_guess_changes_the_way_and_not_the_forces) {
 }
 
 BOOST_AUTO_TEST_CASE(factors_can_be_moved_and_outlive_their_structure) {
-    const State<2> state = two_disks(1, 2, 1, 1);
+    const State state = two_disks(1, 2, 1, 1);
     std::optional<Factorisation> kept;
     {
         const auto proved = crafted::Regular::proved(state);
@@ -125,12 +125,12 @@ BOOST_AUTO_TEST_CASE(factors_can_be_moved_and_outlive_their_structure) {
 }
 
 BOOST_AUTO_TEST_CASE(factors_taken_over_from_another_structure_solve_as_well_as_fresh_ones) {
-    const State<2> state = read_state<2>(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state;
+    const State state = read_state(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state;
     const auto first = crafted::Regular::proved(state);
     const Factorisation base(first);
     ApproximateInverse inverse = base.approximate();
     std::vector<Contact> contacts = state.contacts;
-    Packing<2> packing = state.packing;
+    Packing packing = state.packing;
     const auto n = static_cast<std::size_t>(first.size());
     // Contacts give way to held coordinates, one of the places twice, while the grains move a little.
     const std::array<std::size_t, 4> places{10, 77, 10, 150};
@@ -142,7 +142,7 @@ BOOST_AUTO_TEST_CASE(factors_taken_over_from_another_structure_solve_as_well_as_
         for (std::size_t i = 0; i < packing.q.size(); ++i) {
             packing.q[i] += 1e-5 * std::sin(static_cast<double>(i + k));
         }
-        const auto now = IsostaticStructure<2>::prove(packing, contacts);
+        const auto now = IsostaticStructure::prove(packing, contacts);
         BOOST_TEST_REQUIRE(now.ok());
         inverse = inverse.exchanged(static_cast<int>(places[k]), now.value().matrix());
         const Factorisation taken_over(now.value(), inverse);
@@ -173,7 +173,7 @@ BOOST_AUTO_TEST_CASE(factors_taken_over_from_another_structure_solve_as_well_as_
 }
 
 BOOST_AUTO_TEST_CASE(factors_that_do_not_converge_are_replaced_by_fresh_ones) {
-    const State<2> state = read_state<2>(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state;
+    const State state = read_state(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state;
     const auto structure = crafted::Regular::proved(state);
     sparse::Matrix<double> other = structure.matrix(); // the same pattern, unrelated values
     for (std::size_t e = 0; e < other.value.size(); ++e) {
@@ -192,7 +192,7 @@ BOOST_AUTO_TEST_CASE(factors_that_do_not_converge_are_replaced_by_fresh_ones) {
 }
 
 BOOST_AUTO_TEST_CASE(factors_of_a_singular_or_overflowing_matrix_are_replaced_by_fresh_ones) {
-    const State<2> state = read_state<2>(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state;
+    const State state = read_state(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state;
     const auto structure = crafted::Regular::proved(state);
     const sparse::Matrix<double>& matrix = structure.matrix();
     const auto n = static_cast<std::size_t>(structure.size());

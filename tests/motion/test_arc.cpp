@@ -14,10 +14,10 @@ constexpr double start_angle = 0.2;
 /// Disk 0 fixed at the origin (radius 1), the free disk 2 (radius 1) on it at `start_angle`, held there by the fixed
 /// disk 1; further fixed disks are obstacles. No walls.
 struct Rolling {
-    State<2> state;
+    State state;
 
     Rolling() {
-        state.packing.walls = Walls<2>::none();
+        state.packing.walls = Walls::none();
         const double x = 2 * std::cos(start_angle);
         const double y = 2 * std::sin(start_angle);
         state.packing.radius = {1, 1, 1};
@@ -47,19 +47,19 @@ struct Rolling {
         state.load.disk_force[4] = fx;
         state.load.disk_force[5] = fy;
     }
-    Result<Arc<2>> roll(double step_fraction, bool precisely = false) {
+    Result<Arc> roll(double step_fraction, bool precisely = false) {
         snap_to_grid(state.packing);
-        const auto structure = IsostaticStructure<2>::prove(state.packing, state.contacts);
+        const auto structure = IsostaticStructure::prove(state.packing, state.contacts);
         BOOST_TEST_REQUIRE(structure.ok());
         const Factorisation factorisation(structure.value());
-        CandidateList<2> candidates = find_candidates(state.packing, candidate_fraction);
+        CandidateList candidates = find_candidates(state.packing, candidate_fraction);
         ArcOptions options;
         options.step_fraction = step_fraction;
         options.precisely = precisely;
-        return follow_arc(ArcOrigin<2>{state.packing, structure.value(), factorisation, ContactId(1)},
-                          PowerLoad<2>{&state.load, false, false}, candidates, options);
+        return follow_arc(ArcOrigin{state.packing, structure.value(), factorisation, ContactId(1)},
+                          PowerLoad{&state.load, false, false}, candidates, options);
     }
-    static double angle(const Arc<2>& arc) { return std::atan2(arc.end.q[5], arc.end.q[4]); }
+    static double angle(const Arc& arc) { return std::atan2(arc.end.q[5], arc.end.q[4]); }
 };
 
 } // namespace
@@ -105,16 +105,16 @@ struct Grazing : Rolling {
         state.packing.q[7] = 5 - overlap;
     }
     /// From a rough end on top of the fixed disk, rolling up to it (+1) or back (-1).
-    [[nodiscard]] std::optional<Packing<2>> end(double direction) {
+    [[nodiscard]] std::optional<Packing> end(double direction) {
         snap_to_grid(state.packing);
-        const auto structure = IsostaticStructure<2>::prove(state.packing, state.contacts);
+        const auto structure = IsostaticStructure::prove(state.packing, state.contacts);
         BOOST_TEST_REQUIRE(structure.ok());
-        Packing<2> top = state.packing;
+        Packing top = state.packing;
         top.q[4] = 0;
         top.q[5] = 2;
         std::vector<double> tangent(top.q.size(), 0.0);
         tangent[4] = -direction;
-        return precise_end(RoughEnd<2>{structure.value(), ContactId(1), pair(2, 3), top, tangent, 0.1});
+        return precise_end(RoughEnd{structure.value(), ContactId(1), pair(2, 3), top, tangent, 0.1});
     }
 };
 
@@ -202,19 +202,19 @@ BOOST_AUTO_TEST_CASE(a_gap_of_0_to_rounding_that_an_arc_does_not_move_is_no_even
 
 /// Rates of rounding, first together and then apart, make no dip; rates that are none do.
 BOOST_AUTO_TEST_CASE(a_gap_that_stays_0_to_rounding_within_a_step_does_not_dip) {
-    Packing<2> at;
-    at.walls = Walls<2>::none();
+    Packing at;
+    at.walls = Walls::none();
     at.radius = {1, 1, 1};
     at.q = {0, 0, 2, 0, 0, 5, 0, 0};
     at.fixed = {1, 0, 0};
-    CandidateList<2> candidates = find_candidates(at, candidate_fraction);
+    CandidateList candidates = find_candidates(at, candidate_fraction);
     const Contact opened = pair(0, 2);
     const Contact nothing{ContactKind::held, -1, 0}; // closes
     constexpr double step = 0.05;
     constexpr double noise = 1e-13;
     for (const double rate : {1e-14, 1e-4}) {
-        EventScan<2> scan(opened, ArcOptions(), candidates, {pair(0, 1)});
-        const CurveCourse<2> course{at, {0, 0, -rate, 0, 0, 1, 0, 0}, std::vector<double>(8, 0.0), 5};
+        EventScan scan(opened, ArcOptions(), candidates, {pair(0, 1)});
+        const CurveCourse course{at, {0, 0, -rate, 0, 0, 1, 0, 0}, std::vector<double>(8, 0.0), 5};
         const GapEvent event = scan.first_event(course, step, noise, true);
         BOOST_TEST((event.contact == pair(0, 1) && event.s == 0) == (rate > noise), rate);
         const auto dip = scan.suspicious_dip({at, at, step, nothing}, {0, 0, rate, 0, 0, 1, 0, 0}, noise);
@@ -231,7 +231,7 @@ struct Squeezed : Rolling {
     explicit Squeezed(double slope) {
         constexpr double apart = 4 - 1e-14;
         stop(2.0);
-        Packing<2>& packing = state.packing;
+        Packing& packing = state.packing;
         first = packing.q.size() - 2;
         packing.q.insert(packing.q.end() - 2,
                          {-7, -7, -7 + apart * std::cos(slope), -7 + apart * std::sin(slope), 0, 0});
@@ -260,7 +260,7 @@ BOOST_AUTO_TEST_CASE(contacts_that_are_nearly_singular_are_followed_with_residua
     int astray = 0;
     for (int k = 0; k < 20; ++k) {
         Squeezed squeezed(0.3 + 0.05 * k);
-        const auto moved = [&](const Arc<2>& arc) {
+        const auto moved = [&](const Arc& arc) {
             const auto along = [&](std::size_t c) { return arc.end.q[c] - squeezed.state.packing.q[c]; };
             return std::hypot(along(squeezed.first + 4), along(squeezed.first + 5));
         };
@@ -305,14 +305,14 @@ BOOST_AUTO_TEST_CASE(a_motion_without_end_is_reported) {
     rolling.state.packing.q[2] = 50; // the opened contact is far away and nothing else is there: rolls for ever
     rolling.state.contacts = {pair(0, 2), {ContactKind::held, 5, 0}};
     snap_to_grid(rolling.state.packing);
-    const auto structure = IsostaticStructure<2>::prove(rolling.state.packing, rolling.state.contacts);
+    const auto structure = IsostaticStructure::prove(rolling.state.packing, rolling.state.contacts);
     BOOST_TEST_REQUIRE(structure.ok());
     const Factorisation factorisation(structure.value());
-    CandidateList<2> candidates = find_candidates(rolling.state.packing, candidate_fraction);
+    CandidateList candidates = find_candidates(rolling.state.packing, candidate_fraction);
     ArcOptions options;
     options.max_steps = 500;
-    const auto arc = follow_arc(ArcOrigin<2>{rolling.state.packing, structure.value(), factorisation, ContactId(1)},
-                                PowerLoad<2>{&rolling.state.load, false, false}, candidates, options);
+    const auto arc = follow_arc(ArcOrigin{rolling.state.packing, structure.value(), factorisation, ContactId(1)},
+                                PowerLoad{&rolling.state.load, false, false}, candidates, options);
     BOOST_TEST_REQUIRE(!arc.ok());
     BOOST_TEST((arc.failure().kind == FailureKind::unbounded));
 }

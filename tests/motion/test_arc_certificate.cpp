@@ -11,25 +11,24 @@ namespace {
 
 /// A vertex with all that a certificate needs of it.
 struct Known {
-    Packing<2> packing;
-    IsostaticStructure<2> structure;
+    Packing packing;
+    IsostaticStructure structure;
     Factorisation factorisation;
     InverseBound inverse;
     VertexEnclosure enclosure;
 
-    Known(Packing<2> p, IsostaticStructure<2> s)
-        : packing(std::move(p)), structure(std::move(s)), factorisation(structure) {
+    Known(Packing p, IsostaticStructure s) : packing(std::move(p)), structure(std::move(s)), factorisation(structure) {
         InverseBoundCache cache;
         inverse = bound_inverse(structure, factorisation, cache);
         enclosure = enclose_vertex(packing, structure, inverse);
     }
-    static Known of(Packing<2> packing, const std::vector<Contact>& contacts) {
+    static Known of(Packing packing, const std::vector<Contact>& contacts) {
         snap_to_grid(packing);
-        auto proved = IsostaticStructure<2>::prove(packing, contacts);
+        auto proved = IsostaticStructure::prove(packing, contacts);
         BOOST_REQUIRE_MESSAGE(proved.ok(), (proved.ok() ? std::string() : proved.failure().message()));
         return {std::move(packing), std::move(proved.value())};
     }
-    [[nodiscard]] ArcVertex<2> vertex() const { return {packing, structure, factorisation, inverse, enclosure}; }
+    [[nodiscard]] ArcVertex vertex() const { return {packing, structure, factorisation, inverse, enclosure}; }
 };
 
 constexpr double rolls_from = 0.2;
@@ -38,11 +37,11 @@ constexpr double stop_angle = 2;
 /// Disk 0 fixed at the origin, disk 2 free on it, disk 1 fixed where disk 2 starts, disk 3 fixed where it stops; all of
 /// radius 1. Disk 4, if any, is an obstacle. No walls.
 struct CertifiedRolling {
-    Packing<2> packing;
-    Load<2> load;
+    Packing packing;
+    Load load;
 
     explicit CertifiedRolling(double fx = -1, double fy = 0.1) {
-        packing.walls = Walls<2>::none();
+        packing.walls = Walls::none();
         const auto touching = [](double angle, double side) {
             return std::array{2 * std::cos(angle) + side * 2 * std::sin(angle),
                               2 * std::sin(angle) - side * 2 * std::cos(angle)};
@@ -75,9 +74,8 @@ struct CertifiedRolling {
     }
     /// Whatever a path follower may have said: from the start straight to `end`.
     [[nodiscard]] ArcCertificate certify(const Known& from, const Known& end) const {
-        const CandidateList<2> candidates = find_candidates(from.packing, candidate_fraction);
-        return certify_arc(from.vertex(), ContactId(1), +1, end.vertex(), PowerLoad<2>{&load, false, false},
-                           candidates);
+        const CandidateList candidates = find_candidates(from.packing, candidate_fraction);
+        return certify_arc(from.vertex(), ContactId(1), +1, end.vertex(), PowerLoad{&load, false, false}, candidates);
     }
     ArcCertificate certify() { return certify(start(), stop()); }
 };
@@ -185,8 +183,8 @@ BOOST_AUTO_TEST_CASE(a_released_coordinate_is_followed_to_the_side_to_which_it_g
     CertifiedRolling rolling;
     const Known turn = rolling.at(1.2, Contact{ContactKind::held, 4, 0});
     const Known stop = rolling.stop();
-    const CandidateList<2> candidates = find_candidates(turn.packing, candidate_fraction);
-    const PowerLoad<2> power{&rolling.load, false, false};
+    const CandidateList candidates = find_candidates(turn.packing, candidate_fraction);
+    const PowerLoad power{&rolling.load, false, false};
     const auto down = certify_arc(turn.vertex(), ContactId(1), -1, stop.vertex(), power, candidates);
     BOOST_TEST(proved(down), down.reason); // x falls on the way to the stop
     const auto up = certify_arc(turn.vertex(), ContactId(1), +1, stop.vertex(), power, candidates);
@@ -207,8 +205,8 @@ BOOST_AUTO_TEST_CASE(a_coordinate_released_next_to_the_stop_goes_the_other_way) 
         rolling.packing.q[7] = 2 * std::sin(top) + 2 * std::cos(top);
         const Known stop = rolling.at(top, pair(2, 3));
         const Known turn = rolling.at(top - before, Contact{ContactKind::held, 5, 0});
-        const CandidateList<2> candidates = find_candidates(turn.packing, candidate_fraction);
-        const PowerLoad<2> power{&rolling.load, false, false};
+        const CandidateList candidates = find_candidates(turn.packing, candidate_fraction);
+        const PowerLoad power{&rolling.load, false, false};
         const auto down = certify_arc(turn.vertex(), ContactId(1), -1, stop.vertex(), power, candidates);
         BOOST_TEST(proved(down), down.reason);
         const auto up = certify_arc(turn.vertex(), ContactId(1), +1, stop.vertex(), power, candidates);
@@ -223,8 +221,8 @@ BOOST_AUTO_TEST_CASE(an_end_that_may_lie_behind_the_start_is_not_certified) {
         Known turn = rolling.at(1.2, Contact{ContactKind::held, 4, 0});
         Known end = rolling.at(1.2 + ahead, Contact{ContactKind::held, 5, 0});
         turn.enclosure.radius = end.enclosure.radius = 1e-6;
-        const CandidateList<2> candidates = find_candidates(turn.packing, candidate_fraction);
-        const PowerLoad<2> power{&rolling.load, false, false};
+        const CandidateList candidates = find_candidates(turn.packing, candidate_fraction);
+        const PowerLoad power{&rolling.load, false, false};
         const auto down = certify_arc(turn.vertex(), ContactId(1), -1, end.vertex(), power, candidates);
         BOOST_TEST(proved(down) == (ahead > 0), down.reason);
     }
@@ -234,17 +232,17 @@ BOOST_AUTO_TEST_CASE(a_list_of_candidates_serves_half_of_its_reach) {
     CertifiedRolling rolling;
     const Known start = rolling.start();
     const Known stop = rolling.stop();
-    const ArcVertex<2> from = start.vertex();
-    const ArcVertex<2> to = stop.vertex();
-    const MovingPart<2> part(from, to, 1, 1e-15, 1e-15);
+    const ArcVertex from = start.vertex();
+    const ArcVertex to = stop.vertex();
+    const MovingPart part(from, to, 1, 1e-15, 1e-15);
     InverseBoundCache cache;
     const auto centre = part.at_start(cache);
     BOOST_TEST_REQUIRE((centre != nullptr));
-    CurvePiece<2> piece(part.curve(), *centre, 1);
+    CurvePiece piece(part.curve(), *centre, 1);
     constexpr double h = 1e-6;
     BOOST_TEST_REQUIRE(piece.prove(h));
     for (const double share : {0.0, 0.25, 0.49, 0.5001, 0.6, 1.0, 1.9}) { // of the reach, that the disk has moved since
-        CandidateList<2> list = find_candidates(start.packing, candidate_fraction);
+        CandidateList list = find_candidates(start.packing, candidate_fraction);
         list.reference[4] += 0.6 * share * list.reach;
         list.reference[5] += 0.8 * share * list.reach;
         BOOST_TEST(part.complete(piece, h, list) == (share < 0.5), share);
@@ -264,12 +262,12 @@ BOOST_AUTO_TEST_CASE(the_opened_contact_may_close_again_after_a_whole_turn) {
 
 BOOST_AUTO_TEST_CASE(an_arc_in_a_channel_is_certified_unless_a_pair_of_images_meets_on_the_way) {
     const auto certify = [](const cells::ChannelRoll& roll) {
-        const State<2> from = roll.start();
-        const State<2> to = roll.end();
+        const State from = roll.start();
+        const State to = roll.end();
         const Known start = Known::of(from.packing, from.contacts);
         const Known end = Known::of(to.packing, to.contacts);
-        return certify_arc(start.vertex(), ContactId(roll.slot), +1, end.vertex(),
-                           PowerLoad<2>{&from.load, false, false}, find_candidates(start.packing, candidate_fraction));
+        return certify_arc(start.vertex(), ContactId(roll.slot), +1, end.vertex(), PowerLoad{&from.load, false, false},
+                           find_candidates(start.packing, candidate_fraction));
     };
     for (const int shift : {0, 1, -2}) {
         for (const double clearance : {1e-2, 1e-5, 1e-8, 1e-10}) {
@@ -282,7 +280,7 @@ BOOST_AUTO_TEST_CASE(an_arc_in_a_channel_is_certified_unless_a_pair_of_images_me
                 const cells::ChannelRoll roll{-clearance, shift};
                 const ArcCertificate meets = certify(roll);
                 BOOST_TEST(!proved(meets));
-                BOOST_TEST(meets.reason.find("the gap of " + to_string<2>(roll.passing())) == 0U, meets.reason);
+                BOOST_TEST(meets.reason.find("the gap of " + to_string(roll.passing())) == 0U, meets.reason);
             }
         }
     }

@@ -14,12 +14,12 @@ namespace {
 /// Disk 1 free at `angle` on disk 0, which is fixed, and `off` from touching it: so far the curve is from the
 /// polynomial; `axis` of disk 1 in the free row. Disk 2, if any, is fixed too.
 struct OnCircle {
-    Packing<2> packing;
-    std::unique_ptr<ArcCentre<2>> centre;
-    std::optional<KeptCurve<2>> curve;
+    Packing packing;
+    std::unique_ptr<ArcCentre> centre;
+    std::optional<KeptCurve> curve;
 
     OnCircle(double angle, int axis, double off = 0, std::array<double, 3> obstacle = {}) {
-        packing.walls = Walls<2>::none();
+        packing.walls = Walls::none();
         packing.radius = {1, 1};
         packing.q = {0, 0, (2 + off) * std::cos(angle), (2 + off) * std::sin(angle), 0, 0};
         packing.fixed = {1, 0};
@@ -31,11 +31,11 @@ struct OnCircle {
         snap_to_grid(packing);
         const std::vector<Contact> contacts{{ContactKind::disk_disk, 0, 1}, {ContactKind::held, 2 + axis, 0}};
         InverseBoundCache cache;
-        centre = ArcCentre<2>::make(packing, contacts, cache);
+        centre = ArcCentre::make(packing, contacts, cache);
         BOOST_REQUIRE(centre != nullptr);
         curve.emplace(packing, contacts, 1, 0.0);
     }
-    CurvePiece<2> piece() { return {*curve, *centre, 1}; }
+    CurvePiece piece() { return {*curve, *centre, 1}; }
 };
 
 } // namespace
@@ -45,7 +45,7 @@ BOOST_AUTO_TEST_SUITE(motion)
 BOOST_AUTO_TEST_CASE(the_true_curve_lies_in_the_tube_and_its_tangent_within_the_bound) {
     for (const double angle : {0.3, 0.8, 1.2, 2.5}) {
         OnCircle on(angle, 0);
-        CurvePiece<2> piece = on.piece();
+        CurvePiece piece = on.piece();
         const double h = 0.5 * piece.natural_reach();
         BOOST_TEST_REQUIRE(piece.prove(h));
         BOOST_TEST(piece.radius() < 1e-13);
@@ -67,7 +67,7 @@ BOOST_AUTO_TEST_CASE(the_true_curve_lies_in_the_tube_and_its_tangent_within_the_
 BOOST_AUTO_TEST_CASE(no_tube_is_proved_across_a_point_where_the_row_turns) {
     // x = 2 cos(angle) has its largest value at angle 0; s runs like the faster coordinate y, 0.1 away from there.
     OnCircle on(0.05, 0);
-    CurvePiece<2> piece = on.piece();
+    CurvePiece piece = on.piece();
     const double ahead = on.packing.q[3];
     BOOST_TEST(piece.natural_reach() < ahead);
     for (const double share : {1.001, 1.5, 4.0}) {
@@ -75,14 +75,14 @@ BOOST_AUTO_TEST_CASE(no_tube_is_proved_across_a_point_where_the_row_turns) {
     }
     BOOST_TEST(piece.prove(0.2 * piece.natural_reach()));
     OnCircle other(0.05, 1); // y does not turn there
-    CurvePiece<2> upward = other.piece();
+    CurvePiece upward = other.piece();
     BOOST_TEST(upward.prove(0.12));
     BOOST_TEST(upward.slope(-0.12)[2] * upward.slope(0.12)[2] < 0); // x does
 }
 
 BOOST_AUTO_TEST_CASE(points_are_located_on_their_own_curve_only) {
     OnCircle on(0.8, 0);
-    CurvePiece<2> piece = on.piece();
+    CurvePiece piece = on.piece();
     BOOST_TEST_REQUIRE(piece.prove(0.5 * piece.natural_reach()));
     const double s = 0.3 * piece.reach();
     std::vector<double> x = piece.point(s);
@@ -104,8 +104,8 @@ BOOST_AUTO_TEST_CASE(a_bound_of_the_inverse_that_is_not_there_proves_no_tube) {
     const InverseBound unknown;
     const VertexEnclosure enclosure;
     const auto centre =
-        ArcCentre<2>::of({on.packing, on.centre->structure(), on.centre->factorisation(), unknown, enclosure});
-    CurvePiece<2> piece(*on.curve, *centre, 1);
+        ArcCentre::of({on.packing, on.centre->structure(), on.centre->factorisation(), unknown, enclosure});
+    CurvePiece piece(*on.curve, *centre, 1);
     BOOST_TEST(!piece.prove(1e-6));
     BOOST_TEST(on.piece().prove(1e-6));
 }
@@ -116,7 +116,7 @@ BOOST_AUTO_TEST_CASE(the_constants_of_a_tube_are_those_of_the_statements) {
         BOOST_TEST(value <= least * (1 + slack), value << " is far above " << least);
     };
     // K of V4 over the kept contacts, and what grains at rest add (A7).
-    const State<2> state = read_state<2>(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state;
+    const State state = read_state(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state;
     for (const std::size_t slot : {0U, 17U, 101U}) {
         std::vector<int> count(state.packing.radius.size(), 0);
         double smallest = 1e300;
@@ -130,17 +130,17 @@ BOOST_AUTO_TEST_CASE(the_constants_of_a_tube_are_those_of_the_statements) {
                 smallest = std::min(smallest, state.packing.radius[i] + state.packing.radius[j]);
             }
         }
-        const KeptCurve<2> curve(state.packing, state.contacts, slot, 1e-9);
+        const KeptCurve curve(state.packing, state.contacts, slot, 1e-9);
         within(curve.lipschitz, 2 * std::sqrt(*std::max_element(count.begin(), count.end())) / smallest, 1e-8);
         BOOST_TEST(curve.rest_residual == 0); // all of them move
     }
     OnCircle on(0.8, 0);
-    const KeptCurve<2> curve(on.packing, {{ContactKind::disk_disk, 0, 1}, {ContactKind::held, 2, 0}}, 1, 1e-9);
+    const KeptCurve curve(on.packing, {{ContactKind::disk_disk, 0, 1}, {ContactKind::held, 2, 0}}, 1, 1e-9);
     within(curve.rest_residual, 1e-9, 0.02);
     within(curve.rest_derivative, 1e-9 / 2, 0.02);
     // A1, A2 at the centre itself, a thousandth of a radius off the curve: h is next to nothing there.
     OnCircle off(0.8, 0, 1e-3);
-    CurvePiece<2> piece = off.piece();
+    CurvePiece piece = off.piece();
     BOOST_TEST_REQUIRE(piece.prove(1e-9));
     const double ratio = 1e-3 / 2;
     const double beta = (1 + 2 * ratio) / off.centre->sigma_min();
@@ -153,10 +153,10 @@ BOOST_AUTO_TEST_CASE(the_constants_of_a_tube_are_those_of_the_statements) {
 // C11, written down once more: sums over the contacts of a disk, and over those with an image.
 BOOST_AUTO_TEST_CASE(the_constants_of_a_curve_in_a_cell_are_those_of_the_statement) {
     for (const char* name : {"tilt_16", "rect_16", "channel_16"}) {
-        const State<2> state = read_any_state<2>(std::string(ISOSTAT_TEST_DATA) + "/cells/" + name + ".json").state;
-        const Packing<2>& packing = state.packing;
+        const State state = read_any_state(std::string(ISOSTAT_TEST_DATA) + "/cells/" + name + ".json").state;
+        const Packing& packing = state.packing;
         const std::size_t slot = 3;
-        const KeptCurve<2> curve(packing, state.contacts, slot, 0.0);
+        const KeptCurve curve(packing, state.contacts, slot, 0.0);
         std::vector<double> squares(packing.radius.size() + 1, 0.0);
         std::vector<double> fourths = squares;
         for (std::size_t l = 0; l < state.contacts.size(); ++l) {
@@ -197,7 +197,7 @@ BOOST_AUTO_TEST_CASE(the_constants_of_a_curve_in_a_cell_are_those_of_the_stateme
                     continue;
                 }
                 e[l] = 1.0 / (1.0 + static_cast<double>(l % 3));
-                const GapGradient<2> g = gap_gradient(packing, state.contacts[l]);
+                const GapGradient g = gap_gradient(packing, state.contacts[l]);
                 double y = 0;
                 for (int k = 0; k < g.count; ++k) {
                     const auto entry = static_cast<std::size_t>(k);
@@ -232,12 +232,12 @@ BOOST_AUTO_TEST_CASE(a_gap_of_the_polynomial_within_the_tube_proves_nothing) {
         for (const double clearance : {-0.3 * off, 10 * off}) {
             const double place = 2 - (1.25 + clearance); // towards disk 0, where the gap does not change at first order
             OnCircle on(angle, 0, off, {place * std::cos(on_curve), place * std::sin(on_curve), 0.25});
-            CurvePiece<2> piece = on.piece();
+            CurvePiece piece = on.piece();
             const double h = 1e-9;
             BOOST_TEST_REQUIRE(piece.prove(h));
             const Contact obstacle{ContactKind::disk_disk, 1, 2};
             BOOST_TEST(gap(on.packing, obstacle) > 0.5 * off);
-            GapWatch<2> watch;
+            GapWatch watch;
             BOOST_TEST(watch.look(piece, obstacle, -h, h) == (clearance > 0));
         }
     }
@@ -254,7 +254,7 @@ BOOST_AUTO_TEST_CASE(a_rate_of_the_polynomial_within_its_error_proves_nothing) {
             for (const double turn : {0.0, 0.1}) {
                 const double line = 0.5 * (angle + on_curve) + side * turn;
                 OnCircle on(angle, 0, off, {x + far * std::cos(line), 2 * std::sin(angle) + far * std::sin(line), 1});
-                CurvePiece<2> piece = on.piece();
+                CurvePiece piece = on.piece();
                 BOOST_TEST_REQUIRE(piece.prove(1e-9));
                 const std::vector<double> v = piece.slope(0);
                 // The gap grows where the disk moves against the line.
@@ -263,7 +263,7 @@ BOOST_AUTO_TEST_CASE(a_rate_of_the_polynomial_within_its_error_proves_nothing) {
                     const double along = -std::sin(direction) * std::cos(line) + std::cos(direction) * std::sin(line);
                     return -sense * along;
                 };
-                const int sign = GapWatch<2>::rate_sign(piece, {ContactKind::disk_disk, 1, 2}, 0);
+                const int sign = GapWatch::rate_sign(piece, {ContactKind::disk_disk, 1, 2}, 0);
                 if (turn == 0) {
                     BOOST_TEST(rate(angle) * rate(on_curve) < 0);
                     BOOST_TEST(sign == 0);
@@ -282,16 +282,16 @@ BOOST_AUTO_TEST_CASE(a_power_of_the_polynomial_within_its_error_proves_nothing) 
     const double on_curve = std::acos((2 + off) * std::cos(angle) / 2);
     for (const double turn : {-0.1, 0.0, 0.1}) {
         OnCircle on(angle, 0, off);
-        CurvePiece<2> piece = on.piece();
+        CurvePiece piece = on.piece();
         BOOST_TEST_REQUIRE(piece.prove(1e-9));
         const double line = 0.5 * (angle + on_curve) + turn;
         const std::vector<double> v = piece.slope(0);
         const double sense = v[2] * std::cos(line) + v[3] * std::sin(line) > 0 ? 1 : -1;
-        Load<2> load;
+        Load load;
         load.disk_force = {0, 0, sense * std::cos(line), sense * std::sin(line)};
         BOOST_TEST(v[2] * load.disk_force[2] + v[3] * load.disk_force[3] > 0);
-        const PowerLoad<2> given{&load, false, false};
-        PowerWatch<2> watch(given);
+        const PowerLoad given{&load, false, false};
+        PowerWatch watch(given);
         watch.look(piece, -1e-9, 1e-9);
         ArcCertificate certificate;
         watch.conclude(certificate, false);
@@ -300,9 +300,9 @@ BOOST_AUTO_TEST_CASE(a_power_of_the_polynomial_within_its_error_proves_nothing) 
 }
 
 /// Newton's method in long double from `q` to a root of the equations of all contacts but one, whose row stays.
-void to_the_curve(const KeptCurve<2>& curve, const ArcCentre<2>& centre, std::vector<long double>& q) {
+void to_the_curve(const KeptCurve& curve, const ArcCentre& centre, std::vector<long double>& q) {
     const auto minus = [](long double a, long double b) -> long double { return a - b; };
-    const DofMap<2>& dofs = centre.structure().dofs();
+    const DofMap& dofs = centre.structure().dofs();
     for (int round = 0; round < 8; ++round) {
         std::vector<double> step(curve.contacts.size(), 0.0);
         for (std::size_t l = 0; l < step.size(); ++l) {
@@ -310,8 +310,8 @@ void to_the_curve(const KeptCurve<2>& curve, const ArcCentre<2>& centre, std::ve
             if (l == curve.slot) {
                 continue;
             }
-            const auto r = Separation<2>(c, static_cast<int>(centre.packing().radius.size()))
-                               .of_disks([&](std::size_t k) { return q[k]; }, minus);
+            const auto r =
+                Separation(c, centre.packing().layout()).of_disks([&](std::size_t k) { return q[k]; }, minus);
             const auto& radius = centre.packing().radius;
             const long double d =
                 static_cast<long double>(radius[static_cast<std::size_t>(c.i)]) + radius[static_cast<std::size_t>(c.j)];
@@ -328,17 +328,17 @@ void to_the_curve(const KeptCurve<2>& curve, const ArcCentre<2>& centre, std::ve
 BOOST_AUTO_TEST_CASE(the_true_curve_of_a_cell_lies_in_the_tube_of_a_shifted_polynomial) {
     for (const char* name : {"tilt_16", "rect_16"}) {
         for (const double off : {0.0, 0x1p-30, 0x1p-15}) { // how far the centre is from the curve, besides its rounding
-            State<2> state = read_any_state<2>(std::string(ISOSTAT_TEST_DATA) + "/cells/" + name + ".json").state;
+            State state = read_any_state(std::string(ISOSTAT_TEST_DATA) + "/cells/" + name + ".json").state;
             for (std::size_t k = 2; k < state.packing.q.size(); k += 3) {
                 state.packing.q[k] += off;
             }
             snap_to_grid(state.packing);
             const std::size_t slot = 3;
             InverseBoundCache cache;
-            const auto centre = ArcCentre<2>::make(state.packing, state.contacts, cache);
+            const auto centre = ArcCentre::make(state.packing, state.contacts, cache);
             BOOST_TEST_REQUIRE((centre != nullptr));
-            const KeptCurve<2> curve(state.packing, state.contacts, slot, 0.0);
-            CurvePiece<2> piece(curve, *centre, 1);
+            const KeptCurve curve(state.packing, state.contacts, slot, 0.0);
+            CurvePiece piece(curve, *centre, 1);
             BOOST_TEST_REQUIRE(piece.shift().size() == state.packing.q.size());
             double shift = 0;
             for (const double x : piece.shift()) {

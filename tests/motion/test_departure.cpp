@@ -9,19 +9,19 @@ using namespace isostat;
 namespace {
 
 /// Any contact may open, not only one that a load drives apart.
-State<2> unloaded(State<2> state) {
+State unloaded(State state) {
     state.load.stress.fill(0);
     return state;
 }
 
 /// The vertex of a file, and the arcs that open its contacts.
 struct Start {
-    State<2> state = unloaded(read_state<2>(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state);
-    IsostaticStructure<2> structure = IsostaticStructure<2>::prove(state.packing, state.contacts).value();
+    State state = unloaded(read_state(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state);
+    IsostaticStructure structure = IsostaticStructure::prove(state.packing, state.contacts).value();
     Factorisation factorisation{structure};
-    CandidateList<2> candidates = find_candidates(state.packing, candidate_fraction);
+    CandidateList candidates = find_candidates(state.packing, candidate_fraction);
 
-    [[nodiscard]] ArcDeparture<2> depart(std::size_t slot, std::vector<Contact> open = {}) {
+    [[nodiscard]] ArcDeparture depart(std::size_t slot, std::vector<Contact> open = {}) {
         return {{state.packing, structure, factorisation, ContactId(slot)},
                 {&state.load, false, false},
                 candidates,
@@ -31,7 +31,7 @@ struct Start {
 };
 
 /// By definition.
-std::vector<Contact> candidates_without(const CandidateList<2>& candidates, const std::vector<Contact>& contacts) {
+std::vector<Contact> candidates_without(const CandidateList& candidates, const std::vector<Contact>& contacts) {
     std::vector<Contact> open;
     for (const Contact& c : candidates.contacts) {
         if (std::find(contacts.begin(), contacts.end(), c) == contacts.end()) {
@@ -85,7 +85,7 @@ BOOST_AUTO_TEST_CASE(the_expected_end_is_mostly_the_end_and_never_decides_it) {
     int right = 0;
     int wrong = 0;
     for (std::size_t slot = 0; slot < start.state.contacts.size(); ++slot) {
-        ArcDeparture<2> departure = start.depart(slot);
+        ArcDeparture departure = start.depart(slot);
         const auto expected = departure.expected();
         const auto arc = departure.follow();
         if (!arc.ok() || !expected) {
@@ -113,15 +113,14 @@ BOOST_AUTO_TEST_CASE(an_exchange_does_not_depend_on_the_guess_of_it) {
     Start start;
     int predicted = 0;
     for (std::size_t slot = 0; slot < start.state.contacts.size(); slot += 5) {
-        ArcDeparture<2> departure = start.depart(slot);
+        ArcDeparture departure = start.depart(slot);
         const auto expected = departure.expected();
         const auto arc = departure.follow();
         if (!arc.ok() || !expected) {
             continue;
         }
-        const auto exchange = [&](const Packing<2>& at, const Contact& closes,
-                                  const ExchangedContacts<2>* guess = nullptr) {
-            return IsostaticStructure<2>::exchange(start.structure, at, ContactId(slot), closes, guess);
+        const auto exchange = [&](const Packing& at, const Contact& closes, const ExchangedContacts* guess = nullptr) {
+            return IsostaticStructure::exchange(start.structure, at, ContactId(slot), closes, guess);
         };
         const auto plain = exchange(arc.value().end, arc.value().closed);
         BOOST_TEST_REQUIRE(plain.has_value());

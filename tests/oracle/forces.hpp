@@ -20,8 +20,8 @@ namespace isostat::oracle {
 /// f_l = scale_l sqrt(square_l) x_l when A x = F, square_l the squared distance.
 class IntegerSystem {
   public:
-    IntegerSystem(const Packing<2>& packing, const std::vector<Contact>& contacts) {
-        const DofMap<2> dofs(packing);
+    IntegerSystem(const Packing& packing, const std::vector<Contact>& contacts) {
+        const DofMap dofs(packing);
         rows_ = static_cast<std::size_t>(dofs.dof_count());
         cols_ = contacts.size();
         fmpz_mat_init(a_, static_cast<slong>(rows_), static_cast<slong>(cols_));
@@ -123,9 +123,9 @@ class IntegerSystem {
 
 /// Forces of a structure in which every free disk rests on two earlier ones (contacts 2k and 2k + 1 belong to the k-th
 /// free disk), from the last disk to the first, two equations at a time. Relative error about cond 2^-bits.
-inline std::vector<mpf_class> resting_forces(const Packing<2>& packing, const std::vector<Contact>& contacts,
+inline std::vector<mpf_class> resting_forces(const Packing& packing, const std::vector<Contact>& contacts,
                                              const std::vector<double>& force, unsigned bits) {
-    const DofMap<2> dofs(packing);
+    const DofMap dofs(packing);
     std::vector<mpf_class> load(packing.q.size(), mpf_class(0, bits)); // still to be carried, by coordinate
     for (std::size_t mu = 0; mu < force.size(); ++mu) {
         load[static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(mu)))] = force[mu];

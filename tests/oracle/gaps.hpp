@@ -10,7 +10,7 @@
 namespace isostat::oracle {
 
 /// Sign of gap - bound, over the rationals (bound >= -(R_i + R_j) for disk pairs).
-inline int gap_minus_bound_sign(const Packing<2>& packing, const Contact& contact, double bound) {
+inline int gap_minus_bound_sign(const Packing& packing, const Contact& contact, double bound) {
     const auto i = static_cast<std::size_t>(contact.i);
     const auto j = static_cast<std::size_t>(contact.j);
     switch (contact.kind) {

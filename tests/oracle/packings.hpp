@@ -12,20 +12,20 @@
 
 namespace isostat::oracle {
 
-inline void append(Packing<2>& packing, double x, double y, double radius) {
+inline void append(Packing& packing, double x, double y, double radius) {
     packing.q.insert(packing.q.end() - 2, {x, y});
     packing.radius.push_back(radius);
 }
 
-inline Packing<2> empty_cluster() {
-    Packing<2> packing;
-    packing.walls = Walls<2>::none();
+inline Packing empty_cluster() {
+    Packing packing;
+    packing.walls = Walls::none();
     packing.q = {0, 0};
     return packing;
 }
 
 /// Gap of two disks in extended precision.
-inline long double plain_gap(const Packing<2>& packing, std::size_t i, std::size_t j) {
+inline long double plain_gap(const Packing& packing, std::size_t i, std::size_t j) {
     const long double dx = static_cast<long double>(packing.q[2 * j]) - packing.q[2 * i];
     const long double dy = static_cast<long double>(packing.q[2 * j + 1]) - packing.q[2 * i + 1];
     return std::hypot(dx, dy) - packing.radius[i] - packing.radius[j];
@@ -33,8 +33,8 @@ inline long double plain_gap(const Packing<2>& packing, std::size_t i, std::size
 
 /// n disks with radii in [1, ratio] (log-uniform); each is put at a distance of `spacing()` >= 0 from two earlier ones,
 /// without overlap beyond rounding. Many pairs are tangent to rounding when spacing() gives 0.
-template <class Spacing> Packing<2> grown_cluster(int n, double ratio, Random& random, Spacing spacing) {
-    Packing<2> packing = empty_cluster();
+template <class Spacing> Packing grown_cluster(int n, double ratio, Random& random, Spacing spacing) {
+    Packing packing = empty_cluster();
     const auto radius = [&] { return std::exp(random.real(0, std::log(ratio))); };
     append(packing, random.real(-1, 1), random.real(-1, 1), radius());
     for (int tries = 0; packing.disk_count() < n && tries < 200 * n; ++tries) {
@@ -73,8 +73,8 @@ template <class Spacing> Packing<2> grown_cluster(int n, double ratio, Random& r
 }
 
 /// m x m disks of radius 1 on a square lattice of the given step: every elementary square is cocircular.
-inline Packing<2> square_lattice(int m, double step) {
-    Packing<2> packing = empty_cluster();
+inline Packing square_lattice(int m, double step) {
+    Packing packing = empty_cluster();
     for (int a = 0; a < m; ++a) {
         for (int b = 0; b < m; ++b) {
             append(packing, step * a, step * b, 1);
@@ -84,8 +84,8 @@ inline Packing<2> square_lattice(int m, double step) {
 }
 
 /// Rows of a triangular lattice of disks of radius 1, coordinates rounded.
-inline Packing<2> triangular_lattice(int m, double step) {
-    Packing<2> packing = empty_cluster();
+inline Packing triangular_lattice(int m, double step) {
+    Packing packing = empty_cluster();
     for (int a = 0; a < m; ++a) {
         for (int b = 0; b < m; ++b) {
             append(packing, step * (b + 0.5 * (a % 2)), step * std::sqrt(0.75) * a, 1);
@@ -95,8 +95,8 @@ inline Packing<2> triangular_lattice(int m, double step) {
 }
 
 /// Puts the four walls around a cluster, at the given distance from the outermost disks.
-inline void enclose(Packing<2>& packing, double distance) {
-    packing.walls = Walls<2>::box();
+inline void enclose(Packing& packing, double distance) {
+    packing.walls = Walls::box();
     for (std::size_t a = 0; a < 2; ++a) {
         double low = std::numeric_limits<double>::infinity();
         for (std::size_t i = 0; i < packing.radius.size(); ++i) {

@@ -8,7 +8,7 @@
 namespace isostat::oracle {
 
 /// Every pair of grains that the box has, contacts included; in a cell those of images up to `far` periods away.
-inline std::vector<Contact> all_pairs(const Packing<2>& packing, int far = 4) {
+inline std::vector<Contact> all_pairs(const Packing& packing, int far = 4) {
     std::vector<Contact> pairs;
     const auto& walls = packing.walls;
     for (int i = 0; i < packing.disk_count(); ++i) {

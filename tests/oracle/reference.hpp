@@ -20,9 +20,8 @@ struct ReferenceMatrix {
     std::vector<mpf_class> value;
 };
 
-inline ReferenceMatrix reference_matrix(const Packing<2>& packing, const std::vector<Contact>& contacts,
-                                        unsigned bits) {
-    const DofMap<2> dofs(packing);
+inline ReferenceMatrix reference_matrix(const Packing& packing, const std::vector<Contact>& contacts, unsigned bits) {
+    const DofMap dofs(packing);
     ReferenceMatrix matrix;
     for (const Contact& c : contacts) {
         std::vector<std::pair<int, mpf_class>> column;
@@ -59,7 +58,7 @@ inline ReferenceMatrix reference_matrix(const Packing<2>& packing, const std::ve
 }
 
 /// Forces to about `bits` - 20 - log2(cond) bits; empty when the refinement does not converge (cond near 1e16).
-inline std::vector<mpf_class> refined_forces(const Packing<2>& packing, const std::vector<Contact>& contacts,
+inline std::vector<mpf_class> refined_forces(const Packing& packing, const std::vector<Contact>& contacts,
                                              const std::vector<double>& force, unsigned bits) {
     const ReferenceMatrix h = reference_matrix(packing, contacts, bits);
     const int n = static_cast<int>(force.size());

@@ -14,12 +14,12 @@ namespace isostat::oracle {
 
 /// One arc: where it starts in double, what opens and closes, and the true place where it ends.
 struct ReferenceArc {
-    Packing<2> start;
+    Packing start;
     std::vector<Contact> contacts; ///< at the start
     ContactId opened;
     bool infinitesimal = false;
     bool at_limit = false;
-    Load<2> load;
+    Load load;
     Contact closed;
     std::vector<Contact> end_contacts;
     std::vector<Reference> end;
@@ -33,8 +33,8 @@ struct ReferenceArc {
 struct ReferencePath {
     std::vector<ReferenceArc> arcs;
     std::vector<LimitReference> limits;
-    std::vector<EquilibriumRecord<2>> equilibria;
-    std::vector<State<2>> states;
+    std::vector<EquilibriumRecord> equilibria;
+    std::vector<State> states;
     std::string stopped; ///< why it ends before the equilibria asked for
     double worst_bound = 0;
     double worst_limit_bound = 0;
@@ -47,8 +47,7 @@ struct ReferencePath {
 namespace path_parts {
 
 /// Smallest gap of a pair that is no contact at q, in 320 bits where it is small in double.
-inline double lowest_gap(const Packing<2>& near, const std::vector<Reference>& q,
-                         const std::vector<Contact>& contacts) {
+inline double lowest_gap(const Packing& near, const std::vector<Reference>& q, const std::vector<Contact>& contacts) {
     const ContactEquations<Reference> equations(near.radius, contacts);
     double lowest = 1;
     const auto candidates = find_candidates(near, 0.5).contacts;
@@ -69,16 +68,16 @@ inline double lowest_gap(const Packing<2>& near, const std::vector<Reference>& q
 /// Loads `start` over `equilibria` rearrangements at level `arcs` and polishes every event. From the first arc of a
 /// rearrangement that ends at a power turn (no contact closes there, a coordinate is held) to the next equilibrium the
 /// arcs are left out.
-inline ReferencePath reference_path(const State<2>& start, int equilibria) {
+inline ReferencePath reference_path(const State& start, int equilibria) {
     ReferencePath path;
     crafted::Recorder records;
-    State<2> state = start;
+    State state = start;
     Segment segment;
     segment.equilibria = equilibria;
     RunOptions options;
     options.certify = CertifyLevel::arcs;
     RunCounters counters;
-    const SegmentOutcome outcome = run_segment<2>(state, segment, 0, options, counters, records);
+    const SegmentOutcome outcome = run_segment(state, segment, 0, options, counters, records);
     if (outcome.failure) {
         path.stopped = outcome.failure->message();
     }
@@ -89,12 +88,12 @@ inline ReferencePath reference_path(const State<2>& start, int equilibria) {
         return path;
     }
     path.lowest_gap = 1;
-    Packing<2> here = records.states[0].packing;
+    Packing here = records.states[0].packing;
     std::vector<Contact> contacts = records.states[0].contacts;
     int equilibrium = -1; // that the next arc starts from, or that its rearrangement started from
     bool skip = false;
     for (std::size_t a = 0; a < records.arcs.size(); ++a) {
-        const ArcRecord<2>& record = records.arcs[a];
+        const ArcRecord& record = records.arcs[a];
         if (record.kind == isostat::ArcKind::limit) {
             ++equilibrium;
             const auto number = static_cast<std::size_t>(equilibrium);
@@ -120,18 +119,18 @@ inline ReferencePath reference_path(const State<2>& start, int equilibria) {
         arc.proved = record.certificate && record.certificate->verdict == Verdict::proved;
         contacts[arc.opened.index()] = record.closed;
         arc.end_contacts = contacts;
-        auto structure = IsostaticStructure<2>::prove(here, arc.contacts);
+        auto structure = IsostaticStructure::prove(here, arc.contacts);
         if (!structure.ok()) {
             path.stopped = structure.failure().message();
             break;
         }
         const Factorisation factorisation(structure.value());
-        CandidateList<2> candidates = find_candidates(here, candidate_fraction);
+        CandidateList candidates = find_candidates(here, candidate_fraction);
         ArcOptions arc_options;
         arc_options.closes = record.closed;
-        const PowerLoad<2> power{&arc.load, arc.infinitesimal, arc.at_limit};
-        auto followed = follow_arc(ArcOrigin<2>{here, structure.value(), factorisation, arc.opened}, power, candidates,
-                                   arc_options);
+        const PowerLoad power{&arc.load, arc.infinitesimal, arc.at_limit};
+        auto followed =
+            follow_arc(ArcOrigin{here, structure.value(), factorisation, arc.opened}, power, candidates, arc_options);
         if (!followed.ok() || followed.value().closed != record.closed) {
             path.stopped = "arc " + std::to_string(a + 1) + " was not followed again";
             break;
@@ -151,7 +150,7 @@ inline ReferencePath reference_path(const State<2>& start, int equilibria) {
         const bool last_of_rearrangement =
             a + 1 < records.arcs.size() && records.arcs[a + 1].kind == isostat::ArcKind::limit;
         if (last_of_rearrangement) {
-            Load<2> load = arc.load;
+            Load load = arc.load;
             const auto unit = load.unit_force(here);
             const auto fixed = load.fixed_force(here);
             const auto l = static_cast<std::size_t>(

@@ -15,7 +15,7 @@ namespace isostat::oracle {
 
 struct Structure {
     std::string family;
-    Packing<2> packing;
+    Packing packing;
     std::vector<Contact> contacts;
 };
 
@@ -30,7 +30,7 @@ inline const char* name(Place place) {
 }
 
 /// One coordinate pair.
-inline void put(Packing<2>& packing, Place place, Random& random) {
+inline void put(Packing& packing, Place place, Random& random) {
     double x = random.real(-1, 1);
     double y = random.real(-1, 1);
     double radius = random.real(0.5, 1);
@@ -79,7 +79,7 @@ inline void put(Packing<2>& packing, Place place, Random& random) {
 inline Structure random_structure(int count, Place place, bool grown, Random& random) {
     Structure s;
     s.family = std::string(name(place)) + (grown ? ", grown" : ", drawn");
-    s.packing.walls = Walls<2>::none();
+    s.packing.walls = Walls::none();
     for (int i = 0; i < count + 3; ++i) {
         put(s.packing, place, random);
         s.packing.fixed.push_back(i < 3 ? 1 : 0);
@@ -121,7 +121,7 @@ inline Structure random_structure(int count, Place place, bool grown, Random& ra
 inline Structure needle(int count, double delta) {
     Structure s;
     s.family = "needle";
-    s.packing.walls = Walls<2>::none();
+    s.packing.walls = Walls::none();
     s.packing.radius = {1};
     s.packing.q = {-2, 0};
     s.packing.fixed = {1};
@@ -144,7 +144,7 @@ inline Structure needle(int count, double delta) {
 inline Structure layers(int rows, int top, double height, Random& random) {
     Structure s;
     s.family = "layers";
-    s.packing.walls = Walls<2>::none();
+    s.packing.walls = Walls::none();
     int below = 0; // first disk of the row below
     for (int r = 0; r <= rows; ++r) {
         const int first = static_cast<int>(s.packing.radius.size());

@@ -126,7 +126,7 @@ template <class Real> class TruthIn {
     using End = LoadEnd<Real>;
     using OtherPair = NearPair<Real>;
 
-    explicit TruthIn(const State<2>& state, At where = At::vertex);
+    explicit TruthIn(const State& state, At where = At::vertex);
 
     bool known = false; ///< Newton converged nearby, and the matrix is regular there
     std::string why;    ///< when not
@@ -178,7 +178,7 @@ template <class Real> class TruthIn {
     /// Contact gradient entries: visit(dof, value).
     template <class Visit> void gradient(const Contact& c, Visit visit) const;
 
-    const State<2>* state_;
+    const State* state_;
     std::vector<int> dof_;        ///< per coordinate, or -1
     std::vector<int> coordinate_; ///< per degree of freedom
 };
@@ -554,7 +554,7 @@ template <class Real> void TruthIn<Real>::find_interval() {
     }
 }
 
-template <class Real> TruthIn<Real>::TruthIn(const State<2>& state, At where) : state_(&state) {
+template <class Real> TruthIn<Real>::TruthIn(const State& state, At where) : state_(&state) {
     find_dofs();
     for (const double x : state.packing.q) {
         q.emplace_back(x);

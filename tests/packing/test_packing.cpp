@@ -11,8 +11,8 @@ using namespace isostat::oracle;
 
 namespace {
 
-Packing<2> random_box(int n, double low, double high, Random& random) {
-    Packing<2> packing;
+Packing random_box(int n, double low, double high, Random& random) {
+    Packing packing;
     for (int i = 0; i < n; ++i) {
         packing.radius.push_back(random.real(0.01, 0.05) * high);
         packing.q.push_back(random.real(low, high));
@@ -23,7 +23,7 @@ Packing<2> random_box(int n, double low, double high, Random& random) {
 }
 
 /// The message of the error that `validate` throws, empty when it throws none.
-std::string complaint(const Packing<2>& packing) {
+std::string complaint(const Packing& packing) {
     try {
         validate(packing, "scene.toml");
     } catch (const Error& error) {
@@ -47,8 +47,8 @@ BOOST_AUTO_TEST_CASE(snapped_coordinates_are_on_the_grid_and_near_where_they_wer
     for (int repeat = 0; repeat < testing::scaled(400); ++repeat) {
         const double unit = std::ldexp(1 + random.real(), random.integer(1800) - 900);
         const double low = repeat % 3 == 0 ? -unit : repeat % 3 == 1 ? 0 : 0.9 * unit;
-        const Packing<2> before = random_box(20, low, unit, random);
-        Packing<2> after = before;
+        const Packing before = random_box(20, low, unit, random);
+        Packing after = before;
         snap_to_grid(after);
         const double step = grid_step(before);
         // 2^52 steps cover the largest coordinate, 2^51 do not.
@@ -70,7 +70,7 @@ BOOST_AUTO_TEST_CASE(snapped_coordinates_are_on_the_grid_and_near_where_they_wer
 BOOST_AUTO_TEST_CASE(differences_of_snapped_coordinates_are_exact) {
     Random random(42);
     for (int repeat = 0; repeat < testing::scaled(60); ++repeat) {
-        Packing<2> packing = random_box(12, repeat % 2 == 0 ? -1 : 0, 1, random);
+        Packing packing = random_box(12, repeat % 2 == 0 ? -1 : 0, 1, random);
         if (repeat % 3 == 0) { // tiny coordinates have bits far below the step
             packing.q[0] *= 1e-12;
             packing.q[3] *= -1e-20;
@@ -87,14 +87,14 @@ BOOST_AUTO_TEST_CASE(differences_of_snapped_coordinates_are_exact) {
 BOOST_AUTO_TEST_CASE(snapping_is_idempotent_and_commutes_with_powers_of_two) {
     Random random(43);
     for (int repeat = 0; repeat < testing::scaled(200); ++repeat) {
-        const Packing<2> before = random_box(10, repeat % 2 == 0 ? -1 : 0, 1, random);
-        Packing<2> once = before;
+        const Packing before = random_box(10, repeat % 2 == 0 ? -1 : 0, 1, random);
+        Packing once = before;
         snap_to_grid(once);
-        Packing<2> twice = once;
+        Packing twice = once;
         snap_to_grid(twice);
         BOOST_TEST(twice.q == once.q);
         const int exponent = random.integer(1600) - 800;
-        Packing<2> scaled = before;
+        Packing scaled = before;
         for (double& x : scaled.q) {
             x = std::ldexp(x, exponent);
         }
@@ -103,7 +103,7 @@ BOOST_AUTO_TEST_CASE(snapping_is_idempotent_and_commutes_with_powers_of_two) {
             BOOST_TEST(scaled.q[k] == std::ldexp(once.q[k], exponent));
         }
         // Mirrored: the grid is symmetric.
-        Packing<2> mirrored = before;
+        Packing mirrored = before;
         for (double& x : mirrored.q) {
             x = -x;
         }
@@ -115,12 +115,12 @@ BOOST_AUTO_TEST_CASE(snapping_is_idempotent_and_commutes_with_powers_of_two) {
 }
 
 BOOST_AUTO_TEST_CASE(snapping_moves_only_what_can_move_and_says_how_far) {
-    Packing<2> packing;
+    Packing packing;
     packing.radius = {1, 0.5};
     packing.q = {1, 1.1, 2.4, 0.7, 1e15, 2.1};
     packing.fixed = {0, 1};
     packing.walls.upper = {WallKind::absent, WallKind::movable};
-    Packing<2> snapped = packing;
+    Packing snapped = packing;
     BOOST_TEST(snap_to_grid(snapped) <= 0x1p-51); // an absent wall has no say
     BOOST_TEST(snapped.q[2] == 2.4);
     packing.walls.upper = {WallKind::fixed, WallKind::movable}; // now the grid is coarse
@@ -136,10 +136,10 @@ BOOST_AUTO_TEST_CASE(snapping_moves_only_what_can_move_and_says_how_far) {
 BOOST_AUTO_TEST_CASE(snapping_survives_the_ends_of_the_range_of_doubles) {
     for (const double unit : {std::numeric_limits<double>::max(), 0x1p1023, 0x1p-1000, 0x1p-1060,
                               std::numeric_limits<double>::denorm_min(), 0.0}) {
-        Packing<2> packing;
+        Packing packing;
         packing.radius = {1};
         packing.q = {unit, -unit / 3, unit, unit / 7};
-        Packing<2> snapped = packing;
+        Packing snapped = packing;
         snap_to_grid(snapped);
         for (std::size_t k = 0; k < packing.q.size(); ++k) {
             BOOST_TEST(std::isfinite(snapped.q[k]));
@@ -152,22 +152,22 @@ BOOST_AUTO_TEST_CASE(snapping_survives_the_ends_of_the_range_of_doubles) {
 }
 
 BOOST_AUTO_TEST_CASE(valid_packings_pass) {
-    Packing<2> packing = square_lattice(3, 2);
+    Packing packing = square_lattice(3, 2);
     BOOST_TEST(complaint(packing).empty());
     enclose(packing, 0);
     BOOST_TEST(complaint(packing).empty());
     packing.fixed.assign(9, 0);
     BOOST_TEST(complaint(packing).empty());
-    Packing<2> tight;
+    Packing tight;
     tight.radius = {1};
     tight.q = {1, 1, 2, 2};
     BOOST_TEST(complaint(tight).empty());
 }
 
 BOOST_AUTO_TEST_CASE(each_defect_is_named_with_its_place_and_value) {
-    Packing<2> good = square_lattice(3, 2);
+    Packing good = square_lattice(3, 2);
     enclose(good, 0);
-    Packing<2> bad;
+    Packing bad;
     BOOST_TEST(says(complaint(bad), {"scene.toml", "no disks"}));
     for (const double r :
          {0.0, -1.5, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
@@ -198,14 +198,14 @@ BOOST_AUTO_TEST_CASE(each_defect_is_named_with_its_place_and_value) {
     bad = good;
     bad.radius[8] = 3.25;
     BOOST_TEST(says(complaint(bad), {"disk 8", "6.5", "larger than the box", "6"}));
-    bad.walls = Walls<2>::none(); // without walls there is no box to be larger than
+    bad.walls = Walls::none(); // without walls there is no box to be larger than
     BOOST_TEST(complaint(bad).empty());
 }
 
 BOOST_AUTO_TEST_CASE(degrees_of_freedom_of_the_box_are_all_coordinates) {
-    Packing<2> packing = square_lattice(2, 2);
+    Packing packing = square_lattice(2, 2);
     enclose(packing, 0);
-    const DofMap<2> dofs(packing);
+    const DofMap dofs(packing);
     BOOST_TEST(dofs.dof_count() == 10);
     for (int k = 0; k < 10; ++k) {
         BOOST_TEST(dofs.dof_of(static_cast<std::size_t>(k)) == k);
@@ -218,11 +218,11 @@ BOOST_AUTO_TEST_CASE(degrees_of_freedom_of_the_box_are_all_coordinates) {
 }
 
 BOOST_AUTO_TEST_CASE(fixed_disks_and_walls_that_cannot_move_have_no_degree_of_freedom) {
-    Packing<2> packing = square_lattice(2, 2);
+    Packing packing = square_lattice(2, 2);
     enclose(packing, 0);
     packing.fixed = {0, 1, 0, 1};
     packing.walls.upper[0] = WallKind::fixed;
-    const DofMap<2> dofs(packing);
+    const DofMap dofs(packing);
     BOOST_TEST(dofs.dof_count() == 5);
     const std::vector<int> expected = {0, 1, -1, -1, 2, 3, -1, -1, -1, 4};
     for (std::size_t k = 0; k < expected.size(); ++k) {
@@ -233,14 +233,14 @@ BOOST_AUTO_TEST_CASE(fixed_disks_and_walls_that_cannot_move_have_no_degree_of_fr
     }
     BOOST_TEST(dofs.name(2) == "x of disk 2");
     BOOST_TEST(dofs.name(4) == "top wall");
-    packing.walls = Walls<2>::none();
-    BOOST_TEST(DofMap<2>(packing).dof_count() == 4);
+    packing.walls = Walls::none();
+    BOOST_TEST(DofMap(packing).dof_count() == 4);
     packing.fixed = {1, 1, 1, 1};
-    BOOST_TEST(DofMap<2>(packing).dof_count() == 0);
+    BOOST_TEST(DofMap(packing).dof_count() == 0);
 }
 
 BOOST_AUTO_TEST_CASE(solid_fraction_of_a_square_lattice) {
-    Packing<2> packing = square_lattice(5, 2);
+    Packing packing = square_lattice(5, 2);
     enclose(packing, 0);
     BOOST_TEST(packing.solid_fraction() == std::numbers::pi / 4, boost::test_tools::tolerance(1e-15));
     BOOST_TEST(packing.min_radius() == 1);
@@ -256,7 +256,7 @@ BOOST_AUTO_TEST_CASE(solid_fraction_of_a_square_lattice) {
 
 BOOST_AUTO_TEST_CASE(on_the_grid_is_a_multiple_of_the_step_and_nothing_else) {
     for (const double unit : {1.0, 0x1p400, 0x1p-400}) {
-        isostat::Packing<2> packing;
+        isostat::Packing packing;
         packing.radius = {unit};
         packing.q = {unit, 1.25 * unit, 3 * unit, 3 * unit};
         const double step = isostat::grid_step(packing);

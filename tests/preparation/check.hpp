@@ -15,18 +15,18 @@ namespace check {
 
 using namespace isostat;
 
-inline void forces_are_compressive(const State<2>& state) {
+inline void forces_are_compressive(const State& state) {
     const oracle::TruthIn<long double> truth(state, oracle::At::stored);
     BOOST_REQUIRE_MESSAGE(truth.known, truth.why);
     for (std::size_t l = 0; l < truth.force.size(); ++l) {
-        BOOST_TEST(truth.sign(l) == 1, "contact " << to_string<2>(state.contacts[l]) << " f0 " << truth.force[l]
-                                                  << " f1 " << truth.infinitesimal[l]);
+        BOOST_TEST(truth.sign(l) == 1, "contact " << to_string(state.contacts[l]) << " f0 " << truth.force[l] << " f1 "
+                                                  << truth.infinitesimal[l]);
     }
 }
 
 /// The contract of `prepare` and `find_vertex`.
-inline void is_proved_vertex(const State<2>& state, double stress) {
-    const Packing<2>& packing = state.packing;
+inline void is_proved_vertex(const State& state, double stress) {
+    const Packing& packing = state.packing;
     const auto dofs = static_cast<std::size_t>(2 * packing.disk_count() + 2);
     BOOST_REQUIRE_EQUAL(state.contacts.size(), dofs);
     BOOST_TEST(std::is_sorted(state.contacts.begin(), state.contacts.end()));
@@ -35,7 +35,7 @@ inline void is_proved_vertex(const State<2>& state, double stress) {
     BOOST_TEST(state.load.stress[1] == stress);
     BOOST_TEST(state.load.reference_length[0] == packing.length(0));
     BOOST_TEST(state.load.reference_length[1] == packing.length(1));
-    Packing<2> snapped = packing;
+    Packing snapped = packing;
     snap_to_grid(snapped);
     BOOST_TEST((snapped.q == packing.q));
 
@@ -54,7 +54,7 @@ inline void is_proved_vertex(const State<2>& state, double stress) {
     BOOST_TEST(smallest_other > rounding);
     BOOST_TEST((certify_admissible(packing, rounding).verdict == Verdict::proved));
 
-    const Result<Inspection<2>> inspection = inspect_vertex(state);
+    const Result<Inspection> inspection = inspect_vertex(state);
     BOOST_REQUIRE_MESSAGE(inspection.ok(), (inspection.ok() ? "" : inspection.failure().message()));
     BOOST_TEST(inspection.value().equilibrium, inspection.value().remark);
     if (packing.disk_count() <= 20) {

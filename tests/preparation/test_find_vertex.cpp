@@ -24,9 +24,9 @@ class Noise {
 };
 
 /// Disks on a square lattice with noise: no overlap, no contact.
-Packing<2> loose_lattice(int side, unsigned long long seed) {
+Packing loose_lattice(int side, unsigned long long seed) {
     Noise noise(seed);
-    Packing<2> packing;
+    Packing packing;
     for (int k = 0; k < side * side; ++k) {
         packing.radius.push_back(0.75 + 0.2 * noise());
         packing.q.push_back(2.2 * (k % side) + 1.1 + 0.1 * noise());
@@ -37,7 +37,7 @@ Packing<2> loose_lattice(int side, unsigned long long seed) {
     return packing;
 }
 
-double smallest_gap(const Packing<2>& packing) {
+double smallest_gap(const Packing& packing) {
     double smallest = std::numeric_limits<double>::infinity();
     for (const Contact& pair : oracle::all_pairs(packing)) {
         smallest = std::min(smallest, gap(packing, pair));
@@ -62,7 +62,7 @@ BOOST_AUTO_TEST_CASE(the_pair_list_is_the_one_of_brute_force) {
                     radius.push_back(0.5 * std::pow(ratio, noise()));
                 }
                 room::PairList pairs;
-                room::find_pairs<2>(x, radius, reach, pairs);
+                room::find_pairs(2, x, radius, reach, pairs);
                 std::vector<std::pair<int, int>> found;
                 std::vector<std::pair<int, int>> expected;
                 for (std::size_t i = 0; i < radius.size(); ++i) {
@@ -85,9 +85,9 @@ BOOST_AUTO_TEST_CASE(the_pair_list_is_the_one_of_brute_force) {
 
 BOOST_AUTO_TEST_CASE(a_step_of_a_programme_never_makes_an_overlap) {
     for (unsigned long long seed = 1; seed <= 10; ++seed) {
-        Packing<2> packing = loose_lattice(7, seed);
-        const std::vector<double> g = generic_infinitesimal<2>(packing.radius, seed);
-        room::ContactProgramme<2> programme(g, 0.3, room::ProgrammeMethod::simplex, nullptr);
+        Packing packing = loose_lattice(7, seed);
+        const std::vector<double> g = generic_infinitesimal(packing.radius, seed);
+        room::ContactProgramme programme(g, 0.3, room::ProgrammeMethod::simplex, nullptr);
         for (int k = 0; k < 6; ++k) {
             const double area = packing.length(0) * packing.length(1);
             const room::ProgrammeStep step = programme.solve(packing, 1e-7);
@@ -104,10 +104,10 @@ BOOST_AUTO_TEST_CASE(a_step_of_a_programme_never_makes_an_overlap) {
 
 // Two methods that share nothing but the programme: same point; same contacts where the optimum is not degenerate.
 BOOST_AUTO_TEST_CASE(interior_points_and_the_simplex_method_end_at_the_same_point) {
-    const auto compare = [](const Packing<2>& packing, unsigned long long seed, bool contacts) {
-        const std::vector<double> g = generic_infinitesimal<2>(packing.radius, seed);
-        room::ContactProgramme<2> simplex(g, 0.3, room::ProgrammeMethod::simplex, nullptr);
-        room::ContactProgramme<2> interior(g, 0.3, room::ProgrammeMethod::interior_first, nullptr);
+    const auto compare = [](const Packing& packing, unsigned long long seed, bool contacts) {
+        const std::vector<double> g = generic_infinitesimal(packing.radius, seed);
+        room::ContactProgramme simplex(g, 0.3, room::ProgrammeMethod::simplex, nullptr);
+        room::ContactProgramme interior(g, 0.3, room::ProgrammeMethod::interior_first, nullptr);
         const room::ProgrammeStep expected = simplex.solve(packing, 1e-5);
         const room::ProgrammeStep step = interior.solve(packing, 1e-5);
         BOOST_REQUIRE((expected.outcome == room::ProgrammeStep::Outcome::optimal));
@@ -126,10 +126,10 @@ BOOST_AUTO_TEST_CASE(interior_points_and_the_simplex_method_end_at_the_same_poin
     for (unsigned long long seed = 1; seed <= 6; ++seed) {
         compare(loose_lattice(6, seed), seed, false); // many disks at their trust bounds by symmetry
     }
-    const State<2> vertex = prepared(100, 2);
+    const State vertex = prepared(100, 2);
     for (const double amplitude : {1e-6, 1e-3, 1e-2}) {
         Noise noise(5);
-        Packing<2> shaken = vertex.packing;
+        Packing shaken = vertex.packing;
         for (double& x : shaken.q) {
             x = x * (1 + amplitude) + 0.5 * amplitude * noise();
         }
@@ -140,9 +140,9 @@ BOOST_AUTO_TEST_CASE(interior_points_and_the_simplex_method_end_at_the_same_poin
 // As an interior-point method leaves them where the cost hardly changes along the way: here one, or two, are taken
 // away.
 BOOST_AUTO_TEST_CASE(contacts_left_open_are_found_along_their_mechanisms) {
-    const State<2> vertex = prepared(60, 3);
+    const State vertex = prepared(60, 3);
     const std::vector<double>& g = vertex.load.infinitesimal;
-    room::ContactProgramme<2> programme(g, 0.3, room::ProgrammeMethod::interior_first, nullptr);
+    room::ContactProgramme programme(g, 0.3, room::ProgrammeMethod::interior_first, nullptr);
     const std::vector<Contact> all = programme.solve(vertex.packing, 1e-7).contacts;
     BOOST_TEST_REQUIRE(all.size() == vertex.packing.q.size());
     for (std::size_t l = 0; l < all.size(); ++l) {
@@ -152,17 +152,17 @@ BOOST_AUTO_TEST_CASE(contacts_left_open_are_found_along_their_mechanisms) {
             if (taken == 2) {
                 contacts.erase(contacts.begin() + static_cast<std::ptrdiff_t>((l + 17) % contacts.size()));
             }
-            Packing<2> packing = vertex.packing;
+            Packing packing = vertex.packing;
             BOOST_TEST(programme.complete(packing, 1e-7, contacts));
             if (taken == 1) {
-                BOOST_TEST((contacts == all), to_string<2>(all[l]));
+                BOOST_TEST((contacts == all), to_string(all[l]));
             }
             BOOST_TEST(contacts.size() == all.size());
             BOOST_TEST(smallest_gap(packing) > -1e-6);
         }
     }
     std::vector<Contact> few(all.begin(), all.begin() + 20);
-    Packing<2> packing = vertex.packing;
+    Packing packing = vertex.packing;
     BOOST_TEST(!programme.complete(packing, 1e-7, few));
 }
 
@@ -183,27 +183,27 @@ BOOST_AUTO_TEST_CASE(a_vertex_found_with_interior_points_is_proved_like_any_othe
     for (unsigned long long seed = 1; seed <= 4; ++seed) {
         PreparationOptions options;
         options.large_above = 0;
-        PreparationReport<2> report;
-        const auto found = find_vertex<2>(loose_lattice(6, seed), options, report);
+        PreparationReport report;
+        const auto found = find_vertex(loose_lattice(6, seed), options, report);
         BOOST_REQUIRE_MESSAGE(found.ok(), (found.ok() ? "" : found.failure().message()));
         check::is_proved_vertex(found.value(), 1);
     }
 }
 
 BOOST_AUTO_TEST_CASE(a_shaken_vertex_is_found_again) {
-    const State<2> vertex = prepared(100, 2);
+    const State vertex = prepared(100, 2);
     const auto before = inspect_vertex(vertex);
     for (const double amplitude : {0.0, 1e-9, 1e-6, 1e-4}) {
         BOOST_TEST_CONTEXT("amplitude " << amplitude) {
             Noise noise(5);
-            Packing<2> shaken = vertex.packing;
+            Packing shaken = vertex.packing;
             for (double& x : shaken.q) {
                 x = x * (1 + amplitude) + amplitude * noise();
             }
             PreparationOptions options;
             options.seed = 2; // the same infinitesimal loads
-            PreparationReport<2> report;
-            const auto found = find_vertex<2>(shaken, options, report);
+            PreparationReport report;
+            const auto found = find_vertex(shaken, options, report);
             BOOST_REQUIRE_MESSAGE(found.ok(), (found.ok() ? "" : found.failure().message()));
             check::is_proved_vertex(found.value(), 1);
             const auto after = inspect_vertex(found.value());
@@ -223,28 +223,28 @@ BOOST_AUTO_TEST_CASE(a_shaken_vertex_is_found_again) {
 
 BOOST_AUTO_TEST_CASE(a_loose_start_without_dynamics_ends_at_a_vertex_too) {
     for (unsigned long long seed = 1; seed <= 4; ++seed) {
-        PreparationReport<2> report;
-        const auto found = find_vertex<2>(loose_lattice(5, seed), PreparationOptions{}, report);
+        PreparationReport report;
+        const auto found = find_vertex(loose_lattice(5, seed), PreparationOptions{}, report);
         BOOST_REQUIRE_MESSAGE(found.ok(), (found.ok() ? "" : found.failure().message()));
         check::is_proved_vertex(found.value(), 1);
     }
 }
 
 BOOST_AUTO_TEST_CASE(large_overlaps_of_the_start_are_parted) {
-    Packing<2> start = loose_lattice(5, 3);
+    Packing start = loose_lattice(5, 3);
     for (double& x : start.q) {
         x *= 0.6;
     }
     BOOST_REQUIRE(smallest_gap(start) < -0.3);
-    PreparationReport<2> report;
-    const auto found = find_vertex<2>(start, PreparationOptions{}, report);
+    PreparationReport report;
+    const auto found = find_vertex(start, PreparationOptions{}, report);
     BOOST_REQUIRE_MESSAGE(found.ok(), (found.ok() ? "" : found.failure().message()));
     check::is_proved_vertex(found.value(), 1);
 }
 
 // One contact exchanged for a near miss: Newton closes it, and the proofs must see that something else is wrong then.
 BOOST_AUTO_TEST_CASE(a_wrong_contact_list_is_refused) {
-    const State<2> vertex = prepared(20, 6);
+    const State vertex = prepared(20, 6);
     std::map<FailureKind, int> refused;
     for (const Contact& near : find_candidates(vertex.packing, 0.3).contacts) {
         if (std::binary_search(vertex.contacts.begin(), vertex.contacts.end(), near)) {
@@ -276,8 +276,8 @@ BOOST_AUTO_TEST_CASE(a_wrong_contact_list_is_refused) {
 BOOST_AUTO_TEST_CASE(a_cap_on_programmes_is_a_failure_that_keeps_the_configuration) {
     PreparationOptions options;
     options.max_programmes = 1;
-    PreparationReport<2> report;
-    const auto found = find_vertex<2>(loose_lattice(4, 1), options, report);
+    PreparationReport report;
+    const auto found = find_vertex(loose_lattice(4, 1), options, report);
     BOOST_REQUIRE(!found.ok());
     BOOST_TEST((found.failure().kind == FailureKind::not_converged));
     BOOST_REQUIRE(report.last.has_value());
@@ -285,20 +285,20 @@ BOOST_AUTO_TEST_CASE(a_cap_on_programmes_is_a_failure_that_keeps_the_configurati
 }
 
 BOOST_AUTO_TEST_CASE(other_walls_and_fixed_disks_are_bad_input) {
-    PreparationReport<2> report;
-    Packing<2> start = loose_lattice(3, 1);
+    PreparationReport report;
+    Packing start = loose_lattice(3, 1);
     start.fixed.assign(9, 0);
     start.fixed[4] = 1;
-    BOOST_CHECK_THROW(find_vertex<2>(start, PreparationOptions{}, report), Error);
+    BOOST_CHECK_THROW(find_vertex(start, PreparationOptions{}, report), Error);
     start = loose_lattice(3, 1);
     start.walls.upper[0] = WallKind::fixed;
-    BOOST_CHECK_THROW(find_vertex<2>(start, PreparationOptions{}, report), Error);
+    BOOST_CHECK_THROW(find_vertex(start, PreparationOptions{}, report), Error);
     start = loose_lattice(3, 1);
     start.q[7] = std::numeric_limits<double>::quiet_NaN();
-    BOOST_CHECK_THROW(find_vertex<2>(start, PreparationOptions{}, report), Error);
+    BOOST_CHECK_THROW(find_vertex(start, PreparationOptions{}, report), Error);
     start = loose_lattice(3, 1);
     start.q.back() = -1;
-    BOOST_CHECK_THROW(find_vertex<2>(start, PreparationOptions{}, report), Error);
+    BOOST_CHECK_THROW(find_vertex(start, PreparationOptions{}, report), Error);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

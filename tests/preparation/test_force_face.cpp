@@ -17,8 +17,8 @@ std::pair<double, double> force_between(const ForceFace& face, const Contact& pa
 
 void is_between(const ForceFace& face, const Contact& pair, double least, double most) {
     const auto found = force_between(face, pair);
-    BOOST_TEST(std::abs(found.first - least) < 1e-7, to_string<2>(pair) << ": " << found.first << ", " << least);
-    BOOST_TEST(std::abs(found.second - most) < 1e-7, to_string<2>(pair) << ": " << found.second << ", " << most);
+    BOOST_TEST(std::abs(found.first - least) < 1e-7, to_string(pair) << ": " << found.first << ", " << least);
+    BOOST_TEST(std::abs(found.second - most) < 1e-7, to_string(pair) << ": " << found.second << ", " << most);
 }
 
 std::pair<std::vector<Contact>, std::vector<Contact>> split(std::vector<Contact> all,
@@ -34,7 +34,7 @@ BOOST_AUTO_TEST_SUITE(preparation)
 
 /// Two equal disks side by side: top wall and floor share the load F2 = 4 between the columns, whoever is listed.
 BOOST_AUTO_TEST_CASE(two_columns_share_the_load_in_any_way) {
-    const State<2> state = equal_pair();
+    const State state = equal_pair();
     for (const Contact& last : {top(0), top(1), bottom(0), bottom(1)}) {
         const auto [contacts, touching] = split(state.contacts, {last});
         const auto face = force_face(state.packing, state.load, contacts, touching);
@@ -59,7 +59,7 @@ BOOST_AUTO_TEST_CASE(two_columns_share_the_load_in_any_way) {
 /// As `pile` says, P = F1 / 0.6: forces 0 <= p <= P of which only the sum F2 / 1.6 - P is fixed.
 BOOST_AUTO_TEST_CASE(rows_on_a_wall_carry_the_load_as_their_face_says) {
     for (const int columns : {4, 6}) {
-        const State<2> state = pile(columns, 4);
+        const State state = pile(columns, 4);
         std::vector<Contact> removed;
         for (int c = 1; c + 2 < columns; ++c) {
             removed.push_back(pair(columns + c, columns + c + 1));
@@ -80,7 +80,7 @@ BOOST_AUTO_TEST_CASE(rows_on_a_wall_carry_the_load_as_their_face_says) {
 }
 
 BOOST_AUTO_TEST_CASE(forces_that_only_pull_are_no_face) {
-    State<2> state = equal_pair();
+    State state = equal_pair();
     state.load.stress[1] = -1;
     const auto [contacts, touching] = split(state.contacts, {top(1)});
     const auto face = force_face(state.packing, state.load, contacts, touching);

@@ -14,13 +14,13 @@ namespace {
 using namespace isostat;
 
 struct Outcome {
-    Result<State<2>> result;
-    PreparationReport<2> report;
+    Result<State> result;
+    PreparationReport report;
 };
 
 Outcome run(const PreparationOptions& options) {
-    PreparationReport<2> report;
-    Result<State<2>> result = prepare<2>(options, report);
+    PreparationReport report;
+    Result<State> result = prepare(options, report);
     return {std::move(result), std::move(report)};
 }
 
@@ -47,10 +47,10 @@ BOOST_AUTO_TEST_CASE(every_size_and_seed_ends_at_a_proved_vertex) {
             BOOST_TEST_CONTEXT("n = " << disks << ", seed " << seed) {
                 const Outcome outcome = run(disks, static_cast<std::uint64_t>(seed));
                 must_be_vertex(outcome);
-                BOOST_TEST(outcome.result.value().load.infinitesimal ==
-                               generic_infinitesimal<2>(outcome.result.value().packing.radius,
-                                                        outcome.report.infinitesimal_seed),
-                           boost::test_tools::per_element());
+                BOOST_TEST(
+                    outcome.result.value().load.infinitesimal ==
+                        generic_infinitesimal(outcome.result.value().packing.radius, outcome.report.infinitesimal_seed),
+                    boost::test_tools::per_element());
             }
         }
     }
@@ -59,7 +59,7 @@ BOOST_AUTO_TEST_CASE(every_size_and_seed_ends_at_a_proved_vertex) {
 BOOST_AUTO_TEST_CASE(one_disk_is_held_by_the_four_walls) {
     const Outcome outcome = run(1, 3);
     must_be_vertex(outcome);
-    const Packing<2>& packing = outcome.result.value().packing;
+    const Packing& packing = outcome.result.value().packing;
     for (int a = 0; a < 2; ++a) {
         BOOST_TEST(std::abs(packing.length(a) - 2 * packing.radius[0]) <= grid_step(packing));
     }
@@ -252,7 +252,7 @@ BOOST_AUTO_TEST_CASE(a_long_box_stays_long) {
     options.aspect = 4;
     const Outcome outcome = run(options);
     must_be_vertex(outcome);
-    const Packing<2>& packing = outcome.result.value().packing;
+    const Packing& packing = outcome.result.value().packing;
     BOOST_TEST(packing.length(1) > 2.5 * packing.length(0));
 }
 

@@ -9,8 +9,8 @@ namespace room = isostat::preparation;
 namespace {
 
 /// Overlapping disks on a shaken lattice in a box a little too small for it.
-Packing<2> pressed(int side, double squeeze) {
-    Packing<2> packing;
+Packing pressed(int side, double squeeze) {
+    Packing packing;
     for (int i = 0; i < side; ++i) {
         for (int j = 0; j < side; ++j) {
             const int k = i * side + j;
@@ -25,8 +25,8 @@ Packing<2> pressed(int side, double squeeze) {
 }
 
 /// What the dynamics say of a packing, which they leave as it is.
-room::SoftMeasures judged(Packing<2> packing, double pressure) {
-    room::SoftDynamics<2> dynamics(packing, false, nullptr, [](double) {});
+room::SoftMeasures judged(Packing packing, double pressure) {
+    room::SoftDynamics dynamics(packing, false, nullptr, [](double) {});
     return dynamics.relax(pressure, 1e-12, 0);
 }
 
@@ -36,8 +36,8 @@ BOOST_AUTO_TEST_SUITE(preparation)
 
 BOOST_AUTO_TEST_CASE(newton_steps_end_where_the_dynamics_find_every_force_balanced) {
     for (const double squeeze : {0.9, 0.95}) {
-        Packing<2> packing = pressed(14, squeeze);
-        room::SoftNewton<2> newton(packing, nullptr);
+        Packing packing = pressed(14, squeeze);
+        room::SoftNewton newton(packing, nullptr);
         double volume = 0;
         for (const double pressure : {1e-3, 1e-4, 1e-5}) {
             const room::SoftMeasures before = judged(packing, pressure);
@@ -60,8 +60,8 @@ BOOST_AUTO_TEST_CASE(newton_steps_have_the_same_bits_for_any_number_of_threads_a
                      *boost::unit_test::label("threads")) {
     const auto relaxed = [](int threads) {
         const Threads scope(threads);
-        Packing<2> packing = pressed(30, 0.9);
-        room::SoftNewton<2> newton(packing, nullptr);
+        Packing packing = pressed(30, 0.9);
+        room::SoftNewton newton(packing, nullptr);
         (void)newton.relax(1e-3, 1e-6, 20, [](double) {});
         return packing.q;
     };
@@ -69,8 +69,8 @@ BOOST_AUTO_TEST_CASE(newton_steps_have_the_same_bits_for_any_number_of_threads_a
     BOOST_TEST((one == relaxed(2)));
     BOOST_TEST((one != pressed(30, 0.9).q));
     std::atomic<bool> stop{true};
-    Packing<2> packing = pressed(10, 0.9);
-    room::SoftNewton<2> newton(packing, &stop);
+    Packing packing = pressed(10, 0.9);
+    room::SoftNewton newton(packing, &stop);
     const room::SoftMeasures made = newton.relax(1e-3, 1e-6, 20, [](double) {});
     BOOST_TEST(made.interrupted);
     BOOST_TEST(made.steps == 0);

@@ -28,7 +28,7 @@ std::vector<double> widths(const std::string& svg, const std::string& style) {
 }
 
 /// Contacts: left(0), bottom(0), 0-1, right(1), top(1), bottom(1).
-const State<2> state = crafted::two_disks(1, 2, 1, 1);
+const State state = crafted::two_disks(1, 2, 1, 1);
 
 } // namespace
 
@@ -79,14 +79,14 @@ BOOST_AUTO_TEST_CASE(a_picture_has_a_scale_of_its_forces_and_the_stresses_on_mov
     BOOST_TEST(count(svg, "class=\"stress\"") == 2 * 3 * 3); // two walls, three arrows of three lines each
     BOOST_TEST(count(svg, "\u03c3\u2081 = 1<") == 1);
     BOOST_TEST(count(svg, "\u03c3\u2082 = 1<") == 1);
-    State<2> fixed = state;
+    State fixed = state;
     fixed.packing.walls.upper = {WallKind::fixed, WallKind::fixed};
     BOOST_TEST(count(force_picture(fixed, {}, ""), "class=\"stress\"") == 0);
     BOOST_TEST(count(force_picture(fixed, {}, ""), "class=\"force scale\"") == 0);
 }
 
 BOOST_AUTO_TEST_CASE(a_cell_is_drawn_with_its_images_and_contacts_from_both_sides) {
-    const State<2> one = cells::one_tilted_disk(2, 1, 0.25);
+    const State one = cells::one_tilted_disk(2, 1, 0.25);
     const std::string svg = force_picture(one, std::vector<double>{1, 2, 3}, "");
     BOOST_TEST(count(svg, "class=\"cell\"") == 4);
     BOOST_TEST(count(svg, "class=\"disk\"") == 1);
@@ -96,7 +96,7 @@ BOOST_AUTO_TEST_CASE(a_cell_is_drawn_with_its_images_and_contacts_from_both_side
                                     widths(svg, "force")[2], widths(svg, "force")[4], widths(svg, "force")[4]}));
     BOOST_TEST(widths(svg, "force")[4] > 2.9 * widths(svg, "force")[0]);
     // Other representatives, the same picture.
-    const State<2> moved =
+    const State moved =
         cells::with_other_representatives(cells::two_disks(false, 1, 1), {cells::image(1, 0), cells::image(-1, 2)});
     const std::vector<double> forces{1, 2, 3, 4};
     BOOST_TEST(count(force_picture(moved, forces, ""), "<circle") ==
@@ -104,8 +104,8 @@ BOOST_AUTO_TEST_CASE(a_cell_is_drawn_with_its_images_and_contacts_from_both_side
     BOOST_TEST(widths(force_picture(moved, forces, ""), "force") ==
                    widths(force_picture(cells::two_disks(false, 1, 1), forces, ""), "force"),
                boost::test_tools::per_element());
-    State<2> channel = cells::in_cell({{1, 0.5, 1}}, {2, 2, 0}, false, 2, 3,
-                                      {cells::across(0, 0, 1, 0), crafted::bottom(0), crafted::top(0)});
+    State channel = cells::in_cell({{1, 0.5, 1}}, {2, 2, 0}, false, 2, 3,
+                                   {cells::across(0, 0, 1, 0), crafted::bottom(0), crafted::top(0)});
     channel.packing.cell = {{true, false}, {true, false}, {false}, 0};
     channel.packing.walls.lower[1] = WallKind::fixed;
     channel.packing.walls.upper[1] = WallKind::movable;

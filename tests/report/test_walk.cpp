@@ -43,7 +43,7 @@ BOOST_AUTO_TEST_CASE(a_walk_along_the_records_passes_through_every_stored_state)
         relisted += vertex.relisted ? 1 : 0;
         if (vertex.equilibrium != nullptr) {
             ++equilibria;
-            const State<2> stored = records.stored(vertex.state.equilibrium)->state;
+            const State stored = records.stored(vertex.state.equilibrium)->state;
             double most = 0;
             for (std::size_t k = 0; k < stored.packing.q.size(); ++k) {
                 most = std::max(most, std::abs(stored.packing.q[k] - vertex.state.packing.q[k]));

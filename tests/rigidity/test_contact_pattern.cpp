@@ -8,22 +8,22 @@ using namespace crafted;
 
 namespace {
 
-std::size_t entries(const State<2>& state) {
-    return contact_matrix(state.packing, DofMap<2>(state.packing), state.contacts).row.size();
+std::size_t entries(const State& state) {
+    return contact_matrix(state.packing, DofMap(state.packing), state.contacts).row.size();
 }
 
 /// Two disks on the bottom, which touch; the upper wall presses on the first, the right one on the second.
-State<2> side_by_side(double second_radius, double second_height) {
-    State<2> state =
+State side_by_side(double second_radius, double second_height) {
+    State state =
         in_box({{1, 1, 1}, {1, 3, 1}}, 4, 2, 1, 1, {left(0), bottom(0), pair(0, 1), bottom(1), right(1), top(0)});
     state.packing.radius[1] = second_radius;
     state.packing.q[3] = second_height;
     return state;
 }
 
-std::vector<unsigned char> carrying(const State<2>& state, bool perturbed = false) {
+std::vector<unsigned char> carrying(const State& state, bool perturbed = false) {
     const auto structure = crafted::Regular::proved(state);
-    const DofMap<2>& dofs = structure.dofs();
+    const DofMap& dofs = structure.dofs();
     const std::vector<int> right_wall{dofs.dof_of(4)};
     return ContactPattern(state.packing, structure, perturbed).carrying(right_wall);
 }
@@ -39,7 +39,7 @@ BOOST_AUTO_TEST_CASE(entries_follow_from_the_contacts_not_from_the_stored_coordi
 
 BOOST_AUTO_TEST_CASE(what_vanishes_is_told_by_indices_and_by_equal_radii_on_one_wall) {
     // In the order left-0, bottom-0, 0-1, bottom-1, right-1, top-0 of the sorted list: found by contact.
-    const auto bottom_of_second = [](const State<2>& state, bool perturbed) {
+    const auto bottom_of_second = [](const State& state, bool perturbed) {
         const auto found = std::find(state.contacts.begin(), state.contacts.end(), bottom(1));
         return carrying(state, perturbed)[static_cast<std::size_t>(found - state.contacts.begin())] != 0;
     };

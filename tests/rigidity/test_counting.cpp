@@ -44,9 +44,9 @@ mpq_class determinant(std::vector<std::vector<mpq_class>> a) {
 }
 
 /// A pile in the corner of the box: every disk on two earlier contacts (bottom and left wall, or two earlier disks).
-State<2> pile(int disks, std::uint64_t seed) {
+State pile(int disks, std::uint64_t seed) {
     std::mt19937_64 random(seed);
-    State<2> state;
+    State state;
     state.packing.walls.upper = {WallKind::absent, WallKind::absent};
     for (int i = 0; i < disks; ++i) {
         const double r = 1 + 0.3 * static_cast<double>(random() % 1000) / 1000;
@@ -78,7 +78,7 @@ State<2> pile(int disks, std::uint64_t seed) {
         state.load.disk_force.insert(state.load.disk_force.end(), {0, -r * r});
     }
     state.packing.q.insert(state.packing.q.end(), {0, 0});
-    state.load.infinitesimal = generic_infinitesimal<2>(state.packing.radius, 1);
+    state.load.infinitesimal = generic_infinitesimal(state.packing.radius, 1);
     snap_to_grid(state.packing);
     return state;
 }
@@ -89,7 +89,7 @@ BOOST_AUTO_TEST_SUITE(rigidity)
 
 BOOST_AUTO_TEST_CASE(square_lattices_have_the_hyperstaticity_of_the_closed_form) {
     for (const int m : {2, 3, 5, 8}) {
-        const State<2> state = square_lattice(m);
+        const State state = square_lattice(m);
         const Counting counting = count_contacts(state.packing, state.contacts);
         BOOST_TEST(counting.dof_count == 2 * m * m + 2);
         BOOST_TEST(counting.contact_count == 2 * m * m + 2 * m);
@@ -102,7 +102,7 @@ BOOST_AUTO_TEST_CASE(square_lattices_have_the_hyperstaticity_of_the_closed_form)
 BOOST_AUTO_TEST_CASE(triangular_patches_have_the_counts_of_the_closed_form) {
     const std::vector<std::array<int, 5>> cases{{2, 3, 14, 17, 3}, {3, 3, 20, 25, 5}};
     for (const auto& [rows, columns, dofs, contacts, h] : cases) {
-        const State<2> state = triangular_patch(rows, columns);
+        const State state = triangular_patch(rows, columns);
         const Counting counting = count_contacts(state.packing, state.contacts);
         BOOST_TEST(counting.dof_count == dofs);
         BOOST_TEST(counting.contact_count == contacts);
@@ -112,8 +112,8 @@ BOOST_AUTO_TEST_CASE(triangular_patches_have_the_counts_of_the_closed_form) {
 }
 
 BOOST_AUTO_TEST_CASE(the_modular_matrix_has_the_residues_of_the_exact_entries) {
-    for (const State<2>& state : {two_disks(1, 2, 1, 1), three_disks(1, 1.1, 1.3, 1, 1), pile(6, 3)}) {
-        const DofMap<2> dofs(state.packing);
+    for (const State& state : {two_disks(1, 2, 1, 1), three_disks(1, 1.1, 1.3, 1, 1), pile(6, 3)}) {
+        const DofMap dofs(state.packing);
         const auto matrix = exact_contact_matrix(state.packing, dofs, state.contacts);
         for (std::size_t l = 0; l < state.contacts.size(); ++l) {
             const Contact& c = state.contacts[l];
@@ -136,19 +136,18 @@ BOOST_AUTO_TEST_CASE(the_modular_matrix_has_the_residues_of_the_exact_entries) {
 }
 
 BOOST_AUTO_TEST_CASE(a_contact_taken_away_is_a_mechanism_and_its_release_is_found) {
-    State<2> state = two_disks(1, 2, 1, 1);
+    State state = two_disks(1, 2, 1, 1);
     state.contacts.pop_back();
     const Counting counting = count_contacts(state.packing, state.contacts);
     BOOST_TEST(counting.mechanisms == 1);
     BOOST_TEST(counting.hyperstaticity == 0);
     BOOST_TEST_REQUIRE(counting.free_dofs.size() == 1U);
-    state.contacts.push_back(
-        {ContactKind::held, DofMap<2>(state.packing).coordinate_of(counting.free_dofs.front()), 0});
-    BOOST_TEST(IsostaticStructure<2>::prove(state.packing, state.contacts).ok());
+    state.contacts.push_back({ContactKind::held, DofMap(state.packing).coordinate_of(counting.free_dofs.front()), 0});
+    BOOST_TEST(IsostaticStructure::prove(state.packing, state.contacts).ok());
 }
 
 BOOST_AUTO_TEST_CASE(as_many_contacts_as_degrees_of_freedom_say_nothing_about_the_rank) {
-    State<2> state = square_lattice(3); // h = 4, k = 0; the middle disk has four contacts
+    State state = square_lattice(3); // h = 4, k = 0; the middle disk has four contacts
     std::erase_if(state.contacts,
                   [](const Contact& c) { return c.i == 4 || (c.kind == ContactKind::disk_disk && c.j == 4); });
     const Counting counting = count_contacts(state.packing, state.contacts);
@@ -156,7 +155,7 @@ BOOST_AUTO_TEST_CASE(as_many_contacts_as_degrees_of_freedom_say_nothing_about_th
     BOOST_TEST(counting.mechanisms >= 2); // the middle disk
     BOOST_TEST(counting.hyperstaticity == counting.mechanisms);
     BOOST_TEST(counting.free_dofs.size() == static_cast<std::size_t>(counting.mechanisms));
-    const State<2> regular = two_disks(1, 2, 1, 1);
+    const State regular = two_disks(1, 2, 1, 1);
     const Counting full = count_contacts(regular.packing, regular.contacts);
     BOOST_TEST(full.rank == full.dof_count);
     BOOST_TEST(full.mechanisms == 0);
@@ -166,29 +165,29 @@ BOOST_AUTO_TEST_CASE(as_many_contacts_as_degrees_of_freedom_say_nothing_about_th
 }
 
 BOOST_AUTO_TEST_CASE(the_gate_is_closed_to_singular_and_to_rectangular_matrices) {
-    State<2> state = two_disks(1, 2, 1, 1);
-    BOOST_TEST(IsostaticStructure<2>::prove(state.packing, state.contacts).ok());
-    State<2> twice = state;
+    State state = two_disks(1, 2, 1, 1);
+    BOOST_TEST(IsostaticStructure::prove(state.packing, state.contacts).ok());
+    State twice = state;
     twice.contacts[0] = twice.contacts[1]; // the same contact twice: two equal columns
-    BOOST_TEST(!IsostaticStructure<2>::prove(twice.packing, twice.contacts).ok());
-    State<2> fewer = state;
+    BOOST_TEST(!IsostaticStructure::prove(twice.packing, twice.contacts).ok());
+    State fewer = state;
     fewer.contacts.pop_back();
-    const auto refused = IsostaticStructure<2>::prove(fewer.packing, fewer.contacts);
+    const auto refused = IsostaticStructure::prove(fewer.packing, fewer.contacts);
     BOOST_TEST_REQUIRE(!refused.ok());
     BOOST_TEST(refused.failure().message().find("N_f = 6") != std::string::npos, refused.failure().message());
     // Six contacts, but the right and the left wall would have to carry different forces: disk 0 touches neither disk 1
     // nor the top.
-    State<2> special = one_disk(1, 1);
+    State special = one_disk(1, 1);
     special.contacts = {left(0), right(0), left(0), top(0)};
-    BOOST_TEST(!IsostaticStructure<2>::prove(special.packing, special.contacts).ok());
+    BOOST_TEST(!IsostaticStructure::prove(special.packing, special.contacts).ok());
 }
 
 BOOST_AUTO_TEST_CASE(no_structure_is_made_of_more_coordinates_than_error_bounds_allow_for) {
-    Packing<2> packing;
+    Packing packing;
     packing.radius.assign(most_coordinates / 2, 1.0);
     packing.q.assign(most_coordinates + 2, 1.0);
     try {
-        (void)IsostaticStructure<2>::prove(packing, {});
+        (void)IsostaticStructure::prove(packing, {});
         BOOST_ERROR("accepted");
     } catch (const Error& error) {
         BOOST_TEST((error.kind() == ErrorKind::bad_input));
@@ -198,14 +197,14 @@ BOOST_AUTO_TEST_CASE(no_structure_is_made_of_more_coordinates_than_error_bounds_
     }
     packing.radius.pop_back();
     packing.q.resize(most_coordinates);
-    BOOST_TEST((IsostaticStructure<2>::prove(packing, {}).failure().kind == FailureKind::not_isostatic));
+    BOOST_TEST((IsostaticStructure::prove(packing, {}).failure().kind == FailureKind::not_isostatic));
 }
 
 BOOST_AUTO_TEST_CASE(a_proof_under_way_has_no_evidence_until_it_is_concluded, *boost::unit_test::label("threads")) {
     for (const int count : {1, 2}) {
         const Threads threads(count);
-        const State<2> state = two_disks(1, 2, 1, 1);
-        auto regular = RankProof<2>::begin(state.packing, state.contacts);
+        const State state = two_disks(1, 2, 1, 1);
+        auto regular = RankProof::begin(state.packing, state.contacts);
         BOOST_TEST_REQUIRE(regular.ok());
         BOOST_TEST((regular.value().unproved().evidence() == RegularityEvidence::none));
         BOOST_TEST(regular.value().is_regular());
@@ -214,13 +213,13 @@ BOOST_AUTO_TEST_CASE(a_proof_under_way_has_no_evidence_until_it_is_concluded, *b
         BOOST_TEST((proved.value().evidence() == RegularityEvidence::elimination));
         BOOST_TEST(&proved.value().matrix() == &regular.value().unproved().matrix());
         // Disk 2 between two fixed ones in one line, tilted: singular, but not by its pattern.
-        State<2> strut;
-        strut.packing.walls = Walls<2>::none();
+        State strut;
+        strut.packing.walls = Walls::none();
         strut.packing.radius = {1, 1, 1};
         strut.packing.q = {-2, -1, 2, 1, 0, 0, 0, 0};
         strut.packing.fixed = {1, 1, 0};
         strut.contacts = {pair(0, 2), pair(1, 2)};
-        auto singular = RankProof<2>::begin(strut.packing, strut.contacts);
+        auto singular = RankProof::begin(strut.packing, strut.contacts);
         BOOST_TEST_REQUIRE(singular.ok());
         BOOST_TEST(!singular.value().is_regular());
         BOOST_TEST_REQUIRE(!singular.value().conclude().ok());
@@ -229,8 +228,8 @@ BOOST_AUTO_TEST_CASE(a_proof_under_way_has_no_evidence_until_it_is_concluded, *b
 }
 
 BOOST_AUTO_TEST_CASE(the_rounded_and_the_exact_matrix_have_the_same_pattern) {
-    const State<2> state = triangular_patch(3, 4);
-    const DofMap<2> dofs(state.packing);
+    const State state = triangular_patch(3, 4);
+    const DofMap dofs(state.packing);
     const auto rounded = contact_matrix(state.packing, dofs, state.contacts);
     const auto exact = exact_contact_matrix(state.packing, dofs, state.contacts);
     BOOST_TEST((rounded.start == exact.start));
@@ -238,8 +237,8 @@ BOOST_AUTO_TEST_CASE(the_rounded_and_the_exact_matrix_have_the_same_pattern) {
 }
 
 BOOST_AUTO_TEST_CASE(the_exact_matrix_has_the_differences_of_the_coordinates) {
-    const State<2> state = triangular_patch(3, 4);
-    const DofMap<2> dofs(state.packing);
+    const State state = triangular_patch(3, 4);
+    const DofMap dofs(state.packing);
     const auto exact = exact_contact_matrix(state.packing, dofs, state.contacts);
     const auto rounded = contact_matrix(state.packing, dofs, state.contacts);
     for (std::size_t l = 0; l < state.contacts.size(); ++l) {
@@ -261,7 +260,7 @@ BOOST_AUTO_TEST_CASE(the_exact_matrix_has_the_differences_of_the_coordinates) {
 }
 
 BOOST_AUTO_TEST_CASE(forces_and_displacements_are_reciprocal) {
-    const State<2> state = three_disks(1, 1.1, 1.3, 1, 1);
+    const State state = three_disks(1, 1.1, 1.3, 1, 1);
     const auto proved = crafted::Regular::proved(state);
     const Factorisation factorisation(proved);
     const auto n = static_cast<std::size_t>(proved.size());
@@ -282,14 +281,14 @@ BOOST_AUTO_TEST_CASE(a_linearised_step_never_overestimates_a_gap) {
     std::mt19937_64 random(11);
     const auto uniform = [&] { return static_cast<double>(random() >> 11) * 0x1p-52 - 1; };
     for (int k = 0; k < 2000; ++k) {
-        Packing<2> packing;
+        Packing packing;
         packing.radius = {1, 1.5};
         packing.q = {uniform(), uniform(), 3 + uniform(), 3 + uniform(), 9, 9};
         const Contact contact = pair(0, 1);
-        const GapGradient<2> g = gap_gradient(packing, contact);
+        const GapGradient g = gap_gradient(packing, contact);
         const double before = gap(packing, contact);
         double linear = before;
-        Packing<2> moved = packing;
+        Packing moved = packing;
         for (int e = 0; e < g.count; ++e) {
             const double u = 0.5 * uniform();
             moved.q[static_cast<std::size_t>(g.coordinate[static_cast<std::size_t>(e)])] += u;
@@ -301,7 +300,7 @@ BOOST_AUTO_TEST_CASE(a_linearised_step_never_overestimates_a_gap) {
 
 BOOST_AUTO_TEST_CASE(bead_by_bead_piles_are_isostatic_and_balance_by_back_substitution) {
     for (const int disks : {1, 3, 6, 30}) {
-        const State<2> state = pile(disks, 3);
+        const State state = pile(disks, 3);
         const auto proved = crafted::Regular::proved(state);
         BOOST_TEST(proved.size() == 2 * disks);
         // Blocks of at most 2 x 2: the matrix is block triangular, disk by disk.

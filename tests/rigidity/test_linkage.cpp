@@ -10,8 +10,8 @@ using namespace crafted;
 
 namespace {
 
-Packing<2> grains(std::vector<double> radius) {
-    Packing<2> packing;
+Packing grains(std::vector<double> radius) {
+    Packing packing;
     packing.q.assign(2 * radius.size() + 2, 0.0); // where they are is not looked at
     packing.radius = std::move(radius);
     return packing;
@@ -19,7 +19,7 @@ Packing<2> grains(std::vector<double> radius) {
 
 /// Two wheels of five disks each, joined by parallel bars 1-6 and 2-7, and 0-5 beside them.
 struct Wheels {
-    Packing<2> packing = grains(std::vector<double>(10, 0.5));
+    Packing packing = grains(std::vector<double>(10, 0.5));
     std::vector<Contact> among{pair(0, 1), pair(0, 2), pair(0, 3), pair(0, 4), pair(1, 3), pair(3, 4),
                                pair(4, 2), pair(5, 6), pair(5, 7), pair(5, 8), pair(5, 9), pair(6, 8),
                                pair(8, 9), pair(9, 7), pair(1, 6), pair(2, 7)};
@@ -28,7 +28,7 @@ struct Wheels {
 
 /// Mirror images: 4 and 6 at the top wall carry 8, 1 and 2 at the right one lean on 3.
 struct Mirror {
-    Packing<2> packing = grains({0.5, 0.5, 0.5, 0.7, 0.7, 0.7, 0.7, 0.7, 0.7});
+    Packing packing = grains({0.5, 0.5, 0.5, 0.7, 0.7, 0.7, 0.7, 0.7, 0.7});
     std::vector<Contact> among{pair(7, 8), pair(0, 8), pair(3, 8), pair(4, 8), pair(1, 3), pair(1, 8),
                                pair(1, 4), pair(6, 8), pair(0, 6), top(4),     pair(2, 3), pair(3, 5),
                                pair(5, 7), pair(2, 5), top(6),     right(1),   right(2)};
@@ -40,7 +40,7 @@ template <class Case> void count_of_each_is_needed(Case full) {
     for (std::size_t l = 0; l < full.among.size(); ++l) {
         Case open = full;
         open.among.erase(open.among.begin() + static_cast<std::ptrdiff_t>(l));
-        BOOST_TEST(!moves_as_linkage(open.packing, open.among, open.last), to_string<2>(full.among[l]));
+        BOOST_TEST(!moves_as_linkage(open.packing, open.among, open.last), to_string(full.among[l]));
     }
 }
 
@@ -55,7 +55,7 @@ BOOST_AUTO_TEST_CASE(three_parallel_bars_between_two_bodies_and_none_that_is_mis
 BOOST_AUTO_TEST_CASE(parallel_bars_across_a_side_of_a_cell_and_none_around_it) {
     Wheels wheels;
     wheels.packing.q.push_back(0);
-    wheels.packing.walls = Walls<2>::none();
+    wheels.packing.walls = Walls::none();
     wheels.packing.cell = {{true, true}, {true, true}, {true}, 3};
     // Disks of the second wheel stored a period further along: the bars to it go through that image.
     const auto across = [](const Contact& c) { return (c.i < 5) != (c.j < 5) ? pair_of(c.i, c.j, {{-1, 1, 0}}) : c; };
@@ -97,7 +97,7 @@ BOOST_AUTO_TEST_CASE(a_row_of_rhombi_shears_and_its_last_bar_keeps_its_length) {
     }
     among.push_back(pair(0, 4));
     among.push_back(pair(3, 7));
-    const Packing<2> packing = grains(std::vector<double>(14, 0.5));
+    const Packing packing = grains(std::vector<double>(14, 0.5));
     // 0-4 and 3-7 are far apart: no rhombus joins them before the bars between are there.
     BOOST_TEST(!moves_as_linkage(packing, among, pair(1, 5)));
     among.back() = pair(1, 5);

@@ -13,12 +13,12 @@ BOOST_AUTO_TEST_SUITE(rigidity)
 
 BOOST_AUTO_TEST_CASE(an_ordering_is_made_once_for_all_copies_whatever_thread_asks_first,
                      *boost::unit_test::label("threads")) {
-    const State<2> state = prepared(30, 3);
+    const State state = prepared(30, 3);
     const auto proved = crafted::Regular::proved(state);
     for (int round = 0; round < 20; ++round) {
-        const auto contacts = IsostaticStructure<2>::exchange(proved, state.packing, ContactId(0), state.contacts[0]);
+        const auto contacts = IsostaticStructure::exchange(proved, state.packing, ContactId(0), state.contacts[0]);
         BOOST_TEST_REQUIRE(contacts.has_value());
-        const auto structure = IsostaticStructure<2>::without_proof(*contacts);
+        const auto structure = IsostaticStructure::without_proof(*contacts);
         constexpr std::size_t askers = 4;
         std::vector<const sparse::Ordering*> found(askers);
         std::barrier together(askers);

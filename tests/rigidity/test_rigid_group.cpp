@@ -12,7 +12,7 @@ using namespace crafted;
 namespace {
 
 /// A hexagon of seven equal disks: all twelve contacts but the last are independent.
-State<2> hexagon() {
+State hexagon() {
     const double h = std::sqrt(3.0);
     return in_box(
         {{1, 10, 10}, {1, 12, 10}, {1, 11, 10 + h}, {1, 9, 10 + h}, {1, 8, 10}, {1, 9, 10 - h}, {1, 11, 10 - h}}, 20,
@@ -21,12 +21,12 @@ State<2> hexagon() {
          pair(4, 5), pair(5, 6)});
 }
 
-bool counts(const State<2>& state, const std::vector<Contact>& among, const Contact& last) {
-    return moves_as_one(DofMap<2>(state.packing), state.packing.disk_count(), among, last);
+bool counts(const State& state, const std::vector<Contact>& among, const Contact& last) {
+    return moves_as_one(DofMap(state.packing), state.packing.disk_count(), among, last);
 }
 
 /// The rank mod p of other positions of the same grains: a pair that moves with the others adds none anywhere.
-bool adds_nothing(State<2> state, const Contact& last) {
+bool adds_nothing(State state, const Contact& last) {
     for (std::size_t k = 0; k < state.packing.q.size(); ++k) {
         state.packing.q[k] += 0.01 * std::sin(3.0 + 7 * static_cast<double>(k));
     }
@@ -41,12 +41,12 @@ bool adds_nothing(State<2> state, const Contact& last) {
 BOOST_AUTO_TEST_SUITE(rigidity)
 
 BOOST_AUTO_TEST_CASE(the_last_contact_of_a_hexagon_moves_with_the_others_and_not_when_one_is_missing) {
-    State<2> state = hexagon();
+    State state = hexagon();
     const Contact last = pair(1, 6);
     BOOST_TEST(counts(state, state.contacts, last));
     BOOST_TEST(adds_nothing(state, last));
     for (std::size_t l = 0; l < state.contacts.size(); ++l) {
-        State<2> open = state;
+        State open = state;
         open.contacts.erase(open.contacts.begin() + static_cast<std::ptrdiff_t>(l));
         BOOST_TEST(!counts(open, open.contacts, last));
         BOOST_TEST(!adds_nothing(open, last));
@@ -54,7 +54,7 @@ BOOST_AUTO_TEST_CASE(the_last_contact_of_a_hexagon_moves_with_the_others_and_not
 }
 
 BOOST_AUTO_TEST_CASE(a_fixed_disk_takes_away_the_translations_and_two_the_rotation_too) {
-    State<2> state = hexagon();
+    State state = hexagon();
     state.packing.fixed = {1, 0, 0, 0, 0, 0, 0};
     BOOST_TEST(!counts(state, state.contacts, pair(1, 6))); // the rotation about it is not a motion that is counted
     state.packing.fixed = {0, 0, 0, 0, 0, 0, 0};
@@ -64,7 +64,7 @@ BOOST_AUTO_TEST_CASE(a_fixed_disk_takes_away_the_translations_and_two_the_rotati
 BOOST_AUTO_TEST_CASE(walls_count_as_grains_and_leave_translations_along_them) {
     // Two disks side by side on the bottom slide along it together: with the wall that makes three contacts for one
     // motion that is left. The top wall, flat on both, adds a degree of freedom and a contact; the second one rests.
-    const State<2> state = equal_pair();
+    const State state = equal_pair();
     const std::vector<Contact> sliding{bottom(0), bottom(1), pair(0, 1), top(0)};
     BOOST_TEST(counts(state, sliding, top(1)));
     BOOST_TEST(!counts(state, {bottom(0), bottom(1), top(0)}, top(1))); // true, but by another list
@@ -74,16 +74,16 @@ BOOST_AUTO_TEST_CASE(walls_count_as_grains_and_leave_translations_along_them) {
 }
 
 BOOST_AUTO_TEST_CASE(a_body_across_a_side_of_the_cell_moves_as_one_and_one_that_winds_around_it_is_not_counted) {
-    const State<2> box = hexagon();
-    State<2> state = box;
-    state.packing.walls = Walls<2>::none();
+    const State box = hexagon();
+    State state = box;
+    state.packing.walls = Walls::none();
     state.packing.q.push_back(3); // the tilt
     for (const bool tilts : {false, true}) {
         for (int pin = 0; pin < 7; ++pin) { // in the body, whichever
             state.packing.cell = {{true, true}, {true, true}, {tilts}, pin};
             state.contacts = box.contacts;
             state.contacts.push_back(pair(1, 6));
-            State<2> moved = cells::with_other_representatives(
+            State moved = cells::with_other_representatives(
                 state, {cells::image(0, 0), cells::image(1, 0), cells::image(0, -1), cells::image(-1, 1),
                         cells::image(0, 0), cells::image(0, 0), cells::image(1, 1)});
             const Contact last = moved.contacts.back();
@@ -92,7 +92,7 @@ BOOST_AUTO_TEST_CASE(a_body_across_a_side_of_the_cell_moves_as_one_and_one_that_
             BOOST_TEST(counts(moved, moved.contacts, last));
             BOOST_TEST(adds_nothing(moved, last));
             for (std::size_t l = 0; l < moved.contacts.size(); ++l) {
-                State<2> open = moved;
+                State open = moved;
                 open.contacts.erase(open.contacts.begin() + static_cast<std::ptrdiff_t>(l));
                 BOOST_TEST(!counts(open, open.contacts, last));
             }
@@ -106,7 +106,7 @@ BOOST_AUTO_TEST_CASE(a_body_across_a_side_of_the_cell_moves_as_one_and_one_that_
 }
 
 BOOST_AUTO_TEST_CASE(a_held_coordinate_belongs_to_no_body) {
-    State<2> state = hexagon();
+    State state = hexagon();
     std::vector<Contact> among = state.contacts;
     among.back() = {ContactKind::held, 0, 0};
     BOOST_TEST(!counts(state, among, pair(1, 6)));
@@ -115,8 +115,8 @@ BOOST_AUTO_TEST_CASE(a_held_coordinate_belongs_to_no_body) {
 
 /// A column at the right wall carries the load of the top wall, whatever leans on it from the left.
 BOOST_AUTO_TEST_CASE(a_column_at_a_wall_carries_the_load_alone_and_not_when_a_contact_is_missing) {
-    const State<2> state = equal_pair(); // disks 0 and 1: here one above the other, as far as contacts tell
-    const DofMap<2> dofs(state.packing);
+    const State state = equal_pair(); // disks 0 and 1: here one above the other, as far as contacts tell
+    const DofMap dofs(state.packing);
     const std::vector<Contact> column{bottom(0), pair(0, 1), top(1), right(0), right(1)};
     BOOST_TEST(carries_alone(dofs, column, 1));
     BOOST_TEST(!carries_alone(dofs, column, 0)); // the column yields along the other axis

@@ -15,13 +15,13 @@ Failure end_of(const std::string& packing, const std::string& ties) {
     const Scene scene = parse_scene("[packing]\nlaw = \"equal\"\n" + packing + "[run]\nties = \"" + ties +
                                         "\"\n[[programme]]\ndo = \"up\"\nequilibria = 30\n",
                                     "s.toml", "");
-    PreparationReport<2> report;
-    auto state = prepare<2>(scene.preparation, report);
+    PreparationReport report;
+    auto state = prepare(scene.preparation, report);
     BOOST_TEST_REQUIRE(state.ok());
     RunCounters counters;
-    RunObserver<2> nobody;
-    const auto outcome = run_segment<2>(state.value(), segment_of(scene.programme[0], state.value().load, "s.toml"), 0,
-                                        scene.run, counters, nobody);
+    RunObserver nobody;
+    const auto outcome = run_segment(state.value(), segment_of(scene.programme[0], state.value().load, "s.toml"), 0,
+                                     scene.run, counters, nobody);
     return outcome.failure.value_or(Failure{FailureKind::interrupted, "completed"});
 }
 

@@ -82,8 +82,8 @@ BOOST_AUTO_TEST_CASE(the_ratio_of_a_start_file_is_checked_when_it_is_known) {
 
 namespace {
 
-Load<2> stresses(double sigma1, double sigma2) {
-    Load<2> load;
+Load stresses(double sigma1, double sigma2) {
+    Load load;
     load.stress = {sigma1, sigma2};
     return load;
 }

@@ -19,7 +19,7 @@ std::vector<Reference> lifted(const std::vector<double>& q) {
 BOOST_AUTO_TEST_SUITE(shortcuts)
 
 BOOST_AUTO_TEST_CASE(the_reference_of_two_disks_is_their_closed_form) {
-    const State<2> state = two_disks(1, 2, 1, 1);
+    const State state = two_disks(1, 2, 1, 1);
     const auto polished = oracle::polish(state.packing.radius, lifted(state.packing.q), state.contacts, 1e-93);
     BOOST_TEST(polished.converged);
     const auto certificate = oracle::certify_vertex(state.packing.radius, polished.q, state.contacts);
@@ -42,7 +42,7 @@ BOOST_AUTO_TEST_CASE(the_reference_of_two_disks_is_their_closed_form) {
 }
 
 BOOST_AUTO_TEST_CASE(the_certificate_contains_the_truth_when_the_point_is_off) {
-    const State<2> state = two_disks(1, 2, 1, 1);
+    const State state = two_disks(1, 2, 1, 1);
     const auto polished = oracle::polish(state.packing.radius, lifted(state.packing.q), state.contacts, 1e-93);
     for (const double off : {1e-60, 1e-20, 1e-8, 1e-4}) {
         auto moved = polished.q;
@@ -60,7 +60,7 @@ BOOST_AUTO_TEST_CASE(the_certificate_contains_the_truth_when_the_point_is_off) {
 BOOST_AUTO_TEST_CASE(no_certificate_where_the_contact_matrix_is_singular) {
     // Two disks side by side between the walls, in line: the contacts of disk 1 with disk 0 and right wall and left
     // wall of disk 0 are horizontal; 0-1 twice the vertical support of disk 1 is missing.
-    State<2> state =
+    State state =
         in_box({{1, 1, 1}, {1, 3, 1}}, 4, 2, 1, 1, {left(0), bottom(0), top(0), pair(0, 1), right(1), left(0)});
     BOOST_TEST(!oracle::certify_vertex(state.packing.radius, lifted(state.packing.q), state.contacts).proved());
 }
@@ -68,8 +68,8 @@ BOOST_AUTO_TEST_CASE(no_certificate_where_the_contact_matrix_is_singular) {
 BOOST_AUTO_TEST_CASE(every_event_of_a_short_trajectory_is_certified) {
     PreparationOptions options;
     options.disks = 30;
-    PreparationReport<2> report;
-    const auto start = prepare<2>(options, report);
+    PreparationReport report;
+    const auto start = prepare(options, report);
     BOOST_REQUIRE(start.ok());
     const oracle::ReferencePath path = oracle::reference_path(start.value(), 6);
     BOOST_TEST(path.stopped == "");

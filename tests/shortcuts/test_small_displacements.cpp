@@ -9,7 +9,7 @@ using namespace crafted;
 
 namespace {
 
-LinearEvent event_of(const State<2>& state, const Contact& opened) {
+LinearEvent event_of(const State& state, const Contact& opened) {
     const auto structure = crafted::Regular::proved(state);
     const Factorisation factorisation(structure);
     const auto at = std::find(state.contacts.begin(), state.contacts.end(), opened) - state.contacts.begin();
@@ -31,7 +31,7 @@ BOOST_AUTO_TEST_CASE(the_linear_event_of_two_disks_errs_with_the_square_of_the_a
     std::vector<double> arc;
     for (const double distance : {1e-1, 1e-2, 1e-3}) {
         const double r1 = (3 + 2 * std::sqrt(2.0)) * (1 - distance);
-        const State<2> state = two_disks(1, r1, 1, 1);
+        const State state = two_disks(1, r1, 1, 1);
         const LinearEvent event = event_of(state, bottom(1));
         BOOST_TEST((event.closed == left(1)));
         const double x = 2 * std::sqrt(r1);
@@ -47,7 +47,7 @@ BOOST_AUTO_TEST_CASE(the_linear_event_of_two_disks_errs_with_the_square_of_the_a
 
 BOOST_AUTO_TEST_CASE(the_drift_of_the_first_arc_is_the_curvature_of_the_gaps) {
     for (const std::uint64_t seed : {1U, 2U, 3U}) {
-        const State<2> start = prepared(30, seed);
+        const State start = prepared(30, seed);
         const auto run = load_with_linear_gaps(start, LinearGeometry::moved, 1, 1);
         BOOST_REQUIRE(run.arcs.size() == 1U);
         std::vector<double> moved(start.packing.q.size());
@@ -60,7 +60,7 @@ BOOST_AUTO_TEST_CASE(the_drift_of_the_first_arc_is_the_curvature_of_the_gaps) {
                 expected = std::max(expected, 0.5 * gap_curvature(start.packing, c, moved.data()));
             }
         }
-        Packing<2> end = start.packing;
+        Packing end = start.packing;
         end.q = run.coordinates[0];
         double drift = 0;
         for (const Contact& c : start.contacts) {
@@ -75,7 +75,7 @@ BOOST_AUTO_TEST_CASE(a_frozen_geometry_keeps_its_linear_gaps_closed_and_the_load
     int arcs = 0;
     int changes = 0;
     for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
-        const State<2> start = prepared(20, seed);
+        const State start = prepared(20, seed);
         const auto run = load_with_linear_gaps(start, LinearGeometry::frozen, 6, 300);
         std::vector<Contact> contacts = start.contacts;
         std::vector<double> before = start.packing.q;
@@ -91,7 +91,7 @@ BOOST_AUTO_TEST_CASE(a_frozen_geometry_keeps_its_linear_gaps_closed_and_the_load
                 }
                 BOOST_TEST(std::abs(h) < 1e-9);
             }
-            Load<2> load = start.load;
+            Load load = start.load;
             load.stress[1] = run.arcs[a].stress;
             const auto force = load.external_force(start.packing);
             double work = 0;
@@ -113,7 +113,7 @@ BOOST_AUTO_TEST_CASE(a_frozen_geometry_keeps_its_linear_gaps_closed_and_the_load
 }
 
 BOOST_AUTO_TEST_CASE(geometry_that_moves_follows_the_exact_path_for_some_arcs_and_then_drifts) {
-    const State<2> start = prepared(30, 1);
+    const State start = prepared(30, 1);
     const Played exact = play(start, +1, 5);
     BOOST_REQUIRE_MESSAGE(exact.outcome.completed, exact.why());
     const auto run = load_with_linear_gaps(start, LinearGeometry::moved, 5, 1000);

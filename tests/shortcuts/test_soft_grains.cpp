@@ -20,8 +20,8 @@ SoftGrainOptions at_ratio(double kappa) {
 }
 
 /// Largest |soft force - rigid force| / largest rigid force over the rigid contacts.
-double force_error(const State<2>& state, const std::vector<double>& rigid, double kappa) {
-    SoftGrains<2> soft(state.packing, state.load, at_ratio(kappa));
+double force_error(const State& state, const std::vector<double>& rigid, double kappa) {
+    SoftGrains soft(state.packing, state.load, at_ratio(kappa));
     BOOST_REQUIRE(soft.relax());
     const std::vector<SoftContact> found = soft.contacts();
     double worst = 0;
@@ -38,7 +38,7 @@ double force_error(const State<2>& state, const std::vector<double>& rigid, doub
 BOOST_AUTO_TEST_SUITE(shortcuts)
 
 BOOST_AUTO_TEST_CASE(one_disk_in_a_box_shrinks_by_two_overlaps_on_each_axis) {
-    SoftGrains<2> soft(one_disk(1, 3).packing, one_disk(1, 3).load, at_ratio(100)); // P = 2, K = 200
+    SoftGrains soft(one_disk(1, 3).packing, one_disk(1, 3).load, at_ratio(100)); // P = 2, K = 200
     BOOST_TEST(soft.stiffness() == 200.0);
     BOOST_REQUIRE(soft.relax());
     BOOST_TEST(soft.packing().length(0) == 2 - 2 * (1 / 200.0), boost::test_tools::tolerance(1e-5));
@@ -53,13 +53,13 @@ BOOST_AUTO_TEST_CASE(two_disks_approach_their_closed_form_as_the_inverse_of_the_
     // f(0-1) = F1 (R0 + R1) / (2 sqrt(R0 R1)): balance of disk 0 along x.
     const double r0 = 1;
     const double r1 = 2;
-    const State<2> state = two_disks(r0, r1, 1, 3); // at F2 = F1 the first order nearly cancels
+    const State state = two_disks(r0, r1, 1, 3); // at F2 = F1 the first order nearly cancels
     const double exact = (r0 + r1) / (2 * std::sqrt(r0 * r1));
     std::vector<double> error;
     for (const double kappa : {1e2, 1e3, 1e4}) {
         SoftGrainOptions options = at_ratio(kappa);
         options.tolerance = 1e-9;
-        SoftGrains<2> soft(state.packing, state.load, options);
+        SoftGrains soft(state.packing, state.load, options);
         BOOST_REQUIRE(soft.relax());
         BOOST_TEST(soft.contacts().size() == 6U);
         for (const SoftContact& c : soft.contacts()) {
@@ -75,13 +75,13 @@ BOOST_AUTO_TEST_CASE(two_disks_approach_their_closed_form_as_the_inverse_of_the_
 }
 
 BOOST_AUTO_TEST_CASE(a_disk_that_touches_nothing_falls_as_drag_lets_it) {
-    State<2> state = one_disk(1, 1);
+    State state = one_disk(1, 1);
     state.packing.q = {50, 50, 100, 100};
     state.load.disk_force = {0.01, 0};
     SoftGrainOptions options = at_ratio(1e2);
     options.drag = 0.05;
     options.step_fraction = 0.3;
-    SoftGrains<2> soft(state.packing, state.load, options);
+    SoftGrains soft(state.packing, state.load, options);
     const double dt = soft.time_step();
     soft.advance(200);
     const double t = 200 * dt;
@@ -92,13 +92,13 @@ BOOST_AUTO_TEST_CASE(a_disk_that_touches_nothing_falls_as_drag_lets_it) {
 }
 
 BOOST_AUTO_TEST_CASE(energy_only_decays) {
-    State<2> state = prepared(30, 3);
+    State state = prepared(30, 3);
     for (std::size_t k = 0; k < state.packing.q.size(); ++k) { // squeezed, sheared, out of balance
         state.packing.q[k] *= k % 2 == 0 ? 0.99 : 1.005;
     }
     SoftGrainOptions options = at_ratio(1e3);
     options.step_fraction = 0.1;
-    SoftGrains<2> soft(state.packing, state.load, options);
+    SoftGrains soft(state.packing, state.load, options);
     const double first = soft.energy();
     double before = first;
     int falls = 0;
@@ -114,8 +114,8 @@ BOOST_AUTO_TEST_CASE(energy_only_decays) {
 }
 
 BOOST_AUTO_TEST_CASE(the_time_step_is_below_the_true_highest_frequency) {
-    const State<2> state = prepared(30, 5);
-    SoftGrains<2> soft(state.packing, state.load, at_ratio(1e3));
+    const State state = prepared(30, 5);
+    SoftGrains soft(state.packing, state.load, at_ratio(1e3));
     BOOST_REQUIRE(soft.relax());
     const std::size_t dofs = soft.packing().q.size();
     Eigen::MatrixXd springs = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(dofs), static_cast<Eigen::Index>(dofs));
@@ -138,7 +138,7 @@ BOOST_AUTO_TEST_CASE(the_time_step_is_below_the_true_highest_frequency) {
 }
 
 BOOST_AUTO_TEST_CASE(forces_of_a_packing_converge_as_the_inverse_of_the_stiffness) {
-    const State<2> state = prepared(30, 1);
+    const State state = prepared(30, 1);
     const auto rigid = inspect_vertex(state);
     BOOST_REQUIRE(rigid.ok());
     BOOST_REQUIRE(rigid.value().equilibrium);
@@ -153,15 +153,15 @@ BOOST_AUTO_TEST_CASE(forces_of_a_packing_converge_as_the_inverse_of_the_stiffnes
 }
 
 BOOST_AUTO_TEST_CASE(a_load_that_has_no_potential_or_no_stress_is_refused) {
-    State<2> state = one_disk(1, 1);
+    State state = one_disk(1, 1);
     state.load.kind = LoadKind::true_stress;
-    BOOST_CHECK_THROW(SoftGrains<2>(state.packing, state.load), Error);
+    BOOST_CHECK_THROW(SoftGrains(state.packing, state.load), Error);
     state.load.kind = LoadKind::nominal;
     state.load.stress = {0, 0};
-    BOOST_CHECK_THROW(SoftGrains<2>(state.packing, state.load), Error);
+    BOOST_CHECK_THROW(SoftGrains(state.packing, state.load), Error);
     state.load.stress = {1, 1};
-    BOOST_CHECK_THROW(SoftGrains<2>(state.packing, state.load, at_ratio(-1)), Error);
-    BOOST_CHECK_NO_THROW(SoftGrains<2>(state.packing, state.load));
+    BOOST_CHECK_THROW(SoftGrains(state.packing, state.load, at_ratio(-1)), Error);
+    BOOST_CHECK_NO_THROW(SoftGrains(state.packing, state.load));
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -107,7 +107,7 @@ enum class Radii { none, common, all };
 /// One column per contact: minus the derivative of its gap; rows are the degrees of freedom and then the radii.
 inline isostat::exact::NumberMatrix gap_derivative(const ExactPacking& packing, const std::vector<Contact>& contacts,
                                                    Radii radii) {
-    const isostat::DofMap<2> dofs(isostat::crafted::approximate(packing));
+    const isostat::DofMap dofs(isostat::crafted::approximate(packing));
     auto matrix = isostat::crafted::exact_contact_matrix(packing, dofs, contacts);
     const int first = matrix.rows;
     matrix.rows += radii == Radii::all ? packing.disk_count() : radii == Radii::common ? 1 : 0;

@@ -111,7 +111,7 @@ BOOST_AUTO_TEST_CASE(without_movable_walls_the_statement_fails) {
     BOOST_TEST(kernel.rank == 3);
     // The same disk with movable upper walls.
     ExactPacking movable = packing;
-    movable.walls = Walls<2>::box();
+    movable.walls = Walls::box();
     BOOST_TEST(rank_with(movable, contacts, Radii::all) == 4);
 }
 
@@ -129,7 +129,7 @@ BOOST_AUTO_TEST_CASE(with_fixed_disks_the_statement_fails) {
         const bool x = c.kind == ContactKind::disk_disk ? packing.centre[static_cast<std::size_t>(c.i)][1] ==
                                                               packing.centre[static_cast<std::size_t>(c.j)][1]
                                                         : c.j == 0;
-        BOOST_TEST((kernel.basis[0][l] == (x ? along_x : -along_x)), to_string<2>(c));
+        BOOST_TEST((kernel.basis[0][l] == (x ? along_x : -along_x)), to_string(c));
     }
 }
 

@@ -82,9 +82,9 @@ Path simplex(const LinearPacking& p, std::vector<int> basis, const VectorXd& u0,
     return path;
 }
 
-LinearPacking linearised(const State<2>& state) {
+LinearPacking linearised(const State& state) {
     LinearPacking p;
-    const DofMap<2> dofs(state.packing);
+    const DofMap dofs(state.packing);
     const auto pairs = find_candidates(state.packing, 0.82).contacts;
     const auto h = contact_matrix(state.packing, dofs, pairs);
     p.approach = MatrixXd::Zero(h.cols, h.rows);
@@ -171,7 +171,7 @@ BOOST_AUTO_TEST_CASE(a_cluster_between_two_walls_has_no_unique_displacement) {
     // T10 (c) (iii) without k = 0: sliding along the walls changes no gap and does no work.
     const auto packing = families::counterexample("t8_one_pair_of_walls");
     const auto contacts = crafted::exact_contacts(packing).value();
-    const DofMap<2> dofs(crafted::approximate(packing));
+    const DofMap dofs(crafted::approximate(packing));
     const auto g = exact::transposed(crafted::exact_contact_matrix(packing, dofs, contacts));
     const auto kernel = exact::kernel(g);
     BOOST_REQUIRE((kernel.exact == Verdict::proved));

@@ -57,7 +57,7 @@ Number dot(const std::vector<Number>& a, const std::vector<Number>& b) {
 }
 
 /// Smallest Lx for disks that keep their order from left to right and have the given heights.
-double least_length(const Packing<2>& packing, const std::vector<double>& y) {
+double least_length(const Packing& packing, const std::vector<double>& y) {
     std::vector<double> x(y.size());
     double length = 0;
     for (std::size_t i = 0; i < y.size(); ++i) {
@@ -76,7 +76,7 @@ double least_length(const Packing<2>& packing, const std::vector<double>& y) {
 
 /// The smallest length that random heights between the fixed walls of the y axis give.
 double shortest_found(const std::string& name, double amplitude) {
-    const Packing<2> packing = crafted::approximate(families::counterexample(name));
+    const Packing packing = crafted::approximate(families::counterexample(name));
     std::mt19937_64 random(3);
     double best = packing.length(0);
     for (int k = 0; k < 2000; ++k) {
@@ -145,10 +145,10 @@ BOOST_AUTO_TEST_CASE(the_power_of_every_opening_is_minus_the_force) {
         PreparationOptions options;
         options.disks = 15;
         options.seed = seed;
-        PreparationReport<2> report;
-        const auto state = prepare<2>(options, report);
+        PreparationReport report;
+        const auto state = prepare(options, report);
         BOOST_REQUIRE(state.ok());
-        const auto structure = IsostaticStructure<2>::prove(state.value().packing, state.value().contacts);
+        const auto structure = IsostaticStructure::prove(state.value().packing, state.value().contacts);
         BOOST_REQUIRE(structure.ok());
         const Factorisation factorisation(structure.value());
         const auto load = state.value().load.external_force(state.value().packing);
@@ -178,7 +178,7 @@ BOOST_AUTO_TEST_CASE(a_contact_reached_at_speed_zero_is_not_isostatic) {
     for (const int offset : {0, 1, -1, 4}) {
         auto packing = families::counterexample("t3_grazing_contact");
         packing.centre[2] = {Number(5), Number(1) + Number(offset) / Number(10)}; // moved: gap no longer 0
-        const DofMap<2> dofs(crafted::approximate(packing));
+        const DofMap dofs(crafted::approximate(packing));
         const auto h = crafted::exact_contact_matrix(packing, dofs,
                                                      {{ContactKind::disk_disk, 0, 1}, {ContactKind::disk_disk, 1, 2}});
         const auto entry = [&h](std::size_t l, int row) {
@@ -251,11 +251,11 @@ BOOST_AUTO_TEST_CASE(under_true_stresses_the_power_grows_at_a_turn_and_the_sum_o
         const double a = uniform_number(random, 0.5, 2);
         const double b = uniform_number(random, 0.5, 2);
         const double d = a + b;
-        Load<2> load;
+        Load load;
         load.kind = LoadKind::true_stress;
         load.stress = {uniform_number(random, 0.2, 3), uniform_number(random, 0.2, 3)};
         const auto at = [&](double angle) {
-            Packing<2> packing;
+            Packing packing;
             packing.radius = {a, b};
             const double x = a + d * std::cos(angle);
             const double y = a + d * std::sin(angle);
@@ -267,7 +267,7 @@ BOOST_AUTO_TEST_CASE(under_true_stresses_the_power_grows_at_a_turn_and_the_sum_o
             return -force[4] * d * std::sin(angle) + force[5] * d * std::cos(angle);
         };
         const auto phi = [&](double angle) {
-            const Packing<2> packing = at(angle);
+            const Packing packing = at(angle);
             return load.stress[0] * std::log(packing.length(0)) + load.stress[1] * std::log(packing.length(1));
         };
         double low = 0;
@@ -277,7 +277,7 @@ BOOST_AUTO_TEST_CASE(under_true_stresses_the_power_grows_at_a_turn_and_the_sum_o
             (power(middle) < 0 ? low : high) = middle;
         }
         const double turn = low;
-        const Packing<2> packing = at(turn);
+        const Packing packing = at(turn);
         const double volume = packing.length(0) * packing.length(1);
         const double force =
             load.stress[0] * packing.length(1) / std::cos(turn); // of the contact, from that on the wall

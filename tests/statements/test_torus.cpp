@@ -14,7 +14,7 @@ using isostat::exact::NumberMatrix;
 
 /// Disks with exact coordinates; the second ones in units of `height`, which may be irrational.
 struct ExactCell {
-    State<2> state;
+    State state;
     Number height = 1;
     [[nodiscard]] Number x(int disk) const {
         return Number::from_double(state.packing.q[2 * static_cast<std::size_t>(disk)]);
@@ -143,8 +143,8 @@ BOOST_AUTO_TEST_CASE(radii_and_coordinates_follow_every_gap_in_cells_with_a_tilt
 BOOST_AUTO_TEST_CASE(two_disks_of_a_centred_rectangle_for_many_radii) {
     // X = 9/8, Y = 3/2, D = 15/8: dyadic, and images apart for radii from 3/4 to 9/8.
     for (const double radius : {0.75, 0.875, 0.9375, 1.0, 1.109375}) {
-        const State<2> state = cells::in_cell({{radius, 0, 0}, {1.875 - radius, 1.125, 1.5}}, {2.25, 3, 0}, true, 1, 1,
-                                              cells::two_disks(true, 1, 1).contacts);
+        const State state = cells::in_cell({{radius, 0, 0}, {1.875 - radius, 1.125, 1.5}}, {2.25, 3, 0}, true, 1, 1,
+                                           cells::two_disks(true, 1, 1).contacts);
         BOOST_TEST(missing({state}, tilted) == 0);
         BOOST_TEST(missing({state}, rectangle) == 1);
     }

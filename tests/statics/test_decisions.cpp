@@ -11,7 +11,7 @@ namespace {
 
 /// About the stored configuration.
 struct Loaded : AtVertex {
-    explicit Loaded(State<2> s) : AtVertex(std::move(s), false) {}
+    explicit Loaded(State s) : AtVertex(std::move(s), false) {}
 };
 
 } // namespace
@@ -134,7 +134,7 @@ BOOST_AUTO_TEST_CASE(two_equal_tractions_are_a_tie_and_unequal_ones_are_ordered)
 
 BOOST_AUTO_TEST_CASE(the_rules_choose_what_their_names_say) {
     // Pull everything: several tractions.
-    State<2> state = prepared(30, 3);
+    State state = prepared(30, 3);
     state.load.stress = {1, 4};
     Loaded loaded(state);
     const auto choose = [&](OpeningRule rule, std::uint64_t bits) {
@@ -173,7 +173,7 @@ BOOST_AUTO_TEST_CASE(the_rules_choose_what_their_names_say) {
 
 BOOST_AUTO_TEST_CASE(without_infinitesimal_loads_a_rattler_leaves_its_sign_undecided) {
     // Disk 1 lies in the corner between bottom and right wall without touching anything else.
-    State<2> state =
+    State state =
         in_box({{2, 2, 2}, {0.5, 3.5, 0.5}}, 4, 4, 1, 1, {left(0), right(0), bottom(0), top(0), right(1), bottom(1)});
     state.load.infinitesimal = {0.1, -1, 0.1, -1}; // into the corner
     Loaded resting(state);

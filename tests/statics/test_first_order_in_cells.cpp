@@ -18,11 +18,11 @@ namespace {
 constexpr double step = 1e-4;
 
 /// The packing near a state with these gaps of its contacts, in double.
-Packing<2> with_gaps(const State<2>& state, const std::vector<double>& radius, std::size_t opened, double gap_of_it) {
-    Packing<2> packing = state.packing;
+Packing with_gaps(const State& state, const std::vector<double>& radius, std::size_t opened, double gap_of_it) {
+    Packing packing = state.packing;
     packing.radius = radius;
     for (int newton = 0; newton < 8; ++newton) {
-        const auto structure = IsostaticStructure<2>::prove(packing, state.contacts).value();
+        const auto structure = IsostaticStructure::prove(packing, state.contacts).value();
         std::vector<double> v;
         for (std::size_t l = 0; l < state.contacts.size(); ++l) {
             v.push_back(gap(packing, state.contacts[l]) - (l == opened ? gap_of_it : 0));
@@ -35,14 +35,14 @@ Packing<2> with_gaps(const State<2>& state, const std::vector<double>& radius, s
     return packing;
 }
 
-std::vector<double> forces_in(const State<2>& state, const Packing<2>& packing) {
-    const auto structure = IsostaticStructure<2>::prove(packing, state.contacts).value();
+std::vector<double> forces_in(const State& state, const Packing& packing) {
+    const auto structure = IsostaticStructure::prove(packing, state.contacts).value();
     std::vector<double> f = on_dofs(state.load.external_force(packing), structure.dofs());
     Factorisation(structure).solve_forces(f);
     return f;
 }
 
-std::vector<double> changed(const State<2>& state, const std::vector<double>& rho, double eps) {
+std::vector<double> changed(const State& state, const std::vector<double>& rho, double eps) {
     std::vector<double> radius = state.packing.radius;
     for (std::size_t i = 0; i < rho.size(); ++i) {
         radius[i] += eps * rho[i];
@@ -61,23 +61,23 @@ Derivatives derivatives(const std::function<double(double)>& f) {
 }
 
 struct Vertex : crafted::Regular {
-    explicit Vertex(const State<2>& s)
+    explicit Vertex(const State& s)
         : Regular(s), enclosure(enclose_vertex(state.packing, structure, factorisation, inverse)),
           rho(tie_direction(state.packing.radius, 3)),
           first(state.packing, structure, factorisation, inverse, enclosure, rho),
           precise(state.packing, structure, factorisation, inverse, {}) {}
     VertexEnclosure enclosure;
     std::vector<double> rho;
-    FirstOrder<2> first;
-    PreciseFirstOrder<2> precise;
+    FirstOrder first;
+    PreciseFirstOrder precise;
 };
 
 /// Vertices where pairs touch besides the contacts, through images too: the end of a tie of two gaps, with disks stored
 /// a period away, and lattices.
-std::vector<State<2>> vertices_with_touching_pairs() {
-    std::vector<State<2>> vertices{follow_load(cells::mirror_pairs(), +1, 1, Ties::first_order, 1).states.back()};
+std::vector<State> vertices_with_touching_pairs() {
+    std::vector<State> vertices{follow_load(cells::mirror_pairs(), +1, 1, Ties::first_order, 1).states.back()};
     for (const bool tilts : {false, true}) {
-        const State<2> lattice = cells::loaded_lattice(3, 1, tilts);
+        const State lattice = cells::loaded_lattice(3, 1, tilts);
         vertices.push_back(follow_load(lattice, +1, 1, Ties::choose, 1).states.front());
     }
     return vertices;
@@ -93,7 +93,7 @@ bool near(double a, double b) {
 }
 
 /// Every pair of disks through every image next to the cell that is no contact.
-std::vector<Contact> other_pairs(const State<2>& state) {
+std::vector<Contact> other_pairs(const State& state) {
     std::vector<Contact> pairs;
     for (int i = 0; i < state.packing.disk_count(); ++i) {
         for (int j = i + 1; j < state.packing.disk_count(); ++j) {
@@ -112,7 +112,7 @@ BOOST_AUTO_TEST_SUITE(statics)
 
 BOOST_AUTO_TEST_CASE(gaps_and_forces_of_changed_radii_in_cells_are_those_of_packings_that_are_made) {
     for (const std::string name : {"tilt_16", "rect_16", "channel_16"}) {
-        State<2> state = read_any_state<2>(scratch::data("cells/" + name + ".json")).state;
+        State state = read_any_state(scratch::data("cells/" + name + ".json")).state;
         snap_to_grid(state.packing);
         for (const LoadKind kind : {LoadKind::nominal, LoadKind::true_stress}) {
             state.load.kind = kind;
@@ -129,14 +129,14 @@ BOOST_AUTO_TEST_CASE(gaps_and_forces_of_changed_radii_in_cells_are_those_of_pack
                                      return forces_in(state, with_gaps(state, radius, 0, 0))[l];
                                  }).first;
                 BOOST_TEST(near(f1[l].value, f),
-                           name << " " << to_string<2>(state.contacts[l]) << " " << f1[l].value << " " << f);
+                           name << " " << to_string(state.contacts[l]) << " " << f1[l].value << " " << f);
                 BOOST_TEST(f1[l].radius < 1e-6);
             }
             for (const Contact& pair : other_pairs(state)) {
                 const double h = derivatives([&](double eps) {
                                      return gap(with_gaps(state, changed(state, at.rho, eps), 0, 0), pair);
                                  }).first;
-                BOOST_TEST(near(at.first.gap(pair).value, h), name << " " << to_string<2>(pair));
+                BOOST_TEST(near(at.first.gap(pair).value, h), name << " " << to_string(pair));
             }
         }
     }
@@ -146,7 +146,7 @@ BOOST_AUTO_TEST_CASE(
     rates_and_second_derivatives_of_pairs_that_touch_through_images_are_those_of_motions_that_are_made) {
     int images = 0;
     int bent = 0;
-    for (const State<2>& state : vertices_with_touching_pairs()) {
+    for (const State& state : vertices_with_touching_pairs()) {
         Vertex at(state);
         const checker::Evidence evidence(state, CheckerArithmetic::automatic);
         const checker::Velocities velocities(evidence);
@@ -157,7 +157,7 @@ BOOST_AUTO_TEST_CASE(
                 const ContactId id(l);
                 const Derivatives d =
                     derivatives([&](double s) { return gap(with_gaps(state, state.packing.radius, l, s), pair); });
-                BOOST_TEST_CONTEXT(to_string<2>(pair) << " when " << to_string<2>(state.contacts[l]) << " opens") {
+                BOOST_TEST_CONTEXT(to_string(pair) << " when " << to_string(state.contacts[l]) << " opens") {
                     BOOST_TEST(near(at.first.rate(id, +1, pair).value, d.first));
                     BOOST_TEST(near(at.precise.rate(id, +1, pair).value, d.first));
                     BOOST_TEST(std::abs(at.precise.bend(id, +1, pair).value - d.second) <
@@ -173,10 +173,10 @@ BOOST_AUTO_TEST_CASE(
         // Of a contact everything is known: its gap is 0, and that of the one that opens grows at unit rate.
         for (std::size_t l = 0; l < state.contacts.size(); ++l) {
             const Contact& contact = state.contacts[l];
-            BOOST_TEST(near(at.first.gap(contact).value, 0), to_string<2>(contact));
+            BOOST_TEST(near(at.first.gap(contact).value, 0), to_string(contact));
             for (std::size_t opened = 0; opened < state.contacts.size(); ++opened) {
                 const double rate = opened == l ? 1 : 0;
-                BOOST_TEST(near(at.precise.rate(ContactId(opened), +1, contact).value, rate), to_string<2>(contact));
+                BOOST_TEST(near(at.precise.rate(ContactId(opened), +1, contact).value, rate), to_string(contact));
             }
         }
     }

@@ -21,7 +21,7 @@ Contact held(int coordinate) {
 
 /// Disks of radius 1 in a row between the side walls, which pull with force 1; another disk carries the top wall.
 /// y of every disk of the row is held, that of the first one last in the list.
-State<2> row_under_traction(int disks) {
+State row_under_traction(int disks) {
     std::vector<DiskAt> at;
     std::vector<Contact> contacts{left(0)};
     for (int i = 0; i < disks; ++i) {
@@ -33,11 +33,11 @@ State<2> row_under_traction(int disks) {
     for (int i = disks; i-- > 0;) {
         contacts.push_back(held(2 * i + 1));
     }
-    State<2> state = in_box(at, 2.0 * disks, 11, -1, 1, contacts);
+    State state = in_box(at, 2.0 * disks, 11, -1, 1, contacts);
     return state;
 }
 
-ContactId find(const State<2>& state, const Contact& contact) {
+ContactId find(const State& state, const Contact& contact) {
     const auto at = std::find(state.contacts.begin(), state.contacts.end(), contact);
     BOOST_TEST_REQUIRE((at != state.contacts.end()));
     return ContactId(static_cast<std::size_t>(at - state.contacts.begin()));
@@ -48,7 +48,7 @@ template <class T> std::string why(const Result<T>& result) {
 }
 
 /// Does nothing unless the disk has just two neighbours.
-void set_between_its_neighbours(State<2>& state, int disk) {
+void set_between_its_neighbours(State& state, int disk) {
     std::vector<std::size_t> neighbours;
     for (const Contact& c : state.contacts) {
         if (c.kind == ContactKind::held || (c.i != disk && (c.kind != ContactKind::disk_disk || c.j != disk))) {
@@ -172,7 +172,7 @@ BOOST_AUTO_TEST_SUITE(statics)
 
 BOOST_AUTO_TEST_CASE(the_end_of_a_straight_strut_that_its_own_load_pulls_at_opens) {
     for (const double g : {1.0, -1.0, 1e-9, -1e-9}) {
-        State<2> state = row_under_traction(1);
+        State state = row_under_traction(1);
         state.load.infinitesimal[0] = g; // x of the strut
         AtVertex v(state);
         const ContactId fresh = find(state, held(1));
@@ -196,7 +196,7 @@ BOOST_AUTO_TEST_CASE(a_turn_at_which_every_force_is_positive_is_no_equilibrium) 
     const auto on_top = [](double x) {
         return in_box({{1, 1, 1}, {1, x, 3}}, 2, 4, 1, 1, {left(0), bottom(0), right(0), pair(0, 1), top(1), held(2)});
     };
-    State<2> state = on_top(1 + 1e-9);
+    State state = on_top(1 + 1e-9);
     AtVertex v(state);
     const auto fresh = decide_opening(v.statics, v.sigma(), OpeningRule::most_negative, find(state, held(2)), 0);
     BOOST_TEST_REQUIRE(!fresh.ok());
@@ -209,7 +209,7 @@ BOOST_AUTO_TEST_CASE(a_turn_at_which_every_force_is_positive_is_no_equilibrium) 
 }
 
 BOOST_AUTO_TEST_CASE(a_straight_strut_without_a_load_of_its_own_is_a_tie) {
-    State<2> state = row_under_traction(1);
+    State state = row_under_traction(1);
     state.load.infinitesimal[0] = 0;
     AtVertex v(state);
     const auto decision = decide_opening(v.statics, v.sigma(), OpeningRule::most_negative, find(state, held(1)), 0);
@@ -219,7 +219,7 @@ BOOST_AUTO_TEST_CASE(a_straight_strut_without_a_load_of_its_own_is_a_tie) {
 }
 
 BOOST_AUTO_TEST_CASE(a_disk_whose_hold_carries_a_load_is_no_strut) {
-    State<2> state = row_under_traction(1);
+    State state = row_under_traction(1);
     state.load.disk_force.assign(4, 0.0);
     state.load.disk_force[1] = 0.5; // y of the disk, taken by the hold
     AtVertex v(state);
@@ -232,12 +232,12 @@ BOOST_AUTO_TEST_CASE(a_disk_whose_hold_carries_a_load_is_no_strut) {
 BOOST_AUTO_TEST_CASE(a_grain_without_force_that_joins_a_strut_to_the_rest_only_puts_its_load_on_it) {
     for (const double angle : {0.5235987755982988, 1.3089969389957472}) {
         for (const StrutLoad& load : strut_loads()) {
-            State<2> state = strut_with_a_grain(angle, load);
+            State state = strut_with_a_grain(angle, load);
             const double pushed = load.on_strut - 0.5 * load.towards_strut;
             const ContactId fresh = find(state, held(2));
             {
                 AtVertex v(state);
-                const auto mates = Turn<2>(v.statics, {fresh, {}}).mates(find(state, left(0)));
+                const auto mates = Turn(v.statics, {fresh, {}}).mates(find(state, left(0)));
                 BOOST_TEST_REQUIRE(mates.size() == 1U);
                 BOOST_TEST((v.contact(mates[0].contact) == right(0)));
                 BOOST_TEST(std::abs(mates[0].excess.value - pushed) <= 1e-12);
@@ -249,10 +249,10 @@ BOOST_AUTO_TEST_CASE(a_grain_without_force_that_joins_a_strut_to_the_rest_only_p
             // Held earlier, without a finite force: that hold takes what is added along it.
             state.load.infinitesimal[2] += 0.7;
             AtVertex v(state);
-            const auto later = Turn<2>(v.statics, {ContactId(6), {fresh}}).mates(find(state, left(0)));
+            const auto later = Turn(v.statics, {ContactId(6), {fresh}}).mates(find(state, left(0)));
             BOOST_TEST_REQUIRE(later.size() == 1U);
             BOOST_TEST(std::abs(later[0].excess.value - pushed) <= 1e-12);
-            const auto no_fresh = Turn<2>(v.statics, {std::nullopt, {fresh}}).mates(find(state, left(0)));
+            const auto no_fresh = Turn(v.statics, {std::nullopt, {fresh}}).mates(find(state, left(0)));
             BOOST_TEST_REQUIRE(no_fresh.size() == 1U);
             BOOST_TEST(std::abs(no_fresh[0].excess.value - pushed) <= 1e-12);
         }
@@ -260,19 +260,19 @@ BOOST_AUTO_TEST_CASE(a_grain_without_force_that_joins_a_strut_to_the_rest_only_p
 }
 
 BOOST_AUTO_TEST_CASE(a_row_of_two_is_one_strut_up_to_the_disk_that_another_hold_keeps) {
-    State<2> state = row_under_traction(2);
+    State state = row_under_traction(2);
     AtVertex v(state);
     const ContactId fresh = find(state, held(1));
-    const auto mates = Turn<2>(v.statics, {fresh, {}}).mates(find(state, left(0)));
+    const auto mates = Turn(v.statics, {fresh, {}}).mates(find(state, left(0)));
     BOOST_TEST_REQUIRE(mates.size() == 1U);
     BOOST_TEST((v.contact(mates[0].contact) == pair(0, 1)));
     BOOST_TEST(std::abs(mates[0].excess.value - state.load.infinitesimal[0]) <= 1e-12);
-    BOOST_TEST(Turn<2>(v.statics, {fresh, {}}).mates(find(state, right(1))).empty());
+    BOOST_TEST(Turn(v.statics, {fresh, {}}).mates(find(state, right(1))).empty());
 }
 
 BOOST_AUTO_TEST_CASE(the_load_on_a_long_strut_is_bounded_with_the_rounding_of_its_sum) {
     constexpr int disks = 4000;
-    State<2> state = row_under_traction(disks);
+    State state = row_under_traction(disks);
     std::fill(state.load.infinitesimal.begin(), state.load.infinitesimal.end(), 0.0);
     // 1 + 2^-54 is rounded to 1 again and again: the sum in double is -1.3e-13, the true one 0.9e-13.
     for (std::size_t i = 0; i < disks; ++i) {
@@ -290,7 +290,7 @@ BOOST_AUTO_TEST_CASE(the_load_on_a_long_strut_is_bounded_with_the_rounding_of_it
     for (int i = 1; i < disks; ++i) {
         zero.others.push_back(find(state, held(2 * i + 1)));
     }
-    const auto mates = Turn<2>(v.statics, zero).mates(find(state, left(0)));
+    const auto mates = Turn(v.statics, zero).mates(find(state, left(0)));
     const auto end = std::find_if(mates.begin(), mates.end(),
                                   [&](const StrutMate& mate) { return v.contact(mate.contact) == right(disks - 1); });
     BOOST_TEST_REQUIRE((end != mates.end()));
@@ -306,24 +306,24 @@ BOOST_AUTO_TEST_CASE(the_contacts_of_a_strut_are_those_of_the_definition) {
         PreparationOptions options;
         options.disks = 20;
         options.seed = seed;
-        PreparationReport<2> report;
-        auto prepared = prepare<2>(options, report);
+        PreparationReport report;
+        auto prepared = prepare(options, report);
         BOOST_TEST_REQUIRE(prepared.ok());
-        State<2> state = prepared.value();
+        State state = prepared.value();
         // A coordinate of each disk in turn is held in place of one of its contacts; when two are left the disk is
         // moved between its neighbours: a strut.
         for (std::size_t l = 0; l < state.contacts.size(); ++l) {
-            State<2> turned = state;
+            State turned = state;
             const int disk = turned.contacts[l].i;
             turned.contacts[l] = held(2 * disk);
             set_between_its_neighbours(turned, disk);
-            auto proved = IsostaticStructure<2>::prove(turned.packing, turned.contacts);
+            auto proved = IsostaticStructure::prove(turned.packing, turned.contacts);
             if (!proved.ok()) {
                 continue;
             }
             AtVertex v(turned, false);
             const ContactId fresh(l);
-            const Turn<2> turn(v.statics, {fresh, {}});
+            const Turn turn(v.statics, {fresh, {}});
             const SlowTurn slow(v, fresh);
             for (std::size_t of = 0; of < turned.contacts.size(); ++of) {
                 if (turned.contacts[of].kind == ContactKind::held) {

@@ -10,9 +10,9 @@ namespace {
 
 /// Unit disks 0 and 1 on the bottom side by side between the side walls, 2 on top of 0 under the top wall: all
 /// coordinates are integers, so the stored configuration is the true vertex. Forces in y on the disks as given.
-State<2> stack(double up0, double up1, double up2) {
-    State<2> state = in_box({{1, 1, 1}, {1, 3, 1}, {1, 1, 3}}, 4, 4, 1, 1,
-                            {left(0), bottom(0), left(2), pair(0, 2), pair(0, 1), bottom(1), right(1), top(2)});
+State stack(double up0, double up1, double up2) {
+    State state = in_box({{1, 1, 1}, {1, 3, 1}, {1, 1, 3}}, 4, 4, 1, 1,
+                         {left(0), bottom(0), left(2), pair(0, 2), pair(0, 1), bottom(1), right(1), top(2)});
     state.load.disk_force = {0, up0, 0, up1, 0, up2};
     return state;
 }
@@ -66,7 +66,7 @@ BOOST_AUTO_TEST_CASE(two_forces_that_vanish_within_delta_are_ordered_and_an_exac
             const auto limit = find_limit(loaded.statics, 1, -1);
             BOOST_TEST_REQUIRE(limit.ok(), "delta = 1e-" << decade << ": " << reason(limit));
             BOOST_TEST((loaded.contact(limit.value().opens) == (sign > 0 ? bottom(0) : pair(0, 2))),
-                       "delta = 1e-" << decade << " opens " << to_string<2>(loaded.contact(limit.value().opens)));
+                       "delta = 1e-" << decade << " opens " << to_string(loaded.contact(limit.value().opens)));
             BOOST_TEST(limit.value().tie_class.size() == 1U);
         }
     }
@@ -106,7 +106,7 @@ BOOST_AUTO_TEST_CASE(equal_by_symmetry_is_a_tie_however_the_coordinates_were_rou
     int misled = 0;
     for (int k = 1; k <= 12; ++k) {
         const double r = 0.1 * k + 0.03;
-        const State<2> state = three_disks(r, r, 0.1 * r, 1, -1);
+        const State state = three_disks(r, r, 0.1 * r, 1, -1);
         LadderOptions options;
         options.max_bits = 1024;
         AtVertex stored(state, false, options);
@@ -145,9 +145,9 @@ BOOST_AUTO_TEST_CASE(unequal_radii_are_ordered_as_long_as_they_differ_at_all) {
 BOOST_AUTO_TEST_CASE(rungs_at_the_true_vertex_agree_with_each_other) {
     // The enclosure of every rung contains the values of all higher ones.
     for (const double r : {0.3, 0.7, 1.1}) {
-        const State<2> state = two_disks(r, 2 * r, 1, 1.3);
+        const State state = two_disks(r, 2 * r, 1, 1.3);
         AtVertex at(state);
-        ForceLadder<2> ladder(state.packing, at.structure, at.factorisation, at.inverse, {}, &at.vertex);
+        ForceLadder ladder(state.packing, at.structure, at.factorisation, at.inverse, {}, &at.vertex);
         const int part = ladder.add(state.load.external_force(state.packing));
         std::vector<ForceSolution> seen;
         do {
@@ -172,10 +172,10 @@ BOOST_AUTO_TEST_CASE(rungs_at_the_true_vertex_agree_with_each_other) {
 
 BOOST_AUTO_TEST_CASE(a_candidate_that_touches_at_the_vertex_is_told_from_one_that_does_not) {
     // Square of four unit disks with one bond left out: it touches, exactly.
-    State<2> square = square_lattice(2);
+    State square = square_lattice(2);
     std::erase(square.contacts, pair(2, 3));
     std::erase(square.contacts, pair(1, 3));
-    const auto count = [&](const State<2>& s) { return static_cast<int>(s.contacts.size()); };
+    const auto count = [&](const State& s) { return static_cast<int>(s.contacts.size()); };
     BOOST_TEST_REQUIRE(count(square) == 10);
     AtVertex at(square);
     const auto sign = [](const AtVertex& v, const Contact& c) {
@@ -186,7 +186,7 @@ BOOST_AUTO_TEST_CASE(a_candidate_that_touches_at_the_vertex_is_told_from_one_tha
     const Order open = sign(at, pair(0, 3));
     BOOST_TEST((open.decided && open.sign == 1));
     // The same with radii that no double coordinates can make touch: 0 to as many bits as were tried, never a sign.
-    State<2> rounded = square;
+    State rounded = square;
     for (double& x : rounded.packing.q) {
         x *= 0.3;
     }
@@ -197,7 +197,7 @@ BOOST_AUTO_TEST_CASE(a_candidate_that_touches_at_the_vertex_is_told_from_one_tha
     const Order same = sign(near, pair(2, 3));
     BOOST_TEST((!same.decided || same.sign == 0));
     // A radius one ulp smaller: open, although double precision cannot see it.
-    State<2> smaller = square;
+    State smaller = square;
     smaller.packing.radius[3] = std::nextafter(1.0, 0.0);
     AtVertex off(smaller);
     const Order gap_there = sign(off, pair(2, 3));

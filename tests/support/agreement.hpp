@@ -12,7 +12,7 @@ struct Agreement {
     int events = 0, settled = 0, undecided = 0;
     std::set<std::string> kinds; ///< of decisions that were settled
 };
-inline Agreement agree(const State<2>& state, int direction, int equilibria, int seeds) {
+inline Agreement agree(const State& state, int direction, int equilibria, int seeds) {
     Agreement sum;
     for (int seed = 1; seed <= seeds; ++seed) {
         const auto s = static_cast<std::uint64_t>(seed);
@@ -22,7 +22,7 @@ inline Agreement agree(const State<2>& state, int direction, int equilibria, int
             sum.settled += static_cast<int>(count);
         }
         sum.events += static_cast<int>(symbolic.events.size());
-        for (const ArcRecord<2>& arc : symbolic.arcs) {
+        for (const ArcRecord& arc : symbolic.arcs) {
             for (const TieDecision& tie : arc.perturbed) {
                 sum.kinds.insert(tie.what);
             }

@@ -26,15 +26,15 @@ struct Periods {
 };
 
 /// Rectangular: both periods move. With `tilts` the tilt too.
-inline State<2> in_cell(const std::vector<DiskAt>& disks, const Periods& periods, bool tilts, double f1, double f2,
-                        std::vector<Contact> contacts) {
-    State<2> state;
+inline State in_cell(const std::vector<DiskAt>& disks, const Periods& periods, bool tilts, double f1, double f2,
+                     std::vector<Contact> contacts) {
+    State state;
     for (const DiskAt& d : disks) {
         state.packing.radius.push_back(d.radius);
         state.packing.q.insert(state.packing.q.end(), {d.x, d.y});
     }
     state.packing.q.insert(state.packing.q.end(), {periods.x, periods.y, periods.tilt});
-    state.packing.walls = isostat::Walls<2>::none();
+    state.packing.walls = isostat::Walls::none();
     state.packing.cell = {{true, true}, {true, true}, {tilts}, 0};
     state.load.stress = {f1, f2};
     state.load.reference_length = {1, 1};
@@ -43,26 +43,26 @@ inline State<2> in_cell(const std::vector<DiskAt>& disks, const Periods& periods
 }
 
 /// One disk of radius 1 that touches its images along x and y.
-inline State<2> one_disk(double f1, double f2) {
+inline State one_disk(double f1, double f2) {
     return in_cell({{1, 0.25, 0.5}}, {2, 2, 0}, false, f1, f2, {across(0, 0, 0, 1), across(0, 0, 1, 0)});
 }
 
 /// One disk of radius 1 in the triangular lattice, under a shear force t.
-inline State<2> one_tilted_disk(double f1, double f2, double t) {
-    State<2> state = in_cell({{1, 0.25, 0.5}}, {2, std::sqrt(3.0), 1}, true, f1, f2,
-                             {across(0, 0, 0, 1), across(0, 0, 1, -1), across(0, 0, 1, 0)});
+inline State one_tilted_disk(double f1, double f2, double t) {
+    State state = in_cell({{1, 0.25, 0.5}}, {2, std::sqrt(3.0), 1}, true, f1, f2,
+                          {across(0, 0, 0, 1), across(0, 0, 1, -1), across(0, 0, 1, 0)});
     state.load.shear = {t};
     return state;
 }
 
 /// Radii 1.2 and 0.8, the second in the centre of a rectangle 2 x 1.2 by 2 x 1.6, touching four images of the first.
-inline State<2> two_disks(bool tilts, double f1, double f2) {
+inline State two_disks(bool tilts, double f1, double f2) {
     return in_cell({{1.2, 0, 0}, {0.8, 1.2, 1.6}}, {2.4, 3.2, 0}, tilts, f1, f2,
                    {across(0, 1, 0, 0), across(0, 1, -1, 0), across(0, 1, 0, -1), across(0, 1, -1, -1)});
 }
 
 /// m x m disks of diameter 1 in a square.
-inline State<2> square_lattice(int m, bool tilts) {
+inline State square_lattice(int m, bool tilts) {
     std::vector<DiskAt> disks;
     std::vector<Contact> contacts;
     const auto index = [m](int x, int y) { return m * (y % m) + x % m; };
@@ -78,7 +78,7 @@ inline State<2> square_lattice(int m, bool tilts) {
 }
 
 /// a columns and 2 b rows of the triangular lattice, disks of diameter 1.
-inline State<2> triangular_lattice(int a, int b, bool tilts) {
+inline State triangular_lattice(int a, int b, bool tilts) {
     std::vector<DiskAt> disks;
     std::vector<Contact> contacts;
     const int rows = 2 * b;
@@ -99,8 +99,8 @@ inline State<2> triangular_lattice(int a, int b, bool tilts) {
 }
 
 /// Its cell moved by other representatives: disk i shifted by `shift[i]` periods, the same contacts.
-inline State<2> with_other_representatives(State<2> state, const std::vector<Image>& shift) {
-    const isostat::Packing<2> packing = state.packing;
+inline State with_other_representatives(State state, const std::vector<Image>& shift) {
+    const isostat::Packing packing = state.packing;
     for (std::size_t i = 0; i < shift.size(); ++i) {
         state.packing.q[2 * i] += shift[i].m[0] * packing.lattice(0, 0) + shift[i].m[1] * packing.lattice(0, 1);
         state.packing.q[2 * i + 1] += shift[i].m[1] * packing.lattice(1, 1);

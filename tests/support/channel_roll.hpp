@@ -19,11 +19,11 @@ struct ChannelRoll {
     int shift = 0;
 
     static double begins() { return -std::asin(1.0 / 3.0); }
-    [[nodiscard]] State<2> at(double angle, const Contact& other) const {
+    [[nodiscard]] State at(double angle, const Contact& other) const {
         const double period = 6 * std::cos(angle);
         const double away = 4.1 + clearance;
         const auto short_number = [](double x) { return std::ldexp(std::nearbyint(std::ldexp(x, 40)), -40); };
-        State<2> state =
+        State state =
             in_cell({{2, origin, 2},
                      {1, origin + 3 * std::cos(angle) + shift * period, 2 + 3 * std::sin(angle)},
                      {0.1, short_number(origin + away * std::cos(passes)), short_number(2 + away * std::sin(passes))}},
@@ -37,8 +37,8 @@ struct ChannelRoll {
             crafted::bottom(0), across(0, 1, -shift, 0), across(0, 1, -1 - shift, 0), held(4), held(5), held(7), other};
         return state;
     }
-    [[nodiscard]] State<2> start() const { return at(begins(), crafted::bottom(1)); }
-    [[nodiscard]] State<2> end() const { return at(ends, crafted::top(1)); }
+    [[nodiscard]] State start() const { return at(begins(), crafted::bottom(1)); }
+    [[nodiscard]] State end() const { return at(ends, crafted::top(1)); }
     /// Disk 1 and the obstacle.
     [[nodiscard]] Contact passing() const { return across(1, 2, shift, 0); }
 };

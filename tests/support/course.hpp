@@ -28,9 +28,9 @@ inline void settle(RunOptions& options, Ties ties) {
 
 struct Course {
     std::vector<std::string> events;
-    std::vector<EquilibriumRecord<2>> equilibria;
-    std::vector<State<2>> states;
-    std::vector<ArcRecord<2>> arcs;
+    std::vector<EquilibriumRecord> equilibria;
+    std::vector<State> states;
+    std::vector<ArcRecord> arcs;
     SegmentOutcome outcome;
     RunCounters counters;
     [[nodiscard]] std::string end() const {
@@ -38,16 +38,15 @@ struct Course {
     }
 };
 
-class CourseRecorder : public RunObserver<2> {
+class CourseRecorder : public RunObserver {
   public:
     explicit CourseRecorder(Course& course) : course_(course) {}
-    void on_arc(const ArcRecord<2>& arc) override {
-        course_.events.push_back(fmt::format("{}:{}>{}", arc.equilibrium, isostat::to_string<2>(arc.opened),
-                                             isostat::to_string<2>(arc.closed)));
+    void on_arc(const ArcRecord& arc) override {
+        course_.events.push_back(
+            fmt::format("{}:{}>{}", arc.equilibrium, isostat::to_string(arc.opened), isostat::to_string(arc.closed)));
         course_.arcs.push_back(arc);
     }
-    void on_equilibrium(const EquilibriumRecord<2>& record, const State<2>& state,
-                        const std::vector<double>&) override {
+    void on_equilibrium(const EquilibriumRecord& record, const State& state, const std::vector<double>&) override {
         course_.equilibria.push_back(record);
         course_.states.push_back(state);
     }
@@ -56,7 +55,7 @@ class CourseRecorder : public RunObserver<2> {
     Course& course_;
 };
 
-inline Course follow_load(State<2> state, int direction, int equilibria, Ties ties, std::uint64_t seed = 1) {
+inline Course follow_load(State state, int direction, int equilibria, Ties ties, std::uint64_t seed = 1) {
     Course course;
     CourseRecorder recorder(course);
     Segment segment;
@@ -65,7 +64,7 @@ inline Course follow_load(State<2> state, int direction, int equilibria, Ties ti
     RunOptions options;
     settle(options, ties);
     options.ties_seed = seed;
-    course.outcome = run_segment<2>(state, segment, 0, options, course.counters, recorder);
+    course.outcome = run_segment(state, segment, 0, options, course.counters, recorder);
     return course;
 }
 
@@ -74,7 +73,7 @@ inline bool mentions(const Course& course, const std::string& word) {
 }
 
 inline bool settled_as(const Course& course, const std::string& what) {
-    for (const ArcRecord<2>& arc : course.arcs) {
+    for (const ArcRecord& arc : course.arcs) {
         for (const TieDecision& tie : arc.perturbed) {
             if (tie.what == what) {
                 return true;

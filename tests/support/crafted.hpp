@@ -35,9 +35,9 @@ struct DiskAt {
 };
 
 /// A state in the box [0, lx] x [0, ly] under wall forces f1, f2.
-inline State<2> in_box(const std::vector<DiskAt>& disks, double lx, double ly, double f1, double f2,
-                       std::vector<Contact> contacts) {
-    State<2> state;
+inline State in_box(const std::vector<DiskAt>& disks, double lx, double ly, double f1, double f2,
+                    std::vector<Contact> contacts) {
+    State state;
     for (const DiskAt& d : disks) {
         state.packing.radius.push_back(d.radius);
         state.packing.q.push_back(d.x);
@@ -47,19 +47,19 @@ inline State<2> in_box(const std::vector<DiskAt>& disks, double lx, double ly, d
     state.packing.q.push_back(ly);
     state.load.stress = {f1, f2};
     state.load.reference_length = {1, 1};
-    state.load.infinitesimal = isostat::generic_infinitesimal<2>(state.packing.radius, 7);
+    state.load.infinitesimal = isostat::generic_infinitesimal(state.packing.radius, 7);
     state.contacts = std::move(contacts);
     isostat::snap_to_grid(state.packing);
     return state;
 }
 
 /// Case 1: one disk of radius 1 between the four walls.
-inline State<2> one_disk(double f1, double f2) {
+inline State one_disk(double f1, double f2) {
     return in_box({{1, 1, 1}}, 2, 2, f1, f2, {left(0), right(0), bottom(0), top(0)});
 }
 
 /// Case 2: disk 0 in the bottom-left corner, disk 1 on bottom, right and top; R0 < R1 < (3 + 2 sqrt 2) R0.
-inline State<2> two_disks(double r0, double r1, double f1, double f2) {
+inline State two_disks(double r0, double r1, double f1, double f2) {
     const double dx = 2 * std::sqrt(r0 * r1);
     return in_box({{r0, r0, r0}, {r1, r0 + dx, r1}}, r0 + dx + r1, 2 * r1, f1, f2,
                   {left(0), bottom(0), pair(0, 1), right(1), top(1), bottom(1)});
@@ -67,7 +67,7 @@ inline State<2> two_disks(double r0, double r1, double f1, double f2) {
 
 /// Case 3: base disks of radii ra, rb touching each other, the side walls and the bottom; a disk of radius rt on both,
 /// under the top wall.
-inline State<2> three_disks(double ra, double rb, double rt, double f1, double f2) {
+inline State three_disks(double ra, double rb, double rt, double f1, double f2) {
     const double xa = ra;
     const double xb = ra + 2 * std::sqrt(ra * rb);
     // Apex over two circles: intersection of the circles of radii ra + rt and rb + rt about the base centres.
@@ -85,7 +85,7 @@ inline State<2> three_disks(double ra, double rb, double rt, double f1, double f
 }
 
 /// Case 4: m x m square lattice of unit disks with every contact.
-inline State<2> square_lattice(int m) {
+inline State square_lattice(int m) {
     std::vector<DiskAt> disks;
     std::vector<Contact> contacts;
     for (int row = 0; row < m; ++row) {
@@ -107,7 +107,7 @@ inline State<2> square_lattice(int m) {
 
 /// Case 5: rows x columns triangular patch of unit disks in its box, odd rows shifted by one radius, with every contact
 /// (to rounding).
-inline State<2> triangular_patch(int rows, int columns) {
+inline State triangular_patch(int rows, int columns) {
     std::vector<DiskAt> disks;
     for (int row = 0; row < rows; ++row) {
         for (int column = 0; column < columns; ++column) {
@@ -116,7 +116,7 @@ inline State<2> triangular_patch(int rows, int columns) {
     }
     const double lx = 2.0 * columns + (rows > 1 ? 1 : 0);
     const double ly = 2 + std::sqrt(3.0) * (rows - 1);
-    State<2> state = in_box(disks, lx, ly, 1, 1, {});
+    State state = in_box(disks, lx, ly, 1, 1, {});
     const auto touches = [&](const Contact& c) { return std::abs(isostat::gap(state.packing, c)) < 1e-12; };
     const int n = rows * columns;
     for (int i = 0; i < n; ++i) {
@@ -139,12 +139,12 @@ struct Played {
     /// Why it did not complete, for messages.
     [[nodiscard]] std::string why() const { return outcome.failure ? outcome.failure->message() : "completed"; }
 
-    State<2> state;
+    State state;
     Recorder records;
     isostat::RunCounters counters;
     isostat::SegmentOutcome outcome;
 };
-inline Played play(State<2> state, int direction, std::optional<int> equilibria, std::optional<double> to = {},
+inline Played play(State state, int direction, std::optional<int> equilibria, std::optional<double> to = {},
                    isostat::RunOptions options = {}) {
     options.max_strain = 1e9; // strains are relative to reference lengths of 1 here
     Played played;
@@ -153,7 +153,7 @@ inline Played play(State<2> state, int direction, std::optional<int> equilibria,
     segment.direction = direction;
     segment.equilibria = equilibria;
     segment.to_stress = to;
-    played.outcome = isostat::run_segment<2>(played.state, segment, 0, options, played.counters, played.records);
+    played.outcome = isostat::run_segment(played.state, segment, 0, options, played.counters, played.records);
     return played;
 }
 

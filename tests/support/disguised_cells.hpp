@@ -9,8 +9,8 @@ namespace cells {
 using ::crafted::Disguised;
 
 /// Disk i stored in another period, shift[i] periods further: the same packing.
-inline Disguised shifted(const State<2>& start, const std::vector<Image>& shift) {
-    State<2> state = with_other_representatives(start, shift);
+inline Disguised shifted(const State& start, const std::vector<Image>& shift) {
+    State state = with_other_representatives(start, shift);
     snap_to_grid(state.packing);
     const auto back = [shift](const Contact& c) {
         if (c.kind != isostat::ContactKind::disk_disk) {
@@ -24,8 +24,8 @@ inline Disguised shifted(const State<2>& start, const std::vector<Image>& shift)
 }
 
 /// Disks in the opposite order.
-inline Disguised reversed(const State<2>& start) {
-    State<2> state = start;
+inline Disguised reversed(const State& start) {
+    State state = start;
     const int n = start.packing.disk_count();
     for (int i = 0; i < n; ++i) {
         const auto to = static_cast<std::size_t>(n - 1 - i);
@@ -45,9 +45,9 @@ inline Disguised reversed(const State<2>& start) {
 }
 
 /// x and y exchanged. \pre no tilt
-inline Disguised transposed(const State<2>& start) {
+inline Disguised transposed(const State& start) {
     Disguised other = ::crafted::exchanged(start);
-    State<2>& state = other.state;
+    State& state = other.state;
     const auto swap_axes = [](auto& pair) { std::swap(pair[0], pair[1]); };
     swap_axes(state.packing.cell.periodic);
     swap_axes(state.packing.cell.period_moves);
@@ -62,8 +62,8 @@ inline Disguised transposed(const State<2>& start) {
 }
 
 /// Period vectors a and b + times a instead of a and b. \pre the tilt moves, no shear stress
-inline Disguised in_other_basis(const State<2>& start, int times) {
-    State<2> state = start;
+inline Disguised in_other_basis(const State& start, int times) {
+    State state = start;
     state.packing.q[state.packing.tilt_at(0, 1)] += times * start.packing.length(0);
     const auto moved = [](int by) {
         return [by](const Contact& c) { return across(c.i, c.j, c.image.m[0] - by * c.image.m[1], c.image.m[1]); };

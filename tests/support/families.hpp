@@ -42,29 +42,29 @@ struct Answer {
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
 struct Statement {
-    IsostaticStructure<2> structure;
+    IsostaticStructure structure;
     Factorisation factorisation;
     InverseBoundCache cache;
     InverseBound inverse;
     VertexEnclosure vertex;
-    Statics<2> statics;
+    Statics statics;
 
-    Statement(const State<2>& state, bool truth)
-        : structure(std::move(IsostaticStructure<2>::prove(state.packing, state.contacts).value())),
+    Statement(const State& state, bool truth)
+        : structure(std::move(IsostaticStructure::prove(state.packing, state.contacts).value())),
           factorisation(structure), inverse(bound_inverse(structure, factorisation, cache)),
           vertex(enclose_vertex(state.packing, structure, inverse)),
           statics(state.packing, state.load, structure, factorisation, inverse, {{}, truth ? &vertex : nullptr}) {}
 };
 
 /// Unit disks 0 and 1 on the bottom, 2 on top of 0; forces in y on the disks.
-inline State<2> stack(double up0, double up1, double up2) {
-    State<2> state = in_box({{1, 1, 1}, {1, 3, 1}, {1, 1, 3}}, 4, 4, 1, 1,
-                            {left(0), bottom(0), left(2), pair(0, 2), pair(0, 1), bottom(1), right(1), top(2)});
+inline State stack(double up0, double up1, double up2) {
+    State state = in_box({{1, 1, 1}, {1, 3, 1}, {1, 1, 3}}, 4, 4, 1, 1,
+                         {left(0), bottom(0), left(2), pair(0, 2), pair(0, 1), bottom(1), right(1), top(2)});
     state.load.disk_force = {0, up0, 0, up1, 0, up2};
     return state;
 }
 
-inline Answer which_opens(const State<2>& state, const Contact& plus, const Contact& minus) {
+inline Answer which_opens(const State& state, const Contact& plus, const Contact& minus) {
     Statement s(state, true);
     const double sigma = state.load.stress[1];
     const auto decision = decide_opening(s.statics, sigma, OpeningRule::most_negative, ContactId(), 0);
@@ -82,7 +82,7 @@ inline Answer tractions(double delta) {
 }
 
 inline Answer limits(double delta) {
-    const State<2> state = stack(delta, -1, 0.5);
+    const State state = stack(delta, -1, 0.5);
     Statement s(state, true);
     const auto limit = find_limit(s.statics, 1, -1);
     Answer answer{0, s.statics.rung(), s.statics.bits(), 0};
@@ -105,7 +105,7 @@ inline Answer notch(double delta) {
 /// about the stored matrix.
 inline Answer strut(double delta) {
     const oracle::Structure s = oracle::needle(1, delta);
-    const auto proved = IsostaticStructure<2>::prove(s.packing, s.contacts);
+    const auto proved = IsostaticStructure::prove(s.packing, s.contacts);
     if (!proved.ok()) {
         return {0, Rung::exact, 0, 0}; // singular, as it should be at 0
     }
@@ -115,7 +115,7 @@ inline Answer strut(double delta) {
     if (inverse.verdict != Verdict::proved) {
         inverse = bound_inverse_multiprecision(s.packing, proved.value());
     }
-    ForceLadder<2> ladder(s.packing, proved.value(), factorisation, inverse);
+    ForceLadder ladder(s.packing, proved.value(), factorisation, inverse);
     ForceExpression e;
     e.contact = ContactId(0);
     e.part = ladder.add({0, 1});
@@ -128,7 +128,7 @@ inline Answer strut(double delta) {
 
 /// A candidate contact that misses, or overlaps, by about delta at the true vertex.
 inline Answer grazing(double delta) {
-    State<2> state = square_lattice(2);
+    State state = square_lattice(2);
     std::erase(state.contacts, pair(2, 3));
     std::erase(state.contacts, pair(1, 3));
     state.packing.radius[3] = 1 - delta;
@@ -154,13 +154,13 @@ inline Answer grazing(double delta) {
 // --- whole arcs: a contact opens, the mechanism is followed, and what closes first tells the sign -------------------
 
 /// `plus` or `minus` closed first in the first arc of a run, or a tie was named.
-inline Answer which_closes(const State<2>& state, const Contact& plus, const Contact& minus) {
+inline Answer which_closes(const State& state, const Contact& plus, const Contact& minus) {
     const Played run = play(state, +1, 1);
     if (run.records.arcs.empty()) {
         const bool tie = run.outcome.failure && run.outcome.failure->kind == FailureKind::tie;
         return {0, tie ? Rung::exact : Rung::none, 0, 0, run.why()};
     }
-    const ArcRecord<2>& arc = run.records.arcs.front();
+    const ArcRecord& arc = run.records.arcs.front();
     const int bits = arc.decided_by == Rung::double_bound ? 53 : arc.decided_by == Rung::double_double ? 106 : 256;
     return {arc.closed == plus ? 1 : arc.closed == minus ? -1 : 0, arc.decided_by, bits, arc.margin, run.why()};
 }
@@ -189,7 +189,7 @@ inline ExactPacking exact_box(const std::vector<std::array<Number, 3>>& disks, c
         packing.centre.push_back({x, y});
         packing.radius.push_back(r);
     }
-    packing.walls = Walls<2>::box();
+    packing.walls = Walls::box();
     packing.length = {lx, ly};
     return packing;
 }
@@ -199,7 +199,7 @@ inline ExactPacking exact_box(const std::vector<std::array<Number, 3>>& disks, c
 inline Answer which_is_closed(const ExactPacking& there, const Contact& first, const Contact& second) {
     const auto contacts = exact_contacts(there);
     if (!contacts.ok()) {
-        const bool named = contacts.failure().message().find(to_string<2>(second)) != std::string::npos;
+        const bool named = contacts.failure().message().find(to_string(second)) != std::string::npos;
         return {named ? -1 : 0, named ? Rung::exact : Rung::none, 0, infinity, contacts.failure().message()};
     }
     const auto has = [&](const Contact& c) {

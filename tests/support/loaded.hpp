@@ -10,10 +10,10 @@ namespace crafted {
 
 struct AtVertex : Regular {
     isostat::VertexEnclosure vertex;
-    isostat::Statics<2> statics;
+    isostat::Statics statics;
 
     /// `truth`: answers are about the true vertex.
-    explicit AtVertex(isostat::State<2> s, bool truth = true, isostat::LadderOptions options = {})
+    explicit AtVertex(isostat::State s, bool truth = true, isostat::LadderOptions options = {})
         : Regular(std::move(s)), vertex(isostat::enclose_vertex(state.packing, structure, inverse)),
           statics(state.packing, state.load, structure, factorisation, inverse, {options, truth ? &vertex : nullptr}) {}
     [[nodiscard]] isostat::Contact contact(isostat::ContactId l) const { return state.contacts[l.index()]; }

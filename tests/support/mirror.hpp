@@ -8,9 +8,9 @@ namespace crafted {
 /// Two disks of radius 3 on a fixed one of radius 2, pushed together by 12, under the top wall; weights 1. Loading
 /// parts them at sigma2 = 1.5, and they reach the bottom together: a tie of two gaps. Unloaded, both lose the top wall
 /// together at sigma2 = 0.
-inline State<2> mirror_gaps() {
-    State<2> state = in_box({{2, 10, 2.5}, {3, 7, 6.5}, {3, 13, 6.5}}, 20, 9.5, 1, 1,
-                            {pair(0, 1), pair(0, 2), pair(1, 2), top(1), top(2)});
+inline State mirror_gaps() {
+    State state = in_box({{2, 10, 2.5}, {3, 7, 6.5}, {3, 13, 6.5}}, 20, 9.5, 1, 1,
+                         {pair(0, 1), pair(0, 2), pair(1, 2), top(1), top(2)});
     state.packing.fixed = {1, 0, 0};
     state.packing.walls.upper[0] = isostat::WallKind::fixed;
     state.load.reference_length = {20, 9.5};
@@ -21,9 +21,9 @@ inline State<2> mirror_gaps() {
 
 /// A disk of radius 2 between two of radius 3 at fixed side walls, under the top wall; the two are lifted by 3.5 each.
 /// Unloading, both leave the bottom at sigma2 = 0.5: a tie of two forces. Afterwards one of them stands at force 0.
-inline State<2> mirror_forces() {
-    State<2> state = in_box({{2, 7, 6}, {3, 3, 3}, {3, 11, 3}}, 14, 8, 1, 1,
-                            {pair(0, 1), pair(0, 2), left(1), bottom(1), right(2), bottom(2), top(0)});
+inline State mirror_forces() {
+    State state = in_box({{2, 7, 6}, {3, 3, 3}, {3, 11, 3}}, 14, 8, 1, 1,
+                         {pair(0, 1), pair(0, 2), left(1), bottom(1), right(2), bottom(2), top(0)});
     state.packing.walls.upper[0] = isostat::WallKind::fixed;
     state.load.reference_length = {14, 8};
     state.load.disk_force = {0, 0, 0, 3.5, 0, 3.5};
@@ -31,19 +31,19 @@ inline State<2> mirror_forces() {
 }
 
 /// Two equal disks side by side in the box: h = 1, the top wall rests on both.
-inline State<2> equal_pair() {
-    State<2> state = in_box({{1, 1, 1}, {1, 3, 1}}, 4, 2, 1, 1,
-                            {left(0), pair(0, 1), right(1), bottom(0), bottom(1), top(0), top(1)});
+inline State equal_pair() {
+    State state = in_box({{1, 1, 1}, {1, 3, 1}}, 4, 2, 1, 1,
+                         {left(0), pair(0, 1), right(1), bottom(0), bottom(1), top(0), top(1)});
     state.load.reference_length = {4, 2};
     return state;
 }
 
 /// A square of four equal disks in the box: opposite forces stay equal at first order, whatever the radii.
-inline State<2> square() {
-    State<2> state = equal_pair();
+inline State square() {
+    State state = equal_pair();
     state.packing.radius = {1, 1, 1, 1};
     state.packing.q = {1, 1, 3, 1, 1, 3, 3, 3, 4, 4};
-    state.load.infinitesimal = isostat::generic_infinitesimal<2>(state.packing.radius, 7);
+    state.load.infinitesimal = isostat::generic_infinitesimal(state.packing.radius, 7);
     state.load.reference_length = {4, 4};
     state.contacts = {left(0),  bottom(0), bottom(1),  right(1),   left(2),    top(2),
                       right(3), top(3),    pair(0, 1), pair(2, 3), pair(0, 2), pair(1, 3)};
@@ -52,7 +52,7 @@ inline State<2> square() {
 
 /// Rows of `columns` and `columns` - 1 equal disks in turn, from the bottom: a triangular lattice between the walls,
 /// with all its contacts. h > 0 from three columns on.
-inline State<2> triangular(int columns, int rows) {
+inline State triangular(int columns, int rows) {
     std::vector<DiskAt> disks;
     for (int row = 0; row < rows; ++row) {
         const int count = row % 2 == 0 ? columns : columns - 1;
@@ -86,7 +86,7 @@ inline State<2> triangular(int columns, int rows) {
             contacts.push_back(top(i));
         }
     }
-    State<2> state = in_box(disks, lx, ly, 1, 1, contacts);
+    State state = in_box(disks, lx, ly, 1, 1, contacts);
     state.load.reference_length = {lx, ly};
     return state;
 }
@@ -95,7 +95,7 @@ inline State<2> triangular(int columns, int rows) {
 /// under the top wall; F1 = 1, F2 = `load`. h = `columns` - 3. With P = F1 / 0.6 the load of the top wall is carried by
 /// end contacts of force P and inner contacts of forces 0 <= p <= P, 1.6 (P + sum p) = F2: the row stands for 8/3 <= F2
 /// <= 8/3 (columns - 1), and spreads at the upper end until all disks of radius 3/2 reach the bottom at once.
-inline State<2> pile(int columns, double load) {
+inline State pile(int columns, double load) {
     std::vector<DiskAt> disks;
     std::vector<Contact> contacts{left(0), right(columns - 1)};
     for (int c = 0; c < columns; ++c) {
@@ -118,9 +118,9 @@ inline State<2> pile(int columns, double load) {
 /// h = 1; F1 = 1. Unloaded from F2 = 2 to 1.5, disk 0 leaves the bottom, and both roll up by s: they fall by s^2 / 6
 /// and s^2 / 8. So the right wall stays with disk 1; a list without 1-right lets it overlap at second order, with -1/3
 /// + 1/4, and the row of 1-right is 0-right + 0-2 - 1-3. Disk 1 ends at the fixed disk 4.
-inline State<2> two_crests(bool disk_0_is_larger) {
-    State<2> state = in_box({{2, 7, 2}, {2, 7, 6}, {1, 4, 2}, {2, 3, 6}, {0.3, 4.9, 7.5}}, 9, 8, 1.0 / 8, 2.0 / 9,
-                            {bottom(0), pair(0, 1), pair(0, 2), pair(1, 3), right(0), right(1), top(1)});
+inline State two_crests(bool disk_0_is_larger) {
+    State state = in_box({{2, 7, 2}, {2, 7, 6}, {1, 4, 2}, {2, 3, 6}, {0.3, 4.9, 7.5}}, 9, 8, 1.0 / 8, 2.0 / 9,
+                         {bottom(0), pair(0, 1), pair(0, 2), pair(1, 3), right(0), right(1), top(1)});
     state.packing.fixed = {0, 0, 1, 1, 1};
     state.load.reference_length = {9, 8};
     state.load.disk_force = {-1, 1.5, -1, 0, 0, 0, 0, 0, 0, 0};

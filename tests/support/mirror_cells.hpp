@@ -8,9 +8,9 @@ namespace cells {
 /// A packing with walls along `axis`, and its image in the lower one: the period is twice the length, a contact with a
 /// wall is one of a disk with its mirror image. Disk n + i is the image of disk i of n. Where the walls have b contacts
 /// there are b - 3 fewer contacts than degrees of freedom, as many if b = 3 (along a second axis 4).
-inline State<2> unfolded(const State<2>& half, std::size_t axis) {
-    State<2> state = half;
-    isostat::Packing<2>& packing = state.packing;
+inline State unfolded(const State& half, std::size_t axis) {
+    State state = half;
+    isostat::Packing& packing = state.packing;
     const std::size_t n = half.packing.radius.size();
     packing.radius.insert(packing.radius.end(), half.packing.radius.begin(), half.packing.radius.end());
     const std::vector<double>& q = half.packing.q;
@@ -44,7 +44,7 @@ inline State<2> unfolded(const State<2>& half, std::size_t axis) {
         }
     }
     std::vector<double>& small = state.load.infinitesimal;
-    small = isostat::generic_infinitesimal<2>(packing.radius, 7);
+    small = isostat::generic_infinitesimal(packing.radius, 7);
     balance(small, packing.cell);
     state.load.reference_length = {packing.q[4 * n], packing.q[4 * n + 1]};
     snap_to_grid(packing);
@@ -53,8 +53,8 @@ inline State<2> unfolded(const State<2>& half, std::size_t axis) {
 
 /// Disks 0 to 2 and their mirror images 3 to 5 between walls along x, some stored a period away along y. N = N_f = 13;
 /// all events but those on the mirror come in pairs.
-inline State<2> mirror_pairs() {
-    State<2> state =
+inline State mirror_pairs() {
+    State state =
         with_other_representatives(unfolded(::crafted::three_disks(1, 1.1, 1.5, 1, 1), 1),
                                    {image(0, 0), image(0, -1), image(0, 1), image(0, 0), image(0, 0), image(0, 1)});
     snap_to_grid(state.packing);
@@ -62,9 +62,9 @@ inline State<2> mirror_pairs() {
 }
 
 /// A triangular lattice under forces of 1, with all its contacts.
-inline State<2> loaded_lattice(int columns, int double_rows, bool tilts) {
-    State<2> state = triangular_lattice(columns, double_rows, tilts);
-    state.load.infinitesimal = isostat::generic_infinitesimal<2>(state.packing.radius, 7);
+inline State loaded_lattice(int columns, int double_rows, bool tilts) {
+    State state = triangular_lattice(columns, double_rows, tilts);
+    state.load.infinitesimal = isostat::generic_infinitesimal(state.packing.radius, 7);
     balance(state.load.infinitesimal, state.packing.cell);
     snap_to_grid(state.packing);
     return state;

@@ -35,7 +35,7 @@ inline std::string settings(const RunOptions& options) {
 }
 
 /// Every state is stored. The run counts as completed, whatever ended its last segment: that is returned.
-inline isostat::SegmentOutcome into(const std::filesystem::path& folder, isostat::State<2> state,
+inline isostat::SegmentOutcome into(const std::filesystem::path& folder, isostat::State state,
                                     const std::vector<Segment>& segments, const RunOptions& options = {}) {
     isostat::RunHeader header;
     header.program = "test";
@@ -47,7 +47,7 @@ inline isostat::SegmentOutcome into(const std::filesystem::path& folder, isostat
     isostat::SegmentOutcome outcome;
     for (std::size_t k = 0; k < segments.size() && (k == 0 || outcome.completed); ++k) {
         directory.begin_segment(static_cast<int>(k), segments[k], 0, counters.equilibria);
-        outcome = run_segment<2>(state, segments[k], static_cast<int>(k), options, counters, directory);
+        outcome = run_segment(state, segments[k], static_cast<int>(k), options, counters, directory);
     }
     directory.finish(isostat::RunStatus::completed, "");
     BOOST_TEST_MESSAGE((outcome.failure ? outcome.failure->message() : "completed"));

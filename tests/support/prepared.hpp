@@ -6,12 +6,12 @@
 #include <isostat/preparation/preparation.hpp>
 
 /// The first equilibrium of random disks, diameters 1 to 2.
-inline isostat::State<2> prepared(int disks, std::uint64_t seed) {
+inline isostat::State prepared(int disks, std::uint64_t seed) {
     isostat::PreparationOptions options;
     options.disks = disks;
     options.seed = seed;
-    isostat::PreparationReport<2> report;
-    auto result = isostat::prepare<2>(options, report);
+    isostat::PreparationReport report;
+    auto result = isostat::prepare(options, report);
     BOOST_REQUIRE_MESSAGE(result.ok(), (result.ok() ? std::string() : result.failure().message()));
     return result.value();
 }

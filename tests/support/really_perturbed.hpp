@@ -8,8 +8,8 @@
 namespace crafted {
 
 /// The contacts that a run under `choose` starts from.
-inline std::vector<Contact> starting_contacts(const State<2>& state, const std::vector<double>& rho) {
-    if (static_cast<int>(state.contacts.size()) == isostat::DofMap<2>(state.packing).dof_count()) {
+inline std::vector<Contact> starting_contacts(const State& state, const std::vector<double>& rho) {
+    if (static_cast<int>(state.contacts.size()) == isostat::DofMap(state.packing).dof_count()) {
         return state.contacts;
     }
     const auto kept = isostat::first_order_backbone(state.packing, state.load, state.contacts, rho);
@@ -18,13 +18,13 @@ inline std::vector<Contact> starting_contacts(const State<2>& state, const std::
 }
 
 /// The packing with radii R + eps rho and the same contacts closed, by Newton's method.
-inline State<2> really_perturbed(State<2> state, const std::vector<double>& rho, double eps) {
+inline State really_perturbed(State state, const std::vector<double>& rho, double eps) {
     state.contacts = starting_contacts(state, rho);
     for (std::size_t i = 0; i < rho.size(); ++i) {
         state.packing.radius[i] += eps * rho[i];
     }
     for (int step = 0; step < 12; ++step) {
-        auto structure = isostat::IsostaticStructure<2>::prove(state.packing, state.contacts);
+        auto structure = isostat::IsostaticStructure::prove(state.packing, state.contacts);
         BOOST_TEST_REQUIRE(structure.ok());
         const isostat::Factorisation factorisation(structure.value());
         std::vector<double> v;

@@ -8,12 +8,12 @@
 namespace crafted {
 
 /// Collects the records of a run.
-struct Recorder : isostat::RunObserver<2> {
-    std::vector<isostat::ArcRecord<2>> arcs;
-    std::vector<isostat::EquilibriumRecord<2>> equilibria;
-    std::vector<isostat::State<2>> states;
-    void on_arc(const isostat::ArcRecord<2>& arc) override { arcs.push_back(arc); }
-    void on_equilibrium(const isostat::EquilibriumRecord<2>& record, const isostat::State<2>& state,
+struct Recorder : isostat::RunObserver {
+    std::vector<isostat::ArcRecord> arcs;
+    std::vector<isostat::EquilibriumRecord> equilibria;
+    std::vector<isostat::State> states;
+    void on_arc(const isostat::ArcRecord& arc) override { arcs.push_back(arc); }
+    void on_equilibrium(const isostat::EquilibriumRecord& record, const isostat::State& state,
                         const std::vector<double>&) override {
         equilibria.push_back(record);
         states.push_back(state);

@@ -11,19 +11,19 @@ namespace crafted {
 
 /// The parts refer to each other, so it stays where it is made.
 struct Regular {
-    isostat::State<2> state;
-    isostat::IsostaticStructure<2> structure;
+    isostat::State state;
+    isostat::IsostaticStructure structure;
     isostat::Factorisation factorisation;
     isostat::InverseBoundCache cache;
     isostat::InverseBound inverse;
 
-    explicit Regular(isostat::State<2> s)
+    explicit Regular(isostat::State s)
         : state(std::move(s)), structure(proved(state)), factorisation(structure),
           inverse(isostat::bound_inverse(structure, factorisation, cache)) {}
     /// Without a load.
-    Regular(const isostat::Packing<2>& packing, const std::vector<isostat::Contact>& contacts)
+    Regular(const isostat::Packing& packing, const std::vector<isostat::Contact>& contacts)
         : Regular([&] {
-              isostat::State<2> s;
+              isostat::State s;
               s.packing = packing;
               s.contacts = contacts;
               return s;
@@ -31,8 +31,8 @@ struct Regular {
     Regular(const Regular&) = delete;
     Regular& operator=(const Regular&) = delete;
 
-    static isostat::IsostaticStructure<2> proved(const isostat::State<2>& s) {
-        auto result = isostat::IsostaticStructure<2>::prove(s.packing, s.contacts);
+    static isostat::IsostaticStructure proved(const isostat::State& s) {
+        auto result = isostat::IsostaticStructure::prove(s.packing, s.contacts);
         BOOST_REQUIRE_MESSAGE(result.ok(), (result.ok() ? std::string() : result.failure().message()));
         return std::move(result.value());
     }

@@ -26,10 +26,9 @@ inline void check_same_sequence(const Played& a, const Played& b,
     const auto events_a = events(a.records, same);
     BOOST_TEST_REQUIRE(events_a.size() == events_b.size());
     for (std::size_t k = 0; k < events_a.size(); ++k) {
-        BOOST_TEST((events_a[k] == events_b[k]), "arc " << k + 1 << ": " << to_string<2>(events_a[k].first) << " -> "
-                                                        << to_string<2>(events_a[k].second) << " against "
-                                                        << to_string<2>(events_b[k].first) << " -> "
-                                                        << to_string<2>(events_b[k].second));
+        BOOST_TEST((events_a[k] == events_b[k]),
+                   "arc " << k + 1 << ": " << to_string(events_a[k].first) << " -> " << to_string(events_a[k].second)
+                          << " against " << to_string(events_b[k].first) << " -> " << to_string(events_b[k].second));
     }
     for (std::size_t k = 0; k < a.records.equilibria.size(); ++k) {
         BOOST_TEST(a.records.equilibria[k].stress == b.records.equilibria[k].stress,
@@ -39,11 +38,11 @@ inline void check_same_sequence(const Played& a, const Played& b,
 
 /// The same packing seen otherwise, and how its contacts read in the original.
 struct Disguised {
-    State<2> state;
+    State state;
     std::function<Contact(const Contact&)> back;
 };
 
-inline Disguised disguised(State<2> state, const std::function<Contact(const Contact&)>& there,
+inline Disguised disguised(State state, const std::function<Contact(const Contact&)>& there,
                            std::function<Contact(const Contact&)> back) {
     for (Contact& c : state.contacts) {
         c = there(c);
@@ -52,7 +51,7 @@ inline Disguised disguised(State<2> state, const std::function<Contact(const Con
 }
 
 /// Disks in another order, contacts too.
-inline Disguised relabelled(const State<2>& start, unsigned seed) {
+inline Disguised relabelled(const State& start, unsigned seed) {
     const int n = start.packing.disk_count();
     std::vector<int> label(static_cast<std::size_t>(n)); // new label -> old label
     std::iota(label.begin(), label.end(), 0);
@@ -61,7 +60,7 @@ inline Disguised relabelled(const State<2>& start, unsigned seed) {
         std::swap(label[k - 1], label[random() % k]);
     }
     std::vector<int> inverse(label.size());
-    State<2> state = start;
+    State state = start;
     for (std::size_t k = 0; k < label.size(); ++k) {
         const auto old = static_cast<std::size_t>(label[k]);
         inverse[old] = static_cast<int>(k);
@@ -87,8 +86,8 @@ inline Disguised relabelled(const State<2>& start, unsigned seed) {
 }
 
 /// Left and right exchanged.
-inline Disguised mirrored(const State<2>& start) {
-    State<2> state = start;
+inline Disguised mirrored(const State& start) {
+    State state = start;
     for (std::size_t i = 0; i < static_cast<std::size_t>(start.packing.disk_count()); ++i) {
         state.packing.q[2 * i] = start.packing.length(0) - start.packing.q[2 * i];
         state.load.infinitesimal[2 * i] = -start.load.infinitesimal[2 * i];
@@ -106,8 +105,8 @@ inline Disguised mirrored(const State<2>& start) {
 }
 
 /// x and y exchanged.
-inline Disguised exchanged(const State<2>& start) {
-    State<2> state = start;
+inline Disguised exchanged(const State& start) {
+    State state = start;
     for (std::size_t k = 0; k < state.packing.length_at(2); k += 2) {
         std::swap(state.packing.q[k], state.packing.q[k + 1]);
     }
@@ -126,8 +125,8 @@ inline Disguised exchanged(const State<2>& start) {
 }
 
 /// (x, y) -> (L_y - y, x): left becomes bottom, bottom right, right top, top left.
-inline Disguised quarter_turned(const State<2>& start) {
-    State<2> state = start;
+inline Disguised quarter_turned(const State& start) {
+    State state = start;
     for (std::size_t i = 0; i < static_cast<std::size_t>(start.packing.disk_count()); ++i) {
         state.packing.q[2 * i] = start.packing.length(1) - start.packing.q[2 * i + 1];
         state.packing.q[2 * i + 1] = start.packing.q[2 * i];

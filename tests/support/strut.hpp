@@ -18,19 +18,19 @@ inline std::vector<StrutLoad> strut_loads() {
 
 /// Disk 0 between the side walls, which pull; the grain, disk 1, lies on it and on disk 2 between bottom and top, -120
 /// degrees and `angle` from it. The last contact holds x of the grain. No load on the strut is left across it.
-inline State<2> strut_with_a_grain(double angle, const StrutLoad& load) {
+inline State strut_with_a_grain(double angle, const StrutLoad& load) {
     const std::array<double, 2> to_strut{-0.5, -std::sqrt(0.75)};
     const std::array<double, 2> to_rest{std::cos(angle), std::sin(angle)};
     const double y = 4.5 - 5.5 * to_rest[1];
-    State<2> state = in_box({{1, 1, y + 2 * to_strut[1]}, {1, 2, y}, {4.5, 2 + 5.5 * to_rest[0], 4.5}}, 2, 9, -1, 1,
-                            {left(0),
-                             right(0),
-                             pair(0, 1),
-                             pair(1, 2),
-                             bottom(2),
-                             top(2),
-                             {ContactKind::held, 4, 0},
-                             {ContactKind::held, 2, 0}});
+    State state = in_box({{1, 1, y + 2 * to_strut[1]}, {1, 2, y}, {4.5, 2 + 5.5 * to_rest[0], 4.5}}, 2, 9, -1, 1,
+                         {left(0),
+                          right(0),
+                          pair(0, 1),
+                          pair(1, 2),
+                          bottom(2),
+                          top(2),
+                          {ContactKind::held, 4, 0},
+                          {ContactKind::held, 2, 0}});
     state.load.infinitesimal[0] = load.on_strut;
     state.load.infinitesimal[1] = -load.towards_strut * to_strut[1];
     for (std::size_t k = 0; k < 2; ++k) {

@@ -7,16 +7,16 @@ using crafted::Played;
 namespace {
 
 /// Disks R1 > R2 on the bottom of a channel, the second between the first and its image.
-State<2> between_images(double large, double small) {
+State between_images(double large, double small) {
     const double width = 2 * std::sqrt(large * small);
-    State<2> state = cells::in_cell({{large, 0, large}, {small, width, small}}, {2 * width, 2 * large, 0}, false, 1, 1,
-                                    {crafted::bottom(0), crafted::top(0), crafted::bottom(1), cells::across(0, 1, 0, 0),
-                                     cells::across(0, 1, -1, 0)});
+    State state = cells::in_cell({{large, 0, large}, {small, width, small}}, {2 * width, 2 * large, 0}, false, 1, 1,
+                                 {crafted::bottom(0), crafted::top(0), crafted::bottom(1), cells::across(0, 1, 0, 0),
+                                  cells::across(0, 1, -1, 0)});
     state.packing.cell = {{true, false}, {true, false}, {false}, 0};
     state.packing.walls.lower[1] = WallKind::fixed;
     state.packing.walls.upper[1] = WallKind::movable;
-    state.load.infinitesimal = generic_infinitesimal<2>(state.packing.radius, 7);
-    balance<2>(state.load.infinitesimal, state.packing.cell);
+    state.load.infinitesimal = generic_infinitesimal(state.packing.radius, 7);
+    balance(state.load.infinitesimal, state.packing.cell);
     snap_to_grid(state.packing);
     return state;
 }
@@ -24,9 +24,9 @@ State<2> between_images(double large, double small) {
 void check_arc(const Played& played, const Contact& opened, const Contact& closed, double ratio) {
     BOOST_TEST_REQUIRE(played.outcome.completed, played.why());
     BOOST_TEST_REQUIRE(played.records.arcs.size() == 1U);
-    const ArcRecord<2>& arc = played.records.arcs.front();
-    BOOST_TEST((arc.opened == opened), to_string<2>(arc.opened) << " opened");
-    BOOST_TEST((arc.closed == closed), to_string<2>(arc.closed) << " closed");
+    const ArcRecord& arc = played.records.arcs.front();
+    BOOST_TEST((arc.opened == opened), to_string(arc.opened) << " opened");
+    BOOST_TEST((arc.closed == closed), to_string(arc.closed) << " closed");
     BOOST_TEST(arc.stress == ratio, boost::test_tools::tolerance(1e-12));
 }
 
@@ -39,7 +39,7 @@ BOOST_AUTO_TEST_CASE(two_disks_in_a_channel_go_round_a_loop) {
         BOOST_TEST_CONTEXT("radii " << large << ", " << small) {
             const double rise = std::sqrt((large + small) * (large + small) - large * large);
             const Contact own = cells::across(0, 0, 1, 0);
-            const State<2> start = between_images(large, small);
+            const State start = between_images(large, small);
             const Played down = crafted::play(start, -1, 1);
             check_arc(down, crafted::bottom(0), own, (large - small) / std::sqrt(large * small));
             BOOST_TEST(down.state.packing.length(0) == 2 * large, boost::test_tools::tolerance(1e-12));

@@ -18,8 +18,8 @@ using Json = nlohmann::json;
 
 const std::vector<std::string> names{"tilt_16", "rect_16", "channel_16"};
 
-State<2> start_of(const std::string& name) {
-    State<2> state = read_any_state<2>(scratch::data("cells/" + name + ".json")).state;
+State start_of(const std::string& name) {
+    State state = read_any_state(scratch::data("cells/" + name + ".json")).state;
     snap_to_grid(state.packing);
     return state;
 }
@@ -47,7 +47,7 @@ void check_sequence(const Played& played, const Json& sequence, bool lengths_too
     BOOST_TEST_REQUIRE(played.outcome.completed, played.why());
     std::size_t step = 0;
     for (std::size_t e = 0; e < sequence.size(); ++e) {
-        const EquilibriumRecord<2>& record = played.records.equilibria.at(e + 1); // after the start
+        const EquilibriumRecord& record = played.records.equilibria.at(e + 1); // after the start
         const Json& expected = sequence[e];
         BOOST_TEST(record.stress == expected.at("ratio").get<double>(), boost::test_tools::tolerance(1e-9));
         BOOST_TEST(record.rattlers == static_cast<int>(expected.at("rattlers").size()));
@@ -59,17 +59,17 @@ void check_sequence(const Played& played, const Json& sequence, bool lengths_too
         }
         for (const Json& arc : expected.at("arcs")) {
             BOOST_TEST_REQUIRE(step < played.records.arcs.size());
-            const ArcRecord<2>& found = played.records.arcs[step++];
-            BOOST_TEST((found.opened == contact_of(arc.at(0))), to_string<2>(found.opened) << " opened, not " << arc);
-            BOOST_TEST((found.closed == contact_of(arc.at(1))), to_string<2>(found.closed) << " closed, not " << arc);
+            const ArcRecord& found = played.records.arcs[step++];
+            BOOST_TEST((found.opened == contact_of(arc.at(0))), to_string(found.opened) << " opened, not " << arc);
+            BOOST_TEST((found.closed == contact_of(arc.at(1))), to_string(found.closed) << " closed, not " << arc);
         }
     }
     BOOST_TEST(step == played.records.arcs.size());
 }
 
 /// All disks moved along the periodic axes.
-Disguised elsewhere(const State<2>& start) {
-    State<2> state = start;
+Disguised elsewhere(const State& start) {
+    State state = start;
     for (std::size_t k = 0; k < state.packing.length_at(0); ++k) {
         state.packing.q[k] += start.packing.cell.periodic[k % 2] ? (k % 2 == 0 ? 1.25 : -0.375) : 0;
     }
@@ -77,7 +77,7 @@ Disguised elsewhere(const State<2>& start) {
 }
 
 /// Two disks are pulled apart; a force across a channel is borne by its walls.
-State<2> with_forces(State<2> state) {
+State with_forces(State state) {
     state.load.disk_force.assign(2 * state.packing.radius.size(), 0.0);
     state.load.disk_force[4] = 0.125;
     state.load.disk_force[10] = -0.125;
@@ -108,12 +108,12 @@ BOOST_AUTO_TEST_CASE(every_arc_is_certified_with_its_power) {
     for (const std::string& name : names) {
         for (const int pin : {0, 8, 9}) {
             BOOST_TEST_CONTEXT(name << ", disk " << pin << " pinned") {
-                State<2> state = start_of(name);
+                State state = start_of(name);
                 state.packing.cell.pin = pin;
                 const Json& sequence = sequences().at(name);
                 const Played played = play(state, +1, static_cast<int>(sequence.size()), {}, options);
                 check_sequence(played, sequence, true);
-                for (const ArcRecord<2>& arc : played.records.arcs) {
+                for (const ArcRecord& arc : played.records.arcs) {
                     BOOST_TEST_REQUIRE(arc.certificate.has_value());
                     const ArcCertificate& c = *arc.certificate;
                     BOOST_TEST((c.verdict == Verdict::proved), "arc " << arc.step << ": " << c.reason);
@@ -130,7 +130,7 @@ BOOST_AUTO_TEST_CASE(whichever_disk_is_pinned) {
     for (const std::string& name : names) {
         for (const int pin : {3, 8, 9, 15}) { // 8 and 9 become rattlers, or are
             BOOST_TEST_CONTEXT(name << ", disk " << pin << " pinned") {
-                State<2> state = start_of(name);
+                State state = start_of(name);
                 state.packing.cell.pin = pin;
                 const Json& sequence = sequences().at(name);
                 check_sequence(play(state, +1, static_cast<int>(sequence.size())), sequence, true);
@@ -142,7 +142,7 @@ BOOST_AUTO_TEST_CASE(whichever_disk_is_pinned) {
 BOOST_AUTO_TEST_CASE(whichever_image_of_a_disk_is_stored) {
     for (const std::string& name : names) {
         BOOST_TEST_CONTEXT(name) {
-            const State<2> start = start_of(name);
+            const State start = start_of(name);
             std::vector<Image> k(16);
             const int along_y = start.packing.cell.periodic[1] ? 1 : 0;
             k[3] = cells::image(1, 0);
@@ -158,10 +158,10 @@ BOOST_AUTO_TEST_CASE(whichever_image_of_a_disk_is_stored) {
 }
 
 BOOST_AUTO_TEST_CASE(a_disk_that_rolled_many_periods_away_ends_the_run_with_words) {
-    const State<2> start = start_of("rect_16");
-    const State<2> near = cells::shifted(start, std::vector<Image>(16, cells::image(23, 0))).state;
+    const State start = start_of("rect_16");
+    const State near = cells::shifted(start, std::vector<Image>(16, cells::image(23, 0))).state;
     BOOST_TEST(play(near, +1, 1).outcome.completed);
-    const State<2> far = cells::shifted(start, std::vector<Image>(16, cells::image(28, 0))).state;
+    const State far = cells::shifted(start, std::vector<Image>(16, cells::image(28, 0))).state;
     const Played played = play(far, +1, 1);
     BOOST_TEST(!played.outcome.completed);
     BOOST_TEST((played.why().find("periods from the origin") != std::string::npos), played.why());
@@ -171,7 +171,7 @@ BOOST_AUTO_TEST_CASE(a_disk_that_rolled_many_periods_away_ends_the_run_with_word
 BOOST_AUTO_TEST_CASE(in_whichever_order_place_and_basis) {
     for (const std::string& name : names) {
         BOOST_TEST_CONTEXT(name) {
-            const State<2> start = start_of(name);
+            const State start = start_of(name);
             const Played played = play(start, +1, 6);
             crafted::check_same_sequence(played, cells::reversed(start), 6);
             crafted::check_same_sequence(played, elsewhere(start), 6);
@@ -200,7 +200,7 @@ BOOST_AUTO_TEST_CASE(true_stresses_open_the_same_contacts_at_the_same_ratio_of_f
     // F_2 / F_1 is sigma_2 L_1 / (sigma_1 L_2): with the reference lengths, or with those of the moment.
     for (const char* name : {"rect_16", "channel_16"}) {
         BOOST_TEST_CONTEXT(name) {
-            State<2> state = start_of(name);
+            State state = start_of(name);
             const Played nominal = play(state, +1, 3);
             state.load.kind = LoadKind::true_stress;
             RunOptions options;
@@ -209,7 +209,7 @@ BOOST_AUTO_TEST_CASE(true_stresses_open_the_same_contacts_at_the_same_ratio_of_f
             BOOST_TEST_REQUIRE(present.outcome.completed, present.why());
             BOOST_TEST_REQUIRE(present.records.arcs.size() == nominal.records.arcs.size());
             for (std::size_t k = 0; k < present.records.arcs.size(); ++k) {
-                const ArcRecord<2>& arc = present.records.arcs[k];
+                const ArcRecord& arc = present.records.arcs[k];
                 BOOST_TEST((arc.opened == nominal.records.arcs[k].opened));
                 BOOST_TEST((arc.closed == nominal.records.arcs[k].closed));
                 BOOST_TEST((arc.certificate->verdict == Verdict::proved), arc.certificate->reason);
@@ -229,13 +229,13 @@ BOOST_AUTO_TEST_CASE(true_stresses_open_the_same_contacts_at_the_same_ratio_of_f
 BOOST_AUTO_TEST_CASE(forces_on_disks_do_not_depend_on_the_pin) {
     for (const std::string& name : names) {
         BOOST_TEST_CONTEXT(name) {
-            const State<2> start = with_forces(start_of(name));
+            const State start = with_forces(start_of(name));
             const Played played = play(start, +1, 3);
             BOOST_TEST_REQUIRE(played.outcome.completed, played.why());
             const Played bare = play(start_of(name), +1, 3);
             BOOST_TEST(played.records.equilibria[1].stress != bare.records.equilibria[1].stress);
             for (const int pin : {3, 12}) { // none that becomes a rattler: its zeros are not seen then (C9)
-                State<2> other = start;
+                State other = start;
                 other.packing.cell.pin = pin;
                 const Played again = play(other, +1, 3);
                 BOOST_TEST_REQUIRE(again.outcome.completed, again.why());
@@ -247,12 +247,12 @@ BOOST_AUTO_TEST_CASE(forces_on_disks_do_not_depend_on_the_pin) {
 
 BOOST_AUTO_TEST_CASE(a_shear_that_grows_opens_one_diagonal_and_a_shear_that_falls_the_other) {
     // f(1,-1) = F2 / sqrt 3 - T and f(0,1) = F2 / sqrt 3 + T (A2), F1 large enough.
-    State<2> state = cells::one_tilted_disk(2, 1, 0.25);
+    State state = cells::one_tilted_disk(2, 1, 0.25);
     state.load.loaded_axis = 2;
     snap_to_grid(state.packing);
     const Played here = play(state, +1, {}, 0.375);
     BOOST_TEST_REQUIRE(here.outcome.completed, here.why());
-    const EquilibriumRecord<2>& record = here.records.equilibria.back();
+    const EquilibriumRecord& record = here.records.equilibria.back();
     BOOST_TEST(record.stress == 0.375);
     BOOST_TEST(record.sigma1 == 1); // F2: what the shear is measured in
     BOOST_TEST(record.stress_high == 1 / std::sqrt(3.0), boost::test_tools::tolerance(1e-12));
@@ -272,8 +272,8 @@ BOOST_AUTO_TEST_CASE(a_shear_that_grows_opens_one_diagonal_and_a_shear_that_fall
 }
 
 /// x -> -x: the tilt and the shear change sign, and contacts are named by other images.
-Disguised sheared_the_other_way(const State<2>& start) {
-    State<2> state = start;
+Disguised sheared_the_other_way(const State& start) {
+    State state = start;
     for (std::size_t i = 0; i < start.packing.radius.size(); ++i) {
         state.packing.q[2 * i] *= -1;
         state.load.infinitesimal[2 * i] *= -1;
@@ -287,7 +287,7 @@ Disguised sheared_the_other_way(const State<2>& start) {
 }
 
 BOOST_AUTO_TEST_CASE(simple_shear_to_one_side_is_that_to_the_other_of_the_mirror_image) {
-    State<2> start = start_of("tilt_16");
+    State start = start_of("tilt_16");
     start.load.loaded_axis = 2;
     const Played up = play(start, +1, 4);
     BOOST_TEST_REQUIRE(up.outcome.completed, up.why());
@@ -296,8 +296,8 @@ BOOST_AUTO_TEST_CASE(simple_shear_to_one_side_is_that_to_the_other_of_the_mirror
     BOOST_TEST_REQUIRE(down.outcome.completed, down.why());
     BOOST_TEST((crafted::events(up.records, crafted::same) == crafted::events(down.records, other.back)));
     for (std::size_t e = 0; e < up.records.equilibria.size(); ++e) {
-        const EquilibriumRecord<2>& a = up.records.equilibria[e];
-        const EquilibriumRecord<2>& b = down.records.equilibria[e];
+        const EquilibriumRecord& a = up.records.equilibria[e];
+        const EquilibriumRecord& b = down.records.equilibria[e];
         BOOST_TEST(std::abs(a.stress + b.stress) < 1e-9);
         BOOST_TEST(std::abs(a.strain[2] + b.strain[2]) < 1e-9);
         BOOST_TEST(a.potential == b.potential, boost::test_tools::tolerance(1e-9));
@@ -312,7 +312,7 @@ BOOST_AUTO_TEST_CASE(simple_shear_to_one_side_is_that_to_the_other_of_the_mirror
 
 BOOST_AUTO_TEST_CASE(a_dead_shear_that_flows_ends_the_run) {
     // One disk: f(1,-1) = F2 / sqrt 3 - T vanishes at F2 = sqrt 3 T, and the disk rolls over its own image.
-    State<2> state = cells::one_tilted_disk(1, 1, 0.5);
+    State state = cells::one_tilted_disk(1, 1, 0.5);
     state.load.reference_length = {2, std::sqrt(3.0)};
     snap_to_grid(state.packing);
     Segment segment;
@@ -320,24 +320,24 @@ BOOST_AUTO_TEST_CASE(a_dead_shear_that_flows_ends_the_run) {
     segment.equilibria = 3;
     RunCounters counters;
     crafted::Recorder records;
-    const SegmentOutcome outcome = run_segment<2>(state, segment, 0, {}, counters, records);
+    const SegmentOutcome outcome = run_segment(state, segment, 0, {}, counters, records);
     BOOST_TEST_REQUIRE(outcome.failure.has_value());
     BOOST_TEST(to_string(outcome.failure->kind) == std::string("flows"), outcome.failure->message());
     BOOST_TEST(records.arcs.size() == 1U);
     BOOST_TEST((records.arcs[0].opened == cells::across(0, 0, 1, -1)));
-    BOOST_TEST((records.arcs[0].closed == cells::across(0, 0, 1, 1)), to_string<2>(records.arcs[0].closed));
+    BOOST_TEST((records.arcs[0].closed == cells::across(0, 0, 1, 1)), to_string(records.arcs[0].closed));
     BOOST_TEST(records.arcs[0].stress == 0.5 * std::sqrt(3.0), boost::test_tools::tolerance(1e-12));
 }
 
 BOOST_AUTO_TEST_CASE(what_is_not_followed_is_refused) {
-    const State<2> start = start_of("rect_16");
-    const auto refuses = [&](const State<2>& state, const std::string& words) {
+    const State start = start_of("rect_16");
+    const auto refuses = [&](const State& state, const std::string& words) {
         BOOST_CHECK_EXCEPTION(require_followed(state, "state"), Error, [&](const Error& error) {
             return std::string(error.what()).find(words) != std::string::npos;
         });
     };
     BOOST_CHECK_NO_THROW(require_followed(start, "state"));
-    State<2> state = start_of("tilt_16");
+    State state = start_of("tilt_16");
     state.load.kind = LoadKind::true_stress;
     refuses(state, "no potential where the tilt moves");
     state = with_forces(start);

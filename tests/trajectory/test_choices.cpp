@@ -12,14 +12,14 @@ using namespace ::crafted;
 namespace {
 
 /// The same rho for all disks.
-State<2> alike(State<2> state) {
+State alike(State state) {
     state.perturbation.emplace();
     state.perturbation->rho.assign(state.packing.radius.size(), 0.5);
     return state;
 }
 
 /// The infinitesimal loads of the mirror image, in which disks 1 and 2 change places.
-State<2> mirror_image(State<2> state) {
+State mirror_image(State state) {
     std::vector<double>& g = state.load.infinitesimal;
     std::swap(g[2], g[4]);
     std::swap(g[3], g[5]);
@@ -30,7 +30,7 @@ State<2> mirror_image(State<2> state) {
 }
 
 /// Loads that are their own mirror image.
-State<2> symmetric(State<2> state) {
+State symmetric(State state) {
     std::vector<double>& g = state.load.infinitesimal;
     g[0] = 0;
     g[4] = -g[2];
@@ -40,7 +40,7 @@ State<2> symmetric(State<2> state) {
 
 std::vector<TieDecision> choices(const Course& course) {
     std::vector<TieDecision> list;
-    for (const ArcRecord<2>& arc : course.arcs) {
+    for (const ArcRecord& arc : course.arcs) {
         for (const TieDecision& tie : arc.perturbed) {
             if (tie.choice != TieChoice::none) {
                 list.push_back(tie);
@@ -50,13 +50,13 @@ std::vector<TieDecision> choices(const Course& course) {
     return list;
 }
 
-State<2> prepared_equal_disks(int disks, std::uint64_t seed) {
+State prepared_equal_disks(int disks, std::uint64_t seed) {
     PreparationOptions options;
     options.disks = disks;
     options.diameters.kind = RadiiLaw::equal;
     options.seed = seed;
-    PreparationReport<2> report;
-    const auto result = prepare<2>(options, report);
+    PreparationReport report;
+    const auto result = prepare(options, report);
     BOOST_TEST_REQUIRE((result.ok() || report.candidate));
     return result.ok() ? result.value() : *report.candidate;
 }
@@ -75,13 +75,13 @@ std::string why(const Course& course) {
 BOOST_AUTO_TEST_SUITE(trajectory)
 
 BOOST_AUTO_TEST_CASE(what_first_order_leaves_tied_is_chosen_by_loads_then_names_and_recorded) {
-    const State<2> state = alike(mirror_forces());
+    const State state = alike(mirror_forces());
     const Course open = follow_load(state, -1, 1, Ties::first_order);
     BOOST_TEST(open.end() == "undecided");
     BOOST_TEST(mentions(open, "tied at first order too"));
 
     std::vector<Contact> opened;
-    for (const State<2>& start : {state, mirror_image(state)}) {
+    for (const State& start : {state, mirror_image(state)}) {
         const Course course = follow_load(start, -1, 1, Ties::choose);
         BOOST_TEST(course.end() == "completed", why(course));
         const auto found = choices(course);
@@ -106,7 +106,7 @@ BOOST_AUTO_TEST_CASE(what_first_order_leaves_tied_is_chosen_by_loads_then_names_
 }
 
 BOOST_AUTO_TEST_CASE(of_gaps_that_close_together_one_enters_and_the_other_is_watched) {
-    const State<2> state = alike(mirror_gaps());
+    const State state = alike(mirror_gaps());
     const Course open = follow_load(state, +1, 1, Ties::first_order);
     BOOST_TEST(open.end() == "undecided");
     const Course course = follow_load(state, +1, 1, Ties::choose);
@@ -168,21 +168,21 @@ BOOST_AUTO_TEST_CASE(a_square_of_disks_supports_every_load_and_pairs_that_only_b
 }
 
 BOOST_AUTO_TEST_CASE(a_run_chooses_as_often_as_it_may_and_then_ends_undecided) {
-    const State<2> start = prepared_equal_disks(20, 15);
+    const State start = prepared_equal_disks(20, 15);
     const Course all = follow_load(start, +1, 3, Ties::choose);
     const long most = all.counters.tally.choices;
     BOOST_TEST_REQUIRE(most > 5);
     const auto capped = [&](long cap) {
         Course course;
         CourseRecorder recorder(course);
-        State<2> state = start;
+        State state = start;
         Segment segment;
         segment.equilibria = 3;
         RunOptions options;
         options.ties = TiePolicy::choose;
         options.ties_seed = 1;
         options.max_choices = cap;
-        course.outcome = run_segment<2>(state, segment, 0, options, course.counters, recorder);
+        course.outcome = run_segment(state, segment, 0, options, course.counters, recorder);
         return course;
     };
     const Course as_many = capped(most);

@@ -8,13 +8,13 @@ using namespace ::crafted;
 
 namespace {
 
-double force_of(const Inspection<2>& inspection, const State<2>& state, const Contact& contact) {
+double force_of(const Inspection& inspection, const State& state, const Contact& contact) {
     for (std::size_t l = 0; l < state.contacts.size(); ++l) {
         if (state.contacts[l] == contact) {
             return inspection.forces[l];
         }
     }
-    BOOST_FAIL("no contact " + to_string<2>(contact));
+    BOOST_FAIL("no contact " + to_string(contact));
     return 0;
 }
 
@@ -23,7 +23,7 @@ double force_of(const Inspection<2>& inspection, const State<2>& state, const Co
 BOOST_AUTO_TEST_SUITE(trajectory)
 
 BOOST_AUTO_TEST_CASE(one_disk_carries_the_wall_forces_and_supports_every_load) {
-    const State<2> state = one_disk(1.5, 0.25);
+    const State state = one_disk(1.5, 0.25);
     const auto inspection = inspect_vertex(state);
     BOOST_REQUIRE(inspection.ok());
     BOOST_TEST(inspection.value().equilibrium, inspection.value().remark);
@@ -41,7 +41,7 @@ BOOST_AUTO_TEST_CASE(one_disk_carries_the_wall_forces_and_supports_every_load) {
 
 BOOST_AUTO_TEST_CASE(two_disks_have_the_forces_and_the_limits_of_the_closed_form) {
     for (const double r1 : {1.1, 2.0, 5.0}) {
-        const State<2> state = two_disks(1, r1, 1, 1.5);
+        const State state = two_disks(1, r1, 1, 1.5);
         const auto inspection = inspect_vertex(state);
         BOOST_REQUIRE(inspection.ok());
         const double t = (r1 - 1) / (2 * std::sqrt(r1));
@@ -94,8 +94,8 @@ BOOST_AUTO_TEST_CASE(the_five_contact_state_of_two_disks_is_an_equilibrium_that_
     for (const double angle : {0.6, 0.9}) {
         const double x = 1 + 3 * std::cos(angle);
         const double y = 1 + 3 * std::sin(angle);
-        const State<2> state = in_box({{1, 1, 1}, {2, x, y}}, x + 2, y + 2, 1, std::tan(angle),
-                                      {left(0), bottom(0), pair(0, 1), right(1), top(1)});
+        const State state = in_box({{1, 1, 1}, {2, x, y}}, x + 2, y + 2, 1, std::tan(angle),
+                                   {left(0), bottom(0), pair(0, 1), right(1), top(1)});
         const auto inspection = inspect_vertex(state);
         BOOST_REQUIRE(inspection.ok());
         BOOST_TEST(inspection.value().counting.mechanisms == 1);
@@ -105,7 +105,7 @@ BOOST_AUTO_TEST_CASE(the_five_contact_state_of_two_disks_is_an_equilibrium_that_
         BOOST_TEST(inspection.value().second_order.negative());
         BOOST_TEST(inspection.value().remark.find("not stable") != std::string::npos, inspection.value().remark);
         // Off the balance of the two forces the mechanism moves, and that is what is said.
-        State<2> off = state;
+        State off = state;
         off.load.stress[1] *= 1.01;
         const auto moved = inspect_vertex(off);
         BOOST_REQUIRE(moved.ok());
@@ -122,7 +122,7 @@ BOOST_AUTO_TEST_CASE(unloading_inside_the_hysteresis_loop_changes_nothing) {
 }
 
 BOOST_AUTO_TEST_CASE(three_disks_have_the_forces_of_the_closed_form) {
-    const State<2> state = three_disks(1, 1, 1.5, 3, 1);
+    const State state = three_disks(1, 1, 1.5, 3, 1);
     const auto inspection = inspect_vertex(state);
     BOOST_REQUIRE(inspection.ok());
     const double sine = 1 / 2.5;

@@ -19,7 +19,7 @@ struct Loop {
         return courses[segment].states.back().packing.length(axis);
     }
 };
-Loop follow_loads(State<2> state, const std::vector<double>& loads, Ties ties) {
+Loop follow_loads(State state, const std::vector<double>& loads, Ties ties) {
     Loop loop;
     double stress = state.load.stress[1];
     for (const double load : loads) {
@@ -32,7 +32,7 @@ Loop follow_loads(State<2> state, const std::vector<double>& loads, Ties ties) {
         RunOptions options;
         settle(options, ties);
         options.max_strain = 1e9; // reference lengths of 1
-        course.outcome = run_segment<2>(state, segment, 0, options, course.counters, recorder);
+        course.outcome = run_segment(state, segment, 0, options, course.counters, recorder);
         BOOST_TEST(course.outcome.completed,
                    (course.outcome.failure ? course.outcome.failure->message() : std::string()));
         BOOST_TEST_REQUIRE(!course.states.empty());
@@ -65,7 +65,7 @@ void pile_is(const Loop& loop, int columns, double accuracy) {
 /// The loads at which arcs of finite length begin.
 std::vector<double> loads_of_motions(const Course& course) {
     std::vector<double> loads;
-    for (const ArcRecord<2>& arc : course.arcs) {
+    for (const ArcRecord& arc : course.arcs) {
         if (arc.displacement > 1e-3 && (loads.empty() || loads.back() != arc.stress)) {
             loads.push_back(arc.stress);
         }
@@ -76,7 +76,7 @@ std::vector<double> loads_of_motions(const Course& course) {
 /// Rows of a triangular lattice in the box, as `triangular` makes them. While rows stretch with the spacing a, the box
 /// measures 2 + (columns - 1) a by 2 + (rows - 1) sqrt(4 - a^2 / 4): at a = 2 the work vanishes at this ratio of the
 /// wall forces. Below, forces of one sign balance the load: the lattice stands.
-double yield_of(const State<2>& patch, int columns, int rows) {
+double yield_of(const State& patch, int columns, int rows) {
     const double forces = 2 * std::sqrt(3.0) * (columns - 1) / (rows - 1);
     return forces * patch.load.reference_length[1] / patch.load.reference_length[0]; // of stresses, sigma1 = 1
 }
@@ -90,7 +90,7 @@ struct LatticeEnd {
           height(rows % 2 == 0 ? rows : rows + 1) {}
     double length, height;
 };
-double last_yield_of(const State<2>& patch, int columns, int rows) {
+double last_yield_of(const State& patch, int columns, int rows) {
     const double first = yield_of(patch, columns, rows);
     return rows % 2 == 0 ? std::max(first, first * (rows - 1) / 3) : first;
 }
@@ -132,7 +132,7 @@ BOOST_AUTO_TEST_CASE(many_gaps_that_close_together_are_put_in_order_at_once) {
     constexpr int columns = 12;
     const PileLoads loads(columns);
     for (const double growth : {0x1p-8, -0x1p-8}) {
-        State<2> state = pile(columns, loads.up - 1);
+        State state = pile(columns, loads.up - 1);
         state.perturbation.emplace();
         state.perturbation->rho = tie_direction(state.packing.radius, 1);
         for (int i = columns; i < 2 * columns - 1; ++i) {
@@ -147,14 +147,14 @@ BOOST_AUTO_TEST_CASE(rows_with_radii_that_are_really_changed_go_the_same_way) {
     for (const int columns : {8, 9}) {
         for (std::uint64_t seed = 1; seed <= 4; ++seed) {
             const PileLoads loads(columns);
-            const State<2> state = pile(columns, loads.up - 1);
-            const State<2> changed = really_perturbed(state, tie_direction(state.packing.radius, seed), eps);
+            const State state = pile(columns, loads.up - 1);
+            const State changed = really_perturbed(state, tie_direction(state.packing.radius, seed), eps);
             pile_is(follow_loads(changed, loads.programme, Ties::stop), columns, 200 * eps);
         }
     }
 }
 
-void moves_at_known_loads(const std::vector<double>& loads, const State<2>& patch, int columns, int rows,
+void moves_at_known_loads(const std::vector<double>& loads, const State& patch, int columns, int rows,
                           double accuracy) {
     const double first = yield_of(patch, columns, rows);
     const double last = last_yield_of(patch, columns, rows);
@@ -174,12 +174,12 @@ BOOST_AUTO_TEST_CASE(lattices_move_at_the_loads_at_which_their_rows_stretch_and_
          {std::pair{2, 2}, std::pair{3, 2}, std::pair{4, 2}, std::pair{2, 3}, std::pair{3, 3}, std::pair{2, 4},
           std::pair{3, 4}, std::pair{4, 4}, std::pair{5, 5}, std::pair{3, 6}, std::pair{3, 8}, std::pair{7, 8}}) {
         BOOST_TEST_CONTEXT(columns << " x " << rows) {
-            const State<2> patch = triangular(columns, rows);
+            const State patch = triangular(columns, rows);
             const Course course = follow_load(patch, +1, 200, Ties::choose);
             BOOST_TEST(course.end() == "no limit",
                        (course.outcome.failure ? course.outcome.failure->message() : std::string()));
             moves_at_known_loads(loads_of_motions(course), patch, columns, rows, 1e-11);
-            const Packing<2>& end = course.states.back().packing;
+            const Packing& end = course.states.back().packing;
             BOOST_TEST(std::abs(end.length(0) - LatticeEnd(columns, rows).length) < 1e-11);
             BOOST_TEST(std::abs(end.length(1) - LatticeEnd(columns, rows).height) < 1e-11);
             lists += settled_as(course, "end") ? 1 : 0;
@@ -193,11 +193,11 @@ BOOST_AUTO_TEST_CASE(lattices_end_where_their_rows_meet_as_with_radii_that_are_r
     for (const auto& [columns, rows] :
          {std::pair{3, 2}, std::pair{4, 2}, std::pair{2, 3}, std::pair{3, 4}, std::pair{4, 4}, std::pair{4, 5},
           std::pair{5, 5}, std::pair{5, 6}, std::pair{7, 8}}) {
-        const State<2> patch = triangular(columns, rows);
+        const State patch = triangular(columns, rows);
         const double above = last_yield_of(patch, columns, rows) + 1;
         for (std::uint64_t seed = 1; seed <= (columns < 7 ? 4U : 2U); ++seed) {
             BOOST_TEST_CONTEXT(columns << " x " << rows << ", direction " << seed) {
-                const State<2> changed = really_perturbed(patch, tie_direction(patch.packing.radius, seed), eps);
+                const State changed = really_perturbed(patch, tie_direction(patch.packing.radius, seed), eps);
                 const Loop real = follow_loads(changed, {above}, Ties::stop);
                 moves_at_known_loads(loads_of_motions(real.courses[0]), patch, columns, rows, 100 * eps);
                 // In line, lengths change by the square root of what the heights do.
@@ -214,7 +214,7 @@ BOOST_AUTO_TEST_CASE(lattices_in_cells_stretch_from_a_ratio_of_3_on_until_the_ro
     for (const bool tilts : {false, true}) {
         for (const auto& [columns, rows] : {std::pair{2, 1}, std::pair{3, 1}, std::pair{3, 2}, std::pair{4, 2}}) {
             BOOST_TEST_CONTEXT(columns << " x " << rows << (tilts ? ", tilts" : "")) {
-                State<2> lattice = cells::loaded_lattice(columns, rows, tilts);
+                State lattice = cells::loaded_lattice(columns, rows, tilts);
                 lattice.load.reference_length = {lattice.packing.length(0), lattice.packing.length(1)};
                 const Course course = follow_load(lattice, +1, 100, Ties::choose);
                 BOOST_TEST(course.end() == "no limit",
@@ -222,7 +222,7 @@ BOOST_AUTO_TEST_CASE(lattices_in_cells_stretch_from_a_ratio_of_3_on_until_the_ro
                 const std::vector<double> loads = loads_of_motions(course);
                 BOOST_TEST_REQUIRE(!loads.empty());
                 BOOST_TEST(std::abs(loads[0] - 3) < 1e-11);
-                const Packing<2>& end = course.states.back().packing;
+                const Packing& end = course.states.back().packing;
                 BOOST_TEST(std::abs(end.length(0) - columns * std::sqrt(3.0)) < 1e-11);
                 BOOST_TEST(std::abs(end.length(1) - rows) < 1e-11);
             }

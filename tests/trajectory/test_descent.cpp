@@ -13,16 +13,16 @@ namespace {
 
 using Wide = boost::multiprecision::number<boost::multiprecision::mpfr_float_backend<80>>;
 
-std::unique_ptr<Vertex<2>> vertex_of(const State<2>& state) {
+std::unique_ptr<Vertex> vertex_of(const State& state) {
     static InverseBoundCache cache;
-    auto made = Vertex<2>::make(state.packing, state.contacts, state.load, cache);
+    auto made = Vertex::make(state.packing, state.contacts, state.load, cache);
     BOOST_REQUIRE(made.ok());
     return std::move(made.value());
 }
 
 /// A disk in its corner under two walls, at rest: its true place is stored. The second one has other lengths.
-State<2> corner(double radius) {
-    State<2> state = one_disk(1, 1);
+State corner(double radius) {
+    State state = one_disk(1, 1);
     state.packing.radius[0] = radius;
     state.packing.q = {radius, radius, 2 * radius, 2 * radius};
     return state;
@@ -46,7 +46,7 @@ BOOST_AUTO_TEST_CASE(the_decrease_of_the_potential_is_enclosed_for_dead_loads_an
     for (const double shrink : {0.5, 0x1p-20, 0x1p-46, -0x1p-30}) {
         const auto from = vertex_of(corner(1));
         const auto to = vertex_of(corner(1 - shrink));
-        Load<2> load = corner(1).load;
+        Load load = corner(1).load;
         load.stress = {0.75, 1.5};
         load.reference_length = {3, 0.1};
         const Enclosure dead = potential_decrease(*from, *to, load, false);
@@ -64,12 +64,12 @@ BOOST_AUTO_TEST_CASE(the_decrease_of_the_potential_is_enclosed_for_dead_loads_an
 BOOST_AUTO_TEST_CASE(the_decrease_is_that_of_the_true_vertices_not_of_the_stored_ones) {
     // Stored 1e-9 off their places, which are known: decided at once, to what the vertices are known to.
     const auto off = [](double radius, double push) {
-        State<2> state = corner(radius);
+        State state = corner(radius);
         state.packing.q[2] += push; // the length of the box, which is what the load feels
         state.packing.q[3] += push;
         return state;
     };
-    Load<2> load = corner(1).load;
+    Load load = corner(1).load;
     load.stress = {0.75, 1.5};
     load.reference_length = {3, 0.1};
     for (const double push : {1e-9, -1e-9}) {
@@ -91,7 +91,7 @@ BOOST_AUTO_TEST_CASE(a_length_that_may_be_zero_says_nothing_of_its_logarithm) {
     const auto to = vertex_of(corner(0.5));
     from->enclosure.radius = 1.8;  // of lengths of 2: 1.8 / 0.2 = 9
     to->enclosure.radius = 1.1266; // of lengths of 1: nothing, not 1.1266 / -0.1266 = -8.9
-    Load<2> load = corner(1).load;
+    Load load = corner(1).load;
     load.kind = LoadKind::true_stress;
     const Enclosure phi = potential_decrease(*from, *to, load, false);
     BOOST_TEST(phi.radius < 1e-9); // enclosed anew, in double-double
@@ -100,7 +100,7 @@ BOOST_AUTO_TEST_CASE(a_length_that_may_be_zero_says_nothing_of_its_logarithm) {
 
 BOOST_AUTO_TEST_CASE(nothing_is_claimed_where_nothing_moves_or_no_potential_exists) {
     const auto from = vertex_of(corner(1));
-    Load<2> load = corner(1).load;
+    Load load = corner(1).load;
     BOOST_TEST(!potential_decrease(*from, *from, load, false).decided());
     load.kind = LoadKind::true_stress;
     load.disk_force = {0, 1};
@@ -114,7 +114,7 @@ BOOST_AUTO_TEST_CASE(walls_that_move_against_each_other_are_judged_by_the_sum_of
     // sigma_1 ln L1 + sigma_2 ln L2 with L1 -> L1 (1 + t), L2 -> L2 (1 - t): the first order cancels.
     for (const double t : {0x1p-4, 0x1p-12, 0x1p-22, 0x1p-50}) { // t^2 = 2^-100: below double-double
         const auto box = [&](double lx, double ly) {
-            State<2> state = one_disk(1, 1);
+            State state = one_disk(1, 1);
             state.packing.radius = {0.25, 0.25};
             state.packing.q = {0.25, 0.25, lx - 0.25, ly - 0.25, lx, ly};
             state.load.infinitesimal.assign(4, 0.0);
@@ -127,7 +127,7 @@ BOOST_AUTO_TEST_CASE(walls_that_move_against_each_other_are_judged_by_the_sum_of
         };
         const auto from = vertex_of(box(1, 1));
         const auto to = vertex_of(box(1 + t, 1 - t));
-        Load<2> load = box(1, 1).load;
+        Load load = box(1, 1).load;
         load.kind = LoadKind::true_stress;
         load.stress = {1, 1};
         const Enclosure phi = potential_decrease(*from, *to, load, false);
@@ -149,7 +149,7 @@ BOOST_AUTO_TEST_CASE(held_coordinates_compete_by_magnitude_on_every_rung) {
     // up.
     std::vector<Contact> opened;
     for (const char* name : {"held_big.json", "held_small.json"}) {
-        const State<2> state = read_state<2>(std::string(ISOSTAT_TEST_DATA) + "/contradictions/" + name).state;
+        const State state = read_state(std::string(ISOSTAT_TEST_DATA) + "/contradictions/" + name).state;
         const Played played = play(state, +1, 1);
         BOOST_REQUIRE(!played.records.arcs.empty());
         opened.push_back(played.records.arcs[0].opened);
@@ -158,29 +158,29 @@ BOOST_AUTO_TEST_CASE(held_coordinates_compete_by_magnitude_on_every_rung) {
 }
 
 BOOST_AUTO_TEST_CASE(a_run_ends_with_the_objection_of_its_observer) {
-    State<2> state = two_disks(1, 2, 1, 1);
+    State state = two_disks(1, 2, 1, 1);
     Objector objector(0);
     RunCounters counters;
     Segment segment;
     segment.direction = -1;
     segment.equilibria = 5;
-    const SegmentOutcome outcome = run_segment<2>(state, segment, 0, {}, counters, objector);
+    const SegmentOutcome outcome = run_segment(state, segment, 0, {}, counters, objector);
     BOOST_REQUIRE(outcome.failure.has_value());
     BOOST_TEST((outcome.failure->kind == FailureKind::contradiction));
     BOOST_TEST(objector.equilibria.size() == 1U);
 }
 
 BOOST_AUTO_TEST_CASE(an_equilibrium_at_another_load_keeps_the_smallest_gap_of_its_configuration) {
-    State<2> state = two_disks(1, 2, 1, 1);
+    State state = two_disks(1, 2, 1, 1);
     Recorder records;
     RunCounters counters;
     Segment up;
     up.to_stress = 2;
-    BOOST_REQUIRE((run_segment<2>(state, up, 0, {}, counters, records).completed));
+    BOOST_REQUIRE((run_segment(state, up, 0, {}, counters, records).completed));
     Segment down;
     down.direction = -1;
     down.to_stress = 1.5;
-    BOOST_REQUIRE((run_segment<2>(state, down, 1, {}, counters, records).completed));
+    BOOST_REQUIRE((run_segment(state, down, 1, {}, counters, records).completed));
     BOOST_REQUIRE(records.equilibria.size() == 3U);
     for (const auto& record : records.equilibria) {
         BOOST_TEST(record.min_gap == records.equilibria[0].min_gap);
@@ -189,7 +189,7 @@ BOOST_AUTO_TEST_CASE(an_equilibrium_at_another_load_keeps_the_smallest_gap_of_it
     // Further apart than any list of candidates reaches.
     BOOST_TEST((records.equilibria[0].min_gap_contact == left(1)));
     BOOST_TEST(std::abs(records.equilibria[0].min_gap - (2 * std::sqrt(2.0) - 1)) <= 1e-14);
-    const EquilibriumRecord<2> alone = play(one_disk(1, 1), +1, 1).records.equilibria.front();
+    const EquilibriumRecord alone = play(one_disk(1, 1), +1, 1).records.equilibria.front();
     BOOST_TEST(std::isinf(alone.min_gap));
     BOOST_TEST(alone.min_gap_contact.i == -1);
 }

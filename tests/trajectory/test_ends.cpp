@@ -21,32 +21,32 @@ BOOST_AUTO_TEST_CASE(what_an_iteration_or_a_rank_did_not_show_of_an_arc_is_undec
 /// Where ties are settled other lists follow at the coordinates of an end, and some are nearly singular.
 BOOST_AUTO_TEST_CASE(an_end_that_was_steered_badly_is_put_at_its_true_vertex_where_ties_are_settled) {
     constexpr double badly = 1e-11;
-    State<2> state = prepared(12, 1);
-    const FirstOrderSide<2> side(state, 1, true);
+    State state = prepared(12, 1);
+    const FirstOrderSide side(state, 1, true);
     RunOptions options;
     options.ties = TiePolicy::choose;
-    Prover<2> prover(options, side);
+    Prover prover(options, side);
     prover.start_at(state.packing);
-    const LimitLoad<2> at{state.load};
+    const LimitLoad at{state.load};
     const auto vertex = prover.vertex(state.packing, state.contacts, at);
     BOOST_TEST_REQUIRE(vertex.ok());
     int arcs = 0;
     for (std::size_t l = 0; l < state.contacts.size(); ++l) {
         Opening opening;
         opening.contact = ContactId(l);
-        BoundedSteering<2> steering(vertex.value(), {opening, ArcKind::limit, 1, &at.load, {}}, Departure<2>{}, 0.1,
-                                    prover.candidates());
+        BoundedSteering steering(vertex.value(), {opening, ArcKind::limit, 1, &at.load, {}}, Departure{}, 0.1,
+                                 prover.candidates());
         auto arc = steering.propose();
         if (!arc.ok() || arc.value().record.power_turn) {
             continue;
         }
-        ArcProposal<2>& proposal = arc.value();
-        const Packing<2> end = proposal.end;
+        ArcProposal& proposal = arc.value();
+        const Packing end = proposal.end;
         proposal.end.q[0] += badly;
         snap_to_grid(proposal.end);
-        proposal.contacts = IsostaticStructure<2>::exchange(vertex.value()->structure, proposal.end, opening.contact,
-                                                            proposal.record.closed);
-        const ArcProof<2> proof = prover.prove(*vertex.value(), std::move(proposal), opening, at);
+        proposal.contacts = IsostaticStructure::exchange(vertex.value()->structure, proposal.end, opening.contact,
+                                                         proposal.record.closed);
+        const ArcProof proof = prover.prove(*vertex.value(), std::move(proposal), opening, at);
         BOOST_TEST_REQUIRE((proof.vertex != nullptr));
         for (std::size_t k = 0; k < end.q.size(); ++k) {
             BOOST_TEST(std::abs(proof.vertex->packing.q[k] - end.q[k]) < 0.01 * badly);

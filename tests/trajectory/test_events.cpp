@@ -23,25 +23,24 @@ std::vector<std::string> recorded(const std::string& name) {
 void compare(const std::string& disks, int up, bool down) {
     const std::vector<std::string> expected = recorded("events" + disks + ".txt");
     BOOST_REQUIRE(expected.size() > 20);
-    State<2> state = read_state<2>(std::string(ISOSTAT_TEST_DATA) + "/vertex" + disks + ".txt").state;
+    State state = read_state(std::string(ISOSTAT_TEST_DATA) + "/vertex" + disks + ".txt").state;
     Recorder records;
     RunCounters counters;
     const RunOptions options;
     Segment segment;
     segment.equilibria = up;
-    SegmentOutcome outcome = run_segment<2>(state, segment, 0, options, counters, records);
+    SegmentOutcome outcome = run_segment(state, segment, 0, options, counters, records);
     BOOST_REQUIRE_MESSAGE(outcome.completed, (outcome.failure ? outcome.failure->message() : ""));
     if (down) {
         segment = {};
         segment.direction = -1;
         segment.to_stress = 1.0;
-        outcome = run_segment<2>(state, segment, 1, options, counters, records);
+        outcome = run_segment(state, segment, 1, options, counters, records);
         BOOST_REQUIRE_MESSAGE(outcome.completed, (outcome.failure ? outcome.failure->message() : ""));
     }
     std::vector<std::string> events;
-    for (const ArcRecord<2>& arc : records.arcs) {
-        events.push_back(std::to_string(arc.equilibrium) + " " + to_string<2>(arc.opened) + " > " +
-                         to_string<2>(arc.closed));
+    for (const ArcRecord& arc : records.arcs) {
+        events.push_back(std::to_string(arc.equilibrium) + " " + to_string(arc.opened) + " > " + to_string(arc.closed));
     }
     BOOST_TEST(events == expected, boost::test_tools::per_element());
 }

@@ -13,7 +13,7 @@ namespace {
 constexpr int equilibria = 12;
 
 struct Base {
-    State<2> start = prepared(60, 5);
+    State start = prepared(60, 5);
     Played played = play(start, +1, equilibria);
     Base() { BOOST_REQUIRE_MESSAGE(played.outcome.completed, played.why()); }
 };
@@ -58,7 +58,7 @@ BOOST_FIXTURE_TEST_CASE(the_sequence_does_not_depend_on_noise_far_below_the_marg
         sigma = std::min(sigma, e.sigma_min_bound);
     }
     for (const double noise : {1e-14, 1e-12, 1e-4 * sigma * smallest_gap}) {
-        State<2> noisy = start;
+        State noisy = start;
         std::mt19937 random(11);
         for (double& r : noisy.packing.radius) {
             r *= 1 + noise * (2.0 * static_cast<double>(random()) / 4294967295.0 - 1);
@@ -73,7 +73,7 @@ BOOST_FIXTURE_TEST_CASE(the_sequence_does_not_depend_on_noise_far_below_the_marg
 
 BOOST_FIXTURE_TEST_CASE(scaling_by_powers_of_two_changes_no_bit, Base) {
     for (const auto& [length, stress] : {std::pair{-20, 3}, std::pair{40, -30}}) {
-        State<2> scaled = start;
+        State scaled = start;
         const double l = std::ldexp(1.0, length);
         const double s = std::ldexp(1.0, stress);
         for (double& r : scaled.packing.radius) {
@@ -112,7 +112,7 @@ BOOST_FIXTURE_TEST_CASE(a_run_in_two_parts_gives_the_same_bits_as_in_one, Base) 
     segment.equilibria = equilibria - equilibria / 2;
     RunOptions options;
     options.max_strain = 1e9;
-    const auto outcome = run_segment<2>(first.state, segment, 0, options, first.counters, first.records);
+    const auto outcome = run_segment(first.state, segment, 0, options, first.counters, first.records);
     BOOST_REQUIRE(outcome.completed);
     BOOST_TEST((first.state.packing.q == played.state.packing.q));
     BOOST_TEST(first.counters.steps == played.counters.steps);
@@ -138,7 +138,7 @@ BOOST_FIXTURE_TEST_CASE(rearrangements_of_one_arc_are_the_same_under_every_openi
 }
 
 BOOST_AUTO_TEST_CASE(every_opening_rule_reaches_equilibria_whose_checks_hold) {
-    const State<2> start = prepared(40, 2);
+    const State start = prepared(40, 2);
     for (const OpeningRule rule :
          {OpeningRule::most_negative, OpeningRule::random, OpeningRule::least_negative, OpeningRule::least_index}) {
         RunOptions options;
@@ -184,12 +184,12 @@ BOOST_AUTO_TEST_CASE(an_opening_gap_that_turns_back_is_followed_past_its_start, 
 }
 
 BOOST_AUTO_TEST_CASE(true_stress_loads_follow_the_current_lengths) {
-    State<2> start = prepared(40, 9);
+    State start = prepared(40, 9);
     start.load.kind = LoadKind::true_stress;
     const Played run = play(start, +1, 5);
     BOOST_TEST((run.outcome.completed || run.outcome.failure->kind == FailureKind::cap_reached), run.why());
     BOOST_REQUIRE(!run.records.states.empty());
-    const State<2>& last = run.records.states.back();
+    const State& last = run.records.states.back();
     BOOST_TEST(last.load.external_force(last.packing)[2 * 40] == -last.load.stress[0] * last.packing.length(1));
     // The first limit is a property of the start: the two kinds of load agree there.
     const Played dead = play(prepared(40, 9), +1, 1);
@@ -198,7 +198,7 @@ BOOST_AUTO_TEST_CASE(true_stress_loads_follow_the_current_lengths) {
 }
 
 BOOST_AUTO_TEST_CASE(true_stresses_have_a_strict_minimum_of_a_potential_of_their_own) {
-    State<2> state = prepared(40, 9);
+    State state = prepared(40, 9);
     BOOST_TEST((inspect_vertex(state).value().stable == Verdict::proved));
     state.load.kind = LoadKind::true_stress;
     const auto inspection = inspect_vertex(state);

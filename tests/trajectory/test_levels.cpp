@@ -43,7 +43,7 @@ BOOST_AUTO_TEST_CASE(every_arc_of_a_run_is_certified_with_its_power) {
 }
 
 BOOST_AUTO_TEST_CASE(the_level_changes_no_bit_of_the_run) {
-    const State<2> start = prepared(50, 3);
+    const State start = prepared(50, 3);
     const Played plain = play(start, +1, 6);
     const Played proved = play(start, +1, 6, {}, with_arcs());
     BOOST_TEST((plain.state.packing.q == proved.state.packing.q));
@@ -56,7 +56,7 @@ BOOST_AUTO_TEST_CASE(the_level_changes_no_bit_of_the_run) {
 }
 
 BOOST_AUTO_TEST_CASE(the_number_of_threads_changes_no_bit_of_the_run, *boost::unit_test::label("threads")) {
-    const State<2> start = prepared(100, 4);
+    const State start = prepared(100, 4);
     const Played one = play(start, +1, 8);
     BOOST_TEST_REQUIRE(one.records.arcs.size() > 20U);
     for (const int count : {2, 3, 2}) { // whoever begins a task first
@@ -75,8 +75,8 @@ BOOST_AUTO_TEST_CASE(the_number_of_threads_changes_no_bit_of_the_run, *boost::un
         BOOST_TEST((one.state.packing.q == several.state.packing.q));
         BOOST_TEST_REQUIRE(one.records.arcs.size() == several.records.arcs.size());
         for (std::size_t k = 0; k < one.records.arcs.size(); ++k) {
-            const ArcRecord<2>& a = one.records.arcs[k];
-            const ArcRecord<2>& b = several.records.arcs[k];
+            const ArcRecord& a = one.records.arcs[k];
+            const ArcRecord& b = several.records.arcs[k];
             BOOST_TEST((a.opened == b.opened && a.closed == b.closed));
             BOOST_TEST(a.force == b.force);
             BOOST_TEST(a.strain == b.strain);
@@ -86,31 +86,31 @@ BOOST_AUTO_TEST_CASE(the_number_of_threads_changes_no_bit_of_the_run, *boost::un
 }
 
 BOOST_AUTO_TEST_CASE(a_run_that_is_stopped_shows_no_arc_that_was_steered_ahead, *boost::unit_test::label("threads")) {
-    class Stopper final : public RunObserver<2> {
+    class Stopper final : public RunObserver {
       public:
         explicit Stopper(long at) : at_(at) {}
-        void on_arc(const ArcRecord<2>& arc) override {
+        void on_arc(const ArcRecord& arc) override {
             last = arc.step;
             stop = arc.step >= at_;
         }
-        void on_equilibrium(const EquilibriumRecord<2>&, const State<2>&, const std::vector<double>&) override {}
+        void on_equilibrium(const EquilibriumRecord&, const State&, const std::vector<double>&) override {}
         std::atomic<bool> stop = false;
         long last = 0;
 
       private:
         long at_;
     };
-    const State<2> start = prepared(100, 4);
+    const State start = prepared(100, 4);
     const Threads threads(2);
     for (const long at : {1L, 4L, 9L, 14L}) {
         Stopper stopper(at);
         RunOptions options;
         options.stop = &stopper.stop;
-        State<2> state = start;
+        State state = start;
         RunCounters counters;
         Segment segment;
         segment.equilibria = 8;
-        const SegmentOutcome outcome = run_segment<2>(state, segment, 0, options, counters, stopper);
+        const SegmentOutcome outcome = run_segment(state, segment, 0, options, counters, stopper);
         BOOST_TEST_REQUIRE(outcome.failure.has_value());
         BOOST_TEST((outcome.failure->kind == FailureKind::interrupted));
         BOOST_TEST(stopper.last == at);
@@ -135,7 +135,7 @@ BOOST_AUTO_TEST_CASE(rattlers_are_certified_in_their_own_degrees_of_freedom) {
 }
 
 BOOST_AUTO_TEST_CASE(two_disks_are_certified_around_the_hysteresis_loop) {
-    const State<2> start = two_disks(1, 1.5, 1, 1);
+    const State start = two_disks(1, 1.5, 1, 1);
     for (const int direction : {+1, -1}) {
         const Played run = play(start, direction, 1, {}, with_arcs());
         for (const auto& arc : run.records.arcs) {
@@ -145,7 +145,7 @@ BOOST_AUTO_TEST_CASE(two_disks_are_certified_around_the_hysteresis_loop) {
 }
 
 BOOST_AUTO_TEST_CASE(true_stresses_leave_the_power_undecided_and_the_contacts_proved) {
-    State<2> start = prepared(40, 9);
+    State start = prepared(40, 9);
     start.load.kind = LoadKind::true_stress;
     const Played run = play(start, +1, 3, {}, with_arcs());
     BOOST_TEST(!run.records.arcs.empty());
@@ -167,7 +167,7 @@ BOOST_AUTO_TEST_CASE(a_power_that_turns_within_the_first_step_is_found_whatever_
         down.direction = -1;
         down.equilibria = 20;
         options.max_strain = 1e9;
-        const auto outcome = run_segment<2>(run.state, down, 1, options, run.counters, run.records);
+        const auto outcome = run_segment(run.state, down, 1, options, run.counters, run.records);
         BOOST_TEST(outcome.completed, (outcome.failure ? outcome.failure->message() : std::string()));
         std::vector<std::pair<Contact, Contact>> list;
         for (const auto& arc : run.records.arcs) {

@@ -9,17 +9,17 @@ using namespace isostat;
 namespace {
 
 /// Stresses and states of equilibria, and which segments began where.
-struct ProgrammeCourse : RunObserver<2> {
-    std::vector<State<2>> states;
+struct ProgrammeCourse : RunObserver {
+    std::vector<State> states;
     std::vector<double> stresses;
     std::vector<std::pair<int, int>> begun; ///< segment, equilibrium it starts from
     int direction = 0;                      ///< of the last segment
-    void on_segment(int number, const Segment& goal, int made, const State<2>& from) override {
+    void on_segment(int number, const Segment& goal, int made, const State& from) override {
         BOOST_TEST(made == 0);
         begun.emplace_back(number, from.equilibrium);
         direction = goal.direction;
     }
-    void on_equilibrium(const EquilibriumRecord<2>& record, const State<2>& state,
+    void on_equilibrium(const EquilibriumRecord& record, const State& state,
                         const std::vector<double>& /*forces*/) override {
         BOOST_TEST(record.number == static_cast<int>(states.size()));
         states.push_back(state);
@@ -36,8 +36,8 @@ ProgrammeStep up(int equilibria) {
 
 /// Of the 100 disks of tests/data.
 ProgrammeOutcome played(ProgrammeCourse& course, const std::vector<ProgrammeStep>& steps) {
-    State<2> state = read_state<2>(ISOSTAT_TEST_DATA "/vertex100.txt").state;
-    Programme<2> programme;
+    State state = read_state(ISOSTAT_TEST_DATA "/vertex100.txt").state;
+    Programme programme;
     programme.steps = steps;
     programme.source = "here";
     programme.stored = [&](int equilibrium) { return course.states.at(static_cast<std::size_t>(equilibrium)); };

@@ -13,7 +13,7 @@ using oracle::Real;
 namespace {
 
 /// Loaded stress at which the force in a contact vanishes.
-Real vanishing_stress(const State<2>& state, const oracle::Truth& truth, const Contact& opens) {
+Real vanishing_stress(const State& state, const oracle::Truth& truth, const Contact& opens) {
     const auto l = static_cast<std::size_t>(std::find(state.contacts.begin(), state.contacts.end(), opens) -
                                             state.contacts.begin());
     BOOST_TEST_REQUIRE(l < state.contacts.size());
@@ -40,8 +40,8 @@ BOOST_AUTO_TEST_CASE(recorded_numbers_hold_in_every_digit_at_the_true_vertex) {
     BOOST_TEST_REQUIRE(run.records.equilibria.size() == 5U, run.why());
     double most = 0; // what the stored coordinates would give
     for (std::size_t k = 0; k < run.records.equilibria.size(); ++k) {
-        const EquilibriumRecord<2>& e = run.records.equilibria[k];
-        const State<2>& state = run.records.states[k];
+        const EquilibriumRecord& e = run.records.equilibria[k];
+        const State& state = run.records.states[k];
         const oracle::Truth truth(state);
         BOOST_TEST_REQUIRE(truth.known, truth.why);
         BOOST_TEST_CONTEXT("equilibrium " << k) {
@@ -66,8 +66,8 @@ BOOST_AUTO_TEST_CASE(recorded_numbers_hold_in_every_digit_at_the_true_vertex) {
         }
     }
     BOOST_TEST(most > 0); // the stored coordinates say something else
-    for (const ArcRecord<2>& arc : run.records.arcs) {
-        const EquilibriumRecord<2>& e = run.records.equilibria[static_cast<std::size_t>(arc.equilibrium)];
+    for (const ArcRecord& arc : run.records.arcs) {
+        const EquilibriumRecord& e = run.records.equilibria[static_cast<std::size_t>(arc.equilibrium)];
         BOOST_TEST(!std::isnan(arc.strain_bound));
         if (arc.arc == e.arcs) {
             BOOST_TEST(std::abs(arc.strain - e.strain[1]) <= arc.strain_bound + e.strain_bound[1]);

@@ -9,8 +9,8 @@ using namespace ::crafted;
 
 namespace {
 
-State<2> sample(const std::string& name) {
-    return read_state<2>(std::string(ISOSTAT_TEST_DATA) + "/" + name).state;
+State sample(const std::string& name) {
+    return read_state(std::string(ISOSTAT_TEST_DATA) + "/" + name).state;
 }
 
 /// Rows of a sequence file: equilibrium, sigma2/sigma1, eps2, eps1, backbone, rattlers, arcs.
@@ -37,7 +37,7 @@ void compare(const std::string& vertex, const std::string& expected, double tole
     BOOST_REQUIRE_MESSAGE(run.outcome.completed, run.why());
     BOOST_REQUIRE_EQUAL(run.records.equilibria.size(), rows.size());
     for (std::size_t k = 0; k < rows.size(); ++k) {
-        const EquilibriumRecord<2>& e = run.records.equilibria[k];
+        const EquilibriumRecord& e = run.records.equilibria[k];
         BOOST_TEST_CONTEXT("equilibrium " << k) {
             BOOST_TEST(std::abs(e.stress - rows[k][1]) <= tolerance);
             BOOST_TEST(std::abs(e.strain[1] - rows[k][2]) <= tolerance);
@@ -63,7 +63,7 @@ BOOST_AUTO_TEST_CASE(the_sample_of_400_disks_reaches_the_same_20_equilibria) {
 }
 
 BOOST_AUTO_TEST_CASE(the_sample_of_1936_disks_is_an_equilibrium_and_makes_ten_more) {
-    const State<2> start = sample("vertex1936.txt");
+    const State start = sample("vertex1936.txt");
     const auto inspection = inspect_vertex(start);
     BOOST_REQUIRE(inspection.ok());
     BOOST_TEST(inspection.value().equilibrium, inspection.value().remark);

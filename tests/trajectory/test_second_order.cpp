@@ -25,7 +25,7 @@ struct EndOfCrests {
 
 std::vector<TieDecision> exchanges(const Course& course) {
     std::vector<TieDecision> list;
-    for (const ArcRecord<2>& arc : course.arcs) {
+    for (const ArcRecord& arc : course.arcs) {
         for (const TieDecision& tie : arc.perturbed) {
             if (tie.what == "second order") {
                 list.push_back(tie);
@@ -40,7 +40,7 @@ void ends_at_the_fixed_disk(const Course& course, double accuracy) {
                (course.outcome.failure ? course.outcome.failure->message() : std::string()));
     BOOST_TEST_REQUIRE(!course.states.empty());
     const EndOfCrests end;
-    const Packing<2>& packing = course.states.back().packing;
+    const Packing& packing = course.states.back().packing;
     BOOST_TEST(std::abs(packing.q[2] - end.x) < accuracy);
     BOOST_TEST(std::abs(packing.q[3] - end.y) < accuracy);
     BOOST_TEST(std::abs(packing.length(0) - (end.x + 2)) < accuracy);
@@ -83,8 +83,8 @@ BOOST_AUTO_TEST_CASE(a_pair_that_would_overlap_at_second_order_is_undecided_wher
 BOOST_AUTO_TEST_CASE(radii_that_are_really_changed_end_at_the_same_place) {
     constexpr double eps = 1e-8;
     for (const bool larger : {true, false}) {
-        const State<2> state = two_crests(larger);
-        const State<2> changed = really_perturbed(state, state.perturbation->rho, eps);
+        const State state = two_crests(larger);
+        const State changed = really_perturbed(state, state.perturbation->rho, eps);
         ends_at_the_fixed_disk(follow_load(changed, -1, 1, Ties::stop), 20 * eps);
     }
 }

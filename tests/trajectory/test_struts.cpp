@@ -13,7 +13,7 @@ constexpr std::array<std::pair<int, std::uint64_t>, 6> samples{
 constexpr int played_equilibria = 7;
 
 /// The step after a power turn that holds `disk`, when it opens a contact of that disk: its index, or 0.
-std::size_t strut_opening(const std::vector<ArcRecord<2>>& arcs) {
+std::size_t strut_opening(const std::vector<ArcRecord>& arcs) {
     for (std::size_t k = 1; k < arcs.size(); ++k) {
         const int disk = arcs[k - 1].closed.i / 2;
         const Contact& opened = arcs[k].opened;
@@ -31,7 +31,7 @@ BOOST_AUTO_TEST_SUITE(trajectory)
 
 BOOST_AUTO_TEST_CASE(a_straight_strut_lets_go_at_the_same_end_for_all_labels_sides_and_axes) {
     for (const auto& [disks, seed] : samples) {
-        const State<2> start = prepared(disks, seed);
+        const State start = prepared(disks, seed);
         const Played run = play(start, +1, played_equilibria);
         BOOST_TEST_CONTEXT(disks << " disks, seed " << seed) {
             check_same_sequence(run, relabelled(start, 5), played_equilibria);
@@ -57,7 +57,7 @@ BOOST_AUTO_TEST_CASE(a_straight_strut_lets_go_at_the_same_end_for_all_labels_sid
 
 BOOST_AUTO_TEST_CASE(grains_that_hang_on_a_strut_without_force_do_not_hide_it) {
     // Grain 37 is held at the turn and carries nothing; the strut is 28, some contacts away.
-    const State<2> start = prepared(40, 15);
+    const State start = prepared(40, 15);
     const Played run = play(start, +1, 5);
     const auto& arcs = run.records.arcs;
     BOOST_TEST_REQUIRE(arcs.size() > 22U);

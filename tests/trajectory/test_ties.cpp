@@ -17,7 +17,7 @@ BOOST_AUTO_TEST_CASE(a_tie_of_two_forces_stops_the_run_and_names_them) {
 }
 
 BOOST_AUTO_TEST_CASE(a_tie_of_two_gaps_stops_the_run_and_names_them) {
-    State<2> state = mirror_gaps();
+    State state = mirror_gaps();
     state.load.disk_force[3] = -1.25; // its lower end is no tie then; the motion is the same
     const Course course = follow_load(state, +1, 1, Ties::stop);
     BOOST_TEST(course.end() == "tie");
@@ -36,7 +36,7 @@ BOOST_AUTO_TEST_CASE(a_tie_of_two_forces_is_settled_by_the_radii_and_so_is_the_f
         BOOST_TEST((first || course.arcs[0].opened == bottom(2)));
         first_opens += first ? 1 : 0;
         // By symmetry the other one has force 0 at the limit, and is kept: its first-order term is positive.
-        const State<2>& reached = course.states.back();
+        const State& reached = course.states.back();
         BOOST_TEST_REQUIRE(reached.perturbation.has_value());
         BOOST_TEST_REQUIRE(reached.perturbation->zero.size() == 1U);
         BOOST_TEST((reached.perturbation->zero[0].first == bottom(first ? 2 : 1)));
@@ -72,7 +72,7 @@ BOOST_AUTO_TEST_CASE(the_same_contacts_open_and_close_when_the_radii_are_really_
         int settled = 0;
         int events = 0;
         int undecided = 0;
-        for (State<2> state : {mirror_gaps(), mirror_forces()}) {
+        for (State state : {mirror_gaps(), mirror_forces()}) {
             state.load.kind = kind;
             for (const int direction : {+1, -1}) {
                 const Agreement a = agree(state, direction, 3, 6);
@@ -114,7 +114,7 @@ BOOST_AUTO_TEST_CASE(the_same_contacts_open_and_close_when_the_radii_are_really_
 BOOST_AUTO_TEST_CASE(a_hyperstatic_start_is_followed_with_the_contacts_that_the_changed_radii_keep) {
     int first = 0;
     for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-        State<2> state = equal_pair();
+        State state = equal_pair();
         Segment segment;
         segment.direction = -1;
         segment.to_stress = 0.5;
@@ -123,7 +123,7 @@ BOOST_AUTO_TEST_CASE(a_hyperstatic_start_is_followed_with_the_contacts_that_the_
         options.ties_seed = seed;
         Course course;
         CourseRecorder recorder(course);
-        course.outcome = run_segment<2>(state, segment, 0, options, course.counters, recorder);
+        course.outcome = run_segment(state, segment, 0, options, course.counters, recorder);
         BOOST_TEST(course.outcome.completed);
         const std::vector<double> rho = tie_direction(state.packing.radius, seed);
         // The larger one bears the top wall; the other is pressed to the bottom by a contact that is tilted O(eps).

@@ -9,10 +9,10 @@ using namespace ::crafted;
 namespace {
 
 /// h = 1: periodic along x.
-State<2> hyperstatic_pair() {
+State hyperstatic_pair() {
     return cells::unfolded(two_disks(1, 2, 1, 1), 0);
 }
-State<2> hyperstatic_three() {
+State hyperstatic_three() {
     return cells::unfolded(three_disks(1, 1.1, 1.5, 1, 1), 0);
 }
 
@@ -32,7 +32,7 @@ BOOST_AUTO_TEST_CASE(the_same_contacts_open_and_close_in_cells_when_the_radii_ar
     std::set<std::string> kinds;
     int events = 0;
     int undecided = 0;
-    for (const State<2>& start : {cells::mirror_pairs(), hyperstatic_pair(), hyperstatic_three()}) {
+    for (const State& start : {cells::mirror_pairs(), hyperstatic_pair(), hyperstatic_three()}) {
         for (const int direction : {+1, -1}) {
             const Agreement a = agree(start, direction, 3, 6);
             kinds.insert(a.kinds.begin(), a.kinds.end());
@@ -50,12 +50,12 @@ BOOST_AUTO_TEST_CASE(the_same_contacts_open_and_close_in_cells_when_the_radii_ar
 BOOST_AUTO_TEST_CASE(lattices_in_cells_are_followed_where_ties_are_chosen) {
     for (const bool tilts : {false, true}) {
         for (const auto& [columns, rows] : {std::pair{2, 1}, std::pair{3, 1}, std::pair{3, 2}, std::pair{4, 2}}) {
-            const State<2> start = cells::loaded_lattice(columns, rows, tilts);
+            const State start = cells::loaded_lattice(columns, rows, tilts);
             const Course stop = follow_load(start, +1, 1, Ties::stop);
             BOOST_TEST(stop.end() == "not isostatic");
             const Course course = follow_load(start, +1, 1, Ties::choose);
             BOOST_TEST_REQUIRE(course.states.size() >= 1U);
-            const int freedoms = DofMap<2>(start.packing).dof_count();
+            const int freedoms = DofMap(start.packing).dof_count();
             BOOST_TEST(static_cast<int>(course.states[0].contacts.size()) == freedoms);
             BOOST_TEST(course.states[0].perturbation->open.size() ==
                        start.contacts.size() - course.states[0].contacts.size());

@@ -49,7 +49,7 @@ Real norm_of_inverse(oracle::SquareMatrix<Real> h) {
 }
 
 /// Bounds of one structure against the truth; returns whether the inverse bound was proved.
-bool check(const State<2>& state, const std::vector<double>& force) {
+bool check(const State& state, const std::vector<double>& force) {
     const Regular at(state);
     if (at.inverse.verdict != Verdict::proved) {
         return false;
@@ -71,7 +71,7 @@ bool check(const State<2>& state, const std::vector<double>& force) {
     };
     BOOST_TEST(error() <= Real(solution.bound), "double: error above the bound");
     const double double_bound = solution.bound;
-    ForceLadder<2> ladder(state.packing, at.structure, at.factorisation, at.inverse);
+    ForceLadder ladder(state.packing, at.structure, at.factorisation, at.inverse);
     const int part = ladder.add(force);
     BOOST_TEST_REQUIRE(ladder.climb());
     solution = ladder.solution(part);
@@ -84,9 +84,9 @@ bool check(const State<2>& state, const std::vector<double>& force) {
 }
 
 /// A free disk between two fixed ones whose directions differ from opposite by `angle`: sigma_min ~ angle / sqrt 2.
-State<2> nearly_collinear(double angle) {
-    State<2> state;
-    state.packing.walls = Walls<2>::none();
+State nearly_collinear(double angle) {
+    State state;
+    state.packing.walls = Walls::none();
     state.packing.radius = {1, 1, 1};
     state.packing.q = {-2, 0, 2 * std::cos(angle), 2 * std::sin(angle), 0, 0, 0, 0};
     state.packing.fixed = {1, 1, 0};
@@ -104,8 +104,8 @@ BOOST_AUTO_TEST_CASE(bounds_hold_on_prepared_packings) {
             PreparationOptions options;
             options.disks = n;
             options.seed = seed;
-            PreparationReport<2> report;
-            auto state = prepare<2>(options, report);
+            PreparationReport report;
+            auto state = prepare(options, report);
             if (!state.ok()) {
                 BOOST_TEST_MESSAGE("n = " << n << ", seed " << seed << ": " << state.failure().message());
                 continue;
@@ -118,27 +118,27 @@ BOOST_AUTO_TEST_CASE(bounds_hold_on_prepared_packings) {
 BOOST_AUTO_TEST_CASE(bounds_hold_near_singular_matrices) {
     int proved = 0;
     for (const double angle : {0.5, 1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-13}) {
-        const State<2> state = nearly_collinear(angle);
+        const State state = nearly_collinear(angle);
         proved += check(state, {0.3, -1}) ? 1 : 0;
     }
     BOOST_TEST(proved >= 7); // by rows where the Cholesky route ends
 }
 
 BOOST_AUTO_TEST_CASE(an_exactly_collinear_strut_is_never_proved_regular) {
-    State<2> state = nearly_collinear(0);
+    State state = nearly_collinear(0);
     state.packing.q = {-2, 0, 2, 0, 0, 0, 0, 0};
-    const auto structure = IsostaticStructure<2>::prove(state.packing, state.contacts);
+    const auto structure = IsostaticStructure::prove(state.packing, state.contacts);
     BOOST_TEST_REQUIRE(!structure.ok());
     BOOST_TEST((structure.failure().kind == FailureKind::not_isostatic));
     // Tilted, it is singular as well, but not by its pattern.
     state.packing.q = {-2, -1, 2, 1, 0, 0, 0, 0};
-    BOOST_TEST(!IsostaticStructure<2>::prove(state.packing, state.contacts).ok());
+    BOOST_TEST(!IsostaticStructure::prove(state.packing, state.contacts).ok());
     state.packing.q[3] = std::nextafter(1.0, 2.0);
-    BOOST_TEST(IsostaticStructure<2>::prove(state.packing, state.contacts).ok());
+    BOOST_TEST(IsostaticStructure::prove(state.packing, state.contacts).ok());
 }
 
 BOOST_AUTO_TEST_CASE(the_long_routes_to_a_bound_are_for_structures_that_may_be_regular) {
-    const State<2> state = nearly_collinear(1e-10); // too near for the first route
+    const State state = nearly_collinear(1e-10); // too near for the first route
     const auto structure = crafted::Regular::proved(state);
     const Factorisation factorisation(structure);
     for (const bool worth : {false, true}) {
@@ -155,7 +155,7 @@ BOOST_AUTO_TEST_CASE(the_long_routes_to_a_bound_are_for_structures_that_may_be_r
 
 BOOST_AUTO_TEST_CASE(the_true_vertex_lies_within_the_radius) {
     // Two disks: the true vertex is known in closed form.
-    const State<2> state = two_disks(1, 2, 1, 1);
+    const State state = two_disks(1, 2, 1, 1);
     const Regular at(state);
     const Real root2 = sqrt(Real(2));
     const std::vector<Real> exact{1, 1, 1 + 2 * root2, 2, 3 + 2 * root2, 4};
@@ -186,7 +186,7 @@ BOOST_AUTO_TEST_CASE(the_newton_step_encloses_the_vertex_and_hardly_more) {
         {"/vertex100.txt", 1e-7},       {"/cells/tilt_16.json", 1e-11},   {"/cells/tilt_16.json", 1e-8},
         {"/cells/rect_16.json", 1e-11}, {"/cells/channel_16.json", 1e-11}};
     for (const auto& [file, push] : cases) {
-        State<2> moved = read_any_state<2>(ISOSTAT_TEST_DATA + std::string(file)).state;
+        State moved = read_any_state(ISOSTAT_TEST_DATA + std::string(file)).state;
         for (std::size_t k = 0; k < moved.packing.q.size(); ++k) {
             moved.packing.q[k] += push * std::sin(7.0 * static_cast<double>(k));
         }
@@ -210,8 +210,8 @@ BOOST_AUTO_TEST_CASE(the_newton_step_encloses_the_vertex_and_hardly_more) {
 }
 
 BOOST_AUTO_TEST_CASE(forces_turn_with_their_contacts_within_the_bound_and_reach_a_good_part_of_it) {
-    const State<2> state = read_state<2>(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state;
-    const DofMap<2> dofs(state.packing);
+    const State state = read_state(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state;
+    const DofMap dofs(state.packing);
     const sparse::Matrix<double> h = contact_matrix(state.packing, dofs, state.contacts);
     oracle::Random random(5);
     std::vector<double> x(state.contacts.size());
@@ -223,7 +223,7 @@ BOOST_AUTO_TEST_CASE(forces_turn_with_their_contacts_within_the_bound_and_reach_
     double largest = 0;
     const int disks = state.packing.disk_count();
     for (int trial = 0; trial < 4 * disks + 100; ++trial) {
-        Packing<2> moved = state.packing;
+        Packing moved = state.packing;
         double square = 0;
         for (int k = 0; k < 2 * disks; ++k) {
             if (trial >= 4 * disks || k / 2 == trial / 4) { // one disk in some direction, then all
@@ -254,7 +254,7 @@ BOOST_AUTO_TEST_CASE(forces_turn_with_their_contacts_within_the_bound_and_reach_
 BOOST_AUTO_TEST_CASE(the_distance_to_the_true_vertex_includes_the_correction) {
     // Contacts that overlap by 1e-12 as stored: the corrected radius is far smaller, and no allowance for overlaps.
     // Runs with 1936 and 4900 disks refused their own contacts over this.
-    State<2> state = two_disks(1, 2, 1, 1);
+    State state = two_disks(1, 2, 1, 1);
     for (double& length : state.packing.q) {
         length *= 1 - 1e-12;
     }
@@ -276,7 +276,7 @@ BOOST_AUTO_TEST_CASE(the_distance_to_the_true_vertex_includes_the_correction) {
 
 BOOST_AUTO_TEST_CASE(no_vertex_is_proved_where_there_is_none) {
     // Contacts that are open by a tenth of a radius cannot all close near the stored place at once.
-    State<2> state = two_disks(1, 2, 1, 1);
+    State state = two_disks(1, 2, 1, 1);
     state.packing.q[2] += 0.1;
     const Regular at(state);
     BOOST_TEST((enclose_vertex(state.packing, at.structure, at.inverse).verdict == Verdict::undecided));

@@ -19,7 +19,7 @@ using namespace crafted;
 namespace {
 
 /// Smallest singular value by inverse iteration with factors of this very matrix: from above, converged to 1e-3.
-double smallest_singular_value(const IsostaticStructure<2>& structure) {
+double smallest_singular_value(const IsostaticStructure& structure) {
     const Factorisation factorisation(structure);
     std::vector<double> x(static_cast<std::size_t>(structure.size()));
     for (std::size_t k = 0; k < x.size(); ++k) {
@@ -49,12 +49,12 @@ double smallest_singular_value(const IsostaticStructure<2>& structure) {
 struct Exchange : Regular {
     using Regular::Regular;
 
-    Result<Arc<2>> open(int contact) {
-        CandidateList<2> candidates = find_candidates(state.packing, candidate_fraction);
-        Load<2> none = state.load; // any contact may open here, not only one that a load drives apart
+    Result<Arc> open(int contact) {
+        CandidateList candidates = find_candidates(state.packing, candidate_fraction);
+        Load none = state.load; // any contact may open here, not only one that a load drives apart
         none.stress.fill(0);
-        const PowerLoad<2> power{&none, false, false};
-        return follow_arc<2>({state.packing, structure, factorisation, ContactId(contact)}, power, candidates, {});
+        const PowerLoad power{&none, false, false};
+        return follow_arc({state.packing, structure, factorisation, ContactId(contact)}, power, candidates, {});
     }
     [[nodiscard]] std::vector<double> on_dofs(const std::vector<double>& tangent) const {
         return tangent; // box, nothing fixed: the numbering is the identity
@@ -66,7 +66,7 @@ struct Exchange : Regular {
 BOOST_AUTO_TEST_SUITE(verified)
 
 BOOST_AUTO_TEST_CASE(bounds_after_an_exchange_lie_below_the_smallest_singular_value_and_near_it) {
-    Exchange from(read_state<2>(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state);
+    Exchange from(read_state(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state);
     int carried = 0;
     int fresh = 0;
     for (int opened = 0; opened < from.structure.size(); opened += 7) {
@@ -75,11 +75,11 @@ BOOST_AUTO_TEST_CASE(bounds_after_an_exchange_lie_below_the_smallest_singular_va
             continue;
         }
         const auto next =
-            IsostaticStructure<2>::exchange(from.structure, arc.value().end, ContactId(opened), arc.value().closed);
+            IsostaticStructure::exchange(from.structure, arc.value().end, ContactId(opened), arc.value().closed);
         BOOST_TEST_REQUIRE(next.has_value());
         const ApproximateInverse approximate = from.factorisation.approximate().exchanged(next->slot(), next->matrix());
         const auto by_cholesky = bound_exchanged(*next, approximate, from.cache);
-        auto proved = IsostaticStructure<2>::prove(arc.value().end, next->contacts());
+        auto proved = IsostaticStructure::prove(arc.value().end, next->contacts());
         BOOST_TEST_REQUIRE(proved.ok());
         const double sigma = smallest_singular_value(proved.value());
         if (by_cholesky) {
@@ -103,18 +103,18 @@ BOOST_AUTO_TEST_CASE(bounds_after_an_exchange_lie_below_the_smallest_singular_va
 }
 
 BOOST_AUTO_TEST_CASE(without_motion_a_bound_is_carried_with_little_loss_and_a_wrong_guess_costs_only_the_bound) {
-    Exchange from(read_state<2>(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state);
+    Exchange from(read_state(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state);
     // A held coordinate in place of a contact, the packing unmoved: the kept rows are the same.
     const std::vector<double> v = from.factorisation.approximate().mechanism(5);
     const auto fastest =
         std::max_element(v.begin(), v.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
     const Contact held{ContactKind::held, static_cast<int>(fastest - v.begin()), 0};
-    const auto next = IsostaticStructure<2>::exchange(from.structure, from.state.packing, ContactId(5), held);
+    const auto next = IsostaticStructure::exchange(from.structure, from.state.packing, ContactId(5), held);
     BOOST_TEST_REQUIRE(next.has_value());
     const ApproximateInverse approximate = from.factorisation.approximate().exchanged(5, next->matrix());
     const auto bound = carry_bound(from.structure, from.inverse, *next, approximate, v);
     BOOST_TEST_REQUIRE(bound.has_value());
-    const auto proved = IsostaticStructure<2>::prove(from.state.packing, next->contacts());
+    const auto proved = IsostaticStructure::prove(from.state.packing, next->contacts());
     BOOST_TEST_REQUIRE(proved.ok());
     const double sigma = smallest_singular_value(proved.value());
     BOOST_TEST(bound->bound.sigma_min < sigma * 1.001);
@@ -130,7 +130,7 @@ BOOST_AUTO_TEST_CASE(without_motion_a_bound_is_carried_with_little_loss_and_a_wr
 }
 
 BOOST_AUTO_TEST_CASE(a_shifted_cholesky_factorisation_ends_below_the_smallest_eigenvalue_and_not_above_it) {
-    Exchange from(read_state<2>(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state);
+    Exchange from(read_state(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state);
     const double sigma = smallest_singular_value(from.structure);
     const auto n = static_cast<std::size_t>(from.structure.size());
     FillOrder made;
@@ -316,7 +316,7 @@ BOOST_AUTO_TEST_CASE(rows_of_walls_are_scaled_down_by_powers_of_two_and_no_other
 }
 
 BOOST_AUTO_TEST_CASE(rough_forces_lie_within_their_bound_and_the_first_climb_takes_them_to_rounding) {
-    Exchange from(read_state<2>(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state);
+    Exchange from(read_state(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state);
     int compared = 0;
     double worst = 0;
     for (int opened = 0; opened < from.structure.size(); opened += 9) {
@@ -325,24 +325,24 @@ BOOST_AUTO_TEST_CASE(rough_forces_lie_within_their_bound_and_the_first_climb_tak
             continue;
         }
         auto next =
-            IsostaticStructure<2>::exchange(from.structure, arc.value().end, ContactId(opened), arc.value().closed);
+            IsostaticStructure::exchange(from.structure, arc.value().end, ContactId(opened), arc.value().closed);
         BOOST_TEST_REQUIRE(next.has_value());
         const ApproximateInverse approximate = from.factorisation.approximate().exchanged(next->slot(), next->matrix());
         const auto proved = bound_exchanged(*next, approximate, from.cache);
         if (!proved) {
             continue;
         }
-        const auto structure = IsostaticStructure<2>::exchanged(std::move(*next), proved->proof);
+        const auto structure = IsostaticStructure::exchanged(std::move(*next), proved->proof);
         const Factorisation stale(structure, approximate);
         const Factorisation fresh(structure);
-        const Packing<2>& packing = arc.value().end;
-        const Statics<2> near(from.state.packing, from.state.load, from.structure, from.factorisation, from.inverse);
+        const Packing& packing = arc.value().end;
+        const Statics near(from.state.packing, from.state.load, from.structure, from.factorisation, from.inverse);
         const double sigma = from.state.load.stress[1];
         (void)near.force(ContactId(0), sigma);
         LadderOptions options;
         options.first_accuracy = 1e-8; // rougher is refused: records hold to 1e-7
-        Statics<2> rough(packing, from.state.load, structure, stale, proved->bound, {options, nullptr, &near});
-        Statics<2> exact(packing, from.state.load, structure, fresh, proved->bound);
+        Statics rough(packing, from.state.load, structure, stale, proved->bound, {options, nullptr, &near});
+        Statics exact(packing, from.state.load, structure, fresh, proved->bound);
         BOOST_TEST_REQUIRE(exact.climb()); // double-double
         const auto differ = [&] {
             double largest = 0;
@@ -371,42 +371,42 @@ BOOST_AUTO_TEST_CASE(rough_forces_lie_within_their_bound_and_the_first_climb_tak
 }
 
 BOOST_AUTO_TEST_CASE(a_structure_says_what_its_regularity_was_proved_with) {
-    Exchange from(read_state<2>(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state);
+    Exchange from(read_state(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state);
     BOOST_TEST((from.structure.evidence() == RegularityEvidence::elimination));
     const auto next =
-        IsostaticStructure<2>::exchange(from.structure, from.state.packing, ContactId(5), from.structure.contacts()[5]);
+        IsostaticStructure::exchange(from.structure, from.state.packing, ContactId(5), from.structure.contacts()[5]);
     BOOST_TEST_REQUIRE(next.has_value());
     auto unproved = *next;
-    BOOST_TEST((IsostaticStructure<2>::without_proof(std::move(unproved)).evidence() == RegularityEvidence::none));
+    BOOST_TEST((IsostaticStructure::without_proof(std::move(unproved)).evidence() == RegularityEvidence::none));
     const auto proved = bound_exchanged(*next, from.factorisation.approximate(), from.cache);
     BOOST_TEST_REQUIRE(proved.has_value());
     auto contacts = *next;
     // The proof is of the matrix of *next, which the copy shares.
-    BOOST_TEST((IsostaticStructure<2>::exchanged(std::move(contacts), proved->proof).evidence() ==
+    BOOST_TEST((IsostaticStructure::exchanged(std::move(contacts), proved->proof).evidence() ==
                 RegularityEvidence::singular_value));
 }
 
 BOOST_AUTO_TEST_CASE(no_proof_is_made_for_a_singular_exchange) {
-    Exchange from(read_state<2>(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state);
+    Exchange from(read_state(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state);
     // Two of the same contact: singular whatever the coordinates are.
     const Contact twice = from.state.contacts[3];
-    const auto next = IsostaticStructure<2>::exchange(from.structure, from.state.packing, ContactId(40), twice);
+    const auto next = IsostaticStructure::exchange(from.structure, from.state.packing, ContactId(40), twice);
     if (next) { // the pattern alone may have told
         const ApproximateInverse approximate = from.factorisation.approximate().exchanged(40, next->matrix());
         std::vector<double> v = from.factorisation.approximate().mechanism(40);
         BOOST_TEST(!carry_bound(from.structure, from.inverse, *next, approximate, v).has_value());
         BOOST_TEST(!bound_exchanged(*next, from.factorisation.approximate(), from.cache).has_value());
     }
-    BOOST_TEST(!IsostaticStructure<2>::prove(from.state.packing, next ? next->contacts() : from.state.contacts).ok() ==
+    BOOST_TEST(!IsostaticStructure::prove(from.state.packing, next ? next->contacts() : from.state.contacts).ok() ==
                next.has_value());
 }
 
 BOOST_AUTO_TEST_CASE(nothing_is_carried_when_the_grains_moved_farther_than_the_bound_allows) {
-    Exchange from(read_state<2>(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state);
-    Packing<2> moved = from.state.packing;
+    Exchange from(read_state(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state);
+    Packing moved = from.state.packing;
     moved.q[20] += 0.5 * moved.min_radius();
     const auto next =
-        IsostaticStructure<2>::exchange(from.structure, moved, ContactId(5), Contact{ContactKind::held, 0, 0});
+        IsostaticStructure::exchange(from.structure, moved, ContactId(5), Contact{ContactKind::held, 0, 0});
     BOOST_TEST_REQUIRE(next.has_value());
     const ApproximateInverse approximate = from.factorisation.approximate().exchanged(5, next->matrix());
     BOOST_TEST(

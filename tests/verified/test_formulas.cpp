@@ -38,16 +38,16 @@ Real norm_of(const std::vector<Real>& x) {
     return sqrt(square);
 }
 
-State<2> sample(const char* name = "vertex100.txt") {
-    return read_state<2>(std::string(ISOSTAT_TEST_DATA) + "/" + name).state;
+State sample(const char* name = "vertex100.txt") {
+    return read_state(std::string(ISOSTAT_TEST_DATA) + "/" + name).state;
 }
 
 struct Known : Regular {
-    explicit Known(State<2> s) : Regular(std::move(s)) { BOOST_REQUIRE((inverse.verdict == Verdict::proved)); }
+    explicit Known(State s) : Regular(std::move(s)) { BOOST_REQUIRE((inverse.verdict == Verdict::proved)); }
 };
 
 /// K of V4 (a).
-Real lipschitz_of(const State<2>& state) {
+Real lipschitz_of(const State& state) {
     std::vector<int> count(state.packing.radius.size(), 0);
     Real smallest = -1;
     for (const Contact& c : state.contacts) {
@@ -63,7 +63,7 @@ Real lipschitz_of(const State<2>& state) {
 }
 
 /// |F|_2 of T9.
-Real residual_of(const State<2>& state) {
+Real residual_of(const State& state) {
     std::vector<Real> f;
     const auto at = [&](int k) { return Real(state.packing.q[static_cast<std::size_t>(k)]); };
     for (const Contact& c : state.contacts) {
@@ -81,7 +81,7 @@ Real residual_of(const State<2>& state) {
     return norm_of(f);
 }
 
-State<2> pushed(State<2> state, double size) {
+State pushed(State state, double size) {
     for (std::size_t k = 0; k < state.packing.q.size(); ++k) {
         state.packing.q[k] += size * std::sin(7.0 * static_cast<double>(k));
     }
@@ -90,10 +90,10 @@ State<2> pushed(State<2> state, double size) {
 
 /// A free disk of radius `free` between two fixed ones of radius 1, which are opposite up to `angle`; all turned by
 /// `tilt`. Singular values: some angle / sqrt 2, and sqrt 2.
-State<2> between_two(double angle, double tilt, double free = 1) {
-    State<2> state;
+State between_two(double angle, double tilt, double free = 1) {
+    State state;
     const double d = 1 + free;
-    state.packing.walls = Walls<2>::none();
+    state.packing.walls = Walls::none();
     state.packing.radius = {1, 1, free};
     state.packing.q = {
         -d * std::cos(tilt), -d * std::sin(tilt), d * std::cos(tilt + angle), d * std::sin(tilt + angle), 0, 0, 0, 0};
@@ -103,7 +103,7 @@ State<2> between_two(double angle, double tilt, double free = 1) {
 }
 
 /// The unit vector from disk k to disk 2 at its place plus `shift`: the gradient of their gap.
-std::array<Real, 2> gradient(const State<2>& state, std::size_t k, const std::array<Real, 2>& shift) {
+std::array<Real, 2> gradient(const State& state, std::size_t k, const std::array<Real, 2>& shift) {
     std::array<Real, 2> n;
     for (std::size_t a = 0; a < 2; ++a) {
         n[a] = Real(state.packing.q[4 + a]) + shift[a] - Real(state.packing.q[2 * k + a]);
@@ -113,7 +113,7 @@ std::array<Real, 2> gradient(const State<2>& state, std::size_t k, const std::ar
 }
 
 /// The velocity of disk 2 at which its gap to disk 0 grows at unit rate and that to disk 1 stays.
-std::array<Real, 2> motion(const State<2>& state, const std::array<Real, 2>& shift = {0, 0}) {
+std::array<Real, 2> motion(const State& state, const std::array<Real, 2>& shift = {0, 0}) {
     const auto a = gradient(state, 0, shift);
     const auto b = gradient(state, 1, shift);
     const Real determinant = a[0] * b[1] - a[1] * b[0];
@@ -121,7 +121,7 @@ std::array<Real, 2> motion(const State<2>& state, const std::array<Real, 2>& shi
 }
 
 /// The smallest singular value of the 2 x 2 matrix of disk 2 and its two contacts.
-Real smaller_singular_value(const State<2>& state) {
+Real smaller_singular_value(const State& state) {
     const auto a = gradient(state, 0, {0, 0});
     const auto b = gradient(state, 1, {0, 0});
     const Real product = a[0] * b[0] + a[1] * b[1]; // eigenvalues of A A^T: 1 + product, 1 - product
@@ -148,8 +148,8 @@ BOOST_AUTO_TEST_CASE(norms_are_rounded_up_whatever_their_length_and_range) {
 }
 
 BOOST_AUTO_TEST_CASE(rounding_of_entries_is_that_of_V1) {
-    for (const State<2>& state : {sample(), two_disks(1, 2, 1, 1), between_two(0.3, 0.7)}) {
-        const sparse::Matrix<double> h = contact_matrix(state.packing, DofMap<2>(state.packing), state.contacts);
+    for (const State& state : {sample(), two_disks(1, 2, 1, 1), between_two(0.3, 0.7)}) {
+        const sparse::Matrix<double> h = contact_matrix(state.packing, DofMap(state.packing), state.contacts);
         std::vector<Real> row(static_cast<std::size_t>(h.rows), Real(0));
         Real most = 0;
         for (std::size_t l = 0; l < state.contacts.size(); ++l) {
@@ -180,7 +180,7 @@ BOOST_AUTO_TEST_CASE(what_the_entries_lack_is_taken_off_the_singular_value) {
 
 BOOST_AUTO_TEST_CASE(rates_of_change_are_those_of_V4_and_V6) {
     oracle::Random random(5);
-    for (const State<2>& state : {sample(), two_disks(1, 2, 1, 1), three_disks(1, 1.1, 1.3, 1, 1)}) {
+    for (const State& state : {sample(), two_disks(1, 2, 1, 1), three_disks(1, 1.1, 1.3, 1, 1)}) {
         const Known known(state);
         const Real k = lipschitz_of(state);
         check_above(lipschitz(state.packing, state.contacts), k, 1e-12);
@@ -209,7 +209,7 @@ BOOST_AUTO_TEST_CASE(rates_of_change_in_cells_are_those_of_C5) {
     // images meet.
     oracle::Random random(6);
     for (const char* name : {"tilt", "rect", "channel"}) {
-        const State<2> state = read_any_state<2>(scratch::data(std::string("cells/") + name + "_16.json")).state;
+        const State state = read_any_state(scratch::data(std::string("cells/") + name + "_16.json")).state;
         const std::size_t disks = state.packing.radius.size();
         std::vector<Real> fourth(disks + 1, Real(0));
         std::vector<Real> turn(disks + 1, Real(0));
@@ -268,7 +268,7 @@ BOOST_AUTO_TEST_CASE(residuals_of_forces_are_counted_as_V3_says) {
 }
 
 BOOST_AUTO_TEST_CASE(a_vertex_is_proved_up_to_the_quarter_of_Kantorovich_and_not_beyond) {
-    const State<2> state = pushed(sample(), 1e-12);
+    const State state = pushed(sample(), 1e-12);
     const Known known(state);
     const Real k = lipschitz_of(state);
     const VertexEnclosure first = enclose_vertex(state.packing, known.structure, known.factorisation, known.inverse);
@@ -300,7 +300,7 @@ BOOST_AUTO_TEST_CASE(a_vertex_is_proved_up_to_the_quarter_of_Kantorovich_and_not
 
 BOOST_AUTO_TEST_CASE(what_a_newton_step_leaves_is_counted_as_V4_says) {
     // Pushed so far that the stored normals are not those of F: rho >= w |G| |p|, eta = |p| + beta rho.
-    const State<2> state = pushed(sample(), 1e-7);
+    const State state = pushed(sample(), 1e-7);
     const Known known(state);
     const VertexEnclosure vertex = enclose_vertex(state.packing, known.structure, known.factorisation, known.inverse);
     BOOST_TEST_REQUIRE((vertex.verdict == Verdict::proved));
@@ -329,8 +329,8 @@ BOOST_AUTO_TEST_CASE(what_a_newton_step_leaves_is_counted_as_V4_says) {
     check_above(vertex.step_radius, (rest + product * eta) * (1 - Real("1e-6")), 0.01);
     check_above(vertex.radius, eta * (1 + product) * (1 - Real("1e-6")), 0.01);
     // Gaps that are exactly 0: what remains is 2^-98 D of each.
-    State<2> exact;
-    exact.packing.walls = Walls<2>::none();
+    State exact;
+    exact.packing.walls = Walls::none();
     exact.packing.radius = {3, 3, 2};
     exact.packing.q = {-3, 0, 3, 0, 0, 4, 0, 0};
     exact.packing.fixed = {1, 1, 0};
@@ -358,7 +358,7 @@ BOOST_AUTO_TEST_CASE(a_bound_is_carried_less_the_change_of_the_kept_rows) {
     // Disk 2 between two fixed ones is pushed towards their line: half of its singular value is lost, as V8 says. The
     // contact exchanged is another disk's, between three fixed ones far away.
     for (const double angle : {1e-1, 1e-2, 1e-3}) {
-        State<2> state = between_two(angle, 0);
+        State state = between_two(angle, 0);
         auto& q = state.packing.q;
         const double c = std::cos(0.9);
         const double s = std::sin(0.9);
@@ -369,9 +369,9 @@ BOOST_AUTO_TEST_CASE(a_bound_is_carried_less_the_change_of_the_kept_rows) {
         const Known known(state);
         InverseBound bound = known.inverse; // disk 6 has larger ones
         bound.sigma_min = smaller_singular_value(state).convert_to<double>() * (1 - 1e-12);
-        State<2> moved = state;
+        State moved = state;
         moved.packing.q[5] = 0.5 * std::tan(angle / 2) * 2;
-        const auto next = IsostaticStructure<2>::exchange(known.structure, moved.packing, ContactId(3), pair(5, 6));
+        const auto next = IsostaticStructure::exchange(known.structure, moved.packing, ContactId(3), pair(5, 6));
         BOOST_TEST_REQUIRE(next.has_value());
         const ApproximateInverse& before = known.factorisation.approximate();
         const auto carried =
@@ -389,10 +389,10 @@ BOOST_AUTO_TEST_CASE(motions_are_known_to_the_rounding_of_their_residual) {
     VertexEnclosure here; // the stored place is the true one
     here.verdict = Verdict::proved;
     for (int trial = 0; trial < testing::scaled(300); ++trial) {
-        const State<2> state = between_two(std::pow(10.0, random.real(-4, -1)), random.real(0, std::numbers::pi));
+        const State state = between_two(std::pow(10.0, random.real(-4, -1)), random.real(0, std::numbers::pi));
         const Known known(state);
         const std::vector<double> rho(3, 0.0);
-        const FirstOrder<2> first(state.packing, known.structure, known.factorisation, known.inverse, here, rho);
+        const FirstOrder first(state.packing, known.structure, known.factorisation, known.inverse, here, rho);
         const auto exact = motion(state);
         for (const std::size_t a : {0U, 1U}) {
             const Enclosure v = first.rate(ContactId(0), 1, {ContactKind::held, static_cast<int>(4 + a), 0});
@@ -411,7 +411,7 @@ BOOST_AUTO_TEST_CASE(rates_of_gaps_turn_with_the_line_of_a_small_pair) {
     near.radius = away;
     double largest = 0;
     for (int trial = 0; trial < testing::scaled(300); ++trial) {
-        State<2> state = between_two(random.real(0.8, 2), random.real(0, std::numbers::pi), 1e-3);
+        State state = between_two(random.real(0.8, 2), random.real(0, std::numbers::pi), 1e-3);
         const double place = random.real(0, 2 * std::numbers::pi);
         auto& q = state.packing.q;
         q.insert(q.end() - 2, {2.5e-3 * std::cos(place), 2.5e-3 * std::sin(place)});
@@ -419,7 +419,7 @@ BOOST_AUTO_TEST_CASE(rates_of_gaps_turn_with_the_line_of_a_small_pair) {
         state.packing.fixed.push_back(1);
         const Known known(state);
         const std::vector<double> rho(4, 0.0);
-        const FirstOrder<2> first(state.packing, known.structure, known.factorisation, known.inverse, near, rho);
+        const FirstOrder first(state.packing, known.structure, known.factorisation, known.inverse, near, rho);
         const Enclosure rate = first.rate(ContactId(0), 1, pair(2, 3));
         const double direction = random.real(0, 2 * std::numbers::pi);
         const std::array<Real, 2> shift{away * std::cos(direction), away * std::sin(direction)};

@@ -69,7 +69,7 @@ void check_solution(const IntegerSystem& oracle, const std::vector<mpq_class>& x
 }
 
 void check(const Structure& s, Random& random, Count& count) {
-    const DofMap<2> dofs(s.packing);
+    const DofMap dofs(s.packing);
     if (static_cast<int>(s.contacts.size()) != dofs.dof_count()) {
         return;
     }
@@ -78,13 +78,13 @@ void check(const Structure& s, Random& random, Count& count) {
     const std::string name = s.family + ", N = " + std::to_string(n);
     const IntegerSystem oracle(s.packing, s.contacts);
     const bool regular = oracle.rank() == static_cast<int>(n);
-    auto proved = IsostaticStructure<2>::prove(s.packing, s.contacts);
+    auto proved = IsostaticStructure::prove(s.packing, s.contacts);
     BOOST_TEST(proved.ok() == regular, name << ": rank " << oracle.rank());
     if (!proved.ok() || !regular) {
         return;
     }
     ++count.regular;
-    const IsostaticStructure<2>& structure = proved.value();
+    const IsostaticStructure& structure = proved.value();
     const Factorisation factorisation(structure);
     InverseBoundCache cache;
     InverseBound inverse = bound_inverse(structure, factorisation, cache);
@@ -102,7 +102,7 @@ void check(const Structure& s, Random& random, Count& count) {
     BOOST_TEST_REQUIRE(x.size() == n);
     LadderOptions options;
     options.max_bits = 512;
-    ForceLadder<2> ladder(s.packing, structure, factorisation, inverse, options);
+    ForceLadder ladder(s.packing, structure, factorisation, inverse, options);
     const int part = ladder.add(force);
     // Two comparisons and a sign on every rung: right where decided, and decided at the end.
     const std::size_t l = static_cast<std::size_t>(random.integer(static_cast<int>(n)));
@@ -176,7 +176,7 @@ BOOST_AUTO_TEST_CASE(a_regular_matrix_is_proved_so_down_to_the_smallest_singular
     for (int decade = 0; decade <= 300; decade += decade < 20 ? 1 : 20) {
         for (const int disks : {1, 2, 7}) {
             const Structure s = needle(disks, std::pow(10.0, -decade));
-            const auto proved = IsostaticStructure<2>::prove(s.packing, s.contacts);
+            const auto proved = IsostaticStructure::prove(s.packing, s.contacts);
             BOOST_TEST_REQUIRE(proved.ok());
             const InverseBound bound = bound_inverse_multiprecision(s.packing, proved.value());
             BOOST_TEST((bound.verdict == Verdict::proved), "sigma_min ~ 1e-" << decade);
@@ -185,7 +185,7 @@ BOOST_AUTO_TEST_CASE(a_regular_matrix_is_proved_so_down_to_the_smallest_singular
         }
     }
     // At 0 it is singular, and nobody says otherwise.
-    BOOST_TEST(!IsostaticStructure<2>::prove(needle(3, 0).packing, needle(3, 0).contacts).ok());
+    BOOST_TEST(!IsostaticStructure::prove(needle(3, 0).packing, needle(3, 0).contacts).ok());
     report("needles", count);
     BOOST_TEST(count.inverse[3] > 20);
 }
@@ -204,7 +204,7 @@ void check_layers(int rows, int top, double height, LadderOptions options) {
     }
     constexpr unsigned reference_bits = 1500;
     const std::vector<mpf_class> reference = resting_forces(s.packing, s.contacts, force, reference_bits);
-    ForceLadder<2> ladder(s.packing, at.structure, at.factorisation, at.inverse, options);
+    ForceLadder ladder(s.packing, at.structure, at.factorisation, at.inverse, options);
     const int part = ladder.add(force);
     double before = std::numeric_limits<double>::infinity();
     do {
@@ -264,7 +264,7 @@ BOOST_AUTO_TEST_CASE(what_a_stress_lacks_to_a_limit_is_known_after_the_ladder_wa
         aside.push_back(i % 2 == 0 ? 0.3 : -0.1);
     }
     const auto loaded = [&](double factor) {
-        ForceLadder<2> ladder(s.packing, at.structure, at.factorisation, at.inverse);
+        ForceLadder ladder(s.packing, at.structure, at.factorisation, at.inverse);
         std::vector<double> force = down;
         std::for_each(force.begin(), force.end(), [&](double& f) { f *= factor; });
         ladder.add(force);
@@ -274,14 +274,14 @@ BOOST_AUTO_TEST_CASE(what_a_stress_lacks_to_a_limit_is_known_after_the_ladder_wa
     ForceExpression force;
     force.contact = ContactId(0);
     force.slope_part = 1;
-    ForceLadder<2> other = loaded(1);
+    ForceLadder other = loaded(1);
     std::shared_ptr<const LoadShift> shift;
     {
-        ForceLadder<2> first = loaded(1);
+        ForceLadder first = loaded(1);
         shift = first.zero_of(force);
-        const ForceLadder<2> second = std::move(first);
+        const ForceLadder second = std::move(first);
     }
-    const ForceLadder<2> later = loaded(2); // in the memory of those that ended
+    const ForceLadder later = loaded(2); // in the memory of those that ended
     other.without_exact_numbers();
     force.shift = shift.get();
     BOOST_TEST(!other.sign(force).decided);
@@ -299,7 +299,7 @@ BOOST_AUTO_TEST_CASE(distances_to_a_limit_are_ordered_as_the_rationals_order_the
     for (int k = 0; k < 200; ++k) {
         const auto place = static_cast<Place>(k % place_count);
         const Structure s = random_structure(2 + k % 3, place, true, random);
-        const auto proved = IsostaticStructure<2>::prove(s.packing, s.contacts);
+        const auto proved = IsostaticStructure::prove(s.packing, s.contacts);
         if (!proved.ok()) {
             continue;
         }
@@ -314,7 +314,7 @@ BOOST_AUTO_TEST_CASE(distances_to_a_limit_are_ordered_as_the_rationals_order_the
         unit[n - 1] = 1;
         const auto x = oracle.solve({load.begin(), load.end()});
         const auto y = oracle.solve({unit.begin(), unit.end()});
-        ForceLadder<2> ladder(s.packing, proved.value(), factorisation, inverse);
+        ForceLadder ladder(s.packing, proved.value(), factorisation, inverse);
         const int part = ladder.add(load);
         const int slope = ladder.add(unit);
         ForceExpression a;
@@ -334,7 +334,7 @@ BOOST_AUTO_TEST_CASE(distances_to_a_limit_are_ordered_as_the_rationals_order_the
         const mpq_class at_l = x[l] + change * y[l];
         const mpq_class at_m = x[m] + change * y[m];
         const auto check_order = [&](int divisor, int expected) {
-            ForceLadder<2> fresh(s.packing, proved.value(), factorisation, inverse);
+            ForceLadder fresh(s.packing, proved.value(), factorisation, inverse);
             fresh.add(load);
             fresh.add(unit);
             a.divisor_part = divisor;

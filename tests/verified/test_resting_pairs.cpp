@@ -11,7 +11,7 @@ namespace {
 
 /// A hexagon of seven equal disks, flat between the four walls, with sixteen contacts for sixteen degrees of freedom:
 /// its contact 1-6 and the contact of 3 with the top wall touch besides.
-State<2> hexagon_in_a_box() {
+State hexagon_in_a_box() {
     const double h = std::numbers::sqrt3;
     return in_box(
         {{1, 3, 1 + h}, {1, 5, 1 + h}, {1, 4, 1 + 2 * h}, {1, 2, 1 + 2 * h}, {1, 1, 1 + h}, {1, 2, 1}, {1, 4, 1}}, 6,
@@ -21,12 +21,12 @@ State<2> hexagon_in_a_box() {
 }
 
 struct Vertex : Regular {
-    explicit Vertex(const State<2>& s)
+    explicit Vertex(const State& s)
         : Regular(s), enclosure(enclose_vertex(state.packing, structure, factorisation, inverse)),
           first(state.packing, structure, factorisation, inverse, enclosure, rho) {}
     VertexEnclosure enclosure;
     std::vector<double> rho = {0.5, -0.25, 0.125, 0.75, -0.5, 0.25, -0.125};
-    FirstOrder<2> first;
+    FirstOrder first;
 
     [[nodiscard]] Enclosure rate(const Contact& opened, const Contact& touching) const {
         const auto& list = structure.contacts();
@@ -51,9 +51,9 @@ BOOST_AUTO_TEST_CASE(a_pair_within_a_body_rests_while_a_wall_lets_go_and_moves_w
     for (const Contact& opened : contacts) {
         const Enclosure rate = vertex.rate(opened, last);
         if (opened.kind == ContactKind::disk_disk) {
-            BOOST_TEST(rate.decided(), to_string<2>(opened)); // every contact of a wheel carries its self-stress
+            BOOST_TEST(rate.decided(), to_string(opened)); // every contact of a wheel carries its self-stress
         } else {
-            BOOST_TEST(is_zero(rate), to_string<2>(opened));
+            BOOST_TEST(is_zero(rate), to_string(opened));
         }
     }
 }
@@ -70,7 +70,7 @@ BOOST_AUTO_TEST_CASE(walls_belong_to_the_body_that_rests) {
 BOOST_AUTO_TEST_CASE(the_first_order_gap_of_a_pair_that_rests_is_the_same_wherever_its_body_stands) {
     // Turned by a right angle within the same box (its walls exchanged) the wheel keeps the gap of its last contact.
     const Vertex vertex(hexagon_in_a_box());
-    State<2> turned = hexagon_in_a_box();
+    State turned = hexagon_in_a_box();
     auto& q = turned.packing.q;
     for (std::size_t i = 0; i < 7; ++i) {
         std::swap(q[2 * i], q[2 * i + 1]);

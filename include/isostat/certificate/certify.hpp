@@ -62,8 +62,6 @@ struct Certification {
 /// pairs and point: proofs/definition.md. Lengths or
 /// loads beyond 1e-100 and 1e100: no claim. Deterministic. Cost: a rank proof, two
 /// factorisations, a candidate list and ten solves in the usual case; each climb adds some solves.
-template <int Dim> Certification certify(const State<Dim>& state, const CertifyOptions& options = {});
-
-extern template Certification certify<2>(const State<2>&, const CertifyOptions&);
+Certification certify(const State& state, const CertifyOptions& options = {});
 
 } // namespace isostat

@@ -15,13 +15,13 @@ namespace isostat {
 
 /// The answers of `certify` about the state as it is given, with the numbers that people ask for. With fewer contacts
 /// than degrees of freedom (h = 0, k > 0), or with held coordinates, those of `inspect_mechanism`.
-template <int Dim> struct Inspection {
+struct Inspection {
     Certification truth;
     Counting counting; ///< N_f, N, rank, h, k
     /// `record.verdict`: is it an isostatic equilibrium without overlap. Forces, ends of the interval: middles of the
     /// intervals of `truth`; `record.force_bound`: of every force; ends that are not decided are NaN. `min_gap`: lower
     /// bound, NaN when there is none. Not computed (0): `balance`, `virtual_power`.
-    EquilibriumRecord<Dim> record;
+    EquilibriumRecord record;
     std::vector<Contact> contacts;              ///< those of the state, then the held coordinates
     std::vector<double> forces;                 ///< f0, one per entry of `contacts`
     std::vector<unsigned char> structural_zero; ///< 1: f0 vanishes for every load on the walls
@@ -36,13 +36,13 @@ template <int Dim> struct Inspection {
 
 /// Failure: `not_isostatic` when h > 0, or when the rank is not proved (the message gives N_f, N, rank, h, k),
 /// `undecided` when no bound of the inverse or no true vertex near the given place was proved. Cost: as `certify`.
-template <int Dim> Result<Inspection<Dim>> inspect_vertex(const State<Dim>& state);
+Result<Inspection> inspect_vertex(const State& state);
 
 /// Finite forces at the true vertex of the state under the loaded stress `sigma` instead of its own, one per contact in
 /// its order: enclosures from `certify`, structural zeros [0, 0]. Also beyond the supported interval, where some are
 /// negative: then no equilibrium has them. Failure: `not_isostatic` when the counting is not proved, `undecided` when
 /// no true vertex near the given place was. Cost: as `certify`.
-template <int Dim> Result<std::vector<Interval>> forces_at(State<Dim> state, double sigma);
+Result<std::vector<Interval>> forces_at(State state, double sigma);
 
 /// Whether a packing is jammed, and the words why.
 struct JammingAnswer {
@@ -61,6 +61,7 @@ struct JammingAnswer {
 /// an own image: by the forces under an isotropic pressure. Own images that touch are counted in all rows, also those
 /// between which nothing moves.
 struct CellInspection {
+    int dimension = 2;
     StrainCounts all;
     std::optional<StrainCounts> backbone; ///< none: the forces are not known
     int backbone_disks = 0;
@@ -68,10 +69,6 @@ struct CellInspection {
 };
 
 /// \pre every axis is periodic; `truth` is of this state. Cost: up to eight ranks and two certificates.
-template <int Dim> CellInspection inspect_cell(const State<Dim>& state, const Certification& truth);
-
-extern template Result<std::vector<Interval>> forces_at<2>(State<2>, double);
-extern template Result<Inspection<2>> inspect_vertex<2>(const State<2>&);
-extern template CellInspection inspect_cell<2>(const State<2>&, const Certification&);
+CellInspection inspect_cell(const State& state, const Certification& truth);
 
 } // namespace isostat

@@ -49,14 +49,14 @@ enum class CheckerArithmetic {
 inline constexpr int largest_exact_matrix = 100;
 
 /// Checks every claim from the state and the claims alone. Does not throw on false claims. Coordinates, radii and loads
-/// are the stored doubles, taken as exact rationals. Supported: all that `State<2>` can hold, except held coordinates:
+/// are the stored doubles, taken as exact rationals. Supported: all that `State` can hold, except held coordinates:
 /// then every claim is undecided. Cost: some sparse factorisations, of which nothing is trusted, and as many integer
 /// products as one of them takes; where that does not suffice N solves and 4 N^2 integer products. Memory: the factors.
 Verification verify(const Certificate& certificate, CheckerArithmetic arithmetic = CheckerArithmetic::automatic);
 
 /// The first thing in which two states differ, bit for bit, in words; empty: they are the same problem. Numbers of
 /// equilibria, provenance and recorded results (first-order terms) do not count.
-std::string state_difference(const State<2>& a, const State<2>& b);
+std::string state_difference(const State& a, const State& b);
 
 /// What became of the records of a run.
 struct RunVerification {

@@ -37,9 +37,9 @@ struct Frame {
     int number = 0; ///< row of frames.csv, from 0
     long timestep = 0;
     std::string row; ///< "FILE:LINE" in frames.csv
-    Packing<2> packing;
+    Packing packing;
     std::vector<long> ids;
-    Load<2> load;
+    Load load;
     std::vector<FileContact> contacts; ///< as they stand in the files, in their order; walls too
     std::string note;                  ///< empty, or how the cell of the file was described anew
     std::vector<double> velocity;      ///< of the disks, in any unit of time; empty: not in the files
@@ -76,7 +76,7 @@ class SeriesReader {
     SeriesReader& operator=(const SeriesReader&) = delete;
     [[nodiscard]] const Series& series() const;
     /// The first frame comes after this one: another description of the same disks. \pre no frame was read
-    void begin_after(const Packing<2>& packing);
+    void begin_after(const Packing& packing);
     /// Nothing after the last one. Throws when there is none at all.
     std::optional<Frame> next();
 
@@ -142,7 +142,7 @@ struct PathEquilibrium {
     int arcs = 0;
     bool proved = false;
     std::vector<Contact> contacts; ///< that carry a force, sorted
-    State<2> state;                ///< complete
+    State state;                   ///< complete
     Contact opens;                 ///< at the end ahead
     double soft_limit = 0;         ///< of sigma_2 ahead, at the stiffness of the series
     double stiffness_needed = 0;   ///< for which it is within 1e-3 of the exact one
@@ -178,7 +178,7 @@ struct Departure {
 };
 
 struct CompareOptions {
-    std::optional<State<2>> start; ///< of the exact run; none: the vertex of the first frame that has one
+    std::optional<State> start; ///< of the exact run; none: the vertex of the first frame that has one
     OpeningRule rule = OpeningRule::most_negative;
     int bundle = 16;          ///< members of the bundle; 0: none
     bool local = false;       ///< besides, the exact run from every frame to the next

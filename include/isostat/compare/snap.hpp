@@ -18,9 +18,9 @@ namespace isostat::compare {
 /// Disks of another program in the box with two fixed and two movable walls, or in a periodic cell, the contacts that
 /// carry a force there (sorted, each once) and the load. Overlaps are allowed. Infinitesimal loads are not used.
 struct SoftState {
-    Packing<2> packing;
+    Packing packing;
     std::vector<Contact> contacts;
-    Load<2> load;
+    Load load;
 };
 
 /// - vertex: the list has a true vertex near the soft place, isostatic, with positive forces under the load and without
@@ -44,7 +44,7 @@ struct Snap {
     std::vector<int> disks;    ///< the others: disk i of `backbone` is disk `disks[i]`
     /// The others alone, in the contacts of the list (the order is that of the list), at the doubles next to the vertex
     /// where Newton's method found one, else at the soft place.
-    State<2> backbone;
+    State backbone;
     Certification truth;       ///< of `backbone`
     std::vector<double> moved; ///< per disk: bound of the distance from the soft place to the true vertex; rattlers: 0
     /// Bounds of the same, largest over the disks of the list, and over the walls, or periods and tilt, where the
@@ -53,7 +53,7 @@ struct Snap {
     double walls = std::numeric_limits<double>::infinity();
     /// All disks: those of the list as in `backbone`, rattlers where they have room (`outcome` is `vertex`; else where
     /// they were).
-    Packing<2> packing;
+    Packing packing;
     double cage = std::numeric_limits<double>::infinity(); ///< proved lower bound of the gaps of the rattlers there
 };
 
@@ -68,15 +68,15 @@ Snap snap(const SoftState& soft);
 /// N_f contacts, from which a run can start. Rattlers move from where `snap` left them by arcs that are decided one by
 /// one, the others stay. \pre `outcome` is `vertex`. Failures: those of `run_segment`, and `undecided` when the
 /// contacts that carry a force are then not those of the list (the message says which).
-Result<State<2>> with_resting_rattlers(const Snap& snap, std::uint64_t seed);
+Result<State> with_resting_rattlers(const Snap& snap, std::uint64_t seed);
 
 /// The same on other infinitesimal loads, which say where the rattlers rest.
-Result<State<2>> with_resting_rattlers(const Snap& snap, std::vector<double> infinitesimal);
+Result<State> with_resting_rattlers(const Snap& snap, std::vector<double> infinitesimal);
 
 /// The vertex downhill of the soft place whatever its contacts (`find_vertex`), under the load of the soft state, and
 /// what is proved of it. That it is *the* vertex of a list is not proved: with h > 0 there is none.
 struct Exchanged {
-    State<2> state;
+    State state;
     Certification truth;
     std::vector<Contact> contacts; ///< that carry a force, sorted
     double distance = 0;           ///< as in `Snap`, over disks that carry a force
@@ -84,9 +84,9 @@ struct Exchanged {
 Result<Exchanged> exchange(const SoftState& soft, std::uint64_t seed);
 
 /// The contacts of a certified state that carry a finite force, sorted.
-std::vector<Contact> carrying(const State<2>& state, const Certification& truth);
+std::vector<Contact> carrying(const State& state, const Certification& truth);
 /// The same of a state that is known to be an equilibrium: by its structural zeros. Cost: a rank, no bound.
-std::vector<Contact> carrying(const State<2>& equilibrium);
+std::vector<Contact> carrying(const State& equilibrium);
 
 /// Names of contacts, " 1-2 3-left", " none", or the first of them and how many more.
 std::string names_of(const std::vector<Contact>& contacts);
@@ -97,14 +97,14 @@ std::vector<Contact> without(const std::vector<Contact>& a, const std::vector<Co
 /// Forces of grains of stiffness K (force = K overlap) in the contacts of a state: gaps = -f / K and H f = F at the
 /// same place, by Newton's method on the gaps and a solve in turn.
 struct SoftEquilibrium {
-    Packing<2> packing;
+    Packing packing;
     std::vector<double> forces; ///< one per contact
     std::vector<double> slopes; ///< per unit of the loaded stress, at this place
 };
 
 /// The state at the loaded stress `sigma` with stiffness K. \pre `contacts` is isostatic near `state`. Nothing when the
 /// iteration does not settle at 1e-12 of the smallest radius. Double precision, no bound.
-std::optional<SoftEquilibrium> soften(const State<2>& state, double sigma, double stiffness);
+std::optional<SoftEquilibrium> soften(const State& state, double sigma, double stiffness);
 
 /// The interval of the loaded stress in which the rigid grains of a state are supported, and the end that is looked at.
 struct ExactInterval {
@@ -121,10 +121,10 @@ struct SoftLimit {
     double stress = 0;
     Contact opens;
 };
-std::optional<SoftLimit> soft_limit(const State<2>& state, const ExactInterval& exact, double stiffness);
+std::optional<SoftLimit> soft_limit(const State& state, const ExactInterval& exact, double stiffness);
 
 /// The stiffness at which the soft limit is within `error` (relative) of the exact one: the difference goes as 1 / K,
 /// read off where it is small. Nothing as above.
-std::optional<double> stiffness_needed(const State<2>& state, const ExactInterval& exact, double error = 1e-3);
+std::optional<double> stiffness_needed(const State& state, const ExactInterval& exact, double error = 1e-3);
 
 } // namespace isostat::compare

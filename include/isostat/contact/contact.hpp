@@ -12,15 +12,14 @@ namespace isostat {
 
 /// "12-40", "12-40(1,-1)" of the image one period further along x and one back along y, "12-left", "12-top", "held x of
 /// disk 3".
-template <int Dim> std::string to_string(const Contact& contact);
+std::string to_string(const Contact& contact, int dimension = 2);
 
-/// Derivative of a gap with respect to the coordinates: at most 2*Dim entries and those of the cell, coordinate indices
+/// Derivative of a gap with respect to the coordinates: at most 2 d entries and those of the cell, coordinate indices
 /// as in `Packing::q`, components are those of the unit normal, on the cell m_a times them. Column l of H is minus this
 /// vector restricted to the degrees of freedom (H = G^T, and G gives approach velocities). For a held coordinate the
 /// gradient is +1 on that coordinate.
-template <int Dim> struct GapGradient {
-    static_assert(has_dimension<Dim>());
-    static constexpr std::size_t most = 2 * Dim + Dim + Cell<Dim>::tilts;
+struct GapGradient {
+    static constexpr std::size_t most = most_axes * 2 + most_axes + most_tilts;
     int count = 0;
     std::array<int, most> coordinate{};
     std::array<double, most> value{};
@@ -29,18 +28,13 @@ template <int Dim> struct GapGradient {
 /// Gap h: distance of the surfaces, >= 0 in an admissible packing. Held: 0.
 /// Error: at most 4 ulp of the distance of the centres beyond the exactly rounded operations, for coordinates on the
 /// grid.
-template <int Dim> double gap(const Packing<Dim>& packing, const Contact& contact);
+double gap(const Packing& packing, const Contact& contact);
 
 /// Gradient of the gap. Each component has relative error <= 4u (u = 2^-53) for coordinates on the grid.
-template <int Dim> GapGradient<Dim> gap_gradient(const Packing<Dim>& packing, const Contact& contact);
+GapGradient gap_gradient(const Packing& packing, const Contact& contact);
 
 /// Second derivative of the gap along a velocity v (on coordinates): |tangential relative velocity|^2 / distance; 0 for
 /// walls.
-template <int Dim> double gap_curvature(const Packing<Dim>& packing, const Contact& contact, const double* v);
-
-extern template std::string to_string<2>(const Contact&);
-extern template double gap<2>(const Packing<2>&, const Contact&);
-extern template GapGradient<2> gap_gradient<2>(const Packing<2>&, const Contact&);
-extern template double gap_curvature<2>(const Packing<2>&, const Contact&, const double*);
+double gap_curvature(const Packing& packing, const Contact& contact, const double* v);
 
 } // namespace isostat

@@ -30,10 +30,9 @@ struct RadiusPerturbation {
 
 /// A vertex: a packing together with N_f contacts (held coordinates included, normally none) whose gaps are 0 to
 /// rounding. The contact list is part of the state: it is never found again from a gap threshold.
-template <int Dim> struct State {
-    static_assert(has_dimension<Dim>());
-    Packing<Dim> packing;
-    Load<Dim> load;
+struct State {
+    Packing packing;
+    Load load;
     std::vector<Contact> contacts;
     int equilibrium = 0;                            ///< its number in the run that made it
     std::optional<RadiusPerturbation> perturbation; ///< none: the state speaks of its own radii

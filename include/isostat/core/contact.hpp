@@ -10,11 +10,29 @@
 
 namespace isostat {
 
-/// True, or the program does not compile: everything that is a template on Dim asks it.
-template <int Dim> constexpr bool has_dimension() {
-    static_assert(Dim == 2, "Isostat has disks only, Dim = 2: spheres are not written yet");
-    return true;
-}
+/// The most axes, and tilts of a cell, that there are. Arrays over axes and tilts have a place for each; places that
+/// the dimension does not need hold 0.
+inline constexpr std::size_t most_axes = 3;
+inline constexpr std::size_t most_tilts = 3;
+/// The dimension of what is true in the plane only; files that use this constant are not entered with spheres.
+inline constexpr int plane = 2;
+template <class T> using PerAxis = std::array<T, most_axes>;
+template <class T> using PerTilt = std::array<T, most_tilts>;
+
+/// Where the coordinates of a packing stand (`Packing::q`): those of disk i from d i on, L_a at d n + a, then the
+/// tilts.
+struct Layout {
+    int dimension = 2; ///< d
+    int disks = 0;     ///< n
+    [[nodiscard]] constexpr std::size_t axes() const { return static_cast<std::size_t>(dimension); }
+    [[nodiscard]] constexpr std::size_t tilts() const { return axes() * (axes() - 1) / 2; }
+    [[nodiscard]] constexpr std::size_t of_disk(int disk) const { return axes() * static_cast<std::size_t>(disk); }
+    [[nodiscard]] constexpr std::size_t of_length(std::size_t axis) const { return of_disk(disks) + axis; }
+    /// Of A_ab, a < b.
+    [[nodiscard]] constexpr std::size_t of_tilt(std::size_t a, std::size_t b) const {
+        return of_length(axes()) + a + b * (b - 1) / 2;
+    }
+};
 
 /// An index with a meaning. `Tag` is never defined; it only keeps the families apart. Cost: that of an int.
 template <class Tag> class Id {

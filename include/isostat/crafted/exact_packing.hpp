@@ -26,19 +26,20 @@ struct ExactLoad {
     Number tilt{};              ///< as `wall`, on the tilt: positive, it makes the tilt smaller (`Load::shear`)
 };
 
-/// Disks, walls, cell and coordinates as in `Packing<2>`, with exact numbers. Lengths in the user's unit.
+/// Disks, walls, cell and coordinates as in `Packing`, with exact numbers. Lengths in the user's unit.
 struct ExactPacking {
     std::vector<Number> radius;
     std::vector<std::array<Number, 2>> centre;
     std::vector<unsigned char> fixed; ///< empty, or n flags
-    Walls<2> walls = Walls<2>::none();
-    Cell<2> cell;
+    Walls walls = Walls::none();
+    Cell cell;
     std::array<Number, 2> length{}; ///< positions of the upper walls that exist, and periods
     Number tilt;                    ///< A_xy of a cell
     std::optional<ExactLoad> load;
 
     [[nodiscard]] int disk_count() const { return static_cast<int>(radius.size()); }
-    /// What stands at a coordinate index of `Packing<2>`.
+    [[nodiscard]] Layout layout() const { return {plane, disk_count()}; }
+    /// What stands at a coordinate index of `Packing`.
     [[nodiscard]] const Number& coordinate(std::size_t k) const {
         const std::size_t lengths = 2 * centre.size();
         return k < lengths ? centre[k / 2][k % 2] : (k < lengths + 2 ? length[k - lengths] : tilt);
@@ -47,10 +48,10 @@ struct ExactPacking {
 };
 
 /// The stored doubles as exact (dyadic) numbers.
-ExactPacking exact_copy(const Packing<2>& packing);
+ExactPacking exact_copy(const Packing& packing);
 
 /// Nearest doubles: for pictures and for `DofMap`. Proves nothing.
-Packing<2> approximate(const ExactPacking& packing);
+Packing approximate(const ExactPacking& packing);
 
 /// Every pair at gap exactly 0, sorted. The sign of each gap is decided: that of |x_j - x_i|^2 - (R_i + R_j)^2, by
 /// double enclosures where they exclude 0 and in the field otherwise. Pairs without a degree of freedom (two fixed
@@ -64,11 +65,11 @@ Result<std::vector<Contact>> exact_contacts(const ExactPacking& packing);
 /// The contact matrix H in the field, rows = degrees of freedom, unit normals: at a contact the distance of the centres
 /// is R_i + R_j, so the normal needs no root. H f = F_ext as in `contact_matrix`. \pre contacts come from
 /// `exact_contacts`
-exact::NumberMatrix exact_contact_matrix(const ExactPacking& packing, const DofMap<2>& dofs,
+exact::NumberMatrix exact_contact_matrix(const ExactPacking& packing, const DofMap& dofs,
                                          const std::vector<Contact>& contacts);
 
 /// External force on the degrees of freedom. \pre packing.load
-std::vector<Number> external_force(const ExactPacking& packing, const DofMap<2>& dofs);
+std::vector<Number> external_force(const ExactPacking& packing, const DofMap& dofs);
 
 /// One entry of `[expected]`: an answer that the author of the file knows. `values` holds one text per element, row by
 /// row for arrays of arrays.

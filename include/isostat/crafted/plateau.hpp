@@ -92,16 +92,16 @@ inline constexpr int most_pairs_per_disk = 50;
 /// and pairs with several. Where all are periodic the cell may strain as `strain` says: `isotropic` is a packing that
 /// was jammed at fixed shape, whose one self-stress a pressure balances (h = 0 here is h = 1 in a fixed cell, and the
 /// same contacts). Throws when a disk comes near its own image.
-Plateau plateau(const Packing<2>& packing, const std::vector<double>& thresholds, Strain strain = Strain::isotropic);
+Plateau plateau(const Packing& packing, const std::vector<double>& thresholds, Strain strain = Strain::isotropic);
 
 /// The same for every gap in [first, last] at which the contact list changes, thinned to about `rows` thresholds (0:
 /// none left out): half of them evenly over the changes at gaps > 0, from the last overlap on, and half evenly over the
 /// decades, and those next to the ends of the ranges. `first` and `last` are always among them. Ranges lie in
 /// [first, last]. \p rounding: bound of what is not known of a gap, at least that of the doubles is taken.
-Plateau plateau(const Packing<2>& packing, double first, double last, int rows, Strain strain = Strain::isotropic,
+Plateau plateau(const Packing& packing, double first, double last, int rows, Strain strain = Strain::isotropic,
                 double rounding = 0);
 
 /// The contacts that `PlateauStep::backbone` counts at a threshold, sorted.
-std::vector<Contact> backbone_at(const Packing<2>& packing, double threshold);
+std::vector<Contact> backbone_at(const Packing& packing, double threshold);
 
 } // namespace isostat::crafted

@@ -91,7 +91,7 @@ struct CertificateClaims {
 
 /// A certificate: claims about one state.
 struct Certificate {
-    State<2> state;         ///< the input, complete: a checker needs nothing else
+    State state;            ///< the input, complete: a checker needs nothing else
     std::string input;      ///< name of the input file, for people
     std::string input_hash; ///< SHA-256 of that file's bytes, in hexadecimal
     std::string program;    ///< name and version of the program that claims

@@ -45,7 +45,7 @@ struct ForeignOptions {
 };
 
 struct ForeignPacking {
-    Packing<2> packing;    ///< disks in the order of the file; with walls, shifted so that the lower ones are at 0
+    Packing packing;       ///< disks in the order of the file; with walls, shifted so that the lower ones are at 0
     std::string format;    ///< a name of `foreign_formats()`
     std::vector<long> ids; ///< those of the file, one per disk; none: it has no column of them
     /// So far may the gap of a pair be from that of the packing that was written: by the last digits of the file (half
@@ -84,13 +84,13 @@ ForeignPacking parse_foreign(const std::string& text, const std::string& source,
 ForeignPacking read_foreign(const std::filesystem::path& path, const ForeignOptions& options);
 
 /// The texts that other programs read, every number in the shortest form that gives the same double back: a LAMMPS
-/// data file (atom style sphere, ids from 1, density 1); one frame of extended XYZ (OVITO), with `displacement` (Dim*n
+/// data file (atom style sphere, ids from 1, density 1); one frame of extended XYZ (OVITO), with `displacement` (d n
 /// numbers, or none) as a column; rows id, x, y, r under a header (CSV, ids from 0). The box is that of the walls, or
 /// the cell: with its tilt, `pbc` in XYZ, and in LAMMPS data the disks moved into it, with image flags (LAMMPS wants
 /// them there; the moves are exact on the grid). Contacts and loads have no place there.
-std::string lammps_data_text(const Packing<2>& packing, const std::string& title);
-std::string xyz_text(const Packing<2>& packing, const std::vector<double>& displacement);
-std::string csv_text(const Packing<2>& packing);
+std::string lammps_data_text(const Packing& packing, const std::string& title);
+std::string xyz_text(const Packing& packing, const std::vector<double>& displacement);
+std::string csv_text(const Packing& packing);
 
 /// The format of the text, or empty: "lammps-data", ..., and "state", "vertex", "packing" for the formats of this
 /// program (`read_state`, `crafted::read_packing`). From the content only.

@@ -32,7 +32,7 @@ struct RunHeader {
 
 /// Where an interrupted run goes on.
 struct Checkpoint {
-    State<2> state;            ///< the last equilibrium
+    State state;               ///< the last equilibrium
     int segment = 0;           ///< number of the segment it belongs to
     int made = 0;              ///< equilibria made in that segment
     bool segment_done = false; ///< that equilibrium completed the segment
@@ -74,7 +74,7 @@ enum class FolderMode {
 /// The checkpoint holds digests (SHA-256) of itself, of the records before it and of the stored states: a resume that
 /// finds one changed byte, or a record missing, throws `Error(bad_input)` naming the file and changes nothing.
 /// Every failure to write throws `Error(cannot_write)`, also out of the observer's calls.
-class RunDirectory final : public RunObserver<2> {
+class RunDirectory final : public RunObserver {
   public:
     using Mode = FolderMode; ///< resume: also `Error(bad_input)` when it is the run of another scene or program version
     /// Makes the folder if needed and locks it: `Error(cannot_write)` when a running program holds it. `counters` must
@@ -90,21 +90,21 @@ class RunDirectory final : public RunObserver<2> {
     /// "completed", "failed: ...", ... of the interrupted run; "running" when it was killed; empty in a fresh one.
     [[nodiscard]] const std::string& previous_status() const { return previous_status_; }
     /// The state that the interrupted run started from, kept beside it (start.json); none in a fresh run.
-    [[nodiscard]] std::optional<State<2>> start() const;
-    void store_start(const State<2>& state);
+    [[nodiscard]] std::optional<State> start() const;
+    void store_start(const State& state);
     /// What a resumed run found in its folder that no run writes, in words.
     [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
     /// The state of an equilibrium that was stored. Throws `Error(bad_input)` when it was not.
-    [[nodiscard]] State<2> stored(int equilibrium) const;
+    [[nodiscard]] State stored(int equilibrium) const;
 
     /// Before each `run_segment`: its number, its goal, equilibria already made in it (after a resume) and the
     /// equilibrium it starts from.
     void begin_segment(int number, const Segment& goal, int made, int from);
-    void on_segment(int number, const Segment& goal, int made, const State<2>& from) override {
+    void on_segment(int number, const Segment& goal, int made, const State& from) override {
         begin_segment(number, goal, made, from.equilibrium);
     }
-    void on_arc(const ArcRecord<2>& arc) override;
-    void on_equilibrium(const EquilibriumRecord<2>& record, const State<2>& state,
+    void on_arc(const ArcRecord& arc) override;
+    void on_equilibrium(const EquilibriumRecord& record, const State& state,
                         const std::vector<double>& forces) override;
     /// Ends the run: status with its reason, states/last.json, summary.json. Nothing may follow.
     void finish(RunStatus status, const std::string& reason);
@@ -150,9 +150,9 @@ class RunDirectory final : public RunObserver<2> {
     int made_ = 0;
     int previous_ = 0;                           ///< equilibrium that the next one follows
     std::map<std::string, std::string> digests_; ///< SHA-256 of the other files that a resume reads
-    State<2> last_;
+    State last_;
     std::vector<double> last_forces_;
-    EquilibriumRecord<2> last_record_;
+    EquilibriumRecord last_record_;
     std::vector<double> last_strain_; ///< also after a resume that went no further
 };
 

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// The grains and where they are: disks (Dim = 2; spheres are not written yet), flat walls normal to the axes, and axes
-/// that repeat.
+/// The grains and where they are: disks (dimension 2; `validate` refuses spheres, which nothing computes yet), flat
+/// walls normal to the axes, and axes that repeat.
 
 #include <isostat/core/contact.hpp>
 #include <isostat/core/machine.hpp>
@@ -21,32 +21,36 @@ namespace isostat {
 ///
 /// One grain is pinned along the periodic axes, as a translation of everything changes nothing: N_f = d n + (moving
 /// coordinates of cell and walls) - (periodic axes). Which one is a matter of gauge, and so are the representatives.
-template <int Dim> struct Cell {
-    static_assert(has_dimension<Dim>());
-    static constexpr std::size_t tilts = static_cast<std::size_t>(Dim) * (Dim - 1) / 2;
-
-    std::array<bool, Dim> periodic{};
-    std::array<bool, Dim> period_moves{}; ///< L_a of a periodic axis is a degree of freedom
-    std::array<bool, tilts> tilt_moves{}; ///< in the order xy, xz, yz
-    int pin = 0;                          ///< the grain that stays where it is along the periodic axes
+struct Cell {
+    PerAxis<bool> periodic{};
+    PerAxis<bool> period_moves{}; ///< L_a of a periodic axis is a degree of freedom
+    PerTilt<bool> tilt_moves{};   ///< in the order xy, xz, yz
+    int pin = 0;                  ///< the grain that stays where it is along the periodic axes
     /// An isotropic cell: its one degree of freedom is its size. It is written as the last period, the only one that
     /// moves then: where all forces are positive they are the same up to a factor, and so are N_f, h and k; the shape
     /// of the cell is that of the true vertex (proofs/cells.md, C13).
     bool keeps_shape = false;
+    int dimension = 2; ///< that of the packing
 
     /// False in a box, and where there is nothing at all: then there are no tilts in `Packing::q`.
     [[nodiscard]] bool any() const { return std::find(periodic.begin(), periodic.end(), true) != periodic.end(); }
     /// Every axis repeats.
-    [[nodiscard]] bool all() const { return std::find(periodic.begin(), periodic.end(), false) == periodic.end(); }
+    [[nodiscard]] bool all() const { return periodic_axes() == static_cast<std::size_t>(dimension); }
     [[nodiscard]] std::size_t periodic_axes() const {
         return static_cast<std::size_t>(std::count(periodic.begin(), periodic.end(), true));
     }
     /// Nothing moves but the size. \pre every axis is periodic
     void keep_shape() {
         keeps_shape = true;
-        period_moves.fill(false);
-        period_moves[Dim - 1] = true;
-        tilt_moves.fill(false);
+        move(false, false);
+        period_moves[static_cast<std::size_t>(dimension) - 1] = true;
+    }
+    /// Every axis repeats.
+    void repeat() { std::fill_n(periodic.begin(), dimension, true); }
+    /// Every period moves, or none does, and so do the tilts.
+    void move(bool periods, bool tilts) {
+        std::fill_n(period_moves.begin(), dimension, periods);
+        std::fill_n(tilt_moves.begin(), Layout{dimension}.tilts(), tilts);
     }
     /// Place of the tilt A_ab, a < b, among the tilts.
     static constexpr std::size_t tilt(std::size_t a, std::size_t b) { return a + b * (b - 1) / 2; }
@@ -62,12 +66,11 @@ inline constexpr double longest_length = 1e150;
 enum class WallKind : unsigned char { absent, fixed, movable };
 
 /// The walls: `lower[a]` at coordinate 0 of axis a (never movable), `upper[a]` at L_a.
-template <int Dim> struct Walls {
-    static_assert(has_dimension<Dim>());
-    std::array<WallKind, Dim> lower{};
-    std::array<WallKind, Dim> upper{};
-    /// The paper's box: two fixed lower walls, two movable upper walls.
-    static Walls box();
+struct Walls {
+    PerAxis<WallKind> lower{};
+    PerAxis<WallKind> upper{};
+    /// The paper's box: a fixed lower and a movable upper wall on each axis.
+    static Walls box(int dimension = 2);
     /// No walls at all (free clusters).
     static Walls none();
     friend bool operator==(const Walls&, const Walls&) = default;
@@ -75,58 +78,55 @@ template <int Dim> struct Walls {
 
 /// Radii, walls and configuration. Lengths are in the user's unit.
 ///
-/// Coordinates are stored flat: `q[Dim*i + a]` is coordinate a of disk i, `q[Dim*n + a]` is L_a, the position of the
+/// Coordinates are stored flat: `q[d i + a]` is coordinate a of disk i, `q[d n + a]` is L_a, the position of the
 /// upper wall of axis a, or its period where it is periodic (present in q even when that wall is absent, then
 /// meaningless and 0). With periodic axes the tilts of the cell follow. A *coordinate index* is an index into q.
 /// Invariant (checked by `validate`): every radius from `shortest_length` to `longest_length`, every coordinate finite,
 /// those of disks, walls and cell at most `longest_length`; a periodic axis has no walls and no disk is fixed then.
-template <int Dim> struct Packing {
-    static_assert(has_dimension<Dim>());
+struct Packing {
+    int dimension = 2;          ///< d: how many axes there are
     std::vector<double> radius; ///< n radii
-    std::vector<double> q;      ///< Dim*(n+1) coordinates, and the tilts of a cell
-    Walls<Dim> walls = Walls<Dim>::box();
-    Cell<Dim> cell;                   ///< which axes repeat; none in a box
+    std::vector<double> q;      ///< d (n + 1) coordinates, and the tilts of a cell
+    Walls walls = Walls::box();
+    Cell cell;                        ///< which axes repeat; none in a box
     std::vector<unsigned char> fixed; ///< empty, or n flags: 1 = this disk cannot move
 
     [[nodiscard]] int disk_count() const { return static_cast<int>(radius.size()); }
+    [[nodiscard]] Layout layout() const { return {dimension, disk_count()}; }
+    [[nodiscard]] std::size_t axes() const { return static_cast<std::size_t>(dimension); }
+    [[nodiscard]] std::size_t tilts() const { return layout().tilts(); }
     [[nodiscard]] double coordinate(DiskId disk, int axis) const {
-        return q[static_cast<std::size_t>(Dim) * disk.index() + static_cast<std::size_t>(axis)];
+        return q[axes() * disk.index() + static_cast<std::size_t>(axis)];
     }
     /// Position L_a of the upper wall of an axis.
-    [[nodiscard]] double length(int axis) const {
-        return q[static_cast<std::size_t>(Dim) * radius.size() + static_cast<std::size_t>(axis)];
-    }
-    [[nodiscard]] double& length(int axis) {
-        return q[static_cast<std::size_t>(Dim) * radius.size() + static_cast<std::size_t>(axis)];
-    }
+    [[nodiscard]] double length(int axis) const { return q[length_at(static_cast<std::size_t>(axis))]; }
+    [[nodiscard]] double& length(int axis) { return q[length_at(static_cast<std::size_t>(axis))]; }
     /// Coordinate index of L_a, and of the tilt A_ab, a < b. \pre of the tilt: there are periodic axes
-    [[nodiscard]] std::size_t length_at(std::size_t axis) const {
-        return static_cast<std::size_t>(Dim) * radius.size() + axis;
+    [[nodiscard]] std::size_t length_at(std::size_t axis) const { return axes() * radius.size() + axis; }
+    [[nodiscard]] std::size_t tilt_at(std::size_t a, std::size_t b) const {
+        return length_at(axes() + Cell::tilt(a, b));
     }
-    [[nodiscard]] std::size_t tilt_at(std::size_t a, std::size_t b) const { return length_at(Dim + cell.tilt(a, b)); }
     /// A_ab, a <= b: the cell as it is stored. \pre there are periodic axes
     [[nodiscard]] double lattice(std::size_t a, std::size_t b) const {
         return a == b ? q[length_at(a)] : q[tilt_at(a, b)];
     }
     /// How many coordinates q has.
     [[nodiscard]] std::size_t coordinate_count() const {
-        return length_at(Dim) + (cell.any() ? Cell<Dim>::tilts : std::size_t{0});
+        return length_at(axes()) + (cell.any() ? tilts() : std::size_t{0});
     }
     [[nodiscard]] bool is_fixed(DiskId disk) const { return !fixed.empty() && fixed[disk.index()] != 0; }
     [[nodiscard]] double min_radius() const;
     [[nodiscard]] double max_radius() const;
-    /// Sum of the disks' areas (Dim = 2) over Lx*Ly, the area of box and cell.
+    /// Sum of the disks' areas (d = 2) over Lx*Ly, the area of box and cell.
     [[nodiscard]] double solid_fraction() const;
 };
 
 /// Which coordinates of a packing are degrees of freedom, numbered 0 .. N_f-1 in the order of q.
 /// In the paper's box without fixed disks the numbering is the identity and N_f = 2n + 2. Along periodic axes the
 /// pinned grain has none (the first one that is not fixed, where `Cell::pin` is fixed).
-template <int Dim> class DofMap {
-    static_assert(has_dimension<Dim>());
-
+class DofMap {
   public:
-    explicit DofMap(const Packing<Dim>& packing);
+    explicit DofMap(const Packing& packing);
     /// N_f.
     [[nodiscard]] int dof_count() const { return static_cast<int>(coordinate_of_.size()); }
     /// Coordinates of the packing, those that cannot move included.
@@ -137,13 +137,14 @@ template <int Dim> class DofMap {
     [[nodiscard]] int coordinate_of(int dof) const { return coordinate_of_[static_cast<std::size_t>(dof)]; }
     /// "x of disk 12", "right wall", "period along x", "tilt xy": for messages.
     [[nodiscard]] std::string name(int dof) const;
-    [[nodiscard]] int disk_count() const { return disks_; }
+    [[nodiscard]] const Layout& layout() const { return layout_; }
+    [[nodiscard]] int disk_count() const { return layout_.disks; }
     /// Along a periodic axis one disk is pinned, whichever.
     [[nodiscard]] bool is_periodic(std::size_t axis) const { return periodic_[axis]; }
 
   private:
-    int disks_;
-    std::array<bool, Dim> periodic_;
+    Layout layout_;
+    PerAxis<bool> periodic_;
     std::vector<int> dof_of_;
     std::vector<int> coordinate_of_;
 };
@@ -151,10 +152,10 @@ template <int Dim> class DofMap {
 /// Throws `Error(bad_input)` naming the disk or wall and the value when the invariant of `Packing` does not hold, a
 /// disk is larger than the box, or overlaps its own image (its diameter may be anything up to the shortest period: two
 /// disks that touch through several images are no trouble). `source` (a file name) starts the message.
-template <int Dim> void validate(const Packing<Dim>& packing, const std::string& source);
+void validate(const Packing& packing, const std::string& source);
 
 /// Throws `Error(bad_input)` when an axis is periodic: `what` takes boxes only. "FILE: a periodic cell; ..."
-template <int Dim> void require_box(const Packing<Dim>& packing, const std::string& source, const std::string& what);
+void require_box(const Packing& packing, const std::string& source, const std::string& what);
 
 /// Rounds what can move to the common dyadic grid of the packing: multiples of 2^(e-52), 2^e the smallest power of two
 /// that is not below any coordinate of a disk or of a wall that is there. Fixed disks and walls stay where they are, on
@@ -162,21 +163,12 @@ template <int Dim> void require_box(const Packing<Dim>& packing, const std::stri
 /// grid step (2^-53 of the box); returns the largest such move. Idempotent; commutes with scaling by powers of two.
 /// With periodic axes the grid is four times as coarse, so that x_j - x_i + A m is exact too for |m_a| <= 3, and every
 /// coordinate is rounded: of the pinned grain, and of a cell that does not move.
-template <int Dim> double snap_to_grid(Packing<Dim>& packing);
+double snap_to_grid(Packing& packing);
 
 /// Whether `snap_to_grid` would leave every coordinate where it is.
-template <int Dim> bool is_on_grid(const Packing<Dim>& packing);
+bool is_on_grid(const Packing& packing);
 
 /// The grid step that `snap_to_grid` uses.
-template <int Dim> double grid_step(const Packing<Dim>& packing);
-
-extern template struct Walls<2>;
-extern template struct Packing<2>;
-extern template class DofMap<2>;
-extern template void validate<2>(const Packing<2>&, const std::string&);
-extern template void require_box<2>(const Packing<2>&, const std::string&, const std::string&);
-extern template bool is_on_grid<2>(const Packing<2>&);
-extern template double snap_to_grid<2>(Packing<2>&);
-extern template double grid_step<2>(const Packing<2>&);
+double grid_step(const Packing& packing);
 
 } // namespace isostat

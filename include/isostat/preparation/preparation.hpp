@@ -116,7 +116,7 @@ struct PreparationStage {
 };
 
 /// What was done, also after a failure.
-template <int Dim> struct PreparationReport {
+struct PreparationReport {
     std::vector<PreparationStage> stages;
     int programmes = 0;                   ///< linear programmes solved
     long pivots = 0;                      ///< simplex iterations in all of them
@@ -129,8 +129,8 @@ template <int Dim> struct PreparationReport {
     /// After the failures `undecided` and `tie` of `find_vertex`: contacts and configuration that are a vertex as far
     /// as rounded numbers say, and that could not be proved to be one in double-double. Proves nothing; `certify` may,
     /// or a run that settles ties.
-    std::optional<State<Dim>> candidate;
-    std::optional<Packing<Dim>> last; ///< after a failure: the last configuration (overlaps of the dynamics included)
+    std::optional<State> candidate;
+    std::optional<Packing> last; ///< after a failure: the last configuration (overlaps of the dynamics included)
 };
 
 /// A vertex under isotropic pressure from random disks.
@@ -143,7 +143,7 @@ template <int Dim> struct PreparationReport {
 /// same bits; lengths scaled by a power of two give the state scaled by it). On failure `report.last` holds what was
 /// reached. Throws `Error(bad_input)` for options that make no sense, naming the field and the value. Cost: see
 /// tests/bench/preparation.cpp; the dynamics takes most of it.
-template <int Dim> Result<State<Dim>> prepare(const PreparationOptions& options, PreparationReport<Dim>& report);
+Result<State> prepare(const PreparationOptions& options, PreparationReport& report);
 
 /// The vertex downhill from a packing that is nearly jammed in the box with two fixed and two movable walls, or with
 /// periods that move instead of them along one axis (a channel) or both (small overlaps are allowed). In a cell the
@@ -167,12 +167,6 @@ template <int Dim> Result<State<Dim>> prepare(const PreparationOptions& options,
 /// last, with the *final* lengths as reference lengths. Any of these that cannot be proved is a failure (`tie`,
 /// `undecided`, `not_isostatic`, `not_converged`), never a state. Uses of `options`: seed, stress, ratio, load, stop,
 /// progress, infinitesimal_weight, max_programmes.
-template <int Dim>
-Result<State<Dim>> find_vertex(const Packing<Dim>& start, const PreparationOptions& options,
-                               PreparationReport<Dim>& report);
-
-extern template struct PreparationReport<2>;
-extern template Result<State<2>> prepare<2>(const PreparationOptions&, PreparationReport<2>&);
-extern template Result<State<2>> find_vertex<2>(const Packing<2>&, const PreparationOptions&, PreparationReport<2>&);
+Result<State> find_vertex(const Packing& start, const PreparationOptions& options, PreparationReport& report);
 
 } // namespace isostat

@@ -30,7 +30,7 @@ struct Counting {
 
 /// Any number of contacts, walls, fixed disks. Cost: an exact rank when the matrix is square and regular mod p; else
 /// also an elimination in natural column order, O(n^2) for packings: meant for inspection, not for the path.
-template <int Dim> Counting count_contacts(const Packing<Dim>& packing, const std::vector<Contact>& contacts);
+Counting count_contacts(const Packing& packing, const std::vector<Contact>& contacts);
 
 /// How the cell may strain, A -> (1 + E) A, with all disks moving as they like:
 /// - `none`: a fixed cell; - `isotropic`: E = e 1, the shape is kept (a pressure); - `diagonal`: E has d entries;
@@ -42,13 +42,13 @@ inline constexpr std::array<Strain, 4> strains{Strain::none, Strain::isotropic, 
 /// "fixed cell", "isotropic", "diagonal", "full strain".
 const char* to_string(Strain strain);
 
-/// Number of entries of E.
-template <int Dim> constexpr int strain_count(Strain strain) {
+/// Number of entries of E in d dimensions.
+constexpr int strain_count(Strain strain, int d) {
     switch (strain) {
     case Strain::none: return 0;
     case Strain::isotropic: return 1;
-    case Strain::diagonal: return Dim;
-    case Strain::full: return Dim * (Dim + 1) / 2;
+    case Strain::diagonal: return d;
+    case Strain::full: return d * (d + 1) / 2;
     }
     return 0;
 }
@@ -56,32 +56,26 @@ template <int Dim> constexpr int strain_count(Strain strain) {
 /// N_f, N, rank, h, k of the stored coordinates. The rank is a lower bound from a prime field, and exact (`rank_exact`)
 /// where it is as high as N or N_f allow, or where the matrix is small and its kernel was checked in rationals.
 /// `free_dofs` is empty. \pre every axis is periodic
-template <int Dim>
-Counting count_strained(const Packing<Dim>& packing, const std::vector<Contact>& contacts, Strain strain);
+Counting count_strained(const Packing& packing, const std::vector<Contact>& contacts, Strain strain);
 
 /// The same for every way to strain the cell, in the order of `strains`.
 using StrainCounts = std::array<Counting, strains.size()>;
-template <int Dim> StrainCounts count_strains(const Packing<Dim>& packing, const std::vector<Contact>& contacts);
+StrainCounts count_strains(const Packing& packing, const std::vector<Contact>& contacts);
 
 /// Disks that no pair of the list touches, ascending.
 std::vector<int> untouched(int disks, const std::vector<Contact>& pairs);
 
 /// The packing with some disks fixed, so that only the others count: rattlers.
-template <int Dim> Packing<Dim> without_disks(Packing<Dim> packing, const std::vector<int>& disks);
+Packing without_disks(Packing packing, const std::vector<int>& disks);
 
 /// Goodrich, Liu & Nagel (Phys. Rev. Lett. 109, 095704, 2012): the contacts that N_0 disks without rattlers need in a
 /// periodic cell, d N_0 - d + 1 for a positive bulk modulus and d N_0 - d + d (d + 1) / 2 for all elastic moduli. A
 /// count alone: it says nothing of ranks.
-template <int Dim> constexpr int contacts_for_bulk_modulus(int disks) {
-    return Dim * disks - Dim + 1;
+constexpr int contacts_for_bulk_modulus(int disks, int d) {
+    return d * disks - d + 1;
 }
-template <int Dim> constexpr int contacts_for_all_moduli(int disks) {
-    return Dim * disks - Dim + Dim * (Dim + 1) / 2;
+constexpr int contacts_for_all_moduli(int disks, int d) {
+    return d * disks - d + d * (d + 1) / 2;
 }
-
-extern template Counting count_contacts<2>(const Packing<2>&, const std::vector<Contact>&);
-extern template Counting count_strained<2>(const Packing<2>&, const std::vector<Contact>&, Strain);
-extern template StrainCounts count_strains<2>(const Packing<2>&, const std::vector<Contact>&);
-extern template Packing<2> without_disks<2>(Packing<2>, const std::vector<int>&);
 
 } // namespace isostat

@@ -86,27 +86,25 @@ std::vector<PlanEntry> make_plan(const Scene& scene);
 /// the smallest radius) only choose between a clear message here and a proof later: `run_segment` decides the signs of
 /// all gaps with bounds. With h > 0 and k = 0 the message names the contacts of a basis of the self-stresses (double
 /// precision; parts below 1e-9 left out). `hyperstatic_allowed`: then that is no reason to refuse (ties = "choose").
-template <int Dim>
-void check_start(const State<Dim>& state, const std::string& source, bool hyperstatic_allowed = false);
-extern template void check_start<2>(const State<2>&, const std::string&, bool);
+void check_start(const State& state, const std::string& source, bool hyperstatic_allowed = false);
 
 /// The start of a scene that reads one: overrides of [load], checks in the words of a user (`check_start`,
 /// `check_programme`), and then the grid (`snap_to_grid`; the provenance says in `moved_to_grid` by how much it moved a
 /// coordinate, when it did). `source` starts messages. Throws `Error(bad_input)`.
-State<2> start_of_scene(State<2> state, const Scene& scene, const std::string& source);
+State start_of_scene(State state, const Scene& scene, const std::string& source);
 /// The same of the file that the scene names. \pre !scene.start.empty()
-State<2> start_from_file(const Scene& scene);
+State start_from_file(const Scene& scene);
 
 /// Provenance of a state that was prepared for a scene, as JSON text.
 std::string provenance_of(const Scene& scene, const std::string& program, const std::string& command,
-                          const PreparationReport<2>& report);
+                          const PreparationReport& report);
 
 /// What identifies a run of the scene.
 RunHeader header_of(const Scene& scene, const std::string& program, const std::string& command);
 
 /// What may help after a failure: equal radii tie, and a jitter of a prepared scene makes them different. Empty:
 /// nothing.
-std::string advice(const Scene& scene, const Failure& failure, const Packing<2>& packing);
+std::string advice(const Scene& scene, const Failure& failure, const Packing& packing);
 
 /// How a run ended; `failure` where there is one (a programme that cannot begin a step has none).
 struct SceneEnding {
@@ -120,7 +118,7 @@ SceneEnding ending_of(const Failure& failure, const std::string& where);
 /// Plays the programme of the scene from `state`, or from the checkpoint of the folder when it has one, with the
 /// certificates that the level asks for. `further` is told after the folder. Ends after the arc in which `stop`
 /// becomes true. `program` is named in the certificates. The caller calls `RunDirectory::finish`.
-SceneEnding play_scene(const Scene& scene, State<2> state, RunDirectory& directory, const std::string& program,
-                       RunCounters& counters, const std::atomic<bool>& stop, RunObserver<2>& further);
+SceneEnding play_scene(const Scene& scene, State state, RunDirectory& directory, const std::string& program,
+                       RunCounters& counters, const std::atomic<bool>& stop, RunObserver& further);
 
 } // namespace isostat

@@ -29,16 +29,16 @@ struct ProgrammeStep {
 
 /// The programme's segment for a state under `load`: direction and stress of the goal.
 /// Throws `Error(bad_input)`, starting with `source`, when the ratio to reach lies behind.
-Segment segment_of(const ProgrammeStep& step, const Load<2>& load, const std::string& source);
+Segment segment_of(const ProgrammeStep& step, const Load& load, const std::string& source);
 
 /// What is to be done, and from where on.
-template <int Dim> struct Programme {
+struct Programme {
     std::vector<ProgrammeStep> steps;
     std::string source;    ///< what messages about a step start with: the name of the scene file
     std::size_t first = 0; ///< step to begin with, or to go on with
     int made = 0;          ///< equilibria made in it already
     /// The state of an earlier equilibrium of the run, for steps that start `from` it.
-    std::function<State<Dim>(int)> stored;
+    std::function<State(int)> stored;
 };
 
 /// How a programme ended: completed when neither is there.
@@ -51,11 +51,7 @@ struct ProgrammeOutcome {
 
 /// Plays the steps one after the other with `run_segment`, from `state`. The observer is told of each segment before it
 /// begins. \post `state` is the last equilibrium reached; `counters` advanced. Throws what `stored` throws.
-template <int Dim>
-ProgrammeOutcome play(const Programme<Dim>& programme, State<Dim>& state, const RunOptions& options,
-                      RunCounters& counters, RunObserver<Dim>& observer);
-
-extern template ProgrammeOutcome play<2>(const Programme<2>&, State<2>&, const RunOptions&, RunCounters&,
-                                         RunObserver<2>&);
+ProgrammeOutcome play(const Programme& programme, State& state, const RunOptions& options, RunCounters& counters,
+                      RunObserver& observer);
 
 } // namespace isostat

@@ -32,8 +32,7 @@ constexpr std::string_view to_string(ArcKind kind) {
 }
 
 /// One arc: a contact opened, the mechanism followed, a contact (or a power turn) met.
-template <int Dim> struct ArcRecord {
-    static_assert(has_dimension<Dim>());
+struct ArcRecord {
     long step = 0;       ///< number of the arc in the run, from 1
     int equilibrium = 0; ///< number of the equilibrium that its rearrangement leads to, if it leads to one
     int arc = 0;         ///< number within the rearrangement, from 1
@@ -61,8 +60,7 @@ template <int Dim> struct ArcRecord {
 };
 
 /// One equilibrium, checked.
-template <int Dim> struct EquilibriumRecord {
-    static_assert(has_dimension<Dim>());
+struct EquilibriumRecord {
     int number = 0;        ///< 0 = the start
     int segment = 0;       ///< segment of the programme
     double stress = 0;     ///< sigma_2 at which it was reached
@@ -193,16 +191,15 @@ struct Segment;
 
 /// Receives the records of a run as they are made. Each call returns before the run goes on: a killed run has written
 /// everything that it had found. After each equilibrium the run asks for an objection, and ends with it.
-template <int Dim> class RunObserver {
-    static_assert(has_dimension<Dim>());
+class RunObserver {
 
   public:
     virtual ~RunObserver() = default;
     /// Before a segment of a programme (`play`): its number, its goal, equilibria that were made in it already (after a
     /// resume), and the state it starts from.
-    virtual void on_segment(int /*number*/, const Segment& /*goal*/, int /*made*/, const State<Dim>& /*from*/) {}
-    virtual void on_arc(const ArcRecord<Dim>& /*arc*/) {}
-    virtual void on_equilibrium(const EquilibriumRecord<Dim>& /*record*/, const State<Dim>& /*state*/,
+    virtual void on_segment(int /*number*/, const Segment& /*goal*/, int /*made*/, const State& /*from*/) {}
+    virtual void on_arc(const ArcRecord& /*arc*/) {}
+    virtual void on_equilibrium(const EquilibriumRecord& /*record*/, const State& /*state*/,
                                 const std::vector<double>& /*forces, one per contact of the state*/) {}
     /// Why the run must not go on after the equilibrium that it has just received: none.
     [[nodiscard]] virtual std::optional<Failure> objection() const { return std::nullopt; }

@@ -81,23 +81,22 @@ struct SegmentOutcome {
 /// Throws `Error(bad_input)` when a run does not follow this state: a periodic cell that keeps its shape, true stresses
 /// where the tilt moves, loads on disks that do not sum to 0 along a periodic axis. `source` starts the message.
 /// `run_segment` asks it too.
-template <int Dim> void require_followed(const State<Dim>& state, const std::string& source);
+void require_followed(const State& state, const std::string& source);
 
 /// Runs one segment from `state`, which must be a vertex with N_f contacts.
 /// \post `state` is the last equilibrium reached (also after a failure), with its stress set; `counters` advanced.
 /// The observer gets every arc and every equilibrium. If `counters.equilibria == 0 && counters.steps == 0` the start is
 /// first made an equilibrium (rearranged at its own load if some force is negative) and reported as number 0. Every
 /// sign that steers is decided with a proved bound; a sign that is not ends the segment with `undecided` or `tie`.
-template <int Dim>
-SegmentOutcome run_segment(State<Dim>& state, const Segment& segment, int segment_number, const RunOptions& options,
-                           RunCounters& counters, RunObserver<Dim>& observer);
+SegmentOutcome run_segment(State& state, const Segment& segment, int segment_number, const RunOptions& options,
+                           RunCounters& counters, RunObserver& observer);
 
 /// What is known of a state with mechanisms. Coordinates are held until the structure is isostatic (or already in the
 /// state); when every force is positive and the multipliers of the held coordinates cannot be told from 0, the state is
 /// an equilibrium *as far as the stored numbers say*, and `stable` tells what the potential does along the mechanism
 /// (k = 1; statement T8).
-template <int Dim> struct MechanismInspection {
-    EquilibriumRecord<Dim> record;              ///< `record.verdict` is `refuted`: not isostatic
+struct MechanismInspection {
+    EquilibriumRecord record;                   ///< `record.verdict` is `refuted`: not isostatic
     std::vector<Contact> contacts;              ///< those of the state, then the held coordinates
     std::vector<double> forces;                 ///< f0, one per entry of `contacts`
     std::vector<unsigned char> structural_zero; ///< 1: f0 vanishes for every load on the walls
@@ -109,12 +108,6 @@ template <int Dim> struct MechanismInspection {
 };
 /// \pre h = 0 in `counting`, of this state. Failure: `not_isostatic` when the completed structure is not proved
 /// regular, `undecided` when no bound of the inverse or no true vertex near the stored one was proved.
-template <int Dim>
-Result<MechanismInspection<Dim>> inspect_mechanism(const State<Dim>& state, const Counting& counting);
-
-extern template void require_followed<2>(const State<2>&, const std::string&);
-extern template SegmentOutcome run_segment<2>(State<2>&, const Segment&, int, const RunOptions&, RunCounters&,
-                                              RunObserver<2>&);
-extern template Result<MechanismInspection<2>> inspect_mechanism<2>(const State<2>&, const Counting&);
+Result<MechanismInspection> inspect_mechanism(const State& state, const Counting& counting);
 
 } // namespace isostat

@@ -15,8 +15,8 @@ namespace {
 constexpr Contact none{ContactKind::disk_disk, -1, -1};
 
 /// The load at which a force that is almost 0 at the stored stress vanishes. \pre its slope is told from 0.
-template <int Dim> LimitLoad<Dim> zero_load(Statics<Dim>& statics, ContactId at_zero, const Load<Dim>& load) {
-    LimitLoad<Dim> at{load};
+LimitLoad zero_load(Statics& statics, ContactId at_zero, const Load& load) {
+    LimitLoad at{load};
     const Enclosure slope = statics.slope(at_zero);
     const Enclosure f = statics.force(at_zero, at.stress());
     at.error = (std::abs(f.value) + f.radius) / (std::abs(slope.value) - slope.radius) * (1 + 1e-10);
@@ -25,7 +25,7 @@ template <int Dim> LimitLoad<Dim> zero_load(Statics<Dim>& statics, ContactId at_
 }
 
 /// At the stored load and at the exact one, with as many digits as it takes.
-template <int Dim> bool is_positive(Statics<Dim>& statics, ContactId l, const LimitLoad<Dim>& limit) {
+bool is_positive(Statics& statics, ContactId l, const LimitLoad& limit) {
     statics.set_shift(nullptr, 0); // exact numbers do not know the exact load
     ForceExpression force = statics.force_expression(l, limit.stress());
     const Order stored = statics.sign(force);
@@ -36,9 +36,7 @@ template <int Dim> bool is_positive(Statics<Dim>& statics, ContactId l, const Li
 
 } // namespace
 
-template <int Dim>
-FirstOrderSide<Dim>::FirstOrderSide(State<Dim>& state, std::uint64_t seed, bool choose)
-    : state_(state), choose_(choose) {
+FirstOrderSide::FirstOrderSide(State& state, std::uint64_t seed, bool choose) : state_(state), choose_(choose) {
     if (!state.perturbation) {
         state.perturbation.emplace();
         state.perturbation->seed = seed;
@@ -46,19 +44,19 @@ FirstOrderSide<Dim>::FirstOrderSide(State<Dim>& state, std::uint64_t seed, bool 
     }
 }
 
-template <int Dim> void FirstOrderSide<Dim>::attach(Vertex<Dim>& vertex, const LimitLoad<Dim>& at) const {
+void FirstOrderSide::attach(Vertex& vertex, const LimitLoad& at) const {
     vertex.statics.perturb_radii();
     if (at.shift) {
         vertex.statics.set_shift(at.shift, at.error);
     }
-    vertex.perturbed = std::make_unique<FirstOrderVertex<Dim>>(
-        FirstOrder<Dim>(vertex.packing, vertex.structure, vertex.factorisation, vertex.inverse, vertex.enclosure,
-                        state_.perturbation->rho),
-        vertex.statics, at.load, at.stress_rate, choose_);
+    vertex.perturbed =
+        std::make_unique<FirstOrderVertex>(FirstOrder(vertex.packing, vertex.structure, vertex.factorisation,
+                                                      vertex.inverse, vertex.enclosure, state_.perturbation->rho),
+                                           vertex.statics, at.load, at.stress_rate, choose_);
     vertex.perturbed->rho = &state_.perturbation->rho;
 }
 
-template <int Dim> std::optional<Failure> FirstOrderSide<Dim>::choose_contacts() const {
+std::optional<Failure> FirstOrderSide::choose_contacts() const {
     auto kept = first_order_backbone(state_.packing, state_.load, state_.contacts, state_.perturbation->rho);
     if (!kept.ok()) {
         return kept.failure();
@@ -67,24 +65,23 @@ template <int Dim> std::optional<Failure> FirstOrderSide<Dim>::choose_contacts()
     return std::nullopt;
 }
 
-template <int Dim> void FirstOrderSide<Dim>::load_is_stored() const {
+void FirstOrderSide::load_is_stored() const {
     state_.perturbation->load_zero = none;
     state_.perturbation->stress_rate = {0, 0};
 }
 
-template <int Dim>
-std::optional<Failure> FirstOrderSide<Dim>::settle_load(Vertex<Dim>& vertex, const LimitLoad<Dim>& limit,
-                                                        const std::vector<ContactId>& zeros) const {
+std::optional<Failure> FirstOrderSide::settle_load(Vertex& vertex, const LimitLoad& limit,
+                                                   const std::vector<ContactId>& zeros) const {
     load_is_stored();
     if (!limit.shift) {
         return std::nullopt;
     }
-    Statics<Dim>& statics = vertex.statics;
+    Statics& statics = vertex.statics;
     const auto& contacts = statics.structure().contacts();
     const auto known =
         std::find_if(zeros.begin(), zeros.end(), [&](ContactId l) { return statics.slope(l).decided(); });
     if (known != zeros.end()) {
-        LimitLoad<Dim> at = zero_load(statics, *known, limit.load);
+        LimitLoad at = zero_load(statics, *known, limit.load);
         at.stress_rate = limit.stress_rate;
         state_.perturbation->load_zero = contacts[known->index()];
         state_.perturbation->stress_rate = limit.stress_rate;
@@ -104,14 +101,13 @@ std::optional<Failure> FirstOrderSide<Dim>::settle_load(Vertex<Dim>& vertex, con
             return failed(FailureKind::undecided,
                           "the force in {} is so small, {:.3g}, that the limit load must be known better "
                           "than it is stored",
-                          named<Dim>(contacts[id.index()]), f.value);
+                          named(contacts[id.index()]), f.value);
         }
     }
     return std::nullopt;
 }
 
-template <int Dim>
-std::optional<Failure> FirstOrderSide<Dim>::resume(Vertex<Dim>& vertex, const ZeroGaps& touching) const {
+std::optional<Failure> FirstOrderSide::resume(Vertex& vertex, const ZeroGaps& touching) const {
     const RadiusPerturbation& stored = *state_.perturbation;
     const auto& contacts = vertex.structure.contacts();
     const auto at = std::find(contacts.begin(), contacts.end(), stored.load_zero);
@@ -119,31 +115,28 @@ std::optional<Failure> FirstOrderSide<Dim>::resume(Vertex<Dim>& vertex, const Ze
         const ContactId l(static_cast<std::size_t>(at - contacts.begin()));
         if (!vertex.statics.slope(l).decided()) {
             return failed(FailureKind::undecided, "the load at which the force in {} vanishes is not known",
-                          named<Dim>(stored.load_zero));
+                          named(stored.load_zero));
         }
-        LimitLoad<Dim> meant = zero_load(vertex.statics, l, state_.load);
+        LimitLoad meant = zero_load(vertex.statics, l, state_.load);
         meant.stress_rate = stored.stress_rate;
         attach(vertex, meant);
     }
     return settle_touching(vertex, touching);
 }
 
-template <int Dim>
-void FirstOrderSide<Dim>::set_limit(LimitLoad<Dim>& at, Vertex<Dim>& vertex, ContactId opens, double error) const {
+void FirstOrderSide::set_limit(LimitLoad& at, Vertex& vertex, ContactId opens, double error) const {
     at.shift = vertex.statics.zero_of(opens, at.stress());
     at.error = error;
     at.stress_rate = vertex.perturbed->statics.limit_rate(opens, at.stress(), error);
 }
 
-template <int Dim>
-std::optional<Failure> FirstOrderSide<Dim>::settle_end(Vertex<Dim>& vertex, const LimitLoad<Dim>& limit,
-                                                       const std::vector<ContactId>& zeros,
-                                                       const ZeroGaps& touching) const {
+std::optional<Failure> FirstOrderSide::settle_end(Vertex& vertex, const LimitLoad& limit,
+                                                  const std::vector<ContactId>& zeros, const ZeroGaps& touching) const {
     auto failure = settle_load(vertex, limit, zeros);
     return failure ? failure : settle_touching(vertex, touching);
 }
 
-template <int Dim> void FirstOrderSide<Dim>::store(const Vertex<Dim>& vertex, EquilibriumRecord<Dim>& record) const {
+void FirstOrderSide::store(const Vertex& vertex, EquilibriumRecord& record) const {
     record.touching = static_cast<int>(vertex.perturbed->touching.size());
     RadiusPerturbation& stored = *state_.perturbation;
     stored.open = vertex.perturbed->touching;
@@ -153,14 +146,11 @@ template <int Dim> void FirstOrderSide<Dim>::store(const Vertex<Dim>& vertex, Eq
     }
 }
 
-template <int Dim> std::unique_ptr<const TieSettling<Dim>> tie_settling(State<Dim>& state, const RunOptions& options) {
+std::unique_ptr<const TieSettling> tie_settling(State& state, const RunOptions& options) {
     if (options.at_first_order()) {
-        return std::make_unique<const FirstOrderSide<Dim>>(state, options.ties_seed, options.chooses());
+        return std::make_unique<const FirstOrderSide>(state, options.ties_seed, options.chooses());
     }
-    return std::make_unique<const TieSettling<Dim>>();
+    return std::make_unique<const TieSettling>();
 }
-
-template class FirstOrderSide<2>;
-template std::unique_ptr<const TieSettling<2>> tie_settling<2>(State<2>&, const RunOptions&);
 
 } // namespace isostat

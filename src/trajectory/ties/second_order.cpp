@@ -22,8 +22,7 @@ struct Sharer {
 
 /// With rattlers that move the infinitesimal loads decide, and the finite ones only among contacts that bear these.
 /// `may_leave`: per contact.
-template <int Dim>
-std::vector<Sharer> sharers(const Vertex<Dim>& from, const Opening& opening, const Contact& pair, double stress,
+std::vector<Sharer> sharers(const Vertex& from, const Opening& opening, const Contact& pair, double stress,
                             const std::vector<bool>& may_leave) {
     constexpr double seen = 1e-8; // a share that is not: another contact gives way
     const std::vector<double> shares = from.perturbed->first.shares(pair);
@@ -53,8 +52,7 @@ std::vector<Sharer> sharers(const Vertex<Dim>& from, const Opening& opening, con
 }
 
 /// Of those the one that bears least; of quotients that are not told apart the first by name. \pre there is one
-template <int Dim>
-ListExchange exchange_for(const Vertex<Dim>& from, const std::vector<Sharer>& all, TieDecision decision) {
+ListExchange exchange_for(const Vertex& from, const std::vector<Sharer>& all, TieDecision decision) {
     const auto& contacts = from.structure.contacts();
     const auto unbeaten = [&](const Sharer& a) {
         return std::none_of(all.begin(), all.end(),
@@ -72,11 +70,10 @@ ListExchange exchange_for(const Vertex<Dim>& from, const std::vector<Sharer>& al
 }
 
 /// Rates of gaps, a row for each contact; nothing for walls that cannot move.
-template <int Dim>
-Eigen::MatrixXd rates_of(const Packing<Dim>& at, const DofMap<Dim>& dofs, const std::vector<Contact>& contacts) {
+Eigen::MatrixXd rates_of(const Packing& at, const DofMap& dofs, const std::vector<Contact>& contacts) {
     Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(contacts.size()), dofs.dof_count());
     for (std::size_t l = 0; l < contacts.size(); ++l) {
-        const GapGradient<Dim> g = gap_gradient(at, contacts[l]);
+        const GapGradient g = gap_gradient(at, contacts[l]);
         for (std::size_t k = 0; k < static_cast<std::size_t>(g.count); ++k) {
             const int dof = dofs.dof_of(static_cast<std::size_t>(g.coordinate[k]));
             if (dof >= 0) {
@@ -114,22 +111,20 @@ std::vector<bool> not_zero(const Eigen::MatrixXd& m) {
 
 } // namespace
 
-template <int Dim>
-Result<ListExchange> give_way(const Vertex<Dim>& from, const Opening& opening, const BentPair& bent, double stress) {
+Result<ListExchange> give_way(const Vertex& from, const Opening& opening, const BentPair& bent, double stress) {
     const auto& contacts = from.structure.contacts();
     const std::vector<Sharer> all = sharers(from, opening, bent.pair, stress, std::vector<bool>(contacts.size(), true));
     if (all.empty()) {
         return failed(FailureKind::undecided,
                       "{} touch without being a contact, and would overlap when {} opens, at second order; no contact "
                       "is proved to give way",
-                      named<Dim>(bent.pair), named<Dim>(contacts[opening.contact.index()]));
+                      named(bent.pair), named(contacts[opening.contact.index()]));
     }
     const double zero = std::abs(bent.rate.value) + bent.rate.radius;
     return exchange_for(from, all, {"second order", bent.pair, bent.bend, {}, {}, std::log2(zero), 0});
 }
 
-template <int Dim>
-std::optional<ListExchange> list_for_the_end(const Vertex<Dim>& from, const ArcProposal<Dim>& arc, double stress) {
+std::optional<ListExchange> list_for_the_end(const Vertex& from, const ArcProposal& arc, double stress) {
     constexpr std::size_t most_contacts = 1000; // of a dense matrix
     const ContactId opened = arc.opening.contact;
     std::vector<Contact> contacts = from.structure.contacts();
@@ -156,8 +151,5 @@ std::optional<ListExchange> list_for_the_end(const Vertex<Dim>& from, const ArcP
     }
     return {};
 }
-
-template Result<ListExchange> give_way<2>(const Vertex<2>&, const Opening&, const BentPair&, double);
-template std::optional<ListExchange> list_for_the_end<2>(const Vertex<2>&, const ArcProposal<2>&, double);
 
 } // namespace isostat

@@ -27,17 +27,12 @@ struct ListExchange {
 /// that are not told apart that of the first contact by name. Contacts in tension give way only where there is no
 /// other. `opening`: what the motion opens, no held coordinate. Failure: `undecided`, no share is proved positive.
 /// Cost: one solve, and one per contact that has a share.
-template <int Dim>
-Result<ListExchange> give_way(const Vertex<Dim>& from, const Opening& opening, const BentPair& bent, double stress);
+Result<ListExchange> give_way(const Vertex& from, const Opening& opening, const BentPair& bent, double stress);
 
 /// Another list for an arc that was followed and whose contacts are dependent where it ends, as far as doubles tell: a
 /// pair that rests, or is taken to, takes the place of a contact that bears a self-stress there. One exchange; the rank
 /// grows by 1. The first pair by name that can; what gives way to it is chosen as in `give_way`. Nothing: no pair does,
 /// a held coordinate opens, or there are more than 1000 contacts. Cost: two dense factorisations, and of `give_way`.
-template <int Dim>
-std::optional<ListExchange> list_for_the_end(const Vertex<Dim>& from, const ArcProposal<Dim>& arc, double stress);
-
-extern template std::optional<ListExchange> list_for_the_end<2>(const Vertex<2>&, const ArcProposal<2>&, double);
-extern template Result<ListExchange> give_way<2>(const Vertex<2>&, const Opening&, const BentPair&, double);
+std::optional<ListExchange> list_for_the_end(const Vertex& from, const ArcProposal& arc, double stress);
 
 } // namespace isostat

@@ -58,9 +58,9 @@ bool vanishes(const Enclosure& rate) {
 }
 
 /// First-order terms of a vertex: in double, then with more bits where that does not tell.
-template <int Dim> class Terms {
+class Terms {
   public:
-    explicit Terms(const Vertex<Dim>& vertex)
+    explicit Terms(const Vertex& vertex)
         : first_(vertex.perturbed->first), rho_(*vertex.perturbed->rho),
           precise_(vertex.packing, vertex.structure, vertex.factorisation, vertex.inverse, vertex.ladder) {}
 
@@ -91,9 +91,9 @@ template <int Dim> class Terms {
     }
 
   private:
-    const FirstOrder<Dim>& first_;
+    const FirstOrder& first_;
     const std::vector<double>& rho_;
-    PreciseFirstOrder<Dim> precise_;
+    PreciseFirstOrder precise_;
 };
 
 struct Closing {
@@ -125,7 +125,7 @@ Result<Contact> first_of(const std::vector<Closing>& closing, bool choose, std::
                 return failed(FailureKind::undecided,
                               "tied at first order too: {} and {} touch, and close again after ways of eps "
                               "({}) and eps ({})",
-                              named<2>(first->contact), named<2>(other.contact), shown(first->way), shown(other.way));
+                              named(first->contact), named(other.contact), shown(first->way), shown(other.way));
             }
             step.choice = TieChoice::names;
         }
@@ -139,13 +139,13 @@ Result<Contact> first_of(const std::vector<Closing>& closing, bool choose, std::
 
 } // namespace
 
-template <int Dim> Result<Departure<Dim>> depart(const Vertex<Dim>& from, ContactId opened, int direction) {
-    Departure<Dim> departure;
+Result<Departure> depart(const Vertex& from, ContactId opened, int direction) {
+    Departure departure;
     std::vector<Closing> closing;
     std::vector<TieDecision> at_rest;
     const bool chooses = from.perturbed->statics.chooses();
     const bool held = from.structure.contacts()[opened.index()].kind == ContactKind::held;
-    Terms<Dim> terms(from);
+    Terms terms(from);
     for (const auto& [contact, c] : from.perturbed->touching) {
         const Enclosure rate = terms.rate(opened, direction, contact);
         if (rate.value == 0 && rate.radius == 0) {
@@ -172,7 +172,7 @@ template <int Dim> Result<Departure<Dim>> depart(const Vertex<Dim>& from, Contac
             return failed(FailureKind::undecided,
                           "{} touch without being a contact, and the rate of their gap when {} opens is "
                           "not told from 0: {}; pairs that move alike are not followed at first order{}",
-                          named<Dim>(contact), named<Dim>(from.structure.contacts()[opened.index()]), shown(rate),
+                          named(contact), named(from.structure.contacts()[opened.index()]), shown(rate),
                           asks ? words(" (second derivative {})", shown(bend)) : Words());
         }
     }
@@ -203,14 +203,13 @@ struct TouchingPair {
     Enclosure back; ///< rate of its gap on the way back, where it did not
 };
 
-template <int Dim>
-Result<TouchingPair> touching_pair(Terms<Dim>& terms, bool chooses, const Contact& closed, const Contact& contact,
+Result<TouchingPair> touching_pair(Terms& terms, bool chooses, const Contact& closed, const Contact& contact,
                                    const Way& way) {
     const Enclosure c = terms.gap(contact);
     if (!c.decided() && !chooses) {
         return failed(FailureKind::undecided,
-                      "{} touch where {} closes, and their first-order gap is not told from 0: {}", named<Dim>(contact),
-                      named<Dim>(closed), shown(c));
+                      "{} touch where {} closes, and their first-order gap is not told from 0: {}", named(contact),
+                      named(closed), shown(c));
     }
     if (way.stays || std::find(way.resting.begin(), way.resting.end(), contact) != way.resting.end()) {
         return TouchingPair{c, true, {}};
@@ -223,7 +222,7 @@ Result<TouchingPair> touching_pair(Terms<Dim>& terms, bool chooses, const Contac
         return failed(FailureKind::undecided,
                       "{} touch where {} closes, but are not proved to close there: the rate of their gap is {} times "
                       "that of the other{}; grazing is not followed at first order",
-                      named<Dim>(contact), named<Dim>(closed), shown(back),
+                      named(contact), named(closed), shown(back),
                       vanishes(back) ? words(", the second derivative {}", shown(bend)) : Words());
     }
     return TouchingPair{c, grazes, back};
@@ -231,14 +230,14 @@ Result<TouchingPair> touching_pair(Terms<Dim>& terms, bool chooses, const Contac
 
 } // namespace
 
-template <int Dim> Result<Arrival<Dim>> arrive(Vertex<Dim>& to, const ZeroGaps& zero, const Way& way) {
-    Arrival<Dim> arrival;
-    FirstOrderVertex<Dim>& side = *to.perturbed;
+Result<Arrival> arrive(Vertex& to, const ZeroGaps& zero, const Way& way) {
+    Arrival arrival;
+    FirstOrderVertex& side = *to.perturbed;
     const bool chooses = side.statics.chooses();
     side.touching.clear();
     side.zero = zero;
     const Contact& closed = to.structure.contacts()[way.slot.index()];
-    Terms<Dim> terms(to);
+    Terms terms(to);
     double first = 0;                // where on the way, of those that closed before; in eps
     std::optional<Failure> doubtful; // of this end: another may come before
     for (const auto& [contact, order] : zero) {
@@ -251,8 +250,8 @@ template <int Dim> Result<Arrival<Dim>> arrive(Vertex<Dim>& to, const ZeroGaps& 
         const bool may_overlap = chooses && (way.stays ? way.overlapped : touched);
         if (c.negative() && !may_overlap) {
             if (touched && !way.stays) {
-                doubtful = failed(FailureKind::undecided, "{} at rest overlap at first order: {}", named<Dim>(contact),
-                                  shown(c));
+                doubtful =
+                    failed(FailureKind::undecided, "{} at rest overlap at first order: {}", named(contact), shown(c));
                 continue;
             }
             const double where = touched ? c.value : c.value / back.value; // P3
@@ -271,20 +270,20 @@ template <int Dim> Result<Arrival<Dim>> arrive(Vertex<Dim>& to, const ZeroGaps& 
     return arrival;
 }
 
-template <int Dim> std::optional<Failure> settle_touching(Vertex<Dim>& vertex, const ZeroGaps& zero) {
-    FirstOrderVertex<Dim>& side = *vertex.perturbed;
+std::optional<Failure> settle_touching(Vertex& vertex, const ZeroGaps& zero) {
+    FirstOrderVertex& side = *vertex.perturbed;
     side.touching.clear();
     side.zero = zero;
     Words names;
-    Terms<Dim> terms(vertex);
+    Terms terms(vertex);
     for (const auto& [contact, order] : zero) {
         const Enclosure c = terms.gap(contact);
         if (!c.decided() && !side.statics.chooses()) {
             return failed(FailureKind::undecided, "{} touch, and their first-order gap is not told from 0: {}",
-                          named<Dim>(contact), shown(c));
+                          named(contact), shown(c));
         }
         if (c.negative() && !side.statics.chooses()) {
-            names += words("{}{}", names.empty() ? "" : ", ", named<Dim>(contact));
+            names += words("{}{}", names.empty() ? "" : ", ", named(contact));
         }
         side.touching.emplace_back(contact, c);
     }
@@ -293,9 +292,5 @@ template <int Dim> std::optional<Failure> settle_touching(Vertex<Dim>& vertex, c
     }
     return std::nullopt;
 }
-
-template Result<Departure<2>> depart<2>(const Vertex<2>&, ContactId, int);
-template Result<Arrival<2>> arrive<2>(Vertex<2>&, const ZeroGaps&, const Way&);
-template std::optional<Failure> settle_touching<2>(Vertex<2>&, const ZeroGaps&);
 
 } // namespace isostat

@@ -7,7 +7,7 @@
 namespace isostat {
 
 /// What becomes of the pairs that touch at the start of an arc besides the contacts.
-template <int Dim> struct Departure {
+struct Departure {
     std::vector<Contact> leaving; ///< proved to separate at once
     std::vector<Contact>
         resting; ///< they keep touching: grains of one body (R1), or where ties are chosen a linkage (R2)
@@ -23,7 +23,7 @@ template <int Dim> struct Departure {
 };
 /// Failure: `undecided` when a rate is not told from 0, or two pairs close at once to first order; where ties are
 /// chosen the first of these by name closes (C1).
-template <int Dim> Result<Departure<Dim>> depart(const Vertex<Dim>& from, ContactId opened, int direction);
+Result<Departure> depart(const Vertex& from, ContactId opened, int direction);
 
 /// The way that ends at a vertex.
 struct Way {
@@ -37,27 +37,23 @@ struct Way {
 /// there, not to graze. Where ties are chosen a pair whose first-order gap is not told from 0 stays watched, and so
 /// does one that grazes, as far as its second derivative is proved positive, or touched all along, whatever its
 /// first-order gap is (C1). Success: nothing, or the pair that closed first of those that did before the new contact.
-template <int Dim> struct Arrival {
+struct Arrival {
     std::optional<Contact> earlier;
     std::vector<TieDecision> settled;
 };
-template <int Dim> Result<Arrival<Dim>> arrive(Vertex<Dim>& to, const ZeroGaps& zero, const Way& way);
+Result<Arrival> arrive(Vertex& to, const ZeroGaps& zero, const Way& way);
 
 /// At a start: `touching` is set. Failure, where ties are not chosen: `overlap` naming the pairs that overlap at first
 /// order.
-template <int Dim> std::optional<Failure> settle_touching(Vertex<Dim>& vertex, const ZeroGaps& zero);
+std::optional<Failure> settle_touching(Vertex& vertex, const ZeroGaps& zero);
 
 /// What was settled at a vertex since the last call goes into a record.
-template <int Dim> void take_log(Vertex<Dim>& vertex, std::vector<TieDecision>& into) {
+inline void take_log(Vertex& vertex, std::vector<TieDecision>& into) {
     if (vertex.perturbed) {
         std::vector<TieDecision>& log = vertex.perturbed->statics.log;
         into.insert(into.end(), log.begin(), log.end());
         log.clear();
     }
 }
-
-extern template Result<Departure<2>> depart<2>(const Vertex<2>&, ContactId, int);
-extern template Result<Arrival<2>> arrive<2>(Vertex<2>&, const ZeroGaps&, const Way&);
-extern template std::optional<Failure> settle_touching<2>(Vertex<2>&, const ZeroGaps&);
 
 } // namespace isostat

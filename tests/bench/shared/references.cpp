@@ -71,8 +71,8 @@ void UmfpackAnalysis::factorise() const {
     umfpack_di_free_numeric(&numeric);
 }
 
-Matrix<double> matrix_of(const isostat::State<2>& state) {
-    return isostat::contact_matrix(state.packing, isostat::DofMap<2>(state.packing), state.contacts);
+Matrix<double> matrix_of(const isostat::State& state) {
+    return isostat::contact_matrix(state.packing, isostat::DofMap(state.packing), state.contacts);
 }
 
 } // namespace bench

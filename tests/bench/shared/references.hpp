@@ -39,6 +39,6 @@ class UmfpackAnalysis {
 };
 
 /// Of the contacts of a state.
-isostat::sparse::Matrix<double> matrix_of(const isostat::State<2>& state);
+isostat::sparse::Matrix<double> matrix_of(const isostat::State& state);
 
 } // namespace bench

@@ -17,16 +17,16 @@ using namespace isostat;
 
 namespace bench {
 
-std::optional<State<2>> start(const std::string& source) {
+std::optional<State> start(const std::string& source) {
     if (source.find_first_not_of("0123456789:") != std::string::npos) {
-        return read_state<2>(source).state;
+        return read_state(source).state;
     }
     PreparationOptions options;
     options.disks = std::atoi(source.c_str());
     if (const std::size_t colon = source.find(':'); colon != std::string::npos) {
         options.seed = std::strtoull(source.c_str() + colon + 1, nullptr, 10);
     }
-    PreparationReport<2> report;
+    PreparationReport report;
     auto prepared = prepare(options, report);
     if (!prepared.ok()) {
         fmt::print(stderr, "{}: not prepared: {}\n", source, prepared.failure().message());
@@ -37,16 +37,16 @@ std::optional<State<2>> start(const std::string& source) {
 
 namespace {
 
-class Watcher final : public RunObserver<2> {
+class Watcher final : public RunObserver {
   public:
     Watcher(const StretchOptions& options, Stretch& stretch) : options_(options), stretch_(stretch) {}
-    void on_arc(const ArcRecord<2>& arc) override {
+    void on_arc(const ArcRecord& arc) override {
         stretch_.arcs.push_back(arc);
         if (options_.arcs > 0 && arc.step >= options_.arcs) {
             stop = true;
         }
     }
-    void on_equilibrium(const EquilibriumRecord<2>&, const State<2>& state, const std::vector<double>&) override {
+    void on_equilibrium(const EquilibriumRecord&, const State& state, const std::vector<double>&) override {
         const double begin = time();
         const double process_begin = process_milliseconds();
         if (seen_++ % options_.reference_every == 0) {
@@ -83,10 +83,10 @@ template <class Number> Sample collect(const std::vector<Stretch>& runs, Number 
 
 } // namespace
 
-Stretch run_stretch(const State<2>& from, const StretchOptions& options) {
+Stretch run_stretch(const State& from, const StretchOptions& options) {
     Stretch out;
     Watcher watcher(options, out);
-    State<2> state = from;
+    State state = from;
     Segment segment;
     segment.equilibria = options.equilibria;
     RunOptions run;
@@ -95,7 +95,7 @@ Stretch run_stretch(const State<2>& from, const StretchOptions& options) {
     set_threads(options.threads);
     const double begin = watcher.time();
     const double process_begin = process_milliseconds();
-    const SegmentOutcome outcome = run_segment<2>(state, segment, 0, run, out.counters, watcher);
+    const SegmentOutcome outcome = run_segment(state, segment, 0, run, out.counters, watcher);
     const auto arcs = static_cast<double>(std::max(1L, out.counters.steps));
     out.milliseconds_per_arc = (watcher.time() - begin - watcher.lost) / arcs;
     out.cpu_per_arc = (process_milliseconds() - process_begin - watcher.process_lost) / arcs;

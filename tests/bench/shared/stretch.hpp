@@ -15,7 +15,7 @@ namespace bench {
 
 /// What a word of the command line names: a number of disks, prepared with seed 1 ("400") or another ("400:7"), or a
 /// state file. Says why when there is nothing.
-std::optional<isostat::State<2>> start(const std::string& source);
+std::optional<isostat::State> start(const std::string& source);
 
 struct StretchOptions {
     isostat::CertifyLevel level = isostat::CertifyLevel::decisions;
@@ -24,13 +24,13 @@ struct StretchOptions {
     int threads = 1;          ///< one: CPU time of the thread; more: time on the wall
     int reference_every = 10; ///< equilibria from one measurement of the units to the next
     /// Called at every equilibrium; its time is not the run's.
-    std::function<void(const isostat::State<2>&)> visit;
+    std::function<void(const isostat::State&)> visit;
 };
 
 struct Stretch {
     isostat::RunCounters counters;
-    std::vector<isostat::ArcRecord<2>> arcs;
-    isostat::State<2> last;          ///< last equilibrium where the units were measured
+    std::vector<isostat::ArcRecord> arcs;
+    isostat::State last;             ///< last equilibrium where the units were measured
     double milliseconds_per_arc = 0; ///< all of the run, equilibria included, shared out among its arcs
     double cpu_per_arc = 0;          ///< the same of all threads together, CPU time
     double klu = 0, umfpack = 0;     ///< medians over the equilibria: one analysis + factorisation, milliseconds
@@ -41,7 +41,7 @@ struct Stretch {
 bool same_events(const Stretch& a, const Stretch& b);
 
 /// The time that the units and `visit` take is not counted. With several threads the units are still those of one.
-Stretch run_stretch(const isostat::State<2>& from, const StretchOptions& options);
+Stretch run_stretch(const isostat::State& from, const StretchOptions& options);
 
 /// Repeats of the same stretch.
 struct Stretches {

@@ -58,7 +58,7 @@ std::vector<double> velocity(const ReferenceArc& arc, const std::vector<double>&
     return {v.data(), v.data() + n};
 }
 
-double gap_rate(const Packing<2>& packing, const Contact& contact, const std::vector<double>& v) {
+double gap_rate(const Packing& packing, const Contact& contact, const std::vector<double>& v) {
     const auto g = gap_gradient(packing, contact);
     double sum = 0;
     for (int e = 0; e < g.count; ++e) {
@@ -156,15 +156,15 @@ bool predictor_steps(const ReferencePath& path, int n, Table& table) {
         int wrong = 0;
         int failed = 0;
         for (const ReferenceArc& arc : path.arcs) {
-            const auto structure = IsostaticStructure<2>::prove(arc.start, arc.contacts);
-            CandidateList<2> candidates = find_candidates(arc.start, candidate_fraction);
+            const auto structure = IsostaticStructure::prove(arc.start, arc.contacts);
+            CandidateList candidates = find_candidates(arc.start, candidate_fraction);
             ArcOptions options;
             options.step_fraction = fraction;
-            const PowerLoad<2> power{&arc.load, arc.infinitesimal, arc.at_limit};
+            const PowerLoad power{&arc.load, arc.infinitesimal, arc.at_limit};
             const double begin = cpu_seconds();
             const Factorisation factorisation(structure.value());
-            const auto followed = follow_arc(ArcOrigin<2>{arc.start, structure.value(), factorisation, arc.opened},
-                                             power, candidates, options);
+            const auto followed = follow_arc(ArcOrigin{arc.start, structure.value(), factorisation, arc.opened}, power,
+                                             candidates, options);
             time += cpu_seconds() - begin;
             if (!followed.ok()) {
                 ++failed;
@@ -264,11 +264,11 @@ void integration(const ReferencePath& path, int n, bool quick, Table& table) {
             int wrong = 0;
             for (const ReferenceArc* arc : arcs) {
                 const double begin = cpu_seconds();
-                Packing<2> here = arc->start;
+                Packing here = arc->start;
                 const double h = step * here.min_radius();
                 bool reached = false;
                 for (int k = 0; k < 4000 && !reached; ++k) {
-                    Packing<2> next = here;
+                    Packing next = here;
                     next.q = stepped(*arc, here.q, h, scheme, solves);
                     if (next.q.empty()) {
                         break;
@@ -283,7 +283,7 @@ void integration(const ReferencePath& path, int n, bool quick, Table& table) {
                     double at_high = gap(next, arc->closed);
                     for (int secant = 0; secant < 8 && std::abs(at_high) > 1e-14; ++secant) {
                         const double s = low + (high - low) * at_low / (at_low - at_high);
-                        Packing<2> trial = here;
+                        Packing trial = here;
                         trial.q = stepped(*arc, here.q, s, scheme, solves);
                         if (trial.q.empty()) {
                             break;
@@ -357,9 +357,9 @@ bool stresses(const ReferencePath& path, int n, Table& table) {
             continue;
         }
         const auto& limit = path.limits[static_cast<std::size_t>(arc.limit)];
-        const State<2>& state = path.states[static_cast<std::size_t>(arc.equilibrium)];
+        const State& state = path.states[static_cast<std::size_t>(arc.equilibrium)];
         const ContactId opened = arc.limit_contact;
-        const auto structure = IsostaticStructure<2>::prove(state.packing, state.contacts);
+        const auto structure = IsostaticStructure::prove(state.packing, state.contacts);
         const Factorisation factorisation(structure.value());
         InverseBoundCache cache;
         const InverseBound inverse = bound_inverse(structure.value(), factorisation, cache);
@@ -374,8 +374,8 @@ bool stresses(const ReferencePath& path, int n, Table& table) {
             options.max_bits = 256;
             options.exact_size = 0;
             const double begin = cpu_seconds();
-            ForceLadder<2> ladder(state.packing, structure.value(), factorisation, inverse, options,
-                                  truth ? &vertex : nullptr);
+            ForceLadder ladder(state.packing, structure.value(), factorisation, inverse, options,
+                               truth ? &vertex : nullptr);
             const int f0 = ladder.add(fixed);
             const int f1 = ladder.add(unit);
             double spent = cpu_seconds() - begin;

@@ -101,12 +101,12 @@ std::string plain(double x) {
     return std::isnan(x) ? std::string("–") : fmt::format("{:.3g}", x);
 }
 
-isostat::State<2> prepared(int disks, std::uint64_t seed) {
+isostat::State prepared(int disks, std::uint64_t seed) {
     isostat::PreparationOptions options;
     options.disks = disks;
     options.seed = seed;
-    isostat::PreparationReport<2> report;
-    auto state = isostat::prepare<2>(options, report);
+    isostat::PreparationReport report;
+    auto state = isostat::prepare(options, report);
     if (!state.ok()) {
         throw std::runtime_error(fmt::format("{} disks, seed {}: {}", disks, seed, state.failure().message()));
     }

@@ -53,7 +53,7 @@ std::string number(double x);
 /// "12.3" with three significant digits; "–" for NaN.
 std::string plain(double x);
 
-isostat::State<2> prepared(int disks, std::uint64_t seed);
+isostat::State prepared(int disks, std::uint64_t seed);
 
 /// Each part fills its tables; false when a check of the part fails (an error above its proved bound...).
 bool events_and_stresses(const Settings& settings);

@@ -60,22 +60,22 @@ bool small_displacements(const Settings& settings) {
         double linear_time[5] = {};
         double exact_time[5] = {};
         for (const std::uint64_t seed : settings.seeds) {
-            const State<2> start = prepared(n, seed);
+            const State start = prepared(n, seed);
             crafted::Recorder exact;
-            State<2> state = start;
+            State state = start;
             Segment segment;
             segment.equilibria = settings.drift_equilibria;
             RunCounters counters;
             const double run_begin = cpu_seconds();
-            (void)run_segment<2>(state, segment, 0, {}, counters, exact);
+            (void)run_segment(state, segment, 0, {}, counters, exact);
             const double run_time = cpu_seconds() - run_begin;
             // Exact ends of all arcs, and one linear step from every vertex.
             std::vector<std::vector<double>> ends;
-            Packing<2> here = start.packing;
+            Packing here = start.packing;
             std::vector<Contact> contacts = start.contacts;
             std::size_t equilibrium = 0;
             bool skip = false;
-            for (const ArcRecord<2>& record : exact.arcs) {
+            for (const ArcRecord& record : exact.arcs) {
                 ends.emplace_back(); // stays empty after a power turn, up to the next equilibrium
                 if (record.kind == ArcKind::limit) {
                     here = exact.states[equilibrium].packing;
@@ -87,28 +87,27 @@ bool small_displacements(const Settings& settings) {
                 if (skip) {
                     continue;
                 }
-                const auto structure = IsostaticStructure<2>::prove(here, contacts);
+                const auto structure = IsostaticStructure::prove(here, contacts);
                 if (!structure.ok()) {
                     skip = true;
                     continue;
                 }
                 const Factorisation factorisation(structure.value());
-                CandidateList<2> candidates = find_candidates(here, candidate_fraction);
+                CandidateList candidates = find_candidates(here, candidate_fraction);
                 const auto opened =
                     static_cast<int>(std::find(contacts.begin(), contacts.end(), record.opened) - contacts.begin());
                 double begin = cpu_seconds();
                 const auto event = find_linear_event(here, structure.value(), factorisation, ContactId(opened), +1,
                                                      candidates.contacts);
                 const double linear = cpu_seconds() - begin;
-                Load<2> load = start.load;
+                Load load = start.load;
                 load.stress[1] = record.stress;
                 ArcOptions options;
                 options.closes = record.closed;
-                const PowerLoad<2> power{&load, record.kind == ArcKind::rattler, record.kind == ArcKind::limit};
+                const PowerLoad power{&load, record.kind == ArcKind::rattler, record.kind == ArcKind::limit};
                 begin = cpu_seconds();
-                const auto followed =
-                    follow_arc(ArcOrigin<2>{here, structure.value(), factorisation, ContactId(opened)}, power,
-                               candidates, options);
+                const auto followed = follow_arc(ArcOrigin{here, structure.value(), factorisation, ContactId(opened)},
+                                                 power, candidates, options);
                 const double exactly = cpu_seconds() - begin;
                 if (!followed.ok() || !event.ok() || followed.value().closed != record.closed) {
                     skip = true;

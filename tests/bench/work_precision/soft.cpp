@@ -22,7 +22,7 @@ namespace {
 constexpr int load_steps = 8; ///< from the middle of one interval of loads to the middle of the next
 
 /// The rigid answer at a load: force-carrying contacts.
-std::map<Contact, double> rigid_forces(State<2> state, double stress) {
+std::map<Contact, double> rigid_forces(State state, double stress) {
     state.load.stress[1] = stress;
     const auto inspection = inspect_vertex(state);
     std::map<Contact, double> carrying;
@@ -100,19 +100,19 @@ bool soft_grains(const Settings& settings) {
                 continue;
             }
             crafted::Recorder exact;
-            State<2> state = prepared(n, seed);
-            const State<2> start = state;
+            State state = prepared(n, seed);
+            const State start = state;
             Segment segment;
             segment.equilibria = settings.soft_equilibria + 1;
             RunCounters counters;
             const double run_begin = cpu_seconds();
-            (void)run_segment<2>(state, segment, 0, {}, counters, exact);
+            (void)run_segment(state, segment, 0, {}, counters, exact);
             exact_time += cpu_seconds() - run_begin;
             exact_states += static_cast<int>(exact.equilibria.size()) - 1;
             const double reference = start.load.reference_length[1];
             for (std::size_t k = 1; k + 1 < exact.equilibria.size(); ++k) {
-                const EquilibriumRecord<2>& here = exact.equilibria[k];
-                const EquilibriumRecord<2>& next = exact.equilibria[k + 1];
+                const EquilibriumRecord& here = exact.equilibria[k];
+                const EquilibriumRecord& next = exact.equilibria[k + 1];
                 const double sigma = 0.5 * (here.stress + here.stress_high);
                 const double sigma_next = 0.5 * (next.stress + next.stress_high);
                 const auto rigid = rigid_forces(exact.states[k], sigma);
@@ -123,13 +123,13 @@ bool soft_grains(const Settings& settings) {
                 for (const double kappa : settings.stiffness_ratios) {
                     Sums& sum = sums[kappa];
                     ++sum.states;
-                    Load<2> load = exact.states[k].load;
+                    Load load = exact.states[k].load;
                     load.stress[1] = sigma;
                     SoftGrainOptions options;
                     options.stiffness_ratio = kappa;
                     options.max_steps = 3'000'000;
                     double begin = cpu_seconds();
-                    SoftGrains<2> soft(exact.states[k].packing, load, options);
+                    SoftGrains soft(exact.states[k].packing, load, options);
                     const bool relaxed = soft.relax();
                     sum.time.push_back(cpu_seconds() - begin);
                     sum.steps.push_back(static_cast<double>(soft.steps()));

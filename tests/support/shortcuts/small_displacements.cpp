@@ -31,7 +31,7 @@ class ProcessorTime {
     std::clock_t begin_;
 };
 
-template <int Dim> double rate(const GapGradient<Dim>& gradient, const std::vector<double>& v) {
+double rate(const GapGradient& gradient, const std::vector<double>& v) {
     double sum = 0;
     for (int e = 0; e < gradient.count; ++e) {
         const auto k = static_cast<std::size_t>(e);
@@ -42,8 +42,7 @@ template <int Dim> double rate(const GapGradient<Dim>& gradient, const std::vect
 
 } // namespace
 
-template <int Dim>
-Result<LinearEvent> find_linear_event(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+Result<LinearEvent> find_linear_event(const Packing& packing, const IsostaticStructure& structure,
                                       const Factorisation& factorisation, ContactId opened, int direction,
                                       const std::vector<Contact>& pairs, const std::vector<double>& gaps) {
     std::vector<double> v(static_cast<std::size_t>(structure.size()), 0.0);
@@ -77,7 +76,7 @@ Result<LinearEvent> find_linear_event(const Packing<Dim>& packing, const Isostat
     }
     if (!std::isfinite(event.length)) {
         return failed(FailureKind::unbounded, "no listed gap falls when {} opens",
-                      named<Dim>(structure.contacts()[opened.index()]));
+                      named(structure.contacts()[opened.index()]));
     }
     for (const double c : event.velocity) {
         event.displacement.push_back(event.length * c);
@@ -88,14 +87,14 @@ Result<LinearEvent> find_linear_event(const Packing<Dim>& packing, const Isostat
 namespace {
 
 /// Geometry and gaps of the approximation.
-template <int Dim> struct Approximation {
-    Packing<Dim> geometry;      ///< where normals are taken
-    Packing<Dim> grains;        ///< where the grains are
+struct Approximation {
+    Packing geometry;           ///< where normals are taken
+    Packing grains;             ///< where the grains are
     std::vector<Contact> pairs; ///< with the gaps of `linear`
     std::vector<double> linear; ///< empty: those of the geometry
 };
 
-template <int Dim> std::vector<Contact> pairs_near(const Packing<Dim>& packing, std::vector<Contact> contacts) {
+std::vector<Contact> pairs_near(const Packing& packing, std::vector<Contact> contacts) {
     std::vector<Contact> pairs = find_candidates(packing, candidate_fraction).contacts;
     pairs.insert(pairs.end(), contacts.begin(), contacts.end());
     std::sort(pairs.begin(), pairs.end());
@@ -104,9 +103,9 @@ template <int Dim> std::vector<Contact> pairs_near(const Packing<Dim>& packing, 
 }
 
 /// Loading with linear gaps, an arc after the other.
-template <int Dim> class LinearLoading {
+class LinearLoading {
   public:
-    LinearLoading(const State<Dim>& start, LinearGeometry geometry)
+    LinearLoading(const State& start, LinearGeometry geometry)
         : at_{start.packing, start.packing, {}, {}}, contacts_(start.contacts), load_(start.load),
           reference_(start.packing.length(start.load.loaded_axis)), frozen_(geometry == LinearGeometry::frozen) {
         if (!frozen_) {
@@ -119,9 +118,9 @@ template <int Dim> class LinearLoading {
         }
     }
 
-    LinearTrajectory<Dim> run(int equilibria, long max_arcs) {
+    LinearTrajectory run(int equilibria, long max_arcs) {
         while (run_.stopped.empty() && static_cast<int>(run_.equilibria.size()) <= equilibria) {
-            auto structure = IsostaticStructure<Dim>::prove(at_.geometry, contacts_);
+            auto structure = IsostaticStructure::prove(at_.geometry, contacts_);
             if (!structure.ok()) {
                 run_.stopped = structure.failure().message();
                 break;
@@ -147,10 +146,10 @@ template <int Dim> class LinearLoading {
   private:
     /// What opens: a tension; at an equilibrium, which is recorded, the contact whose force vanishes first. Nothing:
     /// the run stops.
-    std::optional<Opening> open(const IsostaticStructure<Dim>& structure, const Factorisation& factorisation) {
+    std::optional<Opening> open(const IsostaticStructure& structure, const Factorisation& factorisation) {
         const InverseBound inverse = bound_inverse(structure, factorisation, cache_);
         const ProcessorTime time(run_.seconds);
-        Statics<Dim> statics(at_.geometry, load_, structure, factorisation, inverse);
+        Statics statics(at_.geometry, load_, structure, factorisation, inverse);
         const auto decision =
             decide_opening(statics, stress(), OpeningRule::most_negative, ContactId(), std::uint64_t{0});
         if (!decision.ok()) {
@@ -160,7 +159,7 @@ template <int Dim> class LinearLoading {
         return decision.value().opening ? decision.value().opening : open_at_limit(statics);
     }
 
-    std::optional<Opening> open_at_limit(Statics<Dim>& statics) {
+    std::optional<Opening> open_at_limit(Statics& statics) {
         auto limit = find_limit(statics, stress(), +1);
         run_.equilibria.push_back({stress(), std::numeric_limits<double>::infinity(),
                                    (reference_ - at_.grains.length(load_.loaded_axis)) / reference_, arcs_});
@@ -182,7 +181,7 @@ template <int Dim> class LinearLoading {
     }
 
     /// One arc.
-    void move(const IsostaticStructure<Dim>& structure, const Factorisation& factorisation, const Opening& opening) {
+    void move(const IsostaticStructure& structure, const Factorisation& factorisation, const Opening& opening) {
         ++arcs_;
         const ProcessorTime time(run_.seconds);
         if (!frozen_) {
@@ -217,10 +216,10 @@ template <int Dim> class LinearLoading {
 
     double& stress() { return load_.loaded_stress(); }
 
-    LinearTrajectory<Dim> run_;
-    Approximation<Dim> at_;
+    LinearTrajectory run_;
+    Approximation at_;
     std::vector<Contact> contacts_;
-    Load<Dim> load_;
+    Load load_;
     double reference_; ///< length along the loaded axis at the start
     bool frozen_;
     InverseBoundCache cache_;
@@ -229,16 +228,9 @@ template <int Dim> class LinearLoading {
 
 } // namespace
 
-template <int Dim>
-LinearTrajectory<Dim> load_with_linear_gaps(const State<Dim>& start, LinearGeometry geometry, int equilibria,
-                                            long max_arcs) {
+LinearTrajectory load_with_linear_gaps(const State& start, LinearGeometry geometry, int equilibria, long max_arcs) {
     require_floating_point();
-    return LinearLoading<Dim>(start, geometry).run(equilibria, max_arcs);
+    return LinearLoading(start, geometry).run(equilibria, max_arcs);
 }
-
-template Result<LinearEvent> find_linear_event<2>(const Packing<2>&, const IsostaticStructure<2>&, const Factorisation&,
-                                                  ContactId, int, const std::vector<Contact>&,
-                                                  const std::vector<double>&);
-template LinearTrajectory<2> load_with_linear_gaps<2>(const State<2>&, LinearGeometry, int, long);
 
 } // namespace isostat

@@ -25,8 +25,7 @@ struct LinearEvent {
 /// velocity of the start and closes the first gap h + s dh/ds = 0, s > 0. `gaps` replaces the gaps h of `pairs` (empty:
 /// those of `packing`); pairs of the structure are skipped. Failure: `unbounded` when no listed gap falls.
 /// Cost: one triangular solve and O(pairs).
-template <int Dim>
-Result<LinearEvent> find_linear_event(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+Result<LinearEvent> find_linear_event(const Packing& packing, const IsostaticStructure& structure,
                                       const Factorisation& factorisation, ContactId opened, int direction,
                                       const std::vector<Contact>& pairs, const std::vector<double>& gaps = {});
 
@@ -56,7 +55,7 @@ struct LinearEquilibrium {
 };
 
 /// A trajectory in the approximation, with the counters of its cost.
-template <int Dim> struct LinearTrajectory {
+struct LinearTrajectory {
     std::vector<LinearArc> arcs;
     std::vector<LinearEquilibrium> equilibria;
     std::vector<std::vector<double>> coordinates; ///< q at the end of each arc
@@ -68,13 +67,6 @@ template <int Dim> struct LinearTrajectory {
 /// most negative force, ties by the infinitesimal loads) at the approximate geometry. Pairs are those with gap below
 /// 0.8 of the smallest radius at the start (`frozen`) or where the grains are (`moved`). At most `max_arcs` arcs in
 /// all. The decisions have the bounds of `Statics` for the approximate matrix, which say nothing about the true one.
-template <int Dim>
-LinearTrajectory<Dim> load_with_linear_gaps(const State<Dim>& start, LinearGeometry geometry, int equilibria,
-                                            long max_arcs);
-
-extern template Result<LinearEvent> find_linear_event<2>(const Packing<2>&, const IsostaticStructure<2>&,
-                                                         const Factorisation&, ContactId, int,
-                                                         const std::vector<Contact>&, const std::vector<double>&);
-extern template LinearTrajectory<2> load_with_linear_gaps<2>(const State<2>&, LinearGeometry, int, long);
+LinearTrajectory load_with_linear_gaps(const State& start, LinearGeometry geometry, int equilibria, long max_arcs);
 
 } // namespace isostat

@@ -28,16 +28,15 @@ void require_positive(const char* field, double value) {
 } // namespace
 
 // Units inside: mass of a disk m = K, so that sqrt(m / K) = 1 and accelerations are overlaps.
-template <int Dim>
-SoftGrains<Dim>::SoftGrains(const Packing<Dim>& packing, const Load<Dim>& load, const SoftGrainOptions& options)
+SoftGrains::SoftGrains(const Packing& packing, const Load& load, const SoftGrainOptions& options)
     : packing_(packing), origin_(packing.q), velocity_(packing.q.size(), 0.0), force_(packing.q.size(), 0.0),
       options_(options) {
     require_floating_point();
-    static_assert(Dim == 2, "stress x length is a force");
+    static_assert(plane == 2, "stress x length is a force");
     require_positive("stiffness ratio", options.stiffness_ratio);
     require_positive("step fraction", options.step_fraction);
     for (const double s : load.stress) {
-        pressure_ += std::abs(s) / Dim;
+        pressure_ += std::abs(s) / plane;
     }
     require_positive("mean stress", pressure_);
     stiffness_ = options.stiffness_ratio * pressure_;
@@ -51,20 +50,20 @@ SoftGrains<Dim>::SoftGrains(const Packing<Dim>& packing, const Load<Dim>& load, 
     for (const double r : packing.radius) {
         mean_diameter_ += 2 * r / static_cast<double>(n);
     }
-    const DofMap<Dim> dofs(packing);
+    const DofMap dofs(packing);
     const double wall_mass = std::max(1.0, std::sqrt(static_cast<double>(n)));
     inverse_mass_.assign(packing.q.size(), 0.0);
     for (int mu = 0; mu < dofs.dof_count(); ++mu) {
         const auto c = static_cast<std::size_t>(dofs.coordinate_of(mu));
-        inverse_mass_[c] = c < Dim * n ? 1.0 : 1 / wall_mass;
+        inverse_mass_[c] = c < plane * n ? 1.0 : 1 / wall_mass;
     }
     set_load(load);
     find_pairs();
     compute_forces(true);
 }
 
-template <int Dim> void SoftGrains<Dim>::set_load(const Load<Dim>& load) {
-    Load<Dim> dead = load;
+void SoftGrains::set_load(const Load& load) {
+    Load dead = load;
     if (load.kind == LoadKind::true_stress) {
         throw Error(ErrorKind::bad_input, "soft grains: true stresses have no potential: expected nominal ones");
     }
@@ -73,13 +72,13 @@ template <int Dim> void SoftGrains<Dim>::set_load(const Load<Dim>& load) {
     compute_forces(true);
 }
 
-template <int Dim> void SoftGrains<Dim>::find_pairs() {
+void SoftGrains::find_pairs() {
     candidates_ = find_candidates(packing_, reach_fraction);
     pairs_.clear();
     walls_.clear();
-    const auto wall_at = [&](int axis) { return Dim * packing_.disk_count() + axis; };
+    const auto wall_at = [&](int axis) { return plane * packing_.disk_count() + axis; };
     std::vector<int> degree(packing_.q.size(), 0); // of disks (at their first coordinate) and walls
-    const auto first = [](int disk) { return static_cast<std::size_t>(Dim * disk); };
+    const auto first = [](int disk) { return static_cast<std::size_t>(plane * disk); };
     for (const Contact& c : candidates_.contacts) {
         ++degree[first(c.i)];
         if (c.kind == ContactKind::disk_disk) {
@@ -88,7 +87,7 @@ template <int Dim> void SoftGrains<Dim>::find_pairs() {
         } else {
             const bool upper = c.kind == ContactKind::upper_wall;
             walls_.push_back(
-                {Dim * c.i + c.j, upper ? wall_at(c.j) : -1, packing_.radius[static_cast<std::size_t>(c.i)]});
+                {plane * c.i + c.j, upper ? wall_at(c.j) : -1, packing_.radius[static_cast<std::size_t>(c.i)]});
             degree[static_cast<std::size_t>(wall_at(c.j))] += upper ? 1 : 0;
         }
     }
@@ -99,20 +98,20 @@ template <int Dim> void SoftGrains<Dim>::find_pairs() {
     }
     for (const Wall& w : walls_) {
         const double wall = w.wall < 0 ? 0.0 : stiff(static_cast<std::size_t>(w.wall));
-        square = std::max(square, stiff(first(w.coordinate / Dim)) + wall);
+        square = std::max(square, stiff(first(w.coordinate / plane)) + wall);
     }
     time_step_ = std::min(options_.step_fraction / std::sqrt(square), 1.4 / (dashpot_ * square));
     moved_ = 0;
 }
 
-template <int Dim> void SoftGrains<Dim>::look_around(double displacement) {
+void SoftGrains::look_around(double displacement) {
     moved_ += displacement;
     if (2 * moved_ >= candidates_.reach) {
         find_pairs();
     }
 }
 
-template <int Dim> void SoftGrains<Dim>::compute_forces(bool damped) {
+void SoftGrains::compute_forces(bool damped) {
     const double* const q = packing_.q.data();
     const double* const v = velocity_.data();
     double* const f = force_.data();
@@ -121,10 +120,10 @@ template <int Dim> void SoftGrains<Dim>::compute_forces(bool damped) {
         f[c] = external_[c] / stiffness_ - (damped && inverse_mass_[c] > 0 ? drag_ * v[c] / inverse_mass_[c] : 0.0);
     }
     for (const Pair& p : pairs_) {
-        const auto i = static_cast<std::size_t>(Dim * p.i);
-        const auto j = static_cast<std::size_t>(Dim * p.j);
+        const auto i = static_cast<std::size_t>(plane * p.i);
+        const auto j = static_cast<std::size_t>(plane * p.j);
         const Contact pair{ContactKind::disk_disk, p.i, p.j};
-        const auto [dx, dy] = separation<Dim>(packing_.q, pair);
+        const auto [dx, dy, dz] = separation(packing_.layout(), packing_.q, pair);
         const double square = dx * dx + dy * dy;
         if (square >= p.range * p.range || square == 0) {
             continue;
@@ -132,7 +131,7 @@ template <int Dim> void SoftGrains<Dim>::compute_forces(bool damped) {
         const double distance = std::sqrt(square);
         const double nx = dx / distance;
         const double ny = dy / distance;
-        const auto [ux, uy] = separation<Dim>(velocity_, pair);
+        const auto [ux, uy, uz] = separation(packing_.layout(), velocity_, pair);
         const double push = p.range - distance - dashpot * (ux * nx + uy * ny);
         f[i] -= push * nx;
         f[i + 1] -= push * ny;
@@ -158,7 +157,7 @@ template <int Dim> void SoftGrains<Dim>::compute_forces(bool damped) {
     }
 }
 
-template <int Dim> void SoftGrains<Dim>::advance(long count) {
+void SoftGrains::advance(long count) {
     for (long step = 0; step < count; ++step, ++steps_) {
         const double dt = time_step_;
         double fastest = 0;
@@ -167,7 +166,7 @@ template <int Dim> void SoftGrains<Dim>::advance(long count) {
             packing_.q[c] += dt * velocity_[c];
             fastest = std::max(fastest, std::abs(velocity_[c]));
         }
-        look_around(dt * fastest * std::sqrt(static_cast<double>(Dim)));
+        look_around(dt * fastest * std::sqrt(static_cast<double>(plane)));
         compute_forces(true);
         for (std::size_t c = 0; c < force_.size(); ++c) {
             velocity_[c] += 0.5 * dt * inverse_mass_[c] * force_[c];
@@ -175,12 +174,12 @@ template <int Dim> void SoftGrains<Dim>::advance(long count) {
     }
 }
 
-template <int Dim> double SoftGrains<Dim>::residual() const {
+double SoftGrains::residual() const {
     SoftGrains still = *this;
     std::fill(still.velocity_.begin(), still.velocity_.end(), 0.0);
     still.compute_forces(false);
     double worst = 0;
-    const std::size_t disks = Dim * packing_.radius.size();
+    const std::size_t disks = plane * packing_.radius.size();
     for (std::size_t c = 0; c < force_.size(); ++c) {
         if (inverse_mass_[c] > 0) {
             const double unit =
@@ -191,7 +190,7 @@ template <int Dim> double SoftGrains<Dim>::residual() const {
     return worst;
 }
 
-template <int Dim> bool SoftGrains<Dim>::at_rest() const {
+bool SoftGrains::at_rest() const {
     if (!(residual() < options_.tolerance)) {
         return false;
     }
@@ -201,7 +200,7 @@ template <int Dim> bool SoftGrains<Dim>::at_rest() const {
     return std::all_of(velocity_.begin(), velocity_.end(), [&](double v) { return std::abs(v) < limit; });
 }
 
-template <int Dim> bool SoftGrains<Dim>::relax() {
+bool SoftGrains::relax() {
     constexpr long between = 100;
     for (const long last = steps_ + options_.max_steps; steps_ < last;) {
         advance(between);
@@ -212,7 +211,7 @@ template <int Dim> bool SoftGrains<Dim>::relax() {
     return false;
 }
 
-template <int Dim> double SoftGrains<Dim>::energy() const {
+double SoftGrains::energy() const {
     double sum = 0;
     for (const SoftContact& c : contacts()) {
         sum += c.force * c.force / (2 * stiffness_);
@@ -224,7 +223,7 @@ template <int Dim> double SoftGrains<Dim>::energy() const {
     return sum;
 }
 
-template <int Dim> std::vector<SoftContact> SoftGrains<Dim>::contacts() const {
+std::vector<SoftContact> SoftGrains::contacts() const {
     std::vector<SoftContact> list;
     for (const Contact& c : candidates_.contacts) {
         const double overlap = -gap(packing_, c);
@@ -234,7 +233,5 @@ template <int Dim> std::vector<SoftContact> SoftGrains<Dim>::contacts() const {
     }
     return list;
 }
-
-template class SoftGrains<2>;
 
 } // namespace isostat

@@ -13,7 +13,7 @@ namespace isostat {
 
 /// Choices of the dynamics. Every default is derived from the packing and the load.
 struct SoftGrainOptions {
-    double stiffness_ratio = 1e4; ///< kappa = K / P, P = mean of the |stresses| on the walls (Dim = 2)
+    double stiffness_ratio = 1e4; ///< kappa = K / P, P = mean of the |stresses| on the walls
     double tolerance = 0;         ///< stop at this residual; 0: 1e-2 / kappa, at least 1e-9
     double step_fraction = 0.8;   ///< time step x (proved bound of the highest frequency), stable below about 1
     double drag = 0;              ///< per unit of mass and time sqrt(m / K); 0: 1 / sqrt(kappa)
@@ -35,14 +35,14 @@ struct SoftContact {
 /// grows: overlap / diameter and the relative change of the forces are of order 1 / kappa. Which pairs touch is a
 /// matter of overlap > 0; a pair whose rigid force is below K x (the error of positions, of order 1 / kappa) can be
 /// missed, and pairs with gaps of that order can be found in excess.
-template <int Dim> class SoftGrains {
+class SoftGrains {
   public:
     /// \pre no held coordinates matter: only grains. Throws `Error(bad_input)` when no wall is under stress or an
     /// option is not positive and finite.
-    SoftGrains(const Packing<Dim>& packing, const Load<Dim>& load, const SoftGrainOptions& options = {});
+    SoftGrains(const Packing& packing, const Load& load, const SoftGrainOptions& options = {});
 
     /// New stresses of the same dead load. The stiffness K stays what it was.
-    void set_load(const Load<Dim>& load);
+    void set_load(const Load& load);
     /// Velocity-Verlet steps. Cost: O(n) each.
     void advance(long steps);
     /// Steps until the residual is below the tolerance and the velocities, times sqrt(m / K), are below the tolerance x
@@ -53,7 +53,7 @@ template <int Dim> class SoftGrains {
     [[nodiscard]] double residual() const;
     /// Elastic + load + kinetic energy, relative to the start: never grows but for the error of the steps.
     [[nodiscard]] double energy() const;
-    [[nodiscard]] const Packing<Dim>& packing() const { return packing_; }
+    [[nodiscard]] const Packing& packing() const { return packing_; }
     /// Overlapping pairs, sorted.
     [[nodiscard]] std::vector<SoftContact> contacts() const;
     [[nodiscard]] double stiffness() const { return stiffness_; }
@@ -79,13 +79,13 @@ template <int Dim> class SoftGrains {
     void look_around(double displacement);
     [[nodiscard]] bool at_rest() const;
 
-    Packing<Dim> packing_;
+    Packing packing_;
     std::vector<double> origin_; ///< q at the start: energies of the load are relative to it
     std::vector<double> external_;
     std::vector<double> inverse_mass_; ///< 0: cannot move
     std::vector<double> velocity_;
     std::vector<double> force_;
-    CandidateList<Dim> candidates_;
+    CandidateList candidates_;
     std::vector<Pair> pairs_;
     std::vector<Wall> walls_;
     SoftGrainOptions options_;
@@ -98,7 +98,5 @@ template <int Dim> class SoftGrains {
     double mean_diameter_ = 0;
     long steps_ = 0;
 };
-
-extern template class SoftGrains<2>;
 
 } // namespace isostat

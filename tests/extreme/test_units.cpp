@@ -1,6 +1,7 @@
 // Units: the same packing in every unit of length and stress.
 #include "extreme/catalogue.hpp"
 #include "support/crafted.hpp"
+#include "support/prepared.hpp"
 
 using namespace isostat;
 using namespace crafted;
@@ -10,13 +11,7 @@ namespace {
 constexpr int equilibria = 4;
 
 State<2> start() {
-    PreparationOptions options;
-    options.disks = 30;
-    options.seed = 3;
-    PreparationReport<2> report;
-    auto made = prepare<2>(options, report);
-    BOOST_REQUIRE(made.ok());
-    return made.value();
+    return ::prepared(30, 3);
 }
 
 State<2> scaled(State<2> state, double length, double stress) {

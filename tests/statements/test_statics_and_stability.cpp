@@ -2,6 +2,7 @@
 #include "exact/reduction.hpp"
 #include "families.hpp"
 #include "linear/factorisation.hpp"
+#include "support/prepared.hpp"
 #include "support/test.hpp"
 
 #include <isostat/crafted/inspection.hpp>
@@ -142,16 +143,11 @@ BOOST_AUTO_TEST_CASE(counting_and_orthogonality_hold_for_random_matrices) {
 
 BOOST_AUTO_TEST_CASE(the_power_of_every_opening_is_minus_the_force) {
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-        PreparationOptions options;
-        options.disks = 15;
-        options.seed = seed;
-        PreparationReport<2> report;
-        const auto state = prepare<2>(options, report);
-        BOOST_REQUIRE(state.ok());
-        const auto structure = IsostaticStructure<2>::prove(state.value().packing, state.value().contacts);
+        const State<2> state = prepared(15, seed);
+        const auto structure = IsostaticStructure<2>::prove(state.packing, state.contacts);
         BOOST_REQUIRE(structure.ok());
         const Factorisation factorisation(structure.value());
-        const auto load = state.value().load.external_force(state.value().packing);
+        const auto load = state.load.external_force(state.packing);
         auto force = load;
         factorisation.solve_forces(force);
         for (std::size_t l = 0; l < force.size(); ++l) {

@@ -2,12 +2,15 @@
 #include "exact/reduction.hpp"
 #include "families.hpp"
 #include "linear/factorisation.hpp"
-#include "support/prepared.hpp"
-#include "support/test.hpp"
 
 #include <isostat/crafted/inspection.hpp>
 #include <isostat/packing/load.hpp>
 #include <isostat/preparation/preparation.hpp>
+
+#include <boost/test/unit_test.hpp>
+
+#include <algorithm>
+#include <cmath>
 
 using namespace isostat;
 using exact::Number;
@@ -143,11 +146,16 @@ BOOST_AUTO_TEST_CASE(counting_and_orthogonality_hold_for_random_matrices) {
 
 BOOST_AUTO_TEST_CASE(the_power_of_every_opening_is_minus_the_force) {
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-        const State<2> state = prepared(15, seed);
-        const auto structure = IsostaticStructure<2>::prove(state.packing, state.contacts);
+        PreparationOptions options;
+        options.disks = 15;
+        options.seed = seed;
+        PreparationReport<2> report;
+        const auto state = prepare<2>(options, report);
+        BOOST_REQUIRE(state.ok());
+        const auto structure = IsostaticStructure<2>::prove(state.value().packing, state.value().contacts);
         BOOST_REQUIRE(structure.ok());
         const Factorisation factorisation(structure.value());
-        const auto load = state.load.external_force(state.packing);
+        const auto load = state.value().load.external_force(state.value().packing);
         auto force = load;
         factorisation.solve_forces(force);
         for (std::size_t l = 0; l < force.size(); ++l) {

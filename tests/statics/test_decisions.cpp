@@ -1,18 +1,53 @@
 // Decisions of the statics: classes, ties, rules, and the ladder of precision.
 #include "statics/decisions.hpp"
 #include "support/crafted.hpp"
-#include "support/loaded.hpp"
-#include "support/prepared.hpp"
+
+#include <isostat/preparation/preparation.hpp>
+
+#include <boost/test/unit_test.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <set>
 
 using namespace isostat;
 using namespace crafted;
 
 namespace {
 
-/// About the stored configuration.
-struct Loaded : AtVertex {
-    explicit Loaded(State<2> s) : AtVertex(std::move(s), false) {}
+/// A structure with its statics; the parts refer to each other, so it stays where it is made.
+struct Loaded {
+    State<2> state;
+    IsostaticStructure<2> structure;
+    Factorisation factorisation;
+    InverseBoundCache cache;
+    InverseBound inverse;
+    Statics<2> statics;
+
+    explicit Loaded(State<2> s)
+        : state(std::move(s)), structure(proved(state)), factorisation(structure),
+          inverse(bound_inverse(structure, factorisation, cache)),
+          statics(state.packing, state.load, structure, factorisation, inverse) {}
+    static IsostaticStructure<2> proved(const State<2>& s) {
+        auto result = IsostaticStructure<2>::prove(s.packing, s.contacts);
+        BOOST_TEST_REQUIRE(result.ok());
+        return std::move(result.value());
+    }
+    [[nodiscard]] Contact contact(ContactId l) const { return state.contacts[l.index()]; }
+    [[nodiscard]] double sigma() const { return state.load.stress[1]; }
 };
+
+State<2> prepared(int disks, std::uint64_t seed) {
+    PreparationOptions options;
+    options.disks = disks;
+    options.seed = seed;
+    PreparationReport<2> report;
+    auto result = prepare<2>(options, report);
+    BOOST_TEST_REQUIRE(result.ok());
+    return result.value();
+}
 
 } // namespace
 

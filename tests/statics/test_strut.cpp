@@ -4,10 +4,11 @@
 #include "statics/straight_strut.hpp"
 #include "support/crafted.hpp"
 #include "support/loaded.hpp"
-#include "support/prepared.hpp"
 #include "support/strut.hpp"
 
 #include <isostat/preparation/preparation.hpp>
+
+#include <boost/test/unit_test.hpp>
 
 #include <queue>
 
@@ -304,7 +305,13 @@ BOOST_AUTO_TEST_CASE(the_contacts_of_a_strut_are_those_of_the_definition) {
     int found = 0;
     int nothing = 0;
     for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
-        const State<2> state = prepared(20, seed);
+        PreparationOptions options;
+        options.disks = 20;
+        options.seed = seed;
+        PreparationReport<2> report;
+        auto prepared = prepare<2>(options, report);
+        BOOST_TEST_REQUIRE(prepared.ok());
+        State<2> state = prepared.value();
         // A coordinate of each disk in turn is held in place of one of its contacts; when two are left the disk is
         // moved between its neighbours: a strut.
         for (std::size_t l = 0; l < state.contacts.size(); ++l) {

@@ -4,6 +4,7 @@
 #include "support/scratch.hpp"
 
 #include <isostat/io/state_file.hpp>
+#include <isostat/scene/scene.hpp>
 
 #include <fcntl.h>
 #include <sys/resource.h>

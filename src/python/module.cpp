@@ -1,5 +1,4 @@
 #include "convert.hpp"
-#include "io/equilibria.hpp"
 #include "io/text.hpp"
 
 #include <isostat/core/error.hpp>
@@ -16,9 +15,21 @@ void bind_run(py::module_& module); // run.cpp
 
 namespace {
 
+constexpr int no_contact = -9;
+
 /// An attribute of a Python file of this package.
 py::object ours(const char* file, const char* name) {
     return py::module_::import(file).attr(name);
+}
+
+std::pair<int, int> codes(const Contact& contact) {
+    switch (contact.kind) {
+    case ContactKind::disk_disk: return {contact.i, contact.j};
+    case ContactKind::lower_wall: return {contact.i, -1 - contact.j};
+    case ContactKind::upper_wall: return {contact.i, -3 - contact.j};
+    case ContactKind::held: break;
+    }
+    return {contact.i, no_contact};
 }
 
 } // namespace
@@ -28,13 +39,13 @@ py::array_t<int> contact_array(const std::vector<Contact>& contacts) {
     auto rows = array.mutable_unchecked<2>();
     for (std::size_t l = 0; l < contacts.size(); ++l) {
         const auto row = static_cast<py::ssize_t>(l);
-        std::tie(rows(row, 0), rows(row, 1)) = contact_columns(contacts[l]);
+        std::tie(rows(row, 0), rows(row, 1)) = codes(contacts[l]);
     }
     return array;
 }
 
 py::object contact_pair(const Contact& contact) {
-    return contact.i < 0 ? py::object(py::none()) : py::cast(contact_columns(contact));
+    return contact.i < 0 ? py::object(py::none()) : py::cast(codes(contact));
 }
 
 Contact contact_of(std::pair<int, int> pair) {
@@ -131,7 +142,6 @@ PYBIND11_MODULE(_core, module) {
     using namespace isostat::python;
     module.doc() = "Compiled part of isostat.";
     module.attr("version") = ISOSTAT_VERSION;
-    module.attr("_integer_columns") = pybind11::frozenset(pybind11::cast(isostat::integer_columns()));
     module.def("set_threads", &isostat::set_threads, py::arg("count"),
                "Threads of this process: they change times and never a bit of a result.");
     module.def("available_cores", &isostat::available_cores, "Cores that this process may use.");

@@ -1,7 +1,5 @@
 // State and Packing: arrays that look into the library's memory.
-#include "contact/names.hpp"
 #include "convert.hpp"
-#include "packing/words.hpp"
 #include "rigidity/isostatic.hpp"
 
 #include <isostat/core/error.hpp>
@@ -11,16 +9,22 @@ namespace isostat::python {
 
 namespace {
 
+const char* word(WallKind kind) {
+    return kind == WallKind::absent ? "absent" : kind == WallKind::fixed ? "fixed" : "movable";
+}
+
 WallKind wall_kind(const std::string& name) {
-    if (const auto kind = value_of<WallKind>(name, wall_kind_words)) {
-        return *kind;
+    for (const WallKind kind : {WallKind::absent, WallKind::fixed, WallKind::movable}) {
+        if (name == word(kind)) {
+            return kind;
+        }
     }
     throw Error(ErrorKind::bad_input, "wall is \"" + name + "\": expected absent, fixed or movable");
 }
 
 py::dict walls_dict(const Walls<2>& walls) {
     const auto words = [](const std::array<WallKind, 2>& kinds) {
-        return py::make_tuple(word_of(kinds[0], wall_kind_words), word_of(kinds[1], wall_kind_words));
+        return py::make_tuple(word(kinds[0]), word(kinds[1]));
     };
     py::dict dict;
     dict["lower"] = words(walls.lower);
@@ -28,48 +32,39 @@ py::dict walls_dict(const Walls<2>& walls) {
     return dict;
 }
 
-/// What a packing has, or a state by its packing: `of` gives that of an object.
-template <class Bound, class Of> void bind_grains(Bound& bound, const Of& of) {
-    bound
-        .def_property_readonly(
-            "positions",
-            [of](const py::object& self) {
-                const Packing<2>& packing = of(self);
-                return view(packing.q.data(), {packing.disk_count(), 2}, self);
-            },
-            "(n, 2) centres; length. A read-only view.")
-        .def_property_readonly(
-            "length",
-            [of](const py::object& self) {
-                const Packing<2>& packing = of(self);
-                return view(packing.q.data() + 2 * packing.radius.size(), {2}, self);
-            },
-            "(2,) positions of the right and the top wall, or the periods of a cell; length. A read-only view.")
-        .def_property_readonly(
-            "radii", [of](const py::object& self) { return view(of(self).radius, self); },
-            "(n,) radii; length. A read-only view.")
-        .def_property_readonly(
-            "fixed", [of](const py::object& self) { return view(of(self).fixed, self); },
-            "(n,) flags, 1: cannot move; empty where no disk is fixed.")
-        .def_property_readonly(
-            "walls", [of](const py::object& self) { return walls_dict(of(self).walls); },
-            "{\"lower\": (left, bottom), \"upper\": (right, top)}, each \"absent\", \"fixed\" or \"movable\".")
-        .def_property_readonly(
-            "tilt",
-            [of](const py::object& self) {
-                const Packing<2>& packing = of(self);
-                return packing.cell.any() ? std::optional(packing.lattice(0, 1)) : std::nullopt;
-            },
-            "Of a periodic cell: x of the second period; None in a box.")
-        .def_property_readonly(
-            "periodic", [of](const py::object& self) { return py::tuple(py::cast(of(self).cell.periodic)); },
-            "(along x, along y): whether the packing repeats.")
-        .def_property_readonly(
-            "solid_fraction", [of](const py::object& self) { return of(self).solid_fraction(); },
-            "Area of the disks over that of the box.")
-        .def_property_readonly(
-            "dof_names", [of](const py::object& self) { return dof_names(of(self)); },
-            "Names of the N_f degrees of freedom, in their order: \"x of disk 3\", \"top wall\".");
+py::array positions(const Packing<2>& packing, py::handle owner) {
+    return view(packing.q.data(), {packing.disk_count(), 2}, owner);
+}
+
+py::array lengths(const Packing<2>& packing, py::handle owner) {
+    return view(packing.q.data() + 2 * packing.radius.size(), {2}, owner);
+}
+
+/// x of the second period of a cell.
+std::optional<double> tilt(const Packing<2>& packing) {
+    return packing.cell.any() ? std::optional(packing.lattice(0, 1)) : std::nullopt;
+}
+
+constexpr const char* tilt_words = "Of a periodic cell: x of the second period; None in a box.";
+constexpr const char* periodic_words = "(along x, along y): whether the packing repeats.";
+
+/// Names of the degrees of freedom: "x of disk 3", "top wall".
+std::vector<std::string> dof_names(const Packing<2>& packing) {
+    const DofMap<2> dofs(packing);
+    std::vector<std::string> names;
+    for (int d = 0; d < dofs.dof_count(); ++d) {
+        names.push_back(dofs.name(d));
+    }
+    return names;
+}
+
+std::vector<std::string> contact_names(const std::vector<Contact>& contacts) {
+    std::vector<std::string> names;
+    names.reserve(contacts.size());
+    for (const Contact& contact : contacts) {
+        names.push_back(to_string<2>(contact));
+    }
+    return names;
 }
 
 /// Moves a vector into an array without a copy.
@@ -110,24 +105,62 @@ Packing<2> packing_of(const py::array_t<double, py::array::c_style | py::array::
 }
 
 void bind_packing(py::module_& module) {
-    py::class_<Packing<2>, std::shared_ptr<Packing<2>>> packing(
+    py::class_<Packing<2>, std::shared_ptr<Packing<2>>>(
         module, "Packing",
         "Disks and walls: positions, radii, box. No contacts, no load.\n\nPacking(positions, radii, length, *, "
         "lower=(\"fixed\", \"fixed\"), upper=(\"movable\", \"movable\"), fixed=[]): (n, 2) and (n,) floats, (Lx, Ly); "
-        "`fixed` has a flag per disk.");
-    packing
+        "`fixed` has a flag per disk.")
         .def(py::init(&packing_of), py::arg("positions"), py::arg("radii"), py::arg("length"), py::kw_only(),
              py::arg("lower") = std::array<std::string, 2>{"fixed", "fixed"},
              py::arg("upper") = std::array<std::string, 2>{"movable", "movable"},
              py::arg("fixed") = std::vector<bool>{})
-        .def("__len__", &Packing<2>::disk_count);
-    bind_grains(packing, [](const py::object& self) -> const Packing<2>& { return self.cast<const Packing<2>&>(); });
+        .def("__len__", &Packing<2>::disk_count)
+        .def_property_readonly(
+            "positions", [](const py::object& self) { return positions(self.cast<const Packing<2>&>(), self); },
+            "(n, 2) centres; length. A read-only view.")
+        .def_property_readonly(
+            "length", [](const py::object& self) { return lengths(self.cast<const Packing<2>&>(), self); },
+            "(2,) positions of the right and the top wall, or the periods of a cell; length. A read-only view.")
+        .def_property_readonly("radii", vector_of(&Packing<2>::radius), "(n,) radii; length. A read-only view.")
+        .def_property_readonly("fixed", vector_of(&Packing<2>::fixed),
+                               "(n,) flags, 1: cannot move; empty where no disk is fixed.")
+        .def_property_readonly(
+            "walls", [](const Packing<2>& self) { return walls_dict(self.walls); },
+            "{\"lower\": (left, bottom), \"upper\": (right, top)}, each \"absent\", \"fixed\" or \"movable\".")
+        .def_property_readonly("tilt", &tilt, tilt_words)
+        .def_property_readonly(
+            "periodic", [](const Packing<2>& self) { return py::tuple(py::cast(self.cell.periodic)); }, periodic_words)
+        .def_property_readonly("solid_fraction", &Packing<2>::solid_fraction, "Area of the disks over that of the box.")
+        .def_property_readonly("dof_names", &dof_names,
+                               "Names of the N_f degrees of freedom, in their order: \"x of disk 3\", \"top wall\".");
 }
 
 using StateClass = py::class_<PyState, std::shared_ptr<PyState>>;
 
 const State<2>& state_of(const py::object& self) {
     return self.cast<const PyState&>().state;
+}
+
+void bind_grains(StateClass& state) {
+    state
+        .def_property_readonly(
+            "positions", [](const py::object& self) { return positions(state_of(self).packing, self); },
+            "(n, 2) centres; length. A read-only view.")
+        .def_property_readonly(
+            "radii", [](const py::object& self) { return view(state_of(self).packing.radius, self); },
+            "(n,) radii; length. A read-only view.")
+        .def_property_readonly(
+            "length", [](const py::object& self) { return lengths(state_of(self).packing, self); },
+            "(2,) positions of the right and the top wall, or the periods of a cell; length. A read-only view.")
+        .def_property_readonly(
+            "fixed", [](const py::object& self) { return view(state_of(self).packing.fixed, self); },
+            "(n,) flags, 1: cannot move; empty where no disk is fixed.")
+        .def_property_readonly(
+            "walls", [](const PyState& self) { return walls_dict(self.state.packing.walls); },
+            "{\"lower\": (left, bottom), \"upper\": (right, top)}, each \"absent\", \"fixed\" or \"movable\".")
+        .def_property_readonly(
+            "solid_fraction", [](const PyState& self) { return self.state.packing.solid_fraction(); },
+            "Area of the disks over that of the box.");
 }
 
 void bind_contacts(StateClass& state) {
@@ -152,8 +185,16 @@ void bind_contacts(StateClass& state) {
             },
             "(N, 2) integers: the second disk of a contact is moved by so many periods; 0 in a box. A copy.")
         .def_property_readonly(
+            "tilt", [](const PyState& self) { return tilt(self.state.packing); }, tilt_words)
+        .def_property_readonly(
+            "periodic", [](const PyState& self) { return py::tuple(py::cast(self.state.packing.cell.periodic)); },
+            periodic_words)
+        .def_property_readonly(
             "contact_names", [](const PyState& self) { return contact_names(self.state.contacts); },
             "Names of the N contacts: \"3-7\", \"3-8(1,0)\", \"3-left\".")
+        .def_property_readonly(
+            "dof_names", [](const PyState& self) { return dof_names(self.state.packing); },
+            "Names of the N_f degrees of freedom, in their order: \"x of disk 3\", \"top wall\".")
         .def_property_readonly("forces", vector_of(&PyState::forces),
                                "(N,) forces that the file has, stress x length, positive in compression; empty where "
                                "it has none. For looking: `inspect` proves them.");
@@ -171,7 +212,7 @@ void bind_load(StateClass& state) {
             "loaded_axis", [](const PyState& self) { return self.state.load.loaded_axis; },
             "Axis whose stress a programme changes: 0 or 1; 2: the shear stress on the tilt of a cell.")
         .def_property_readonly(
-            "load", [](const PyState& self) { return word_of(self.state.load.kind, load_kind_words); },
+            "load", [](const PyState& self) { return self.state.load.kind == LoadKind::nominal ? "nominal" : "true"; },
             "\"nominal\": force = stress x reference length; \"true\": force = stress x length.")
         .def_property_readonly(
             "infinitesimal",
@@ -217,7 +258,7 @@ void bind_state_class(py::module_& module) {
             },
             py::arg("path"), "Writes a state file in one step: no partial file. Raises CannotWrite.")
         .def("__len__", [](const PyState& self) { return self.state.packing.disk_count(); });
-    bind_grains(state, [](const py::object& self) -> const Packing<2>& { return state_of(self).packing; });
+    bind_grains(state);
     bind_contacts(state);
     bind_load(state);
     state

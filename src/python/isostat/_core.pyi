@@ -22,7 +22,6 @@ Rational = Union[int, float, str, Fraction, "Number"]
 Walls = dict[str, tuple[str, str]]
 
 version: str
-_integer_columns: frozenset[str]
 
 class Packing:
     def __init__(

@@ -13,9 +13,13 @@ from pathlib import Path
 
 import numpy as np
 
-from ._core import State, _integer_columns, forces_at
+from ._core import State, forces_at
 from ._words import BadInput, Verdict
 
+_integers = frozenset(
+    """number previous segment arcs rattlers backbone dofs contacts rank h k held decided_by proved
+    certified""".split()
+)
 _walls = {"left": -1, "bottom": -2, "right": -3, "top": -4}
 _numbers = """sigma2 eps2 eps2_bound force force_bound power power_bound work work_bound displacement margin
     held_at""".split()
@@ -28,6 +32,10 @@ def _complete_lines(path: Path) -> list[str]:
     except FileNotFoundError:
         return []
     return text.split("\n")[:-1]
+
+
+def _column(name: str) -> tuple[str, type]:
+    return name, int if name in _integers or name.endswith(("_i", "_j")) else float
 
 
 def _integer(word: str) -> int:
@@ -157,9 +165,7 @@ class Records:
         names = lines[0].lstrip("# ").split(",") if lines else []
         rows = csv.reader(io.StringIO("\n".join(lines[1:])))
         try:
-            kinds = np.dtype(
-                [(name, int if name in _integer_columns else float) for name in names]
-            )  # refuses a name that comes twice
+            kinds = np.dtype([_column(name) for name in names])  # refuses a name that comes twice
             casts = [_casts[kinds[name].kind] for name in names]
             return np.array(
                 [tuple(cast(x) for cast, x in zip(casts, row, strict=True)) for row in rows],

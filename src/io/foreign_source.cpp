@@ -175,7 +175,7 @@ ChosenFrame choose_frame(const std::string& text, const std::string& source, con
 }
 
 void ChosenFrame::read(Rows reader, Raw& raw) {
-    static_cast<Bounds&>(raw) = header;
+    static_cast<Bounds&>(raw) = static_cast<const Bounds&>(header);
     for (long k = 0; k < header.rows; ++k) {
         const TextLine line = rows.next(row);
         line.require_size(header.names.size(), fmt::format("{} {} of {}", row, k + 1, header.rows));

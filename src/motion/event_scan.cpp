@@ -113,7 +113,7 @@ double longest_step(const CandidateList& candidates, const Packing& at) {
     if (!at.cell.any()) {
         return 0.9 * reach / (1.3 * root_dim);
     }
-    const double in_cell = std::sqrt(static_cast<double>(at.dimension + at.tilts())); // its coordinates
+    const double in_cell = std::sqrt(static_cast<double>(at.axes() + at.tilts())); // its coordinates
     return 0.9 * reach / (1.3 * in_cell * cell_drift(candidates, at).rate);
 }
 

@@ -111,7 +111,7 @@ class VertexSearch {
         report_.infinitesimal_seed = derived_seed(options.seed, Stream::infinitesimal);
         load_.kind = options.load;
         std::fill_n(load_.stress.begin(), packing_.dimension, options.stress);
-        load_.stress[start.dimension - 1] *= options.ratio;
+        load_.stress[start.axes() - 1] *= options.ratio;
         if (packing_.cell.any()) {
             packing_.cell.pin = best_held(packing_);
         }

@@ -141,7 +141,7 @@ ContactPattern::ContactPattern(const Packing& packing, const DofMap& dofs, const
     Parts parts;
     for (const Contact& contact : contacts) {
         const auto of = [&](int disk, int axis) {
-            return level[static_cast<std::size_t>(packing.axes() * disk + axis)];
+            return level[packing.layout().of_disk(disk) + static_cast<std::size_t>(axis)];
         };
         const auto vanishes = [&](int axis) { // of a tilt: 0, what it moves along (packing.dimension = 2)
             return contact.kind == ContactKind::disk_disk && !level.empty() && of(contact.i, axis) != 0 &&

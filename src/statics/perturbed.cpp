@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace isostat {
 
@@ -24,9 +25,9 @@ Enclosure sum(const Enclosure& a, const Enclosure& b) {
 
 } // namespace
 
-PerturbedStatics::PerturbedStatics(const FirstOrder& first, Statics& statics, const Load& load, Enclosure stress_rate,
+PerturbedStatics::PerturbedStatics(const FirstOrder& first, Statics& statics, Load load, Enclosure stress_rate,
                                    bool choose)
-    : first_(&first), statics_(&statics), load_(load), stress_rate_(stress_rate), choose_(choose) {}
+    : first_(&first), statics_(&statics), load_(std::move(load)), stress_rate_(stress_rate), choose_(choose) {}
 
 std::vector<Enclosure> PerturbedStatics::terms(double sigma, double sigma_error) const {
     const auto n = static_cast<std::size_t>(statics_->structure().size());

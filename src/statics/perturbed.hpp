@@ -16,7 +16,7 @@ namespace isostat {
 class PerturbedStatics {
   public:
     /// `stress_rate`: sigma1 (0, radius 0, for a load that was given). `choose`: see `chooses`.
-    PerturbedStatics(const FirstOrder& first, Statics& statics, const Load& load, Enclosure stress_rate, bool choose);
+    PerturbedStatics(const FirstOrder& first, Statics& statics, Load load, Enclosure stress_rate, bool choose);
 
     /// f1 at the present load; {0, 0} for structural zeros. Cost: one solve, once per rung of `statics`.
     [[nodiscard]] Enclosure force(ContactId contact);

@@ -70,7 +70,8 @@ void FloatingVertex::take_backbone() {
 }
 
 void FloatingVertex::depart(const Arrival& arrival, std::size_t opens) {
-    departure_.reset(new Departure{ContactId(opens), Factorisation(structure, arrival.approximate), {}});
+    departure_ =
+        std::make_unique<Departure>(Departure{ContactId(opens), Factorisation(structure, arrival.approximate), {}});
 }
 
 void FloatingVertex::begin_arc(const Arrival& arrival) {

@@ -25,8 +25,8 @@ using roundoff::infinity;
 class Run {
   public:
     Run(State& state, const Segment& segment, int number, Recorder recorder)
-        : state_(state), segment_(segment), number_(number), recorder_(std::move(recorder)),
-          counters_(recorder_.counters), seconds_before_(counters_.seconds) {}
+        : state_(state), segment_(segment), number_(number), recorder_(recorder), counters_(recorder_.counters),
+          seconds_before_(counters_.seconds) {}
 
     SegmentOutcome run();
 

@@ -60,7 +60,7 @@ double LadderProblem::normal_rate() {
 
 auto LadderProblem::stored_distance() -> const Distance& {
     if (!stored_distance_) {
-        stored_distance_.emplace();
+        stored_distance_ = Distance{};
         if (vertex != nullptr) {
             const double away = vertex->verdict == Verdict::proved
                                     ? (vertex->radius + norm_above(vertex->correction)) * (1 + 4 * u)

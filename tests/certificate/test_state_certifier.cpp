@@ -6,6 +6,8 @@
 #include <isostat/certificate/certify.hpp>
 #include <isostat/io/state_file.hpp>
 
+#include <boost/test/unit_test.hpp>
+
 using namespace isostat;
 
 namespace {

@@ -2,6 +2,7 @@
 #include "cli/program.hpp"
 
 #include <regex>
+#include <set>
 
 using namespace program;
 

@@ -5,7 +5,11 @@
 
 #include <isostat/compare/compare.hpp>
 
+#include <algorithm>
 #include <memory>
+#include <sstream>
+#include <string>
+#include <vector>
 
 namespace series {
 

@@ -4,6 +4,10 @@
 #include "oracle/packings.hpp"
 #include "support/scale.hpp"
 
+#include <boost/test/unit_test.hpp>
+
+#include <set>
+
 using namespace isostat;
 using namespace isostat::oracle;
 

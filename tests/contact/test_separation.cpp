@@ -1,5 +1,10 @@
 #include "contact/separation.hpp"
-#include "support/test.hpp"
+
+#include <boost/test/unit_test.hpp>
+
+#include <algorithm>
+#include <array>
+#include <vector>
 
 using namespace isostat;
 

@@ -1,7 +1,11 @@
 // Failures carry the contacts and disks that their words name.
 
 #include "contact/words.hpp"
-#include "support/test.hpp"
+
+#include <boost/test/unit_test.hpp>
+
+#include <string>
+#include <vector>
 
 using namespace isostat;
 

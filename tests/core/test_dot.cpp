@@ -1,6 +1,11 @@
 // Sizes of long vectors.
 #include "core/dot.hpp"
-#include "support/test.hpp"
+
+#include <boost/test/unit_test.hpp>
+
+#include <cmath>
+#include <limits>
+#include <vector>
 
 BOOST_AUTO_TEST_SUITE(core)
 

@@ -1,11 +1,13 @@
 // A result without a value is never read as one, in any build.
 
-#include "support/test.hpp"
-
 #include <isostat/core/result.hpp>
+
+#include <boost/test/unit_test.hpp>
 
 #include <memory>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 using namespace isostat;
 

@@ -1,7 +1,10 @@
 #pragma once
 // The packings of examples/packings.
 
-#include "support/test.hpp"
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
 
 /// Paths of all of them, sorted.
 inline std::vector<std::string> packing_files() {

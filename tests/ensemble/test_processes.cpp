@@ -2,7 +2,12 @@
 #include "ensemble/processes.hpp"
 #include "support/scratch.hpp"
 
+#include <boost/test/unit_test.hpp>
+
+#include <algorithm>
 #include <csignal>
+#include <filesystem>
+#include <map>
 
 using namespace isostat;
 

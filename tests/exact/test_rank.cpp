@@ -3,6 +3,10 @@
 #include "oracle/matrices.hpp"
 #include "support/scale.hpp"
 
+#include <boost/test/unit_test.hpp>
+
+#include <cmath>
+
 using namespace isostat;
 using namespace isostat::oracle;
 using exact::mersenne61;

@@ -1,6 +1,7 @@
 // Structures at the edge: loads from nothing to everything, forces that vanish, needles, places far away, lattices.
 #include "extreme/catalogue.hpp"
 #include "support/crafted.hpp"
+#include "support/prepared.hpp"
 
 #include <isostat/certificate/inspect.hpp>
 
@@ -106,12 +107,7 @@ BOOST_AUTO_TEST_CASE(two_disks_that_are_nearly_equal_nearly_let_go) {
 }
 
 BOOST_AUTO_TEST_CASE(loads_next_to_the_limit) {
-    PreparationOptions options;
-    options.disks = 30;
-    PreparationReport report;
-    const auto made = prepare(options, report);
-    BOOST_REQUIRE(made.ok());
-    State state = made.value();
+    State state = ::prepared(30, 1);
     const auto start = inspect_vertex(state);
     BOOST_REQUIRE(start.ok());
     const double limit = start.value().record.stress_high;

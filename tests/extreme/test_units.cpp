@@ -1,6 +1,7 @@
 // Units: the same packing in every unit of length and stress.
 #include "extreme/catalogue.hpp"
 #include "support/crafted.hpp"
+#include "support/prepared.hpp"
 
 using namespace isostat;
 using namespace crafted;
@@ -10,13 +11,7 @@ namespace {
 constexpr int equilibria = 4;
 
 State start() {
-    PreparationOptions options;
-    options.disks = 30;
-    options.seed = 3;
-    PreparationReport report;
-    auto made = prepare(options, report);
-    BOOST_REQUIRE(made.ok());
-    return made.value();
+    return ::prepared(30, 3);
 }
 
 State scaled(State state, double length, double stress) {

@@ -2,7 +2,10 @@
 // Files that something went wrong with: what editors, other programs, disks and adversaries do to text.
 
 #include "oracle/random.hpp"
-#include "support/test.hpp"
+
+#include <algorithm>
+#include <string>
+#include <vector>
 
 namespace fuzz {
 

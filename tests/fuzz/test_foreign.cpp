@@ -7,6 +7,8 @@
 #include <isostat/io/foreign.hpp>
 
 #include <cctype>
+#include <cstdlib>
+#include <sstream>
 
 using namespace fuzz;
 

@@ -5,6 +5,9 @@
 #include <isostat/io/certificate_file.hpp>
 #include <isostat/io/state_file.hpp>
 
+#include <limits>
+#include <random>
+
 using namespace isostat;
 using scratch::replaced;
 

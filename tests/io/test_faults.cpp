@@ -10,6 +10,7 @@
 #include <sys/resource.h>
 
 #include <csignal>
+#include <random>
 
 using namespace isostat;
 namespace fs = std::filesystem;

@@ -4,13 +4,18 @@
 #include "support/scratch.hpp"
 
 #include <isostat/io/state_file.hpp>
+#include <isostat/scene/scene.hpp>
 
 #include <fcntl.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 
+#include <array>
 #include <bit>
+#include <cmath>
 #include <csignal>
+#include <cstdint>
+#include <limits>
 
 using namespace isostat;
 using scratch::replaced;

@@ -1,6 +1,9 @@
 // Text of files and names, made harmless for whoever reads it.
 #include "io/text.hpp"
-#include "support/test.hpp"
+
+#include <boost/test/unit_test.hpp>
+
+#include <string>
 
 using namespace isostat;
 

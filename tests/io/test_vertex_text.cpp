@@ -4,6 +4,8 @@
 
 #include <isostat/io/state_file.hpp>
 
+#include <algorithm>
+
 using namespace isostat;
 using scratch::replaced;
 

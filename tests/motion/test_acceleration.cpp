@@ -1,5 +1,9 @@
 #include "motion/acceleration.hpp"
-#include "support/test.hpp"
+
+#include <boost/test/unit_test.hpp>
+
+#include <algorithm>
+#include <cmath>
 
 using namespace isostat;
 

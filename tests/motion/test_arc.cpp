@@ -4,6 +4,10 @@
 #include "motion/precise_end.hpp"
 #include "support/crafted.hpp"
 
+#include <boost/test/unit_test.hpp>
+
+#include <numbers>
+
 using namespace isostat;
 using namespace crafted;
 

@@ -4,6 +4,10 @@
 #include "support/channel_roll.hpp"
 #include "support/crafted.hpp"
 
+#include <boost/test/unit_test.hpp>
+
+#include <numbers>
+
 using namespace isostat;
 using namespace crafted;
 

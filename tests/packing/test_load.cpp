@@ -1,7 +1,8 @@
 #include "oracle/packings.hpp"
-#include "support/test.hpp"
 
 #include <isostat/packing/load.hpp>
+
+#include <boost/test/unit_test.hpp>
 
 using namespace isostat;
 using namespace isostat::oracle;

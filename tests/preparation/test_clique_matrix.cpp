@@ -2,7 +2,8 @@
 
 #include "../../src/preparation/clique_matrix.hpp"
 #include "check.hpp"
-#include "support/test.hpp"
+
+#include <cmath>
 
 namespace {
 

@@ -2,6 +2,10 @@
 #include "preparation/force_face.hpp"
 #include "support/mirror.hpp"
 
+#include <boost/test/unit_test.hpp>
+
+#include <cmath>
+
 using namespace isostat;
 using namespace crafted;
 

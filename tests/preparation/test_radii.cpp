@@ -4,6 +4,10 @@
 
 #include <isostat/preparation/preparation.hpp>
 
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
 namespace {
 
 using namespace isostat;

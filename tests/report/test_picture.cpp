@@ -2,6 +2,11 @@
 #include "support/cells.hpp"
 #include "support/crafted.hpp"
 
+#include <boost/test/unit_test.hpp>
+
+#include <cmath>
+#include <sstream>
+
 using namespace isostat;
 
 namespace {

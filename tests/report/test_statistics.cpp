@@ -1,5 +1,8 @@
 #include "report/statistics.hpp"
-#include "support/test.hpp"
+
+#include <boost/test/unit_test.hpp>
+
+#include <cmath>
 
 using namespace isostat;
 

@@ -6,6 +6,8 @@
 
 #include <isostat/core/error.hpp>
 
+#include <algorithm>
+
 using namespace program;
 using namespace isostat;
 namespace fs = std::filesystem;

@@ -2,6 +2,10 @@
 
 #include <isostat/rigidity/counting.hpp>
 
+#include <boost/test/unit_test.hpp>
+
+#include <vector>
+
 using isostat::Contact;
 using isostat::Counting;
 using isostat::State;

@@ -1,7 +1,10 @@
 // Where the contact matrix can have entries, whatever the stored numbers are.
 #include "rigidity/contact_pattern.hpp"
 #include "support/crafted.hpp"
-#include "support/regular.hpp"
+
+#include <boost/test/unit_test.hpp>
+
+#include <algorithm>
 
 using namespace isostat;
 using namespace crafted;
@@ -22,10 +25,11 @@ State side_by_side(double second_radius, double second_height) {
 }
 
 std::vector<unsigned char> carrying(const State& state, bool perturbed = false) {
-    const auto structure = crafted::Regular::proved(state);
-    const DofMap& dofs = structure.dofs();
+    const auto structure = IsostaticStructure::prove(state.packing, state.contacts);
+    BOOST_REQUIRE(structure.ok());
+    const DofMap& dofs = structure.value().dofs();
     const std::vector<int> right_wall{dofs.dof_of(4)};
-    return ContactPattern(state.packing, structure, perturbed).carrying(right_wall);
+    return ContactPattern(state.packing, structure.value(), perturbed).carrying(right_wall);
 }
 
 } // namespace

@@ -5,6 +5,10 @@
 
 #include <isostat/contact/contact.hpp>
 
+#include <boost/test/unit_test.hpp>
+
+#include <cmath>
+
 using namespace isostat;
 using namespace crafted;
 

@@ -2,6 +2,8 @@
 
 #include <isostat/scene/scene.hpp>
 
+#include <string>
+
 using namespace isostat;
 
 namespace {

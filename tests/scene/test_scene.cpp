@@ -4,6 +4,9 @@
 
 #include <isostat/scene/scene.hpp>
 
+#include <algorithm>
+#include <string>
+
 using namespace isostat;
 
 namespace {

@@ -4,6 +4,8 @@
 #include <isostat/core/error.hpp>
 #include <isostat/scene/scene.hpp>
 
+#include <boost/test/unit_test.hpp>
+
 using namespace isostat;
 
 namespace {

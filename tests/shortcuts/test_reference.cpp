@@ -4,6 +4,10 @@
 
 #include <isostat/preparation/preparation.hpp>
 
+#include <boost/test/unit_test.hpp>
+
+#include <cmath>
+
 using namespace isostat;
 using namespace crafted;
 using oracle::Reference;

@@ -2,6 +2,10 @@
 #include "sparse/pattern.hpp"
 #include "support/scale.hpp"
 
+#include <boost/test/unit_test.hpp>
+
+#include <set>
+
 using namespace isostat;
 using namespace isostat::oracle;
 

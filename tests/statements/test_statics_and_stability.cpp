@@ -2,11 +2,15 @@
 #include "exact/reduction.hpp"
 #include "families.hpp"
 #include "linear/factorisation.hpp"
-#include "support/test.hpp"
 
 #include <isostat/crafted/inspection.hpp>
 #include <isostat/packing/load.hpp>
 #include <isostat/preparation/preparation.hpp>
+
+#include <boost/test/unit_test.hpp>
+
+#include <algorithm>
+#include <cmath>
 
 using namespace isostat;
 using exact::Number;

@@ -1,6 +1,9 @@
 // The smallest of several quantities by comparisons that may be open, wrong at first guess, or contradictory.
 #include "statics/proved_minimum.hpp"
-#include "support/test.hpp"
+
+#include <boost/test/unit_test.hpp>
+
+#include <cmath>
 
 using namespace isostat;
 

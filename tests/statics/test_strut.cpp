@@ -8,6 +8,8 @@
 
 #include <isostat/preparation/preparation.hpp>
 
+#include <boost/test/unit_test.hpp>
+
 #include <queue>
 
 using namespace isostat;

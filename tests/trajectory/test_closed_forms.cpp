@@ -3,6 +3,10 @@
 
 #include <isostat/certificate/inspect.hpp>
 
+#include <boost/test/unit_test.hpp>
+
+#include <cmath>
+
 using namespace isostat;
 using namespace ::crafted;
 

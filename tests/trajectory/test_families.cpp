@@ -1,6 +1,9 @@
 // Families that approach a degeneracy: the right answer on either side however small delta is, and a tie at 0.
 #include "support/families.hpp"
-#include "support/test.hpp"
+
+#include <boost/test/unit_test.hpp>
+
+#include <cmath>
 
 using families::Answer;
 

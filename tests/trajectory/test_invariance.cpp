@@ -5,6 +5,11 @@
 
 #include <isostat/certificate/inspect.hpp>
 
+#include <boost/test/unit_test.hpp>
+
+#include <numeric>
+#include <random>
+
 using namespace isostat;
 using namespace ::crafted;
 

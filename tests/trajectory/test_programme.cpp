@@ -4,6 +4,8 @@
 #include <isostat/io/state_file.hpp>
 #include <isostat/trajectory/programme.hpp>
 
+#include <boost/test/unit_test.hpp>
+
 using namespace isostat;
 
 namespace {

@@ -1,6 +1,7 @@
-// Bounds against the formulas of proofs/bounds.md and proofs/exchange.md, evaluated in 100 digits: never below them and
+// Bounds against the formulas of proofs/bounds.md and proofs/exchange.md, evaluated to 200 digits: never below them and
 // hardly above, also where the error itself stays far below. And bounds where the error comes near them.
 #include "oracle/random.hpp"
+#include "oracle/truth.hpp"
 #include "support/crafted.hpp"
 #include "support/regular.hpp"
 #include "support/scale.hpp"
@@ -14,14 +15,12 @@
 
 #include <isostat/io/state_file.hpp>
 
-#include <boost/multiprecision/cpp_dec_float.hpp>
-
 using namespace isostat;
 using namespace crafted;
 
 namespace {
 
-using Real = boost::multiprecision::number<boost::multiprecision::cpp_dec_float<100>, boost::multiprecision::et_off>;
+using oracle::Real;
 const Real u = Real(1) / Real(9007199254740992.0);
 
 /// value is at least `least`, and above it by no more than the relative `slack`.

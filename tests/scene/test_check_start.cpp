@@ -3,6 +3,7 @@
 #include "support/scratch.hpp"
 
 #include <isostat/io/state_file.hpp>
+#include <isostat/scene/scene.hpp>
 
 using namespace isostat;
 
@@ -14,7 +15,7 @@ void refuses_start(const State& state, const std::vector<std::string>& words) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(io)
+BOOST_AUTO_TEST_SUITE(scene)
 
 BOOST_AUTO_TEST_CASE(isostatic_starts_pass) {
     BOOST_CHECK_NO_THROW(check_start(::crafted::two_disks(1, 2, 1, 1), "start.json"));

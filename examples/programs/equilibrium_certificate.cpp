@@ -373,7 +373,7 @@ void write_vertex(const Vertex& v) {
     for (const Contact& c : v.packing.contacts) {
         contacts.push_back(name(c));
     }
-    std::printf("(* The data of a certificate, for proofs/coq/verdict.v. *)\n"
+    std::printf("(* The data of a certificate, for proofs/coq/questions/verdict.v. *)\n"
                 "From Coq Require Import ZArith List.\nFrom mathcomp Require Import all_ssreflect all_algebra.\n"
                 "From Isostat Require Import contact_certificate box_certificate equilibrium_certificate.\n"
                 "Definition touching : seq contact := %s.\nOpen Scope Z_scope.\n",

@@ -10,6 +10,38 @@ Unset Strict Implicit.
 Import Order.Theory GRing.Theory Num.Theory.
 Local Open Scope ring_scope.
 
+(** A regular matrix whose rows S vanish outside as many columns T: solutions with zeros in S have zeros in T. *)
+Lemma block_solutions_vanish (F : fieldType) (m : nat) (X : 'M[F]_m) (S T : {set 'I_m}) : X \in unitmx -> #|S| = #|T| ->
+  (forall i j, i \in S -> j \notin T -> X i j = 0) ->
+  forall x : 'cV[F]_m, (forall i, i \in S -> (X *m x) i 0 = 0) -> forall j, j \in T -> x j 0 = 0.
+Proof.
+move=> unit same outside x zero j jT.
+pose rows : 'M[F]_(#|S|, m) := rowsub enum_val X; pose units : 'M[F]_(#|T|, m) := rowsub enum_val 1%:M.
+have spanned (Y : 'M[F]_(#|S|, m)) : (forall a k, k \notin T -> Y a k = 0) -> (Y <= units)%MS.
+  move=> vanish; have -> : Y = (\matrix_(a, z) Y a (enum_val z)) *m units; last exact: submxMl.
+  apply/matrixP=> a k; rewrite [RHS]mxE; have [kT|kT] := boolP (k \in T).
+    rewrite (bigD1 (enum_rank_in kT k)) //= !mxE enum_rankK_in // eqxx mulr1 big1 ?addr0 // => z ne; rewrite !mxE.
+    case: eqP => [zk|]; last by rewrite mulr0.
+    by case/eqP: ne; apply: enum_val_inj; rewrite enum_rankK_in.
+  rewrite big1 => [|z _]; first exact: vanish.
+  by rewrite !mxE; case: eqP => [zk|]; rewrite ?mulr0 //; case/negP: kT; rewrite -zk enum_valP.
+have inside : (rows <= units)%MS by apply: spanned => a k kT; rewrite mxE outside ?enum_valP.
+have free_rows : \rank rows = #|S|.
+  have -> : rows = rowsub enum_val 1%:M *m X by rewrite mul_rowsub_mx mul1mx.
+  rewrite mxrankMfree ?row_free_unit //; apply/eqP/row_freeP; exists (rowsub enum_val 1%:M)^T.
+  apply/matrixP=> a z; rewrite !mxE (bigD1 (enum_val a)) //= !mxE eqxx mul1r big1 ?addr0 => [|k ne].
+    by rewrite (inj_eq enum_val_inj) eq_sym.
+  by rewrite !mxE [enum_val a == k]eq_sym (negPf ne) mul0r.
+have back : (units <= rows)%MS.
+  have : (rows == units)%MS by rewrite -(mxrank_leqif_eq inside) eqn_leq mxrankS //= free_rows same rank_leq_row.
+  by case/andP.
+have /submxP[y ey] := submx_trans (row_sub (enum_rank_in jT j) units) back.
+have -> : x j 0 = (row (enum_rank_in jT j) units *m x) 0 0.
+  by rewrite row_rowsub enum_rankK_in // row1 -rowE mxE.
+rewrite ey -mulmxA; have -> : rows *m x = 0; last by rewrite mulmx0 mxE.
+by rewrite mul_rowsub_mx; apply/colP=> a; rewrite mxE zero ?enum_valP // mxE.
+Qed.
+
 Section Forces.
 Variables (F : realFieldType) (n : nat) (w : F) (radius : nat -> F) (contacts : seq contact).
 Let N := (n.*2.+2)%N.
@@ -102,39 +134,15 @@ Theorem structural_zeros (load f : 'cV[F]_N) (zeros free : {set 'I_N}) : balance
   (forall (k l : 'I_N), k \in free -> l \notin zeros -> (k : nat) \notin support (contact_at contacts l)) ->
   forall l, l \in zeros -> f l 0 = 0.
 Proof.
-move=> bal same unloaded apart l lz; pose M := (normals radius contacts q)^T.
-have unit : M \in unitmx by rewrite unitmx_tr.
-pose rows : 'M[F]_(#|free|, N) := rowsub enum_val M; pose units : 'M[F]_(#|zeros|, N) := rowsub enum_val 1%:M.
-have spanned (X : 'M[F]_(#|free|, N)) : (forall a m, m \notin zeros -> X a m = 0) -> (X <= units)%MS.
-  move=> outside; have -> : X = (\matrix_(a, z) X a (enum_val z)) *m units; last exact: submxMl.
-  apply/matrixP=> a m; rewrite [RHS]mxE; have [mz|mz] := boolP (m \in zeros).
-    rewrite (bigD1 (enum_rank_in mz m)) //= !mxE enum_rankK_in // eqxx mulr1 big1 ?addr0 // => z ne; rewrite !mxE.
-    case: eqP => [zm|]; last by rewrite mulr0.
-    by case/eqP: ne; apply: enum_val_inj; rewrite enum_rankK_in.
-  rewrite big1 => [|z _]; first exact: outside.
-  by rewrite !mxE; case: eqP => [zm|]; rewrite ?mulr0 //; case/negP: mz; rewrite -zm enum_valP.
-have inside : (rows <= units)%MS.
-  apply: spanned => a m mz; rewrite !mxE; have := apart (enum_val a) m (enum_valP a) mz.
-  have -> : support (contact_at contacts m) = unzip1 (gradient n 1 (at_ q) (contact_at contacts m)).
+move=> bal same unloaded apart; have unit : (normals radius contacts q)^T \in unitmx by rewrite unitmx_tr.
+apply: (block_solutions_vanish unit same) => [k l kf lz|k kf].
+  rewrite !mxE; have := apart k l kf lz.
+  have -> : support (contact_at contacts l) = unzip1 (gradient n 1 (at_ q) (contact_at contacts l)).
     by rewrite /support; case: (contact_at _ _).
   move=> absent; rewrite big1_seq ?mul0r // => e /andP[/eqP e1 es]; case/negP: absent.
   by rewrite -e1 map_f.
-have free_rows : \rank rows = #|free|.
-  have -> : rows = rowsub enum_val 1%:M *m M by rewrite mul_rowsub_mx mul1mx.
-  rewrite mxrankMfree ?row_free_unit //; apply/eqP/row_freeP; exists (rowsub enum_val 1%:M)^T.
-  apply/matrixP=> a z; rewrite !mxE (bigD1 (enum_val a)) //= !mxE eqxx mul1r big1 ?addr0 => [|k ne].
-    by rewrite (inj_eq enum_val_inj) eq_sym.
-  by rewrite !mxE [enum_val a == k]eq_sym (negPf ne) mul0r.
-have back : (units <= rows)%MS.
-  have : (rows == units)%MS by rewrite -(mxrank_leqif_eq inside) eqn_leq mxrankS //= free_rows same rank_leq_row.
-  by case/andP.
-have /submxP[y ey] := submx_trans (row_sub (enum_rank_in lz l) units) back.
-have -> : f l 0 = (row (enum_rank_in lz l) units *m f) 0 0.
-  by rewrite row_rowsub enum_rankK_in // row1 -rowE mxE.
-rewrite ey -mulmxA; have -> : rows *m f = 0; last by rewrite mulmx0 mxE.
-have -> : rows *m f = rowsub enum_val (- load).
-  by rewrite mul_rowsub_mx; congr (rowsub _ _); apply/eqP; rewrite -addr_eq0; apply/eqP.
-by apply/colP=> a; rewrite !mxE unloaded ?enum_valP ?oppr0.
+have -> : (normals radius contacts q)^T *m f = - load by apply/eqP; rewrite -addr_eq0; apply/eqP.
+by rewrite mxE unloaded ?oppr0.
 Qed.
 End Forces.
 

@@ -24,7 +24,7 @@ for packing in "$@"; do
     "$isostat" certify "$place/state.json" -o "$place/certificate.json" >"$place/certify.log"
   fi
   "$writer" "$place/certificate.json" >"$place/certificate.v"
-  cp "$theory/verdict.v" "$place"
+  cp "$theory/questions/verdict.v" "$place"
   begin=$SECONDS
   coq "$place" certificate
   coq "$place" verdict
@@ -32,7 +32,7 @@ for packing in "$@"; do
   echo "equilibrium '$packing': packing_is_in_equilibrium proved in $((SECONDS - begin)) s, closed under the global context"
 done
 
-cp "$theory/forgeries.v" "$first"
+cp "$theory/questions/forgeries.v" "$first"
 coq "$first" forgeries
 echo "$(sed -n 's/^ *= \([0-9]*\).*/\1/p' "$first/forgeries.log") forgeries of '$1': Coq computes that each is refused"
 

@@ -56,6 +56,11 @@ def main(certificate_path, log_path, data_path):
     ((unit, fine, force, small), n, contacts, stored, radii, zoom, distance, ball, load, low, high, zeros, load_small,
      low_small, high_small, gap) = values
     state, claims = certificate["state"], certificate["claims"]
+    same("formats", [certificate["format"], certificate["version"], state["version"]], ["isostat-certificate", 1, 2])
+    known = {"format", "version", "dimension", "equilibrium", "provenance", "load", "walls", "length", "disks", "disk_force",
+             "infinitesimal", "contacts", "forces"}
+    if set(state) - known:
+        differ(f"the state has what Coq was not told of: {sorted(set(state) - known)}")
     lengths = [Fraction(x) for x in state["length"]]
     two = Fraction(2)
 

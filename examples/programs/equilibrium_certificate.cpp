@@ -1,0 +1,480 @@
+// A certificate of an equilibrium for a proof assistant: what `isostat certify` claims of a packing in the box, as a
+// Coq file with the integers from which proofs/coq/equilibrium_certificate.v proves it. Usage:
+// equilibrium_certificate [CERTIFICATE.json | DISKS [SEED]] > file.v; without a file a random packing is prepared.
+// Nothing here has to be right: Coq checks every number, and proofs/coq/compare.py compares them with the file.
+#include <isostat/certificate/certify.hpp>
+#include <isostat/core/error.hpp>
+#include <isostat/exact/number.hpp>
+#include <isostat/io/certificate_file.hpp>
+#include <isostat/preparation/preparation.hpp>
+
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace isostat;
+using exact::Number;
+using Numbers = std::vector<Number>;
+using Matrix = Eigen::SparseMatrix<double>;
+using Vector = Eigen::VectorXd;
+
+constexpr int zoom_exponent = 40; // the unit of the refined configuration is 2^40 times smaller
+
+Number power_of_two(int exponent) {
+    return Number::from_double(std::ldexp(1.0, exponent));
+}
+
+/// The integer next to x.
+Number rounded(double x) {
+    return Number::from_double(std::abs(x) < 0x1p53 ? std::nearbyint(x) : x);
+}
+
+/// An integer above x >= 0, by a little.
+Number above(const Number& x) {
+    return rounded(std::ceil(x.to_double() * (1 + 0x1p-40))) + 1;
+}
+
+/// Largest e <= 0 such that x is an integer multiple of 2^e.
+int unit_exponent(double x, int e) {
+    while (x != 0 && std::ldexp(x, -e) != std::floor(std::ldexp(x, -e))) {
+        --e;
+    }
+    return e;
+}
+
+int unit_exponent(const std::vector<double>& values, int e) {
+    for (const double x : values) {
+        e = unit_exponent(x, e);
+    }
+    return e;
+}
+
+/// One row of the derivative: coordinates and entries.
+struct Entry {
+    int coordinate = 0;
+    Number value;
+};
+
+/// The packing in integers of one unit.
+struct Integers {
+    int disks = 0;
+    Numbers radius;
+    Number weight;
+    std::vector<Contact> contacts;
+
+    [[nodiscard]] int at(int disk, int axis) const { return 2 * disk + axis; }
+
+    /// Twice the polynomial of a contact, and half its derivative: those of proofs/coq/box.v.
+    [[nodiscard]] Number doubled_gap(const Contact& c, const Numbers& q) const {
+        if (c.kind == ContactKind::disk_disk) {
+            const Number x = q[index(at(c.i, 0))] - q[index(at(c.j, 0))];
+            const Number y = q[index(at(c.i, 1))] - q[index(at(c.j, 1))];
+            const Number sum = radius[index(c.i)] + radius[index(c.j)];
+            return x * x + y * y - sum * sum;
+        }
+        const Number x = q[index(at(c.i, c.j))];
+        const Number room = c.kind == ContactKind::lower_wall ? x : q[index(at(disks, c.j))] - x;
+        return (weight + weight) * (room - radius[index(c.i)]);
+    }
+    [[nodiscard]] std::vector<Entry> gradient(const Contact& c, const Numbers& q) const {
+        if (c.kind == ContactKind::disk_disk) {
+            const Number x = q[index(at(c.i, 0))] - q[index(at(c.j, 0))];
+            const Number y = q[index(at(c.i, 1))] - q[index(at(c.j, 1))];
+            return {{at(c.i, 0), x}, {at(c.i, 1), y}, {at(c.j, 0), -x}, {at(c.j, 1), -y}};
+        }
+        if (c.kind == ContactKind::lower_wall) {
+            return {{at(c.i, c.j), weight}};
+        }
+        return {{at(disks, c.j), weight}, {at(c.i, c.j), -weight}};
+    }
+    [[nodiscard]] Number length(const Contact& c) const {
+        return c.kind == ContactKind::disk_disk ? radius[index(c.i)] + radius[index(c.j)] : weight;
+    }
+    static std::size_t index(int i) { return static_cast<std::size_t>(i); }
+};
+
+/// A in doubles and a factor of A^T A: it serves for every approximate solution.
+struct Approximate {
+    Matrix a;
+    Eigen::SimplicialLLT<Matrix> factor;
+
+    Approximate(const Integers& packing, const Numbers& q) : a(static_cast<int>(q.size()), static_cast<int>(q.size())) {
+        std::vector<Eigen::Triplet<double>> entries;
+        for (std::size_t l = 0; l < packing.contacts.size(); ++l) {
+            for (const Entry& e : packing.gradient(packing.contacts[l], q)) {
+                entries.emplace_back(static_cast<int>(l), e.coordinate, e.value.to_double());
+            }
+        }
+        a.setFromTriplets(entries.begin(), entries.end());
+        factor.compute(Matrix(a.transpose() * a));
+        if (factor.info() != Eigen::Success) {
+            throw Error(ErrorKind::bad_input, "the contact matrix is too near a singular one for a factor in double");
+        }
+    }
+    /// A x = b.
+    [[nodiscard]] Vector solve(const Vector& b) const { return factor.solve(a.transpose() * b); }
+    /// A^T x = b.
+    [[nodiscard]] Vector solve_transposed(const Vector& b) const { return a * factor.solve(b); }
+    /// The smallest eigenvalue of A^T A, by inverse iteration.
+    [[nodiscard]] double smallest_eigenvalue() const {
+        Vector x = Vector::Ones(a.cols());
+        double inverse = 0;
+        for (int k = 0; k < 200; ++k) {
+            const Vector direction = x / x.norm();
+            x = factor.solve(direction);
+            inverse = x.norm();
+        }
+        return 1 / inverse;
+    }
+};
+
+Vector to_doubles(const Numbers& x) {
+    Vector result(static_cast<Eigen::Index>(x.size()));
+    for (std::size_t k = 0; k < x.size(); ++k) {
+        result[static_cast<Eigen::Index>(k)] = x[k].to_double();
+    }
+    return result;
+}
+
+Number largest(const Numbers& x) {
+    Number result;
+    for (const Number& a : x) {
+        result = std::max(result, a.sign() < 0 ? -a : a);
+    }
+    return result;
+}
+
+/// Adds the rounded step to x.
+void add_rounded(Numbers& x, const Vector& step) {
+    for (std::size_t k = 0; k < x.size(); ++k) {
+        x[k] += rounded(step[static_cast<Eigen::Index>(k)]);
+    }
+}
+
+/// The vertex next to q, in integers: Newton's steps with exact residuals. `left`: the largest doubled gap there.
+Numbers refined(const Integers& packing, Numbers q, const Approximate& system, Number& left) {
+    Numbers gaps(packing.contacts.size());
+    for (int step = 0;; ++step) {
+        for (std::size_t l = 0; l < gaps.size(); ++l) {
+            gaps[l] = packing.doubled_gap(packing.contacts[l], q);
+        }
+        left = largest(gaps);
+        if (step == 6) {
+            return q;
+        }
+        add_rounded(q, system.solve(-0.5 * to_doubles(gaps)));
+    }
+}
+
+/// Forces over lengths times `fraction`, in integers, and what they may be off.
+struct Quotients {
+    int fraction = 0; ///< exponent
+    Numbers value;
+    Number slack;
+};
+
+Quotients quotients(const Integers& packing, const Numbers& q, const Numbers& load, const Approximate& system,
+                    const Number& error, const Number& stiffness) {
+    Quotients result;
+    const double size = system.solve_transposed(to_doubles(load)).lpNorm<Eigen::Infinity>();
+    result.fraction = size > 0 ? std::max(0, 100 - std::ilogb(size)) : 0;
+    result.value.assign(packing.contacts.size(), Number());
+    for (int step = 0;; ++step) {
+        Numbers residual(load.size());
+        Numbers blur(load.size());
+        for (std::size_t k = 0; k < load.size(); ++k) {
+            residual[k] = power_of_two(result.fraction) * load[k];
+        }
+        for (std::size_t l = 0; l < packing.contacts.size(); ++l) {
+            const Number& g = result.value[l];
+            for (const Entry& e : packing.gradient(packing.contacts[l], q)) {
+                residual[Integers::index(e.coordinate)] += e.value * g;
+                blur[Integers::index(e.coordinate)] += g.sign() < 0 ? -g : g;
+            }
+        }
+        if (step == 12) {
+            result.slack = above((largest(residual) + 2 * error * largest(blur)) / stiffness);
+            return result;
+        }
+        add_rounded(result.value, system.solve_transposed(-to_doubles(residual)));
+    }
+}
+
+// What follows writes Coq.
+
+std::string list(const std::vector<std::string>& items) {
+    std::string text = "[::";
+    for (std::size_t k = 0; k < items.size(); ++k) {
+        text += (k == 0 ? " " : k % 8 == 0 ? ";\n  " : "; ") + items[k];
+    }
+    return text + "]";
+}
+std::string list(const Numbers& numbers) {
+    std::vector<std::string> items;
+    for (const Number& x : numbers) {
+        items.push_back(x.text());
+    }
+    return list(items);
+}
+std::string list(const std::vector<bool>& flags) {
+    std::vector<std::string> items;
+    for (const bool flag : flags) {
+        items.emplace_back(flag ? "true" : "false");
+    }
+    return list(items);
+}
+
+std::string name(const Contact& c) {
+    const char* kind = c.kind == ContactKind::disk_disk    ? "Disks"
+                       : c.kind == ContactKind::lower_wall ? "Lower"
+                                                           : "Upper";
+    return std::string(kind) + " " + std::to_string(c.i) + " " + std::to_string(c.j);
+}
+
+/// Rows of L, with P^T L for the permutation P of the factor: A^T A - s I = L L^T, in integers of the unit.
+std::string factor_rows(const Matrix& squared, double shift) {
+    Matrix shifted = squared;
+    for (Eigen::Index k = 0; k < shifted.cols(); ++k) {
+        shifted.coeffRef(k, k) -= shift;
+    }
+    Eigen::SimplicialLLT<Matrix> factor(shifted);
+    if (factor.info() != Eigen::Success) {
+        throw Error(ErrorKind::bad_input, "the shifted matrix has no factor");
+    }
+    const Matrix lower = factor.matrixL();
+    std::vector<std::vector<std::string>> rows(static_cast<std::size_t>(lower.rows()));
+    for (Eigen::Index k = 0; k < lower.outerSize(); ++k) {
+        for (Matrix::InnerIterator it(lower, k); it; ++it) {
+            const Eigen::Index row = factor.permutationPinv().indices()[it.row()];
+            rows[static_cast<std::size_t>(row)].push_back("(" + std::to_string(k) + ", " + rounded(it.value()).text() +
+                                                          ")");
+        }
+    }
+    std::vector<std::string> items;
+    items.reserve(rows.size());
+    for (const auto& row : rows) {
+        items.push_back(list(row));
+    }
+    return list(items);
+}
+
+/// The vertex next to a stored packing, with what proves it. The first three are in units 2^fine, the others in 2^unit.
+struct Vertex {
+    int unit = 0;
+    int fine = 0;
+    Numbers refined;
+    Number error;
+    Number distance;
+    Integers packing;
+    Numbers stored;
+    Number ball;
+    Number stiffness;
+    Number shift;
+    std::string factor;
+};
+
+/// A packing in a unit `zoom` times smaller.
+Integers enlarged(Integers packing, const Number& zoom) {
+    packing.weight *= zoom;
+    for (Number& r : packing.radius) {
+        r *= zoom;
+    }
+    return packing;
+}
+
+Numbers multiples(const std::vector<double>& values, int exponent) {
+    Numbers result;
+    for (const double x : values) {
+        result.push_back(Number::from_double(x) / power_of_two(exponent));
+    }
+    return result;
+}
+
+Vertex vertex_of(const State<2>& state, double unique_radius) {
+    const Packing<2>& packing = state.packing;
+    Vertex v;
+    v.unit = unit_exponent(packing.radius, unit_exponent(packing.q, 0));
+    v.fine = v.unit - zoom_exponent;
+    v.packing = {packing.disk_count(), multiples(packing.radius, v.unit),
+                 power_of_two(std::ilogb(packing.radius[0]) - v.unit + 1), state.contacts};
+    v.stored = multiples(packing.q, v.unit);
+    const Approximate coarse(v.packing, v.stored);
+    const double shift = 0.7 * coarse.smallest_eigenvalue();
+    const double ball = std::ceil(std::ldexp(unique_radius, -v.unit));
+    const double stiffness = 0.9 * shift / (2.0 * static_cast<double>(v.stored.size())) - 64 * ball * ball;
+    if (!(stiffness > 0)) {
+        throw Error(ErrorKind::bad_input, "the claimed radius of uniqueness is too large for this certificate");
+    }
+    v.shift = rounded(shift);
+    v.ball = rounded(ball);
+    v.stiffness = rounded(std::floor(std::sqrt(stiffness)));
+    v.factor = factor_rows(Matrix(coarse.a.transpose() * coarse.a), shift);
+
+    const Number zoom = power_of_two(zoom_exponent);
+    Numbers start = v.stored;
+    for (Number& x : start) {
+        x *= zoom;
+    }
+    const Integers small = enlarged(v.packing, zoom);
+    Number left;
+    v.refined = refined(small, start, Approximate(small, start), left);
+    v.error = above(left / (2 * v.stiffness * zoom));
+    Numbers moved = start;
+    for (std::size_t k = 0; k < moved.size(); ++k) {
+        moved[k] -= v.refined[k];
+    }
+    v.distance = largest(moved) + v.error;
+    return v;
+}
+
+/// The wall forces are exact products of two stored numbers.
+Numbers finite_load(const State<2>& state, int exponent) {
+    Numbers load = multiples(state.load.disk_force, exponent);
+    load.resize(state.packing.q.size());
+    for (const WallForce& wall : state.load.wall_forces(state.packing)) {
+        const Number force = Number::from_double(wall.stress) * Number::from_double(wall.length);
+        load[Integers::index(wall.coordinate)] = -force / power_of_two(exponent);
+    }
+    return load;
+}
+
+/// A common unit of the loads and of the ends of the intervals.
+int force_exponent(std::vector<double> numbers, const std::vector<Interval>& intervals) {
+    for (const Interval& interval : intervals) {
+        numbers.insert(numbers.end(), {interval.lower, interval.upper});
+    }
+    return unit_exponent(numbers, 0);
+}
+
+/// Degrees of freedom without load that only contacts without force touch.
+std::vector<bool> unloaded_by(const Vertex& v, const Numbers& load, const std::vector<bool>& zeros) {
+    std::vector<bool> result;
+    for (const Number& force : load) {
+        result.push_back(force.is_zero());
+    }
+    for (std::size_t l = 0; l < zeros.size(); ++l) {
+        for (const Entry& e : v.packing.gradient(v.packing.contacts[l], v.stored)) {
+            result[Integers::index(e.coordinate)] = result[Integers::index(e.coordinate)] && zeros[l];
+        }
+    }
+    return result;
+}
+
+void write_vertex(const Vertex& v) {
+    std::vector<std::string> contacts;
+    for (const Contact& c : v.packing.contacts) {
+        contacts.push_back(name(c));
+    }
+    std::printf("(* The data of a certificate, for proofs/coq/questions/verdict.v. *)\n"
+                "From Coq Require Import ZArith List.\nFrom mathcomp Require Import all_ssreflect all_algebra.\n"
+                "From Isostat Require Import contact_certificate box_certificate equilibrium_certificate.\n"
+                "Definition touching : seq contact := %s.\nOpen Scope Z_scope.\n",
+                list(contacts).c_str());
+    std::printf("Definition the_vertex : vertex_certificate := {|\n  disks := %d;\n  contacts := touching;\n"
+                "  stored := %s;\n  radii := %s;\n  weight := %s;\n  zoom := 2 ^ %d;\n  refined := %s;\n",
+                v.packing.disks, list(v.stored).c_str(), list(v.packing.radius).c_str(),
+                v.packing.weight.text().c_str(), zoom_exponent, list(v.refined).c_str());
+    std::printf("  error := %s;\n  distance := %s;\n  ball := %s;\n  stiffness := %s;\n  shift := %s;\n"
+                "  factor := %s |}.\n",
+                v.error.text().c_str(), v.distance.text().c_str(), v.ball.text().c_str(), v.stiffness.text().c_str(),
+                v.shift.text().c_str(), v.factor.c_str());
+}
+
+void write_forces(const char* title, const Vertex& v, const Numbers& load, const std::vector<Interval>& intervals,
+                  int exponent) {
+    const Number zoom = power_of_two(zoom_exponent);
+    const Integers small = enlarged(v.packing, zoom);
+    const Quotients forces =
+        quotients(small, v.refined, load, Approximate(small, v.refined), v.error, v.stiffness * zoom);
+    std::vector<double> low;
+    std::vector<double> high;
+    for (const Interval& interval : intervals) {
+        low.push_back(interval.lower);
+        high.push_back(interval.upper);
+    }
+    std::printf("Definition %s : force_claim := {|\n  load := %s;\n  low := %s;\n  high := %s;\n  fraction := 2 ^ %d;\n"
+                "  quotients := %s;\n  slack := %s |}.\n",
+                title, list(load).c_str(), list(multiples(low, exponent)).c_str(),
+                list(multiples(high, exponent)).c_str(), forces.fraction, list(forces.value).c_str(),
+                forces.slack.text().c_str());
+}
+
+void write_certificate(const State<2>& state, const CertificateClaims& claims) {
+    const Packing<2>& packing = state.packing;
+    if (packing.walls != Walls<2>::box() || !packing.fixed.empty() || packing.cell.any() ||
+        state.load.kind != LoadKind::nominal || state.contacts.size() != packing.q.size()) {
+        throw Error(ErrorKind::bad_input, "an isostatic packing in the box under dead loads was expected");
+    }
+    if (!claims.vertex || !claims.forces || !claims.gaps) {
+        throw Error(ErrorKind::bad_input, "vertex, forces and gaps have to be claimed");
+    }
+    const Vertex v = vertex_of(state, claims.vertex->unique_radius);
+    const ForcesClaim& forces = *claims.forces;
+    std::vector<bool> zeros(state.contacts.size(), false);
+    std::vector<Interval> infinitesimal(state.contacts.size());
+    for (std::size_t k = 0; k < forces.structural_zeros.size(); ++k) {
+        const std::size_t l = Integers::index(forces.structural_zeros[k]);
+        zeros[l] = true;
+        infinitesimal[l] = forces.infinitesimal[k];
+    }
+    int unit = force_exponent(state.load.disk_force, forces.finite);
+    for (const WallForce& wall : state.load.wall_forces(packing)) {
+        unit = std::min(unit, unit_exponent(wall.stress, 0) + unit_exponent(wall.length, 0));
+    }
+    const Numbers load = finite_load(state, unit);
+    const int small_unit = force_exponent(state.load.infinitesimal, infinitesimal);
+    Numbers small_load = multiples(state.load.infinitesimal, small_unit);
+    small_load.resize(packing.q.size());
+
+    write_vertex(v);
+    std::printf(
+        "(* The units are 2 to these powers: of lengths, of refined lengths, of forces, of infinitesimal ones. *)\n"
+        "Definition exponents : seq Z := [:: %d; %d; %d; %d].\n",
+        v.unit, v.fine, unit, small_unit);
+    write_forces("the_forces", v, load, forces.finite, unit);
+    write_forces("the_infinitesimal_forces", v, small_load, infinitesimal, small_unit);
+    std::printf("Definition the_certificate : equilibrium_certificate := {|\n  vertex := the_vertex;\n"
+                "  finite := the_forces;\n  infinitesimal := the_infinitesimal_forces;\n  zeros := %s;\n"
+                "  unloaded := %s;\n  gap := %s |}.\n",
+                list(zeros).c_str(), list(unloaded_by(v, load, zeros)).c_str(),
+                rounded(std::ceil(std::ldexp(claims.gaps->smallest, -v.fine))).text().c_str());
+}
+
+State<2> prepared(int disks, std::uint64_t seed) {
+    PreparationOptions options;
+    options.disks = disks;
+    options.seed = seed;
+    PreparationReport<2> report;
+    auto state = prepare<2>(options, report);
+    if (!state.ok()) {
+        throw Error(ErrorKind::bad_input, state.failure().message());
+    }
+    return state.value();
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    try {
+        const int disks = argc > 1 ? std::atoi(argv[1]) : 8;
+        if (disks > 0) {
+            const State<2> state = prepared(disks, argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 1);
+            write_certificate(state, certify(state).claims);
+        } else {
+            const Certificate certificate = read_certificate(argv[1]);
+            write_certificate(certificate.state, certificate.claims);
+        }
+    } catch (const Error& error) {
+        std::fprintf(stderr, "%s\n", error.what());
+        return error.exit_status();
+    }
+    return 0;
+}

@@ -1,0 +1,151 @@
+(** Statements K6 and K7 (../checker.md) for a packing in a box: forces at the true vertex.
+
+    q is the true vertex, q1 a configuration within r of it. Forces that balance a load exist once; approximate ones
+    whose residual at q1 is small are near them. Forces of a set of contacts vanish exactly where as many unloaded
+    degrees of freedom are touched by no other contact. *)
+From mathcomp Require Import all_ssreflect all_algebra ring.
+From Isostat Require Import shifted_factor max_norm contact_certificate box.
+Set Implicit Arguments.
+Unset Strict Implicit.
+Import Order.Theory GRing.Theory Num.Theory.
+Local Open Scope ring_scope.
+
+(** A regular matrix whose rows S vanish outside as many columns T: solutions with zeros in S have zeros in T. *)
+Lemma block_solutions_vanish (F : fieldType) (m : nat) (X : 'M[F]_m) (S T : {set 'I_m}) : X \in unitmx -> #|S| = #|T| ->
+  (forall i j, i \in S -> j \notin T -> X i j = 0) ->
+  forall x : 'cV[F]_m, (forall i, i \in S -> (X *m x) i 0 = 0) -> forall j, j \in T -> x j 0 = 0.
+Proof.
+move=> unit same outside x zero j jT.
+pose rows : 'M[F]_(#|S|, m) := rowsub enum_val X; pose units : 'M[F]_(#|T|, m) := rowsub enum_val 1%:M.
+have spanned (Y : 'M[F]_(#|S|, m)) : (forall a k, k \notin T -> Y a k = 0) -> (Y <= units)%MS.
+  move=> vanish; have -> : Y = (\matrix_(a, z) Y a (enum_val z)) *m units; last exact: submxMl.
+  apply/matrixP=> a k; rewrite [RHS]mxE; have [kT|kT] := boolP (k \in T).
+    rewrite (bigD1 (enum_rank_in kT k)) //= !mxE enum_rankK_in // eqxx mulr1 big1 ?addr0 // => z ne; rewrite !mxE.
+    case: eqP => [zk|]; last by rewrite mulr0.
+    by case/eqP: ne; apply: enum_val_inj; rewrite enum_rankK_in.
+  rewrite big1 => [|z _]; first exact: vanish.
+  by rewrite !mxE; case: eqP => [zk|]; rewrite ?mulr0 //; case/negP: kT; rewrite -zk enum_valP.
+have inside : (rows <= units)%MS by apply: spanned => a k kT; rewrite mxE outside ?enum_valP.
+have free_rows : \rank rows = #|S|.
+  have -> : rows = rowsub enum_val 1%:M *m X by rewrite mul_rowsub_mx mul1mx.
+  rewrite mxrankMfree ?row_free_unit //; apply/eqP/row_freeP; exists (rowsub enum_val 1%:M)^T.
+  apply/matrixP=> a z; rewrite !mxE (bigD1 (enum_val a)) //= !mxE eqxx mul1r big1 ?addr0 => [|k ne].
+    by rewrite (inj_eq enum_val_inj) eq_sym.
+  by rewrite !mxE [enum_val a == k]eq_sym (negPf ne) mul0r.
+have back : (units <= rows)%MS.
+  have : (rows == units)%MS by rewrite -(mxrank_leqif_eq inside) eqn_leq mxrankS //= free_rows same rank_leq_row.
+  by case/andP.
+have /submxP[y ey] := submx_trans (row_sub (enum_rank_in jT j) units) back.
+have -> : x j 0 = (row (enum_rank_in jT j) units *m x) 0 0.
+  by rewrite row_rowsub enum_rankK_in // row1 -rowE mxE.
+rewrite ey -mulmxA; have -> : rows *m x = 0; last by rewrite mulmx0 mxE.
+by rewrite mul_rowsub_mx; apply/colP=> a; rewrite mxE zero ?enum_valP // mxE.
+Qed.
+
+Section Forces.
+Variables (F : realFieldType) (n : nat) (w : F) (radius : nat -> F) (contacts : seq contact).
+Let N := (n.*2.+2)%N.
+Variables (q q1 : 'cV[F]_N) (b r : F).
+Let A := derivative w contacts : 'cV[F]_N -> 'M[F]_N.
+Let scale_at (l : nat) : F := scale w radius (contact_at contacts l).
+
+(** In every degree of freedom the forces, along the normals, and the load sum to 0. *)
+Definition balanced (load f : 'cV[F]_N) : Prop := (normals radius contacts q)^T *m f + load = 0.
+
+Hypothesis w0 : w != 0.
+Hypothesis scales : forall l, scale 1 radius (contact_at contacts l) != 0.
+Hypothesis regular : normals radius contacts q \in unitmx.
+
+Theorem balancing_forces_are_unique load f f' : balanced load f -> balanced load f' -> f = f'.
+Proof.
+have unit : (normals radius contacts q)^T \in unitmx by rewrite unitmx_tr.
+by move=> e e'; rewrite -(mulKmx unit f) -(mulKmx unit f'); congr (_ *m _); apply: (addIr load); rewrite e.
+Qed.
+
+(** Degrees of freedom that contact c touches, by name, whatever the entries. *)
+Definition support (c : contact) : seq nat := [seq e.1 | e <- gradient n (0 : F) (fun _ => 0) c].
+
+Lemma entry_moves_little l (m : 'I_N) : norm (q - q1) <= r ->
+  `|A q l m - A q1 l m| <= 2%:R * r * (count_mem (m : nat) (support (contact_at contacts l)))%:R.
+Proof.
+move=> near; rewrite !mxE.
+have r0 : 0 <= 2%:R * r by rewrite mulr_ge0 ?ler0n // (le_trans (norm_ge0 _) near).
+have moved i j a : `|separation (at_ q) i j a - separation (at_ q1) i j a| <= 2%:R * r.
+  have -> : separation (at_ q) i j a - separation (at_ q1) i j a = at_ (q - q1) (i.*2 + a) - at_ (q - q1) (j.*2 + a).
+    by rewrite /separation !at_sub; ring.
+  apply: le_trans (ler_norm_sub _ _) _; rewrite mulr_natl mulr2n.
+  by apply: ler_add; apply: le_trans near; apply: at_norm.
+have lists (s t : seq (nat * F)) : all2 (fun e f => (e.1 == f.1) && (`|e.2 - f.2| <= 2%:R * r)) s t ->
+    `|\sum_(e <- s | e.1 == m) e.2 - \sum_(e <- t | e.1 == m) e.2| <= 2%:R * r * (count_mem (m : nat) (unzip1 s))%:R.
+  elim: s t => [|e s IH] [|f t] //=; first by rewrite !big_nil subrr normr0 mulr0.
+  case/andP=> /andP[/eqP same small] /IH rest; rewrite !big_cons -same.
+  case: ifP => _ //=; rewrite natrD mulrDr mulr1 opprD addrACA.
+  by apply: le_trans (ler_norm_add _ _) _; apply: ler_add.
+have -> : support (contact_at contacts l) = unzip1 (gradient n w (at_ q) (contact_at contacts l)).
+  by rewrite /support; case: (contact_at _ _).
+have opposite i j a : `|- separation (at_ q) i j a - - separation (at_ q1) i j a| <= 2%:R * r.
+  by rewrite -opprD normrN moved.
+by apply: lists; case: (contact_at _ _) => [i j|i a|i a] /=; rewrite ?subrr ?normr0 ?r0 ?eqxx ?moved ?opposite.
+Qed.
+
+Hypothesis b0 : 0 < b.
+Hypothesis inverse : forall x, b * norm x <= norm ((A q)^T *m x).
+Hypothesis near : norm (q - q1) <= r.
+
+Theorem forces_are_enclosed (load G : 'cV[F]_N) (fraction c : F) : 0 <= c ->
+  (forall k, `|fraction * load k 0 + ((A q1)^T *m G) k 0|
+     + \sum_(l < N) 2%:R * r * (count_mem (k : nat) (support (contact_at contacts l)))%:R * `|G l 0| <= b * c) ->
+  exists f, [/\ balanced load f, (forall f', balanced load f' -> f' = f)
+    & forall l : 'I_N, `|fraction * f l 0 - scale_at l * G l 0| <= `|scale_at l| * c].
+Proof.
+move=> c0 residual; pose D : 'M[F]_N := diag_mx (\row_l scale_at l); pose M := normals radius contacts q.
+have AM : A q = D *m M by apply: derivative_scales.
+have unit : M^T \in unitmx by rewrite unitmx_tr.
+pose f := - (invmx M^T *m load).
+have bal : balanced load f by rewrite /balanced mulmxN mulKVmx // addNr.
+exists f; split=> // [f' /balancing_forces_are_unique|l]; first exact.
+have scale0 m : scale_at m != 0.
+  by rewrite /scale_at; have := scales m; case: (contact_at _ _).
+pose g : 'cV[F]_N := \col_m (f m 0 / scale_at m).
+have fDg : f = D *m g.
+  by apply/colP=> m; rewrite mul_diag_mx !mxE mulrC divfK.
+have Ag : (A q)^T *m g = - load.
+  by rewrite AM trmx_mul tr_diag_mx -mulmxA -fDg; apply/eqP; rewrite -addr_eq0; apply/eqP.
+have small : norm (fraction *: g - G) <= c.
+  rewrite -(ler_pmul2l b0); apply: le_trans (inverse _) _; apply: norm_le => [|k]; first exact: mulr_ge0 (ltW b0) c0.
+  apply: le_trans (residual k); rewrite mulmxBr -scalemxAr Ag.
+  have -> : (fraction *: - load - (A q)^T *m G) k 0
+     = - ((fraction * load k 0 + ((A q1)^T *m G) k 0) + (((A q)^T - (A q1)^T) *m G) k 0).
+    rewrite mulmxBl; move: ((A q)^T *m G) ((A q1)^T *m G) => x y; rewrite !mxE.
+    by move: (load k 0) (x k 0) (y k 0) => *; ring.
+  rewrite normrN; apply: le_trans (ler_norm_add _ _) _; rewrite ler_add2l mxE.
+  apply: le_trans (ler_norm_sum _ _ _) _; apply: ler_sum => m _; rewrite normrM ler_wpmul2r //.
+  by have := entry_moves_little m k near; rewrite !mxE.
+have -> : fraction * f l 0 - scale_at l * G l 0 = scale_at l * (fraction *: g - G) l 0.
+  have -> : f l 0 = scale_at l * g l 0 by rewrite {1}fDg mul_diag_mx !mxE.
+  have -> : (fraction *: g - G) l 0 = fraction * g l 0 - G l 0 by rewrite [LHS]mxE [X in X + _]mxE [X in _ + X]mxE.
+  by move: (G l 0) (g l 0) (scale_at l) => *; ring.
+by rewrite normrM ler_wpmul2l // (le_trans (entry_norm _ _)).
+Qed.
+
+(** K7. [zeros] are contacts, [free] degrees of freedom. *)
+Theorem structural_zeros (load f : 'cV[F]_N) (zeros free : {set 'I_N}) : balanced load f -> #|free| = #|zeros| ->
+  (forall k, k \in free -> load k 0 = 0) ->
+  (forall (k l : 'I_N), k \in free -> l \notin zeros -> (k : nat) \notin support (contact_at contacts l)) ->
+  forall l, l \in zeros -> f l 0 = 0.
+Proof.
+move=> bal same unloaded apart; have unit : (normals radius contacts q)^T \in unitmx by rewrite unitmx_tr.
+apply: (block_solutions_vanish unit same) => [k l kf lz|k kf].
+  rewrite !mxE; have := apart k l kf lz.
+  have -> : support (contact_at contacts l) = unzip1 (gradient n 1 (at_ q) (contact_at contacts l)).
+    by rewrite /support; case: (contact_at _ _).
+  move=> absent; rewrite big1_seq ?mul0r // => e /andP[/eqP e1 es]; case/negP: absent.
+  by rewrite -e1 map_f.
+have -> : (normals radius contacts q)^T *m f = - load by apply/eqP; rewrite -addr_eq0; apply/eqP.
+by rewrite mxE unloaded ?oppr0.
+Qed.
+End Forces.
+
+Print Assumptions balancing_forces_are_unique.
+Print Assumptions forces_are_enclosed.
+Print Assumptions structural_zeros.

@@ -1,0 +1,113 @@
+#!/usr/bin/env python3
+"""Lays what Coq printed (verdict.v) beside the certificate of the program:  python3 compare.py CERT.json VERDICT.log DATA.v
+
+Every number of the file is a double, hence an exact fraction; those that Coq printed are integers times powers of two.
+Packing, contacts and loads have to be equal; claims of the file have to follow from what was proved. Exit status 1 and
+the first difference otherwise."""
+import json
+import re
+import sys
+from fractions import Fraction
+
+UPPER = {"left": "Lower {} 0", "bottom": "Lower {} 1", "right": "Upper {} 0", "top": "Upper {} 1"}
+
+
+def differ(what):
+    sys.exit(f"compare.py: {what}")
+
+
+def same(what, proved, claimed):
+    if isinstance(proved, list) and isinstance(claimed, list) and len(proved) == len(claimed):
+        for k, pair in enumerate(zip(proved, claimed)):
+            same(f"{what}, number {k}", *pair)
+    elif proved != claimed:
+        differ(f"{what}: Coq printed {proved}, the certificate has {claimed}")
+
+
+def printed(log):
+    """The values after Print Assumptions, in the order of verdict.v."""
+    head, *values = re.split(r"^     = ", log, flags=re.M)
+    same("assumptions", head.strip(), "Closed under the global context")
+    result = []
+    for value in values:
+        text, kind = re.fullmatch(r"(.*?)\n     : (.*?)\n?", value, flags=re.S).groups()
+        items = re.sub(r"%Z|[\[\]()]|::", " ", text).split(";") if "[::" in text else [text.replace("%Z", "")]
+        items = [" ".join(item.split()) for item in items if item.strip()]
+        if "contact" not in kind:
+            items = [item == "true" if "bool" in kind else int(item.strip("()")) for item in items]
+        result.append(items if kind.startswith("seq") else items[0])
+    return result
+
+
+def name(contact):
+    i, j = contact
+    return UPPER[j].format(i) if isinstance(j, str) else f"Disks {i} {j}"
+
+
+def main(certificate_path, log_path, data_path):
+    with open(data_path, encoding="utf-8") as data:
+        for sentence in re.sub(r"\(\*.*?\*\)", " ", data.read(), flags=re.S).split(".\n"):
+            if sentence.strip() and not re.match(r"\s*(From (Coq|mathcomp|Isostat) Require Import|Definition|Open Scope) ", sentence):
+                differ(f"{data_path} has more than definitions: {sentence.strip()[:60]}")
+    with open(certificate_path, encoding="utf-8") as file:
+        certificate = json.load(file)
+    with open(log_path, encoding="utf-8") as file:
+        values = printed(file.read())
+    ((unit, fine, force, small), n, contacts, stored, radii, zoom, distance, ball, load, low, high, zeros, load_small,
+     low_small, high_small, gap) = values
+    state, claims = certificate["state"], certificate["claims"]
+    same("formats", [certificate["format"], certificate["version"], state["version"]], ["isostat-certificate", 1, 2])
+    known = {"format", "version", "dimension", "equilibrium", "provenance", "load", "walls", "length", "disks", "disk_force",
+             "infinitesimal", "contacts", "forces"}
+    if set(state) - known:
+        differ(f"the state has what Coq was not told of: {sorted(set(state) - known)}")
+    lengths = [Fraction(x) for x in state["length"]]
+    two = Fraction(2)
+
+    def scaled(numbers, exponent):
+        return [x * two**exponent for x in numbers]
+
+    same("number of disks", n, len(state["disks"]))
+    same("coordinates", scaled(stored, unit), [Fraction(x) for d in state["disks"] for x in d[:2]] + lengths)
+    same("radii", scaled(radii, unit), [Fraction(d[2]) for d in state["disks"]])
+    same("contacts", contacts, [name(c) for c in state["contacts"]])
+    same("units", zoom * two**fine, two**unit)
+    same("walls", state["walls"], {"lower": ["fixed", "fixed"], "upper": ["movable", "movable"]})
+    counting = claims["counting"]
+    same("counting", [2 * n + 2, 2 * n + 2, 2 * n + 2, 0, 0],
+         [counting[k] for k in ("dof_count", "contact_count", "rank", "hyperstaticity", "hypostaticity")])
+    if distance * two**fine > Fraction(claims["vertex"]["radius"]):
+        differ("the radius that is claimed is smaller than what Coq proved")
+    if ball * two**unit < Fraction(claims["vertex"]["unique_radius"]):
+        differ("uniqueness is claimed further than Coq proved it")
+
+    loads = state["load"]
+    same("kind of load", loads["kind"], "nominal")
+    disk_force = [Fraction(x) for d in state.get("disk_force", []) for x in d] or [Fraction(0)] * (2 * n)
+    reference = [Fraction(x) for x in loads["reference_length"]]
+    stress = [Fraction(x) for x in loads["stress"]]
+    same("load", scaled(load, force), disk_force + [-stress[0] * reference[1], -stress[1] * reference[0]])
+    same("infinitesimal load", scaled(load_small, small),
+         [Fraction(x) for d in state["infinitesimal"] for x in d] + [Fraction(0)] * 2)
+    claim = claims["forces"]
+    same("structural zeros", [l for l, zero in enumerate(zeros) if zero], claim["structural_zeros"])
+
+    def intervals(proved_low, proved_high, exponent, where, claimed):
+        for l, (lower, upper) in zip(where, claimed):
+            if not Fraction(lower) <= proved_low[l] * two**exponent or not proved_high[l] * two**exponent <= Fraction(upper):
+                differ(f"force {l}: the interval that is claimed is smaller than what Coq proved")
+
+    carrying = [l for l, zero in enumerate(zeros) if not zero]
+    same("number of forces", len(zeros), len(claim["finite"]))
+    intervals(low, high, force, carrying, [claim["finite"][l] for l in carrying])
+    intervals(low_small, high_small, small, claim["structural_zeros"], claim["infinitesimal"])
+    for l in claim["structural_zeros"]:
+        lower, upper = claim["finite"][l]
+        if not lower <= 0 <= upper:
+            differ(f"force {l} is 0, and the interval that is claimed does not hold it")
+    if gap * two**fine < Fraction(claims["gaps"]["smallest"]):
+        differ("a larger gap is claimed than Coq proved")
+    print(f"{n} disks: Coq's packing is that of the certificate; counting, vertex, forces and gaps follow")
+
+
+main(*sys.argv[1:])

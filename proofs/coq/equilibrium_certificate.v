@@ -1,0 +1,227 @@
+(** The certificate of an equilibrium in a box, and the check that Coq evaluates.
+
+    It adds to that of the vertex: approximate forces under the finite load and under the infinitesimal one, in
+    fractions of a force unit, the intervals that are claimed, the contacts whose finite force is exactly 0 with the
+    degrees of freedom that prove it (K7), and the smallest gap of all other grains. *)
+From Coq Require Import ZArith List.
+From mathcomp Require Import all_ssreflect all_algebra.
+From mathcomp Require Import ssrZ zify ring.
+From Isostat Require Import certificate contact_certificate dense_rows integers_in_a_field shifted_factor max_norm box
+  box_vertex box_certificate box_forces box_gaps.
+Set Implicit Arguments.
+Unset Strict Implicit.
+Import Order.Theory GRing.Theory Num.Theory.
+
+Record force_claim := ForceClaim {
+  load : seq Z;      (* on each degree of freedom, in units of force *)
+  low : seq Z;       (* the claimed intervals of the forces, in units of force *)
+  high : seq Z;
+  fraction : Z;
+  quotients : seq Z; (* fraction * force / length of contact, rounded *)
+  slack : Z          (* what they may be off *)
+}.
+
+Record equilibrium_certificate := EquilibriumCertificate {
+  vertex : vertex_certificate;
+  finite : force_claim;
+  infinitesimal : force_claim;
+  zeros : seq bool;  (* contacts without finite force *)
+  unloaded : seq bool; (* degrees of freedom that no other contact touches *)
+  gap : Z
+}.
+
+Section Check.
+Variable e : equilibrium_certificate.
+Let v := vertex e.
+Let n := disks v.
+Let N := (n.*2.+2)%N.
+Local Open Scope Z_scope.
+
+Definition rows_at_the_refined_one (c : contact) : seq (nat * Z) := gradient n (fine_weight v) (refined_at v) c.
+Definition contributions (value : Z -> Z -> Z) (p : force_claim) : seq (nat * Z) :=
+  flatten [seq [seq (d.1, value d.2 cg.2) | d <- rows_at_the_refined_one cg.1] | cg <- zip (contacts v) (quotients p)].
+Definition residual (p : force_claim) : seq Z := put_all (contributions Z.mul p) [seq fraction p * z | z <- load p].
+Definition blur (p : force_claim) : seq Z := dense N (contributions (fun _ g => Z.abs g) p).
+Definition nearly_balanced (p : force_claim) : bool :=
+  let res := residual p in let bl := blur p in
+  [&& size (load p) == N, size (quotients p) == N, 0 <? fraction p, 0 <=? slack p
+    & all (fun k => Z.abs (nth 0 res k) + 2 * error v * nth 0 bl k <=? fine_stiffness v * slack p) (iota 0 N)].
+
+Definition scale_of (l : nat) : Z := scale (fine_weight v) (fine_radius v) (contact_at (contacts v) l).
+(** The interval of force l holds what the quotient proves, and is positive. *)
+Definition interval_claimed (p : force_claim) (l : nat) : bool :=
+  [&& 0 <? nth 0 (low p) l, fraction p * nth 0 (low p) l <=? scale_of l * (nth 0 (quotients p) l - slack p)
+    & scale_of l * (nth 0 (quotients p) l + slack p) <=? fraction p * nth 0 (high p) l].
+
+Definition zero_at (l : nat) : bool := nth false (zeros e) l.
+Definition unloaded_at (k : nat) : bool := nth false (unloaded e) k.
+Definition zeros_are_structural : bool :=
+  [&& size (zeros e) == N, size (unloaded e) == N, count id (zeros e) == count id (unloaded e),
+    all (fun k => ~~ unloaded_at k || (nth 0 (load (finite e)) k =? 0)) (iota 0 N)
+    & all (fun l => zero_at l || all (fun d => ~~ unloaded_at d.1) (rows_at_the_refined_one (contact_at (contacts v) l)))
+        (iota 0 N)].
+Definition forces_claimed : bool :=
+  all (fun l => interval_claimed (if zero_at l then infinitesimal e else finite e) l) (iota 0 N).
+
+Definition widest : Z := foldr Z.max 0 [seq fine_radius v i | i <- iota 0 n].
+Definition equilibrium_check : bool :=
+  [&& vertex_check v, nearly_balanced (finite e), nearly_balanced (infinitesimal e), zeros_are_structural
+    & forces_claimed && (0 <? gap e)
+      && gaps_check n (contacts v) (fine_radius v) (refined_at v) (error v) (gap e) widest].
+End Check.
+
+Local Open Scope ring_scope.
+
+Section Correct.
+Variables (F : archiFieldType) (e : equilibrium_certificate).
+Let v := vertex e.
+Let n := disks v.
+Let N := (n.*2.+2)%N.
+Let q1 : 'cV[F]_N := refined_configuration F v.
+Let q0 : 'cV[F]_N := stored_configuration F v.
+Let w : F := real (fine_weight v).
+Let A := derivative w (contacts v) : 'cV[F]_N -> 'M[F]_N.
+
+Hypothesis check : equilibrium_check e.
+Let vertex_ok : vertex_check v. Proof. by case/and5P: check. Qed.
+Let posed : well_posed v. Proof. by case/and5P: vertex_ok. Qed.
+Let size_contacts : size (contacts v) = N. Proof. by case/and5P: posed => _ _ /andP[/eqP]. Qed.
+
+Lemma derivative_at_the_refined_one (l k : 'I_N) : A q1 l k
+  = real (\sum_(d <- rows_at_the_refined_one e (contact_at (contacts v) l) | d.1 == k) d.2).
+Proof.
+rewrite mxE (gradient_ext _ _ _ (at_refined _ posed)) (gradient_morphism (real_rmorphism F)) big_map.
+by rewrite rmorph_sum.
+Qed.
+
+Lemma contributions_sum (value : Z -> Z -> Z) p k : size (quotients p) = N ->
+  \sum_(d <- contributions e value p | d.1 == k) d.2
+    = \sum_(l < N) \sum_(d <- rows_at_the_refined_one e (contact_at (contacts v) l) | d.1 == k)
+        value d.2 (nth 0 (quotients p) l).
+Proof.
+move=> sG; rewrite /contributions big_flatten big_map (big_nth (Lower 0 0, 0)) big_mkord size_zip size_contacts sG minnn.
+by apply: eq_bigr => l _; rewrite nth_zip ?sG ?size_contacts // big_map.
+Qed.
+
+Definition load_vector (p : force_claim) : 'cV[F]_N := \col_k real (nth 0 (load p) k).
+Definition quotient_vector (p : force_claim) : 'cV[F]_N := \col_l real (nth 0 (quotients p) l).
+
+Let blur_is_sum p (k : 'I_N) : size (quotients p) = N ->
+  \sum_(l < N) 2%:R * real (error v) * (count_mem (k : nat) (support F n (contact_at (contacts v) l)))%:R
+      * `|quotient_vector p l 0| = 2%:R * real (error v) * real (nth 0 (blur e p) k).
+Proof.
+move=> sG; rewrite dense_entry // contributions_sum // rmorph_sum mulr_sumr; apply: eq_bigr => l _.
+rewrite -mulrA; congr (_ * _); rewrite big_const_seq iter_addr_0 /= rmorphMn /= mulr_natl mxE real_abs; congr (_ *+ _).
+rewrite -(count_map fst (pred1 (k : nat))); congr (count _ _).
+by rewrite /support /rows_at_the_refined_one; case: (contact_at _ _).
+Qed.
+
+Let residual_is_sum p (k : 'I_N) : size (load p) = N -> size (quotients p) = N ->
+  real (fraction p) * load_vector p k 0 + ((A q1)^T *m quotient_vector p) k 0 = real (nth 0 (residual e p) k).
+Proof.
+move=> sL sG; have [_ entry] := put_all_entry (contributions e Z.mul p) [seq fraction p * z | z <- load p] k.
+rewrite /residual [nth _ _ _]entry ?size_map ?sL // (nth_map 0) ?sL // contributions_sum // rmorphD rmorphM !mxE.
+congr (_ + _); rewrite rmorph_sum; apply: eq_bigr => l _.
+by rewrite [_^T _ _]mxE [quotient_vector p _ _]mxE derivative_at_the_refined_one -rmorphM mulr_suml.
+Qed.
+
+Let w_gt0 : 0 < w.
+Proof. by case/and5P: posed => _ _ _ _ /and3P[]; rewrite -(real_zero F) real_lt /fine_weight; nia. Qed.
+Let w1 : w != 0 := lt0r_neq0 w_gt0.
+Let scales l : scale 1 (radius F v) (contact_at (contacts v) l) != 0 := lt0r_neq0 (scales_are_positive F posed l).
+
+Lemma forces_are_claimed (p : force_claim) (q : 'cV[F]_N) : nearly_balanced e p ->
+  norm (q - q1) <= real (error v) -> norm (q - q0) <= real (zoom v * ball v) ->
+  normals (radius F v) (contacts v) q \in unitmx ->
+  exists f, [/\ balanced (radius F v) (contacts v) q (load_vector p) f,
+    forall f', balanced (radius F v) (contacts v) q (load_vector p) f' -> f' = f
+    & forall l : 'I_N, interval_claimed e p l -> [/\ 0 < f l 0, real (nth 0 (low p) l) <= f l 0
+        & f l 0 <= real (nth 0 (high p) l)]].
+Proof.
+case/and5P=> /eqP sL /eqP sG t0 c0 /allP res near inside unit.
+have b0 : 0 < real (fine_stiffness v) :> F.
+  by case/and5P: posed => _ _ _ _ /and3P[]; rewrite -(real_zero F) real_lt /fine_stiffness; nia.
+have inverse x := forces_follow_from_residuals posed x vertex_ok inside.
+have slack0 : 0 <= real (slack p) :> F by rewrite -(real_zero F) real_le.
+have [] := forces_are_enclosed w1 scales unit b0 inverse near (load := load_vector p) (G := quotient_vector p)
+  (fraction := real (fraction p)) slack0.
+  move=> k; rewrite blur_is_sum // residual_is_sum // real_abs -real_times.
+  have := res (k : nat); rewrite mem_iota ltn_ord => /(_ isT); rewrite -(real_le F) real_plus !real_times.
+  by rewrite -[Zpos 2]/(Z.of_nat 2) real_of_nat.
+move=> f [bal alone close]; exists f; split=> // l /and3P[low0 low_ok high_ok].
+have S0 : 0 < scale w (radius F v) (contact_at (contacts v) l).
+  by have := scales_are_positive F posed l; case: (contact_at _ _) => //= *; apply: w_gt0.
+have SE : scale w (radius F v) (contact_at (contacts v) l) = real (scale_of e l).
+  by rewrite /scale_of; case: (contact_at _ _) => //= i j; rewrite real_plus.
+have {close} := close l; rewrite (gtr0_norm S0) SE mxE ler_distl -mulrBr -mulrDr => /andP[above below].
+have t1 : 0 < real (fraction p) :> F by rewrite -(real_zero F) real_lt.
+have low_f : real (nth 0 (low p) l) <= f l 0.
+  rewrite -(ler_pmul2l t1); apply: le_trans above.
+  by rewrite -real_times -real_minus -real_times real_le.
+split=> //; first by apply: lt_le_trans low_f; rewrite -(real_zero F) real_lt.
+rewrite -(ler_pmul2l t1); apply: le_trans below _.
+by rewrite -real_plus -!real_times real_le.
+Qed.
+
+Lemma zeros_are_zero (q f : 'cV[F]_N) : normals (radius F v) (contacts v) q \in unitmx ->
+  balanced (radius F v) (contacts v) q (load_vector (finite e)) f -> forall l : 'I_N, zero_at e l -> f l 0 = 0.
+Proof.
+move=> unit bal l zl; have /and5P[_ _ _ /and5P[/eqP sZ /eqP sU /eqP same /allP no_load /allP apart] _] := check.
+have card (mask : seq bool) : size mask = N -> #|[set k : 'I_N | nth false mask k]| = count id mask.
+  move=> sM; rewrite cardsE cardE size_filter -(count_map (fun k : 'I_N => nth false mask k) id) -[in RHS](mkseq_nth false mask).
+  by rewrite sM /mkseq -val_enum_ord -map_comp enumT.
+apply: (structural_zeros unit bal (zeros := [set k : 'I_N | zero_at e k]) (free := [set k : 'I_N | unloaded_at e k])).
+- by rewrite !card.
+- move=> k; rewrite inE => uk; have := no_load (k : nat); rewrite mem_iota ltn_ord uk => /(_ isT)/Z.eqb_eq zero.
+  by rewrite mxE zero real_zero.
+- move=> k m; rewrite !inE => uk /negPf nz; have := apart (m : nat); rewrite mem_iota ltn_ord nz => /(_ isT)/allP away.
+  apply/negP; have -> : support F n (contact_at (contacts v) m) = unzip1 (rows_at_the_refined_one e (contact_at (contacts v) m)).
+    by rewrite /support /rows_at_the_refined_one; case: (contact_at _ _).
+  by case/mapP=> d dr kd; have := away d dr; rewrite -kd uk.
+- by rewrite inE.
+Qed.
+
+(** What is said of a configuration: the statement of the theorem, in full. *)
+Definition is_the_equilibrium (q : 'cV[F]_N) : Prop :=
+  [/\ forall l : 'I_N, touch n (radius F v) (at_ q) (contact_at (contacts v) l),
+     normals (radius F v) (contacts v) q \in unitmx,
+     forall c, well_formed n c -> ~~ listed (contacts v) c -> apart n (radius F v) (at_ q) (real (gap e)) c,
+     exists f : 'cV[F]_N, [/\ balanced (radius F v) (contacts v) q (load_vector (finite e)) f,
+       forall f', balanced (radius F v) (contacts v) q (load_vector (finite e)) f' -> f' = f
+       & forall l : 'I_N, if zero_at e l then f l 0 = 0 else
+           [/\ 0 < f l 0, real (nth 0 (low (finite e)) l) <= f l 0 & f l 0 <= real (nth 0 (high (finite e)) l)]]
+   & exists f : 'cV[F]_N, [/\ balanced (radius F v) (contacts v) q (load_vector (infinitesimal e)) f,
+       forall f', balanced (radius F v) (contacts v) q (load_vector (infinitesimal e)) f' -> f' = f
+       & forall l : 'I_N, zero_at e l ->
+           [/\ 0 < f l 0, real (nth 0 (low (infinitesimal e)) l) <= f l 0
+             & f l 0 <= real (nth 0 (high (infinitesimal e)) l)]]].
+
+Let near_the_refined_one (q : 'cV[F]_N) k : norm (q - q1) <= real (error v) ->
+  `|at_ q k - real (refined_at v k)| <= real (error v).
+Proof. by rewrite -(at_refined F posed) -at_sub => near; apply: le_trans near; apply: at_norm. Qed.
+
+(** ... and that there is one such configuration, near the stored one. *)
+Definition certified_equilibrium : Prop := exists q : 'cV[F]_N,
+  [/\ norm (q - q1) <= real (error v), norm (q - q0) <= real (distance v), is_the_equilibrium q
+   & forall q' : 'cV[F]_N, norm (q' - q0) <= real (zoom v * ball v) ->
+       (forall l : 'I_N, touch n (radius F v) (at_ q') (contact_at (contacts v) l)) -> q' = q].
+
+Theorem one_equilibrium : complete F -> certified_equilibrium.
+Proof.
+move=> full; have [q [near close closed unit alone]] := one_vertex posed full vertex_ok.
+have inside : norm (q - q0) <= real (zoom v * ball v).
+  apply: le_trans close _; have /and5P[_ _ /andP[ball_ok _] /Z.leb_le _ _] := vertex_ok; have r0 : 0 <= real (error v) :> F.
+    by apply: le_trans near; apply: norm_ge0.
+  by rewrite -(real_le F) real_plus in ball_ok; apply: le_trans ball_ok; rewrite ler_addl.
+have /and5P[_ bal bal_small _ /andP[/andP[/allP claims g0] gaps_ok]] := check.
+have claimed (l : 'I_N) : interval_claimed e (if zero_at e l then infinitesimal e else finite e) l.
+  by apply: claims; rewrite mem_iota ltn_ord.
+exists q; split=> //; split=> //.
+- by move=> c formed unlisted; apply: other_grains_are_apart gaps_ok formed unlisted => k; apply: near_the_refined_one.
+- have [f [fb fu fl]] := forces_are_claimed bal near inside unit; exists f; split=> // l.
+  by have := claimed l; case: ifP => [zl _|_ ok]; [apply: zeros_are_zero unit fb _ zl|apply: fl].
+- have [f [fb fu fl]] := forces_are_claimed bal_small near inside unit; exists f; split=> // l zl.
+  by have := claimed l; rewrite zl => /fl.
+Qed.
+End Correct.
+Print Assumptions one_equilibrium.

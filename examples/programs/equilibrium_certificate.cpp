@@ -298,8 +298,8 @@ Numbers multiples(const std::vector<double>& values, int exponent) {
     return result;
 }
 
-Vertex vertex_of(const State<2>& state, double unique_radius) {
-    const Packing<2>& packing = state.packing;
+Vertex vertex_of(const State& state, double unique_radius) {
+    const Packing& packing = state.packing;
     Vertex v;
     v.unit = unit_exponent(packing.radius, unit_exponent(packing.q, 0));
     v.fine = v.unit - zoom_exponent;
@@ -336,7 +336,7 @@ Vertex vertex_of(const State<2>& state, double unique_radius) {
 }
 
 /// The wall forces are exact products of two stored numbers.
-Numbers finite_load(const State<2>& state, int exponent) {
+Numbers finite_load(const State& state, int exponent) {
     Numbers load = multiples(state.load.disk_force, exponent);
     load.resize(state.packing.q.size());
     for (const WallForce& wall : state.load.wall_forces(state.packing)) {
@@ -407,9 +407,9 @@ void write_forces(const char* title, const Vertex& v, const Numbers& load, const
                 forces.slack.text().c_str());
 }
 
-void write_certificate(const State<2>& state, const CertificateClaims& claims) {
-    const Packing<2>& packing = state.packing;
-    if (packing.walls != Walls<2>::box() || !packing.fixed.empty() || packing.cell.any() ||
+void write_certificate(const State& state, const CertificateClaims& claims) {
+    const Packing& packing = state.packing;
+    if (packing.walls != Walls::box(packing.dimension) || !packing.fixed.empty() || packing.cell.any() ||
         state.load.kind != LoadKind::nominal || state.contacts.size() != packing.q.size()) {
         throw Error(ErrorKind::bad_input, "an isostatic packing in the box under dead loads was expected");
     }
@@ -448,12 +448,12 @@ void write_certificate(const State<2>& state, const CertificateClaims& claims) {
                 rounded(std::ceil(std::ldexp(claims.gaps->smallest, -v.fine))).text().c_str());
 }
 
-State<2> prepared(int disks, std::uint64_t seed) {
+State prepared(int disks, std::uint64_t seed) {
     PreparationOptions options;
     options.disks = disks;
     options.seed = seed;
-    PreparationReport<2> report;
-    auto state = prepare<2>(options, report);
+    PreparationReport report;
+    auto state = prepare(options, report);
     if (!state.ok()) {
         throw Error(ErrorKind::bad_input, state.failure().message());
     }
@@ -466,7 +466,7 @@ int main(int argc, char** argv) {
     try {
         const int disks = argc > 1 ? std::atoi(argv[1]) : 8;
         if (disks > 0) {
-            const State<2> state = prepared(disks, argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 1);
+            const State state = prepared(disks, argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 1);
             write_certificate(state, certify(state).claims);
         } else {
             const Certificate certificate = read_certificate(argv[1]);

@@ -265,7 +265,6 @@ int run_and_merge(const EnsembleArguments& arguments, const EnsembleHeader& head
 } // namespace
 
 int ensemble(const EnsembleArguments& arguments) {
-    catch_interrupts();
     const auto queue = make_queue(static_cast<std::size_t>(arguments.samples));
     EnsembleHeader header;
     header.program = program_name();
@@ -280,6 +279,7 @@ int ensemble(const EnsembleArguments& arguments) {
                         fmt::format("{}: has no [[programme]]: expected at least one segment to run", arguments.scene));
         }
         header.scene_text = scene.text;
+        catch_interrupts();
         if (queue->rank() == 0) {
             return run_and_merge(arguments, header, *queue);
         }

@@ -25,7 +25,6 @@ void check_writable(const PrepareArguments& a) {
 } // namespace
 
 int prepare(const PrepareArguments& arguments) {
-    catch_interrupts();
     const Scene scene = read_scene(arguments.scene);
     if (!scene.start.empty()) {
         throw Error(ErrorKind::bad_input,
@@ -34,6 +33,7 @@ int prepare(const PrepareArguments& arguments) {
                                 arguments.scene, scene.start.string()));
     }
     check_writable(arguments);
+    catch_interrupts();
     const bool quiet = arguments.common.quiet || arguments.common.json;
     const auto prepared = prepare_start(scene, arguments.common.command, quiet, arguments.output + ".failed.json");
     if (!prepared.ok()) {

@@ -130,7 +130,6 @@ void complain(const RunArguments& arguments, const SceneEnding& ending, const st
 } // namespace
 
 int run(const RunArguments& arguments) {
-    catch_interrupts();
     const Scene scene = read_scene(arguments.scene);
     if (scene.programme.empty()) {
         throw Error(ErrorKind::bad_input,
@@ -141,6 +140,7 @@ int run(const RunArguments& arguments) {
     if (!scene.start.empty() && !arguments.resume) {
         from_file = start_from_file(scene); // bad input leaves no folder behind
     }
+    catch_interrupts(); // until here a signal ends the program, even where a pipe as input says nothing
     RunCounters counters;
     RunDirectory directory(arguments.output, header_of(scene, program_name(), arguments.common.command),
                            mode_of(arguments), counters);

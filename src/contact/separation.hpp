@@ -18,6 +18,7 @@ namespace isostat {
 ///
 /// Arithmetic: at(k) is what stands at coordinate k (as in `Packing::q`), minus(a, b) the difference of two such, a
 /// value. In double r is exact where the coordinates are on the grid; without an image it is else correctly rounded.
+/// In the plane the third component of r is `Number{}`: 0, but for CGAL's intervals.
 class Separation {
   public:
     /// \pre of a contact through an image or with a wall: `layout` says how many disks there are

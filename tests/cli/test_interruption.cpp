@@ -119,34 +119,47 @@ BOOST_AUTO_TEST_CASE(ctrl_c_leaves_valid_files_and_resumes) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(one_ctrl_c_ends_a_command_that_keeps_no_records) {
+/// A command that reads a pipe from which nothing ever comes ends by one signal.
+void ends_by(int signal, const std::string& pipe, const std::vector<std::string>& command) {
+    const Background background(command);
+    int status = 0;
+    int writer = -1;
+    bool ended = false;
+    bool sent = false;
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(10);
+    while (!ended && std::chrono::steady_clock::now() < deadline) {
+        if (!sent && (writer = ::open(pipe.c_str(), O_WRONLY | O_NONBLOCK)) >= 0) { // it reads
+            sent = ::kill(background.pid(), signal) == 0;
+        }
+        ended = ::waitpid(background.pid(), &status, WNOHANG) == background.pid();
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    if (!ended) {
+        ::kill(background.pid(), SIGKILL);
+        ::waitpid(background.pid(), &status, 0);
+    }
+    if (writer >= 0) {
+        ::close(writer);
+    }
+    BOOST_TEST(sent);
+    BOOST_TEST(ended);
+    BOOST_TEST((WIFSIGNALED(status) && WTERMSIG(status) == signal));
+}
+
+BOOST_AUTO_TEST_CASE(one_ctrl_c_ends_a_command_that_has_written_no_records) {
     const scratch::Folder folder;
-    const std::string pipe = (folder / "certificate.json").string(); // nothing ever comes out of it
+    const std::string pipe = (folder / "input").string();
+    const std::string out = (folder / "out").string();
     BOOST_TEST_REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
     for (const int signal : {SIGINT, SIGTERM}) {
-        const Background background({"verify", pipe});
-        int status = 0;
-        int writer = -1;
-        bool ended = false;
-        bool sent = false;
-        const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(10);
-        while (!ended && std::chrono::steady_clock::now() < deadline) {
-            if (!sent && (writer = ::open(pipe.c_str(), O_WRONLY | O_NONBLOCK)) >= 0) { // it reads
-                sent = ::kill(background.pid(), signal) == 0;
+        for (const std::vector<std::string>& command : {std::vector<std::string>{"verify", pipe},
+                                                        {"run", pipe, "-o", out},
+                                                        {"prepare", pipe, "-o", out},
+                                                        {"ensemble", pipe, "-o", out, "--samples", "2"}}) {
+            BOOST_TEST_CONTEXT(command[0]) {
+                ends_by(signal, pipe, command);
             }
-            ended = ::waitpid(background.pid(), &status, WNOHANG) == background.pid();
-            std::this_thread::sleep_for(std::chrono::milliseconds(1));
         }
-        if (!ended) {
-            ::kill(background.pid(), SIGKILL);
-            ::waitpid(background.pid(), &status, 0);
-        }
-        if (writer >= 0) {
-            ::close(writer);
-        }
-        BOOST_TEST(sent);
-        BOOST_TEST(ended);
-        BOOST_TEST((WIFSIGNALED(status) && WTERMSIG(status) == signal));
     }
 }
 

@@ -239,7 +239,7 @@ Json packing_json(const State& state) {
     Json object;
     object["radii"] = std::vector<float>(packing.radius.begin(), packing.radius.end());
     object["fixed"] = packing.fixed;
-    object["periodic"] = packing.cell.periodic;
+    object["periodic"] = std::array{packing.cell.periodic[0], packing.cell.periodic[1]}; // a page draws the plane
     object["loaded_axis"] = state.load.loaded_axis;
     for (std::size_t a = 0; a < 2; ++a) {
         object["lower"].push_back(word_of(packing.walls.lower[a], wall_kind_words));

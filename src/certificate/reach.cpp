@@ -90,8 +90,8 @@ double far_weight(const Packing& packing, double reach) {
         double low = infinity;
         double high = -infinity;
         for (std::size_t i = 0; i < packing.radius.size(); ++i) {
-            low = std::min(low, packing.q[packing.dimension * i + a]);
-            high = std::max(high, packing.q[packing.dimension * i + a]);
+            low = std::min(low, packing.q[packing.axes() * i + a]);
+            high = std::max(high, packing.q[packing.axes() * i + a]);
         }
         extent = std::hypot(extent, high - low);
     }

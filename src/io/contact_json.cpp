@@ -28,7 +28,7 @@ Image image_of(const Field& field, const Packing& packing) {
     if (!packing.cell.any()) {
         field.fail("[disk, disk]: images are of a periodic \"cell\"");
     }
-    field.require_size(packing.dimension, "one number of periods per axis");
+    field.require_size(packing.axes(), "one number of periods per axis");
     Image image;
     for (std::size_t a = 0; a < packing.axes(); ++a) {
         const long m = field.at(a).integer();

@@ -55,7 +55,7 @@ void read_disks(const Field& document, Packing& packing) {
     }
     for (std::size_t i = 0; i < disks.size(); ++i) {
         const Field row = disks.at(i);
-        row.require_size(1 + packing.dimension, order);
+        row.require_size(1 + packing.axes(), order);
         const double radius = row.at(size).number();
         if (!(radius > 0)) {
             row.at(size).fail("a positive radius");
@@ -103,7 +103,7 @@ void read_cell(const Field& field, Packing& packing) {
     field.only({"axes", "moves", "tilt", "pin"});
     Cell& cell = packing.cell;
     const Field axes = field.at("axes");
-    axes.require_size(packing.dimension, "one word per axis");
+    axes.require_size(packing.axes(), "one word per axis");
     for (std::size_t a = 0; a < packing.axes(); ++a) {
         cell.periodic[a] = axes.at(a).word<int>(std::array{"periodic", "walls"}) == 0;
         if (cell.periodic[a]) {
@@ -133,7 +133,7 @@ Packing packing_of(const Field& document) {
     }
     read_disks(document, packing);
     const Field length = document.at("length");
-    length.require_size(packing.dimension, "one length per axis");
+    length.require_size(packing.axes(), "one length per axis");
     for (std::size_t a = 0; a < packing.axes(); ++a) {
         packing.q.push_back(length.at(a).number());
     }
@@ -143,8 +143,8 @@ Packing packing_of(const Field& document) {
     if (document.has("walls")) {
         const Field walls = document.at("walls");
         walls.only({"lower", "upper"});
-        walls.at("lower").require_size(packing.dimension, "one wall per axis");
-        walls.at("upper").require_size(packing.dimension, "one wall per axis");
+        walls.at("lower").require_size(packing.axes(), "one wall per axis");
+        walls.at("upper").require_size(packing.axes(), "one wall per axis");
         for (std::size_t a = 0; a < packing.axes(); ++a) {
             packing.walls.lower[a] = walls.at("lower").at(a).word<WallKind>(wall_kind_words);
             packing.walls.upper[a] = walls.at("upper").at(a).word<WallKind>(wall_kind_words);
@@ -222,7 +222,7 @@ Load load_of(const Field& document, const Packing& packing) {
             if (!field.has(name)) {
                 continue;
             }
-            field.at(name).require_size(packing.dimension, "one number per axis");
+            field.at(name).require_size(packing.axes(), "one number per axis");
             for (std::size_t a = 0; a < packing.axes(); ++a) {
                 const Field number = field.at(name).at(a);
                 const bool is_stress = name == std::string("stress");

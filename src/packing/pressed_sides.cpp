@@ -12,7 +12,7 @@ void require_pressed_sides(const Packing& packing, const Load& load, bool stated
     constexpr std::array<char, 2> axis_name{'x', 'y'};
     const bool present = load.kind == LoadKind::true_stress;
     for (const WallForce& wall : load.wall_forces(packing)) {
-        const auto side = static_cast<std::size_t>(packing.axes() - 1 - wall.axis);
+        const auto side = static_cast<std::size_t>(packing.dimension - 1 - wall.axis);
         const bool open =
             packing.walls.lower[side] == WallKind::absent || packing.walls.upper[side] == WallKind::absent;
         if (open && !packing.cell.periodic[side] && (present || !stated)) {

@@ -99,7 +99,7 @@ std::vector<Contact> closed_among(const Packing& packing, const IsostaticStructu
                                   const std::vector<Contact>& some, const Contact& pair) {
     const auto& contacts = structure.contacts();
     const std::size_t disks = packing.radius.size();
-    std::vector<unsigned char> in_body(disks + 2 * packing.dimension, 0);
+    std::vector<unsigned char> in_body(disks + 2 * packing.axes(), 0);
     const auto join = [&](const Contact& c) {
         for (const std::size_t grain : grains_of(c, disks)) {
             in_body[grain] = 1;
@@ -142,7 +142,7 @@ std::vector<Contact> moving_alike(const Packing& packing, const IsostaticStructu
     const std::size_t disks = packing.radius.size();
     const double fastest =
         std::abs(*std::max_element(v.begin(), v.end(), [](double a, double b) { return std::abs(a) < std::abs(b); }));
-    std::vector<std::optional<Seen>> body(disks + 2 * packing.dimension); // of walls: nothing in it
+    std::vector<std::optional<Seen>> body(disks + 2 * packing.axes()); // of walls: nothing in it
     const auto grains = grains_of(pair, disks);
     body[grains[0]].emplace();
     double turn = 0;

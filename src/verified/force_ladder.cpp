@@ -4,13 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace isostat {
 
 /// Shared with the shifts made of it: the ladder may move, and end before them.
 struct ForceLadder::Implementation {
-    explicit Implementation(const LadderProblem& of, double accuracy)
-        : problem(of), rung(double_rung(problem, accuracy)) {}
+    explicit Implementation(LadderProblem of, double accuracy)
+        : problem(std::move(of)), rung(double_rung(problem, accuracy)) {}
 
     LadderProblem problem;
     std::unique_ptr<ForceRung> rung;

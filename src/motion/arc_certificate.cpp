@@ -29,10 +29,10 @@ double uncertainty(const VertexEnclosure& vertex) {
 
 class Certifier {
   public:
-    Certifier(const ArcVertex& start, ContactId opened, int direction, const ArcVertex& end, PowerLoad power,
-              const CandidateList& candidates, const ArcCertificateOptions& options)
-        : start_(start), end_(end), slot_(opened.index()), direction_(direction), candidates_(candidates),
-          options_(options), load_(std::move(power)) {}
+    Certifier(const ArcVertex& start, ContactId opened, int direction, const ArcVertex& end, const PowerLoad& power,
+              CandidateList candidates, const ArcCertificateOptions& options)
+        : start_(start), end_(end), slot_(opened.index()), direction_(direction), candidates_(std::move(candidates)),
+          options_(options), load_(power) {}
 
     /// First with the bounds that the vertices have; when the rows of the opened and of the closed contact do not serve
     /// (they move slowly against the rest), with the fastest coordinates in their place.

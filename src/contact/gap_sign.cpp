@@ -23,9 +23,8 @@ template <class Number> Number with_sign_of_gap(const Packing& packing, const Co
     }
     const Number least = radius + Number(packing.radius[static_cast<std::size_t>(contact.j)]) - Number(allowance);
     Number square(0);
-    const auto r = separation.of_disks(at, minus);
-    for (std::size_t a = 0; a < packing.axes(); ++a) { // not beyond: an interval that nobody set is not 0
-        square += CGAL::square(r[a]);
+    for (const Number& component : separation.of_disks(at, minus)) {
+        square += CGAL::square(component);
     }
     return square - least * CGAL::abs(least);
 }

@@ -18,7 +18,7 @@ namespace isostat {
 ///
 /// Arithmetic: at(k) is what stands at coordinate k (as in `Packing::q`), minus(a, b) the difference of two such, a
 /// value. In double r is exact where the coordinates are on the grid; without an image it is else correctly rounded.
-/// In the plane the third component of r is `Number{}`: 0, but for CGAL's intervals.
+/// In the plane the third component of r is 0.
 class Separation {
   public:
     /// \pre of a contact through an image or with a wall: `layout` says how many disks there are
@@ -39,11 +39,18 @@ class Separation {
     template <class At, class Minus> [[nodiscard]] auto of_centres(At at, Minus minus) const {
         const std::size_t i = layout_.of_disk(i_);
         const std::size_t j = layout_.of_disk(j_);
-        PerAxis<std::remove_cvref_t<decltype(minus(at(j), at(i)))>> r{minus(at(j), at(i)), minus(at(j + 1), at(i + 1))};
-        if (layout_.dimension > plane) [[unlikely]] {
-            r[2] = minus(at(j + 2), at(i + 2));
-        }
-        return r;
+        using Number = std::remove_cvref_t<decltype(minus(at(j), at(i)))>;
+        const auto third = [&]() -> Number {
+            if (layout_.dimension > plane) [[unlikely]] {
+                return minus(at(j + 2), at(i + 2));
+            }
+            if constexpr (std::is_convertible_v<int, Number>) {
+                return 0; // said, as an interval of CGAL that nobody sets is not 0
+            } else {
+                return Number{};
+            }
+        };
+        return PerAxis<Number>{minus(at(j), at(i)), minus(at(j + 1), at(i + 1)), third()};
     }
     /// r += A m, of what `at` says of the coordinates of the cell.
     template <class Number, class At, class Minus> void add_periods(PerAxis<Number>& r, At at, Minus minus) const {

@@ -4,6 +4,7 @@
 #include <isostat/packing/packing.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 
@@ -12,7 +13,7 @@ namespace isostat {
 /// Whether separations of up to 3 periods are exact at multiples of `step`: no sum on the way has more than 2^53 of
 /// them. \pre there are periodic axes
 inline bool fits_grid(const Packing& packing, double step) {
-    static_assert(plane == 2);
+    assert(packing.dimension == plane);
     double farthest = 0;
     for (std::size_t k = 0; k < packing.length_at(0); ++k) {
         farthest = std::max(farthest, std::abs(packing.q[k]));

@@ -8,6 +8,12 @@
 
 namespace isostat {
 
+/// a . b. In the plane the inner loops leave the third components out, which are 0.
+inline double dot(const Layout& layout, const PerAxis<double>& a, const PerAxis<double>& b) {
+    const double sum = a[0] * b[0] + a[1] * b[1];
+    return layout.dimension > plane ? sum + a[2] * b[2] : sum;
+}
+
 /// Line of the centres of a pair of disks.
 struct CentreLine {
     PerAxis<double> d;
@@ -20,11 +26,7 @@ inline std::optional<CentreLine> centre_line(const Packing& at, const Contact& c
         return std::nullopt;
     }
     CentreLine line{separation(at.layout(), at.q, contact), 0};
-    double square = 0;
-    for (const double component : line.d) {
-        square += component * component;
-    }
-    line.length = std::sqrt(square);
+    line.length = std::sqrt(dot(at.layout(), line.d, line.d));
     if (!(line.length > 0x1p-450 && line.length < 0x1p500)) {
         return std::nullopt;
     }
@@ -45,13 +47,8 @@ inline double quick_gap(const Packing& at, const Contact& contact) {
 inline double along(const Layout& layout, const CentreLine& line, const Contact& contact, const std::vector<double>& v,
                     double& square) {
     const PerAxis<double> relative = separation(layout, v, contact);
-    double sum = 0;
-    square = 0;
-    for (std::size_t a = 0; a < most_axes; ++a) {
-        sum += line.d[a] * relative[a];
-        square += relative[a] * relative[a];
-    }
-    return sum;
+    square = dot(layout, relative, relative);
+    return dot(layout, line.d, relative);
 }
 
 inline double rate_of(const Layout& layout, const CentreLine& line, const Contact& contact,

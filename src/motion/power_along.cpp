@@ -6,6 +6,7 @@
 #include "motion/geometry.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <functional>
 
@@ -72,7 +73,7 @@ double PowerAlong::terms(const Packing& at, const std::vector<double>& v) const 
 
 /// DF v: true stresses act on lengths, linear in q in two dimensions. Empty when the load is dead.
 std::vector<double> PowerAlong::change(const Packing& at, const std::vector<double>& v) const {
-    static_assert(plane == 2);
+    assert(at.dimension == plane);
     if (load_.infinitesimal || load_.load->kind == LoadKind::nominal) {
         return {};
     }

@@ -17,7 +17,7 @@ void Load::refer_to(const Packing& packing) {
 }
 
 std::vector<WallForce> Load::wall_forces(const Packing& packing) const {
-    assert(dimension == 2); // the area that a wall is pressed on is one length
+    assert(dimension == plane && packing.dimension == plane); // the area that a wall is pressed on is one length
     std::vector<WallForce> forces;
     forces.reserve(packing.axes() + packing.tilts());
     for (int a = 0; a < dimension; ++a) {

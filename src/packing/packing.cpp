@@ -47,7 +47,7 @@ double Packing::max_radius() const {
 }
 
 double Packing::solid_fraction() const {
-    assert(dimension == 2);
+    assert(dimension == plane);
     double area = 0;
     for (const double r : radius) {
         area += std::numbers::pi * r * r;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <map>
 #include <numeric>
@@ -67,11 +68,10 @@ class Turning {
 
 /// Disks and walls as nodes, pairs that touch as edges, and the cycles that close however the classes turn.
 class Linkage {
-    static_assert(plane == 2);
-
   public:
     Linkage(const Packing& packing, const std::vector<Contact>& touching)
         : packing_(packing), disks_(packing.disk_count()), touching_(touching), turning_(touching.size()) {
+        assert(packing.dimension == plane);
         for (std::size_t e = 0; e < touching.size(); ++e) {
             for (const auto& [from, to] : {ends(e), std::pair{ends(e).second, ends(e).first}}) {
                 beside_[from][to] = e;

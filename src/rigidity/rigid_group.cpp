@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 
 namespace isostat {
 
@@ -34,7 +35,7 @@ bool counts(const DofMap& dofs, std::size_t disk, std::size_t axis) {
 
 /// Translations along an axis and rotations that keep every gap in the group: none of them may move what is fixed.
 int rigid_motions(const DofMap& dofs, const Group& group) {
-    static_assert(plane == 2, "one rotation");
+    assert(dofs.layout().dimension == plane); // one rotation
     const std::size_t walls = plane * group.disk.size();
     int motions = 0;
     bool rotates = true;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -96,6 +97,7 @@ struct Disks {
     Disks(const Statics& statics, const ZeroHolds& zero) {
         const auto& contacts = statics.structure().contacts();
         const DofMap& dofs = statics.structure().dofs();
+        assert(dofs.layout().dimension == plane);
         for (const Contact& c : contacts) {
             if (c.kind != ContactKind::held) {
                 count = std::max(
@@ -160,7 +162,6 @@ double doubt_of(const Statics& statics) {
 /// contacts (S4 (c)): free disks that two contacts, not in one line, hold. Each is done once, in an order in which two
 /// contacts are left of it.
 struct Bare {
-    static_assert(plane == 2);
     std::vector<unsigned char> gone; ///< of contacts
     std::vector<Vector> load;        ///< of each disk: its own, and what the disks that are gone press on it with
     std::vector<double> error;       ///< of the latter, in length

@@ -10,6 +10,7 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <span>
 
 namespace isostat {
 
@@ -54,7 +55,7 @@ struct Constraint {
 };
 
 /// Of two disks at the distance `distance` of their centres, by coordinates; d = R_i + R_j.
-Constraint between_disks(const PerAxis<Pair>& distance, Pair d) {
+Constraint between_disks(std::span<const Pair> distance, Pair d) {
     constexpr double underflow = 0x1p-1000; // far above 16 * 2^-1074, which is slow to multiply with
     const Pair target_square = exact_square(d.sum);
     Pair value{-target_square.sum, -(target_square.error + 2 * d.sum * d.error)};
@@ -99,7 +100,8 @@ Constraints constraints(const Packing& packing, const std::vector<Contact>& cont
         case ContactKind::disk_disk: {
             const auto j = static_cast<std::size_t>(contacts[l].j);
             const Pair d = exact_sum(scale * radius[i], scale * radius[j]);
-            found = between_disks(distance_of(separation, contacts[l], at, minus), d);
+            const auto distance = distance_of(separation, contacts[l], at, minus);
+            found = between_disks(std::span(distance).first(packing.axes()), d);
             ratio = std::max(ratio, std::abs(found.f) * (1 / d.sum));
             smallest = std::min(smallest, d.sum);
             ++count[i];

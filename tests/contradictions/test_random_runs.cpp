@@ -269,6 +269,13 @@ BOOST_AUTO_TEST_CASE(nor_those_in_cells_that_were_wrong_once) {
     BOOST_TEST(results.wrong == 0);
 }
 
+// A box: the replay is lost and taken up from a stored state, whose forces that vanish with sigma2 the run left at 0.
+BOOST_AUTO_TEST_CASE(nor_one_whose_stored_state_left_forces_at_0) {
+    Results results;
+    BOOST_TEST(try_run(662, false, Draw::choosing, results));
+    BOOST_TEST(results.wrong == 0);
+}
+
 // Two vertices of one contact list, mirror images to 3e-4 of a radius and with the same box: the checker's steps lead
 // to the other one, in which a pair overlaps.
 BOOST_AUTO_TEST_CASE(a_run_past_two_vertices_that_mirror_each_other_is_not_refuted) {

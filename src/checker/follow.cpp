@@ -120,11 +120,15 @@ class Walk {
           kept_(from.packing, from.contacts, motion.solver), q_(from.packing.q) {}
 
     Followed to_the_end() {
-        if (!kept_.square() || !(motion_.displacement > 0) || !std::isfinite(motion_.displacement)) {
+        if (!kept_.square() || !(motion_.displacement >= 0) || !std::isfinite(motion_.displacement)) {
             return {};
         }
-        double step = std::min(motion_.displacement / 4, motion_.step * from_.packing.min_radius());
-        auto steps = static_cast<long>(std::min(8 * motion_.displacement / step + 16, 1e5));
+        if (Followed there = arrive_at_once(); there.end || motion_.displacement == 0) {
+            return there;
+        }
+        double longest = std::min(motion_.displacement / 4, motion_.step * from_.packing.min_radius());
+        auto steps = static_cast<long>(std::min(8 * motion_.displacement / longest + 16, 1e5)) + motion_.doublings;
+        double step = std::ldexp(longest, -motion_.doublings);
         int zooms = 0;
         int halvings = 0;
         std::vector<double> next;
@@ -133,7 +137,7 @@ class Walk {
                 if (halvings++ == most_halvings) {
                     return {};
                 }
-                step /= 2;
+                longest = step /= 2;
                 steps = k + 2 * (steps - k);
                 continue;
             }
@@ -146,7 +150,7 @@ class Walk {
             }
             if (met.end && zooms < motion_.zooms) { // two ends may be near each other
                 ++zooms;
-                step /= 16;
+                longest = step /= 16;
                 continue;
             }
             if (met.end) {
@@ -161,6 +165,7 @@ class Walk {
                 return {{}, std::move(wrong)};
             }
             std::swap(q_, next);
+            step = std::min(2 * step, longest);
         }
         return {};
     }
@@ -168,6 +173,12 @@ class Walk {
   private:
     static constexpr double near = 1e-2; ///< of the recorded displacement: an end there may be the right one
     static constexpr int most_halvings = 10;
+
+    /// An arc no longer than gaps are told from 0: there is no way to walk.
+    [[nodiscard]] Followed arrive_at_once() const {
+        Followed there = motion_.displacement <= tolerance_ ? arrive(q_, 0) : Followed();
+        return there.end && displacement(*there.end) <= tolerance_ ? there : Followed();
+    }
 
     /// The next point. Contact `opened` opens in the first step; later the motion goes on in the same sense.
     bool move(double step, std::vector<double>& next) {

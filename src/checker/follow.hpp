@@ -23,6 +23,7 @@ struct Motion {
     double held_at = 0;     ///< its value there
     double displacement = 0;
     double step = 0.02; ///< in units of the smallest radius
+    int doublings = 0;  ///< of the step: the first ones are shorter
     int zooms = 0;      ///< so often the last step is made anew in steps a sixteenth as long
     /// Per coordinate, at given coordinates (true stresses change with the lengths): the load whose power must stay
     /// positive.

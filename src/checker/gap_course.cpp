@@ -159,7 +159,7 @@ bool GapCourses::look(const Tube& tube, const Contact& pair, double from, double
 
 namespace {
 
-double largest_of(const std::vector<double>& x) {
+double largest_entry(const std::vector<double>& x) {
     double most = 0;
     for (const double c : x) {
         most = std::max(most, std::abs(c));
@@ -249,7 +249,7 @@ std::optional<std::vector<Contact>> GapCourses::near_images(const Tube& tube, co
     if (!(strain < 0.5) || !images.usable() || !range) {
         return std::nullopt;
     }
-    const double slack = 0x1p-48 * (1 + images.periods(*range)) * largest_of(q);
+    const double slack = 0x1p-48 * (1 + images.periods(*range)) * largest_entry(q);
     std::vector<Placed> places = images.near_cell(*range, farthest + slack);
     std::sort(places.begin(), places.end(), [](const Placed& a, const Placed& b) { return a.x < b.x; });
     std::set<Contact> pairs; // one of each

@@ -106,11 +106,13 @@ std::vector<int> Limit::vanishing() const {
 
 bool Limit::is_class(const std::vector<int>& together) const {
     const Evidence& e = *place.evidence;
+    std::vector<int> all = together; // contacts without force may hang on them: multiples too, by 0
+    all.insert(all.end(), place.zeros.begin(), place.zeros.end());
     Forces loaded = e.finite_load;
     for (std::size_t j = 0; j < loaded.size(); ++j) {
         loaded[j] = Range(abs(loaded[j].lower) + abs(e.unit_load[j].lower));
     }
-    return vary_together(e.problem, together, loaded);
+    return vary_together(e.problem, all, loaded);
 }
 
 bool Limit::chosen_against(std::size_t l) const {
@@ -173,8 +175,11 @@ Objections Limit::among(const std::vector<int>& together) const {
             continue; // any of them may open, and the rule takes this one (C1)
         }
         const bool comparable = is_class(together);
+        const bool earlier = comparable && its.upper < mine.lower;
+        if (comparable && !earlier && said == nullptr) {
+            continue; // they vanish at one load whatever the loads are: a row may name any of them (K22)
+        }
         if (!comparable || !this_one) {
-            const bool earlier = comparable && its.upper < mine.lower;
             return Objection{earlier,
                              fmt::format("{} and {} vanish together{}", e.name(opened), e.name(other),
                                          earlier ? ", and under the infinitesimal loads the second first" : "")};

@@ -118,6 +118,7 @@ Followed follow(const ArcStart& from, const EventRecord& event, const Opening& o
     Followed followed;
     for (int finer = slowly ? 1 : 0; finer <= finest && !followed.end; ++finer) {
         motion.step = std::ldexp(Motion().step, -4 * finer);
+        motion.doublings = finer > 0 ? 20 : 0; // branches cross where contacts are nearly singular at the start
         followed = follow(from.state, motion);
     }
     return followed;

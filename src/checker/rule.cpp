@@ -63,6 +63,13 @@ ChoiceRule opening_choice(const Place& place, std::size_t opened, const std::str
     return {"opening", tied, load};
 }
 
+/// A coordinate held where its power turned, up to the accuracy with which a turn is located (`turn_tolerance`):
+/// exactly at the turn its multiplier is 0, and it competes with nothing (K22).
+bool rests_at_turn(const Place& place, std::size_t contact, const std::vector<Range>& forces) {
+    const Rational room = Rational(turn_tolerance) * Rational(largest_force(forces));
+    return place.is_held(contact) && forces[contact].upper <= room && forces[contact].lower >= -room;
+}
+
 /// Nothing, or why the rule does not put `opened` before another contact that may open.
 Objections check_order(const Place& place, const std::string& kind, std::size_t opened, std::size_t other,
                        const std::string& rule) {
@@ -80,6 +87,9 @@ Objections check_order(const Place& place, const std::string& kind, std::size_t 
         sign = strut_order(place, other, opened).value_or(0);
     }
     if (most || by_name ? sign < 0 : rule == "least_negative" && sign > 0) {
+        if (rests_at_turn(place, other, forces)) {
+            return {};
+        }
         const bool holds = holds_may_explain(place, other, opened);
         return Objection{!holds && !at_first_order,
                          fmt::format("{} opens with {}, but the rule '{}' takes {} with {}{}", e.name(opened),

@@ -70,6 +70,14 @@ TieRecord tie_of(const Field& entry) {
     return tie;
 }
 
+/// Whether the run calls the way of an arc proved, past everything and with a power that stays positive.
+bool claims_way(const Field& certificate) {
+    const auto proved = [&certificate](const char* name) {
+        return word(certificate.at(name), {"proved", "refuted", "undecided"}) == "proved";
+    };
+    return proved("verdict") && proved("power");
+}
+
 EventRecord event_of(const std::string& line, const std::string& where) {
     const json::Json parsed = Field::parse(line, where);
     const Field field(parsed, where);
@@ -106,6 +114,9 @@ EventRecord event_of(const std::string& line, const std::string& where) {
         if (!event.power_turn) {
             field.at("held_at").fail("no such field: the arc ends at no power turn");
         }
+    }
+    if (field.has("certificate")) {
+        event.claims_way = claims_way(field.at("certificate"));
     }
     for (std::size_t k = 0; field.has("perturbed") && k < field.at("perturbed").size(); ++k) {
         event.ties.push_back(tie_of(field.at("perturbed").at(k)));

@@ -35,7 +35,8 @@ struct EventRecord {
     double strain_bound = 0, force_bound = 0, power_bound = 0, work_bound = 0; ///< NaN: none
     std::optional<double> held_at;                                             ///< of power turns
     std::vector<TieRecord> ties;
-    long choices = 0; ///< among the ties, from the first line to this one
+    long choices = 0;       ///< among the ties, from the first line to this one
+    bool claims_way = true; ///< at level arcs; false: its own certificate leaves the way or the power open
 };
 
 struct RunRecords {

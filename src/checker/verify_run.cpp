@@ -462,7 +462,7 @@ class Replay {
         return event.power_turn ? static_cast<int>(change.position) : -1;
     }
 
-    /// The end from the witness of the way. False: not proved, which is noted.
+    /// The end from the witness of the way. False: not proved, which is noted where the run calls the way proved.
     bool prove_way_to(Place& next, const EventRecord& event, const Change& change) {
         const std::optional<Witness> witness = witnesses_.of(event.step);
         Objections missing = Objection{false, "the way is not proved: there is no witness"};
@@ -475,7 +475,9 @@ class Replay {
             missing = missing ? missing : prove_way(here_, next, way);
         }
         if (missing) {
-            leave(event.where, missing->text);
+            if (event.claims_way) {
+                leave(event.where, missing->text);
+            }
             next = Place();
         }
         return !missing;

@@ -240,7 +240,7 @@ BOOST_AUTO_TEST_CASE(no_altered_state_of_a_small_packing_verifies) {
 }
 
 // A sample of each kind of alteration.
-BOOST_AUTO_TEST_CASE(no_altered_claim_or_state_of_a_hundred_disks_verifies) {
+BOOST_AUTO_TEST_CASE(no_altered_claim_or_state_of_a_hundred_disks_verifies, *boost::unit_test::label("slow")) {
     const Certificate original = maker::certificate(read_state(scratch::data("vertex100.txt")).state);
     BOOST_REQUIRE((verify(original).verdict == Verdict::proved));
     std::vector<ClaimAlteration> all = alterations_of_claims(original);
@@ -267,7 +267,7 @@ BOOST_AUTO_TEST_CASE(weaker_claims_verify) {
 
 // Bytes are spoilt at random and the digest is made to fit, as a forger would. Whatever is read and proved must agree
 // with approximations that share nothing with the checker.
-BOOST_AUTO_TEST_CASE(random_forgeries_prove_nothing_that_is_wrong) {
+BOOST_AUTO_TEST_CASE(random_forgeries_prove_nothing_that_is_wrong, *boost::unit_test::label("slow")) {
     const std::string text = certificate_text(maker::certificate(small_states::with_a_rattler()));
     std::mt19937_64 random(7);
     const auto below = [&random](std::size_t limit) { return static_cast<std::size_t>(random() % limit); };

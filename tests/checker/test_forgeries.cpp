@@ -282,10 +282,13 @@ BOOST_AUTO_TEST_CASE(some_altered_fields_of_signed_runs_are_refused_or_undecided
             BOOST_TEST(words(run) == sample.words, run.wrong << (run.undecided.empty() ? "" : run.undecided[0]));
         }
     }
-    BOOST_TEST(altered_run::try_all(folder / "a choice", 1, counts) > 200);
+    const int here = altered_run::try_all(folder / "a choice", 1, counts) +
+                     altered_run::try_all(folder / "a box, level arcs", 1, counts);
+    BOOST_TEST(here >= 2000);
     compare_with_page(counts, false);
 }
 
+// Nine runs and 13 000 alterations, two minutes: run by hand.
 BOOST_AUTO_TEST_CASE(every_altered_field_of_signed_runs_is_refused_or_undecided_or_listed_on_the_page,
                      *boost::unit_test::disabled()) {
     altered_run::Counts counts;
@@ -300,7 +303,7 @@ BOOST_AUTO_TEST_CASE(every_altered_field_of_signed_runs_is_refused_or_undecided_
         }
     }
     BOOST_TEST_MESSAGE(alterations << " alterations");
-    BOOST_TEST(alterations >= 2000);
+    BOOST_TEST(alterations >= 10000);
     compare_with_page(counts, true);
 }
 
@@ -368,7 +371,7 @@ BOOST_AUTO_TEST_CASE(files_that_no_record_names_are_noted_and_left_alone) {
 }
 
 // A bound that is too small is wrong; beside one so large that nothing follows from it the number itself must be right.
-BOOST_AUTO_TEST_CASE(what_a_row_says_of_its_own_errors_is_checked) {
+BOOST_AUTO_TEST_CASE(what_a_row_says_of_its_own_errors_is_checked, *boost::unit_test::label("slow")) {
     const scratch::Folder folder;
     play(prepared(8, 3), {one(1, 2)}, folder / "eight");
     const std::vector<std::string> names = equilibria_columns();

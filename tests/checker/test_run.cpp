@@ -268,7 +268,8 @@ BOOST_AUTO_TEST_CASE(power_turns_under_true_stresses_are_found_and_replayed) {
     BOOST_TEST(run.turns_checked == 3);
 }
 
-BOOST_AUTO_TEST_CASE(a_run_of_a_hundred_disks_is_replayed_and_altered_records_are_named) {
+BOOST_AUTO_TEST_CASE(a_run_of_a_hundred_disks_is_replayed_and_altered_records_are_named,
+                     *boost::unit_test::label("slow")) {
     const scratch::Folder folder;
     play_and_store(read_state(scratch::data("vertex100.txt")).state, {3, -1}, folder / "run");
     const RunVerification run = played::proved(folder / "run");
@@ -374,7 +375,7 @@ BOOST_AUTO_TEST_CASE(a_run_of_a_hundred_disks_is_replayed_and_altered_records_ar
 }
 
 /// Where a rattler is pinned its own pattern shows no structural zero: another disk counts as pinned (C9, cells.md).
-BOOST_AUTO_TEST_CASE(runs_in_periodic_cells_are_replayed_whichever_disk_is_pinned) {
+BOOST_AUTO_TEST_CASE(runs_in_periodic_cells_are_replayed_whichever_disk_is_pinned, *boost::unit_test::label("slow")) {
     for (const char* name : {"tilt_16", "rect_16", "channel_16"}) {
         for (const int pin : {0, 8, 9}) { // 8 and 9 become rattlers, or are
             for (const TiePolicy ties : {TiePolicy::stop, TiePolicy::choose}) {
@@ -423,7 +424,7 @@ BOOST_AUTO_TEST_CASE(true_stresses_and_forces_on_disks_in_cells_are_replayed) {
     is_replayed(state);
 }
 
-BOOST_AUTO_TEST_CASE(altered_records_of_a_run_in_a_cell_are_named) {
+BOOST_AUTO_TEST_CASE(altered_records_of_a_run_in_a_cell_are_named, *boost::unit_test::label("slow")) {
     const scratch::Folder folder;
     const std::filesystem::path run = folder / "run";
     play_and_store(of_cell("tilt_16", 0), {2}, run);

@@ -53,7 +53,7 @@ Verdict about_vertex(const Certificate& certificate, CheckerArithmetic arithmeti
 
 BOOST_AUTO_TEST_SUITE(checker)
 
-BOOST_AUTO_TEST_CASE(the_singular_value_agrees_with_a_dense_one) {
+BOOST_AUTO_TEST_CASE(the_singular_value_agrees_with_a_dense_one, *boost::unit_test::label("slow")) {
     agrees_with_a_dense_one(crafted::one_disk(1, 1));
     agrees_with_a_dense_one(crafted::three_disks(1, 1.1, 1.3, 1, 1));
     agrees_with_a_dense_one(small_states::with_a_rattler());

@@ -135,7 +135,7 @@ BOOST_AUTO_TEST_CASE(a_run_of_a_cell_is_written_resumed_and_replayed) {
     BOOST_TEST(std::abs(state.packing.lattice(0, 1) - -0.9095404261907584) < 1e-9);
 }
 
-BOOST_AUTO_TEST_CASE(states_and_arcs_of_a_run_in_a_cell_are_certified) {
+BOOST_AUTO_TEST_CASE(states_and_arcs_of_a_run_in_a_cell_are_certified, *boost::unit_test::label("slow")) {
     const scratch::Folder folder;
     const std::string scene = (folder / "cell.toml").string();
     const auto verified = [&](const std::string& level) {

@@ -43,7 +43,8 @@ void same_records(const fs::path& a, const fs::path& b) {
 
 BOOST_AUTO_TEST_SUITE(cli)
 
-BOOST_AUTO_TEST_CASE(runs_killed_again_and_again_at_random_instants_end_with_the_records_of_a_whole_run) {
+BOOST_AUTO_TEST_CASE(runs_killed_again_and_again_at_random_instants_end_with_the_records_of_a_whole_run,
+                     *boost::unit_test::label("slow")) {
     std::mt19937 random(8);
     for (const std::string& level : {std::string("decisions"), std::string("arcs")}) {
         const scratch::Folder folder;

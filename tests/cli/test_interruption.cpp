@@ -46,7 +46,7 @@ void same_files(const fs::path& a, const fs::path& b) {
 
 BOOST_AUTO_TEST_SUITE(cli)
 
-BOOST_AUTO_TEST_CASE(killed_runs_resume_to_the_files_of_a_whole_run) {
+BOOST_AUTO_TEST_CASE(killed_runs_resume_to_the_files_of_a_whole_run, *boost::unit_test::label("slow")) {
     const scratch::Folder folder;
     const std::string scene = (folder / "s.toml").string();
     scratch::write_scene(scene, scene_from(scratch::data("vertex400.txt"), long_scene, "checkpoint_seconds = 0\n"));
@@ -72,7 +72,8 @@ BOOST_AUTO_TEST_CASE(killed_runs_resume_to_the_files_of_a_whole_run) {
 }
 
 /// Choices are made again by a resumed run, with other arithmetic behind it and any number of threads.
-BOOST_AUTO_TEST_CASE(runs_that_choose_are_the_same_resumed_and_with_any_number_of_threads) {
+BOOST_AUTO_TEST_CASE(runs_that_choose_are_the_same_resumed_and_with_any_number_of_threads,
+                     *boost::unit_test::label("slow")) {
     const scratch::Folder folder;
     const std::string scene = (folder / "s.toml").string();
     scratch::write(

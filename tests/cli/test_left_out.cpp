@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 
 BOOST_AUTO_TEST_SUITE(cli)
 
-BOOST_AUTO_TEST_CASE(what_plan_leaves_out_is_not_done) {
+BOOST_AUTO_TEST_CASE(what_plan_leaves_out_is_not_done, *boost::unit_test::label("slow")) {
     // Entries of the plan that a counter tells of.
     const std::map<std::string, std::vector<std::string>> counters{
         {"damped dynamics", {"dynamics_steps"}},

@@ -31,7 +31,7 @@ std::string mixture(int seed, const std::string& jitter) {
 
 BOOST_AUTO_TEST_SUITE(cli)
 
-BOOST_AUTO_TEST_CASE(every_law_is_prepared_and_run) {
+BOOST_AUTO_TEST_CASE(every_law_is_prepared_and_run, *boost::unit_test::label("slow")) {
     std::string list;
     for (int i = 0; i < 100; ++i) {
         list += std::to_string(0.5 + 0.005 * i) + "\n";
@@ -53,7 +53,7 @@ BOOST_AUTO_TEST_CASE(every_law_is_prepared_and_run) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(a_mixture_of_two_radii_ties_and_a_jitter_leaves_no_tie) {
+BOOST_AUTO_TEST_CASE(a_mixture_of_two_radii_ties_and_a_jitter_leaves_no_tie, *boost::unit_test::label("slow")) {
     const scratch::Folder folder;
     for (const int seed : {2, 3, 9}) {
         BOOST_TEST_CONTEXT("seed " << seed) {
@@ -74,7 +74,8 @@ BOOST_AUTO_TEST_CASE(a_mixture_of_two_radii_ties_and_a_jitter_leaves_no_tie) {
     BOOST_TEST(radii.size() == 100U);
 }
 
-BOOST_AUTO_TEST_CASE(nearly_equal_disks_are_followed_where_contacts_are_nearly_singular_and_verified) {
+BOOST_AUTO_TEST_CASE(nearly_equal_disks_are_followed_where_contacts_are_nearly_singular_and_verified,
+                     *boost::unit_test::label("slow")) {
     for (const int seed : {4, 8, 12, 20, 34, 38}) {
         BOOST_TEST_CONTEXT("seed " << seed) {
             const scratch::Folder folder;

@@ -13,7 +13,6 @@ struct Reason {
 };
 
 inline constexpr std::array reasons{
-    Reason{"there is no witness", "level arcs: the run itself left the way open"},
     Reason{"the way is not proved", "level arcs: the way is not proved from its witness"},
     Reason{"as far as steps in double tell", "steps in double lose the curve: they meet another pair first"},
     Reason{"was not found to", "steps in double lose the curve: they do not find the end"},
@@ -26,6 +25,7 @@ inline constexpr std::array reasons{
     Reason{"cannot order", "two forces are not ordered"},
     Reason{"vanish together", "two forces are not ordered"},
     Reason{"certificates/", "a claim of a certificate is narrower than what the checker encloses"},
+    Reason{"claimed in", "the stress of an arc is off by more than the bound in the row, by a rounding"},
     Reason{"which the run left at 0", "a load is 0: forces that the run left at 0 by choice vanish by counting"},
     Reason{"says too little", "a bound says nothing, and the number beside it is off"},
 };

@@ -276,6 +276,18 @@ BOOST_AUTO_TEST_CASE(nor_one_whose_stored_state_left_forces_at_0) {
     BOOST_TEST(results.wrong == 0);
 }
 
+// 16: forces that vanish at one load by counting, with one that is always 0; 24, 42: branches that cross 1e-5 from the
+// start; 29: held coordinates with multipliers of 1e-15; 41: the run itself leaves the way of an arc open; 140: an arc
+// that doubles cannot tell from none.
+BOOST_AUTO_TEST_CASE(nor_are_those_undecided_that_were_once) {
+    Results results;
+    for (const long number : {16, 24, 29, 41, 42, 140}) {
+        BOOST_TEST(try_run(number, false, Draw::all, results));
+    }
+    BOOST_TEST(results.answers["undecided"] == 0);
+    BOOST_TEST(results.wrong == 0);
+}
+
 // Two vertices of one contact list, mirror images to 3e-4 of a radius and with the same box: the checker's steps lead
 // to the other one, in which a pair overlaps.
 BOOST_AUTO_TEST_CASE(a_run_past_two_vertices_that_mirror_each_other_is_not_refuted) {

@@ -303,7 +303,7 @@ bool GapCourses::look(const Tube& tube, double from, double to) {
         pairs->insert(pairs->end(), walls.begin(), walls.end());
         std::erase_if(*pairs, [this](const Contact& pair) { return kept_.contains(pair); });
     }
-    // What was seen falling and is not near any more stays where a look at it would put it.
+    // Each pair that is near is looked at; what was noted of pairs that are near no more is forgotten below.
     for (const Contact& pair : *pairs) {
         if (!look(tube, pair, from, to)) {
             return false;

@@ -314,7 +314,8 @@ Objections check_forces(const Place& place) {
     }
     const Evidence& e = *place.evidence;
     const std::vector<Range>& forces = decision.kind == "rattler" ? e.infinitesimal() : e.forces;
-    // What is 0 as far as is seen here, the run may have told from 0 with more digits; the others refute.
+    // A force that is told from 0 here and is negative refutes the row. One that is not told from 0 does not, because
+    // the run may have told its sign with more digits.
     const auto told = [&](int l) { return !forces[static_cast<std::size_t>(l)].has_zero(); };
     const auto first = std::find_if(decision.candidates.begin(), decision.candidates.end(), told);
     const bool wrong = first != decision.candidates.end();

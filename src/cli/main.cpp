@@ -603,7 +603,7 @@ void open_standard_descriptors() {
     }
 }
 
-/// An answer that did not get out is none.
+/// The exit status: 74 where standard output did not take all of the answer.
 int delivered(int status) {
     errno = 0;
     const bool written = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;

@@ -7,7 +7,8 @@ namespace isostat {
 
 /// The affine part of the motion is taken out, and what all grains share along periodic axes (proofs/cells.md, C8).
 struct CellDrift {
-    /// The list is complete while this is below half its reach. Infinity: it is of other grains.
+    /// The list is complete while this is below half its reach. Infinity: the list was found for
+    /// other grains.
     double used = 0;
     /// What `used` grows by at most, per length that bounds the displacement of every grain and wall and the change of
     /// the cell (Frobenius norm).

@@ -76,7 +76,7 @@ template <std::size_t count> void add_each(const double* const* v, const double*
 }
 
 template <std::size_t count> void dot_each(const double* const* v, std::span<const double> x, double* product) {
-    // Written in pairs: left alone, the compiler shuffles.
+    // Written in pairs, because g++ else permutes the elements of its vectors in every step of the loop.
     std::array<Two, count> low{}; // sums over i = 0, 1 mod 4
     std::array<Two, count> high{};
     std::size_t i = 0;

@@ -24,7 +24,7 @@ struct Lines {
 /// each other with nearly the same pattern, as those of the two unknowns of a grain, and most of them near the end,
 /// are one step of two or four, with zeros where they differ: an index and an unknown then serve several entries. Steps
 /// of one shape that need not wait for each other make a run, which one function does that knows the shape. For that,
-/// numbers of entries are rounded up where few have them; the rest takes zeros and unknowns of its own.
+/// numbers of entries are rounded up where few steps have that number: the entries added are 0.
 class Triangle {
   public:
     /// `blocks`: first lines, and the number of lines. `unit`: the diagonal is 1, and not read.

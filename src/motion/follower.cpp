@@ -259,7 +259,8 @@ std::optional<CurvePoint> Follower::step_to(double s, double accuracy) {
         return std::nullopt;
     }
     std::transform(at.q.begin(), at.q.end(), off.begin(), off.begin(), std::minus<>());
-    // A start known to its last bits only is put back on the curve first: that is no bend, however short the step.
+    // A start is on the curve up to its last bits only: the room of 1e-10 keeps a short step from taking the way back
+    // to the curve for a bend.
     if (!(largest(off) <= 0.2 * s + 1e-10 * at.min_radius())) {
         return std::nullopt; // another branch, or a curve too bent for this step
     }

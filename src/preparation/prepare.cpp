@@ -29,9 +29,10 @@ namespace {
 constexpr double first_pressure = 1e-3;
 constexpr double first_pressure_large = 1e-2;
 constexpr double pressure_divisor = 10;
-/// The last relaxation of large packings ends at this many times `relaxation`: 10 costs twice the linear programmes, 1
-/// twice the steps. In a large packing something small moves at any time, and the residual is the largest of all: the
-/// earlier relaxations end at 10, or after so many steps, the last one after so many.
+/// The last relaxation of large packings ends at this many times `relaxation`, by trial: against 3, a factor of 10
+/// doubles the number of linear programmes that follow, and a factor of 1 doubles the steps. In a large packing some
+/// small part moves at any time, and the residual is the largest of all parts: the earlier relaxations end at
+/// `relaxation_between` times, or after `steps_between`, the last one after `steps_large`.
 constexpr double relaxation_large = 3;
 constexpr double relaxation_between = 10;
 constexpr long steps_between = 15000;

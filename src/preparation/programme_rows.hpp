@@ -13,7 +13,7 @@
 
 namespace isostat::preparation {
 
-/// Of the objective against stress 1.
+/// What a length costs in the objective under stress 1.
 inline constexpr double objective_scale = 256;
 /// Contacts that change from one programme to the next: as many pivots of the simplex method (5 ms each at n = 20 000)
 /// are cheaper below this than some 25 iterations of the other (1.5 to 2 s there).

@@ -36,7 +36,8 @@ FloatingSteering::FloatingSteering(const Origin& from, const ArcStart& start, co
     arc_options_.extrapolate_tangent = true;
 }
 
-/// How far it goes in vain depends on the threads: its work is counted when the arc is recorded.
+/// The work is counted when the arc is recorded: how many arcs are proposed in vain depends on the threads, and a
+/// record must not.
 Result<ArcProposal> FloatingSteering::propose() {
     WorkCounts work{};
     const CountingIn counting(&work);

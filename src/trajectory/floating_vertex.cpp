@@ -39,7 +39,7 @@ FloatingVertex::FloatingVertex(Arrival arrival, const Context& context)
         pending_backbone_ =
             Future<std::vector<unsigned char>>([this] { return ContactPattern(packing, structure).carrying(loaded_); });
     }
-    if (renew_candidates(context.candidates, packing)) { // not by a task that may be dropped
+    if (renew_candidates(context.candidates, packing)) { // here, because a task that finds them might be dropped
         arrival.open.clear();
     }
     load_on_dofs_ = force;
@@ -53,7 +53,7 @@ FloatingVertex::FloatingVertex(Arrival arrival, const Context& context)
     if (departure_) { // the arc by the thread that will follow it, the forces beside it
         Task solving([&] { solve(arrival); });
         begin_arc(arrival);
-        if (solving.underway()) { // else the forces come first: they may say that another contact opens
+        if (solving.underway()) { // else wait for the forces, which may say that another contact opens
             departure_->arc.begin_here();
         }
         solving.finish();
@@ -132,8 +132,8 @@ bool FloatingVertex::compressive(std::size_t l, bool of_infinitesimal) {
     return (of_infinitesimal ? infinitesimal() : force)[l] > 0;
 }
 
-/// Whether that is the most negative finite force for all forces within the error; if it is none: whether there is none
-/// for all.
+/// Whether `chosen` is the most negative of all finite forces that lie within the error of `f`. With no contact chosen:
+/// whether all of them are positive.
 bool FloatingVertex::clear(std::span<const double> f, std::size_t chosen) const {
     const double bar = chosen < f.size() ? signed_size(structure.contacts()[chosen], f[chosen]) + 2 * error_ : error_;
     if (chosen < f.size() && bar >= error_) {

@@ -57,8 +57,8 @@ struct EndProof {
     WorkCounts work{};                               ///< to be counted when it is taken
 };
 
-/// A failure of an arc or at its end, where N = N_f: a rank that is not proved full is no proof that it is smaller, and
-/// an iteration that stopped short none that there is nothing.
+/// A failure of an arc or at its end, where N = N_f, as an undecided one: a rank that is not proved full may be full,
+/// and an iteration that did not converge does not show that there is no vertex.
 inline Failure not_proved(Failure failure) {
     if (failure.kind == FailureKind::not_isostatic || failure.kind == FailureKind::not_converged) {
         failure.kind = FailureKind::undecided;
@@ -105,7 +105,8 @@ class Prover {
     Result<OpeningDecision> decide(Vertex& vertex, double stress, const ZeroHolds& zero, long step) const;
 
   private:
-    /// How far signs climb: of ties that are chosen no farther than it takes to call them ties.
+    /// The precisions that signs may climb through. Where ties are chosen the last one is that at which a sign counts
+    /// as tied: more digits would change no answer.
     [[nodiscard]] LadderOptions ladder() const;
     void certify(ArcProof& proof, const Vertex& from, const Opening& opening, const Load& load) const;
     std::optional<Failure> reach(ArcProof& proof, const Vertex& from, ArcProposal& arc, const LimitLoad& at);

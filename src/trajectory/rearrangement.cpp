@@ -83,7 +83,7 @@ std::optional<Failure> Rearrangement::follow_arcs() {
         Prover other = prover_.another();
         std::optional<EndProof> end;
         if (ahead_ && steered_to_ && !steered_to_->fresh_hold.valid() && !proofs.ended()) {
-            end = prove_end(other, std::move(*steered_to_)); // the last proofs may say that it is none
+            end = prove_end(other, std::move(*steered_to_)); // the proofs before it may say that the arcs end elsewhere
         }
         proofs.finish();
         if (auto failure = record(proofs)) {

@@ -134,7 +134,7 @@ CholeskyOutcome by_cholesky(const sparse::Matrix<double>& unscaled, const Approx
                 continue;
             }
             const double square = shift - cholesky.error_bound(shift);
-            // A bound that lost more than half to rounding is better made by rows.
+            // A bound that lost more than half to rounding is left to the next attempt: the same in double-double.
             const double sigma = smallest_singular_value(square, outcome.entry_error);
             if (square > 0.25 * shift && sigma > 0) {
                 outcome.bound = {Verdict::proved, sigma, InverseBound::Route::cholesky};

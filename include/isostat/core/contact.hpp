@@ -56,7 +56,8 @@ using DiskId = Id<struct DiskTag>;
 /// A position in a contact list, and the column of that contact in H.
 using ContactId = Id<struct ContactTag>;
 
-/// What touches what. `held` is not a contact: it is a coordinate kept at its value (design: power turns).
+/// What touches what. `held` is not a contact: it is a coordinate kept at its value from where the power of
+/// the load turned (proofs/stability.md, S3).
 enum class ContactKind : std::uint8_t { disk_disk, lower_wall, upper_wall, held };
 
 /// Which image of a disk in a periodic cell: m_a periods further along the period vector a. All 0 in a box.

@@ -15,7 +15,7 @@ struct BentPair {
     Enclosure bend; ///< second derivative of its gap: proved negative
 };
 
-/// A list for another: `enters` takes the place of the contact `leaves`.
+/// An exchange of one contact of the list before another one opens: `enters` takes the place of `leaves`.
 struct ListExchange {
     ContactId leaves;
     Contact enters;

@@ -3,8 +3,8 @@
 #include "compare/room.hpp"
 #include "core/words.hpp"
 #include "crafted/peeling.hpp"
-#include "preparation/polish.hpp"
 #include "rigidity/isostatic.hpp"
+#include "verified/to_vertex.hpp"
 
 #include <isostat/compare/snap.hpp>
 
@@ -109,30 +109,6 @@ void measure_moves(const SoftState& soft, Snap& out) {
     }
 }
 
-/// Newton's method, no farther than grains that are nearly rigid are from their vertex. Empty, or why not.
-std::string find_vertex_of(Packing& packing, const std::vector<Contact>& contacts) {
-    Packing moved = packing;
-    long iterations = 0;
-    if (const auto failure = preparation::newton(moved, contacts, iterations)) {
-        return failure->message();
-    }
-    double farthest = 0;
-    for (std::size_t k = 0; k < packing.q.size(); ++k) {
-        farthest = std::max(farthest, std::abs(moved.q[k] - packing.q[k]));
-    }
-    const double reach = nearest_vertex * packing.min_radius();
-    if (!(farthest <= reach)) {
-        return fmt::format("Newton's method on the gaps of the list moves a coordinate by {:.3g}: expected at most "
-                           "{:.3g}, {} of the smallest radius",
-                           farthest, reach, nearest_vertex);
-    }
-    packing = std::move(moved);
-    if (packing.cell.keeps_shape) {
-        snap_to_grid(packing); // the vertex has the period along x that is stored
-    }
-    return "";
-}
-
 void judge(Snap& out) {
     const CertificateClaims& claims = out.truth.claims;
     const std::string negative = negative_force(out);
@@ -210,9 +186,14 @@ Snap snap(const SoftState& soft) {
                                  c.rank, c.hyperstaticity, c.mechanisms);
         return out;
     }
-    out.reason = find_vertex_of(out.backbone.packing, out.backbone.contacts);
-    if (!out.reason.empty()) {
+    Packing& packing = out.backbone.packing;
+    long steps = 0;
+    if (const auto failure = to_vertex(packing, out.backbone.contacts, steps, nearest_vertex * packing.min_radius())) {
+        out.reason = failure->message();
         return out;
+    }
+    if (packing.cell.keeps_shape) {
+        snap_to_grid(packing); // the vertex has the period along x that is stored
     }
     out.truth = certify(out.backbone);
     judge(out);

@@ -4,6 +4,7 @@
 #include "contact/words.hpp"
 #include "core/dot.hpp"
 #include "preparation/best_conditioned.hpp"
+#include "statics/first_to_vanish.hpp"
 #include "statics/statics.hpp"
 #include "verified/centre.hpp"
 #include "verified/configuration.hpp"
@@ -110,8 +111,7 @@ class Basis {
     /// Velocity that opens contact l at unit rate, and the gap that it closes first.
     struct Motion {
         std::vector<double> velocity; ///< on the degrees of freedom
-        std::optional<std::size_t> entering;
-        double time = std::numeric_limits<double>::infinity();
+        std::optional<Vanishing> entering;
     };
     [[nodiscard]] Motion open(std::size_t l) const {
         Motion out;
@@ -119,18 +119,17 @@ class Basis {
         out.velocity[l] = -1; // approach
         at_.factorisation.solve_velocities(out.velocity);
         const double least = smallest_pivot * largest(out.velocity);
-        for (std::size_t m = 0; m < others_.size(); ++m) {
+        const auto rate = [&](std::size_t m) {
             const GapGradient g = gap_gradient(at_.packing, others_[m]);
-            double rate = 0;
+            double sum = 0;
             for (std::size_t k = 0; k < static_cast<std::size_t>(g.count); ++k) {
                 const int dof = at_.structure.dofs().dof_of(static_cast<std::size_t>(g.coordinate[k]));
-                rate += dof >= 0 ? g.value[k] * out.velocity[static_cast<std::size_t>(dof)] : 0.0;
+                sum += dof >= 0 ? g.value[k] * out.velocity[static_cast<std::size_t>(dof)] : 0.0;
             }
-            if (rate < -least && gaps_[m] / -rate < out.time) {
-                out.time = gaps_[m] / -rate;
-                out.entering = m;
-            }
-        }
+            return sum < -least ? sum : 0.0;
+        };
+        out.entering = first_to_vanish(
+            others_.size(), [this](std::size_t m) { return gaps_[m]; }, rate);
         return out;
     }
 
@@ -213,15 +212,16 @@ Result<Polished> pivot(Packing packing, std::vector<Contact> contacts, const Loa
         if (!motion.entering) {
             return failed(FailureKind::unbounded, "opening {} closes no gap", named(contacts[*pulling]));
         }
-        if (motion.time * largest(motion.velocity) > limits.step) {
+        const double time = motion.entering->distance;
+        if (time * largest(motion.velocity) > limits.step) {
             return failed(FailureKind::not_converged, "opening {} moves farther ({:.3g}) than linear gaps hold",
-                          named(contacts[*pulling]), motion.time * largest(motion.velocity));
+                          named(contacts[*pulling]), time * largest(motion.velocity));
         }
         for (std::size_t mu = 0; mu < motion.velocity.size(); ++mu) {
             packing.q[static_cast<std::size_t>(at.value()->structure.dofs().coordinate_of(static_cast<int>(mu)))] +=
-                motion.time * motion.velocity[mu];
+                time * motion.velocity[mu];
         }
-        contacts[*pulling] = basis.other(*motion.entering);
+        contacts[*pulling] = basis.other(motion.entering->index);
     }
     return failed(FailureKind::not_converged, "no vertex after {} pivots", limits.pivots);
 }

@@ -1,6 +1,7 @@
 #include "certificate/subject.hpp"
 #include "compare/backbone.hpp"
 #include "compare/room.hpp"
+#include "contact/contact_set.hpp"
 #include "core/words.hpp"
 #include "crafted/peeling.hpp"
 #include "rigidity/isostatic.hpp"
@@ -25,22 +26,13 @@ constexpr double up = 1 + 0x1p-49; // of a difference, a sum and a hypotenuse, e
 
 /// Disks and contacts of the list alone.
 void take_backbone(const SoftState& soft, Snap& out) {
-    const std::size_t n = soft.packing.radius.size();
-    std::vector<int> number(n, -1);
-    const auto use = [&](int i) { number[static_cast<std::size_t>(i)] = 0; };
-    for (const Contact& c : soft.contacts) {
-        use(c.i);
-        if (c.kind == ContactKind::disk_disk) {
-            use(c.j);
+    std::vector<int> number(soft.packing.radius.size(), -1);
+    out.rattlers = untouched(soft.packing.disk_count(), soft.contacts);
+    for (int i = 0; i < soft.packing.disk_count(); ++i) {
+        if (!std::binary_search(out.rattlers.begin(), out.rattlers.end(), i)) {
+            number[static_cast<std::size_t>(i)] = static_cast<int>(out.disks.size());
+            out.disks.push_back(i);
         }
-    }
-    for (std::size_t i = 0; i < n; ++i) {
-        if (number[i] < 0) {
-            out.rattlers.push_back(static_cast<int>(i));
-            continue;
-        }
-        number[i] = static_cast<int>(out.disks.size());
-        out.disks.push_back(static_cast<int>(i));
     }
     out.backbone.packing = of_disks(soft.packing, out.disks);
     const Packing& packing = out.backbone.packing;
@@ -210,12 +202,8 @@ namespace {
 
 /// All of them where nothing is known of zeros.
 std::vector<Contact> without_zeros(const State& state, const std::vector<unsigned char>& zero) {
-    std::vector<Contact> out;
-    for (std::size_t l = 0; l < state.contacts.size(); ++l) {
-        if (zero.size() != state.contacts.size() || zero[l] == 0) {
-            out.push_back(state.contacts[l]);
-        }
-    }
+    const bool known = zero.size() == state.contacts.size();
+    std::vector<Contact> out = known ? unmarked(state.contacts, zero) : state.contacts;
     std::sort(out.begin(), out.end());
     return out;
 }

@@ -1,11 +1,14 @@
 #include "preparation/polish.hpp"
 
 #include "contact/candidates.hpp"
+#include "contact/contact_set.hpp"
 #include "contact/words.hpp"
 #include "statics/decisions.hpp"
 #include "verified/centre.hpp"
 #include "verified/configuration.hpp"
 #include "verified/to_vertex.hpp"
+
+#include <isostat/rigidity/counting.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -56,17 +59,11 @@ Result<double> check_other_gaps(const Centre& at, VertexEnclosure vertex) {
 }
 
 int count_rattlers(const Packing& packing, const Statics& statics) {
-    std::vector<unsigned char> carries(packing.radius.size(), 0);
-    const std::vector<Contact>& contacts = statics.structure().contacts();
-    for (std::size_t l = 0; l < contacts.size(); ++l) {
-        if (!statics.is_structural_zero(ContactId(l))) {
-            carries[static_cast<std::size_t>(contacts[l].i)] = 1;
-            if (contacts[l].kind == ContactKind::disk_disk) {
-                carries[static_cast<std::size_t>(contacts[l].j)] = 1;
-            }
-        }
+    std::vector<unsigned char> zero;
+    for (int l = 0; l < statics.structure().size(); ++l) {
+        zero.push_back(statics.is_structural_zero(ContactId(l)) ? 1 : 0);
     }
-    return static_cast<int>(std::count(carries.begin(), carries.end(), static_cast<unsigned char>(0)));
+    return static_cast<int>(untouched(packing.disk_count(), unmarked(statics.structure().contacts(), zero)).size());
 }
 
 /// The true vertex near a packing, with as many digits as it takes.

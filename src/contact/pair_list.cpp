@@ -107,7 +107,7 @@ class Grid {
     }
     template <class Visit>
     void walk(std::size_t axis, int prefix, const PerAxis<int>& centre, const Visit& visit) const {
-        if (axis == axes_) {
+        if (axis >= std::min(axes_, centre.size())) {
             const auto cell = static_cast<std::size_t>(prefix);
             for (int k = start_[cell]; k < start_[cell + 1]; ++k) {
                 visit(member_[static_cast<std::size_t>(k)]);

@@ -5,6 +5,7 @@
 #include "contact/images.hpp"
 #include "contact/other_pairs.hpp"
 #include "core/roundoff.hpp"
+#include "verified/to_vertex.hpp"
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/core/machine.hpp>
@@ -80,6 +81,7 @@ class Prover {
     void claim_other_counts();
     bool put_on_grid();
     bool prove_vertex();
+    [[nodiscard]] std::unique_ptr<Centre> downhill() const;
     bool prove_forces();
     ForceSigns look_at(const std::vector<Interval>& finite, SignFailures& failures) const;
     void look_at_zeros(ForcesClaim& claim, SignFailures& failures) const;
@@ -208,6 +210,23 @@ bool Prover::put_on_grid() {
     return true;
 }
 
+/// Where the gaps are visibly open, the stored place says less than the end of Newton's method. Either will do.
+std::unique_ptr<Centre> Prover::downhill() const {
+    constexpr double visible = 1e-10;
+    constexpr double reach = 0.1; // of the smallest radius
+    Packing end = stored_->packing;
+    end.cell.keeps_shape = false; // only the period that moves was asked about
+    long steps = 0;
+    if (stored_->relative_gap < visible || to_vertex(end, state_.contacts, steps, reach * end.min_radius())) {
+        return nullptr;
+    }
+    end.cell = stored_->packing.cell;
+    double moved = 0;
+    const auto snapped = end.cell.any() ? on_grid(end, state_.contacts, moved) : std::optional(end);
+    auto made = snapped ? Centre::make(*snapped, state_.contacts) : Failure{FailureKind::undecided, "off the grid"};
+    return made.ok() ? std::move(made.value()) : nullptr;
+}
+
 bool Prover::prove_vertex() {
     centre_ = stored_.get();
     result_.stored_gap = centre_->largest_gap + rounded_away_;
@@ -216,16 +235,7 @@ bool Prover::prove_vertex() {
         absent_from_vertex_on("no bound of the inverse of the contact matrix was found");
         return false;
     }
-    // Where the gaps are visibly open, the stored place says less than the end of a Newton iteration. Either will do.
-    constexpr double visible = 1e-10;
-    moved_ = stored_->relative_gap < visible ? nullptr : Centre::downhill(*stored_);
-    if (moved_ && state_.packing.cell.any()) {
-        double moved = 0;
-        auto snapped = on_grid(moved_->packing, state_.contacts, moved);
-        auto made = snapped ? Centre::make(std::move(*snapped), state_.contacts)
-                            : Failure{FailureKind::undecided, "off the grid"};
-        moved_ = made.ok() ? std::move(made.value()) : nullptr;
-    }
+    moved_ = downhill();
     centre_ = moved_ ? moved_.get() : stored_.get();
     bool exists = exists_on_some_rung();
     if (!exists && moved_) {

@@ -1,3 +1,4 @@
+#include "contact/contact_set.hpp"
 #include "core/roundoff.hpp"
 
 #include <isostat/certificate/inspect.hpp>
@@ -28,26 +29,6 @@ double half_width(const Interval& interval) {
 bool has_held(const State& state) {
     return std::any_of(state.contacts.begin(), state.contacts.end(),
                        [](const Contact& c) { return c.kind == ContactKind::held; });
-}
-
-std::vector<int> without_force(const State& state, const std::vector<unsigned char>& structural_zero) {
-    std::vector<unsigned char> carries(state.packing.radius.size(), 0);
-    for (std::size_t l = 0; l < state.contacts.size(); ++l) {
-        const Contact& contact = state.contacts[l];
-        if (structural_zero[l] == 0) {
-            carries[static_cast<std::size_t>(contact.i)] = 1;
-            if (contact.kind == ContactKind::disk_disk) {
-                carries[static_cast<std::size_t>(contact.j)] = 1;
-            }
-        }
-    }
-    std::vector<int> list;
-    for (std::size_t i = 0; i < carries.size(); ++i) {
-        if (carries[i] == 0) {
-            list.push_back(static_cast<int>(i));
-        }
-    }
-    return list;
 }
 
 void describe_forces(Inspection& inspection) {
@@ -90,7 +71,7 @@ void describe(const State& state, Inspection& inspection) {
     const CertificateClaims& claims = truth.claims;
     EquilibriumRecord& record = inspection.record;
     inspection.structural_zero = truth.structural_zero;
-    inspection.rattlers = without_force(state, truth.structural_zero);
+    inspection.rattlers = untouched(state.packing.disk_count(), unmarked(state.contacts, truth.structural_zero));
     describe_forces(inspection);
     describe_interval(record, claims);
     inspection.equilibrium = claims.counting && claims.vertex && claims.forces && claims.gaps;

@@ -1,3 +1,4 @@
+#include "contact/contact_set.hpp"
 #include "contact/own_images.hpp"
 
 #include <isostat/certificate/inspect.hpp>
@@ -108,12 +109,7 @@ CellInspection inspect_cell(const State& state, const Certification& truth) {
         out.local = out.collective = out.strict = unknown;
         return out;
     }
-    std::vector<Contact> carrying;
-    for (std::size_t l = 0; l < state.contacts.size(); ++l) {
-        if (truth.structural_zero[l] == 0) {
-            carrying.push_back(state.contacts[l]);
-        }
-    }
+    const std::vector<Contact> carrying = unmarked(state.contacts, truth.structural_zero);
     const std::vector<int> rattlers = untouched(state.packing.disk_count(), carrying);
     out.backbone_disks = state.packing.disk_count() - static_cast<int>(rattlers.size());
     if (out.backbone_disks > 0) {

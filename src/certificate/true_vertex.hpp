@@ -2,8 +2,8 @@
 /// \file
 /// What one rung of arithmetic knows of the true vertex.
 
-#include "certificate/centre.hpp"
 #include "certificate/subject.hpp"
+#include "verified/centre.hpp"
 
 #include <isostat/io/certificate_file.hpp>
 

@@ -5,6 +5,7 @@
 
 #include "certificate/true_vertex.hpp"
 #include "core/roundoff.hpp"
+#include "statics/first_to_vanish.hpp"
 #include "verified/contact_system.hpp"
 
 #include <fmt/format.h>
@@ -70,7 +71,6 @@ template <class T> class TrueVertexAt final : public TrueVertex {
     [[nodiscard]] std::string name(int l) const { return to_string(subject_.state.contacts[index(l)]); }
     /// Of the force in contact l when the load goes in the direction.
     double rate(int l, int direction) { return direction * A::rounded(unit_load().value[index(l)]); }
-    int first_to_vanish(int direction);
     std::string open_rate(int l);
     LoadEndAnswer without_end(int direction);
     std::string vanishes_before(int first, const std::vector<int>& members, const T& t, double error);
@@ -231,22 +231,6 @@ template <class T> std::vector<Interval> TrueVertexAt<T>::infinitesimal() {
     return around(infinitesimal_solution());
 }
 
-/// The force that vanishes first as far as rounded numbers tell; -1: none decreases.
-template <class T> int TrueVertexAt<T>::first_to_vanish(int direction) {
-    int first = -1;
-    double smallest = infinity;
-    for (int l = 0; l < subject_.size(); ++l) {
-        if (subject_.zero_slope[index(l)] == 0 && rate(l, direction) < 0) {
-            const double distance = A::rounded(present().value[index(l)]) / -rate(l, direction);
-            if (distance < smallest) {
-                smallest = distance;
-                first = l;
-            }
-        }
-    }
-    return first;
-}
-
 template <class T> std::string TrueVertexAt<T>::open_rate(int l) {
     return fmt::format("the force in contact {} changes with the load at a rate of {:.3g}, proved to {:.3g}", name(l),
                        rate(l, +1), unit_load().bound);
@@ -313,10 +297,13 @@ template <class T> int TrueVertexAt<T>::opens(int first, const std::vector<int>&
 template <class T> LoadEndAnswer TrueVertexAt<T>::load_end(int direction) {
     const Solution& force = present();
     const Solution& slope = unit_load();
-    const int first = first_to_vanish(direction);
-    if (first < 0) {
+    const auto vanishing = first_to_vanish(
+        force.value.size(), [&](std::size_t l) { return A::rounded(force.value[l]); },
+        [&](std::size_t l) { return subject_.zero_slope[l] == 0 ? rate(static_cast<int>(l), direction) : 0.0; });
+    if (!vanishing) {
         return without_end(direction);
     }
+    const int first = static_cast<int>(vanishing->index);
     const double steepness = -rate(first, direction) * (1 - 4 * u) - slope.bound;
     if (!(steepness > 0)) {
         return {{}, open_rate(first)};

@@ -1,9 +1,8 @@
 #include "compare/force_split.hpp"
 
 #include "compare/backbone.hpp"
-#include "rigidity/isostatic.hpp"
 #include "statics/statics.hpp"
-#include "verified/inverse_bound.hpp"
+#include "verified/centre.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,15 +13,13 @@ ForceSplit split_forces(const SoftState& soft, const std::vector<double>& forces
     ForceSplit out;
     Packing packing = of_disks(soft.packing, snap.disks);
     (void)snap_to_grid(packing);
-    const auto structure = IsostaticStructure::prove(packing, snap.backbone.contacts);
-    if (!structure.ok() || !(mean > 0)) {
+    const auto made = Centre::make(std::move(packing), snap.backbone.contacts);
+    if (!made.ok() || !(mean > 0)) {
         return out;
     }
-    const Factorisation factorisation(structure.value());
-    InverseBoundCache cache;
-    const InverseBound inverse = bound_inverse(structure.value(), factorisation, cache);
+    const Centre& at = *made.value();
     const Load& load = snap.backbone.load;
-    const Statics statics(packing, load, structure.value(), factorisation, inverse);
+    const Statics statics(at.packing, load, at.structure, at.factorisation, at.inverse);
     double rest = -1, stiffness = 0;
     for (std::size_t l = 0; l < forces.size(); ++l) {
         const Enclosure f = statics.force(ContactId(l), load.loaded_stress());

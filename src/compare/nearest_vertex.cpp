@@ -5,6 +5,7 @@
 #include <isostat/certificate/certify.hpp>
 #include <isostat/crafted/plateau.hpp>
 #include <isostat/preparation/preparation.hpp>
+#include <isostat/rigidity/counting.hpp>
 
 #include <fmt/format.h>
 
@@ -103,12 +104,9 @@ Moves moves_to(const State& state, const Certification& truth, const std::vector
     const auto way = [&](std::size_t k) { return (std::abs(packing.q[k] - from[k]) + radius) * up; };
     Moves moves;
     const std::size_t n = packing.radius.size();
-    moves.rattler.assign(n, 1);
-    for (const Contact& c : carrying(state, truth)) {
-        moves.rattler[static_cast<std::size_t>(c.i)] = 0;
-        if (c.kind == ContactKind::disk_disk) {
-            moves.rattler[static_cast<std::size_t>(c.j)] = 0;
-        }
+    moves.rattler.assign(n, 0);
+    for (const int rattler : untouched(packing.disk_count(), carrying(state, truth))) {
+        moves.rattler[static_cast<std::size_t>(rattler)] = 1;
     }
     for (std::size_t i = 0; i < n; ++i) {
         moves.disk.push_back(std::hypot(way(2 * i), way(2 * i + 1)) * up);

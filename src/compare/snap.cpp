@@ -1,10 +1,11 @@
 #include "certificate/subject.hpp"
 #include "compare/backbone.hpp"
 #include "compare/room.hpp"
+#include "contact/contact_set.hpp"
 #include "core/words.hpp"
 #include "crafted/peeling.hpp"
-#include "preparation/polish.hpp"
 #include "rigidity/isostatic.hpp"
+#include "verified/to_vertex.hpp"
 
 #include <isostat/compare/snap.hpp>
 
@@ -25,22 +26,13 @@ constexpr double up = 1 + 0x1p-49; // of a difference, a sum and a hypotenuse, e
 
 /// Disks and contacts of the list alone.
 void take_backbone(const SoftState& soft, Snap& out) {
-    const std::size_t n = soft.packing.radius.size();
-    std::vector<int> number(n, -1);
-    const auto use = [&](int i) { number[static_cast<std::size_t>(i)] = 0; };
-    for (const Contact& c : soft.contacts) {
-        use(c.i);
-        if (c.kind == ContactKind::disk_disk) {
-            use(c.j);
+    std::vector<int> number(soft.packing.radius.size(), -1);
+    out.rattlers = untouched(soft.packing.disk_count(), soft.contacts);
+    for (int i = 0; i < soft.packing.disk_count(); ++i) {
+        if (!std::binary_search(out.rattlers.begin(), out.rattlers.end(), i)) {
+            number[static_cast<std::size_t>(i)] = static_cast<int>(out.disks.size());
+            out.disks.push_back(i);
         }
-    }
-    for (std::size_t i = 0; i < n; ++i) {
-        if (number[i] < 0) {
-            out.rattlers.push_back(static_cast<int>(i));
-            continue;
-        }
-        number[i] = static_cast<int>(out.disks.size());
-        out.disks.push_back(static_cast<int>(i));
     }
     out.backbone.packing = of_disks(soft.packing, out.disks);
     const Packing& packing = out.backbone.packing;
@@ -107,30 +99,6 @@ void measure_moves(const SoftState& soft, Snap& out) {
     if (soft.packing.cell.any()) { // the disk that stays where it is carries a force
         out.packing.cell.pin = out.disks[static_cast<std::size_t>(out.backbone.packing.cell.pin)];
     }
-}
-
-/// Newton's method, no farther than grains that are nearly rigid are from their vertex. Empty, or why not.
-std::string find_vertex_of(Packing& packing, const std::vector<Contact>& contacts) {
-    Packing moved = packing;
-    long iterations = 0;
-    if (const auto failure = preparation::newton(moved, contacts, iterations)) {
-        return failure->message();
-    }
-    double farthest = 0;
-    for (std::size_t k = 0; k < packing.q.size(); ++k) {
-        farthest = std::max(farthest, std::abs(moved.q[k] - packing.q[k]));
-    }
-    const double reach = nearest_vertex * packing.min_radius();
-    if (!(farthest <= reach)) {
-        return fmt::format("Newton's method on the gaps of the list moves a coordinate by {:.3g}: expected at most "
-                           "{:.3g}, {} of the smallest radius",
-                           farthest, reach, nearest_vertex);
-    }
-    packing = std::move(moved);
-    if (packing.cell.keeps_shape) {
-        snap_to_grid(packing); // the vertex has the period along x that is stored
-    }
-    return "";
 }
 
 void judge(Snap& out) {
@@ -210,9 +178,14 @@ Snap snap(const SoftState& soft) {
                                  c.rank, c.hyperstaticity, c.mechanisms);
         return out;
     }
-    out.reason = find_vertex_of(out.backbone.packing, out.backbone.contacts);
-    if (!out.reason.empty()) {
+    Packing& packing = out.backbone.packing;
+    long steps = 0;
+    if (const auto failure = to_vertex(packing, out.backbone.contacts, steps, nearest_vertex * packing.min_radius())) {
+        out.reason = failure->message();
         return out;
+    }
+    if (packing.cell.keeps_shape) {
+        snap_to_grid(packing); // the vertex has the period along x that is stored
     }
     out.truth = certify(out.backbone);
     judge(out);
@@ -229,12 +202,8 @@ namespace {
 
 /// All of them where nothing is known of zeros.
 std::vector<Contact> without_zeros(const State& state, const std::vector<unsigned char>& zero) {
-    std::vector<Contact> out;
-    for (std::size_t l = 0; l < state.contacts.size(); ++l) {
-        if (zero.size() != state.contacts.size() || zero[l] == 0) {
-            out.push_back(state.contacts[l]);
-        }
-    }
+    const bool known = zero.size() == state.contacts.size();
+    std::vector<Contact> out = known ? unmarked(state.contacts, zero) : state.contacts;
     std::sort(out.begin(), out.end());
     return out;
 }

@@ -1,5 +1,6 @@
 #include "linear/factorisation.hpp"
 #include "rigidity/isostatic.hpp"
+#include "statics/first_to_vanish.hpp"
 
 #include <isostat/compare/snap.hpp>
 
@@ -66,27 +67,19 @@ class SoftGrains {
     std::vector<double> forces, slopes;
 };
 
-/// Where the first force vanishes on the way from `middle` ahead, forces being linear in the stress at one place.
-/// Nothing: one is not positive in the middle, or none vanishes.
-struct Vanishing {
-    double stress = 0;
-    std::size_t contact = 0;
-};
-std::optional<Vanishing> first_to_vanish(const SoftGrains& grains, double sigma, double middle, int direction) {
-    double least = HUGE_VAL;
-    std::optional<Vanishing> out;
-    for (std::size_t l = 0; l < grains.forces.size(); ++l) {
-        const double slope = direction * grains.slopes[l];
-        const double at_middle = grains.forces[l] + (middle - sigma) * grains.slopes[l];
-        if (!(at_middle > 0)) {
-            return std::nullopt;
-        }
-        if (slope < 0 && at_middle / -slope < least) {
-            least = at_middle / -slope;
-            out = Vanishing{middle + direction * least, l};
-        }
+/// On the way from `middle` ahead, forces being linear in the stress at one place. Nothing: one is not positive in the
+/// middle, or none vanishes.
+std::optional<Vanishing> first_ahead(const SoftGrains& grains, double sigma, double middle, int direction) {
+    std::vector<double> force = grains.forces;
+    for (std::size_t l = 0; l < force.size(); ++l) {
+        force[l] += (middle - sigma) * grains.slopes[l];
     }
-    return out;
+    if (!std::all_of(force.begin(), force.end(), [](double f) { return f > 0; })) {
+        return std::nullopt;
+    }
+    return first_to_vanish(
+        force.size(), [&](std::size_t l) { return force[l]; },
+        [&](std::size_t l) { return direction * grains.slopes[l]; });
 }
 
 } // namespace
@@ -112,17 +105,18 @@ std::optional<SoftLimit> soft_limit(const State& state, const ExactInterval& exa
         if (!grains.solve(sigma)) {
             return std::nullopt;
         }
-        const auto next = first_to_vanish(grains, sigma, middle, exact.direction);
-        if (!next || std::abs(next->stress - middle) > 2 * half) {
+        const auto next = first_ahead(grains, sigma, middle, exact.direction);
+        if (!next || next->distance > 2 * half) {
             return std::nullopt;
         }
+        const double stress = middle + exact.direction * next->distance;
         for (std::size_t l = 0; l < grains.forces.size(); ++l) {
-            grains.forces[l] += (next->stress - sigma) * grains.slopes[l];
+            grains.forces[l] += (stress - sigma) * grains.slopes[l];
         }
-        const bool same = std::abs(next->stress - sigma) <= same_stress * next->stress;
-        sigma = next->stress;
+        const bool same = std::abs(stress - sigma) <= same_stress * stress;
+        sigma = stress;
         if (grains.move() && same) {
-            return SoftLimit{sigma, state.contacts[next->contact]};
+            return SoftLimit{sigma, state.contacts[next->index]};
         }
     }
     return std::nullopt;

@@ -3,6 +3,7 @@
 #include "compare/backbone.hpp"
 #include "core/roundoff.hpp"
 #include "rigidity/isostatic.hpp"
+#include "verified/centre.hpp"
 #include "verified/force_solution.hpp"
 #include "verified/norm.hpp"
 
@@ -106,24 +107,19 @@ std::optional<Balanced> balanced(const Surplus& surplus, const Packing& packing,
             terms[entry.row()] += 1;
         }
     }
-    const auto structure = IsostaticStructure::prove(packing, others);
-    if (!structure.ok()) {
+    const auto made = Centre::make(packing, others);
+    if (!made.ok() || made.value()->inverse.verdict != Verdict::proved) {
         return std::nullopt;
     }
-    const Factorisation factorisation(structure.value());
-    InverseBoundCache cache;
-    const InverseBound inverse = bound_inverse(structure.value(), factorisation, cache);
-    if (inverse.verdict != Verdict::proved) {
-        return std::nullopt;
-    }
+    const Centre& at = *made.value();
     const ForceSolution solved =
-        solve_forces(structure.value(), factorisation, inverse, std::vector<double>(rest.begin(), rest.end()));
+        solve_forces(at.structure, at.factorisation, at.inverse, std::vector<double>(rest.begin(), rest.end()));
     for (std::size_t k = 0; k < places.size(); ++k) {
         f[places[k]] = solved.value[k];
     }
     const Vector lost = roundings * roundoff::u * terms.cwiseProduct(size);
     return Balanced{std::move(f), (solved.bound + norm_above({lost.data(), static_cast<std::size_t>(lost.size())}) /
-                                                      inverse.sigma_min) *
+                                                      at.inverse.sigma_min) *
                                       (1 + roundings * roundoff::u)};
 }
 

@@ -22,7 +22,7 @@ struct CandidateList {
     std::vector<Contact> contacts; ///< sorted; all with gap < reach, and perhaps a few beyond by rounding
     double reach = 0; ///< delta: complete as long as twice the largest displacement since `reference` < delta
     std::vector<double> reference; ///< q at which the list was made
-    /// Whose edges the disk pairs are; null when they were found by a sweep. Shared by copies, never changed.
+    /// Whose edges the disk pairs are; null when they were found by the grid. Shared by copies, never changed.
     std::shared_ptr<const RegularTriangulation> triangulation;
 
     /// True when the list is still complete at `packing`: 2 max_i |x_i - x_i^ref| < reach, (Lx, Ly) counted as one
@@ -49,8 +49,8 @@ std::optional<Contact> fixed_overlap(const Packing& packing);
 ///   R_min^2 / R, its edges are complete (statements T5 and T6 with rounded weights, proofs/contact_candidates.md).
 ///   It is made by CGAL, O(n log n), or carried along from an earlier list: `from`, a triangulation of the same disks
 ///   at other places, is flipped until exact predicates prove every edge regular, O(n);
-/// - otherwise (deeper overlaps, size ratios above 1e5, lengths beyond 1e+-100) all pairs are swept along the first
-///   axis; O(n^1.5) for packings.
+/// - otherwise (deeper overlaps, size ratios above 1e5, lengths beyond 1e+-100) a grid finds them; O(n) where
+///   the radii are comparable, else O(n^1.5) at most.
 /// In a cell: pairs with all images (proofs/cells.md, C3), nothing carried along. Walls by a scan. `contacts` depends
 /// on the packing and the fraction alone, not on `from` nor on what found them.
 CandidateList find_candidates(const Packing& packing, double fraction,

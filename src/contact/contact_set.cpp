@@ -25,4 +25,14 @@ ContactSet::ContactSet(const std::vector<Contact>& contacts, int disk_count) {
     start_.pop_back();
 }
 
+std::vector<Contact> unmarked(const std::vector<Contact>& contacts, const std::vector<unsigned char>& marks) {
+    std::vector<Contact> out;
+    for (std::size_t l = 0; l < contacts.size(); ++l) {
+        if (marks[l] == 0) {
+            out.push_back(contacts[l]);
+        }
+    }
+    return out;
+}
+
 } // namespace isostat

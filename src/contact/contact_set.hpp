@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Fast membership in a contact list.
+/// Fast membership in a contact list, and parts of one.
 
 #include <isostat/contact/contact.hpp>
 
@@ -27,5 +27,8 @@ class ContactSet {
     std::vector<int> start_;
     std::vector<Contact> members_;
 };
+
+/// Those without a mark: of the contacts of a state those that carry a force, where structural zeros are marked.
+std::vector<Contact> unmarked(const std::vector<Contact>& contacts, const std::vector<unsigned char>& marks);
 
 } // namespace isostat

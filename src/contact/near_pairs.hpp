@@ -1,18 +1,19 @@
 #pragma once
 // Every pair of disks that is nearly in contact: from the regular triangulation where statements T5 and T6 apply, from
-// a sweep otherwise.
+// a grid otherwise.
 
 #include "contact/regular_triangulation.hpp"
 
 #include <isostat/contact/contact.hpp>
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
 
 namespace isostat {
 
-/// Sorted pairs, and the triangulation that they are edges of (null: they were found by the sweep).
+/// Sorted pairs, and the triangulation that they are edges of (null: they were found by the grid).
 struct NearPairs {
     std::vector<Contact> pairs;
     std::shared_ptr<const RegularTriangulation> triangulation;
@@ -22,7 +23,7 @@ struct NearPairs {
 /// the packing. The pairs are a function of the packing and the reach alone: neither `from`, a triangulation of the
 /// same disks elsewhere that is carried to these places if it is there, nor what finds them makes a difference.
 /// In a cell: every pair of a disk and an image, each once; found among finitely many images, without a triangulation
-/// that could be carried. \pre 0 < reach <= 0.82 R_min; in a cell any reach > 0
+/// that could be carried. \pre reach > 0; beyond 0.82 R_min the grid finds them
 NearPairs near_pairs(const Packing& packing, double reach,
                      const std::shared_ptr<const RegularTriangulation>& from = nullptr);
 
@@ -31,7 +32,9 @@ NearPairs near_pairs(const Packing& packing, double reach,
 std::optional<std::vector<Contact>> near_edges(const Packing& packing, double reach,
                                                const RegularTriangulation& triangulation);
 
-/// The same pairs from a sweep along the first axis: complete without any hypothesis, O(n^1.5) for packings.
-std::vector<Contact> near_pairs_by_sweep(const Packing& packing, double reach);
+/// The same pairs from the grid: complete without any hypothesis. Throws `Error(bad_input)` when they are more than
+/// `most_per_disk` of each disk.
+std::vector<Contact> pairs_within(const Packing& packing, double reach,
+                                  int most_per_disk = std::numeric_limits<int>::max());
 
 } // namespace isostat

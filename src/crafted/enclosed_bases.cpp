@@ -3,8 +3,8 @@
 #include "contact/separation.hpp"
 #include "core/roundoff.hpp"
 #include "rigidity/isostatic.hpp"
+#include "verified/centre.hpp"
 #include "verified/force_solution.hpp"
-#include "verified/inverse_bound.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -63,25 +63,20 @@ class Encloser {
         for (const int dof : out.free_dofs) {
             kept.push_back({ContactKind::held, dofs.coordinate_of(dof), 0});
         }
-        const auto proved = IsostaticStructure::prove(stored_, kept);
-        if (!proved.ok()) {
+        const auto made = Centre::make(stored_, kept);
+        if (!made.ok() || made.value()->inverse.verdict != Verdict::proved ||
+            !(made.value()->inverse.sigma_min > 2 * change_)) {
             return out;
         }
-        const Factorisation factorisation(proved.value());
-        InverseBoundCache cache;
-        const InverseBound inverse = bound_inverse(proved.value(), factorisation, cache);
-        if (inverse.verdict != Verdict::proved || !(inverse.sigma_min > 2 * change_)) {
-            return out;
-        }
-        sigma_ = (inverse.sigma_min - change_) / upwards; // of the exact matrix
+        const Centre& at = *made.value();
+        sigma_ = (at.inverse.sigma_min - change_) / upwards; // of the exact matrix
         out.verdict = Verdict::proved;
         for (int k = 0; k < count && k < static_cast<int>(out.free_contacts.size()); ++k) {
-            out.self_stresses.push_back(self_stress(proved.value(), factorisation, inverse, independent.columns,
-                                                    out.free_contacts[static_cast<std::size_t>(k)]));
+            out.self_stresses.push_back(
+                self_stress(at, independent.columns, out.free_contacts[static_cast<std::size_t>(k)]));
         }
         for (int k = 0; k < count && k < static_cast<int>(out.free_dofs.size()); ++k) {
-            out.motions.push_back(motion(proved.value(), factorisation,
-                                         independent.columns.size() + static_cast<std::size_t>(k),
+            out.motions.push_back(motion(at, independent.columns.size() + static_cast<std::size_t>(k),
                                          out.free_dofs[static_cast<std::size_t>(k)]));
         }
         for (const auto* vectors : {&out.self_stresses, &out.motions}) {
@@ -98,9 +93,8 @@ class Encloser {
   private:
     /// Forces of the independent contacts that balance a unit force in the free one; the multipliers of the held
     /// degrees of freedom are 0 because the column of the free contact depends on the others (the rank is proved).
-    [[nodiscard]] EnclosedVector self_stress(const IsostaticStructure& structure, const Factorisation& factorisation,
-                                             const InverseBound& inverse, const std::vector<int>& columns,
-                                             int free) const {
+    [[nodiscard]] EnclosedVector self_stress(const Centre& at, const std::vector<int>& columns, int free) const {
+        const IsostaticStructure& structure = at.structure;
         const auto l = static_cast<std::size_t>(free);
         std::vector<double> right(static_cast<std::size_t>(structure.size()), 0.0);
         const GapGradient g = gap_gradient(stored_, inspection_.contacts[l]);
@@ -110,7 +104,7 @@ class Encloser {
                 right[static_cast<std::size_t>(dof)] = g.value[k]; // minus the column
             }
         }
-        const ForceSolution solution = solve_forces(structure, factorisation, inverse, right);
+        const ForceSolution solution = solve_forces(structure, at.factorisation, at.inverse, right);
         EnclosedVector out;
         out.free = free;
         out.value.assign(inspection_.contacts.size(), 0.0);
@@ -125,12 +119,11 @@ class Encloser {
     }
 
     /// Velocity that keeps all gaps and is 1 in the held degree of freedom number `row` of the structure.
-    [[nodiscard]] EnclosedVector motion(const IsostaticStructure& structure, const Factorisation& factorisation,
-                                        std::size_t row, int free) const {
-        std::vector<double> v(static_cast<std::size_t>(structure.size()), 0.0);
+    [[nodiscard]] EnclosedVector motion(const Centre& at, std::size_t row, int free) const {
+        std::vector<double> v(static_cast<std::size_t>(at.structure.size()), 0.0);
         v[row] = -1; // approach velocities; the column of a held coordinate is -1
-        factorisation.solve_velocities(v);
-        const auto& matrix = structure.matrix();
+        at.factorisation.solve_velocities(v);
+        const auto& matrix = at.structure.matrix();
         double residual = 0;
         for (std::size_t c = 0; c + 1 < matrix.start.size(); ++c) {
             double sum = c == row ? 1 : 0;

@@ -7,32 +7,11 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numeric>
 #include <optional>
 
 namespace isostat::crafted {
 
 namespace {
-
-/// Double bounds of a number, outwards.
-struct Bounds {
-    double lower, upper;
-};
-
-Bounds bounds(const Number& number) {
-    const Enclosure e = number.enclosure();
-    if (!std::isfinite(e.radius)) {
-        return {-HUGE_VAL, HUGE_VAL};
-    }
-    return {std::nextafter(e.value - e.radius, -HUGE_VAL), std::nextafter(e.value + e.radius, HUGE_VAL)};
-}
-
-/// An upper bound of the distance below which two disks can touch, against a lower bound of one coordinate's
-/// difference.
-bool surely_apart(const Bounds& a, const Bounds& b, double reach) {
-    const double between = std::max(a.lower - b.upper, b.lower - a.upper);
-    return std::nextafter(between, -HUGE_VAL) > reach;
-}
 
 Words describe(const ExactPacking& packing, int i) {
     const auto& c = packing.centre[static_cast<std::size_t>(i)];
@@ -41,33 +20,6 @@ Words describe(const ExactPacking& packing, int i) {
     disk.disks.push_back(i);
     return disk;
 }
-
-/// Sign of gap, cheap where doubles settle it.
-struct Sweep {
-    explicit Sweep(const ExactPacking& p) {
-        for (std::size_t i = 0; i < p.radius.size(); ++i) {
-            x.push_back(bounds(p.centre[i][0]));
-            y.push_back(bounds(p.centre[i][1]));
-            r.push_back(bounds(p.radius[i]));
-        }
-    }
-
-    /// |d|^2 - (R_i + R_j)^2, exactly; `apart` when doubles already show that it is positive.
-    [[nodiscard]] bool apart(std::size_t i, std::size_t j) const {
-        const double reach = std::nextafter(r[i].upper + r[j].upper, HUGE_VAL);
-        if (surely_apart(x[i], x[j], reach) || surely_apart(y[i], y[j], reach)) {
-            return true;
-        }
-        const double dx = std::max(0.0, std::max(x[i].lower - x[j].upper, x[j].lower - x[i].upper));
-        const double dy = std::max(0.0, std::max(y[i].lower - y[j].upper, y[j].lower - y[i].upper));
-        // Away from under- and overflow each side carries at most five roundings of relative size 2^-53.
-        const double squares = dx * dx + dy * dy;
-        return reach * reach > 1e-280 && std::isfinite(squares) &&
-               squares * (1 - 0x1p-49) > reach * reach * (1 + 0x1p-49);
-    }
-
-    std::vector<Bounds> x, y, r;
-};
 
 /// The contacts found so far, each with its gap decided.
 struct Touching {
@@ -138,26 +90,6 @@ std::optional<Failure> take_walls(Touching& touching) {
     return std::nullopt;
 }
 
-std::optional<Failure> take_pairs(Touching& touching) {
-    const Sweep sweep(touching.packing);
-    std::vector<std::size_t> order(touching.packing.radius.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    const auto left = [&](std::size_t i) { return std::nextafter(sweep.x[i].lower - sweep.r[i].upper, -HUGE_VAL); };
-    const auto right = [&](std::size_t i) { return std::nextafter(sweep.x[i].upper + sweep.r[i].upper, HUGE_VAL); };
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return left(i) < left(j); });
-    for (std::size_t s = 0; s < order.size(); ++s) {
-        for (std::size_t t = s + 1; t < order.size() && left(order[t]) <= right(order[s]); ++t) {
-            if (sweep.apart(order[s], order[t])) {
-                continue;
-            }
-            if (auto failure = touching.take_pair(pair_of(static_cast<int>(order[s]), static_cast<int>(order[t])))) {
-                return failure;
-            }
-        }
-    }
-    return std::nullopt;
-}
-
 /// Rounding to doubles changes a gap by less than this: of each coordinate half a unit of the last place, of an image
 /// less than 100 times that for each period.
 double lost_by_rounding(const Packing& rounded) {
@@ -168,13 +100,19 @@ double lost_by_rounding(const Packing& rounded) {
     return 0x1p-40 * largest;
 }
 
-std::optional<Failure> take_images(Touching& touching, const Packing& rounded) {
-    for (const Contact& pair : near_pairs(rounded, lost_by_rounding(rounded)).pairs) {
-        if (auto failure = touching.take_pair(pair)) {
-            return failure;
+/// Those whose gap may be 0. All, where the range of doubles is too small for that question.
+std::vector<Contact> nearest_pairs(const Packing& rounded) {
+    const double lost = lost_by_rounding(rounded);
+    if (rounded.cell.any() || (lost > 0x1p-1000 && lost < 0x1p900)) {
+        return pairs_within(rounded, lost);
+    }
+    std::vector<Contact> all;
+    for (int i = 0; i < rounded.disk_count(); ++i) {
+        for (int j = i + 1; j < rounded.disk_count(); ++j) {
+            all.push_back(pair_of(i, j));
         }
     }
-    return std::nullopt;
+    return all;
 }
 
 } // namespace
@@ -220,8 +158,10 @@ Result<std::vector<Contact>> exact_contacts(const ExactPacking& packing) {
     if (auto failure = take_walls(touching)) {
         return *failure;
     }
-    if (auto failure = packing.cell.any() ? take_images(touching, rounded) : take_pairs(touching)) {
-        return *failure;
+    for (const Contact& pair : nearest_pairs(rounded)) {
+        if (auto failure = touching.take_pair(pair)) {
+            return *failure;
+        }
     }
     std::sort(touching.contacts.begin(), touching.contacts.end());
     return std::move(touching.contacts);

@@ -6,6 +6,7 @@
 #include <isostat/core/error.hpp>
 #include <isostat/core/machine.hpp>
 #include <isostat/preparation/preparation.hpp>
+#include <isostat/rigidity/counting.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -92,22 +93,16 @@ void fill(GenericitySample& sample, const State& state, const Certification& cer
         return;
     }
     sample.contacts = state.contacts;
-    std::vector<unsigned char> carries(state.packing.radius.size(), 0);
     sample.min_force = std::numeric_limits<double>::infinity();
     const std::vector<int>& zeros = claims.forces->structural_zeros;
     for (std::size_t l = 0; l < state.contacts.size(); ++l) {
         if (std::binary_search(zeros.begin(), zeros.end(), static_cast<int>(l))) {
             continue;
         }
-        const Contact& contact = state.contacts[l];
-        sample.carrying.push_back(contact);
+        sample.carrying.push_back(state.contacts[l]);
         sample.min_force = std::min(sample.min_force, claims.forces->finite[l].lower);
-        carries[static_cast<std::size_t>(contact.i)] = 1;
-        if (contact.kind == ContactKind::disk_disk) {
-            carries[static_cast<std::size_t>(contact.j)] = 1;
-        }
     }
-    sample.rattlers = static_cast<int>(std::count(carries.begin(), carries.end(), 0));
+    sample.rattlers = static_cast<int>(untouched(state.packing.disk_count(), sample.carrying).size());
     sample.min_gap = claims.gaps->smallest;
     sample.sigma_min = certified.smallest_sigma;
     sample.rung = std::max({claims.vertex->rung, claims.forces->rung, claims.gaps->rung});

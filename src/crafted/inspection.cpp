@@ -1,3 +1,4 @@
+#include "contact/contact_set.hpp"
 #include "crafted/hold.hpp"
 #include "crafted/jamming.hpp"
 #include "crafted/rigid_motions.hpp"
@@ -199,20 +200,12 @@ class Inspector {
     }
 
     void judge_disks() {
-        std::vector<unsigned char> carries(packing_.radius.size(), 0);
-        for (std::size_t l = 0; l < contact_count(); ++l) {
-            if (!out_.forces[l].is_zero()) {
-                carries[static_cast<std::size_t>(out_.contacts[l].i)] = 1;
-                if (out_.contacts[l].kind == ContactKind::disk_disk) {
-                    carries[static_cast<std::size_t>(out_.contacts[l].j)] = 1;
-                }
-            }
+        std::vector<unsigned char> zero;
+        for (const Number& force : out_.forces) {
+            zero.push_back(force.is_zero() ? 1 : 0);
         }
-        for (int i = 0; i < packing_.disk_count(); ++i) {
-            if (carries[static_cast<std::size_t>(i)] == 0 && !packing_.is_fixed(i)) {
-                out_.without_force.push_back(i);
-            }
-        }
+        out_.without_force = untouched(packing_.disk_count(), unmarked(out_.contacts, zero));
+        std::erase_if(out_.without_force, [this](int i) { return packing_.is_fixed(i); });
     }
 
     /// f_l vanishes for given columns exactly when the load lies in the span of the others.

@@ -1,10 +1,9 @@
-#include "contact/images.hpp"
+#include "contact/near_pairs.hpp"
 #include "crafted/gap_order.hpp"
 #include "crafted/hyperstaticity.hpp"
 #include "crafted/peeling.hpp"
 #include "crafted/rigid_motions.hpp"
 #include "exact/rank.hpp"
-#include "preparation/neighbours.hpp"
 #include "rigidity/isostatic.hpp"
 #include "rigidity/strained_matrix.hpp"
 
@@ -29,12 +28,6 @@ namespace {
 
 constexpr double largest_length = 1e100;   // squares neither overflow
 constexpr double smallest_length = 1e-100; // nor underflow
-
-/// More are no contacts, and take longer than anyone waits.
-int most_pairs(const Packing& packing) {
-    constexpr int most_disks = std::numeric_limits<int>::max() / most_pairs_per_disk;
-    return most_pairs_per_disk * std::min(packing.disk_count(), most_disks);
-}
 
 class Sequence {
   public:
@@ -198,46 +191,15 @@ class Sequence {
         }
     }
 
-    void find_pairs_of_images(double reach) {
-        const Images images = images_near_cell(packing_, reach);
-        const int count = images.packing.disk_count();
-        preparation::PairList pairs;
-        std::vector<double> centres(images.packing.q.begin(), images.packing.q.end() - 2);
-        preparation::find_pairs(packing_.dimension, centres, images.packing.radius, reach + images.rounding, pairs,
-                                most_pairs(images.packing));
-        std::vector<Contact> found;
-        for (int a = 0; a < count; ++a) {
-            const auto k = static_cast<std::size_t>(a);
-            for (int p = pairs.start[k]; p < pairs.start[k + 1]; ++p) {
-                found.push_back(images.contact(a, pairs.partner[static_cast<std::size_t>(p)]));
-            }
-        }
-        std::sort(found.begin(), found.end());
-        found.erase(std::unique(found.begin(), found.end()), found.end());
-        for (const Contact& contact : found) {
-            keep(contact);
-        }
-    }
-
     void find_candidates() {
         // Wider than the rounding of the search.
         const double reach = std::max(largest_, 0.0) + 1e-9 * (2 * packing_.max_radius() + std::max(largest_, 0.0));
-        preparation::PairList pairs;
-        if (packing_.cell.any()) {
-            find_pairs_of_images(reach);
-            pairs.start.assign(packing_.radius.size() + 1, 0);
-        } else {
-            preparation::find_pairs(packing_.dimension, packing_.q, packing_.radius, reach, pairs,
-                                    most_pairs(packing_));
+        for (const Contact& pair : pairs_within(packing_, reach, most_pairs_per_disk)) {
+            if (!packing_.is_fixed(DiskId(pair.i)) || !packing_.is_fixed(DiskId(pair.j))) {
+                keep(pair);
+            }
         }
         for (int i = 0; i < packing_.disk_count(); ++i) {
-            const auto k = static_cast<std::size_t>(i);
-            for (int p = pairs.start[k]; p < pairs.start[k + 1]; ++p) {
-                const int j = pairs.partner[static_cast<std::size_t>(p)];
-                if (!packing_.is_fixed(DiskId(i)) || !packing_.is_fixed(DiskId(j))) {
-                    keep({ContactKind::disk_disk, i, j});
-                }
-            }
             for (int a = 0; a < 2; ++a) {
                 const auto axis = static_cast<std::size_t>(a);
                 const auto moves = [&](WallKind wall) {

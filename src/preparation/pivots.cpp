@@ -4,8 +4,11 @@
 #include "contact/words.hpp"
 #include "core/dot.hpp"
 #include "preparation/best_conditioned.hpp"
+#include "statics/first_to_vanish.hpp"
 #include "statics/statics.hpp"
+#include "verified/centre.hpp"
 #include "verified/configuration.hpp"
+#include "verified/to_vertex.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -39,16 +42,15 @@ double value_of(const Enclosure& x, Signs signs) {
 /// One basis: contacts that are sorted, a configuration at which their gaps are 0 to rounding.
 class Basis {
   public:
-    Basis(const Packing& packing, const Load& load, const IsostaticStructure& structure, Signs signs)
-        : packing_(packing), load_(final_load(load, packing)), structure_(structure), factorisation_(structure),
-          inverse_(bound_inverse(structure, factorisation_, cache_)),
-          vertex_(enclose_vertex_double_double(packing, structure, factorisation_, inverse_)),
-          statics_(packing_, load_, structure_, factorisation_, inverse_) {
+    Basis(const Centre& at, const Load& load, Signs signs)
+        : at_(at), load_(final_load(load, at.packing)),
+          vertex_(enclose_vertex_double_double(at.packing, at.structure, at.factorisation, at.inverse)),
+          statics_(at.packing, load_, at.structure, at.factorisation, at.inverse) {
         statics_.climb();
-        for (const Contact& candidate : find_candidates(packing, pivot_reach).contacts) {
+        for (const Contact& candidate : find_candidates(at.packing, pivot_reach).contacts) {
             if (!std::binary_search(contacts().begin(), contacts().end(), candidate)) {
                 others_.push_back(candidate);
-                gaps_.push_back(value_of(gap_at_vertex(packing, vertex_, candidate), signs));
+                gaps_.push_back(value_of(gap_at_vertex(at.packing, vertex_, candidate), signs));
             }
         }
         const double sigma = load_.loaded_stress();
@@ -61,7 +63,7 @@ class Basis {
 
     /// Whether the gaps and forces mean anything.
     [[nodiscard]] bool known() const {
-        return inverse_.verdict == Verdict::proved && vertex_.verdict == Verdict::proved;
+        return at_.inverse.verdict == Verdict::proved && vertex_.verdict == Verdict::proved;
     }
 
     /// The most negative gap of another pair.
@@ -82,14 +84,14 @@ class Basis {
     /// Contact m = sum of a_l contacts l: as its force grows, f_l - a_l f_m reaches 0 first for the one returned.
     [[nodiscard]] std::optional<std::size_t> leaving(std::size_t other) const {
         std::vector<double> a(contacts().size(), 0.0);
-        const GapGradient g = gap_gradient(packing_, others_[other]);
+        const GapGradient g = gap_gradient(at_.packing, others_[other]);
         for (std::size_t k = 0; k < static_cast<std::size_t>(g.count); ++k) {
-            const int dof = structure_.dofs().dof_of(static_cast<std::size_t>(g.coordinate[k]));
+            const int dof = at_.structure.dofs().dof_of(static_cast<std::size_t>(g.coordinate[k]));
             if (dof >= 0) {
                 a[static_cast<std::size_t>(dof)] = -g.value[k];
             }
         }
-        factorisation_.solve_forces(a);
+        at_.factorisation.solve_forces(a);
         const double least = smallest_pivot * largest(a);
         std::optional<std::size_t> first;
         Force ratio;
@@ -109,33 +111,30 @@ class Basis {
     /// Velocity that opens contact l at unit rate, and the gap that it closes first.
     struct Motion {
         std::vector<double> velocity; ///< on the degrees of freedom
-        std::optional<std::size_t> entering;
-        double time = std::numeric_limits<double>::infinity();
+        std::optional<Vanishing> entering;
     };
     [[nodiscard]] Motion open(std::size_t l) const {
         Motion out;
         out.velocity.assign(contacts().size(), 0.0);
         out.velocity[l] = -1; // approach
-        factorisation_.solve_velocities(out.velocity);
+        at_.factorisation.solve_velocities(out.velocity);
         const double least = smallest_pivot * largest(out.velocity);
-        for (std::size_t m = 0; m < others_.size(); ++m) {
-            const GapGradient g = gap_gradient(packing_, others_[m]);
-            double rate = 0;
+        const auto rate = [&](std::size_t m) {
+            const GapGradient g = gap_gradient(at_.packing, others_[m]);
+            double sum = 0;
             for (std::size_t k = 0; k < static_cast<std::size_t>(g.count); ++k) {
-                const int dof = structure_.dofs().dof_of(static_cast<std::size_t>(g.coordinate[k]));
-                rate += dof >= 0 ? g.value[k] * out.velocity[static_cast<std::size_t>(dof)] : 0.0;
+                const int dof = at_.structure.dofs().dof_of(static_cast<std::size_t>(g.coordinate[k]));
+                sum += dof >= 0 ? g.value[k] * out.velocity[static_cast<std::size_t>(dof)] : 0.0;
             }
-            if (rate < -least && gaps_[m] / -rate < out.time) {
-                out.time = gaps_[m] / -rate;
-                out.entering = m;
-            }
-        }
+            return sum < -least ? sum : 0.0;
+        };
+        out.entering = first_to_vanish(
+            others_.size(), [this](std::size_t m) { return gaps_[m]; }, rate);
         return out;
     }
 
-    [[nodiscard]] const std::vector<Contact>& contacts() const { return structure_.contacts(); }
+    [[nodiscard]] const std::vector<Contact>& contacts() const { return at_.structure.contacts(); }
     [[nodiscard]] const Contact& other(std::size_t m) const { return others_[m]; }
-    [[nodiscard]] const IsostaticStructure& structure() const { return structure_; }
 
   private:
     static Load final_load(Load load, const Packing& packing) {
@@ -143,12 +142,8 @@ class Basis {
         return load;
     }
 
-    const Packing& packing_;
+    const Centre& at_;
     Load load_;
-    const IsostaticStructure& structure_;
-    Factorisation factorisation_;
-    InverseBoundCache cache_;
-    InverseBound inverse_;
     VertexEnclosure vertex_;
     Statics statics_;
     std::vector<Contact> others_;
@@ -184,15 +179,15 @@ Result<Polished> pivot(Packing packing, std::vector<Contact> contacts, const Loa
         if (signs == Signs::as_computed && !seen.insert(contacts).second) {
             return failed(FailureKind::not_converged, "after {} pivots the contacts are those of before", pivot);
         }
-        if (auto failure = newton(packing, contacts, iterations)) {
+        if (auto failure = to_vertex(packing, contacts, iterations)) {
             return *failure;
         }
         snap_to_grid(packing);
-        const auto structure = IsostaticStructure::prove(packing, contacts);
-        if (!structure.ok()) {
-            return structure.failure();
+        const auto at = Centre::make(packing, contacts);
+        if (!at.ok()) {
+            return at.failure();
         }
-        const Basis basis(packing, load, structure.value(), signs);
+        const Basis basis(*at.value(), load, signs);
         const auto overlapping = basis.overlapping();
         const auto pulling = basis.pulling();
         if (!basis.known() && may_replace) { // nearly dependent contacts: others of those that touch are better
@@ -217,15 +212,16 @@ Result<Polished> pivot(Packing packing, std::vector<Contact> contacts, const Loa
         if (!motion.entering) {
             return failed(FailureKind::unbounded, "opening {} closes no gap", named(contacts[*pulling]));
         }
-        if (motion.time * largest(motion.velocity) > limits.step) {
+        const double time = motion.entering->distance;
+        if (time * largest(motion.velocity) > limits.step) {
             return failed(FailureKind::not_converged, "opening {} moves farther ({:.3g}) than linear gaps hold",
-                          named(contacts[*pulling]), motion.time * largest(motion.velocity));
+                          named(contacts[*pulling]), time * largest(motion.velocity));
         }
         for (std::size_t mu = 0; mu < motion.velocity.size(); ++mu) {
-            packing.q[static_cast<std::size_t>(basis.structure().dofs().coordinate_of(static_cast<int>(mu)))] +=
-                motion.time * motion.velocity[mu];
+            packing.q[static_cast<std::size_t>(at.value()->structure.dofs().coordinate_of(static_cast<int>(mu)))] +=
+                time * motion.velocity[mu];
         }
-        contacts[*pulling] = basis.other(*motion.entering);
+        contacts[*pulling] = basis.other(motion.entering->index);
     }
     return failed(FailureKind::not_converged, "no vertex after {} pivots", limits.pivots);
 }

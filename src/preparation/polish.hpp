@@ -14,10 +14,6 @@ namespace isostat::preparation {
 /// Candidates beside the contacts, gap / smallest radius; T6 allows up to 0.82.
 inline constexpr double pivot_reach = 0.5;
 
-/// Newton on the gaps of `contacts`, each step through a structure that was proved regular, until the largest gap is at
-/// the grid or stops decreasing. Failures: `not_isostatic`, `not_converged`.
-std::optional<Failure> newton(Packing& packing, const std::vector<Contact>& contacts, long& iterations);
-
 /// The vertex and the figures of its proof.
 struct Polished {
     State state;
@@ -28,10 +24,8 @@ struct Polished {
     int rattlers = 0;
 };
 
-/// Newton on the gaps of `contacts` from `packing`, each step through a structure that was proved regular, until the
-/// gaps stop decreasing; then coordinates to the grid and the checks promised by `find_vertex`. `state.load` must hold
-/// kind, stress and infinitesimal loads; its reference lengths are set to the lengths found. `iterations` counts Newton
-/// steps.
+/// `to_vertex` from `packing`, then coordinates to the grid and the checks promised by `find_vertex`. `state.load` must
+/// hold kind, stress and infinitesimal loads; its reference lengths are set to the lengths found.
 /// Failures: `not_isostatic`; `not_converged` (Newton stopped short, or a force is not compressive: named); `overlap`
 /// (another pair does); `tie` (another gap is 0 as far as the arithmetic can tell); `undecided` (a bound that would
 /// prove the rest was not found).

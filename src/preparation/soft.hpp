@@ -9,7 +9,7 @@
 /// the derivative of the energy with respect to its position at fixed relative coordinates (the virial). Equilibrium is
 /// the same as with walls that push only what they touch.
 
-#include "preparation/neighbours.hpp"
+#include "contact/pair_list.hpp"
 
 #include <isostat/packing/packing.hpp>
 

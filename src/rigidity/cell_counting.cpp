@@ -173,7 +173,10 @@ StrainCounts count_strains(const Packing& packing, const std::vector<Contact>& c
 std::vector<int> untouched(int disks, const std::vector<Contact>& pairs) {
     std::vector<unsigned char> touched(static_cast<std::size_t>(disks), 0);
     for (const Contact& pair : pairs) {
-        touched[static_cast<std::size_t>(pair.i)] = touched[static_cast<std::size_t>(pair.j)] = 1;
+        if (pair.kind != ContactKind::held) { // whose number is that of a coordinate
+            const int other = pair.kind == ContactKind::disk_disk ? pair.j : pair.i;
+            touched[static_cast<std::size_t>(pair.i)] = touched[static_cast<std::size_t>(other)] = 1;
+        }
     }
     std::vector<int> out;
     for (int i = 0; i < disks; ++i) {

@@ -1,6 +1,7 @@
 #include "core/roundoff.hpp"
 #include "rigidity/rigid_group.hpp"
 #include "statics/contender.hpp"
+#include "statics/first_to_vanish.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -120,21 +121,14 @@ double LimitContest::slope_size() const {
 }
 
 Result<std::optional<std::size_t>> LimitContest::guess() {
-    std::optional<std::size_t> first;
-    double smallest = infinity;
-    for (const ContactId l : candidates_) {
-        const double rate = direction_ * statics_.slope(l).value;
-        if (perturbed_ != nullptr && !statics_.slope(l).decided()) {
-            continue; // it may vanish in the base: looked at with the rivals
-        }
-        const double distance = rate < 0 ? statics_.force(l, sigma_).value / -rate : infinity;
-        if (distance < smallest) {
-            smallest = distance;
-            first = l.index();
-        }
-    }
+    const auto first = first_to_vanish(
+        candidates_.size(), [this](std::size_t k) { return statics_.force(candidates_[k], sigma_).value; },
+        [this](std::size_t k) { // a slope that may vanish in the base is looked at with the rivals
+            const Enclosure slope = statics_.slope(candidates_[k]);
+            return perturbed_ != nullptr && !slope.decided() ? 0.0 : direction_ * slope.value;
+        });
     if (first) {
-        return first;
+        return std::optional(candidates_[first->index].index());
     }
     for (const ContactId l : candidates_) {
         const Order rate = rate_sign(l);
@@ -153,7 +147,7 @@ Result<std::optional<std::size_t>> LimitContest::guess() {
             return std::optional(l.index());
         }
     }
-    return first;
+    return std::optional<std::size_t>();
 }
 
 Result<std::optional<std::size_t>> LimitContest::stand(std::size_t best) {

@@ -1,7 +1,10 @@
 #include "trajectory/record.hpp"
 
+#include "contact/contact_set.hpp"
 #include "contact/other_pairs.hpp"
 #include "contact/words.hpp"
+
+#include <isostat/rigidity/counting.hpp>
 
 #include <qd/dd_real.h>
 
@@ -120,24 +123,11 @@ void record_potential(EquilibriumRecord& record, const TrueCoordinates& q, const
 } // namespace
 
 std::vector<int> rattlers(const Vertex& vertex) {
-    std::vector<unsigned char> carries(vertex.packing.radius.size(), 0);
-    const auto& contacts = vertex.structure.contacts();
-    for (std::size_t l = 0; l < contacts.size(); ++l) {
-        if (vertex.statics.is_structural_zero(ContactId(l)) || contacts[l].kind == ContactKind::held) {
-            continue;
-        }
-        carries[static_cast<std::size_t>(contacts[l].i)] = 1;
-        if (contacts[l].kind == ContactKind::disk_disk) {
-            carries[static_cast<std::size_t>(contacts[l].j)] = 1;
-        }
+    std::vector<unsigned char> zero;
+    for (int l = 0; l < vertex.structure.size(); ++l) {
+        zero.push_back(vertex.statics.is_structural_zero(ContactId(l)) ? 1 : 0);
     }
-    std::vector<int> list;
-    for (std::size_t i = 0; i < carries.size(); ++i) {
-        if (carries[i] == 0) {
-            list.push_back(static_cast<int>(i));
-        }
-    }
-    return list;
+    return untouched(vertex.packing.disk_count(), unmarked(vertex.structure.contacts(), zero));
 }
 
 std::vector<double> finite_forces(const Vertex& vertex, const Load& load) {

@@ -1,4 +1,5 @@
 #include "../../src/contact/near_pairs.hpp"
+#include "../../src/contact/pair_list.hpp"
 #include "contact/candidates.hpp"
 #include "oracle/gaps.hpp"
 #include "oracle/packings.hpp"
@@ -163,18 +164,53 @@ BOOST_AUTO_TEST_CASE(overlapping_packings_are_still_searched_completely) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(sweep_and_triangulation_give_the_same_list) {
+BOOST_AUTO_TEST_CASE(the_pair_list_is_the_one_of_brute_force) {
+    Random random(11);
+    const auto noise = [&random] { return random.real(-1, 1); };
+    for (const double ratio : {1.0, 3.0, 40.0}) {
+        for (const double reach : {0.0, 0.3, 5.0}) {
+            for (const int n : {1, 2, 7, 150}) {
+                std::vector<double> x;
+                std::vector<double> radius;
+                for (int i = 0; i < n; ++i) {
+                    x.push_back(1e3 + 12 * noise());
+                    x.push_back(n == 7 ? 0.0 : 6 * noise()); // seven disks in a row: no extent along y
+                    radius.push_back(0.5 * std::pow(ratio, noise()));
+                }
+                PairList pairs;
+                find_pairs(2, x, radius, reach, pairs);
+                std::vector<std::pair<int, int>> found;
+                std::vector<std::pair<int, int>> expected;
+                for (std::size_t i = 0; i < radius.size(); ++i) {
+                    for (int k = pairs.start[i]; k < pairs.start[i + 1]; ++k) {
+                        found.emplace_back(static_cast<int>(i), pairs.partner[static_cast<std::size_t>(k)]);
+                    }
+                    for (std::size_t j = i + 1; j < radius.size(); ++j) {
+                        const double range = radius[i] + radius[j] + reach;
+                        if (std::pow(x[2 * j] - x[2 * i], 2) + std::pow(x[2 * j + 1] - x[2 * i + 1], 2) <
+                            range * range) {
+                            expected.emplace_back(static_cast<int>(i), static_cast<int>(j));
+                        }
+                    }
+                }
+                BOOST_TEST((found == expected));
+            }
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(grid_and_triangulation_give_the_same_list) {
     Random random(99);
     for (const double ratio : {1.0, 3.0, 50.0}) {
         const Packing packing = grown_cluster(300, ratio, random, [&] { return random.real(0, 0.5); });
         const double reach = 0.82 * packing.min_radius();
         const NearPairs by_triangulation = near_pairs(packing, reach);
         BOOST_REQUIRE(by_triangulation.triangulation != nullptr);
-        BOOST_TEST((by_triangulation.pairs == near_pairs_by_sweep(packing, reach)));
+        BOOST_TEST((by_triangulation.pairs == pairs_within(packing, reach)));
     }
 }
 
-BOOST_AUTO_TEST_CASE(extreme_units_and_size_ratios_fall_back_on_the_sweep) {
+BOOST_AUTO_TEST_CASE(extreme_units_and_size_ratios_fall_back_on_the_grid) {
     for (const double scale : {0x1p-1000, 0x1p-500, 0x1p-40, 1.0, 0x1p40, 0x1p500, 0x1p1000}) {
         Packing packing = square_lattice(4, 2.25 * scale);
         std::fill(packing.radius.begin(), packing.radius.end(), scale);

@@ -91,7 +91,7 @@ void check_complete(const Packing& packing, const Triangulation& triangulation) 
     const double reach = 0.82 * packing.min_radius();
     const auto near = near_edges(packing, reach, triangulation);
     BOOST_REQUIRE(near.has_value());
-    BOOST_TEST((*near == near_pairs_by_sweep(packing, reach)));
+    BOOST_TEST((*near == pairs_within(packing, reach)));
 }
 
 } // namespace
@@ -212,12 +212,12 @@ BOOST_AUTO_TEST_CASE(a_list_does_not_depend_on_the_triangulation_it_is_carried_f
     BOOST_TEST((find_candidates(packing, 0.8, Triangulation::build(packing)).triangulation != nullptr));
 }
 
-BOOST_AUTO_TEST_CASE(disks_that_come_to_overlap_are_swept) {
+BOOST_AUTO_TEST_CASE(disks_that_come_to_overlap_are_found_by_the_grid) {
     Random random(2026);
     const Packing packing = grown_cluster(60, 2, random, [&] { return random.real(0, 0.5); });
     const auto from = find_candidates(packing, 0.8).triangulation;
     BOOST_REQUIRE(from != nullptr);
-    int swept = 0;
+    int by_grid = 0;
     for (int repeat = 0; repeat < testing::scaled(30); ++repeat) {
         Packing to = packing;
         const auto i = static_cast<std::size_t>(random.integer(to.disk_count()));
@@ -226,11 +226,11 @@ BOOST_AUTO_TEST_CASE(disks_that_come_to_overlap_are_swept) {
         to.q[2 * i] += share * (to.q[2 * j] - to.q[2 * i]);
         to.q[2 * i + 1] += share * (to.q[2 * j + 1] - to.q[2 * i + 1]);
         const CandidateList list = find_candidates(to, 0.8, from);
-        BOOST_TEST((list.contacts == near_pairs_by_sweep(to, list.reach)));
-        swept += list.triangulation ? 0 : 1;
+        BOOST_TEST((list.contacts == pairs_within(to, list.reach)));
+        by_grid += list.triangulation ? 0 : 1;
     }
-    BOOST_TEST(swept > 10);
-    BOOST_TEST(swept < 30);
+    BOOST_TEST(by_grid > 10);
+    BOOST_TEST(by_grid < 30);
 }
 
 BOOST_AUTO_TEST_CASE(a_disk_that_comes_to_be_hidden_is_not_carried) {
@@ -248,7 +248,7 @@ BOOST_AUTO_TEST_CASE(a_disk_that_comes_to_be_hidden_is_not_carried) {
     BOOST_TEST((Triangulation::build(packing) == nullptr));
     BOOST_TEST((Triangulation::carry(before, packing) == nullptr));
     const CandidateList list = find_candidates(packing, 0.8, before);
-    BOOST_TEST((list.contacts == near_pairs_by_sweep(packing, list.reach)));
+    BOOST_TEST((list.contacts == pairs_within(packing, list.reach)));
 }
 
 BOOST_AUTO_TEST_CASE(pairs_at_the_reach_are_listed_alike) {
@@ -264,7 +264,7 @@ BOOST_AUTO_TEST_CASE(pairs_at_the_reach_are_listed_alike) {
                 packing.q[2 + axis] = from + (2.8 + ulps * 0x1p-51);
                 const NearPairs pairs = near_pairs(packing, 0.8);
                 BOOST_REQUIRE(pairs.triangulation != nullptr);
-                BOOST_TEST((pairs.pairs == near_pairs_by_sweep(packing, 0.8)));
+                BOOST_TEST((pairs.pairs == pairs_within(packing, 0.8)));
                 ++(pairs.pairs.empty() ? apart : near);
             }
         }
@@ -280,10 +280,10 @@ BOOST_AUTO_TEST_CASE(equal_disks_in_one_place_are_not_taken_for_one) {
     BOOST_TEST((Triangulation::build(packing) == nullptr));
     const CandidateList list = find_candidates(packing, 0.8);
     BOOST_TEST(std::binary_search(list.contacts.begin(), list.contacts.end(), Contact{ContactKind::disk_disk, 0, 30}));
-    BOOST_TEST((list.contacts == near_pairs_by_sweep(packing, list.reach)));
+    BOOST_TEST((list.contacts == pairs_within(packing, list.reach)));
 }
 
-BOOST_AUTO_TEST_CASE(samples_of_the_paper_are_triangulated_and_not_swept) {
+BOOST_AUTO_TEST_CASE(samples_of_the_paper_are_triangulated) {
     for (const std::string name : {"vertex100.txt", "vertex400.txt", "vertex1936.txt"}) {
         const Packing packing = read_state(std::string(ISOSTAT_TEST_DATA) + "/" + name).state.packing;
         const CandidateList list = find_candidates(packing, 0.8);
@@ -291,7 +291,7 @@ BOOST_AUTO_TEST_CASE(samples_of_the_paper_are_triangulated_and_not_swept) {
         Random random(7);
         const Packing near = moved(packing, 1e-9, random);
         BOOST_TEST((find_candidates(near, 0.8, list.triangulation).triangulation == list.triangulation));
-        BOOST_TEST((near_pairs(packing, list.reach).pairs == near_pairs_by_sweep(packing, list.reach)));
+        BOOST_TEST((near_pairs(packing, list.reach).pairs == pairs_within(packing, list.reach)));
     }
 }
 
@@ -305,7 +305,7 @@ BOOST_AUTO_TEST_CASE(coordinates_far_larger_than_the_radii_are_listed_completely
         for (double& x : packing.q) {
             x -= away;
         }
-        BOOST_TEST((near_pairs(packing, 0.8).pairs == near_pairs_by_sweep(packing, 0.8)));
+        BOOST_TEST((near_pairs(packing, 0.8).pairs == pairs_within(packing, 0.8)));
     }
 }
 

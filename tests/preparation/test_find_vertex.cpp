@@ -1,6 +1,5 @@
 // The linear programmes and the proofs at their end, from starts that are known.
 
-#include "../../src/preparation/neighbours.hpp"
 #include "../../src/preparation/polish.hpp"
 #include "../../src/preparation/programme.hpp"
 #include "check.hpp"
@@ -48,40 +47,6 @@ double smallest_gap(const Packing& packing) {
 } // namespace
 
 BOOST_AUTO_TEST_SUITE(preparation)
-
-BOOST_AUTO_TEST_CASE(the_pair_list_is_the_one_of_brute_force) {
-    Noise noise(11);
-    for (const double ratio : {1.0, 3.0, 40.0}) {
-        for (const double reach : {0.0, 0.3, 5.0}) {
-            for (const int n : {1, 2, 7, 150}) {
-                std::vector<double> x;
-                std::vector<double> radius;
-                for (int i = 0; i < n; ++i) {
-                    x.push_back(1e3 + 12 * noise());
-                    x.push_back(n == 7 ? 0.0 : 6 * noise()); // seven disks in a row: no extent along y
-                    radius.push_back(0.5 * std::pow(ratio, noise()));
-                }
-                room::PairList pairs;
-                room::find_pairs(2, x, radius, reach, pairs);
-                std::vector<std::pair<int, int>> found;
-                std::vector<std::pair<int, int>> expected;
-                for (std::size_t i = 0; i < radius.size(); ++i) {
-                    for (int k = pairs.start[i]; k < pairs.start[i + 1]; ++k) {
-                        found.emplace_back(static_cast<int>(i), pairs.partner[static_cast<std::size_t>(k)]);
-                    }
-                    for (std::size_t j = i + 1; j < radius.size(); ++j) {
-                        const double range = radius[i] + radius[j] + reach;
-                        if (std::pow(x[2 * j] - x[2 * i], 2) + std::pow(x[2 * j + 1] - x[2 * i + 1], 2) <
-                            range * range) {
-                            expected.emplace_back(static_cast<int>(i), static_cast<int>(j));
-                        }
-                    }
-                }
-                BOOST_TEST((found == expected));
-            }
-        }
-    }
-}
 
 BOOST_AUTO_TEST_CASE(a_step_of_a_programme_never_makes_an_overlap) {
     for (unsigned long long seed = 1; seed <= 10; ++seed) {

@@ -7,6 +7,7 @@
 #include "support/regular.hpp"
 #include "verified/configuration.hpp"
 #include "verified/force_ladder.hpp"
+#include "verified/to_vertex.hpp"
 #include "verified/vertex_bounds.hpp"
 
 #include <isostat/io/state_file.hpp>
@@ -151,6 +152,26 @@ BOOST_AUTO_TEST_CASE(the_long_routes_to_a_bound_are_for_structures_that_may_be_r
         BOOST_TEST(asked == 1);
         BOOST_TEST((bound.verdict == (worth ? Verdict::proved : Verdict::undecided)));
     }
+}
+
+BOOST_AUTO_TEST_CASE(newtons_method_ends_where_all_gaps_of_the_list_are_0_and_no_farther_than_it_may_go) {
+    const State vertex = two_disks(1, 2, 1, 1);
+    Packing pushed = vertex.packing;
+    for (std::size_t k = 0; k < pushed.q.size(); ++k) {
+        pushed.q[k] += 0.01 * std::sin(7.0 * static_cast<double>(k + 1));
+    }
+    long steps = 0;
+    Packing end = pushed;
+    BOOST_TEST(!to_vertex(end, vertex.contacts, steps).has_value());
+    BOOST_TEST(steps > 2);
+    for (std::size_t k = 0; k < end.q.size(); ++k) {
+        BOOST_TEST(std::abs(end.q[k] - vertex.packing.q[k]) < 1e-14);
+    }
+    end = pushed;
+    const auto failure = to_vertex(end, vertex.contacts, steps, 1e-3);
+    BOOST_REQUIRE(failure.has_value());
+    BOOST_TEST((failure->kind == FailureKind::not_converged));
+    BOOST_TEST((end.q == pushed.q));
 }
 
 BOOST_AUTO_TEST_CASE(the_true_vertex_lies_within_the_radius) {

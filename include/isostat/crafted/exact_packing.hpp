@@ -53,13 +53,12 @@ ExactPacking exact_copy(const Packing& packing);
 /// Nearest doubles: for pictures and for `DofMap`. Proves nothing.
 Packing approximate(const ExactPacking& packing);
 
-/// Every pair at gap exactly 0, sorted. The sign of each gap is decided: that of |x_j - x_i|^2 - (R_i + R_j)^2, by
-/// double enclosures where they exclude 0 and in the field otherwise. Pairs without a degree of freedom (two fixed
+/// Every pair at gap exactly 0, sorted. The sign of each gap is decided: that of |x_j - x_i|^2 - (R_i + R_j)^2, in
+/// the field. Pairs without a degree of freedom (two fixed
 /// disks, a fixed disk and a fixed wall, a disk and its own image in a cell that does not move) may touch without being
 /// contacts, but not overlap (proofs/definition.md). `overlap` names the first overlapping pair with its
-/// squared-distance defect. In a cell: pairs with every image, as near as `near_pairs` finds them in the rounded
-/// packing (proofs/cells.md, C3); throws `Error(bad_input)` where it does. Cost: sweep along x, O(n sqrt n) pairs for a
-/// compact packing.
+/// squared-distance defect. In a cell: pairs with every image (proofs/cells.md, C3). Pairs are those that the grid
+/// finds in the rounded packing; throws `Error(bad_input)` where it does. Cost: O(n) pairs for a compact packing.
 Result<std::vector<Contact>> exact_contacts(const ExactPacking& packing);
 
 /// The contact matrix H in the field, rows = degrees of freedom, unit normals: at a contact the distance of the centres

@@ -62,7 +62,7 @@ Counting count_strained(const Packing& packing, const std::vector<Contact>& cont
 using StrainCounts = std::array<Counting, strains.size()>;
 StrainCounts count_strains(const Packing& packing, const std::vector<Contact>& contacts);
 
-/// Disks that no pair of the list touches, ascending.
+/// Disks that no contact of the list touches, ascending.
 std::vector<int> untouched(int disks, const std::vector<Contact>& pairs);
 
 /// The packing with some disks fixed, so that only the others count: rattlers.

@@ -1,0 +1,28 @@
+#pragma once
+// Which of several quantities that change at constant rates vanishes first.
+
+#include "core/roundoff.hpp"
+
+#include <optional>
+
+namespace isostat {
+
+struct Vanishing {
+    std::size_t index;
+    double distance = roundoff::infinity; ///< on the way that the rates refer to
+};
+
+/// Of n quantities the one that falls to 0 first, as far as rounded numbers tell. Nothing: none falls.
+template <class Value, class Rate>
+std::optional<Vanishing> first_to_vanish(std::size_t n, const Value& value, const Rate& rate) {
+    Vanishing first{n};
+    for (std::size_t k = 0; k < n; ++k) {
+        const double r = rate(k);
+        if (r < 0 && value(k) / -r < first.distance) {
+            first = {k, value(k) / -r};
+        }
+    }
+    return first.index < n ? std::optional(first) : std::nullopt;
+}
+
+} // namespace isostat

@@ -7,12 +7,6 @@
 #include "support/channel_roll.hpp"
 #include "support/crafted.hpp"
 
-#include <boost/test/unit_test.hpp>
-
-#include <cmath>
-#include <numbers>
-#include <random>
-
 using namespace isostat;
 using namespace isostat::checker;
 

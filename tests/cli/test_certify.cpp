@@ -17,12 +17,9 @@ BOOST_AUTO_TEST_CASE(a_sample_certifies_and_its_certificate_is_verified) {
     const scratch::Folder folder;
     const std::string input = scratch::data("vertex100.txt");
     const std::string output = (folder / "cert.json").string();
-    const Outcome made = run({"certify", input, "-o", output});
-    expect(made, 0);
-    for (const char* words : {"rank 202, h = 0, k = 0", "exists within", "188 positive, 14 exactly 0", "opens 64-95",
-                              "opens 64-73", "strict local minimum", "proved"}) {
-        BOOST_TEST(contains(made.out, words), words << " not in " << made.out);
-    }
+    const auto made = says(run({"certify", input, "-o", output}), 0,
+                           {"rank 202, h = 0, k = 0", "exists within", "188 positive, 14 exactly 0", "opens 64-95",
+                            "opens 64-73", "strict local minimum", "proved"});
     BOOST_TEST(!contains(made.out, "not claimed"));
     const isostat::Certificate certificate = isostat::read_certificate(output);
     BOOST_TEST(certificate.input == "vertex100.txt");
@@ -45,10 +42,7 @@ BOOST_AUTO_TEST_CASE(forces_in_the_file_are_compared_and_never_used) {
     const std::string input = (folder / "state.json").string();
     for (const std::vector<std::string>& command :
          {std::vector<std::string>{"certify", input, "-o", (folder / "c.json").string()}, {"inspect", input}}) {
-        const Outcome outcome = run(command);
-        expect(outcome, 0);
-        BOOST_TEST(contains(outcome.out, "forces in the file       differ from the proved ones by at most"),
-                   outcome.out);
+        says(run(command), 0, {"forces in the file       differ from the proved ones by at most"});
     }
     const Outcome json = run({"certify", input, "-o", (folder / "c.json").string(), "--json"});
     BOOST_TEST(contains(json.out, "\"forces_in_file\""), json.out);
@@ -62,18 +56,11 @@ BOOST_AUTO_TEST_CASE(certify_answers_refuted_and_undecided_with_the_reason_and_s
         scratch::write(folder / (name + ".json"), state_text(state));
         return run({"certify", (folder / (name + ".json")).string(), "-o", (folder / (name + ".cert")).string()});
     };
-    const Outcome pulled = certify("pulled", crafted::two_disks(1, 2, 1, 0.3));
-    expect(pulled, 1);
-    BOOST_TEST(contains(pulled.out, "refuted        forces: the force in contact 1-bottom"), pulled.out);
-    BOOST_TEST(contains(pulled.out, "counting       N_f = 6"), pulled.out);
+    says(certify("pulled", crafted::two_disks(1, 2, 1, 0.3)), 1,
+         {"refuted        forces: the force in contact 1-bottom", "counting       N_f = 6"});
     BOOST_TEST(isostat::read_certificate(folder / "pulled.cert").claims.vertex.has_value());
-    const Outcome lattice = certify("lattice", crafted::square_lattice(3));
-    expect(lattice, 1);
-    BOOST_TEST(contains(lattice.out, "not isostatic: N_f = 20, N = 24, rank 20, h = 4, k = 0"), lattice.out);
-    const Outcome none = certify("none", crafted::one_disk(1, 0));
-    expect(none, 2);
-    BOOST_TEST(contains(none.out, "not claimed    forces"), none.out);
-    BOOST_TEST(contains(none.out, "mpfr"), none.out);
+    says(certify("lattice", crafted::square_lattice(3)), 1, {"not isostatic: N_f = 20, N = 24, rank 20, h = 4, k = 0"});
+    says(certify("none", crafted::one_disk(1, 0)), 2, {"not claimed    forces", "mpfr"});
     const Outcome bad = run({"certify", (folder / "absent.json").string(), "-o", (folder / "x.cert").string()});
     expect(bad, 65, {"absent.json"});
     BOOST_TEST(!fs::exists(folder / "x.cert"));
@@ -85,11 +72,8 @@ BOOST_AUTO_TEST_CASE(inspect_states_the_rank_as_stored_and_what_is_proved_of_the
     const scratch::Folder folder;
     isostat::State state = crafted::two_disks(1, 2, 1, 1);
     scratch::write(folder / "good.json", state_text(state));
-    const Outcome good = run({"inspect", (folder / "good.json").string()});
-    expect(good, 0);
-    BOOST_TEST(contains(good.out, "rank, stored coordinates 6 (exact)"), good.out);
-    BOOST_TEST(contains(good.out, "true configuration       exists within"), good.out);
-    BOOST_TEST(contains(good.out, "6 positive, 0 exactly 0"), good.out);
+    says(run({"inspect", (folder / "good.json").string()}), 0,
+         {"rank, stored coordinates 6 (exact)", "true configuration       exists within", "6 positive, 0 exactly 0"});
     // Far from any vertex: the first fact stands, the second is not claimed.
     state.packing.q[2] -= 0.5;
     scratch::write(folder / "far.json", state_text(state));
@@ -101,9 +85,7 @@ BOOST_AUTO_TEST_CASE(inspect_states_the_rank_as_stored_and_what_is_proved_of_the
                json.out);
     // A negative force at the true vertex.
     scratch::write(folder / "pulled.json", state_text(crafted::two_disks(1, 2, 1, 0.3)));
-    const Outcome pulled = run({"inspect", (folder / "pulled.json").string(), "--json"});
-    expect(pulled, 1);
-    BOOST_TEST(contains(pulled.out, "\"negative\":1"), pulled.out);
+    says(run({"inspect", (folder / "pulled.json").string(), "--json"}), 1, {"\"negative\":1"});
 }
 
 BOOST_AUTO_TEST_SUITE_END()

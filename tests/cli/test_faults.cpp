@@ -2,7 +2,6 @@
 #include "cli/program.hpp"
 
 #include <chrono>
-#include <random>
 
 using namespace program;
 namespace fs = std::filesystem;
@@ -15,28 +14,6 @@ const std::string programme =
 std::string scene(const std::string& level) {
     return scene_from(scratch::data("vertex100.txt"), programme,
                       "checkpoint_seconds = 0\n[run]\ncertify = \"" + level + "\"\n");
-}
-
-void same_records(const fs::path& a, const fs::path& b) {
-    BOOST_TEST((scratch::read(a / "events.jsonl") == scratch::read(b / "events.jsonl")));
-    BOOST_TEST(scratch::without_times(scratch::read(a / "equilibria.csv")) ==
-               scratch::without_times(scratch::read(b / "equilibria.csv")));
-    for (const char* folder : {"states", "certificates"}) {
-        if (!fs::exists(a / folder)) {
-            continue;
-        }
-        for (const auto& entry : fs::directory_iterator(a / folder)) {
-            const fs::path other = b / folder / entry.path().filename();
-            const auto body = [](const fs::path& file) {
-                const std::string text = scratch::read(file);
-                if (file.extension() == ".jsonl") { // witnesses of arcs
-                    return text;
-                }
-                return text.substr(std::min(text.find("\"load\""), text.size()), text.rfind("\"digest\""));
-            };
-            BOOST_TEST((fs::exists(other) && body(entry.path()) == body(other)), other.string());
-        }
-    }
 }
 
 } // namespace

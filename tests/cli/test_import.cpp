@@ -4,7 +4,6 @@
 #include <isostat/io/foreign.hpp>
 #include <isostat/io/state_file.hpp>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 using namespace program;
@@ -72,9 +71,8 @@ BOOST_AUTO_TEST_CASE(soft_grains_end_at_the_vertex_that_they_came_from) {
             const scratch::Folder folder;
             const Soft soft(part);
             const std::string moved = (folder / "moved.csv").string();
-            const Outcome outcome = import_text(folder, soft.table(), {"--box", soft.box, "--json", "--moved", moved});
-            expect(outcome, 0);
-            const json answer = json::parse(outcome.out);
+            const auto answer =
+                json_of(import_text(folder, soft.table(), {"--box", soft.box, "--json", "--moved", moved}));
             BOOST_TEST(answer.at("verdict") == "proved");
             BOOST_TEST(contains(answer.at("contacts").get<std::string>(), "188 carry a force, those of the file"));
             const double backbone = answer.at("moved").at("backbone").get<double>();
@@ -116,10 +114,8 @@ BOOST_AUTO_TEST_CASE(soft_grains_of_yade_end_at_the_vertex_that_they_came_from) 
     const State from = read_state(start).state;
     for (const std::string contacts : {"plateau", "nearest"}) {
         BOOST_TEST_CONTEXT(contacts) {
-            const Outcome outcome = import_text(folder, scratch::read(scratch::data("yade20.txt")),
-                                                {"--box", box, "--contacts", contacts, "--json"});
-            expect(outcome, 0);
-            const json answer = json::parse(outcome.out);
+            const auto answer = json_of(import_text(folder, scratch::read(scratch::data("yade20.txt")),
+                                                    {"--box", box, "--contacts", contacts, "--json"}));
             BOOST_TEST(answer.at("file_format") == "table");
             BOOST_TEST(contains(answer.at("contacts").get<std::string>(), "34 carry a force"));
             const double moved = answer.at("moved").at("backbone").get<double>();
@@ -143,9 +139,7 @@ BOOST_AUTO_TEST_CASE(forces_name_the_contacts_by_their_ids) {
     const std::vector<std::string> options{
         "--box", soft.box, "--contacts", dump, "--contact-columns", "c_i[1],c_i[2],c_f"};
     scratch::write(dump, soft.forces(1000));
-    const Outcome all = import_text(folder, soft.table(), options);
-    expect(all, 0);
-    BOOST_TEST(contains(all.out, "188 carry a force, those of the file"));
+    says(import_text(folder, soft.table(), options), 0, {"188 carry a force, those of the file"});
     scratch::write(dump, soft.forces(100));
     expect(import_text(folder, soft.table(), options), 1,
            {"moving: the contacts of the file", "k = ", "--contacts nearest"});

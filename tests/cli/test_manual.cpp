@@ -2,7 +2,6 @@
 #include "cli/program.hpp"
 
 #include <regex>
-#include <set>
 
 using namespace program;
 

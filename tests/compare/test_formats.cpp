@@ -2,15 +2,10 @@
 #include "compare/nearest_arc.hpp"
 #include "compare/report.hpp"
 #include "compare/series_copy.hpp"
+#include "io/bad_input.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/trajectory/trajectory.hpp>
-
-#include <boost/test/unit_test.hpp>
-#include <fmt/format.h>
-
-#include <functional>
-#include <utility>
 
 using namespace isostat;
 using compare::Comparison;
@@ -109,16 +104,7 @@ Copy with_listed_walls(bool by_name) {
 }
 
 void expect_error(Copy copy, const std::vector<std::string>& words) {
-    try {
-        (void)copy.compare();
-        BOOST_ERROR("no error; expected " << series::joined(words, ' '));
-    } catch (const Error& error) {
-        BOOST_TEST((error.kind() == ErrorKind::bad_input));
-        for (const std::string& word : words) {
-            BOOST_TEST(std::string(error.what()).find(word) != std::string::npos,
-                       "'" << word << "' is not in: " << error.what());
-        }
-    }
+    expect_bad_input([&] { (void)copy.compare(); }, words);
 }
 
 Copy changed(Copy copy, const std::function<void(Copy&)>& change) {

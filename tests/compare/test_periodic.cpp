@@ -7,14 +7,7 @@
 #include <isostat/io/state_file.hpp>
 #include <isostat/trajectory/trajectory.hpp>
 
-#include <boost/test/unit_test.hpp>
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
 #include <memory>
-#include <optional>
-#include <utility>
 
 using namespace isostat;
 using compare::Comparison;

@@ -12,10 +12,6 @@
 
 #include <Eigen/Dense>
 #include <Eigen/SparseCore>
-#include <boost/test/unit_test.hpp>
-
-#include <cmath>
-#include <numeric>
 
 using namespace isostat;
 using compare::Snap;

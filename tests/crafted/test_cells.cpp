@@ -1,6 +1,7 @@
 // Crafted packings in cells: contacts through images, and what may not matter for them.
 
 #include "examples.hpp"
+#include "support/test.hpp"
 
 #include <isostat/certificate/inspect.hpp>
 #include <isostat/contact/contact.hpp>
@@ -8,11 +9,6 @@
 #include <isostat/io/state_file.hpp>
 
 #include <Eigen/Dense>
-#include <boost/test/unit_test.hpp>
-
-#include <algorithm>
-#include <random>
-#include <string>
 
 BOOST_AUTO_TEST_SUITE(crafted_cells)
 

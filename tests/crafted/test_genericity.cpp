@@ -1,13 +1,10 @@
 // Perturbed radii: crystals become isostatic, isostatic packings keep their contacts.
 
 #include "crafted/genericity.hpp"
+#include "support/test.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/crafted/inspection.hpp>
-
-#include <boost/test/unit_test.hpp>
-
-#include <algorithm>
 
 namespace {
 

@@ -1,13 +1,9 @@
 // Every file of examples/packings is read, inspected and held against the answers it carries.
 
 #include "examples.hpp"
+#include "support/test.hpp"
 
 #include <isostat/crafted/inspection.hpp>
-
-#include <boost/test/unit_test.hpp>
-
-#include <string>
-#include <vector>
 
 BOOST_AUTO_TEST_SUITE(crafted_packings)
 

@@ -8,11 +8,7 @@
 #include <isostat/preparation/preparation.hpp>
 #include <isostat/rigidity/counting.hpp>
 
-#include <boost/test/unit_test.hpp>
 #include <crafted/hold.hpp>
-
-#include <cmath>
-#include <random>
 
 namespace {
 

@@ -2,12 +2,7 @@
 #include "ensemble/processes.hpp"
 #include "support/scratch.hpp"
 
-#include <boost/test/unit_test.hpp>
-
-#include <algorithm>
 #include <csignal>
-#include <filesystem>
-#include <map>
 
 using namespace isostat;
 

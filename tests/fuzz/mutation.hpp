@@ -2,10 +2,7 @@
 // Files that something went wrong with: what editors, other programs, disks and adversaries do to text.
 
 #include "oracle/random.hpp"
-
-#include <algorithm>
-#include <string>
-#include <vector>
+#include "support/test.hpp"
 
 namespace fuzz {
 

@@ -7,8 +7,6 @@
 #include <isostat/io/foreign.hpp>
 
 #include <cctype>
-#include <cstdlib>
-#include <sstream>
 
 using namespace fuzz;
 

@@ -8,8 +8,6 @@
 #include <isostat/io/foreign.hpp>
 #include <isostat/io/state_file.hpp>
 
-#include <cmath>
-
 using namespace isostat;
 using scratch::replaced;
 

@@ -5,9 +5,6 @@
 #include <isostat/io/certificate_file.hpp>
 #include <isostat/io/state_file.hpp>
 
-#include <limits>
-#include <random>
-
 using namespace isostat;
 using scratch::replaced;
 

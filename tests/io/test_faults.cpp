@@ -10,7 +10,6 @@
 #include <sys/resource.h>
 
 #include <csignal>
-#include <random>
 
 using namespace isostat;
 namespace fs = std::filesystem;

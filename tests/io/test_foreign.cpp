@@ -7,10 +7,6 @@
 #include <isostat/io/foreign.hpp>
 #include <isostat/io/state_file.hpp>
 
-#include <boost/test/unit_test.hpp>
-
-#include <cmath>
-
 namespace {
 
 using namespace isostat;

@@ -10,12 +10,8 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 
-#include <array>
 #include <bit>
-#include <cmath>
 #include <csignal>
-#include <cstdint>
-#include <limits>
 
 using namespace isostat;
 using scratch::replaced;

@@ -4,8 +4,6 @@
 
 #include <isostat/io/state_file.hpp>
 
-#include <algorithm>
-
 using namespace isostat;
 using scratch::replaced;
 

@@ -1,8 +1,7 @@
 #include "oracle/packings.hpp"
+#include "support/test.hpp"
 
 #include <isostat/packing/load.hpp>
-
-#include <boost/test/unit_test.hpp>
 
 using namespace isostat;
 using namespace isostat::oracle;

@@ -2,17 +2,13 @@
 
 #include "preparation/neighbours.hpp"
 #include "preparation/soft.hpp"
+#include "support/test.hpp"
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/certificate/inspect.hpp>
 #include <isostat/core/error.hpp>
 #include <isostat/io/state_file.hpp>
 #include <isostat/preparation/preparation.hpp>
-
-#include <boost/test/unit_test.hpp>
-
-#include <algorithm>
-#include <cmath>
 
 namespace {
 

@@ -2,8 +2,7 @@
 
 #include "../../src/preparation/clique_matrix.hpp"
 #include "check.hpp"
-
-#include <cmath>
+#include "support/test.hpp"
 
 namespace {
 

@@ -4,10 +4,6 @@
 
 #include <isostat/preparation/preparation.hpp>
 
-#include <algorithm>
-#include <cmath>
-#include <functional>
-
 namespace {
 
 using namespace isostat;

@@ -6,8 +6,6 @@
 
 #include <isostat/core/error.hpp>
 
-#include <algorithm>
-
 using namespace program;
 using namespace isostat;
 namespace fs = std::filesystem;

@@ -2,8 +2,6 @@
 
 #include <isostat/scene/scene.hpp>
 
-#include <string>
-
 using namespace isostat;
 
 namespace {

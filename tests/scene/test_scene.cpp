@@ -4,9 +4,6 @@
 
 #include <isostat/scene/scene.hpp>
 
-#include <algorithm>
-#include <string>
-
 using namespace isostat;
 
 namespace {

@@ -6,11 +6,7 @@
 #include <isostat/certificate/inspect.hpp>
 #include <isostat/core/error.hpp>
 
-#include <boost/test/unit_test.hpp>
 #include <eigen3/Eigen/Dense>
-
-#include <algorithm>
-#include <cmath>
 
 using namespace isostat;
 using namespace crafted;

@@ -1,12 +1,9 @@
 // T7: attempts to find a packing where varying coordinates and radii cannot follow every change of the gaps, and what
 // happens when a hypothesis is dropped.
 #include "families.hpp"
+#include "support/test.hpp"
 
 #include <isostat/crafted/inspection.hpp>
-
-#include <boost/test/unit_test.hpp>
-
-#include <numeric>
 
 using namespace isostat;
 using namespace families;

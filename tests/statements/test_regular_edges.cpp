@@ -1,14 +1,12 @@
 // T5 and T6 against CGAL's regular triangulation with exact weights: attempts to find a tangent or nearly tangent pair
 // that is no edge, and what happens when a hypothesis is dropped.
 #include "families.hpp"
+#include "support/test.hpp"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Regular_triangulation_2.h>
 #include <CGAL/Regular_triangulation_vertex_base_2.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
-#include <boost/test/unit_test.hpp>
-
-#include <cmath>
 
 namespace {
 

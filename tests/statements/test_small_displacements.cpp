@@ -3,14 +3,12 @@
 #include "contact/candidates.hpp"
 #include "families.hpp"
 #include "rigidity/isostatic.hpp"
+#include "support/prepared.hpp"
+#include "support/test.hpp"
 
 #include <isostat/preparation/preparation.hpp>
 
-#include <boost/test/unit_test.hpp>
 #include <eigen3/Eigen/Dense>
-
-#include <algorithm>
-#include <limits>
 
 using namespace isostat;
 
@@ -111,16 +109,6 @@ LinearPacking linearised(const State& state) {
         p.base[static_cast<Eigen::Index>(k)] += 1e-3 * state.load.infinitesimal[k];
     }
     return p;
-}
-
-State prepared(int disks, std::uint64_t seed) {
-    PreparationOptions options;
-    options.disks = disks;
-    options.seed = seed;
-    PreparationReport report;
-    auto state = prepare(options, report);
-    BOOST_REQUIRE_MESSAGE(state.ok(), (state.ok() ? "" : state.failure().message()));
-    return state.value();
 }
 
 } // namespace

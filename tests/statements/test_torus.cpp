@@ -4,14 +4,6 @@
 
 #include <isostat/exact/kernel.hpp>
 
-#include <boost/test/unit_test.hpp>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <random>
-#include <vector>
-
 namespace {
 
 using isostat::Contact;

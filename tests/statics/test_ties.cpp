@@ -3,11 +3,6 @@
 #include "support/crafted.hpp"
 #include "support/loaded.hpp"
 
-#include <boost/test/unit_test.hpp>
-
-#include <cmath>
-#include <limits>
-
 using namespace isostat;
 using namespace crafted;
 

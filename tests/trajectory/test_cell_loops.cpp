@@ -1,10 +1,6 @@
 // A run in a channel that comes back to where it began: two states, each the only one beyond a ratio of the stresses.
 #include "support/cells.hpp"
 
-#include <boost/test/unit_test.hpp>
-
-#include <cmath>
-
 using namespace isostat;
 using crafted::Played;
 

@@ -6,8 +6,6 @@
 #include <isostat/core/machine.hpp>
 #include <isostat/preparation/preparation.hpp>
 
-#include <boost/test/unit_test.hpp>
-
 using namespace isostat;
 using namespace ::crafted;
 

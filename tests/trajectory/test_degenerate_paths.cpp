@@ -5,9 +5,6 @@
 #include "support/mirror_cells.hpp"
 #include "support/really_perturbed.hpp"
 
-#include <boost/test/unit_test.hpp>
-
-#include <cmath>
 #include <tuple>
 
 using namespace isostat;

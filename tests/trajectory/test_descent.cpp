@@ -5,9 +5,6 @@
 #include <isostat/io/state_file.hpp>
 
 #include <boost/multiprecision/mpfr.hpp>
-#include <boost/test/unit_test.hpp>
-
-#include <cmath>
 
 using namespace isostat;
 using namespace ::crafted;

@@ -4,8 +4,6 @@
 #include "trajectory/prover.hpp"
 #include "trajectory/ties/first_order_side.hpp"
 
-#include <boost/test/unit_test.hpp>
-
 using namespace isostat;
 
 BOOST_AUTO_TEST_SUITE(trajectory)

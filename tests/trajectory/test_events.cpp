@@ -4,12 +4,6 @@
 
 #include <isostat/io/state_file.hpp>
 
-#include <boost/test/unit_test.hpp>
-
-#include <fstream>
-#include <string>
-#include <vector>
-
 using namespace isostat;
 using namespace ::crafted;
 

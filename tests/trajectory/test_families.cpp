@@ -1,9 +1,6 @@
 // Families that approach a degeneracy: the right answer on either side however small delta is, and a tie at 0.
 #include "support/families.hpp"
-
-#include <boost/test/unit_test.hpp>
-
-#include <cmath>
+#include "support/test.hpp"
 
 using families::Answer;
 

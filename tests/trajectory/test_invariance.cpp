@@ -5,11 +5,6 @@
 
 #include <isostat/certificate/inspect.hpp>
 
-#include <boost/test/unit_test.hpp>
-
-#include <numeric>
-#include <random>
-
 using namespace isostat;
 using namespace ::crafted;
 

@@ -4,8 +4,6 @@
 #include "support/prepared.hpp"
 #include "support/threads.hpp"
 
-#include <boost/test/unit_test.hpp>
-
 using namespace isostat;
 using namespace ::crafted;
 

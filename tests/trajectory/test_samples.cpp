@@ -4,11 +4,6 @@
 #include <isostat/certificate/inspect.hpp>
 #include <isostat/io/state_file.hpp>
 
-#include <boost/test/unit_test.hpp>
-
-#include <fstream>
-#include <sstream>
-
 using namespace isostat;
 using namespace ::crafted;
 

@@ -3,10 +3,6 @@
 #include "support/agreement.hpp"
 #include "support/mirror.hpp"
 
-#include <boost/test/unit_test.hpp>
-
-#include <set>
-
 using namespace isostat;
 using namespace ::crafted;
 

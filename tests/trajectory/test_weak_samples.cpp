@@ -3,8 +3,6 @@
 #include "support/crafted.hpp"
 #include "support/same_sequence.hpp"
 
-#include <boost/test/unit_test.hpp>
-
 using namespace isostat;
 using namespace ::crafted;
 

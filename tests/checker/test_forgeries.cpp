@@ -276,11 +276,10 @@ BOOST_AUTO_TEST_CASE(some_altered_fields_of_signed_runs_are_refused_or_undecided
     altered_run::Counts counts;
     const scratch::Folder folder;
     for (const Sample& sample : samples()) {
-        BOOST_TEST_CONTEXT(sample.name) {
-            sample.play(folder / sample.name);
-            const RunVerification run = verify_run(folder / sample.name);
-            BOOST_TEST(words(run) == sample.words, run.wrong << (run.undecided.empty() ? "" : run.undecided[0]));
-        }
+        BOOST_TEST_INFO_SCOPE(sample.name);
+        sample.play(folder / sample.name);
+        const RunVerification run = verify_run(folder / sample.name);
+        BOOST_TEST(words(run) == sample.words, run.wrong << (run.undecided.empty() ? "" : run.undecided[0]));
     }
     BOOST_TEST(altered_run::try_all(folder / "a choice", 1, counts) > 200);
     compare_with_page(counts, false);
@@ -292,12 +291,11 @@ BOOST_AUTO_TEST_CASE(every_altered_field_of_signed_runs_is_refused_or_undecided_
     int alterations = 0;
     for (const Sample& sample : samples()) {
         const scratch::Folder folder;
-        BOOST_TEST_CONTEXT(sample.name) {
-            sample.play(folder / "run");
-            const int here = altered_run::try_all(folder / "run", 1, counts);
-            BOOST_TEST_MESSAGE(sample.name << ": " << here);
-            alterations += here;
-        }
+        BOOST_TEST_INFO_SCOPE(sample.name);
+        sample.play(folder / "run");
+        const int here = altered_run::try_all(folder / "run", 1, counts);
+        BOOST_TEST_MESSAGE(sample.name << ": " << here);
+        alterations += here;
     }
     BOOST_TEST_MESSAGE(alterations << " alterations");
     BOOST_TEST(alterations >= 2000);
@@ -310,17 +308,15 @@ BOOST_AUTO_TEST_CASE(what_is_no_record_of_a_run_is_bad_input) {
     play(equal_forces(), {one(-1)}, folder / "run", CertifyLevel::decisions, TiePolicy::choose);
     const fs::path run = folder / "run";
     const auto refuses = [&](const char* file, const std::string& from, const std::string& to) {
-        BOOST_TEST_CONTEXT(file << ": " << from << " -> " << to) {
-            const std::string original = scratch::read(run / file);
-            const std::string changed = scratch::replaced(original, from, to);
-            BOOST_REQUIRE(changed != original);
-            altered_run::write_signed(run, file, changed);
-            BOOST_CHECK_EXCEPTION((void)verify_run(run), Error, [&](const Error& error) {
-                return error.kind() == ErrorKind::bad_input &&
-                       std::string(error.what()).find(file) != std::string::npos;
-            });
-            altered_run::write_signed(run, file, original);
-        }
+        BOOST_TEST_INFO_SCOPE(file << ": " << from << " -> " << to);
+        const std::string original = scratch::read(run / file);
+        const std::string changed = scratch::replaced(original, from, to);
+        BOOST_REQUIRE(changed != original);
+        altered_run::write_signed(run, file, changed);
+        BOOST_CHECK_EXCEPTION((void)verify_run(run), Error, [&](const Error& error) {
+            return error.kind() == ErrorKind::bad_input && std::string(error.what()).find(file) != std::string::npos;
+        });
+        altered_run::write_signed(run, file, original);
     };
     const std::string event = lines_of(run / "events.jsonl")[0];
     const std::string opened =
@@ -398,15 +394,14 @@ BOOST_AUTO_TEST_CASE(what_a_row_says_of_its_own_errors_is_checked) {
         const std::string error = fields[column(bound)];
         const double beside =
             std::max(std::stod(number) + 2 * std::stod(error), std::nextafter(std::stod(number), 1e9));
-        BOOST_TEST_CONTEXT(value << " is " << number << " +- " << error) {
-            BOOST_TEST(said(number, error) == "proved");
-            BOOST_TEST(said(Json(beside).dump(), error) == "refuted");
-            BOOST_TEST(said(number, "0") == "refuted");
-            const std::string wrong = Json(2 * std::stod(number)).dump();
-            for (const char* nothing : {"1e300", "inf"}) { // then the number itself is compared
-                BOOST_TEST(said(number, nothing) == "proved");
-                BOOST_TEST(said(wrong, nothing) != "proved");
-            }
+        BOOST_TEST_INFO_SCOPE(value << " is " << number << " +- " << error);
+        BOOST_TEST(said(number, error) == "proved");
+        BOOST_TEST(said(Json(beside).dump(), error) == "refuted");
+        BOOST_TEST(said(number, "0") == "refuted");
+        const std::string wrong = Json(2 * std::stod(number)).dump();
+        for (const char* nothing : {"1e300", "inf"}) { // then the number itself is compared
+            BOOST_TEST(said(number, nothing) == "proved");
+            BOOST_TEST(said(wrong, nothing) != "proved");
         }
     }
 }

@@ -78,24 +78,24 @@ void same_with_threads(const std::filesystem::path& folder, const RunVerificatio
 }
 
 void finds(const std::filesystem::path& folder, const Alteration& alteration) {
-    BOOST_TEST_CONTEXT(alteration.file << ":" << alteration.line << " " << alteration.from << " -> " << alteration.to) {
-        const std::string original = scratch::read(folder / alteration.file);
-        const std::string line = line_of(original, alteration.line);
-        const std::string changed = scratch::replaced(line, alteration.from, alteration.to);
-        BOOST_REQUIRE(changed != line);
-        scratch::write(folder / alteration.file, scratch::replaced(original, line, changed));
-        forger::seal(folder);
-        const RunVerification run = verify_run(folder);
-        same_with_threads(folder, run);
-        BOOST_TEST((run.verdict == Verdict::refuted));
-        BOOST_TEST((run.wrong.find(alteration.said) != std::string::npos), run.wrong);
-        if (alteration.file == "events.jsonl") {
-            const std::string where = "events.jsonl:" + std::to_string(alteration.line) + ":";
-            BOOST_TEST((run.wrong.find(where) != std::string::npos), run.wrong);
-        }
-        scratch::write(folder / alteration.file, original);
-        forger::seal(folder);
+    BOOST_TEST_INFO_SCOPE(alteration.file << ":" << alteration.line << " " << alteration.from << " -> "
+                                          << alteration.to);
+    const std::string original = scratch::read(folder / alteration.file);
+    const std::string line = line_of(original, alteration.line);
+    const std::string changed = scratch::replaced(line, alteration.from, alteration.to);
+    BOOST_REQUIRE(changed != line);
+    scratch::write(folder / alteration.file, scratch::replaced(original, line, changed));
+    forger::seal(folder);
+    const RunVerification run = verify_run(folder);
+    same_with_threads(folder, run);
+    BOOST_TEST((run.verdict == Verdict::refuted));
+    BOOST_TEST((run.wrong.find(alteration.said) != std::string::npos), run.wrong);
+    if (alteration.file == "events.jsonl") {
+        const std::string where = "events.jsonl:" + std::to_string(alteration.line) + ":";
+        BOOST_TEST((run.wrong.find(where) != std::string::npos), run.wrong);
     }
+    scratch::write(folder / alteration.file, original);
+    forger::seal(folder);
 }
 
 /// The fields of a row of equilibria.csv, with one replaced.
@@ -378,23 +378,22 @@ BOOST_AUTO_TEST_CASE(runs_in_periodic_cells_are_replayed_whichever_disk_is_pinne
     for (const char* name : {"tilt_16", "rect_16", "channel_16"}) {
         for (const int pin : {0, 8, 9}) { // 8 and 9 become rattlers, or are
             for (const TiePolicy ties : {TiePolicy::stop, TiePolicy::choose}) {
-                BOOST_TEST_CONTEXT(name << ", disk " << pin << " pinned, ties "
-                                        << tie_policy_words[static_cast<std::size_t>(ties)]) {
-                    const scratch::Folder folder;
-                    play_and_store(of_cell(name, pin), {3}, folder / "run", OpeningRule::most_negative, ties);
-                    const RunVerification run = verify_run(folder / "run");
-                    BOOST_TEST(run.wrong == "");
-                    BOOST_TEST(run.undecided.size() == 0U, (run.undecided.empty() ? "" : run.undecided[0]));
-                    BOOST_TEST(words(run) == "ends proved, way looked at");
-                    BOOST_TEST(run.arcs_proved == run.arcs);
-                    BOOST_TEST(run.equilibria_proved == 4);
-                    same_with_threads(folder / "run", run);
-                    for (const char* forged : {"32", "33"}) { // all of the contacts, in two of the cells
-                        Alteration all = in_row(scratch::read(folder / "run/equilibria.csv"), 3, "backbone", forged);
-                        all.said = "backbone";
-                        if (pin == 9) {
-                            finds(folder / "run", all);
-                        }
+                BOOST_TEST_INFO_SCOPE(name << ", disk " << pin << " pinned, ties "
+                                           << tie_policy_words[static_cast<std::size_t>(ties)]);
+                const scratch::Folder folder;
+                play_and_store(of_cell(name, pin), {3}, folder / "run", OpeningRule::most_negative, ties);
+                const RunVerification run = verify_run(folder / "run");
+                BOOST_TEST(run.wrong == "");
+                BOOST_TEST(run.undecided.size() == 0U, (run.undecided.empty() ? "" : run.undecided[0]));
+                BOOST_TEST(words(run) == "ends proved, way looked at");
+                BOOST_TEST(run.arcs_proved == run.arcs);
+                BOOST_TEST(run.equilibria_proved == 4);
+                same_with_threads(folder / "run", run);
+                for (const char* forged : {"32", "33"}) { // all of the contacts, in two of the cells
+                    Alteration all = in_row(scratch::read(folder / "run/equilibria.csv"), 3, "backbone", forged);
+                    all.said = "backbone";
+                    if (pin == 9) {
+                        finds(folder / "run", all);
                     }
                 }
             }

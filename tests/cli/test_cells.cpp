@@ -253,20 +253,19 @@ BOOST_AUTO_TEST_CASE(periodic_packings_of_other_programs_become_states) {
     const std::string made = (folder / "made.json").string();
     for (const char* name : {"rect_16", "tilt_16"}) {
         for (const double part : {1e-12, 1e-6, 1e-4}) {
-            BOOST_TEST_CONTEXT(name << ", overlap " << part) {
-                const std::string from = scratch::data(std::string("cells/") + name + ".json");
-                const isostat::State state = isostat::read_any_state(from).state;
-                scratch::write(file, soft_dump(from, part));
-                const auto json = json_of(run({"import", file, "-o", made, "--json"}));
-                BOOST_TEST(json.at("verdict") == "proved");
-                const isostat::Packing found = isostat::read_any_state(made).state.packing;
-                BOOST_TEST((found.cell.tilt_moves == state.packing.cell.tilt_moves));
-                for (std::size_t k = 32; k < 35; ++k) {
-                    BOOST_TEST(std::abs(found.q[k] - state.packing.q[k]) < 1e-11);
-                }
-                expect(run({"certify", made, "-o", (folder / "c.json").string()}), 0);
-                expect(run({"verify", (folder / "c.json").string(), "--input", made}), 0);
+            BOOST_TEST_INFO_SCOPE(name << ", overlap " << part);
+            const std::string from = scratch::data(std::string("cells/") + name + ".json");
+            const isostat::State state = isostat::read_any_state(from).state;
+            scratch::write(file, soft_dump(from, part));
+            const auto json = json_of(run({"import", file, "-o", made, "--json"}));
+            BOOST_TEST(json.at("verdict") == "proved");
+            const isostat::Packing found = isostat::read_any_state(made).state.packing;
+            BOOST_TEST((found.cell.tilt_moves == state.packing.cell.tilt_moves));
+            for (std::size_t k = 32; k < 35; ++k) {
+                BOOST_TEST(std::abs(found.q[k] - state.packing.q[k]) < 1e-11);
             }
+            expect(run({"certify", made, "-o", (folder / "c.json").string()}), 0);
+            expect(run({"verify", (folder / "c.json").string(), "--input", made}), 0);
         }
     }
     expect(run({"import", file, "-o", made, "--cell", "rectangular"}), 0); // its tilt stays
@@ -383,35 +382,34 @@ BOOST_AUTO_TEST_CASE(soft_frames_of_a_cell_snap_with_their_contacts_and_forces) 
     const scratch::Folder folder;
     const std::string file = (folder / "disks.dump").string(), made = (folder / "made.json").string();
     for (const char* name : {"rect_16", "tilt_16"}) {
-        BOOST_TEST_CONTEXT(name) {
-            const std::string from = scratch::data(std::string("cells/") + name + ".json");
-            scratch::write(file, soft_dump(from, 1e-5)); // the pairs that overlap are the contacts
-            const auto snapped = says(run({"snap", file, "-o", made}), 0, {"snap      vertex"});
-            BOOST_TEST(!contains(snapped.out, "forces "), snapped.out); // the file has none
-            const isostat::Packing found = isostat::read_any_state(made).state.packing;
-            const isostat::Packing stored = isostat::read_any_state(from).state.packing;
-            for (std::size_t k = 32; k < 35; ++k) {
-                BOOST_TEST(std::abs(found.q[k] - stored.q[k]) < 1e-11);
-            }
-            expect(run({"certify", made, "-o", (folder / "c.json").string()}), 0);
-            // A state: its forces are compared.
-            isostat::StateFile state = isostat::read_any_state(from);
-            const auto forces_of = [&] {
-                isostat::write_state(folder / "state.json", state.state, state.forces);
-                const auto out = run({"snap", (folder / "state.json").string(), "-o", made, "--json"});
-                expect(out, 0);
-                return nlohmann::json::parse(out.out).at("forces");
-            };
-            BOOST_TEST(forces_of().at("rest").get<double>() < 1e-9);
-            const auto strongest = std::max_element(state.forces.begin(), state.forces.end());
-            *strongest *= 1.25;
-            const auto wrong = forces_of();
-            BOOST_TEST(wrong.at("rest").get<double>() * wrong.at("mean").get<double>() == 0.2 * *strongest,
-                       boost::test_tools::tolerance(1e-6));
-            BOOST_TEST(
-                wrong.at("contact") ==
-                isostat::to_string(state.state.contacts[static_cast<std::size_t>(strongest - state.forces.begin())]));
+        BOOST_TEST_INFO_SCOPE(name);
+        const std::string from = scratch::data(std::string("cells/") + name + ".json");
+        scratch::write(file, soft_dump(from, 1e-5)); // the pairs that overlap are the contacts
+        const auto snapped = says(run({"snap", file, "-o", made}), 0, {"snap      vertex"});
+        BOOST_TEST(!contains(snapped.out, "forces "), snapped.out); // the file has none
+        const isostat::Packing found = isostat::read_any_state(made).state.packing;
+        const isostat::Packing stored = isostat::read_any_state(from).state.packing;
+        for (std::size_t k = 32; k < 35; ++k) {
+            BOOST_TEST(std::abs(found.q[k] - stored.q[k]) < 1e-11);
         }
+        expect(run({"certify", made, "-o", (folder / "c.json").string()}), 0);
+        // A state: its forces are compared.
+        isostat::StateFile state = isostat::read_any_state(from);
+        const auto forces_of = [&] {
+            isostat::write_state(folder / "state.json", state.state, state.forces);
+            const auto out = run({"snap", (folder / "state.json").string(), "-o", made, "--json"});
+            expect(out, 0);
+            return nlohmann::json::parse(out.out).at("forces");
+        };
+        BOOST_TEST(forces_of().at("rest").get<double>() < 1e-9);
+        const auto strongest = std::max_element(state.forces.begin(), state.forces.end());
+        *strongest *= 1.25;
+        const auto wrong = forces_of();
+        BOOST_TEST(wrong.at("rest").get<double>() * wrong.at("mean").get<double>() == 0.2 * *strongest,
+                   boost::test_tools::tolerance(1e-6));
+        BOOST_TEST(
+            wrong.at("contact") ==
+            isostat::to_string(state.state.contacts[static_cast<std::size_t>(strongest - state.forces.begin())]));
     }
 }
 

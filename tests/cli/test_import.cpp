@@ -67,27 +67,25 @@ BOOST_AUTO_TEST_SUITE(cli_import)
 
 BOOST_AUTO_TEST_CASE(soft_grains_end_at_the_vertex_that_they_came_from) {
     for (const double part : {1e-12, 1e-6, 1e-4}) {
-        BOOST_TEST_CONTEXT("overlap " << part) {
-            const scratch::Folder folder;
-            const Soft soft(part);
-            const std::string moved = (folder / "moved.csv").string();
-            const auto answer =
-                json_of(import_text(folder, soft.table(), {"--box", soft.box, "--json", "--moved", moved}));
-            BOOST_TEST(answer.at("verdict") == "proved");
-            BOOST_TEST(contains(answer.at("contacts").get<std::string>(), "188 carry a force, those of the file"));
-            const double backbone = answer.at("moved").at("backbone").get<double>();
-            BOOST_TEST(backbone < 25 * part + 1e-11);
-            BOOST_TEST(backbone > 5 * part);
-            const std::string rows = scratch::read(moved);
-            BOOST_TEST(std::count(rows.begin(), rows.end(), '\n') == 101);
-            // The vertex is that of the sample: its file has the disks in the opposite order.
-            const Packing found = read_state(folder / "s.json").state.packing;
-            for (std::size_t a = 0; a < 2; ++a) {
-                BOOST_TEST(std::abs(found.length(static_cast<int>(a)) -
-                                    soft.state.packing.length(static_cast<int>(a))) < 1e-11);
-            }
-            expect(run({"certify", (folder / "s.json").string(), "-o", (folder / "c.json").string()}), 0);
+        BOOST_TEST_INFO_SCOPE("overlap " << part);
+        const scratch::Folder folder;
+        const Soft soft(part);
+        const std::string moved = (folder / "moved.csv").string();
+        const auto answer = json_of(import_text(folder, soft.table(), {"--box", soft.box, "--json", "--moved", moved}));
+        BOOST_TEST(answer.at("verdict") == "proved");
+        BOOST_TEST(contains(answer.at("contacts").get<std::string>(), "188 carry a force, those of the file"));
+        const double backbone = answer.at("moved").at("backbone").get<double>();
+        BOOST_TEST(backbone < 25 * part + 1e-11);
+        BOOST_TEST(backbone > 5 * part);
+        const std::string rows = scratch::read(moved);
+        BOOST_TEST(std::count(rows.begin(), rows.end(), '\n') == 101);
+        // The vertex is that of the sample: its file has the disks in the opposite order.
+        const Packing found = read_state(folder / "s.json").state.packing;
+        for (std::size_t a = 0; a < 2; ++a) {
+            BOOST_TEST(std::abs(found.length(static_cast<int>(a)) - soft.state.packing.length(static_cast<int>(a))) <
+                       1e-11);
         }
+        expect(run({"certify", (folder / "s.json").string(), "-o", (folder / "c.json").string()}), 0);
     }
 }
 
@@ -113,20 +111,19 @@ BOOST_AUTO_TEST_CASE(soft_grains_of_yade_end_at_the_vertex_that_they_came_from) 
     expect(run({"prepare", (folder / "prepared.toml").string(), "-o", start, "-q"}), 0);
     const State from = read_state(start).state;
     for (const std::string contacts : {"plateau", "nearest"}) {
-        BOOST_TEST_CONTEXT(contacts) {
-            const auto answer = json_of(import_text(folder, scratch::read(scratch::data("yade20.txt")),
-                                                    {"--box", box, "--contacts", contacts, "--json"}));
-            BOOST_TEST(answer.at("file_format") == "table");
-            BOOST_TEST(contains(answer.at("contacts").get<std::string>(), "34 carry a force"));
-            const double moved = answer.at("moved").at("backbone").get<double>();
-            BOOST_TEST(moved > 1e-6); // overlaps and digits
-            BOOST_TEST(moved < 1e-4);
-            std::vector<Contact> found = read_state(out).state.contacts, expected = from.contacts;
-            std::sort(found.begin(), found.end());
-            std::sort(expected.begin(), expected.end());
-            BOOST_TEST((found == expected));
-            expect(run({"certify", out, "-o", (folder / "c.json").string()}), 0);
-        }
+        BOOST_TEST_INFO_SCOPE(contacts);
+        const auto answer = json_of(import_text(folder, scratch::read(scratch::data("yade20.txt")),
+                                                {"--box", box, "--contacts", contacts, "--json"}));
+        BOOST_TEST(answer.at("file_format") == "table");
+        BOOST_TEST(contains(answer.at("contacts").get<std::string>(), "34 carry a force"));
+        const double moved = answer.at("moved").at("backbone").get<double>();
+        BOOST_TEST(moved > 1e-6); // overlaps and digits
+        BOOST_TEST(moved < 1e-4);
+        std::vector<Contact> found = read_state(out).state.contacts, expected = from.contacts;
+        std::sort(found.begin(), found.end());
+        std::sort(expected.begin(), expected.end());
+        BOOST_TEST((found == expected));
+        expect(run({"certify", out, "-o", (folder / "c.json").string()}), 0);
     }
     scratch::write(folder / "s.toml", scene_from("s.json", "[[programme]]\ndo = \"up\"\nequilibria = 2\n"));
     expect(run({"run", (folder / "s.toml").string(), "-o", (folder / "run").string(), "-q"}), 0);
@@ -218,14 +215,13 @@ BOOST_AUTO_TEST_CASE(what_is_exported_comes_back_as_the_same_vertex) {
     const State state = read_state(from).state;
     const std::string box = fmt::format("0:{},0:{}", state.packing.length(0), state.packing.length(1));
     for (const std::string end : {"data", "xyz", "csv"}) {
-        BOOST_TEST_CONTEXT(end) {
-            const std::string file = (folder / ("a." + end)).string();
-            expect(run({"export", from, "-o", file}), 0);
-            const Outcome outcome = run({"import", file, "--box", box, "-o", back, "--json"});
-            expect(outcome, 0);
-            BOOST_TEST(json::parse(outcome.out).at("moved").at("backbone").get<double>() < 1e-11);
-            expect(run({"inspect", file}), 65, {"isostat import"});
-        }
+        BOOST_TEST_INFO_SCOPE(end);
+        const std::string file = (folder / ("a." + end)).string();
+        expect(run({"export", from, "-o", file}), 0);
+        const Outcome outcome = run({"import", file, "--box", box, "-o", back, "--json"});
+        expect(outcome, 0);
+        BOOST_TEST(json::parse(outcome.out).at("moved").at("backbone").get<double>() < 1e-11);
+        expect(run({"inspect", file}), 65, {"isostat import"});
     }
     expect(run({"export", from, "-o", (folder / "a.vtk").string()}), 64, {"report --vtk"});
     expect(run({"export", folder.path().string(), "-o", (folder / "b.xyz").string()}), 65, {"states/eq_"});

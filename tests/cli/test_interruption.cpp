@@ -35,19 +35,18 @@ BOOST_AUTO_TEST_CASE(killed_runs_resume_to_the_files_of_a_whole_run) {
     const auto arcs = std::count(events.begin(), events.end(), '\n');
     // In the first rearrangement, in the middle, and near the end (second segment).
     for (const long at : {1L, arcs / 2, arcs - 3}) {
-        BOOST_TEST_CONTEXT("killed at arc " << at << " of " << arcs) {
-            const fs::path out = folder / ("cut" + std::to_string(at));
-            Background background({"run", scene, "-o", out.string(), "-q"});
-            BOOST_TEST(background.signal_at(out / "events.jsonl", at, SIGKILL));
-            const int status = background.wait();
-            BOOST_TEST((status == 128 + SIGKILL || status == 0)); // 0: it was faster than the signal
-            if (status != 0) {
-                BOOST_TEST(contains(scratch::read(out / "run.json"), "\"status\": \"running\""));
-                BOOST_TEST(!fs::exists(out / "summary.json"));
-            }
-            expect(run({"run", scene, "-o", out.string(), "-q", "--resume"}), 0);
-            same_records(folder / "whole", out);
+        BOOST_TEST_INFO_SCOPE("killed at arc " << at << " of " << arcs);
+        const fs::path out = folder / ("cut" + std::to_string(at));
+        Background background({"run", scene, "-o", out.string(), "-q"});
+        BOOST_TEST(background.signal_at(out / "events.jsonl", at, SIGKILL));
+        const int status = background.wait();
+        BOOST_TEST((status == 128 + SIGKILL || status == 0)); // 0: it was faster than the signal
+        if (status != 0) {
+            BOOST_TEST(contains(scratch::read(out / "run.json"), "\"status\": \"running\""));
+            BOOST_TEST(!fs::exists(out / "summary.json"));
         }
+        expect(run({"run", scene, "-o", out.string(), "-q", "--resume"}), 0);
+        same_records(folder / "whole", out);
     }
 }
 
@@ -65,16 +64,14 @@ BOOST_AUTO_TEST_CASE(runs_that_choose_are_the_same_resumed_and_with_any_number_o
     BOOST_TEST(contains(events, "\"choice\":"));
     const auto arcs = std::count(events.begin(), events.end(), '\n');
     for (const int threads : {1, 2, 3}) {
-        BOOST_TEST_CONTEXT(threads << " threads") {
-            const fs::path out = folder / ("cut" + std::to_string(threads));
-            Background background(
-                {"run", scene, "-o", out.string(), "-q", "--threads", std::to_string(threads % 3 + 1)});
-            BOOST_TEST(background.signal_at(out / "events.jsonl", threads * arcs / 4, SIGKILL));
-            const int status = background.wait();
-            BOOST_TEST((status == 128 + SIGKILL || status == 0)); // 0: it was faster than the signal
-            expect(run({"run", scene, "-o", out.string(), "-q", "--resume", "--threads", std::to_string(threads)}), 0);
-            same_records(whole, out);
-        }
+        BOOST_TEST_INFO_SCOPE(threads << " threads");
+        const fs::path out = folder / ("cut" + std::to_string(threads));
+        Background background({"run", scene, "-o", out.string(), "-q", "--threads", std::to_string(threads % 3 + 1)});
+        BOOST_TEST(background.signal_at(out / "events.jsonl", threads * arcs / 4, SIGKILL));
+        const int status = background.wait();
+        BOOST_TEST((status == 128 + SIGKILL || status == 0)); // 0: it was faster than the signal
+        expect(run({"run", scene, "-o", out.string(), "-q", "--resume", "--threads", std::to_string(threads)}), 0);
+        same_records(whole, out);
     }
 }
 
@@ -136,9 +133,8 @@ BOOST_AUTO_TEST_CASE(one_ctrl_c_ends_a_command_that_has_written_no_records) {
                                                         {"run", pipe, "-o", out},
                                                         {"prepare", pipe, "-o", out},
                                                         {"ensemble", pipe, "-o", out, "--samples", "2"}}) {
-            BOOST_TEST_CONTEXT(command[0]) {
-                ends_by(signal, pipe, command);
-            }
+            BOOST_TEST_INFO_SCOPE(command[0]);
+            ends_by(signal, pipe, command);
         }
     }
 }

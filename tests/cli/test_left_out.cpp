@@ -26,25 +26,24 @@ BOOST_AUTO_TEST_CASE(what_plan_leaves_out_is_not_done) {
         if (entry.path().extension() != ".toml") {
             continue;
         }
-        BOOST_TEST_CONTEXT(entry.path().filename().string()) {
-            const auto plan = json_of(run({"plan", entry.path().string(), "--json"}));
-            if (plan["programme"].empty()) {
-                continue; // for `isostat prepare`
+        BOOST_TEST_INFO_SCOPE(entry.path().filename().string());
+        const auto plan = json_of(run({"plan", entry.path().string(), "--json"}));
+        if (plan["programme"].empty()) {
+            continue; // for `isostat prepare`
+        }
+        const scratch::Folder folder;
+        expect(run({"run", entry.path().string(), "-o", (folder / "r").string(), "-q"}), 0);
+        const json work = json::parse(scratch::read(folder / "r/work.json"))["counts"];
+        ++runs;
+        for (const json& part : plan["plan"]) {
+            const auto found = counters.find(part["name"].get<std::string>());
+            if (found == counters.end()) {
+                continue;
             }
-            const scratch::Folder folder;
-            expect(run({"run", entry.path().string(), "-o", (folder / "r").string(), "-q"}), 0);
-            const json work = json::parse(scratch::read(folder / "r/work.json"))["counts"];
-            ++runs;
-            for (const json& part : plan["plan"]) {
-                const auto found = counters.find(part["name"].get<std::string>());
-                if (found == counters.end()) {
-                    continue;
-                }
-                (part["used"].get<bool>() ? seen_used : seen_unused).insert(found->first);
-                for (const std::string& counter : found->second) {
-                    BOOST_TEST((work[counter].get<long>() > 0) == part["used"].get<bool>(),
-                               found->first << ": " << counter << " = " << work[counter]);
-                }
+            (part["used"].get<bool>() ? seen_used : seen_unused).insert(found->first);
+            for (const std::string& counter : found->second) {
+                BOOST_TEST((work[counter].get<long>() > 0) == part["used"].get<bool>(),
+                           found->first << ": " << counter << " = " << work[counter]);
             }
         }
     }
@@ -77,14 +76,13 @@ BOOST_AUTO_TEST_CASE(two_small_scenes_cost_what_they_did_with_any_number_of_thre
                         (folder / "r").string(), "-q", "--threads", threads}),
                    0);
             const json work = json::parse(scratch::read(folder / "r/work.json"))["counts"];
-            BOOST_TEST_CONTEXT(scene << ", threads " << threads) {
-                for (const auto& [counter, count] : work.items()) {
-                    const auto found = expected.find(counter);
-                    if (counter == "checkpoints") {
-                        BOOST_TEST(count.get<long>() > 0);
-                    } else {
-                        BOOST_TEST(count.get<long>() == (found == expected.end() ? 0 : found->second), counter);
-                    }
+            BOOST_TEST_INFO_SCOPE(scene << ", threads " << threads);
+            for (const auto& [counter, count] : work.items()) {
+                const auto found = expected.find(counter);
+                if (counter == "checkpoints") {
+                    BOOST_TEST(count.get<long>() > 0);
+                } else {
+                    BOOST_TEST(count.get<long>() == (found == expected.end() ? 0 : found->second), counter);
                 }
             }
         }

@@ -39,26 +39,24 @@ BOOST_AUTO_TEST_CASE(every_law_is_prepared_and_run) {
          {std::string("law = \"uniform\"\n"), std::string("law = \"equal\"\njitter = 1e-6\n"),
           std::string("law = \"bidisperse\"\njitter = 1e-6\n"), std::string("law = \"lognormal\"\n"),
           std::string("law = \"normal\"\n"), std::string("law = \"power\"\n"), from_file}) {
-        BOOST_TEST_CONTEXT(law) {
-            const scratch::Folder folder;
-            scratch::write(folder / "radii.txt", list);
-            const std::string text = scene(law, 3);
-            expect(run_scene(folder, law == from_file ? scratch::replaced(text, "disks = 100\n", "") : text), 0);
-            const std::string rows = scratch::read(folder / "run/equilibria.csv");
-            BOOST_TEST(std::count(rows.begin(), rows.end(), '\n') == 5); // names, the start, three equilibria
-            expect(run({"verify", (folder / "run").string()}), 0);
-        }
+        BOOST_TEST_INFO_SCOPE(law);
+        const scratch::Folder folder;
+        scratch::write(folder / "radii.txt", list);
+        const std::string text = scene(law, 3);
+        expect(run_scene(folder, law == from_file ? scratch::replaced(text, "disks = 100\n", "") : text), 0);
+        const std::string rows = scratch::read(folder / "run/equilibria.csv");
+        BOOST_TEST(std::count(rows.begin(), rows.end(), '\n') == 5); // names, the start, three equilibria
+        expect(run({"verify", (folder / "run").string()}), 0);
     }
 }
 
 BOOST_AUTO_TEST_CASE(a_mixture_of_two_radii_ties_and_a_jitter_leaves_no_tie) {
     const scratch::Folder folder;
     for (const int seed : {2, 3, 9}) {
-        BOOST_TEST_CONTEXT("seed " << seed) {
-            expect(run_scene(folder, mixture(seed, "0.0")), 2, {"tie", "equal radii: try [packing] jitter = 1e-9"});
-            BOOST_TEST(contains(scratch::read(folder / "run/summary.json"), "jitter = 1e-9"));
-            expect(run_scene(folder, mixture(seed, "1e-9")), 0);
-        }
+        BOOST_TEST_INFO_SCOPE("seed " << seed);
+        expect(run_scene(folder, mixture(seed, "0.0")), 2, {"tie", "equal radii: try [packing] jitter = 1e-9"});
+        BOOST_TEST(contains(scratch::read(folder / "run/summary.json"), "jitter = 1e-9"));
+        expect(run_scene(folder, mixture(seed, "1e-9")), 0);
     }
     const auto start = nlohmann::json::parse(scratch::read(folder / "run/start.json"));
     BOOST_TEST(start.at("provenance").at("settings").at("packing").at("jitter").get<double>() == 1e-9);
@@ -74,12 +72,11 @@ BOOST_AUTO_TEST_CASE(a_mixture_of_two_radii_ties_and_a_jitter_leaves_no_tie) {
 
 BOOST_AUTO_TEST_CASE(nearly_equal_disks_are_followed_where_contacts_are_nearly_singular_and_verified) {
     for (const int seed : {4, 8, 12, 20, 34, 38}) {
-        BOOST_TEST_CONTEXT("seed " << seed) {
-            const scratch::Folder folder;
-            const std::string text = "law = \"equal\"\njitter = 1e-9\nseed = " + std::to_string(seed) + "\n";
-            expect(run_scene(folder, scratch::replaced(scene(text, 12), "disks = 100", "disks = 36")), 0);
-            says(run({"verify", (folder / "run").string()}), 0, {"ends proved"});
-        }
+        BOOST_TEST_INFO_SCOPE("seed " << seed);
+        const scratch::Folder folder;
+        const std::string text = "law = \"equal\"\njitter = 1e-9\nseed = " + std::to_string(seed) + "\n";
+        expect(run_scene(folder, scratch::replaced(scene(text, 12), "disks = 100", "disks = 36")), 0);
+        says(run({"verify", (folder / "run").string()}), 0, {"ends proved"});
     }
     const scratch::Folder folder; // a force is known in double to 0.2 % only: a bound that says too little
     expect(run_scene(folder, scene("law = \"equal\"\njitter = 1e-9\nseed = 3\n", 22)), 0);
@@ -104,12 +101,11 @@ void forge_rest(const fs::path& folder) {
         return entry.substr(from, entry.find(',', from) - from);
     };
     const auto refuted = [&](const std::string& from, const std::string& by, const std::string& said) {
-        BOOST_TEST_CONTEXT(from << " -> " << by) {
-            const isostat::RunVerification forged =
-                forger::altered(folder, "events.jsonl", entry, scratch::replaced(entry, from, by));
-            BOOST_TEST((forged.verdict == isostat::Verdict::refuted));
-            BOOST_TEST(contains(forged.wrong, said), forged.wrong);
-        }
+        BOOST_TEST_INFO_SCOPE(from << " -> " << by);
+        const isostat::RunVerification forged =
+            forger::altered(folder, "events.jsonl", entry, scratch::replaced(entry, from, by));
+        BOOST_TEST((forged.verdict == isostat::Verdict::refuted));
+        BOOST_TEST(contains(forged.wrong, said), forged.wrong);
     };
     refuted(field("contact"), "\"contact\":\"0-top\"", "does not touch");
     refuted(field("against"), "\"against\":\"0-top\"", "does not touch where 0-top opens");
@@ -122,19 +118,18 @@ BOOST_AUTO_TEST_CASE(equal_disks_are_prepared_and_followed_where_ties_are_chosen
         int disks, seed, status;
     };
     for (const Sample& sample : {Sample{36, 12, 0}, Sample{30, 8, 0}, Sample{24, 15, 1}, Sample{24, 5, 1}}) {
-        BOOST_TEST_CONTEXT(sample.disks << " disks, seed " << sample.seed) {
-            const scratch::Folder folder;
-            const Outcome outcome = run_scene(folder, equal_disks(sample.disks, sample.seed));
-            expect(outcome, sample.status,
-                   sample.status == 0 ? std::vector<std::string>{} // else it jams
-                                      : std::vector<std::string>{"supports every load"});
-            const auto start = nlohmann::json::parse(scratch::read(folder / "run/start.json"));
-            BOOST_TEST(start.at("provenance").contains("ties_left_to_the_run"));
-            const std::string verdict = run({"verify", (folder / "run").string()}).out;
-            BOOST_TEST((contains(verdict, "ends proved") || contains(verdict, "verdict        proved")), verdict);
-            if (sample.disks == 36) {
-                forge_rest(folder / "run");
-            }
+        BOOST_TEST_INFO_SCOPE(sample.disks << " disks, seed " << sample.seed);
+        const scratch::Folder folder;
+        const Outcome outcome = run_scene(folder, equal_disks(sample.disks, sample.seed));
+        expect(outcome, sample.status,
+               sample.status == 0 ? std::vector<std::string>{} // else it jams
+                                  : std::vector<std::string>{"supports every load"});
+        const auto start = nlohmann::json::parse(scratch::read(folder / "run/start.json"));
+        BOOST_TEST(start.at("provenance").contains("ties_left_to_the_run"));
+        const std::string verdict = run({"verify", (folder / "run").string()}).out;
+        BOOST_TEST((contains(verdict, "ends proved") || contains(verdict, "verdict        proved")), verdict);
+        if (sample.disks == 36) {
+            forge_rest(folder / "run");
         }
     }
 }
@@ -143,12 +138,10 @@ BOOST_AUTO_TEST_CASE(equal_disks_are_prepared_and_followed_where_ties_are_chosen
 /// contacts that are nearly dependent.
 BOOST_AUTO_TEST_CASE(a_hundred_equal_disks_are_prepared_where_ties_are_chosen, *boost::unit_test::label("slow")) {
     for (const int seed : {2, 3, 12}) {
-        BOOST_TEST_CONTEXT("seed " << seed) {
-            const scratch::Folder folder;
-            expect(run_scene(folder, scratch::replaced(equal_disks(100, seed), "equilibria = 30", "equilibria = 1")),
-                   0);
-            expect(run({"verify", (folder / "run").string()}), 0);
-        }
+        BOOST_TEST_INFO_SCOPE("seed " << seed);
+        const scratch::Folder folder;
+        expect(run_scene(folder, scratch::replaced(equal_disks(100, seed), "equilibria = 30", "equilibria = 1")), 0);
+        expect(run({"verify", (folder / "run").string()}), 0);
     }
 }
 
@@ -174,10 +167,9 @@ BOOST_AUTO_TEST_CASE(every_tie_offers_a_jitter) {
           Tie{mixture_30(21), "gaps that are zero beside those of the contacts kept", prepared},
           Tie{scratch::replaced(scene("law = \"equal\"\n", 3), "disks = 100", "disks = 30"),
               "0 as far as double-double", "equal radii: try [packing] jitter = 1e-4"}}) {
-        BOOST_TEST_CONTEXT(tie.said) {
-            const scratch::Folder folder;
-            expect(run_scene(folder, tie.scene), 2, {"tie: ", tie.said, tie.offered});
-        }
+        BOOST_TEST_INFO_SCOPE(tie.said);
+        const scratch::Folder folder;
+        expect(run_scene(folder, tie.scene), 2, {"tie: ", tie.said, tie.offered});
     }
     const scratch::Folder folder;
     // The load at which both forces vanish.

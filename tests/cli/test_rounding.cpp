@@ -36,9 +36,8 @@ BOOST_AUTO_TEST_CASE(a_hyperstatic_packing_is_not_isostatic_by_rounding) {
     BOOST_TEST(answer.at("widest").at("counts").at("h") == 1);
     BOOST_TEST(answer.at("rounding").get<double>() < 1e-15);
     for (const char* name : {"torus3.xyz", "torus7.xyz", "torus8.xyz", "torus11.xyz"}) {
-        BOOST_TEST_CONTEXT(name) {
-            says(run({"plateau", file_of(name)}), 1, {"backbone isostatic, proved  at no threshold of ["});
-        }
+        BOOST_TEST_INFO_SCOPE(name);
+        says(run({"plateau", file_of(name)}), 1, {"backbone isostatic, proved  at no threshold of ["});
     }
 }
 
@@ -64,11 +63,9 @@ BOOST_AUTO_TEST_CASE(nor_is_it_in_a_mirror_elsewhere_or_of_another_size) {
         const std::string box = fmt::format("--box={:.17g}:{:.17g},{:.17g}:{:.17g}", shift - 0.5 * scale,
                                             shift + 0.5 * scale, -shift - 0.5 * scale, -shift + 0.5 * scale);
         const Outcome outcome = run({"plateau", file, "--walls", "fixed", box, "--json"});
-        BOOST_TEST_CONTEXT("placement " << k << ", " << digits << " digits") {
-            expect(outcome, 1);
-            BOOST_TEST(
-                (digits == 8 || Answer::parse(outcome.out).at("widest").at("N") == 25)); // the next gap is 4.9e-5
-        }
+        BOOST_TEST_INFO_SCOPE("placement " << k << ", " << digits << " digits");
+        expect(outcome, 1);
+        BOOST_TEST((digits == 8 || Answer::parse(outcome.out).at("widest").at("N") == 25)); // the next gap is 4.9e-5
     }
 }
 
@@ -85,17 +82,15 @@ BOOST_AUTO_TEST_CASE(an_imported_state_says_what_its_file_cannot_tell) {
     const scratch::Folder folder;
     const std::string state = (folder / "s.json").string();
     for (const auto& [name, gaps] : {std::pair{"torus7.xyz", 8}, {"torus8.xyz", 1}, {"torus11.xyz", 1}}) {
-        BOOST_TEST_CONTEXT(name) {
-            const auto answer =
-                json_of(run({"import", file_of(name), "--cell", "isotropic", "-o", state, "--json"}), 2);
-            BOOST_TEST(answer.at("verdict") == "undecided");
-            BOOST_TEST(static_cast<int>(answer.at("untold").at("gaps").size()) == gaps);
-            BOOST_TEST(answer.at("untold").at("verdict_of_the_doubles") == "proved");
-            says(run({"inspect", state}), 2,
-                 {"isostatic equilibrium    undecided: ", "jammed strictly          undecided: "});
-            says(run({"certify", state, "-o", (folder / "c.json").string()}), 2,
-                 {"undecided      the claims are of the stored doubles"});
-        }
+        BOOST_TEST_INFO_SCOPE(name);
+        const auto answer = json_of(run({"import", file_of(name), "--cell", "isotropic", "-o", state, "--json"}), 2);
+        BOOST_TEST(answer.at("verdict") == "undecided");
+        BOOST_TEST(static_cast<int>(answer.at("untold").at("gaps").size()) == gaps);
+        BOOST_TEST(answer.at("untold").at("verdict_of_the_doubles") == "proved");
+        says(run({"inspect", state}), 2,
+             {"isostatic equilibrium    undecided: ", "jammed strictly          undecided: "});
+        says(run({"certify", state, "-o", (folder / "c.json").string()}), 2,
+             {"undecided      the claims are of the stored doubles"});
     }
     // A forged rounding is no way round it.
     std::string text = scratch::read(state);

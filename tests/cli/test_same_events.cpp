@@ -16,19 +16,18 @@ std::string scene(int disks, int seed, int equilibria) {
 
 void replay(int disks, int seed, int equilibria) {
     const scratch::Folder folder;
-    BOOST_TEST_CONTEXT(disks << " disks, seed " << seed) {
-        scratch::write(folder / "scene.toml", scene(disks, seed, equilibria));
-        const std::string out = (folder / "run").string();
-        expect(run({"run", (folder / "scene.toml").string(), "-o", out, "-q"}), 0);
-        const std::string events = scratch::read(folder / "run/events.jsonl");
-        const auto arcs = std::count(events.begin(), events.end(), '\n');
-        const Outcome verified = run({"verify", out, "--json"});
-        expect(verified, 0);
-        const nlohmann::json answer = nlohmann::json::parse(verified.out);
-        BOOST_TEST(answer["verdict"] == "ends proved, way looked at", verified.out);
-        BOOST_TEST(answer["ends_proved"] == arcs);
-        BOOST_TEST(arcs > equilibria);
-    }
+    BOOST_TEST_INFO_SCOPE(disks << " disks, seed " << seed);
+    scratch::write(folder / "scene.toml", scene(disks, seed, equilibria));
+    const std::string out = (folder / "run").string();
+    expect(run({"run", (folder / "scene.toml").string(), "-o", out, "-q"}), 0);
+    const std::string events = scratch::read(folder / "run/events.jsonl");
+    const auto arcs = std::count(events.begin(), events.end(), '\n');
+    const Outcome verified = run({"verify", out, "--json"});
+    expect(verified, 0);
+    const nlohmann::json answer = nlohmann::json::parse(verified.out);
+    BOOST_TEST(answer["verdict"] == "ends proved, way looked at", verified.out);
+    BOOST_TEST(answer["ends_proved"] == arcs);
+    BOOST_TEST(arcs > equilibria);
 }
 
 } // namespace

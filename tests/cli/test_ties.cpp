@@ -28,36 +28,34 @@ BOOST_AUTO_TEST_SUITE(cli)
 
 BOOST_AUTO_TEST_CASE(ties_stop_the_run_or_are_settled_and_the_records_say_how) {
     for (const std::string name : {"two-gaps", "two-forces"}) {
-        BOOST_TEST_CONTEXT(name) {
-            const scratch::Folder folder;
-            const std::string out = (folder / "run").string();
-            expect(run({"run", stopped(folder, name), "-o", (folder / "stop").string(), "-q"}), 2,
-                   {"tie", "1-", "2-", "equal radii: try isostat import", "--jitter 1e-9"});
-            BOOST_TEST(contains(scratch::read(folder / "stop/summary.json"), "undecided"));
-            expect(run({"run", example(name + ".toml"), "-o", out, "-q"}), 0);
-            const std::string events = scratch::read(folder / "run/events.jsonl");
-            BOOST_TEST(contains(events, "\"perturbed\":[{\"decision\":"));
-            BOOST_TEST(contains(events, "\"first_order\":["));
-            const auto summary = nlohmann::json::parse(scratch::read(folder / "run/summary.json"));
-            long settled = 0;
-            for (const auto& [kind, count] :
-                 summary.at("counters").at("decisions").at("ties").at("perturbed").items()) {
-                settled += count.get<long>();
-            }
-            BOOST_TEST(settled > 0);
-            BOOST_TEST(contains(scratch::read(folder / "run/states/eq_000001.json"), "\"rho\":["));
-            says(run({"verify", out}), 0, {"first-order decisions checked"});
-            const Outcome seen = run({"inspect", (folder / "run/states/eq_000001.json").string()});
-            const Outcome json = run({"inspect", (folder / "run/states/eq_000001.json").string(), "--json"});
-            if (name == "two-gaps") { // the other disk may carry load too, from nothing to all but what the first needs
-                BOOST_TEST(contains(seen.out, "touching besides"));
-                BOOST_TEST(contains(seen.out, "1 self-stresses"));
-                BOOST_TEST(nlohmann::json::parse(json.out).at("face").at("h") == 1);
-                BOOST_TEST(nlohmann::json::parse(json.out).at("face").at("forces_between").size() == 4U);
-            } else {
-                BOOST_TEST(contains(seen.out, "left at force 0"));
-                BOOST_TEST(nlohmann::json::parse(json.out).at("left_at_zero").size() == 1U);
-            }
+        BOOST_TEST_INFO_SCOPE(name);
+        const scratch::Folder folder;
+        const std::string out = (folder / "run").string();
+        expect(run({"run", stopped(folder, name), "-o", (folder / "stop").string(), "-q"}), 2,
+               {"tie", "1-", "2-", "equal radii: try isostat import", "--jitter 1e-9"});
+        BOOST_TEST(contains(scratch::read(folder / "stop/summary.json"), "undecided"));
+        expect(run({"run", example(name + ".toml"), "-o", out, "-q"}), 0);
+        const std::string events = scratch::read(folder / "run/events.jsonl");
+        BOOST_TEST(contains(events, "\"perturbed\":[{\"decision\":"));
+        BOOST_TEST(contains(events, "\"first_order\":["));
+        const auto summary = nlohmann::json::parse(scratch::read(folder / "run/summary.json"));
+        long settled = 0;
+        for (const auto& [kind, count] : summary.at("counters").at("decisions").at("ties").at("perturbed").items()) {
+            settled += count.get<long>();
+        }
+        BOOST_TEST(settled > 0);
+        BOOST_TEST(contains(scratch::read(folder / "run/states/eq_000001.json"), "\"rho\":["));
+        says(run({"verify", out}), 0, {"first-order decisions checked"});
+        const Outcome seen = run({"inspect", (folder / "run/states/eq_000001.json").string()});
+        const Outcome json = run({"inspect", (folder / "run/states/eq_000001.json").string(), "--json"});
+        if (name == "two-gaps") { // the other disk may carry load too, from nothing to all but what the first needs
+            BOOST_TEST(contains(seen.out, "touching besides"));
+            BOOST_TEST(contains(seen.out, "1 self-stresses"));
+            BOOST_TEST(nlohmann::json::parse(json.out).at("face").at("h") == 1);
+            BOOST_TEST(nlohmann::json::parse(json.out).at("face").at("forces_between").size() == 4U);
+        } else {
+            BOOST_TEST(contains(seen.out, "left at force 0"));
+            BOOST_TEST(nlohmann::json::parse(json.out).at("left_at_zero").size() == 1U);
         }
     }
 }

@@ -143,11 +143,10 @@ BOOST_AUTO_TEST_CASE(counts_agree_with_the_exact_inspection_of_the_examples) {
         const auto inspection = inspect(exact);
         BOOST_REQUIRE(inspection.ok());
         const Plateau answer = plateau(approximate(exact), {1e-12});
-        BOOST_TEST_CONTEXT(name) {
-            BOOST_TEST(answer.steps[0].backbone.rank == inspection.value().rank);
-            BOOST_TEST(answer.steps[0].backbone.hyperstaticity == inspection.value().hyperstaticity);
-            BOOST_TEST(answer.steps[0].backbone.mechanisms == inspection.value().mechanisms);
-        }
+        BOOST_TEST_INFO_SCOPE(name);
+        BOOST_TEST(answer.steps[0].backbone.rank == inspection.value().rank);
+        BOOST_TEST(answer.steps[0].backbone.hyperstaticity == inspection.value().hyperstaticity);
+        BOOST_TEST(answer.steps[0].backbone.mechanisms == inspection.value().mechanisms);
     }
 }
 

@@ -127,36 +127,35 @@ BOOST_AUTO_TEST_CASE(killed_ensembles_and_killed_samples_resume_to_the_same_tabl
     const fs::path whole = folder / "whole";
     expect(run({"ensemble", scene, "-S", "3", "-o", whole.string(), "-q"}), 0);
     for (const int signal : {SIGKILL, SIGTERM, SIGSEGV}) {
-        BOOST_TEST_CONTEXT("signal " << signal) {
-            const fs::path out = folder / ("cut" + std::to_string(signal));
-            Background background({"ensemble", scene, "-S", "3", "-o", out.string(), "-q", "-j", "1"});
-            if (signal == SIGSEGV) { // of the second sample
-                BOOST_TEST(background.signal_at(out / "samples/seed_000002/run.json", 1, 0));
-                const pid_t child = child_of(background.pid());
-                BOOST_REQUIRE(child > 0); // 0 would be this process group
-                BOOST_TEST(::kill(child, signal) == 0);
-                BOOST_TEST(background.wait() == 1);
-                const std::string text = scratch::read(out / "ensemble.json");
-                BOOST_TEST(contains(text, "\"crashed\": 1"));
-                BOOST_TEST(contains(text, "\"completed\": 2"));
-            } else {
-                BOOST_TEST(background.signal_at(out / "samples/seed_000002/run.json", 1, signal));
-                const int status = background.wait();
-                BOOST_TEST(status == (signal == SIGTERM ? 130 : 128 + signal));
-                if (signal == SIGTERM) {
-                    BOOST_TEST(contains(scratch::read(out / "ensemble.json"), "\"missing\": 1"));
-                }
+        BOOST_TEST_INFO_SCOPE("signal " << signal);
+        const fs::path out = folder / ("cut" + std::to_string(signal));
+        Background background({"ensemble", scene, "-S", "3", "-o", out.string(), "-q", "-j", "1"});
+        if (signal == SIGSEGV) { // of the second sample
+            BOOST_TEST(background.signal_at(out / "samples/seed_000002/run.json", 1, 0));
+            const pid_t child = child_of(background.pid());
+            BOOST_REQUIRE(child > 0); // 0 would be this process group
+            BOOST_TEST(::kill(child, signal) == 0);
+            BOOST_TEST(background.wait() == 1);
+            const std::string text = scratch::read(out / "ensemble.json");
+            BOOST_TEST(contains(text, "\"crashed\": 1"));
+            BOOST_TEST(contains(text, "\"completed\": 2"));
+        } else {
+            BOOST_TEST(background.signal_at(out / "samples/seed_000002/run.json", 1, signal));
+            const int status = background.wait();
+            BOOST_TEST(status == (signal == SIGTERM ? 130 : 128 + signal));
+            if (signal == SIGTERM) {
+                BOOST_TEST(contains(scratch::read(out / "ensemble.json"), "\"missing\": 1"));
             }
-            // The samples of a killed parent get SIGTERM: they may still be ending.
-            for (int k = 0; signal == SIGKILL && k < 60000; ++k) {
-                if (!contains(scratch::read(out / "samples/seed_000002/run.json"), "\"running\"")) {
-                    break;
-                }
-                std::this_thread::sleep_for(std::chrono::milliseconds(10));
-            }
-            expect(run({"ensemble", scene, "-S", "3", "-o", out.string(), "-q", "--resume", "-j", "2"}), 0);
-            same_tables(out, whole);
         }
+        // The samples of a killed parent get SIGTERM: they may still be ending.
+        for (int k = 0; signal == SIGKILL && k < 60000; ++k) {
+            if (!contains(scratch::read(out / "samples/seed_000002/run.json"), "\"running\"")) {
+                break;
+            }
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        }
+        expect(run({"ensemble", scene, "-S", "3", "-o", out.string(), "-q", "--resume", "-j", "2"}), 0);
+        same_tables(out, whole);
     }
 }
 

@@ -24,42 +24,41 @@ PreparationOptions disks_of(int count, double smallest = 1, double largest = 2) 
 
 /// One row for a run; the state where it ends is a row of its own, checked to 200 digits. W never grows.
 void follow(const std::string& family, const std::string& parameter, State state, const Segment& segment) {
-    BOOST_TEST_CONTEXT(family << ", " << parameter) {
-        RunOptions options;
-        options.max_arcs = 2000;
-        options.max_strain = 1e3; // towards extreme ratios the box becomes a column
-        RunCounters counters;
-        crafted::Recorder records;
-        extreme::Row row;
-        row.family = family;
-        row.disks = state.packing.disk_count();
-        const extreme::Clock clock;
-        const SegmentOutcome outcome = run_segment(state, segment, 0, options, counters, records);
-        row.seconds = clock.seconds();
-        const auto found = static_cast<long>(records.equilibria.size());
-        row.parameter = fmt::format("{} ({} arcs, {} equilibria)", parameter, records.arcs.size(), found);
-        Rung rung = Rung::combinatorial;
-        for (const auto& e : records.equilibria) {
-            BOOST_TEST((e.verdict == Verdict::proved));
-            rung = std::max(rung, e.decided_by);
-        }
-        for (const auto& arc : records.arcs) {
-            rung = std::max(rung, arc.decided_by);
-            BOOST_TEST(arc.work > -1e-9 * state.load.stress[1] * state.packing.length(0) * state.packing.length(1));
-        }
-        row.rung = to_string(rung);
-        row.outcome = "proved";
-        row.checked = "W along every arc; the last state to 200 digits (next row)";
-        if (!outcome.completed) {
-            const FailureKind kind = outcome.failure->kind;
-            row.outcome = kind == FailureKind::undecided || kind == FailureKind::tie ? "undecided" : "refused";
-            row.reason = fmt::format("{}: {}", to_string(kind), outcome.failure->message());
-        }
-        extreme::add(row);
-        if (found > 0) {
-            const auto last = extreme::inspect(family, parameter + ", last equilibrium", records.states.back());
-            BOOST_TEST((last && last->record.verdict == Verdict::proved));
-        }
+    BOOST_TEST_INFO_SCOPE(family << ", " << parameter);
+    RunOptions options;
+    options.max_arcs = 2000;
+    options.max_strain = 1e3; // towards extreme ratios the box becomes a column
+    RunCounters counters;
+    crafted::Recorder records;
+    extreme::Row row;
+    row.family = family;
+    row.disks = state.packing.disk_count();
+    const extreme::Clock clock;
+    const SegmentOutcome outcome = run_segment(state, segment, 0, options, counters, records);
+    row.seconds = clock.seconds();
+    const auto found = static_cast<long>(records.equilibria.size());
+    row.parameter = fmt::format("{} ({} arcs, {} equilibria)", parameter, records.arcs.size(), found);
+    Rung rung = Rung::combinatorial;
+    for (const auto& e : records.equilibria) {
+        BOOST_TEST((e.verdict == Verdict::proved));
+        rung = std::max(rung, e.decided_by);
+    }
+    for (const auto& arc : records.arcs) {
+        rung = std::max(rung, arc.decided_by);
+        BOOST_TEST(arc.work > -1e-9 * state.load.stress[1] * state.packing.length(0) * state.packing.length(1));
+    }
+    row.rung = to_string(rung);
+    row.outcome = "proved";
+    row.checked = "W along every arc; the last state to 200 digits (next row)";
+    if (!outcome.completed) {
+        const FailureKind kind = outcome.failure->kind;
+        row.outcome = kind == FailureKind::undecided || kind == FailureKind::tie ? "undecided" : "refused";
+        row.reason = fmt::format("{}: {}", to_string(kind), outcome.failure->message());
+    }
+    extreme::add(row);
+    if (found > 0) {
+        const auto last = extreme::inspect(family, parameter + ", last equilibrium", records.states.back());
+        BOOST_TEST((last && last->record.verdict == Verdict::proved));
     }
 }
 

@@ -35,9 +35,8 @@ Certificate full_certificate() {
 }
 
 void refuses_certificate(const std::string& text, const std::vector<std::string>& words) {
-    BOOST_TEST_CONTEXT(text) {
-        expect_bad_input([&] { (void)parse_certificate(text, "crafted.json"); }, words);
-    }
+    BOOST_TEST_INFO_SCOPE(text);
+    expect_bad_input([&] { (void)parse_certificate(text, "crafted.json"); }, words);
 }
 
 /// Spoils a text and gives it the digest that belongs to it then, as a forger would: taken from the reader's message.

@@ -100,9 +100,8 @@ BOOST_FIXTURE_TEST_CASE(a_flipped_bit_in_any_file_that_a_resume_needs_is_found, 
             const std::size_t at = random() % text.size();
             text[at] = static_cast<char>(text[at] ^ (1 << (random() % 7)));
             scratch::write(run / name, text);
-            BOOST_TEST_CONTEXT(name << " byte " << at) {
-                refused(name);
-            }
+            BOOST_TEST_INFO_SCOPE(name << " byte " << at);
+            refused(name);
         }
     }
     play(run, RunDirectory::Mode::resume, goal); // restored, it goes on

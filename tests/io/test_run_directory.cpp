@@ -206,18 +206,17 @@ BOOST_AUTO_TEST_CASE(an_interrupted_run_goes_on_to_the_same_files) {
     // the start.
     for (const long stop_at : {1L, 9L, 14L}) {
         for (const bool finish : {true, false}) {
-            BOOST_TEST_CONTEXT("stopped at arc " << stop_at << (finish ? "" : ", killed")) {
-                const fs::path path = folder / ("cut" + std::to_string(stop_at) + (finish ? "f" : "k"));
-                BOOST_TEST(!play(path, RunDirectory::Mode::fresh, stop_at, finish));
-                BOOST_TEST(scratch::read(path / "events.jsonl") != scratch::read(folder / "whole/events.jsonl"));
-                BOOST_TEST(play(path, RunDirectory::Mode::resume, -1, true));
-                BOOST_TEST(scratch::read(path / "events.jsonl") == scratch::read(folder / "whole/events.jsonl"));
-                BOOST_TEST(scratch::without_times(scratch::read(path / "equilibria.csv")) ==
-                           scratch::without_times(scratch::read(folder / "whole/equilibria.csv")));
-                for (const char* name : {"eq_000000.json", "eq_000002.json", "eq_000006.json", "last.json"}) {
-                    BOOST_TEST((scratch::read(path / "states" / name) == scratch::read(folder / "whole/states" / name)),
-                               name);
-                }
+            BOOST_TEST_INFO_SCOPE("stopped at arc " << stop_at << (finish ? "" : ", killed"));
+            const fs::path path = folder / ("cut" + std::to_string(stop_at) + (finish ? "f" : "k"));
+            BOOST_TEST(!play(path, RunDirectory::Mode::fresh, stop_at, finish));
+            BOOST_TEST(scratch::read(path / "events.jsonl") != scratch::read(folder / "whole/events.jsonl"));
+            BOOST_TEST(play(path, RunDirectory::Mode::resume, -1, true));
+            BOOST_TEST(scratch::read(path / "events.jsonl") == scratch::read(folder / "whole/events.jsonl"));
+            BOOST_TEST(scratch::without_times(scratch::read(path / "equilibria.csv")) ==
+                       scratch::without_times(scratch::read(folder / "whole/equilibria.csv")));
+            for (const char* name : {"eq_000000.json", "eq_000002.json", "eq_000006.json", "last.json"}) {
+                BOOST_TEST((scratch::read(path / "states" / name) == scratch::read(folder / "whole/states" / name)),
+                           name);
             }
         }
     }

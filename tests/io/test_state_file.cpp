@@ -49,9 +49,8 @@ std::string two_disk_text() {
 }
 
 void refuses_state(const std::string& text, const std::vector<std::string>& words) {
-    BOOST_TEST_CONTEXT(text) {
-        expect_bad_input([&] { (void)parse_state(text, "crafted.json"); }, words);
-    }
+    BOOST_TEST_INFO_SCOPE(text);
+    expect_bad_input([&] { (void)parse_state(text, "crafted.json"); }, words);
 }
 
 } // namespace

@@ -136,14 +136,13 @@ BOOST_AUTO_TEST_CASE(linear_gaps_make_every_cycle_of_the_load_reversible) {
             up.push_back(here);
             loads.push_back(sigma);
         }
-        BOOST_TEST_CONTEXT("seed " << seed << ", up to sigma2 = " << loads.back()) {
-            here = up.back();
-            for (std::size_t k = up.size() - 1; k-- > 0;) {
-                here = simplex(p, here.basis, here.u, loads[k], Rule::most_negative);
-                BOOST_REQUIRE(here.optimal);
-                BOOST_TEST((here.basis == up[k].basis));
-                BOOST_TEST((here.u - up[k].u).norm() < 1e-9);
-            }
+        BOOST_TEST_INFO_SCOPE("seed " << seed << ", up to sigma2 = " << loads.back());
+        here = up.back();
+        for (std::size_t k = up.size() - 1; k-- > 0;) {
+            here = simplex(p, here.basis, here.u, loads[k], Rule::most_negative);
+            BOOST_REQUIRE(here.optimal);
+            BOOST_TEST((here.basis == up[k].basis));
+            BOOST_TEST((here.u - up[k].u).norm() < 1e-9);
         }
     }
     BOOST_TEST(changes > 10); // a cycle without a rearrangement would prove nothing

@@ -38,15 +38,14 @@ void compare(const std::string& vertex, const std::string& expected, double tole
     BOOST_REQUIRE_EQUAL(run.records.equilibria.size(), rows.size());
     for (std::size_t k = 0; k < rows.size(); ++k) {
         const EquilibriumRecord& e = run.records.equilibria[k];
-        BOOST_TEST_CONTEXT("equilibrium " << k) {
-            BOOST_TEST(std::abs(e.stress - rows[k][1]) <= tolerance);
-            BOOST_TEST(std::abs(e.strain[1] - rows[k][2]) <= tolerance);
-            BOOST_TEST(std::abs(e.strain[0] - rows[k][3]) <= tolerance);
-            BOOST_TEST(e.backbone == static_cast<int>(rows[k][4]));
-            BOOST_TEST(e.rattlers == static_cast<int>(rows[k][5]));
-            BOOST_TEST(e.arcs == static_cast<int>(rows[k][6]));
-            BOOST_TEST((e.verdict == Verdict::proved));
-        }
+        BOOST_TEST_INFO_SCOPE("equilibrium " << k);
+        BOOST_TEST(std::abs(e.stress - rows[k][1]) <= tolerance);
+        BOOST_TEST(std::abs(e.strain[1] - rows[k][2]) <= tolerance);
+        BOOST_TEST(std::abs(e.strain[0] - rows[k][3]) <= tolerance);
+        BOOST_TEST(e.backbone == static_cast<int>(rows[k][4]));
+        BOOST_TEST(e.rattlers == static_cast<int>(rows[k][5]));
+        BOOST_TEST(e.arcs == static_cast<int>(rows[k][6]));
+        BOOST_TEST((e.verdict == Verdict::proved));
     }
 }
 

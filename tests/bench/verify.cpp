@@ -46,8 +46,7 @@ std::optional<Measured> measure(State state, long wanted) {
     RunDirectory directory(folder, header, RunDirectory::Mode::fresh, counters);
     Segment up;
     up.equilibria = 1;
-    RunOptions options;
-    options.max_strain = 1e9;
+    RunOptions options{.max_strain = 1e9};
     bench::Sample klu;
     for (int segment = 0; segment < 60 && counters.steps < wanted; ++segment) {
         directory.begin_segment(segment, up, 0, state.equilibrium);

@@ -318,8 +318,7 @@ BOOST_AUTO_TEST_CASE(a_force_near_zero_is_decided_by_a_higher_rung_or_not_at_all
     // The contact of disk 1 with the bottom carries F2 - t F1: here 0 to the last digit of a double, but t is
     // irrational.
     State state = two_disks(1, 2, 1, two_disks_limit(2));
-    CertifyOptions only_double;
-    only_double.highest = Rung::double_bound;
+    CertifyOptions only_double{.highest = Rung::double_bound};
     const Certification low = certify(state, only_double);
     BOOST_TEST((low.verdict == Verdict::undecided), all(low.claims.undecided));
     BOOST_TEST((low.claims.vertex && !low.claims.forces && !low.claims.stable));

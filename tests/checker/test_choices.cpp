@@ -13,9 +13,7 @@ namespace {
 
 /// Plays one segment under `choose` into a folder; how it ends does not matter.
 void play(const State& state, int equilibria, const fs::path& folder, std::uint64_t seed = 1) {
-    RunOptions options;
-    options.ties = TiePolicy::choose;
-    options.ties_seed = seed;
+    RunOptions options{.ties = TiePolicy::choose, .ties_seed = seed};
     (void)played::into(folder, state, {played::towards(equilibria)}, options);
 }
 

@@ -78,10 +78,7 @@ void play(const State& start, const std::vector<Segment>& segments, const fs::pa
     Certifying certifying(directory);
     RunObserver& observer = arcs ? static_cast<RunObserver&>(certifying) : directory;
     State state = start;
-    RunOptions options;
-    options.max_strain = 1e9;
-    options.certify = level;
-    options.ties = ties;
+    RunOptions options{.max_strain = 1e9, .certify = level, .ties = ties};
     for (std::size_t k = 0; k < segments.size(); ++k) {
         directory.begin_segment(static_cast<int>(k), segments[k], 0, counters.equilibria);
         const SegmentOutcome outcome =

@@ -17,10 +17,7 @@ namespace {
 /// Plays segments, each given by its equilibria, from a state into a folder.
 void play_and_store(const State& start, const std::vector<int>& segments, const std::filesystem::path& folder,
                     OpeningRule rule = OpeningRule::most_negative, TiePolicy ties = TiePolicy::stop) {
-    RunOptions options;
-    options.rule = rule;
-    options.ties = ties;
-    options.max_strain = 1e9;
+    RunOptions options{.rule = rule, .max_strain = 1e9, .ties = ties};
     std::vector<Segment> all;
     std::transform(segments.begin(), segments.end(), std::back_inserter(all), played::towards);
     const SegmentOutcome outcome = played::into(folder, start, all, options);

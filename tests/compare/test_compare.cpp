@@ -103,9 +103,7 @@ BOOST_AUTO_TEST_CASE(a_contact_that_nearly_closes_for_rigid_grains_is_a_tie_and_
          {std::tuple("tied", "tie", "the gaps of 5-20 are 0.0018 at most"), std::tuple("moved_on", "dynamics", "")}) {
         const std::string folder = scratch::data("departures/" + std::string(name));
         compare::SeriesReader reader(folder + "/series.toml");
-        compare::CompareOptions options;
-        options.bundle = 0;
-        options.start = read_any_state(folder + "/start.json").state;
+        compare::CompareOptions options{.start = read_any_state(folder + "/start.json").state, .bundle = 0};
         const Comparison result = compare::compare(reader, options);
         BOOST_TEST_REQUIRE(result.departure.has_value());
         BOOST_TEST(result.departure->opened.size() == 1U);

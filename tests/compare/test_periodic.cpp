@@ -66,9 +66,7 @@ class PeriodicSeries {
                                    cell, tilted_ && !cell.empty() ? "kind = \"tilted\"\n" : "", stiffness,
                                    reference_[0], reference_[1]));
         compare::SeriesReader reader(*folder_ / "series.toml");
-        compare::CompareOptions options;
-        options.bundle = 2;
-        options.start = start;
+        compare::CompareOptions options{.start = start, .bundle = 2};
         return compare::compare(reader, options);
     }
 

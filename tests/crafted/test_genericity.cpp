@@ -17,10 +17,7 @@ ExactPacking example(const std::string& name) {
 Genericity perturbed(const ExactPacking& exact, int samples, double size, bool tilt = false) {
     const auto contacts = exact_contacts(exact);
     BOOST_REQUIRE(contacts.ok());
-    GenericityOptions options;
-    options.samples = samples;
-    options.size = size;
-    options.tilt = tilt;
+    GenericityOptions options{.samples = samples, .size = size, .tilt = tilt};
     return genericity(approximate(exact), contacts.value(), options);
 }
 
@@ -105,10 +102,7 @@ BOOST_AUTO_TEST_CASE(equal_radii_that_stay_equal_are_never_called_isostatic) {
     // Square lattice: a scaled copy, h = 4. Two sizes: two self-stresses are left for every ratio of the radii.
     for (const char* name : {"square_lattice_3.toml", "interstitial_lattice.toml"}) {
         const ExactPacking exact = example(name);
-        GenericityOptions options;
-        options.samples = 10;
-        options.size = 1e-3;
-        options.keep_equal = true;
+        GenericityOptions options{.samples = 10, .size = 1e-3, .keep_equal = true};
         const auto contacts = exact_contacts(exact).value();
         const Genericity equal = genericity(approximate(exact), contacts, options);
         options.keep_equal = false;
@@ -176,19 +170,16 @@ BOOST_AUTO_TEST_CASE(a_packing_or_an_option_that_does_not_fit_is_refused) {
     const auto box = approximate(example("two_disks.toml"));
     BOOST_CHECK_THROW((void)genericity(approximate(example("arch.toml")), {}, {}), isostat::Error);
     for (const double size : {-1.0, 0.5, 1e300}) {
-        GenericityOptions options;
-        options.size = size;
+        GenericityOptions options{.size = size};
         BOOST_CHECK_THROW((void)genericity(box, {}, options), isostat::Error);
     }
-    GenericityOptions tilt;
-    tilt.tilt = true;
+    GenericityOptions tilt{.tilt = true};
     BOOST_CHECK_THROW((void)genericity(box, {}, tilt), isostat::Error);
     BOOST_CHECK_THROW((void)genericity(approximate(example("channel_one_disk.toml")), {}, tilt), isostat::Error);
     auto half = approximate(example("cell_hexagonal_row.toml"));
     half.cell.period_moves = {true, false};
     BOOST_CHECK_THROW((void)genericity(half, {}, {}), isostat::Error);
-    GenericityOptions none;
-    none.samples = 0;
+    GenericityOptions none{.samples = 0};
     BOOST_CHECK_THROW((void)genericity(box, {}, none), isostat::Error);
 }
 

@@ -25,8 +25,7 @@ PreparationOptions disks_of(int count, double smallest = 1, double largest = 2) 
 /// One row for a run; the state where it ends is a row of its own, checked to 200 digits. W never grows.
 void follow(const std::string& family, const std::string& parameter, State state, const Segment& segment) {
     BOOST_TEST_INFO_SCOPE(family << ", " << parameter);
-    RunOptions options;
-    options.max_arcs = 2000;
+    RunOptions options{.max_arcs = 2000};
     options.max_strain = 1e3; // towards extreme ratios the box becomes a column
     RunCounters counters;
     crafted::Recorder records;
@@ -129,9 +128,7 @@ BOOST_AUTO_TEST_CASE(soft_grains_of_any_stiffness_choose_their_step) {
         row.family = "stiff dynamics";
         row.disks = 30;
         row.rung = "none";
-        SoftGrainOptions options;
-        options.stiffness_ratio = kappa;
-        options.max_steps = 400'000;
+        SoftGrainOptions options{.stiffness_ratio = kappa, .max_steps = 400'000};
         const extreme::Clock clock;
         SoftGrains soft(start->packing, start->load, options);
         const bool relaxed = soft.relax();

@@ -40,8 +40,7 @@ void play(const fs::path& folder) {
     Segment segment;
     segment.direction = -1;
     segment.equilibria = 1;
-    RunOptions options;
-    options.max_strain = 1e9;
+    RunOptions options{.max_strain = 1e9};
     directory.begin_segment(0, segment, 0, 0);
     const SegmentOutcome outcome = run_segment(state, segment, 0, options, counters, directory);
     BOOST_TEST_REQUIRE(outcome.completed);

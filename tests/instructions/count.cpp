@@ -31,8 +31,7 @@ int main(int argc, char** argv) {
     RunCounters counters;
     Segment segment;
     segment.equilibria = std::atoi(argv[2]);
-    RunOptions options;
-    options.certify = level == "arcs" ? CertifyLevel::arcs : CertifyLevel::decisions;
+    RunOptions options{.certify = level == "arcs" ? CertifyLevel::arcs : CertifyLevel::decisions};
     const auto outcome = run_segment(state, segment, 0, options, counters, observer);
     fmt::print("{}\n", counters.steps);
     return outcome.completed ? 0 : 1;

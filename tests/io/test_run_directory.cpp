@@ -14,14 +14,13 @@ namespace fs = std::filesystem;
 namespace {
 
 RunHeader header() {
-    RunHeader h;
-    h.program = "isostat test";
-    h.command = "isostat run";
-    h.scene_name = "test.toml";
-    h.scene_text = "text";
-    h.programme = {"up"};
-    h.keep = {2};
-    h.checkpoint_seconds = 0;
+    RunHeader h{.program = "isostat test",
+                .command = "isostat run",
+                .scene_name = "test.toml",
+                .scene_text = "text",
+                .programme = {"up"},
+                .keep = {2},
+                .checkpoint_seconds = 0};
     return h;
 }
 
@@ -65,8 +64,7 @@ bool play(const fs::path& path, RunDirectory::Mode mode, long stop_at, bool fini
         made = point->made;
     }
     std::atomic<bool> stop{false};
-    RunOptions options;
-    options.stop = &stop;
+    RunOptions options{.stop = &stop};
     Stopper stopper(directory, stop, stop_at);
     directory.begin_segment(0, up(6), made, state.equilibrium);
     const SegmentOutcome outcome = run_segment(state, up(6 - made), 0, options, counters, stopper);

@@ -74,8 +74,7 @@ inline ReferencePath reference_path(const State& start, int equilibria) {
     State state = start;
     Segment segment;
     segment.equilibria = equilibria;
-    RunOptions options;
-    options.certify = CertifyLevel::arcs;
+    RunOptions options{.certify = CertifyLevel::arcs};
     RunCounters counters;
     const SegmentOutcome outcome = run_segment(state, segment, 0, options, counters, records);
     if (outcome.failure) {

@@ -11,8 +11,7 @@ using namespace isostat;
 constexpr int many = 20000;
 
 DiameterLaw law_of(RadiiLaw kind) {
-    DiameterLaw law;
-    law.kind = kind;
+    DiameterLaw law{.kind = kind};
     return law;
 }
 

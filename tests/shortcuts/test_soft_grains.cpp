@@ -14,8 +14,7 @@ using namespace crafted;
 namespace {
 
 SoftGrainOptions at_ratio(double kappa) {
-    SoftGrainOptions options;
-    options.stiffness_ratio = kappa;
+    SoftGrainOptions options{.stiffness_ratio = kappa};
     return options;
 }
 

@@ -101,8 +101,7 @@ BOOST_AUTO_TEST_CASE(sequences_of_an_independent_program) {
 }
 
 BOOST_AUTO_TEST_CASE(every_arc_is_certified_with_its_power) {
-    RunOptions options;
-    options.certify = CertifyLevel::arcs;
+    RunOptions options{.certify = CertifyLevel::arcs};
     int parts = 0; // arcs of rattlers
     for (const std::string& name : names) {
         for (const int pin : {0, 8, 9}) {
@@ -197,8 +196,7 @@ BOOST_AUTO_TEST_CASE(true_stresses_open_the_same_contacts_at_the_same_ratio_of_f
         State state = start_of(name);
         const Played nominal = play(state, +1, 3);
         state.load.kind = LoadKind::true_stress;
-        RunOptions options;
-        options.certify = CertifyLevel::arcs;
+        RunOptions options{.certify = CertifyLevel::arcs};
         const Played present = play(state, +1, 3, {}, options);
         BOOST_TEST_REQUIRE(present.outcome.completed, present.why());
         BOOST_TEST_REQUIRE(present.records.arcs.size() == nominal.records.arcs.size());

@@ -178,10 +178,7 @@ BOOST_AUTO_TEST_CASE(a_run_chooses_as_often_as_it_may_and_then_ends_undecided) {
         State state = start;
         Segment segment;
         segment.equilibria = 3;
-        RunOptions options;
-        options.ties = TiePolicy::choose;
-        options.ties_seed = 1;
-        options.max_choices = cap;
+        RunOptions options{.ties = TiePolicy::choose, .ties_seed = 1, .max_choices = cap};
         course.outcome = run_segment(state, segment, 0, options, course.counters, recorder);
         return course;
     };

@@ -10,8 +10,7 @@ using namespace ::crafted;
 namespace {
 
 RunOptions with_arcs() {
-    RunOptions options;
-    options.certify = CertifyLevel::arcs;
+    RunOptions options{.certify = CertifyLevel::arcs};
     return options;
 }
 
@@ -104,8 +103,7 @@ BOOST_AUTO_TEST_CASE(a_run_that_is_stopped_shows_no_arc_that_was_steered_ahead, 
     const Threads threads(2);
     for (const long at : {1L, 4L, 9L, 14L}) {
         Stopper stopper(at);
-        RunOptions options;
-        options.stop = &stopper.stop;
+        RunOptions options{.stop = &stopper.stop};
         State state = start;
         RunCounters counters;
         Segment segment;
@@ -160,8 +158,7 @@ BOOST_AUTO_TEST_CASE(a_power_that_turns_within_the_first_step_is_found_whatever_
     // At equilibrium 59 the power of a limit arc grows from 0 and turns within a tenth of a radius.
     std::vector<std::pair<Contact, Contact>> events;
     for (const double fraction : {0.1, 0.01}) {
-        RunOptions options;
-        options.step_fraction = fraction;
+        RunOptions options{.step_fraction = fraction};
         Played run = play(prepared(100, 1), +1, 40, {}, options);
         Segment down;
         down.direction = -1;

@@ -89,9 +89,7 @@ Stretch run_stretch(const State& from, const StretchOptions& options) {
     State state = from;
     Segment segment;
     segment.equilibria = options.equilibria;
-    RunOptions run;
-    run.certify = options.level;
-    run.stop = &watcher.stop;
+    RunOptions run{.certify = options.level, .stop = &watcher.stop};
     set_threads(options.threads);
     const double begin = watcher.time();
     const double process_begin = process_milliseconds();

@@ -125,9 +125,7 @@ bool soft_grains(const Settings& settings) {
                     ++sum.states;
                     Load load = exact.states[k].load;
                     load.stress[1] = sigma;
-                    SoftGrainOptions options;
-                    options.stiffness_ratio = kappa;
-                    options.max_steps = 3'000'000;
+                    SoftGrainOptions options{.stiffness_ratio = kappa, .max_steps = 3'000'000};
                     double begin = cpu_seconds();
                     SoftGrains soft(exact.states[k].packing, load, options);
                     const bool relaxed = soft.relax();

@@ -28,7 +28,7 @@ inline Outcome run(const std::vector<std::string>& arguments, const std::string&
     for (const std::string& argument : arguments) {
         line += " " + quoted(argument);
     }
-    line += " >" + quoted((folder / "out").string()) + " 2>" + quoted((folder / "err").string()) + " </dev/null";
+    line += " >" + quoted(folder.at("out")) + " 2>" + quoted(folder.at("err")) + " </dev/null";
     const int status = std::system(line.c_str());
     Outcome outcome;
     outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);

@@ -24,10 +24,10 @@ BOOST_AUTO_TEST_CASE(runs_killed_again_and_again_at_random_instants_end_with_the
     std::mt19937 random(8);
     for (const std::string& level : {std::string("decisions"), std::string("arcs")}) {
         const scratch::Folder folder;
-        const std::string file = (folder / "s.toml").string();
+        const std::string file = folder.at("s.toml");
         scratch::write_scene(file, scene(level));
         const auto begin = std::chrono::steady_clock::now();
-        expect(run({"run", file, "-o", (folder / "whole").string(), "-q"}), 0);
+        expect(run({"run", file, "-o", folder.at("whole"), "-q"}), 0);
         const std::chrono::duration<double> whole = std::chrono::steady_clock::now() - begin;
         const fs::path out = folder / "cut";
         int kills = 0;
@@ -56,10 +56,10 @@ BOOST_AUTO_TEST_CASE(runs_killed_again_and_again_at_random_instants_end_with_the
 
 BOOST_AUTO_TEST_CASE(a_limit_of_the_file_size_is_a_failed_write_and_the_run_goes_on_later) {
     const scratch::Folder folder;
-    const std::string file = (folder / "s.toml").string();
+    const std::string file = folder.at("s.toml");
     scratch::write_scene(file, scene("decisions"));
-    expect(run({"run", file, "-o", (folder / "whole").string(), "-q"}), 0);
-    const std::string out = (folder / "cut").string();
+    expect(run({"run", file, "-o", folder.at("whole"), "-q"}), 0);
+    const std::string out = folder.at("cut");
     // 20 blocks of 512 bytes: room for the start, not for all events.
     const Outcome full = run({"run", file, "-o", out, "-q"}, "ulimit -f 20; ");
     expect(full, 74, {"cannot write"});
@@ -69,7 +69,7 @@ BOOST_AUTO_TEST_CASE(a_limit_of_the_file_size_is_a_failed_write_and_the_run_goes
 
 BOOST_AUTO_TEST_CASE(the_levels_leave_what_they_promise) {
     const scratch::Folder folder;
-    const std::string file = (folder / "s.toml").string();
+    const std::string file = folder.at("s.toml");
     for (const std::string& level : {std::string("decisions"), std::string("states"), std::string("arcs")}) {
         scratch::write_scene(file, scene(level));
         const fs::path out = folder / level;
@@ -89,7 +89,7 @@ BOOST_AUTO_TEST_CASE(the_levels_leave_what_they_promise) {
         BOOST_TEST((plan.out.find("proof   arcs") < plan.out.find("left out")) == (level == "arcs"));
     }
     scratch::write_scene(file, scene("everything"));
-    expect(run({"run", file, "-o", (folder / "none").string(), "-q"}), 65, {"certify", "decisions"});
+    expect(run({"run", file, "-o", folder.at("none"), "-q"}), 65, {"certify", "decisions"});
 }
 
 BOOST_AUTO_TEST_SUITE_END()

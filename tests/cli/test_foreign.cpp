@@ -56,7 +56,7 @@ BOOST_AUTO_TEST_CASE(plateau_says_what_is_wrong_with_walls_and_pseudo_atoms) {
 
 BOOST_AUTO_TEST_CASE(rows_are_selected_by_a_column) {
     const scratch::Folder folder;
-    const std::string file = (folder / "start.data").string();
+    const std::string file = folder.at("start.data");
     scratch::write(file, "disks and a wall\n\n3 atoms\n2 atom types\n\n-4 9 xlo xhi\n-4 9 ylo yhi\n-0.5 0.5 zlo zhi\n\n"
                          "Atoms # sphere\n\n1 1 2 1 1 1 0\n2 1 2 1 3 1 0\n3 2 1 1 8 -2 0\n");
     const auto all = run({"plateau", file});
@@ -75,7 +75,7 @@ BOOST_AUTO_TEST_CASE(rows_are_selected_by_a_column) {
 
 BOOST_AUTO_TEST_CASE(plateau_of_a_table_with_walls_in_text_json_and_csv) {
     const scratch::Folder folder;
-    const std::string file = (folder / "disks.csv").string();
+    const std::string file = folder.at("disks.csv");
     scratch::write(file, three_disks("x,y,diameter\n", "2"));
     // 0-0-0: the box fits to rounding; the top wall touches disk 2.
     const std::vector<std::string> command{"plateau",
@@ -85,7 +85,7 @@ BOOST_AUTO_TEST_CASE(plateau_of_a_table_with_walls_in_text_json_and_csv) {
                                            "--box=-0.5:3.5,-3:0.7320508075688774",
                                            "--thresholds=-1e-9:1e-3",
                                            "--csv",
-                                           (folder / "table.csv").string()};
+                                           folder.at("table.csv")};
     auto arguments = command;
     says(run(arguments), 0, {"diameter from column 'diameter'", "left and bottom fixed, right and top movable"});
     const std::string table = scratch::read(folder / "table.csv");
@@ -101,7 +101,7 @@ BOOST_AUTO_TEST_CASE(plateau_of_a_table_with_walls_in_text_json_and_csv) {
 
 BOOST_AUTO_TEST_CASE(what_the_user_must_state_is_asked_for) {
     const scratch::Folder folder;
-    const std::string file = (folder / "disks.txt").string();
+    const std::string file = folder.at("disks.txt");
     scratch::write(file, three_disks("", "1"));
     expect(run({"plateau", file}), 65, {"disks.txt:1", "--columns x,y,r"});
     expect(run({"plateau", file, "--columns", "x,y,r"}), 1);
@@ -125,16 +125,16 @@ BOOST_AUTO_TEST_CASE(what_the_user_must_state_is_asked_for) {
         expect(run(arguments), 64);
     }
     expect(run({"plateau", scratch::data("vertex100.txt"), "--walls", "box"}), 64, {"vertex", "--walls"});
-    expect(run({"plateau", (folder / "none.txt").string()}), 65, {"none.txt"});
-    expect(run({"plateau", file, "--columns", "x,y,r", "--csv", (folder / "no/where.csv").string()}), 74);
+    expect(run({"plateau", folder.at("none.txt")}), 65, {"none.txt"});
+    expect(run({"plateau", file, "--columns", "x,y,r", "--csv", folder.at("no/where.csv")}), 74);
     BOOST_TEST(!std::filesystem::exists(folder / "no"));
 }
 
 BOOST_AUTO_TEST_CASE(genericity_of_a_lattice_of_equal_disks) {
     const scratch::Folder folder;
     const std::string lattice = packings + "square_lattice_3.toml";
-    says(run({"genericity", lattice, "--samples", "10", "--size", "1e-3,1e-12", "--csv", (folder / "g.csv").string()}),
-         0, {"h = 4, k = 0"});
+    says(run({"genericity", lattice, "--samples", "10", "--size", "1e-3,1e-12", "--csv", folder.at("g.csv")}), 0,
+         {"h = 4, k = 0"});
     const std::string table = scratch::read(folder / "g.csv");
     BOOST_TEST(std::count(table.begin(), table.end(), '\n') == 21);
     BOOST_TEST(contains(table, "proved"));
@@ -154,7 +154,7 @@ BOOST_AUTO_TEST_CASE(genericity_refuses_what_it_cannot_perturb) {
     expect(run({"genericity", packings + "two_disks.toml", "--samples", "0"}), 64, {"--samples", "is 0"});
     const scratch::Folder folder;
     scratch::write(folder / "x.csv", "x,y,r\n1,1,1\n");
-    expect(run({"genericity", (folder / "x.csv").string()}), 65,
+    expect(run({"genericity", folder.at("x.csv")}), 65,
            {"isostat import makes a state of a packing of another program"});
 }
 

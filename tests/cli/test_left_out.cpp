@@ -32,7 +32,7 @@ BOOST_AUTO_TEST_CASE(what_plan_leaves_out_is_not_done) {
             continue; // for `isostat prepare`
         }
         const scratch::Folder folder;
-        expect(run({"run", entry.path().string(), "-o", (folder / "r").string(), "-q"}), 0);
+        expect(run({"run", entry.path().string(), "-o", folder.at("r"), "-q"}), 0);
         const json work = json::parse(scratch::read(folder / "r/work.json"))["counts"];
         ++runs;
         for (const json& part : plan["plan"]) {
@@ -72,8 +72,8 @@ BOOST_AUTO_TEST_CASE(two_small_scenes_cost_what_they_did_with_any_number_of_thre
     for (const auto& [scene, expected] : known) {
         for (const char* threads : {"1", "3"}) {
             const scratch::Folder folder;
-            expect(run({"run", std::string(ISOSTAT_EXAMPLES) + "/plans/" + scene + ".toml", "-o",
-                        (folder / "r").string(), "-q", "--threads", threads}),
+            expect(run({"run", std::string(ISOSTAT_EXAMPLES) + "/plans/" + scene + ".toml", "-o", folder.at("r"), "-q",
+                        "--threads", threads}),
                    0);
             const json work = json::parse(scratch::read(folder / "r/work.json"))["counts"];
             BOOST_TEST_INFO_SCOPE(scene << ", threads " << threads);

@@ -29,8 +29,8 @@ std::set<std::string> options_of(const std::string& command) {
 std::set<std::string> offered(const std::string& words, int at) {
     const scratch::Folder folder;
     scratch::write(folder / "completion", run({"--completion"}).out);
-    const std::string out = (folder / "out").string();
-    const std::string line = "bash -c 'source " + (folder / "completion").string() + "; COMP_WORDS=(" + words +
+    const std::string out = folder.at("out");
+    const std::string line = "bash -c 'source " + folder.at("completion") + "; COMP_WORDS=(" + words +
                              "); COMP_CWORD=" + std::to_string(at) +
                              "; _isostat; printf \"%s\\n\" \"${COMPREPLY[@]}\"' >" + out;
     BOOST_TEST_REQUIRE(std::system(line.c_str()) == 0);

@@ -13,8 +13,7 @@ namespace {
 fs::path ensemble(const scratch::Folder& folder) {
     scratch::write(folder / "s.toml", "[packing]\ndisks = 30\n[[programme]]\ndo = \"up\"\nequilibria = 3\n[output]\n"
                                       "pictures = false\n");
-    expect(run({"ensemble", (folder / "s.toml").string(), "--samples", "3", "-o", (folder / "many").string(), "-q"}),
-           0);
+    expect(run({"ensemble", folder.at("s.toml"), "--samples", "3", "-o", folder.at("many"), "-q"}), 0);
     return folder / "many";
 }
 
@@ -73,7 +72,7 @@ BOOST_AUTO_TEST_CASE(report_takes_an_ensemble) {
         BOOST_TEST(fs::exists(many / seed(number) / "figures/trajectory.html"));
     }
     fs::remove(many / seed(2) / "run.json");
-    expect(run({"report", many.string(), "--no-charts", "-o", (folder / "out").string()}), 65, {"seed 2", "not begun"});
+    expect(run({"report", many.string(), "--no-charts", "-o", folder.at("out")}), 65, {"seed 2", "not begun"});
     BOOST_TEST(fs::exists(folder / "out/seed_000003/report.txt")); // the others are reported
     BOOST_TEST(!fs::exists(folder / "out/seed_000002"));
 }

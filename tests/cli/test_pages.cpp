@@ -106,7 +106,7 @@ std::set<std::string> expected_names(const Outcome& outcome, const std::string& 
 std::set<std::string> known_keys(const std::string& name, const std::string& scene) {
     const scratch::Folder folder;
     scratch::write(folder / "s.toml", scene);
-    return expected_names(run({"plan", (folder / "s.toml").string()}), " in [" + name + "]");
+    return expected_names(run({"plan", folder.at("s.toml")}), " in [" + name + "]");
 }
 
 /// What a page has between a line "```LANGUAGE" and the next "```"; from the first such line after `after`.
@@ -190,8 +190,7 @@ BOOST_AUTO_TEST_CASE(the_page_of_files_has_every_column_and_every_field) {
     same(kinds, matches(row.substr(row.find("| ", 3), row.find('\n') - row.find("| ", 3)), "`([^`]+)`"), "kinds");
     const scratch::Folder folder;
     scratch::write(folder / "s.json", R"({"format": "isostat-state", "version": 2, "no_such_key": 1})");
-    same(expected_names(run({"inspect", (folder / "s.json").string()}), ""), first_column(section(page, "## States")),
-         "states");
+    same(expected_names(run({"inspect", folder.at("s.json")}), ""), first_column(section(page, "## States")), "states");
 }
 
 BOOST_AUTO_TEST_CASE(links_of_the_pages_lead_somewhere) {
@@ -253,7 +252,7 @@ BOOST_AUTO_TEST_CASE(the_page_of_files_has_every_key_of_a_manifest) {
             text.insert(text.find('\n', at) + 1, "no_such_key = 1\n");
         }
         scratch::write(folder / "series.toml", text);
-        const auto known = expected_names(run({"compare", (folder / "series.toml").string()}), " in [" + section + "]");
+        const auto known = expected_names(run({"compare", folder.at("series.toml")}), " in [" + section + "]");
         same(known, {keys.begin(), keys.end()}, section);
     }
 }

@@ -17,7 +17,7 @@ std::string scene(const std::string& packing, int equilibria) {
 /// Runs a scene in a folder of its own; the folder of the run is `run` in it.
 Outcome run_scene(const scratch::Folder& folder, const std::string& text) {
     scratch::write_scene(folder / "s.toml", text);
-    return run({"run", (folder / "s.toml").string(), "-o", (folder / "run").string(), "-q", "--force"});
+    return run({"run", folder.at("s.toml"), "-o", folder.at("run"), "-q", "--force"});
 }
 
 std::string mixture(int seed, const std::string& jitter) {
@@ -46,7 +46,7 @@ BOOST_AUTO_TEST_CASE(every_law_is_prepared_and_run) {
         expect(run_scene(folder, law == from_file ? scratch::replaced(text, "disks = 100\n", "") : text), 0);
         const std::string rows = scratch::read(folder / "run/equilibria.csv");
         BOOST_TEST(std::count(rows.begin(), rows.end(), '\n') == 5); // names, the start, three equilibria
-        expect(run({"verify", (folder / "run").string()}), 0);
+        expect(run({"verify", folder.at("run")}), 0);
     }
 }
 
@@ -76,11 +76,11 @@ BOOST_AUTO_TEST_CASE(nearly_equal_disks_are_followed_where_contacts_are_nearly_s
         const scratch::Folder folder;
         const std::string text = "law = \"equal\"\njitter = 1e-9\nseed = " + std::to_string(seed) + "\n";
         expect(run_scene(folder, scratch::replaced(scene(text, 12), "disks = 100", "disks = 36")), 0);
-        says(run({"verify", (folder / "run").string()}), 0, {"ends proved"});
+        says(run({"verify", folder.at("run")}), 0, {"ends proved"});
     }
     const scratch::Folder folder; // a force is known in double to 0.2 % only: a bound that says too little
     expect(run_scene(folder, scene("law = \"equal\"\njitter = 1e-9\nseed = 3\n", 22)), 0);
-    expect(run({"verify", (folder / "run").string()}), 0);
+    expect(run({"verify", folder.at("run")}), 0);
 }
 
 std::string equal_disks(int disks, int seed) {
@@ -126,7 +126,7 @@ BOOST_AUTO_TEST_CASE(equal_disks_are_prepared_and_followed_where_ties_are_chosen
                                   : std::vector<std::string>{"supports every load"});
         const auto start = nlohmann::json::parse(scratch::read(folder / "run/start.json"));
         BOOST_TEST(start.at("provenance").contains("ties_left_to_the_run"));
-        const std::string verdict = run({"verify", (folder / "run").string()}).out;
+        const std::string verdict = run({"verify", folder.at("run")}).out;
         BOOST_TEST((contains(verdict, "ends proved") || contains(verdict, "verdict        proved")), verdict);
         if (sample.disks == 36) {
             forge_rest(folder / "run");
@@ -141,7 +141,7 @@ BOOST_AUTO_TEST_CASE(a_hundred_equal_disks_are_prepared_where_ties_are_chosen, *
         BOOST_TEST_INFO_SCOPE("seed " << seed);
         const scratch::Folder folder;
         expect(run_scene(folder, scratch::replaced(equal_disks(100, seed), "equilibria = 30", "equilibria = 1")), 0);
-        expect(run({"verify", (folder / "run").string()}), 0);
+        expect(run({"verify", folder.at("run")}), 0);
     }
 }
 
@@ -178,8 +178,8 @@ BOOST_AUTO_TEST_CASE(every_tie_offers_a_jitter) {
     expect(run_scene(folder, scene_from("zero.json", "[[programme]]\ndo = \"down\"\nequilibria = 1\n")), 2,
            {"tie: ", "the force is exactly 0", given});
     scratch::write(folder / "square.csv", "x,y,r\n1,1,1\n3,1,1\n1,3,1\n3,3,1\n");
-    const std::string out = (folder / "s.json").string();
-    expect(run({"import", (folder / "square.csv").string(), "--box", "0:4,0:4", "--contacts", "nearest", "-o", out}), 2,
+    const std::string out = folder.at("s.json");
+    expect(run({"import", folder.at("square.csv"), "--box", "0:4,0:4", "--contacts", "nearest", "-o", out}), 2,
            {"equal radii: try --jitter 1e-9"});
     BOOST_TEST(!fs::exists(out));
 }
@@ -188,7 +188,7 @@ BOOST_AUTO_TEST_CASE(the_plan_offers_a_jitter_for_equal_radii_only) {
     const scratch::Folder folder;
     const auto planned = [&](const std::string& packing) {
         scratch::write(folder / "s.toml", "[packing]\n" + packing);
-        const Outcome outcome = run({"plan", (folder / "s.toml").string()});
+        const Outcome outcome = run({"plan", folder.at("s.toml")});
         expect(outcome, 0);
         return outcome.out;
     };

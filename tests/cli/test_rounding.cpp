@@ -49,7 +49,7 @@ BOOST_AUTO_TEST_CASE(nor_is_it_in_a_mirror_elsewhere_or_of_another_size) {
         options.size = SizeStatement{SizeMeaning::radius, "", std::stod(radius_of_13)};
         return read_foreign(file_of("square13.txt"), options);
     }();
-    const std::string file = (folder / "p.txt").string();
+    const std::string file = folder.at("p.txt");
     for (int k = 0; k < 24; ++k) {
         const double scale = 0.3 + 0.37 * k, shift = 0.1 * k * k, sign = k % 2 == 0 ? 1 : -1;
         const int digits = k % 3 == 0 ? 17 : k % 3 == 1 ? 12 : 8;
@@ -80,7 +80,7 @@ BOOST_AUTO_TEST_CASE(plateau_stays_within_its_thresholds) {
 
 BOOST_AUTO_TEST_CASE(an_imported_state_says_what_its_file_cannot_tell) {
     const scratch::Folder folder;
-    const std::string state = (folder / "s.json").string();
+    const std::string state = folder.at("s.json");
     for (const auto& [name, gaps] : {std::pair{"torus7.xyz", 8}, {"torus8.xyz", 1}, {"torus11.xyz", 1}}) {
         BOOST_TEST_INFO_SCOPE(name);
         const auto answer = json_of(run({"import", file_of(name), "--cell", "isotropic", "-o", state, "--json"}), 2);
@@ -89,7 +89,7 @@ BOOST_AUTO_TEST_CASE(an_imported_state_says_what_its_file_cannot_tell) {
         BOOST_TEST(answer.at("untold").at("verdict_of_the_doubles") == "proved");
         says(run({"inspect", state}), 2,
              {"isostatic equilibrium    undecided: ", "jammed strictly          undecided: "});
-        says(run({"certify", state, "-o", (folder / "c.json").string()}), 2,
+        says(run({"certify", state, "-o", folder.at("c.json")}), 2,
              {"undecided      the claims are of the stored doubles"});
     }
     // A forged rounding is no way round it.
@@ -101,7 +101,7 @@ BOOST_AUTO_TEST_CASE(an_imported_state_says_what_its_file_cannot_tell) {
 
 BOOST_AUTO_TEST_CASE(where_every_gap_is_told_the_answer_is_that_of_the_doubles) {
     const scratch::Folder folder;
-    const std::string state = (folder / "s.json").string();
+    const std::string state = folder.at("s.json");
     const auto answer =
         json_of(run({"import", scratch::data("yade20.txt"), "--box", "0:6.797743980394215,0:6.804741233269178", "-o",
                      state, "--stress", "1,1", "--json"}));
@@ -114,7 +114,7 @@ BOOST_AUTO_TEST_CASE(where_every_gap_is_told_the_answer_is_that_of_the_doubles) 
 
 BOOST_AUTO_TEST_CASE(sizes_that_are_wrong_by_a_factor_are_pointed_at) {
     const scratch::Folder folder;
-    const std::string state = (folder / "s.json").string(), file = file_of("half_radii.xyz");
+    const std::string state = folder.at("s.json"), file = file_of("half_radii.xyz");
     const Outcome shown = run({"plateau", file});
     expect(shown, 2); // no range of thresholds, nothing is known of the list
     BOOST_TEST(contains(shown.out, "are the sizes wrong by a factor"), shown.out);

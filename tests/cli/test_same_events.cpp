@@ -18,8 +18,8 @@ void replay(int disks, int seed, int equilibria) {
     const scratch::Folder folder;
     BOOST_TEST_INFO_SCOPE(disks << " disks, seed " << seed);
     scratch::write(folder / "scene.toml", scene(disks, seed, equilibria));
-    const std::string out = (folder / "run").string();
-    expect(run({"run", (folder / "scene.toml").string(), "-o", out, "-q"}), 0);
+    const std::string out = folder.at("run");
+    expect(run({"run", folder.at("scene.toml"), "-o", out, "-q"}), 0);
     const std::string events = scratch::read(folder / "run/events.jsonl");
     const auto arcs = std::count(events.begin(), events.end(), '\n');
     const Outcome verified = run({"verify", out, "--json"});
@@ -46,8 +46,8 @@ BOOST_AUTO_TEST_CASE(verify_proves_which_end_of_a_straight_strut_opens_and_refut
                      *boost::unit_test::label("slow")) {
     const scratch::Folder folder;
     scratch::write(folder / "scene.toml", scene(100, 4, 8));
-    const std::string out = (folder / "run").string();
-    expect(run({"run", (folder / "scene.toml").string(), "-o", out, "-q"}), 0);
+    const std::string out = folder.at("run");
+    expect(run({"run", folder.at("scene.toml"), "-o", out, "-q"}), 0);
     expect(run({"verify", out}), 0);
     const std::string events = scratch::read(folder / "run/events.jsonl");
     const std::size_t turn = events.find("\"power_turn\":true");

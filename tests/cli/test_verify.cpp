@@ -14,7 +14,7 @@ BOOST_AUTO_TEST_SUITE(cli)
 BOOST_AUTO_TEST_CASE(verify_answers_for_every_claim_of_a_certificate) {
     const scratch::Folder folder;
     const std::string state = scratch::data("vertex100.txt");
-    const std::string good = (folder / "good.json").string();
+    const std::string good = folder.at("good.json");
     expect(run({"certify", state, "-o", good}), 0);
     expect(run({"verify", good}), 0);
     const auto answer = json_of(run({"verify", good, "--input", state, "--json"}));
@@ -30,12 +30,12 @@ BOOST_AUTO_TEST_CASE(verify_answers_for_every_claim_of_a_certificate) {
 
     // Another input than the one that is named.
     scratch::write(folder / "other.txt", scratch::read(state) + "\n");
-    says(run({"verify", good, "--input", (folder / "other.txt").string()}), 1, {"refuted"});
+    says(run({"verify", good, "--input", folder.at("other.txt")}), 1, {"refuted"});
 }
 
 BOOST_AUTO_TEST_CASE(verify_tells_altered_false_and_incomplete_certificates_apart) {
     const scratch::Folder folder;
-    const std::string file = (folder / "certificate.json").string();
+    const std::string file = folder.at("certificate.json");
     expect(run({"certify", scratch::data("vertex100.txt"), "-o", file}), 0);
     const isostat::Certificate original = isostat::read_certificate(file);
 
@@ -53,15 +53,15 @@ BOOST_AUTO_TEST_CASE(verify_tells_altered_false_and_incomplete_certificates_apar
     says(run({"verify", file}), 2, {"load_interval  absent"});
 
     expect(run({"verify", scratch::data("vertex100.txt")}), 65, {"vertex100.txt", "JSON"});
-    expect(run({"verify", (folder / "nothing.json").string()}), 65, {"nothing.json"});
+    expect(run({"verify", folder.at("nothing.json")}), 65, {"nothing.json"});
     expect(run({"verify"}), 64);
 }
 
 // A certificate whose state is not that of the file, with the hash of the file.
 BOOST_AUTO_TEST_CASE(the_state_of_a_certificate_is_compared_with_the_input_itself) {
     const scratch::Folder folder;
-    const std::string input = (folder / "two.json").string();
-    const std::string file = (folder / "two.cert.json").string();
+    const std::string input = folder.at("two.json");
+    const std::string file = folder.at("two.cert.json");
     scratch::write(input, isostat::state_text(crafted::two_disks(1, 2, 1, 1)));
     expect(run({"certify", input, "-o", file}), 0);
     expect(run({"verify", file, "--input", input}), 0);
@@ -76,8 +76,8 @@ BOOST_AUTO_TEST_CASE(the_state_of_a_certificate_is_compared_with_the_input_itsel
 BOOST_AUTO_TEST_CASE(verify_replays_a_run_and_names_the_first_wrong_record) {
     const scratch::Folder folder;
     scratch::write_scene(folder / "scene.toml", scene_from(scratch::data("vertex100.txt"), up_6));
-    const std::string out = (folder / "out").string();
-    expect(run({"run", (folder / "scene.toml").string(), "-o", out, "-q"}), 0);
+    const std::string out = folder.at("out");
+    expect(run({"run", folder.at("scene.toml"), "-o", out, "-q"}), 0);
     const auto answer = json_of(run({"verify", out, "--json"}));
     BOOST_TEST(answer["verdict"] == "ends proved, way looked at");
     BOOST_TEST(answer["ends_proved"] == answer["arcs"]);
@@ -108,7 +108,7 @@ BOOST_AUTO_TEST_CASE(a_shear_near_0_is_known_as_well_as_the_largest_stress_asks)
     scratch::write(folder / "shear.toml",
                    "[packing]\ndisks = 200\ndiameters = [1.0, 2.0]\nseed = 9\n[cell]\nkind = \"tilted\"\n[load]\n"
                    "loaded = \"tilt\"\n[output]\npictures = false\n[[programme]]\ndo = \"up\"\nequilibria = 1\n");
-    expect(run({"run", (folder / "shear.toml").string(), "-o", out.string(), "-q"}), 0);
+    expect(run({"run", folder.at("shear.toml"), "-o", out.string(), "-q"}), 0);
     std::istringstream rows(scratch::read(out / "equilibria.csv"));
     std::string names, first;
     std::getline(rows, names);

@@ -14,7 +14,7 @@ namespace {
 /// Plays one segment under `choose` into a folder; how it ends does not matter.
 void play(const State& state, int equilibria, const fs::path& folder, std::uint64_t seed = 1) {
     RunOptions options{.ties = TiePolicy::choose, .ties_seed = seed};
-    (void)played::into(folder, state, {played::towards(equilibria)}, options);
+    (void)played::into(folder, state, {towards(equilibria)}, options);
 }
 
 /// The entry of a record that names an exchange of the list, with the braces; empty: none does.

@@ -23,7 +23,7 @@ void play(std::uint64_t seed, int equilibria, const fs::path& folder) {
     PreparationReport report;
     auto prepared = prepare(options, report);
     BOOST_REQUIRE(prepared.ok());
-    BOOST_REQUIRE(played::into(folder, prepared.value(), {played::towards(equilibria)}).completed);
+    BOOST_REQUIRE(played::into(folder, prepared.value(), {towards(equilibria)}).completed);
 }
 
 } // namespace

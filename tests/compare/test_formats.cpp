@@ -3,6 +3,7 @@
 #include "compare/report.hpp"
 #include "compare/series_copy.hpp"
 #include "io/bad_input.hpp"
+#include "support/segments.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/trajectory/trajectory.hpp>
@@ -245,10 +246,8 @@ BOOST_AUTO_TEST_CASE(a_frame_in_motion_is_on_the_arc_of_the_exact_run_whose_cont
         std::vector<ArcRecord> arcs;
     } told;
     State state = result.path.front().state;
-    Segment far;
-    far.equilibria = 4;
     RunCounters counters;
-    BOOST_TEST(!run_segment(state, far, 0, {}, counters, told).failure);
+    BOOST_TEST(!run_segment(state, towards(4), 0, {}, counters, told).failure);
     BOOST_TEST_REQUIRE(told.arcs.size() > 3);
     std::vector<Contact> kept = compare::carrying(*told.start);
     std::vector<compare::JudgedFrame> frames(3);

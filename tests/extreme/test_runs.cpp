@@ -1,6 +1,7 @@
 // Runs, not only states: what steers them decided at the edge too. And dynamics of any stiffness.
 #include "extreme/catalogue.hpp"
 #include "support/crafted.hpp"
+#include "support/segments.hpp"
 #include "support/shortcuts/soft_grains.hpp"
 
 #include <isostat/certificate/inspect.hpp>
@@ -61,12 +62,6 @@ void follow(const std::string& family, const std::string& parameter, State state
     }
 }
 
-Segment up(int equilibria) {
-    Segment segment;
-    segment.equilibria = equilibria;
-    return segment;
-}
-
 } // namespace
 
 BOOST_AUTO_TEST_SUITE(extreme_cases)
@@ -98,7 +93,7 @@ BOOST_AUTO_TEST_CASE(runs_from_extreme_packings) {
     for (const Case& c : cases) {
         if (const auto start = prepared(c.options)) {
             ++made;
-            follow("run", c.name, *start, up(4));
+            follow("run", c.name, *start, towards(4));
         }
     }
     BOOST_TEST(made >= 8); // those that end in the preparation have their rows there
@@ -109,10 +104,8 @@ BOOST_AUTO_TEST_CASE(runs_towards_every_stress_ratio) {
         const auto start = prepared(disks_of(count));
         BOOST_REQUIRE(start);
         for (const int power : {-12, -4, 4, 12}) {
-            Segment segment;
-            segment.direction = power < 0 ? -1 : +1;
-            segment.to_stress = std::pow(10.0, power);
-            follow("stress ratio", fmt::format("{} disks, run to σ₂/σ₁ = 1e{:+03d}", count, power), *start, segment);
+            follow("stress ratio", fmt::format("{} disks, run to σ₂/σ₁ = 1e{:+03d}", count, power), *start,
+                   until(power < 0 ? -1 : +1, std::pow(10.0, power)));
         }
     }
 }

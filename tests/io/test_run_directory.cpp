@@ -2,6 +2,7 @@
 #include "io/equilibria.hpp"
 #include "support/cells.hpp"
 #include "support/scratch.hpp"
+#include "support/segments.hpp"
 
 #include <isostat/io/run_directory.hpp>
 #include <isostat/io/state_file.hpp>
@@ -22,12 +23,6 @@ RunHeader header() {
                 .keep = {2},
                 .checkpoint_seconds = 0};
     return h;
-}
-
-Segment up(int equilibria) {
-    Segment segment;
-    segment.equilibria = equilibria;
-    return segment;
 }
 
 /// Writes the records, and raises a flag during some rearrangement.
@@ -66,8 +61,8 @@ bool play(const fs::path& path, RunDirectory::Mode mode, long stop_at, bool fini
     std::atomic<bool> stop{false};
     RunOptions options{.stop = &stop};
     Stopper stopper(directory, stop, stop_at);
-    directory.begin_segment(0, up(6), made, state.equilibrium);
-    const SegmentOutcome outcome = run_segment(state, up(6 - made), 0, options, counters, stopper);
+    directory.begin_segment(0, towards(6), made, state.equilibrium);
+    const SegmentOutcome outcome = run_segment(state, towards(6 - made), 0, options, counters, stopper);
     if (finish) {
         directory.finish(outcome.completed ? RunStatus::completed : RunStatus::interrupted, "");
     }

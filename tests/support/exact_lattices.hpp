@@ -10,7 +10,7 @@ using isostat::exact::Number;
 
 inline ExactPacking empty_box(const Number& lx, const Number& ly) {
     ExactPacking packing;
-    packing.walls = isostat::Walls<2>::box();
+    packing.walls = isostat::Walls::box();
     packing.length = {lx, ly};
     return packing;
 }

@@ -1,6 +1,7 @@
 // Trajectories in periodic cells: three sequences of an independent program, and what is a matter of description.
 #include "support/disguised_cells.hpp"
 #include "support/scratch.hpp"
+#include "support/segments.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/io/state_file.hpp>
@@ -305,12 +306,9 @@ BOOST_AUTO_TEST_CASE(a_dead_shear_that_flows_ends_the_run) {
     State state = cells::one_tilted_disk(1, 1, 0.5);
     state.load.reference_length = {2, std::sqrt(3.0)};
     snap_to_grid(state.packing);
-    Segment segment;
-    segment.direction = -1;
-    segment.equilibria = 3;
     RunCounters counters;
     crafted::Recorder records;
-    const SegmentOutcome outcome = run_segment(state, segment, 0, {}, counters, records);
+    const SegmentOutcome outcome = run_segment(state, towards(-3), 0, {}, counters, records);
     BOOST_TEST_REQUIRE(outcome.failure.has_value());
     BOOST_TEST(to_string(outcome.failure->kind) == std::string("flows"), outcome.failure->message());
     BOOST_TEST(records.arcs.size() == 1U);

@@ -2,6 +2,7 @@
 // Mirror images whose rho are mirror images too, so that nothing of first order in the radii tells them apart.
 #include "support/course.hpp"
 #include "support/mirror.hpp"
+#include "support/segments.hpp"
 
 #include <isostat/core/machine.hpp>
 #include <isostat/preparation/preparation.hpp>
@@ -176,10 +177,8 @@ BOOST_AUTO_TEST_CASE(a_run_chooses_as_often_as_it_may_and_then_ends_undecided) {
         Course course;
         CourseRecorder recorder(course);
         State state = start;
-        Segment segment;
-        segment.equilibria = 3;
         RunOptions options{.ties = TiePolicy::choose, .ties_seed = 1, .max_choices = cap};
-        course.outcome = run_segment(state, segment, 0, options, course.counters, recorder);
+        course.outcome = run_segment(state, towards(3), 0, options, course.counters, recorder);
         return course;
     };
     const Course as_many = capped(most);

@@ -4,6 +4,7 @@
 #include "support/mirror.hpp"
 #include "support/mirror_cells.hpp"
 #include "support/really_perturbed.hpp"
+#include "support/segments.hpp"
 
 #include <tuple>
 
@@ -25,14 +26,12 @@ Loop follow_loads(State state, const std::vector<double>& loads, Ties ties) {
     for (const double load : loads) {
         Course& course = loop.courses.emplace_back();
         CourseRecorder recorder(course);
-        Segment segment;
-        segment.direction = load > stress ? +1 : -1;
-        segment.to_stress = load;
-        stress = load;
         RunOptions options;
         settle(options, ties);
         options.max_strain = 1e9; // reference lengths of 1
-        course.outcome = run_segment(state, segment, 0, options, course.counters, recorder);
+        course.outcome =
+            run_segment(state, until(load > stress ? +1 : -1, load), 0, options, course.counters, recorder);
+        stress = load;
         BOOST_TEST(course.outcome.completed,
                    (course.outcome.failure ? course.outcome.failure->message() : std::string()));
         BOOST_TEST_REQUIRE(!course.states.empty());

@@ -2,6 +2,7 @@
 // or the unit.
 #include "support/crafted.hpp"
 #include "support/same_sequence.hpp"
+#include "support/segments.hpp"
 
 #include <isostat/certificate/inspect.hpp>
 
@@ -106,10 +107,9 @@ BOOST_FIXTURE_TEST_CASE(the_same_start_gives_the_same_bits, Base) {
 BOOST_FIXTURE_TEST_CASE(a_run_in_two_parts_gives_the_same_bits_as_in_one, Base) {
     Played first = play(start, +1, equilibria / 2);
     BOOST_REQUIRE(first.outcome.completed);
-    Segment segment;
-    segment.equilibria = equilibria - equilibria / 2;
     RunOptions options{.max_strain = 1e9};
-    const auto outcome = run_segment(first.state, segment, 0, options, first.counters, first.records);
+    const auto outcome =
+        run_segment(first.state, towards(equilibria - equilibria / 2), 0, options, first.counters, first.records);
     BOOST_REQUIRE(outcome.completed);
     BOOST_TEST((first.state.packing.q == played.state.packing.q));
     BOOST_TEST(first.counters.steps == played.counters.steps);

@@ -2,6 +2,7 @@
 #include "core/work.hpp"
 #include "support/crafted.hpp"
 #include "support/prepared.hpp"
+#include "support/segments.hpp"
 #include "support/threads.hpp"
 
 using namespace isostat;
@@ -106,9 +107,7 @@ BOOST_AUTO_TEST_CASE(a_run_that_is_stopped_shows_no_arc_that_was_steered_ahead, 
         RunOptions options{.stop = &stopper.stop};
         State state = start;
         RunCounters counters;
-        Segment segment;
-        segment.equilibria = 8;
-        const SegmentOutcome outcome = run_segment(state, segment, 0, options, counters, stopper);
+        const SegmentOutcome outcome = run_segment(state, towards(8), 0, options, counters, stopper);
         BOOST_TEST_REQUIRE(outcome.failure.has_value());
         BOOST_TEST((outcome.failure->kind == FailureKind::interrupted));
         BOOST_TEST(stopper.last == at);
@@ -160,9 +159,7 @@ BOOST_AUTO_TEST_CASE(a_power_that_turns_within_the_first_step_is_found_whatever_
     for (const double fraction : {0.1, 0.01}) {
         RunOptions options{.step_fraction = fraction};
         Played run = play(prepared(100, 1), +1, 40, {}, options);
-        Segment down;
-        down.direction = -1;
-        down.equilibria = 20;
+        const Segment down = towards(-20);
         options.max_strain = 1e9;
         const auto outcome = run_segment(run.state, down, 1, options, run.counters, run.records);
         BOOST_TEST(outcome.completed, (outcome.failure ? outcome.failure->message() : std::string()));

@@ -1,5 +1,6 @@
 // What the pages say of keys, columns, fields, commands and exit statuses is what the program has; the commands of
 // README run as they stand.
+#include "cli/matches.hpp"
 #include "cli/program.hpp"
 #include "compare/report.hpp"
 #include "io/record_text.hpp"
@@ -8,8 +9,6 @@
 
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
-
-#include <regex>
 
 using namespace program;
 namespace fs = std::filesystem;
@@ -40,12 +39,6 @@ std::string section(const std::string& page, const std::string& heading) {
     }
     BOOST_TEST_REQUIRE(!text.empty(), "no section '" << heading << "'");
     return text;
-}
-
-/// What the first group of `pattern` matches in a text, in its order.
-std::vector<std::string> matches(const std::string& text, const std::string& pattern) {
-    const std::regex expression(pattern);
-    return {std::sregex_token_iterator(text.begin(), text.end(), expression, 1), {}};
 }
 
 /// Words in backticks in the first column of the tables of a text, in their order.
@@ -98,8 +91,7 @@ std::set<std::string> expected_names(const Outcome& outcome, const std::string& 
     expect(outcome, 65, {"'no_such_key'" + where});
     const std::string marker = "expected one of ";
     const std::string list = outcome.err.substr(outcome.err.find(marker) + marker.size());
-    const std::vector<std::string> names = matches(list.substr(0, list.find('\n')), "([a-z0-9_]+)");
-    return {names.begin(), names.end()};
+    return matches<std::set<std::string>>(list.substr(0, list.find('\n')), "([a-z0-9_]+)");
 }
 
 /// The keys that a section of a scene knows.
@@ -126,11 +118,7 @@ std::vector<std::vector<std::string>> commands(const std::string& text) {
     const std::string program = "    build/release/isostat ";
     for (const std::string& line : lines(text)) {
         if (line.starts_with(program)) {
-            std::istringstream words(line.substr(program.size(), line.find('#') - program.size()));
-            found.emplace_back();
-            for (std::string word; words >> word;) {
-                found.back().push_back(word);
-            }
+            found.push_back(scratch::split(line.substr(program.size(), line.find('#') - program.size())));
         }
     }
     return found;
@@ -194,7 +182,6 @@ BOOST_AUTO_TEST_CASE(the_page_of_files_has_every_column_and_every_field) {
 }
 
 BOOST_AUTO_TEST_CASE(links_of_the_pages_lead_somewhere) {
-    const std::regex link(R"(\]\(([^)\s]+)\))");
     int links = 0;
     for (auto at = fs::recursive_directory_iterator(project); at != fs::recursive_directory_iterator(); ++at) {
         const std::string name = at->path().filename().string();
@@ -204,9 +191,7 @@ BOOST_AUTO_TEST_CASE(links_of_the_pages_lead_somewhere) {
         if (at->path().extension() != ".md") {
             continue;
         }
-        const std::string page = scratch::read(at->path());
-        for (auto it = std::sregex_iterator(page.begin(), page.end(), link); it != std::sregex_iterator(); ++it) {
-            const std::string target = (*it)[1];
+        for (const std::string& target : matches(scratch::read(at->path()), R"(\]\(([^)\s]+)\))")) {
             if (target.find("://") != std::string::npos) {
                 continue;
             }
@@ -296,17 +281,13 @@ BOOST_AUTO_TEST_CASE(the_readme_names_every_command) {
     const std::string help = run({"--help"}).out;
     const std::size_t begin = help.find("Subcommands:");
     BOOST_REQUIRE(begin != std::string::npos);
-    const std::regex name(R"(\n  ([a-z]+) )");
-    int commands_found = 0;
-    for (auto it = std::sregex_iterator(help.begin() + static_cast<long>(begin), help.end(), name);
-         it != std::sregex_iterator(); ++it) {
-        const std::string command = (*it)[1];
+    const std::vector<std::string> commands_found = matches(help.substr(begin), R"(\n  ([a-z]+) )");
+    for (const std::string& command : commands_found) {
         const bool named = contains(page, "`" + command + "`") || contains(page, "isostat " + command) ||
                            contains(page, "`" + command + " ");
         BOOST_TEST(named, "README does not name " << command);
-        ++commands_found;
     }
-    BOOST_TEST(commands_found >= 11);
+    BOOST_TEST(commands_found.size() >= 11U);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -30,8 +30,7 @@ bool cost(const std::string& name, const State& state, int repeats, bench::Table
     const auto matrix = bench::matrix_of(state);
     Certification c;
     const auto full = [&] { c = certify(state); };
-    CertifyOptions in_double;
-    in_double.highest = Rung::double_bound;
+    CertifyOptions in_double{.highest = Rung::double_bound};
     const bench::Pair to_umfpack = bench::in_turn(
         full, [&] { bench::umfpack(matrix); }, repeats);
     const bench::Pair to_klu = bench::in_turn(

@@ -4,36 +4,17 @@
 //   bench_crafted [--json FILE] [--repeats R] [m ...]       default: 3 repeats, 10 30 70 100
 
 #include "bench/shared/report.hpp"
+#include "support/exact_lattices.hpp"
 
 #include <isostat/crafted/inspection.hpp>
 #include <isostat/crafted/plateau.hpp>
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <cstdlib>
 #include <random>
 
-namespace {
-
 using namespace isostat::crafted;
-
-/// m rows of m disks of radius 1; rows are 2 wide and sqrt(3) high.
-ExactPacking triangular(int m) {
-    ExactPacking out;
-    const Number root = Number::parse("sqrt(3)");
-    for (int row = 0; row < m; ++row) {
-        for (int column = 0; column < m; ++column) {
-            out.centre.push_back({Number(1 + 2 * column + row % 2), Number(1) + Number(row) * root});
-            out.radius.emplace_back(1);
-        }
-    }
-    out.walls = isostat::Walls::box();
-    out.length = {Number(2 * m + 1), Number(2) + Number(m - 1) * root};
-    return out;
-}
-
-} // namespace
 
 int main(int argc, char** argv) {
     std::vector<std::string> sizes{"10", "30", "70", "100"};
@@ -56,7 +37,7 @@ int main(int argc, char** argv) {
                         {"plateau", "plateau, s", "s", "{:.3f}"}});
     for (const std::string& word : sizes) {
         const int m = std::atoi(word.c_str());
-        const ExactPacking packing = triangular(m);
+        const ExactPacking packing = families::triangular_lattice(m, m);
         Inspection inspection;
         const bench::Sample inspecting =
             bench::milliseconds([&] { inspection = inspect(packing).value(); }, repeats).over(1e3);

@@ -87,9 +87,7 @@ bool measure(const std::string& family, const Packing& packing, const std::vecto
     const double inverse_time = bench::cpu_milliseconds() - before - factor_time;
     fmt::print("<!-- {}, N = {}: LU {:.2f} ms, bound of the inverse {:.1f} ms ({}) -->\n", family, contacts.size(),
                factor_time, inverse_time, inverse.verdict == Verdict::proved ? "proved" : "none");
-    LadderOptions options;
-    options.max_bits = 1024;
-    options.exact_size = 1000;
+    LadderOptions options{.max_bits = 1024, .exact_size = 1000};
     const double klu = bench::milliseconds([&] { bench::klu(proved.value().matrix()); }).median();
     const std::size_t first = lines.size();
     bool holds = true;

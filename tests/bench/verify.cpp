@@ -8,6 +8,7 @@
 #include "bench/shared/report.hpp"
 #include "bench/shared/sample.hpp"
 #include "bench/shared/stretch.hpp"
+#include "support/segments.hpp"
 
 #include <isostat/checker/verify.hpp>
 #include <isostat/core/machine.hpp>
@@ -44,10 +45,8 @@ std::optional<Measured> measure(State state, long wanted) {
     header.settings = R"({"run":{"rule":"most_negative","certify":"decisions"}})";
     RunCounters counters;
     RunDirectory directory(folder, header, RunDirectory::Mode::fresh, counters);
-    Segment up;
-    up.equilibria = 1;
-    RunOptions options;
-    options.max_strain = 1e9;
+    const Segment up = towards(1);
+    RunOptions options{.max_strain = 1e9};
     bench::Sample klu;
     for (int segment = 0; segment < 60 && counters.steps < wanted; ++segment) {
         directory.begin_segment(segment, up, 0, state.equilibrium);

@@ -120,45 +120,44 @@ BOOST_AUTO_TEST_CASE(one_disk_in_a_channel) {
 // ratios F2/F1 = (R1 - R2)/sqrt(R1 R2) and 2h/R1 both are equilibria.
 BOOST_AUTO_TEST_CASE(two_disks_in_a_channel_have_the_two_states_of_a_loop) {
     for (const auto& [large, small] : {std::pair(2.0, 1.0), {1.5, 0.8}, {1.0, 0.75}}) {
-        BOOST_TEST_CONTEXT("radii " << large << ", " << small) {
-            const auto channel = [&](double period, double height, double x, double y, std::vector<Contact> contacts) {
-                State state = cells::in_cell({{large, 0, large}, {small, x, y}}, {period, height, 0}, false, 1, 1,
-                                             std::move(contacts));
-                state.packing.cell = {{true, false}, {true, false}, {false}, 0};
-                state.packing.walls.lower[1] = isostat::WallKind::fixed;
-                state.packing.walls.upper[1] = isostat::WallKind::movable;
-                return state;
-            };
-            const double width = 2 * std::sqrt(large * small);
-            const State low = channel(2 * width, 2 * large, width, small,
-                                      {crafted::bottom(0), crafted::top(0), crafted::bottom(1),
-                                       cells::across(0, 1, 0, 0), cells::across(0, 1, -1, 0)});
-            const double tilt = (large - small) / (large + small); // of the line of centres
-            const double pair = 1 / std::sqrt(1 - tilt * tilt);    // of which F1 is the part along x
-            State pressed = low;
-            pressed.load.stress[1] = 4;
-            check_forces(pressed, {4 - 2 * pair * tilt, 4, 2 * pair * tilt, pair, pair});
-            const double opens = (large - small) / std::sqrt(large * small);
-            pressed.load.stress[1] = opens * 1.001;
-            BOOST_TEST((certify(pressed).verdict == Verdict::proved));
-            pressed.load.stress[1] = opens * 0.999;
-            BOOST_TEST((certify(pressed).verdict == Verdict::refuted));
+        BOOST_TEST_INFO_SCOPE("radii " << large << ", " << small);
+        const auto channel = [&](double period, double height, double x, double y, std::vector<Contact> contacts) {
+            State state = cells::in_cell({{large, 0, large}, {small, x, y}}, {period, height, 0}, false, 1, 1,
+                                         std::move(contacts));
+            state.packing.cell = {{true, false}, {true, false}, {false}, 0};
+            state.packing.walls.lower[1] = isostat::WallKind::fixed;
+            state.packing.walls.upper[1] = isostat::WallKind::movable;
+            return state;
+        };
+        const double width = 2 * std::sqrt(large * small);
+        const State low = channel(2 * width, 2 * large, width, small,
+                                  {crafted::bottom(0), crafted::top(0), crafted::bottom(1), cells::across(0, 1, 0, 0),
+                                   cells::across(0, 1, -1, 0)});
+        const double tilt = (large - small) / (large + small); // of the line of centres
+        const double pair = 1 / std::sqrt(1 - tilt * tilt);    // of which F1 is the part along x
+        State pressed = low;
+        pressed.load.stress[1] = 4;
+        check_forces(pressed, {4 - 2 * pair * tilt, 4, 2 * pair * tilt, pair, pair});
+        const double opens = (large - small) / std::sqrt(large * small);
+        pressed.load.stress[1] = opens * 1.001;
+        BOOST_TEST((certify(pressed).verdict == Verdict::proved));
+        pressed.load.stress[1] = opens * 0.999;
+        BOOST_TEST((certify(pressed).verdict == Verdict::refuted));
 
-            const double reach = large + small;
-            const double rise = std::sqrt(reach * reach - large * large);
-            State high = channel(2 * large, large + rise + small, large, large + rise,
-                                 {crafted::bottom(0), crafted::top(1), cells::across(0, 1, 0, 0),
-                                  cells::across(0, 1, -1, 0), cells::across(0, 0, 1, 0)});
-            const double back = 2 * rise / large;
-            const double f2 = 0.5 * back;
-            high.load.stress[1] = f2;
-            const double bears = f2 * reach / (2 * rise);
-            check_forces(high, {f2, f2, bears, bears, 1 - bears * large / reach});
-            high.load.stress[1] = back * 0.999;
-            BOOST_TEST((certify(high).verdict == Verdict::proved));
-            high.load.stress[1] = back * 1.001;
-            BOOST_TEST((certify(high).verdict == Verdict::refuted));
-        }
+        const double reach = large + small;
+        const double rise = std::sqrt(reach * reach - large * large);
+        State high = channel(2 * large, large + rise + small, large, large + rise,
+                             {crafted::bottom(0), crafted::top(1), cells::across(0, 1, 0, 0),
+                              cells::across(0, 1, -1, 0), cells::across(0, 0, 1, 0)});
+        const double back = 2 * rise / large;
+        const double f2 = 0.5 * back;
+        high.load.stress[1] = f2;
+        const double bears = f2 * reach / (2 * rise);
+        check_forces(high, {f2, f2, bears, bears, 1 - bears * large / reach});
+        high.load.stress[1] = back * 0.999;
+        BOOST_TEST((certify(high).verdict == Verdict::proved));
+        high.load.stress[1] = back * 1.001;
+        BOOST_TEST((certify(high).verdict == Verdict::refuted));
     }
 }
 
@@ -170,17 +169,16 @@ BOOST_AUTO_TEST_CASE(first_equilibria_of_an_independent_program) {
     for (const Known& known :
          {Known{"rect", 0.7027637466432636, 1.3794962837050024}, Known{"tilt", 0.9930651761293112, 1.8029080469581122},
           Known{"channel", 0.519226501649397, 1.0005767055665702}}) {
-        BOOST_TEST_CONTEXT(known.name) {
-            const StateFile file = first_equilibrium(known.name);
-            const Certification truth = certify(file.state);
-            BOOST_TEST((truth.verdict == Verdict::proved));
-            BOOST_TEST(truth.counting.rank == static_cast<int>(file.state.contacts.size()));
-            for (std::size_t l = 0; l < file.forces.size(); ++l) {
-                BOOST_TEST(std::abs(truth.finite[l].lower - file.forces[l]) < 1e-9);
-                BOOST_TEST(std::abs(truth.finite[l].upper - file.forces[l]) < 1e-9);
-            }
-            check_interval(truth, known.low, known.high, 1e-9);
+        BOOST_TEST_INFO_SCOPE(known.name);
+        const StateFile file = first_equilibrium(known.name);
+        const Certification truth = certify(file.state);
+        BOOST_TEST((truth.verdict == Verdict::proved));
+        BOOST_TEST(truth.counting.rank == static_cast<int>(file.state.contacts.size()));
+        for (std::size_t l = 0; l < file.forces.size(); ++l) {
+            BOOST_TEST(std::abs(truth.finite[l].lower - file.forces[l]) < 1e-9);
+            BOOST_TEST(std::abs(truth.finite[l].upper - file.forces[l]) < 1e-9);
         }
+        check_interval(truth, known.low, known.high, 1e-9);
     }
 }
 

@@ -78,18 +78,17 @@ bool check_claims(const State& state, const Certification& c, int open = 0) {
         const auto& g = truth.infinitesimal;
         std::size_t next = 0;
         for (std::size_t l = 0; l < n; ++l) {
-            BOOST_TEST_CONTEXT("contact " << to_string(state.contacts[l])) {
-                if (next < forces.structural_zeros.size() && forces.structural_zeros[next] == static_cast<int>(l)) {
-                    BOOST_TEST(abs(f[l]) < Real("1e-60"));
-                    BOOST_TEST(contains(forces.infinitesimal[next], g[l]));
-                    BOOST_TEST(forces.infinitesimal[next].lower > 0);
-                    BOOST_TEST((forces.finite[l] == Interval{0, 0}));
-                    ++next;
-                } else {
-                    BOOST_TEST(contains(forces.finite[l], f[l]),
-                               f[l] << " not in [" << forces.finite[l].lower << ", " << forces.finite[l].upper << "]");
-                    BOOST_TEST(forces.finite[l].lower > 0);
-                }
+            BOOST_TEST_INFO_SCOPE("contact " << to_string(state.contacts[l]));
+            if (next < forces.structural_zeros.size() && forces.structural_zeros[next] == static_cast<int>(l)) {
+                BOOST_TEST(abs(f[l]) < Real("1e-60"));
+                BOOST_TEST(contains(forces.infinitesimal[next], g[l]));
+                BOOST_TEST(forces.infinitesimal[next].lower > 0);
+                BOOST_TEST((forces.finite[l] == Interval{0, 0}));
+                ++next;
+            } else {
+                BOOST_TEST(contains(forces.finite[l], f[l]),
+                           f[l] << " not in [" << forces.finite[l].lower << ", " << forces.finite[l].upper << "]");
+                BOOST_TEST(forces.finite[l].lower > 0);
             }
         }
         BOOST_TEST(next == forces.structural_zeros.size());
@@ -236,12 +235,11 @@ BOOST_AUTO_TEST_CASE(every_interval_contains_the_value_at_the_true_vertex_of_ran
             }
             for (const double size : {0.0, 1e-13, 1e-10, 1e-7, 1e-5}) {
                 const State moved = shaken(state, size, static_cast<unsigned>(seed));
-                BOOST_TEST_CONTEXT("n = " << n << ", seed " << seed << ", moved by " << size) {
-                    const Certification c = certify(moved);
-                    ++tried;
-                    complete += check_claims(moved, c) ? 1 : 0;
-                    BOOST_TEST((c.verdict != Verdict::refuted), all(c.refuted));
-                }
+                BOOST_TEST_INFO_SCOPE("n = " << n << ", seed " << seed << ", moved by " << size);
+                const Certification c = certify(moved);
+                ++tried;
+                complete += check_claims(moved, c) ? 1 : 0;
+                BOOST_TEST((c.verdict != Verdict::refuted), all(c.refuted));
             }
         }
     }
@@ -302,14 +300,13 @@ BOOST_AUTO_TEST_CASE(radii_hold_where_a_second_vertex_is_near) {
                 State state = between_two(h);
                 state.packing.q[5] += sign * shift;
                 const Certification c = certify(state);
-                BOOST_TEST_CONTEXT("h = " << h << ", moved by " << sign * shift) {
-                    check_claims(state, c);
-                    if (c.claims.vertex) {
-                        ++proved;
-                        const oracle::Truth truth = known_truth(state);
-                        BOOST_TEST(Real(c.claims.vertex->unique_radius) < truth.q[5] + Real(state.packing.q[5]));
-                        BOOST_TEST(Real(c.claims.vertex->radius) <= 3 * truth.moved + Real(1e-13 / h));
-                    }
+                BOOST_TEST_INFO_SCOPE("h = " << h << ", moved by " << sign * shift);
+                check_claims(state, c);
+                if (c.claims.vertex) {
+                    ++proved;
+                    const oracle::Truth truth = known_truth(state);
+                    BOOST_TEST(Real(c.claims.vertex->unique_radius) < truth.q[5] + Real(state.packing.q[5]));
+                    BOOST_TEST(Real(c.claims.vertex->radius) <= 3 * truth.moved + Real(1e-13 / h));
                 }
             }
         }
@@ -321,8 +318,7 @@ BOOST_AUTO_TEST_CASE(a_force_near_zero_is_decided_by_a_higher_rung_or_not_at_all
     // The contact of disk 1 with the bottom carries F2 - t F1: here 0 to the last digit of a double, but t is
     // irrational.
     State state = two_disks(1, 2, 1, two_disks_limit(2));
-    CertifyOptions only_double;
-    only_double.highest = Rung::double_bound;
+    CertifyOptions only_double{.highest = Rung::double_bound};
     const Certification low = certify(state, only_double);
     BOOST_TEST((low.verdict == Verdict::undecided), all(low.claims.undecided));
     BOOST_TEST((low.claims.vertex && !low.claims.forces && !low.claims.stable));
@@ -541,15 +537,14 @@ BOOST_AUTO_TEST_CASE(claims_hold_for_many_small_packings, *boost::unit_test::lab
             for (const double size : {0.0, 5e-11, 1e-6}) {
                 State moved = shaken(state, size, static_cast<unsigned>(seed));
                 moved.load.stress[1] *= 1 + 0.1 * static_cast<double>(seed % 7); // past the end of some intervals
-                BOOST_TEST_CONTEXT("n = " << n << ", seed " << seed << ", moved by " << size) {
-                    const Certification c = certify(moved);
-                    ++tried;
-                    complete += check_claims(moved, c) ? 1 : 0;
-                    const oracle::Truth truth = known_truth(moved);
-                    const bool negative = std::any_of(truth.force.begin(), truth.force.end(),
-                                                      [](const Real& f) { return f < -Real("1e-60"); });
-                    BOOST_TEST(((c.verdict == Verdict::refuted) == negative), all(c.claims.undecided));
-                }
+                BOOST_TEST_INFO_SCOPE("n = " << n << ", seed " << seed << ", moved by " << size);
+                const Certification c = certify(moved);
+                ++tried;
+                complete += check_claims(moved, c) ? 1 : 0;
+                const oracle::Truth truth = known_truth(moved);
+                const bool negative = std::any_of(truth.force.begin(), truth.force.end(),
+                                                  [](const Real& f) { return f < -Real("1e-60"); });
+                BOOST_TEST(((c.verdict == Verdict::refuted) == negative), all(c.claims.undecided));
             }
         }
     }

@@ -9,12 +9,6 @@
 #include <isostat/certificate/certify.hpp>
 #include <isostat/io/state_file.hpp>
 
-#include <boost/test/unit_test.hpp>
-
-#include <algorithm>
-#include <cmath>
-#include <numeric>
-
 using namespace isostat;
 using namespace crafted;
 

@@ -6,8 +6,6 @@
 #include <isostat/certificate/certify.hpp>
 #include <isostat/io/state_file.hpp>
 
-#include <boost/test/unit_test.hpp>
-
 using namespace isostat;
 
 namespace {

@@ -13,10 +13,8 @@ namespace {
 
 /// Plays one segment under `choose` into a folder; how it ends does not matter.
 void play(const State& state, int equilibria, const fs::path& folder, std::uint64_t seed = 1) {
-    RunOptions options;
-    options.ties = TiePolicy::choose;
-    options.ties_seed = seed;
-    (void)played::into(folder, state, {played::towards(equilibria)}, options);
+    RunOptions options{.ties = TiePolicy::choose, .ties_seed = seed};
+    (void)played::into(folder, state, {towards(equilibria)}, options);
 }
 
 /// The entry of a record that names an exchange of the list, with the braces; empty: none does.
@@ -38,9 +36,8 @@ struct ForgedExchange {
         return altered(folder, "events.jsonl", entry, scratch::replaced(entry, from, by));
     }
     void refuted(const std::string& from, const std::string& by, const std::string& said) const {
-        BOOST_TEST_CONTEXT(from << " -> " << by) {
-            played::refuted(with(from, by), said);
-        }
+        BOOST_TEST_INFO_SCOPE(from << " -> " << by);
+        played::refuted(with(from, by), said);
     }
     void not_proved(const std::string& from, const std::string& by) const {
         const RunVerification forged = with(from, by);
@@ -67,9 +64,8 @@ BOOST_AUTO_TEST_CASE(a_forged_choice_is_refused) {
     const std::string chosen = one ? "1-bottom" : "2-bottom";
     const std::string other = one ? "2-bottom" : "1-bottom";
     const auto refuted = [&](const std::string& from, const std::string& to, const std::string& said) {
-        BOOST_TEST_CONTEXT(from << " -> " << to) {
-            played::refuted(altered(folder, "events.jsonl", from, to), said);
-        }
+        BOOST_TEST_INFO_SCOPE(from << " -> " << to);
+        played::refuted(altered(folder, "events.jsonl", from, to), said);
     };
     const std::string loads = "\"choice\":\"infinitesimal loads\"";
     refuted(loads, "\"choice\":\"names\"", one ? "tell which comes first" : "comes first");

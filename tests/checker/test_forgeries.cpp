@@ -4,6 +4,7 @@
 #include "support/crafted.hpp"
 #include "support/mirror.hpp"
 #include "support/same_sequence.hpp"
+#include "support/segments.hpp"
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/checker/verify.hpp>
@@ -50,13 +51,6 @@ class Certifying final : public RunObserver {
     RunDirectory& next_;
 };
 
-Segment one(int direction, int equilibria = 1) {
-    Segment segment;
-    segment.direction = direction;
-    segment.equilibria = equilibria;
-    return segment;
-}
-
 void play(const State& start, const std::vector<Segment>& segments, const fs::path& folder,
           CertifyLevel level = CertifyLevel::arcs, TiePolicy ties = TiePolicy::stop) {
     const bool arcs = level == CertifyLevel::arcs;
@@ -78,10 +72,7 @@ void play(const State& start, const std::vector<Segment>& segments, const fs::pa
     Certifying certifying(directory);
     RunObserver& observer = arcs ? static_cast<RunObserver&>(certifying) : directory;
     State state = start;
-    RunOptions options;
-    options.max_strain = 1e9;
-    options.certify = level;
-    options.ties = ties;
+    RunOptions options{.max_strain = 1e9, .certify = level, .ties = ties};
     for (std::size_t k = 0; k < segments.size(); ++k) {
         directory.begin_segment(static_cast<int>(k), segments[k], 0, counters.equilibria);
         const SegmentOutcome outcome =
@@ -172,32 +163,33 @@ std::vector<Sample> samples() {
     const std::string looked_at = "ends proved, way looked at";
     return {
         {"a box, level arcs, a power turn",
-         [](const fs::path& f) { play(swing(12.991722005007981, 11.395062882006048), {one(-1)}, f); }, arcs},
+         [](const fs::path& f) { play(swing(12.991722005007981, 11.395062882006048), {towards(-1)}, f); }, arcs},
         {"a box, level arcs",
          [](const fs::path& f) {
-             play(prepared(8, 3), {one(1, 2), one(-1)}, f);
+             play(prepared(8, 3), {towards(2), towards(-1)}, f);
          },
          arcs},
         {"a box, a turn",
          [](const fs::path& f) {
-             play(read_state(fs::path(ISOSTAT_EXAMPLES) / "turns/three-disks.json").state, {one(-1)}, f, L::decisions);
+             play(read_state(fs::path(ISOSTAT_EXAMPLES) / "turns/three-disks.json").state, {towards(-1)}, f,
+                  L::decisions);
          },
          looked_at},
-        {"a tilted cell", [=](const fs::path& f) { play(of_cell("tilt_16.json", 0), {one(1)}, f, L::decisions); },
+        {"a tilted cell", [=](const fs::path& f) { play(of_cell("tilt_16.json", 0), {towards(1)}, f, L::decisions); },
          looked_at},
         {"a rattler is pinned",
-         [=](const fs::path& f) { play(of_cell("rect_16.json", 9), {one(1)}, f, L::decisions, TiePolicy::choose); },
+         [=](const fs::path& f) { play(of_cell("rect_16.json", 9), {towards(1)}, f, L::decisions, TiePolicy::choose); },
          looked_at},
-        {"a choice", [](const fs::path& f) { play(equal_forces(), {one(-1)}, f, L::decisions, TiePolicy::choose); },
+        {"a choice", [](const fs::path& f) { play(equal_forces(), {towards(-1)}, f, L::decisions, TiePolicy::choose); },
          looked_at},
         {"ties",
-         [](const fs::path& f) { play(crafted::mirror_forces(), {one(-1)}, f, L::decisions, TiePolicy::choose); },
+         [](const fs::path& f) { play(crafted::mirror_forces(), {towards(-1)}, f, L::decisions, TiePolicy::choose); },
          looked_at},
         {"an exchange at second order",
-         [](const fs::path& f) { play(crafted::two_crests(true), {one(-1)}, f, L::decisions, TiePolicy::choose); },
+         [](const fs::path& f) { play(crafted::two_crests(true), {towards(-1)}, f, L::decisions, TiePolicy::choose); },
          looked_at},
         {"an exchange for an end",
-         [](const fs::path& f) { play(crafted::triangular(3, 4), {one(1, 20)}, f, L::decisions, TiePolicy::choose); },
+         [](const fs::path& f) { play(crafted::triangular(3, 4), {towards(20)}, f, L::decisions, TiePolicy::choose); },
          looked_at},
     };
 }
@@ -276,11 +268,10 @@ BOOST_AUTO_TEST_CASE(some_altered_fields_of_signed_runs_are_refused_or_undecided
     altered_run::Counts counts;
     const scratch::Folder folder;
     for (const Sample& sample : samples()) {
-        BOOST_TEST_CONTEXT(sample.name) {
-            sample.play(folder / sample.name);
-            const RunVerification run = verify_run(folder / sample.name);
-            BOOST_TEST(words(run) == sample.words, run.wrong << (run.undecided.empty() ? "" : run.undecided[0]));
-        }
+        BOOST_TEST_INFO_SCOPE(sample.name);
+        sample.play(folder / sample.name);
+        const RunVerification run = verify_run(folder / sample.name);
+        BOOST_TEST(words(run) == sample.words, run.wrong << (run.undecided.empty() ? "" : run.undecided[0]));
     }
     const int here = altered_run::try_all(folder / "a choice", 1, counts) +
                      altered_run::try_all(folder / "a box, level arcs", 1, counts);
@@ -295,12 +286,11 @@ BOOST_AUTO_TEST_CASE(every_altered_field_of_signed_runs_is_refused_or_undecided_
     int alterations = 0;
     for (const Sample& sample : samples()) {
         const scratch::Folder folder;
-        BOOST_TEST_CONTEXT(sample.name) {
-            sample.play(folder / "run");
-            const int here = altered_run::try_all(folder / "run", 1, counts);
-            BOOST_TEST_MESSAGE(sample.name << ": " << here);
-            alterations += here;
-        }
+        BOOST_TEST_INFO_SCOPE(sample.name);
+        sample.play(folder / "run");
+        const int here = altered_run::try_all(folder / "run", 1, counts);
+        BOOST_TEST_MESSAGE(sample.name << ": " << here);
+        alterations += here;
     }
     BOOST_TEST_MESSAGE(alterations << " alterations");
     BOOST_TEST(alterations >= 10000);
@@ -310,20 +300,18 @@ BOOST_AUTO_TEST_CASE(every_altered_field_of_signed_runs_is_refused_or_undecided_
 // A contact has one spelling, a column one name, a word one list: nothing else is read, and nothing crashes on it.
 BOOST_AUTO_TEST_CASE(what_is_no_record_of_a_run_is_bad_input) {
     const scratch::Folder folder;
-    play(equal_forces(), {one(-1)}, folder / "run", CertifyLevel::decisions, TiePolicy::choose);
+    play(equal_forces(), {towards(-1)}, folder / "run", CertifyLevel::decisions, TiePolicy::choose);
     const fs::path run = folder / "run";
     const auto refuses = [&](const char* file, const std::string& from, const std::string& to) {
-        BOOST_TEST_CONTEXT(file << ": " << from << " -> " << to) {
-            const std::string original = scratch::read(run / file);
-            const std::string changed = scratch::replaced(original, from, to);
-            BOOST_REQUIRE(changed != original);
-            altered_run::write_signed(run, file, changed);
-            BOOST_CHECK_EXCEPTION((void)verify_run(run), Error, [&](const Error& error) {
-                return error.kind() == ErrorKind::bad_input &&
-                       std::string(error.what()).find(file) != std::string::npos;
-            });
-            altered_run::write_signed(run, file, original);
-        }
+        BOOST_TEST_INFO_SCOPE(file << ": " << from << " -> " << to);
+        const std::string original = scratch::read(run / file);
+        const std::string changed = scratch::replaced(original, from, to);
+        BOOST_REQUIRE(changed != original);
+        altered_run::write_signed(run, file, changed);
+        BOOST_CHECK_EXCEPTION((void)verify_run(run), Error, [&](const Error& error) {
+            return error.kind() == ErrorKind::bad_input && std::string(error.what()).find(file) != std::string::npos;
+        });
+        altered_run::write_signed(run, file, original);
     };
     const std::string event = lines_of(run / "events.jsonl")[0];
     const std::string opened =
@@ -359,7 +347,7 @@ BOOST_AUTO_TEST_CASE(what_is_no_record_of_a_run_is_bad_input) {
 
 BOOST_AUTO_TEST_CASE(files_that_no_record_names_are_noted_and_left_alone) {
     const scratch::Folder folder;
-    play(equal_forces(), {one(-1)}, folder / "run", CertifyLevel::decisions, TiePolicy::choose);
+    play(equal_forces(), {towards(-1)}, folder / "run", CertifyLevel::decisions, TiePolicy::choose);
     BOOST_TEST(verify_run(folder / "run").notes.size() == 0U);
     scratch::write(folder / "run/states/notes.json", "{}");
     fs::copy(folder / "run/states/eq_000001.json", folder / "run/states/eq_000099.json");
@@ -373,7 +361,7 @@ BOOST_AUTO_TEST_CASE(files_that_no_record_names_are_noted_and_left_alone) {
 // A bound that is too small is wrong; beside one so large that nothing follows from it the number itself must be right.
 BOOST_AUTO_TEST_CASE(what_a_row_says_of_its_own_errors_is_checked, *boost::unit_test::label("slow")) {
     const scratch::Folder folder;
-    play(prepared(8, 3), {one(1, 2)}, folder / "eight");
+    play(prepared(8, 3), {towards(2)}, folder / "eight");
     const std::vector<std::string> names = equilibria_columns();
     const auto column = [&names](const std::string& name) {
         return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
@@ -401,15 +389,14 @@ BOOST_AUTO_TEST_CASE(what_a_row_says_of_its_own_errors_is_checked, *boost::unit_
         const std::string error = fields[column(bound)];
         const double beside =
             std::max(std::stod(number) + 2 * std::stod(error), std::nextafter(std::stod(number), 1e9));
-        BOOST_TEST_CONTEXT(value << " is " << number << " +- " << error) {
-            BOOST_TEST(said(number, error) == "proved");
-            BOOST_TEST(said(Json(beside).dump(), error) == "refuted");
-            BOOST_TEST(said(number, "0") == "refuted");
-            const std::string wrong = Json(2 * std::stod(number)).dump();
-            for (const char* nothing : {"1e300", "inf"}) { // then the number itself is compared
-                BOOST_TEST(said(number, nothing) == "proved");
-                BOOST_TEST(said(wrong, nothing) != "proved");
-            }
+        BOOST_TEST_INFO_SCOPE(value << " is " << number << " +- " << error);
+        BOOST_TEST(said(number, error) == "proved");
+        BOOST_TEST(said(Json(beside).dump(), error) == "refuted");
+        BOOST_TEST(said(number, "0") == "refuted");
+        const std::string wrong = Json(2 * std::stod(number)).dump();
+        for (const char* nothing : {"1e300", "inf"}) { // then the number itself is compared
+            BOOST_TEST(said(number, nothing) == "proved");
+            BOOST_TEST(said(wrong, nothing) != "proved");
         }
     }
 }
@@ -419,8 +406,8 @@ BOOST_AUTO_TEST_CASE(what_a_row_says_of_its_own_errors_is_checked, *boost::unit_
 BOOST_AUTO_TEST_CASE(a_disk_that_passes_through_another_one_is_not_proved) {
     const scratch::Folder folder;
     const State near = swing(12.990813884605371, 11.394639418507785);
-    play(swing(12.991722005007981, 11.395062882006048), {one(-1)}, folder / "far");
-    play(near, {one(-1)}, folder / "near");
+    play(swing(12.991722005007981, 11.395062882006048), {towards(-1)}, folder / "far");
+    play(near, {towards(-1)}, folder / "near");
     BOOST_REQUIRE(words(verify_run(folder / "far")) == "proved");
     BOOST_REQUIRE(words(verify_run(folder / "near")) == "proved");
     const fs::path run = folder / "far";

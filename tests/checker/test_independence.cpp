@@ -1,12 +1,6 @@
 // The checker is worth something because it shares no code with what it checks: only data and readers.
 #include "support/scratch.hpp"
 
-#include <boost/test/unit_test.hpp>
-
-#include <algorithm>
-#include <string>
-#include <vector>
-
 namespace {
 
 const std::vector<std::string> allowed{"\"checker/",

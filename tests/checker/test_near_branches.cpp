@@ -23,7 +23,7 @@ void play(std::uint64_t seed, int equilibria, const fs::path& folder) {
     PreparationReport report;
     auto prepared = prepare(options, report);
     BOOST_REQUIRE(prepared.ok());
-    BOOST_REQUIRE(played::into(folder, prepared.value(), {played::towards(equilibria)}).completed);
+    BOOST_REQUIRE(played::into(folder, prepared.value(), {towards(equilibria)}).completed);
 }
 
 } // namespace
@@ -36,21 +36,20 @@ BOOST_AUTO_TEST_CASE(ends_near_another_branch_are_proved_and_what_contradicts_th
     // The arc in question leads to the last equilibrium: it opens this contact.
     for (const auto& [seed, equilibria, opened] :
          {std::tuple{11, 10, "1-31"}, std::tuple{29, 10, "12-34"}, std::tuple{37, 12, "5-7"}}) {
-        BOOST_TEST_CONTEXT("seed " << seed) {
-            const fs::path folder = scratch_folder / std::to_string(seed);
-            play(static_cast<std::uint64_t>(seed), equilibria, folder);
-            const RunVerification run = played::proved(folder);
-            BOOST_TEST(run.equilibria_proved == equilibria + 1);
-            const std::string events = scratch::read(folder / "events.jsonl");
-            const std::size_t arc = events.rfind("\"opened\":\"" + std::string(opened));
-            BOOST_TEST_REQUIRE(arc != std::string::npos);
-            const std::size_t eps2 = events.find("\"eps2\":", arc) + 7;
-            const std::string said = events.substr(eps2, events.find(',', eps2) - eps2);
-            std::string other = said;
-            other[9] = other[9] == '5' ? '6' : '5';
-            const RunVerification forged = forger::altered(folder, "events.jsonl", said, other);
-            BOOST_TEST((forged.verdict != Verdict::proved));
-        }
+        BOOST_TEST_INFO_SCOPE("seed " << seed);
+        const fs::path folder = scratch_folder / std::to_string(seed);
+        play(static_cast<std::uint64_t>(seed), equilibria, folder);
+        const RunVerification run = played::proved(folder);
+        BOOST_TEST(run.equilibria_proved == equilibria + 1);
+        const std::string events = scratch::read(folder / "events.jsonl");
+        const std::size_t arc = events.rfind("\"opened\":\"" + std::string(opened));
+        BOOST_TEST_REQUIRE(arc != std::string::npos);
+        const std::size_t eps2 = events.find("\"eps2\":", arc) + 7;
+        const std::string said = events.substr(eps2, events.find(',', eps2) - eps2);
+        std::string other = said;
+        other[9] = other[9] == '5' ? '6' : '5';
+        const RunVerification forged = forger::altered(folder, "events.jsonl", said, other);
+        BOOST_TEST((forged.verdict != Verdict::proved));
     }
 }
 

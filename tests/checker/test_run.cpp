@@ -17,10 +17,7 @@ namespace {
 /// Plays segments, each given by its equilibria, from a state into a folder.
 void play_and_store(const State& start, const std::vector<int>& segments, const std::filesystem::path& folder,
                     OpeningRule rule = OpeningRule::most_negative, TiePolicy ties = TiePolicy::stop) {
-    RunOptions options;
-    options.rule = rule;
-    options.ties = ties;
-    options.max_strain = 1e9;
+    RunOptions options{.rule = rule, .max_strain = 1e9, .ties = ties};
     std::vector<Segment> all;
     std::transform(segments.begin(), segments.end(), std::back_inserter(all), played::towards);
     const SegmentOutcome outcome = played::into(folder, start, all, options);
@@ -78,28 +75,28 @@ void same_with_threads(const std::filesystem::path& folder, const RunVerificatio
 }
 
 void finds(const std::filesystem::path& folder, const Alteration& alteration) {
-    BOOST_TEST_CONTEXT(alteration.file << ":" << alteration.line << " " << alteration.from << " -> " << alteration.to) {
-        const std::string original = scratch::read(folder / alteration.file);
-        const std::string line = line_of(original, alteration.line);
-        const std::string changed = scratch::replaced(line, alteration.from, alteration.to);
-        BOOST_REQUIRE(changed != line);
-        scratch::write(folder / alteration.file, scratch::replaced(original, line, changed));
-        forger::seal(folder);
-        const RunVerification run = verify_run(folder);
-        same_with_threads(folder, run);
-        BOOST_TEST((run.verdict == Verdict::refuted));
-        BOOST_TEST((run.wrong.find(alteration.said) != std::string::npos), run.wrong);
-        if (alteration.file == "events.jsonl") {
-            const std::string where = "events.jsonl:" + std::to_string(alteration.line) + ":";
-            BOOST_TEST((run.wrong.find(where) != std::string::npos), run.wrong);
-        }
-        scratch::write(folder / alteration.file, original);
-        forger::seal(folder);
+    BOOST_TEST_INFO_SCOPE(alteration.file << ":" << alteration.line << " " << alteration.from << " -> "
+                                          << alteration.to);
+    const std::string original = scratch::read(folder / alteration.file);
+    const std::string line = line_of(original, alteration.line);
+    const std::string changed = scratch::replaced(line, alteration.from, alteration.to);
+    BOOST_REQUIRE(changed != line);
+    scratch::write(folder / alteration.file, scratch::replaced(original, line, changed));
+    forger::seal(folder);
+    const RunVerification run = verify_run(folder);
+    same_with_threads(folder, run);
+    BOOST_TEST((run.verdict == Verdict::refuted));
+    BOOST_TEST((run.wrong.find(alteration.said) != std::string::npos), run.wrong);
+    if (alteration.file == "events.jsonl") {
+        const std::string where = "events.jsonl:" + std::to_string(alteration.line) + ":";
+        BOOST_TEST((run.wrong.find(where) != std::string::npos), run.wrong);
     }
+    scratch::write(folder / alteration.file, original);
+    forger::seal(folder);
 }
 
-/// The fields of a row of equilibria.csv, with one replaced.
-Alteration in_row(const std::string& csv, int line, const std::string& column, const std::string& value) {
+/// Where the field of a column begins and ends in a line of equilibria.csv.
+std::pair<std::size_t, std::size_t> field_of(const std::string& csv, int line, const std::string& column) {
     const std::vector<std::string> names = equilibria_columns(
         {line_of(csv, 1).find(",L3,") != std::string::npos, line_of(csv, 1).find(",touching,") != std::string::npos});
     const auto index = std::find(names.begin(), names.end(), column) - names.begin();
@@ -108,7 +105,13 @@ Alteration in_row(const std::string& csv, int line, const std::string& column, c
     for (std::ptrdiff_t k = 0; k < index; ++k) {
         begin = text.find(',', begin) + 1;
     }
-    const std::size_t end = std::min(text.find(',', begin), text.size());
+    return {begin, std::min(text.find(',', begin), text.size())};
+}
+
+/// The fields of a row of equilibria.csv, with one replaced.
+Alteration in_row(const std::string& csv, int line, const std::string& column, const std::string& value) {
+    const auto [begin, end] = field_of(csv, line, column);
+    const std::string text = line_of(csv, line);
     return {"equilibria.csv", line, text, text.substr(0, begin) + value + text.substr(end), ""};
 }
 
@@ -117,14 +120,8 @@ void count_until(const std::filesystem::path& folder, int last, int arcs) {
     using json::Json;
     const std::string csv = scratch::read(folder / "equilibria.csv");
     const auto value = [&](const std::string& column) {
-        const std::string row = line_of(csv, last + 2);
-        const auto names = equilibria_columns({});
-        const auto index = std::find(names.begin(), names.end(), column) - names.begin();
-        std::size_t begin = 0;
-        for (std::ptrdiff_t k = 0; k < index; ++k) {
-            begin = row.find(',', begin) + 1;
-        }
-        return Json::parse(row.substr(begin, row.find(',', begin) - begin));
+        const auto [begin, end] = field_of(csv, last + 2, column);
+        return Json::parse(line_of(csv, last + 2).substr(begin, end - begin));
     };
     Json point = Json::parse(scratch::read(folder / "checkpoint.json"));
     Json summary = Json::parse(scratch::read(folder / "summary.json"));
@@ -339,36 +336,11 @@ BOOST_AUTO_TEST_CASE(a_run_of_a_hundred_disks_is_replayed_and_altered_records_ar
     }
     write_state(stored, state);
     forger::seal(folder / "run");
-    for (const char* column : {"number",
-                               "previous",
-                               "sigma2",
-                               "ratio",
-                               "eps1",
-                               "eps2",
-                               "L1",
-                               "L2",
-                               "solid_fraction",
-                               "arcs",
-                               "rattlers",
-                               "backbone",
-                               "dofs",
-                               "contacts",
-                               "rank",
-                               "h",
-                               "k",
-                               "held",
-                               "sigma2_low",
-                               "sigma2_high",
-                               "opens_low_i",
-                               "opens_high_j",
-                               "potential",
-                               "min_force",
-                               "min_force_i",
-                               "min_gap",
-                               "min_gap_j",
-                               "proved"}) {
+    for (const std::string& name :
+         scratch::split("number previous sigma2 ratio eps1 eps2 L1 L2 solid_fraction arcs rattlers backbone dofs "
+                        "contacts rank h k held sigma2_low sigma2_high opens_low_i opens_high_j potential min_force "
+                        "min_force_i min_gap min_gap_j proved")) {
         // The first row is checked before any arc; it has no equilibrium before it. Contacts keep their spelling.
-        const std::string name = column;
         const char* other = name.ends_with("_i") ? "0" : name.ends_with("_j") ? "-1" : "9";
         finds(folder / "run", in_row(csv, name == "previous" ? 4 : 2, name, other));
     }
@@ -379,23 +351,22 @@ BOOST_AUTO_TEST_CASE(runs_in_periodic_cells_are_replayed_whichever_disk_is_pinne
     for (const char* name : {"tilt_16", "rect_16", "channel_16"}) {
         for (const int pin : {0, 8, 9}) { // 8 and 9 become rattlers, or are
             for (const TiePolicy ties : {TiePolicy::stop, TiePolicy::choose}) {
-                BOOST_TEST_CONTEXT(name << ", disk " << pin << " pinned, ties "
-                                        << tie_policy_words[static_cast<std::size_t>(ties)]) {
-                    const scratch::Folder folder;
-                    play_and_store(of_cell(name, pin), {3}, folder / "run", OpeningRule::most_negative, ties);
-                    const RunVerification run = verify_run(folder / "run");
-                    BOOST_TEST(run.wrong == "");
-                    BOOST_TEST(run.undecided.size() == 0U, (run.undecided.empty() ? "" : run.undecided[0]));
-                    BOOST_TEST(words(run) == "ends proved, way looked at");
-                    BOOST_TEST(run.arcs_proved == run.arcs);
-                    BOOST_TEST(run.equilibria_proved == 4);
-                    same_with_threads(folder / "run", run);
-                    for (const char* forged : {"32", "33"}) { // all of the contacts, in two of the cells
-                        Alteration all = in_row(scratch::read(folder / "run/equilibria.csv"), 3, "backbone", forged);
-                        all.said = "backbone";
-                        if (pin == 9) {
-                            finds(folder / "run", all);
-                        }
+                BOOST_TEST_INFO_SCOPE(name << ", disk " << pin << " pinned, ties "
+                                           << tie_policy_words[static_cast<std::size_t>(ties)]);
+                const scratch::Folder folder;
+                play_and_store(of_cell(name, pin), {3}, folder / "run", OpeningRule::most_negative, ties);
+                const RunVerification run = verify_run(folder / "run");
+                BOOST_TEST(run.wrong == "");
+                BOOST_TEST(run.undecided.size() == 0U, (run.undecided.empty() ? "" : run.undecided[0]));
+                BOOST_TEST(words(run) == "ends proved, way looked at");
+                BOOST_TEST(run.arcs_proved == run.arcs);
+                BOOST_TEST(run.equilibria_proved == 4);
+                same_with_threads(folder / "run", run);
+                for (const char* forged : {"32", "33"}) { // all of the contacts, in two of the cells
+                    Alteration all = in_row(scratch::read(folder / "run/equilibria.csv"), 3, "backbone", forged);
+                    all.said = "backbone";
+                    if (pin == 9) {
+                        finds(folder / "run", all);
                     }
                 }
             }
@@ -477,12 +448,9 @@ BOOST_AUTO_TEST_CASE(folders_without_the_records_are_bad_input) {
         R"({"format":"isostat-run","version":1,"status":"completed","program":"","programme":[],"settings":{"run":{"rule":"most_negative"}}})");
     scratch::write(folder / "events.jsonl", "");
     scratch::write(folder / "equilibria.csv", "# number,previous\n0,-1\n");
-    try {
-        (void)verify_run(folder.path());
-        BOOST_ERROR("accepted");
-    } catch (const Error& error) {
-        BOOST_TEST((std::string(error.what()).find("the names of the columns") != std::string::npos), error.what());
-    }
+    BOOST_CHECK_EXCEPTION((void)verify_run(folder.path()), Error, [](const Error& error) {
+        return std::string(error.what()).find("the names of the columns") != std::string::npos;
+    });
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -10,7 +10,6 @@
 
 using namespace isostat;
 using crafted::Ties;
-using played::towards;
 namespace fs = std::filesystem;
 
 namespace {
@@ -178,9 +177,7 @@ BOOST_AUTO_TEST_CASE(ties_in_cells_are_replayed_and_altered_first_order_terms_ar
 
 BOOST_AUTO_TEST_CASE(a_hyperstatic_start_and_lattices_are_replayed) {
     const scratch::Folder scratch_folder;
-    Segment to;
-    to.direction = -1;
-    to.to_stress = 0.5;
+    const Segment to = until(-1, 0.5);
     play(crafted::equal_pair(), to, Ties::first_order, 1, scratch_folder / "pair");
     is_proved(scratch_folder / "pair");
     int arcs = 0;

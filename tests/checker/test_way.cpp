@@ -7,12 +7,6 @@
 #include "support/channel_roll.hpp"
 #include "support/crafted.hpp"
 
-#include <boost/test/unit_test.hpp>
-
-#include <cmath>
-#include <numbers>
-#include <random>
-
 using namespace isostat;
 using namespace isostat::checker;
 
@@ -212,26 +206,25 @@ BOOST_AUTO_TEST_CASE(an_arc_that_ends_higher_than_it_began_is_refuted) {
 BOOST_AUTO_TEST_CASE(a_way_in_a_channel_is_proved_unless_a_pair_of_images_meets_on_it) {
     for (const int shift : {0, 1, -2}) {
         for (const double clearance : {1e-2, 1e-5, 1e-8, -1e-2, -1e-5, -1e-8}) {
-            BOOST_TEST_CONTEXT("disk 1 stored " << shift << " periods away, clearance " << clearance) {
-                const cells::ChannelRoll roll{clearance, shift};
-                Place from;
-                Place to;
-                (void)make_place(roll.start(), from); // of its forces nothing is asked
-                (void)make_place(roll.end(), to);
-                BOOST_TEST_REQUIRE((from.evidence->vertex.found && to.evidence->vertex.found));
-                Witness witness;
-                for (int k = 0; k < from.evidence->problem.dofs(); ++k) {
-                    const auto coordinate = static_cast<std::size_t>(from.evidence->problem.coordinate_of[at(k)]);
-                    witness.end.push_back(to.state->packing.q[coordinate]);
-                }
-                const Objections objection =
-                    prove_way(from, to, {cells::ChannelRoll::slot, +1, false, false, from.stress(), witness});
-                const std::string said = objection ? objection->text : "";
-                if (clearance > 0) {
-                    BOOST_TEST(said == "");
-                } else {
-                    BOOST_TEST(said.find("the gap of " + to_string(roll.passing())) != std::string::npos, said);
-                }
+            BOOST_TEST_INFO_SCOPE("disk 1 stored " << shift << " periods away, clearance " << clearance);
+            const cells::ChannelRoll roll{clearance, shift};
+            Place from;
+            Place to;
+            (void)make_place(roll.start(), from); // of its forces nothing is asked
+            (void)make_place(roll.end(), to);
+            BOOST_TEST_REQUIRE((from.evidence->vertex.found && to.evidence->vertex.found));
+            Witness witness;
+            for (int k = 0; k < from.evidence->problem.dofs(); ++k) {
+                const auto coordinate = static_cast<std::size_t>(from.evidence->problem.coordinate_of[at(k)]);
+                witness.end.push_back(to.state->packing.q[coordinate]);
+            }
+            const Objections objection =
+                prove_way(from, to, {cells::ChannelRoll::slot, +1, false, false, from.stress(), witness});
+            const std::string said = objection ? objection->text : "";
+            if (clearance > 0) {
+                BOOST_TEST(said == "");
+            } else {
+                BOOST_TEST(said.find("the gap of " + to_string(roll.passing())) != std::string::npos, said);
             }
         }
     }

@@ -92,8 +92,7 @@ BOOST_AUTO_TEST_CASE(the_way_from_a_start_that_is_no_equilibrium_is_replayed) {
 
 BOOST_AUTO_TEST_CASE(arcs_that_lead_to_no_equilibrium_are_replayed) {
     const scratch::Folder folder;
-    RunOptions options;
-    options.max_arcs = 3;
+    RunOptions options{.max_arcs = 3};
     for (const bool from_start : {false, true}) { // the first rearrangement does not end, or none begins
         const fs::path run = folder / (from_start ? "none" : "first");
         play_whole(from_start ? overloaded(3) : prepared(36, 3), 4, options, run);
@@ -112,9 +111,7 @@ BOOST_AUTO_TEST_CASE(arcs_that_lead_to_no_equilibrium_are_replayed) {
 
 BOOST_AUTO_TEST_CASE(what_the_rule_random_draws_is_drawn_again) {
     const scratch::Folder folder;
-    RunOptions options;
-    options.rule = OpeningRule::random;
-    options.rule_seed = 5;
+    RunOptions options{.rule = OpeningRule::random, .rule_seed = 5};
     play_whole(prepared(36, 3), 2, options, folder / "run");
     all_is_proved(folder / "run");
     const RunVerification other = forger::altered(folder / "run", "run.json", "\"rule_seed\": 5", "\"rule_seed\": 6");
@@ -124,8 +121,7 @@ BOOST_AUTO_TEST_CASE(what_the_rule_random_draws_is_drawn_again) {
 // The load at which a force vanishes is not a double: what goes on from there means the exact one.
 BOOST_AUTO_TEST_CASE(a_run_from_a_state_stored_at_a_limit_is_replayed_at_the_load_that_is_meant) {
     const scratch::Folder folder;
-    RunOptions options;
-    options.ties = TiePolicy::choose;
+    RunOptions options{.ties = TiePolicy::choose};
     play_whole(crafted::mirror_forces(), -1, options, folder / "first");
     const State reached = read_state(folder / "first/states/eq_000001.json").state;
     BOOST_TEST_REQUIRE((reached.perturbation && reached.perturbation->load_zero.i >= 0));

@@ -3,18 +3,13 @@
 
 #include "support/scratch.hpp"
 
-#include <boost/test/unit_test.hpp>
 #include <fcntl.h>
 #include <spawn.h>
 #include <sys/wait.h>
 
-#include <algorithm>
 #include <chrono>
 #include <csignal>
-#include <filesystem>
-#include <string>
 #include <thread>
-#include <vector>
 
 extern char** environ; // NOLINT(readability-redundant-declaration)
 

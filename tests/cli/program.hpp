@@ -3,12 +3,8 @@
 
 #include "support/scratch.hpp"
 
-#include <boost/test/unit_test.hpp>
+#include <nlohmann/json.hpp>
 #include <sys/wait.h>
-
-#include <cstdlib>
-#include <string>
-#include <vector>
 
 namespace program {
 
@@ -32,7 +28,7 @@ inline Outcome run(const std::vector<std::string>& arguments, const std::string&
     for (const std::string& argument : arguments) {
         line += " " + quoted(argument);
     }
-    line += " >" + quoted((folder / "out").string()) + " 2>" + quoted((folder / "err").string()) + " </dev/null";
+    line += " >" + quoted(folder.at("out")) + " 2>" + quoted(folder.at("err")) + " </dev/null";
     const int status = std::system(line.c_str());
     Outcome outcome;
     outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
@@ -52,6 +48,47 @@ inline void expect(const Outcome& outcome, int status, const std::vector<std::st
     for (const std::string& word : words) {
         BOOST_TEST(contains(outcome.err, word), "'" << word << "' is not in: " << outcome.err);
     }
+}
+
+/// Exit status, and all of the words on standard output.
+inline Outcome says(Outcome outcome, int status, const std::vector<std::string>& words) {
+    expect(outcome, status);
+    for (const std::string& word : words) {
+        BOOST_TEST(contains(outcome.out, word), "'" << word << "' is not in: " << outcome.out << outcome.err);
+    }
+    return outcome;
+}
+
+/// The JSON on standard output.
+inline nlohmann::json json_of(const Outcome& outcome, int status = 0) {
+    expect(outcome, status);
+    return nlohmann::json::parse(outcome.out);
+}
+
+/// Two runs have the same records, states and certificates, but for times and for the names of their folders.
+inline void same_records(const std::filesystem::path& a, const std::filesystem::path& b) {
+    namespace fs = std::filesystem;
+    BOOST_TEST((scratch::read(a / "events.jsonl") == scratch::read(b / "events.jsonl")));
+    BOOST_TEST(scratch::without_times(scratch::read(a / "equilibria.csv")) ==
+               scratch::without_times(scratch::read(b / "equilibria.csv")));
+    int states = 0;
+    for (const char* folder : {"states", "certificates"}) {
+        if (!fs::exists(a / folder)) {
+            continue;
+        }
+        for (const auto& entry : fs::directory_iterator(a / folder)) {
+            const fs::path other = b / folder / entry.path().filename();
+            const auto body = [](const fs::path& file) { // what comes before the load names the folder
+                const std::string text = scratch::read(file);
+                const std::size_t begin = std::min(text.find("\"load\""), text.size());
+                return file.extension() == ".jsonl" ? text : text.substr(begin, text.rfind("\"digest\"") - begin);
+            };
+            BOOST_TEST(!body(entry.path()).empty(), other.string());
+            BOOST_TEST((body(entry.path()) == body(other)), other.string());
+            ++states;
+        }
+    }
+    BOOST_TEST(states >= 4);
 }
 
 /// A scene that starts from a sample and does what `programme` says.

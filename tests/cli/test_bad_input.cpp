@@ -17,7 +17,7 @@ void run_refuses(const std::string& start, const std::vector<std::string>& words
     const scratch::Folder folder;
     scratch::write(folder / "start.json", start);
     scratch::write(folder / "s.toml", scene_from("start.json", up_6));
-    const Outcome outcome = run({"run", (folder / "s.toml").string(), "-o", (folder / "run").string(), "-q"});
+    const Outcome outcome = run({"run", folder.at("s.toml"), "-o", folder.at("run"), "-q"});
     expect(outcome, 65, {"start.json"});
     expect(outcome, 65, words);
     BOOST_TEST(!fs::exists(folder / "run"));
@@ -29,12 +29,12 @@ void scene_refused(const std::string& scene, const std::vector<std::string>& wor
     const scratch::Folder folder;
     scratch::write_scene(folder / "s.toml", scene);
     for (const std::string command : {"run", "prepare"}) {
-        const Outcome outcome = run({command, (folder / "s.toml").string(), "-o", (folder / "out").string()});
+        const Outcome outcome = run({command, folder.at("s.toml"), "-o", folder.at("out")});
         expect(outcome, 65, {"s.toml"});
         expect(outcome, 65, words);
         BOOST_TEST(!fs::exists(folder / "out"));
     }
-    expect(run({"plan", (folder / "s.toml").string()}), 65, words);
+    expect(run({"plan", folder.at("s.toml")}), 65, words);
 }
 
 const std::string two = state_text(crafted::two_disks(1, 2, 1, 1));
@@ -49,7 +49,7 @@ BOOST_AUTO_TEST_CASE(overlapping_disks) {
     run_refuses(state_text(state), {"overlap", "0-1", "-0.4659", "expected every gap >= 0"});
     const scratch::Folder folder;
     scratch::write(folder / "s.json", state_text(state));
-    expect(run({"inspect", (folder / "s.json").string()}),
+    expect(run({"inspect", folder.at("s.json")}),
            2); // no true configuration has these contacts near: nothing is proved
 }
 
@@ -74,11 +74,11 @@ BOOST_AUTO_TEST_CASE(empty_files) {
     scene_refused("", {"empty"});
     const scratch::Folder folder;
     scratch::write(folder / "e.json", "");
-    expect(run({"inspect", (folder / "e.json").string()}), 65, {"e.json", "empty"});
-    expect(run({"import", (folder / "e.json").string(), "-o", (folder / "o.json").string()}), 65, {"e.json", "empty"});
-    expect(run({"report", (folder / "e.json").string()}), 65, {"e.json", "empty"});
+    expect(run({"inspect", folder.at("e.json")}), 65, {"e.json", "empty"});
+    expect(run({"import", folder.at("e.json"), "-o", folder.at("o.json")}), 65, {"e.json", "empty"});
+    expect(run({"report", folder.at("e.json")}), 65, {"e.json", "empty"});
     BOOST_TEST(!fs::exists(folder / "o.json"));
-    expect(run({"inspect", (folder / "absent.json").string()}), 65, {"absent.json", "No such file"});
+    expect(run({"inspect", folder.at("absent.json")}), 65, {"absent.json", "No such file"});
     expect(run({"report", folder.path().string()}), 65, {"run.json", "folder of a run"});
 }
 
@@ -101,12 +101,11 @@ BOOST_AUTO_TEST_CASE(folders_that_cannot_be_written) {
     scratch::write(folder / "plain", "a file");
     scratch::write_scene(folder / "s.toml", scene_from(scratch::data("vertex100.txt"), up_6));
     scratch::write(folder / "p.toml", "[packing]\ndisks = 2000\n"); // would take a while: it must be refused before
-    const std::string below = (folder / "plain/below").string();
-    expect(run({"run", (folder / "s.toml").string(), "-o", below, "-q"}), 74, {"plain/below", "cannot write"});
-    expect(run({"run", (folder / "s.toml").string(), "-o", (folder / "plain").string(), "-q"}), 74,
-           {"plain", "cannot write"});
-    expect(run({"prepare", (folder / "p.toml").string(), "-o", below, "-q"}), 74, {"plain/below", "cannot write"});
-    expect(run({"prepare", (folder / "p.toml").string(), "-o", (folder / "no/p.json").string(), "-q"}), 74,
+    const std::string below = folder.at("plain/below");
+    expect(run({"run", folder.at("s.toml"), "-o", below, "-q"}), 74, {"plain/below", "cannot write"});
+    expect(run({"run", folder.at("s.toml"), "-o", folder.at("plain"), "-q"}), 74, {"plain", "cannot write"});
+    expect(run({"prepare", folder.at("p.toml"), "-o", below, "-q"}), 74, {"plain/below", "cannot write"});
+    expect(run({"prepare", folder.at("p.toml"), "-o", folder.at("no/p.json"), "-q"}), 74,
            {"no/p.json", "cannot write"});
     expect(run({"import", scratch::data("vertex100.txt"), "-o", below}), 74, {"plain/below", "cannot write"});
     expect(run({"report", scratch::data("vertex100.txt"), "-o", below}), 74, {"plain/below", "cannot write"});
@@ -123,33 +122,27 @@ BOOST_AUTO_TEST_CASE(contradictory_programmes) {
                   {":6:", "equilibrium 7", "number 6"});
     const scratch::Folder folder;
     scratch::write(folder / "s.toml", packing);
-    expect(run({"run", (folder / "s.toml").string(), "-o", (folder / "out").string()}), 65,
-           {"s.toml", "no [[programme]]"});
+    expect(run({"run", folder.at("s.toml"), "-o", folder.at("out")}), 65, {"s.toml", "no [[programme]]"});
     // Only the start file tells that 1.5 is behind.
     isostat::State state = crafted::two_disks(1, 2, 1, 2);
     scratch::write(folder / "start.json", state_text(state));
     scratch::write(folder / "f.toml", scene_from("start.json", "[[programme]]\ndo = \"up\"\nto = 1.5\n"));
-    expect(run({"run", (folder / "f.toml").string(), "-o", (folder / "out").string()}), 65,
-           {"f.toml:3", "start is 2", "larger"});
-    expect(run({"prepare", (folder / "f.toml").string(), "-o", (folder / "o.json").string()}), 65,
-           {"f.toml", "nothing to prepare"});
+    expect(run({"run", folder.at("f.toml"), "-o", folder.at("out")}), 65, {"f.toml:3", "start is 2", "larger"});
+    expect(run({"prepare", folder.at("f.toml"), "-o", folder.at("o.json")}), 65, {"f.toml", "nothing to prepare"});
     BOOST_TEST(!fs::exists(folder / "out"));
 }
 
 BOOST_AUTO_TEST_CASE(a_folder_that_holds_a_run) {
     const scratch::Folder folder;
-    const std::string out = (folder / "run").string();
+    const std::string out = folder.at("run");
     scratch::write_scene(folder / "s.toml", scene_from(scratch::data("vertex100.txt"), up_6));
-    expect(run({"run", (folder / "s.toml").string(), "-o", out, "--resume", "-q"}), 65,
-           {"run.json", "no run to resume"});
-    expect(run({"run", (folder / "s.toml").string(), "-o", out, "-q"}), 0);
-    expect(run({"run", (folder / "s.toml").string(), "-o", out, "-q"}), 64,
-           {"holds a run already", "--resume", "--force"});
-    expect(run({"run", (folder / "s.toml").string(), "-o", out, "-q", "--force"}), 0);
+    expect(run({"run", folder.at("s.toml"), "-o", out, "--resume", "-q"}), 65, {"run.json", "no run to resume"});
+    expect(run({"run", folder.at("s.toml"), "-o", out, "-q"}), 0);
+    expect(run({"run", folder.at("s.toml"), "-o", out, "-q"}), 64, {"holds a run already", "--resume", "--force"});
+    expect(run({"run", folder.at("s.toml"), "-o", out, "-q", "--force"}), 0);
     scratch::write_scene(folder / "t.toml",
                          scene_from(scratch::data("vertex100.txt"), up_6, "[run]\nrule = \"least_index\"\n"));
-    expect(run({"run", (folder / "t.toml").string(), "-o", out, "-q", "--resume"}), 65,
-           {"run.json", "another scene", "t.toml"});
+    expect(run({"run", folder.at("t.toml"), "-o", out, "-q", "--resume"}), 65, {"run.json", "another scene", "t.toml"});
 }
 
 BOOST_AUTO_TEST_SUITE_END()

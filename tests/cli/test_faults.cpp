@@ -2,7 +2,6 @@
 #include "cli/program.hpp"
 
 #include <chrono>
-#include <random>
 
 using namespace program;
 namespace fs = std::filesystem;
@@ -17,28 +16,6 @@ std::string scene(const std::string& level) {
                       "checkpoint_seconds = 0\n[run]\ncertify = \"" + level + "\"\n");
 }
 
-void same_records(const fs::path& a, const fs::path& b) {
-    BOOST_TEST((scratch::read(a / "events.jsonl") == scratch::read(b / "events.jsonl")));
-    BOOST_TEST(scratch::without_times(scratch::read(a / "equilibria.csv")) ==
-               scratch::without_times(scratch::read(b / "equilibria.csv")));
-    for (const char* folder : {"states", "certificates"}) {
-        if (!fs::exists(a / folder)) {
-            continue;
-        }
-        for (const auto& entry : fs::directory_iterator(a / folder)) {
-            const fs::path other = b / folder / entry.path().filename();
-            const auto body = [](const fs::path& file) {
-                const std::string text = scratch::read(file);
-                if (file.extension() == ".jsonl") { // witnesses of arcs
-                    return text;
-                }
-                return text.substr(std::min(text.find("\"load\""), text.size()), text.rfind("\"digest\""));
-            };
-            BOOST_TEST((fs::exists(other) && body(entry.path()) == body(other)), other.string());
-        }
-    }
-}
-
 } // namespace
 
 BOOST_AUTO_TEST_SUITE(cli)
@@ -48,10 +25,10 @@ BOOST_AUTO_TEST_CASE(runs_killed_again_and_again_at_random_instants_end_with_the
     std::mt19937 random(8);
     for (const std::string& level : {std::string("decisions"), std::string("arcs")}) {
         const scratch::Folder folder;
-        const std::string file = (folder / "s.toml").string();
+        const std::string file = folder.at("s.toml");
         scratch::write_scene(file, scene(level));
         const auto begin = std::chrono::steady_clock::now();
-        expect(run({"run", file, "-o", (folder / "whole").string(), "-q"}), 0);
+        expect(run({"run", file, "-o", folder.at("whole"), "-q"}), 0);
         const std::chrono::duration<double> whole = std::chrono::steady_clock::now() - begin;
         const fs::path out = folder / "cut";
         int kills = 0;
@@ -80,10 +57,10 @@ BOOST_AUTO_TEST_CASE(runs_killed_again_and_again_at_random_instants_end_with_the
 
 BOOST_AUTO_TEST_CASE(a_limit_of_the_file_size_is_a_failed_write_and_the_run_goes_on_later) {
     const scratch::Folder folder;
-    const std::string file = (folder / "s.toml").string();
+    const std::string file = folder.at("s.toml");
     scratch::write_scene(file, scene("decisions"));
-    expect(run({"run", file, "-o", (folder / "whole").string(), "-q"}), 0);
-    const std::string out = (folder / "cut").string();
+    expect(run({"run", file, "-o", folder.at("whole"), "-q"}), 0);
+    const std::string out = folder.at("cut");
     // 20 blocks of 512 bytes: room for the start, not for all events.
     const Outcome full = run({"run", file, "-o", out, "-q"}, "ulimit -f 20; ");
     expect(full, 74, {"cannot write"});
@@ -93,7 +70,7 @@ BOOST_AUTO_TEST_CASE(a_limit_of_the_file_size_is_a_failed_write_and_the_run_goes
 
 BOOST_AUTO_TEST_CASE(the_levels_leave_what_they_promise) {
     const scratch::Folder folder;
-    const std::string file = (folder / "s.toml").string();
+    const std::string file = folder.at("s.toml");
     for (const std::string& level : {std::string("decisions"), std::string("states"), std::string("arcs")}) {
         scratch::write_scene(file, scene(level));
         const fs::path out = folder / level;
@@ -113,7 +90,7 @@ BOOST_AUTO_TEST_CASE(the_levels_leave_what_they_promise) {
         BOOST_TEST((plan.out.find("proof   arcs") < plan.out.find("left out")) == (level == "arcs"));
     }
     scratch::write_scene(file, scene("everything"));
-    expect(run({"run", file, "-o", (folder / "none").string(), "-q"}), 65, {"certify", "decisions"});
+    expect(run({"run", file, "-o", folder.at("none"), "-q"}), 65, {"certify", "decisions"});
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -92,7 +92,7 @@ BOOST_AUTO_TEST_CASE(a_name_in_a_scene_is_one_line_without_control_characters) {
     const scratch::Folder folder;
     for (const std::string& name : controls) {
         scratch::write(folder / "s.toml", scene_of_names({name}));
-        const Outcome refused = run({"plan", (folder / "s.toml").string()});
+        const Outcome refused = run({"plan", folder.at("s.toml")});
         expect(refused, 65, {"s.toml:", "name", "one line of text"});
         expect_harmless(refused);
     }
@@ -183,10 +183,10 @@ BOOST_AUTO_TEST_CASE(words_of_files_of_other_programs_do_not_command_the_termina
     for (const std::string& content : files) {
         scratch::write(folder / "file", content);
         for (const char* command : {"plateau", "inspect", "genericity"}) {
-            expect_harmless(run({command, (folder / "file").string()}));
+            expect_harmless(run({command, folder.at("file")}));
         }
         scratch::write(folder / "file.toml", content);
-        expect_harmless(run({"inspect", (folder / "file.toml").string()}));
+        expect_harmless(run({"inspect", folder.at("file.toml")}));
     }
 }
 

@@ -4,7 +4,6 @@
 #include <isostat/io/foreign.hpp>
 #include <isostat/io/state_file.hpp>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 using namespace program;
@@ -54,7 +53,7 @@ struct Soft {
 /// Runs import on a text; nothing is written unless the status is 0.
 Outcome import_text(const scratch::Folder& folder, const std::string& text, std::vector<std::string> options) {
     scratch::write(folder / "p.txt", text);
-    options.insert(options.begin(), {"import", (folder / "p.txt").string(), "-o", (folder / "s.json").string()});
+    options.insert(options.begin(), {"import", folder.at("p.txt"), "-o", folder.at("s.json")});
     fs::remove(folder / "s.json");
     Outcome outcome = run(options);
     BOOST_TEST(fs::exists(folder / "s.json") == (outcome.status == 0));
@@ -68,28 +67,25 @@ BOOST_AUTO_TEST_SUITE(cli_import)
 
 BOOST_AUTO_TEST_CASE(soft_grains_end_at_the_vertex_that_they_came_from) {
     for (const double part : {1e-12, 1e-6, 1e-4}) {
-        BOOST_TEST_CONTEXT("overlap " << part) {
-            const scratch::Folder folder;
-            const Soft soft(part);
-            const std::string moved = (folder / "moved.csv").string();
-            const Outcome outcome = import_text(folder, soft.table(), {"--box", soft.box, "--json", "--moved", moved});
-            expect(outcome, 0);
-            const json answer = json::parse(outcome.out);
-            BOOST_TEST(answer.at("verdict") == "proved");
-            BOOST_TEST(contains(answer.at("contacts").get<std::string>(), "188 carry a force, those of the file"));
-            const double backbone = answer.at("moved").at("backbone").get<double>();
-            BOOST_TEST(backbone < 25 * part + 1e-11);
-            BOOST_TEST(backbone > 5 * part);
-            const std::string rows = scratch::read(moved);
-            BOOST_TEST(std::count(rows.begin(), rows.end(), '\n') == 101);
-            // The vertex is that of the sample: its file has the disks in the opposite order.
-            const Packing found = read_state(folder / "s.json").state.packing;
-            for (std::size_t a = 0; a < 2; ++a) {
-                BOOST_TEST(std::abs(found.length(static_cast<int>(a)) -
-                                    soft.state.packing.length(static_cast<int>(a))) < 1e-11);
-            }
-            expect(run({"certify", (folder / "s.json").string(), "-o", (folder / "c.json").string()}), 0);
+        BOOST_TEST_INFO_SCOPE("overlap " << part);
+        const scratch::Folder folder;
+        const Soft soft(part);
+        const std::string moved = folder.at("moved.csv");
+        const auto answer = json_of(import_text(folder, soft.table(), {"--box", soft.box, "--json", "--moved", moved}));
+        BOOST_TEST(answer.at("verdict") == "proved");
+        BOOST_TEST(contains(answer.at("contacts").get<std::string>(), "188 carry a force, those of the file"));
+        const double backbone = answer.at("moved").at("backbone").get<double>();
+        BOOST_TEST(backbone < 25 * part + 1e-11);
+        BOOST_TEST(backbone > 5 * part);
+        const std::string rows = scratch::read(moved);
+        BOOST_TEST(std::count(rows.begin(), rows.end(), '\n') == 101);
+        // The vertex is that of the sample: its file has the disks in the opposite order.
+        const Packing found = read_state(folder / "s.json").state.packing;
+        for (std::size_t a = 0; a < 2; ++a) {
+            BOOST_TEST(std::abs(found.length(static_cast<int>(a)) - soft.state.packing.length(static_cast<int>(a))) <
+                       1e-11);
         }
+        expect(run({"certify", folder.at("s.json"), "-o", folder.at("c.json")}), 0);
     }
 }
 
@@ -102,50 +98,45 @@ BOOST_AUTO_TEST_CASE(an_imported_state_runs_under_its_load) {
     BOOST_TEST(state.load.stress[1] == 2 * (2.01 / 2));
     BOOST_TEST((state.load.kind == LoadKind::true_stress));
     scratch::write(folder / "s.toml", scene_from("s.json", "[[programme]]\ndo = \"up\"\nequilibria = 1\n"));
-    expect(run({"run", (folder / "s.toml").string(), "-o", (folder / "run").string(), "-q"}), 0);
+    expect(run({"run", folder.at("s.toml"), "-o", folder.at("run"), "-q"}), 0);
 }
 
 /// `export.text` of YADE 2023.02a wrote the file, with six digits: 20 disks (seed 1), stiffness 1e6, its walls at
 /// `box`.
 BOOST_AUTO_TEST_CASE(soft_grains_of_yade_end_at_the_vertex_that_they_came_from) {
     const scratch::Folder folder;
-    const std::string out = (folder / "s.json").string(), start = (folder / "start.json").string();
+    const std::string out = folder.at("s.json"), start = folder.at("start.json");
     const std::string box = "0:6.797743980394215,0:6.804741233269178";
     scratch::write(folder / "prepared.toml", "[packing]\ndisks = 20\n");
-    expect(run({"prepare", (folder / "prepared.toml").string(), "-o", start, "-q"}), 0);
+    expect(run({"prepare", folder.at("prepared.toml"), "-o", start, "-q"}), 0);
     const State from = read_state(start).state;
     for (const std::string contacts : {"plateau", "nearest"}) {
-        BOOST_TEST_CONTEXT(contacts) {
-            const Outcome outcome = import_text(folder, scratch::read(scratch::data("yade20.txt")),
-                                                {"--box", box, "--contacts", contacts, "--json"});
-            expect(outcome, 0);
-            const json answer = json::parse(outcome.out);
-            BOOST_TEST(answer.at("file_format") == "table");
-            BOOST_TEST(contains(answer.at("contacts").get<std::string>(), "34 carry a force"));
-            const double moved = answer.at("moved").at("backbone").get<double>();
-            BOOST_TEST(moved > 1e-6); // overlaps and digits
-            BOOST_TEST(moved < 1e-4);
-            std::vector<Contact> found = read_state(out).state.contacts, expected = from.contacts;
-            std::sort(found.begin(), found.end());
-            std::sort(expected.begin(), expected.end());
-            BOOST_TEST((found == expected));
-            expect(run({"certify", out, "-o", (folder / "c.json").string()}), 0);
-        }
+        BOOST_TEST_INFO_SCOPE(contacts);
+        const auto answer = json_of(import_text(folder, scratch::read(scratch::data("yade20.txt")),
+                                                {"--box", box, "--contacts", contacts, "--json"}));
+        BOOST_TEST(answer.at("file_format") == "table");
+        BOOST_TEST(contains(answer.at("contacts").get<std::string>(), "34 carry a force"));
+        const double moved = answer.at("moved").at("backbone").get<double>();
+        BOOST_TEST(moved > 1e-6); // overlaps and digits
+        BOOST_TEST(moved < 1e-4);
+        std::vector<Contact> found = read_state(out).state.contacts, expected = from.contacts;
+        std::sort(found.begin(), found.end());
+        std::sort(expected.begin(), expected.end());
+        BOOST_TEST((found == expected));
+        expect(run({"certify", out, "-o", folder.at("c.json")}), 0);
     }
     scratch::write(folder / "s.toml", scene_from("s.json", "[[programme]]\ndo = \"up\"\nequilibria = 2\n"));
-    expect(run({"run", (folder / "s.toml").string(), "-o", (folder / "run").string(), "-q"}), 0);
+    expect(run({"run", folder.at("s.toml"), "-o", folder.at("run"), "-q"}), 0);
 }
 
 BOOST_AUTO_TEST_CASE(forces_name_the_contacts_by_their_ids) {
     const scratch::Folder folder;
     const Soft soft(1e-6);
-    const std::string dump = (folder / "pairs.dump").string();
+    const std::string dump = folder.at("pairs.dump");
     const std::vector<std::string> options{
         "--box", soft.box, "--contacts", dump, "--contact-columns", "c_i[1],c_i[2],c_f"};
     scratch::write(dump, soft.forces(1000));
-    const Outcome all = import_text(folder, soft.table(), options);
-    expect(all, 0);
-    BOOST_TEST(contains(all.out, "188 carry a force, those of the file"));
+    says(import_text(folder, soft.table(), options), 0, {"188 carry a force, those of the file"});
     scratch::write(dump, soft.forces(100));
     expect(import_text(folder, soft.table(), options), 1,
            {"moving: the contacts of the file", "k = ", "--contacts nearest"});
@@ -163,7 +154,7 @@ BOOST_AUTO_TEST_CASE(what_no_vertex_is_near_is_refused_and_nothing_is_written) {
     expect(import_text(folder, soft.table(), {"--box", "0:9,0:9"}), 65, {"centre between the walls"});
     expect(import_text(folder, soft.table(), {}), 65, {"walls", "--box"});
     const Soft deep(0.2);
-    const std::string moved = (folder / "moved.csv").string();
+    const std::string moved = folder.at("moved.csv");
     expect(import_text(folder, deep.table(), {"--box", deep.box, "--moved", moved}), 65,
            {"overlap by", "expected at most"});
     expect(import_text(folder, scratch::replaced(soft.table(), "radius", "size"), {"--box", soft.box}), 65,
@@ -190,11 +181,10 @@ BOOST_AUTO_TEST_CASE(a_jitter_makes_equal_disks_different) {
     BOOST_TEST(state.packing.radius[0] != state.packing.radius[1]);
     BOOST_TEST(std::abs(state.packing.radius[0] - 1) <= 1e-3);
     // A state keeps its load.
-    const std::string sample = std::string(ISOSTAT_EXAMPLES) + "/ties/equal-pair.json",
-                      out = (folder / "p.json").string();
+    const std::string sample = std::string(ISOSTAT_EXAMPLES) + "/ties/equal-pair.json", out = folder.at("p.json");
     scratch::write(folder / "grid.json", scratch::replaced(state_text(state), "\"nominal\",\"stress\":[1.0,1.0]",
                                                            "\"true\",\"stress\":[3.0,3.5]"));
-    expect(run({"import", (folder / "grid.json").string(), "--jitter", "1e-6", "--contacts", "nearest", "-o", out}), 0);
+    expect(run({"import", folder.at("grid.json"), "--jitter", "1e-6", "--contacts", "nearest", "-o", out}), 0);
     const State again = read_state(out).state;
     BOOST_TEST(again.load.stress[0] == 3.0);
     BOOST_TEST(again.load.stress[1] == 3.5);
@@ -206,7 +196,7 @@ BOOST_AUTO_TEST_CASE(a_jitter_makes_equal_disks_different) {
 
 BOOST_AUTO_TEST_CASE(crafted_packings_keep_their_contacts_or_are_refused) {
     const scratch::Folder folder;
-    const std::string out = (folder / "s.json").string();
+    const std::string out = folder.at("s.json");
     expect(run({"import", crafted_files + "two_disks.toml", "-o", out}), 0);
     expect(run({"inspect", out}), 0);
     BOOST_TEST(read_state(out).state.contacts.size() == 6U);
@@ -220,29 +210,28 @@ BOOST_AUTO_TEST_CASE(crafted_packings_keep_their_contacts_or_are_refused) {
 
 BOOST_AUTO_TEST_CASE(what_is_exported_comes_back_as_the_same_vertex) {
     const scratch::Folder folder;
-    const std::string from = scratch::data("vertex100.txt"), back = (folder / "back.json").string();
+    const std::string from = scratch::data("vertex100.txt"), back = folder.at("back.json");
     const State state = read_state(from).state;
     const std::string box = fmt::format("0:{},0:{}", state.packing.length(0), state.packing.length(1));
     for (const std::string end : {"data", "xyz", "csv"}) {
-        BOOST_TEST_CONTEXT(end) {
-            const std::string file = (folder / ("a." + end)).string();
-            expect(run({"export", from, "-o", file}), 0);
-            const Outcome outcome = run({"import", file, "--box", box, "-o", back, "--json"});
-            expect(outcome, 0);
-            BOOST_TEST(json::parse(outcome.out).at("moved").at("backbone").get<double>() < 1e-11);
-            expect(run({"inspect", file}), 65, {"isostat import"});
-        }
+        BOOST_TEST_INFO_SCOPE(end);
+        const std::string file = (folder / ("a." + end)).string();
+        expect(run({"export", from, "-o", file}), 0);
+        const Outcome outcome = run({"import", file, "--box", box, "-o", back, "--json"});
+        expect(outcome, 0);
+        BOOST_TEST(json::parse(outcome.out).at("moved").at("backbone").get<double>() < 1e-11);
+        expect(run({"inspect", file}), 65, {"isostat import"});
     }
-    expect(run({"export", from, "-o", (folder / "a.vtk").string()}), 64, {"report --vtk"});
-    expect(run({"export", folder.path().string(), "-o", (folder / "b.xyz").string()}), 65, {"states/eq_"});
+    expect(run({"export", from, "-o", folder.at("a.vtk")}), 64, {"report --vtk"});
+    expect(run({"export", folder.path().string(), "-o", folder.at("b.xyz")}), 65, {"states/eq_"});
 }
 
 BOOST_AUTO_TEST_CASE(a_run_is_exported_as_frames_with_displacements) {
     const scratch::Folder folder;
     scratch::write_scene(folder / "s.toml",
                          scene_from(scratch::data("vertex100.txt"), "[[programme]]\ndo = \"up\"\nequilibria = 2\n"));
-    expect(run({"run", (folder / "s.toml").string(), "-o", (folder / "run").string(), "-q"}), 0);
-    expect(run({"export", (folder / "run").string(), "-o", (folder / "run.xyz").string()}), 0);
+    expect(run({"run", folder.at("s.toml"), "-o", folder.at("run"), "-q"}), 0);
+    expect(run({"export", folder.at("run"), "-o", folder.at("run.xyz")}), 0);
     const std::string text = scratch::read(folder / "run.xyz");
     const std::size_t second = text.find("\n100\n");
     BOOST_REQUIRE(second != std::string::npos);

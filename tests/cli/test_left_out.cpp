@@ -3,9 +3,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include <map>
-#include <set>
-
 using namespace program;
 using nlohmann::json;
 namespace fs = std::filesystem;
@@ -29,27 +26,24 @@ BOOST_AUTO_TEST_CASE(what_plan_leaves_out_is_not_done, *boost::unit_test::label(
         if (entry.path().extension() != ".toml") {
             continue;
         }
-        BOOST_TEST_CONTEXT(entry.path().filename().string()) {
-            const Outcome planned = run({"plan", entry.path().string(), "--json"});
-            expect(planned, 0);
-            const json plan = json::parse(planned.out);
-            if (plan["programme"].empty()) {
-                continue; // for `isostat prepare`
+        BOOST_TEST_INFO_SCOPE(entry.path().filename().string());
+        const auto plan = json_of(run({"plan", entry.path().string(), "--json"}));
+        if (plan["programme"].empty()) {
+            continue; // for `isostat prepare`
+        }
+        const scratch::Folder folder;
+        expect(run({"run", entry.path().string(), "-o", folder.at("r"), "-q"}), 0);
+        const json work = json::parse(scratch::read(folder / "r/work.json"))["counts"];
+        ++runs;
+        for (const json& part : plan["plan"]) {
+            const auto found = counters.find(part["name"].get<std::string>());
+            if (found == counters.end()) {
+                continue;
             }
-            const scratch::Folder folder;
-            expect(run({"run", entry.path().string(), "-o", (folder / "r").string(), "-q"}), 0);
-            const json work = json::parse(scratch::read(folder / "r/work.json"))["counts"];
-            ++runs;
-            for (const json& part : plan["plan"]) {
-                const auto found = counters.find(part["name"].get<std::string>());
-                if (found == counters.end()) {
-                    continue;
-                }
-                (part["used"].get<bool>() ? seen_used : seen_unused).insert(found->first);
-                for (const std::string& counter : found->second) {
-                    BOOST_TEST((work[counter].get<long>() > 0) == part["used"].get<bool>(),
-                               found->first << ": " << counter << " = " << work[counter]);
-                }
+            (part["used"].get<bool>() ? seen_used : seen_unused).insert(found->first);
+            for (const std::string& counter : found->second) {
+                BOOST_TEST((work[counter].get<long>() > 0) == part["used"].get<bool>(),
+                           found->first << ": " << counter << " = " << work[counter]);
             }
         }
     }
@@ -78,18 +72,17 @@ BOOST_AUTO_TEST_CASE(two_small_scenes_cost_what_they_did_with_any_number_of_thre
     for (const auto& [scene, expected] : known) {
         for (const char* threads : {"1", "3"}) {
             const scratch::Folder folder;
-            expect(run({"run", std::string(ISOSTAT_EXAMPLES) + "/plans/" + scene + ".toml", "-o",
-                        (folder / "r").string(), "-q", "--threads", threads}),
+            expect(run({"run", std::string(ISOSTAT_EXAMPLES) + "/plans/" + scene + ".toml", "-o", folder.at("r"), "-q",
+                        "--threads", threads}),
                    0);
             const json work = json::parse(scratch::read(folder / "r/work.json"))["counts"];
-            BOOST_TEST_CONTEXT(scene << ", threads " << threads) {
-                for (const auto& [counter, count] : work.items()) {
-                    const auto found = expected.find(counter);
-                    if (counter == "checkpoints") {
-                        BOOST_TEST(count.get<long>() > 0);
-                    } else {
-                        BOOST_TEST(count.get<long>() == (found == expected.end() ? 0 : found->second), counter);
-                    }
+            BOOST_TEST_INFO_SCOPE(scene << ", threads " << threads);
+            for (const auto& [counter, count] : work.items()) {
+                const auto found = expected.find(counter);
+                if (counter == "checkpoints") {
+                    BOOST_TEST(count.get<long>() > 0);
+                } else {
+                    BOOST_TEST(count.get<long>() == (found == expected.end() ? 0 : found->second), counter);
                 }
             }
         }

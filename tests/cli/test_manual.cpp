@@ -1,41 +1,30 @@
 // The page for man and the completion for bash come from what `--help` says.
+#include "cli/matches.hpp"
 #include "cli/program.hpp"
-
-#include <regex>
-#include <set>
 
 using namespace program;
 
 namespace {
 
-std::set<std::string> matches(const std::string& text, const std::string& pattern) {
-    std::set<std::string> found;
-    const std::regex expression(pattern);
-    for (auto it = std::sregex_iterator(text.begin(), text.end(), expression); it != std::sregex_iterator(); ++it) {
-        found.insert((*it)[1]);
-    }
-    return found;
-}
-
 std::set<std::string> all_commands() {
     const std::string help = run({"--help"}).out;
-    return matches(help.substr(help.find("Subcommands:")), "\n  ([a-z]+) ");
+    return matches<std::set<std::string>>(help.substr(help.find("Subcommands:")), "\n  ([a-z]+) ");
 }
 
 std::set<std::string> options_of(const std::string& command) {
-    return matches(run({command, "--help"}).out, "\n  (?:-[a-zA-Z],)?(--[a-z][a-z-]*)");
+    return matches<std::set<std::string>>(run({command, "--help"}).out, "\n  (?:-[a-zA-Z],)?(--[a-z][a-z-]*)");
 }
 
 /// What bash offers for the last of the words.
 std::set<std::string> offered(const std::string& words, int at) {
     const scratch::Folder folder;
     scratch::write(folder / "completion", run({"--completion"}).out);
-    const std::string out = (folder / "out").string();
-    const std::string line = "bash -c 'source " + (folder / "completion").string() + "; COMP_WORDS=(" + words +
+    const std::string out = folder.at("out");
+    const std::string line = "bash -c 'source " + folder.at("completion") + "; COMP_WORDS=(" + words +
                              "); COMP_CWORD=" + std::to_string(at) +
                              "; _isostat; printf \"%s\\n\" \"${COMPREPLY[@]}\"' >" + out;
     BOOST_TEST_REQUIRE(std::system(line.c_str()) == 0);
-    return matches(scratch::read(out), "([^\n]+)\n");
+    return matches<std::set<std::string>>(scratch::read(out), "([^\n]+)\n");
 }
 
 std::string without_backslashes(std::string text) {
@@ -59,7 +48,7 @@ BOOST_AUTO_TEST_CASE(the_manual_has_every_command_and_every_option) {
         const std::string section = without_backslashes(man.substr(begin, end - begin));
         BOOST_TEST(contains(section, "Example"), command);
         std::string entries; // what the text around them says of options does not count
-        for (const std::string& entry : matches(section, "\n\\.TP\n([^\n]+)")) {
+        for (const std::string& entry : matches<std::set<std::string>>(section, "\n\\.TP\n([^\n]+)")) {
             entries += entry + "\n";
         }
         const std::set<std::string> options = options_of(command);

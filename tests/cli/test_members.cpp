@@ -13,8 +13,7 @@ namespace {
 fs::path ensemble(const scratch::Folder& folder) {
     scratch::write(folder / "s.toml", "[packing]\ndisks = 30\n[[programme]]\ndo = \"up\"\nequilibria = 3\n[output]\n"
                                       "pictures = false\n");
-    expect(run({"ensemble", (folder / "s.toml").string(), "--samples", "3", "-o", (folder / "many").string(), "-q"}),
-           0);
+    expect(run({"ensemble", folder.at("s.toml"), "--samples", "3", "-o", folder.at("many"), "-q"}), 0);
     return folder / "many";
 }
 
@@ -29,14 +28,11 @@ BOOST_AUTO_TEST_SUITE(cli)
 BOOST_AUTO_TEST_CASE(verify_takes_an_ensemble_and_adds_up_its_runs) {
     const scratch::Folder folder;
     const fs::path many = ensemble(folder);
-    const Outcome good = run({"verify", many.string(), "--json"});
-    expect(good, 0);
-    const nlohmann::json answer = nlohmann::json::parse(good.out);
+    const auto answer = json_of(run({"verify", many.string(), "--json"}));
     BOOST_TEST_REQUIRE(answer["members"].size() == 3U);
     int arcs = 0;
     for (const nlohmann::json& member : answer["members"]) {
-        const nlohmann::json one =
-            nlohmann::json::parse(run({"verify", member["folder"].get<std::string>(), "--json"}).out);
+        const nlohmann::json one = json_of(run({"verify", member["folder"].get<std::string>(), "--json"}));
         BOOST_TEST(one["verdict"] == member["verdict"]);
         BOOST_TEST(one["arcs"] == member["arcs"]);
         arcs += one["arcs"].get<int>();
@@ -55,38 +51,28 @@ BOOST_AUTO_TEST_CASE(one_wrong_or_missing_run_decides_the_status_of_an_ensemble)
     const fs::path header = many / seed(2) / "run.json";
     const std::string text = scratch::read(header);
     scratch::write(header, scratch::replaced(text, "\"completed\"", "\"running\""));
-    const Outcome going = run({"verify", many.string()});
-    expect(going, 2);
-    BOOST_TEST(contains(going.out, "not finished"));
+    says(run({"verify", many.string()}), 2, {"not finished"});
     scratch::write(header, "nothing");
-    const Outcome unreadable = run({"verify", many.string()});
-    expect(unreadable, 65);
-    BOOST_TEST(contains(unreadable.out, "cannot be read"));
+    const auto unreadable = says(run({"verify", many.string()}), 65, {"cannot be read"});
     BOOST_TEST(contains(unreadable.out, "equilibria     8 of 8 proved")); // the others were checked
 
     const fs::path events = many / seed(3) / "events.jsonl";
     scratch::write(events, scratch::replaced(scratch::read(events), "\"power\":", "\"power\":1"));
     forger::seal(many / seed(3));
     fs::remove_all(many / seed(1));
-    const Outcome wrong = run({"verify", many.string()});
-    expect(wrong, 1);
-    for (const char* word : {"missing", "cannot be read", "refuted", "events.jsonl:1"}) {
-        BOOST_TEST(contains(wrong.out, word), word);
-    }
+    says(run({"verify", many.string()}), 1, {"missing", "cannot be read", "refuted", "events.jsonl:1"});
 }
 
 BOOST_AUTO_TEST_CASE(report_takes_an_ensemble) {
     const scratch::Folder folder;
     const fs::path many = ensemble(folder);
-    const Outcome all = run({"report", many.string(), "--no-charts", "--html"});
-    expect(all, 0);
-    BOOST_TEST(contains(all.out, "proved"));
+    says(run({"report", many.string(), "--no-charts", "--html"}), 0, {"proved"});
     for (int number = 1; number <= 3; ++number) {
         BOOST_TEST(fs::exists(many / seed(number) / "figures/report.txt"));
         BOOST_TEST(fs::exists(many / seed(number) / "figures/trajectory.html"));
     }
     fs::remove(many / seed(2) / "run.json");
-    expect(run({"report", many.string(), "--no-charts", "-o", (folder / "out").string()}), 65, {"seed 2", "not begun"});
+    expect(run({"report", many.string(), "--no-charts", "-o", folder.at("out")}), 65, {"seed 2", "not begun"});
     BOOST_TEST(fs::exists(folder / "out/seed_000003/report.txt")); // the others are reported
     BOOST_TEST(!fs::exists(folder / "out/seed_000002"));
 }

@@ -1,19 +1,14 @@
 // What the pages say of keys, columns, fields, commands and exit statuses is what the program has; the commands of
 // README run as they stand.
+#include "cli/matches.hpp"
 #include "cli/program.hpp"
 #include "compare/report.hpp"
 #include "io/record_text.hpp"
 
 #include <isostat/io/run_directory.hpp>
 
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
-
-#include <algorithm>
-#include <array>
-#include <map>
-#include <regex>
-#include <set>
-#include <sstream>
 
 using namespace program;
 namespace fs = std::filesystem;
@@ -48,30 +43,18 @@ std::string section(const std::string& page, const std::string& heading) {
 
 /// Words in backticks in the first column of the tables of a text, in their order.
 std::vector<std::string> first_column(const std::string& text) {
-    std::vector<std::string> names;
-    const std::regex word("`([^`]+)`");
+    std::string cells;
     for (const std::string& line : lines(text)) {
-        if (!line.starts_with("| `")) {
-            continue;
-        }
-        const std::string cell = line.substr(0, line.find('|', 1));
-        for (auto it = std::sregex_iterator(cell.begin(), cell.end(), word); it != std::sregex_iterator(); ++it) {
-            names.push_back((*it)[1]);
-        }
+        cells += line.starts_with("| `") ? line.substr(0, line.find('|', 1)) : "";
     }
-    return names;
+    return matches(cells, "`([^`]+)`");
 }
 
-std::set<std::string> as_set(const std::vector<std::string>& names) {
-    return {names.begin(), names.end()};
-}
-
-std::string joined(const std::set<std::string>& names) {
-    std::string text;
-    for (const std::string& name : names) {
-        text += " " + name;
-    }
-    return text;
+/// The names that the program has are those of a page.
+void same(const std::set<std::string>& known, const std::vector<std::string>& page, const std::string& what) {
+    const std::set<std::string> told(page.begin(), page.end());
+    BOOST_TEST((known == told), what << ": of the program: " << fmt::to_string(fmt::join(known, " "))
+                                     << "; of the page: " << fmt::to_string(fmt::join(told, " ")));
 }
 
 /// The rows of one table of a page: from its row of names, which begins with `head`, to the first line that is no row.
@@ -107,31 +90,15 @@ std::set<std::string> anchors(const std::string& page) {
 std::set<std::string> expected_names(const Outcome& outcome, const std::string& where) {
     expect(outcome, 65, {"'no_such_key'" + where});
     const std::string marker = "expected one of ";
-    std::string list = outcome.err.substr(outcome.err.find(marker) + marker.size());
-    list = list.substr(0, list.find('\n'));
-    std::set<std::string> names;
-    const std::regex word("[a-z0-9_]+");
-    for (auto it = std::sregex_iterator(list.begin(), list.end(), word); it != std::sregex_iterator(); ++it) {
-        names.insert(it->str());
-    }
-    return names;
+    const std::string list = outcome.err.substr(outcome.err.find(marker) + marker.size());
+    return matches<std::set<std::string>>(list.substr(0, list.find('\n')), "([a-z0-9_]+)");
 }
 
 /// The keys that a section of a scene knows.
 std::set<std::string> known_keys(const std::string& name, const std::string& scene) {
     const scratch::Folder folder;
     scratch::write(folder / "s.toml", scene);
-    return expected_names(run({"plan", (folder / "s.toml").string()}), " in [" + name + "]");
-}
-
-/// Words in backticks of one text.
-std::set<std::string> words_of(const std::string& text) {
-    std::set<std::string> words;
-    const std::regex word("`([^`]+)`");
-    for (auto it = std::sregex_iterator(text.begin(), text.end(), word); it != std::sregex_iterator(); ++it) {
-        words.insert((*it)[1]);
-    }
-    return words;
+    return expected_names(run({"plan", folder.at("s.toml")}), " in [" + name + "]");
 }
 
 /// What a page has between a line "```LANGUAGE" and the next "```"; from the first such line after `after`.
@@ -151,11 +118,7 @@ std::vector<std::vector<std::string>> commands(const std::string& text) {
     const std::string program = "    build/release/isostat ";
     for (const std::string& line : lines(text)) {
         if (line.starts_with(program)) {
-            std::istringstream words(line.substr(program.size(), line.find('#') - program.size()));
-            found.emplace_back();
-            for (std::string word; words >> word;) {
-                found.back().push_back(word);
-            }
+            found.push_back(scratch::split(line.substr(program.size(), line.find('#') - program.size())));
         }
     }
     return found;
@@ -178,37 +141,47 @@ BOOST_AUTO_TEST_CASE(the_page_of_scenes_has_every_key) {
         {"run", "## `[run]`", disks + choose},
         {"output", "## `[output]`", disks + "[output]\nno_such_key = 1\n"}};
     for (const auto& [name, heading, scene] : sections) {
-        BOOST_TEST_CONTEXT(name) {
-            const std::set<std::string> known = known_keys(name == "programme" ? "[programme]" : name, scene);
-            const std::set<std::string> told = as_set(first_column(section(page, heading)));
-            BOOST_TEST((known == told), "keys of the program:" << joined(known) << "; of the page:" << joined(told));
-        }
+        same(known_keys(name == "programme" ? "[programme]" : name, scene), first_column(section(page, heading)), name);
     }
 }
 
-BOOST_AUTO_TEST_CASE(the_page_of_files_has_every_column_in_its_order) {
+BOOST_AUTO_TEST_CASE(the_page_of_files_has_every_column_and_every_field) {
     const std::string page = scratch::read(project / "src/io/README.md");
     const std::vector<std::string> columns = isostat::equilibria_columns({true, true});
     BOOST_TEST(first_column(section(page, "### Columns of `equilibria.csv`")) == columns,
-               boost::test_tools::per_element());
-}
-
-BOOST_AUTO_TEST_CASE(the_page_of_files_has_every_column_of_a_comparison) {
-    const std::string page = scratch::read(project / "src/io/README.md");
+               boost::test_tools::per_element()); // in their order
     const std::vector<std::pair<std::string, std::vector<std::string>>> tables{
         {"comparison.csv", isostat::compare::frame_columns()},
         {"path.csv", isostat::compare::path_columns()},
         {"bundle/nodes.csv", isostat::compare::node_columns()},
         {"bundle/members.csv", isostat::compare::member_columns()}};
-    for (const auto& [file, columns] : tables) {
-        const std::set<std::string> told = as_set(first_column(table(page, "column of `" + file + "`")));
-        BOOST_TEST((told == as_set(columns)),
-                   file << ": written:" << joined(as_set(columns)) << "; of the page:" << joined(told));
+    for (const auto& [file, names] : tables) {
+        same({names.begin(), names.end()}, first_column(table(page, "column of `" + file + "`")), file);
     }
+    isostat::ArcRecord arc;
+    arc.opened = arc.closed = {isostat::ContactKind::disk_disk, 0, 1};
+    arc.power_turn = true;
+    arc.certificate.emplace();
+    arc.perturbed.push_back({"force", arc.opened, {}, {isostat::ContactKind::disk_disk, -1, -1}, {}});
+    std::set<std::string> written;
+    const nlohmann::json line = nlohmann::json::parse(isostat::event_line(arc));
+    for (const auto& field : line.items()) {
+        written.insert(field.key());
+    }
+    const std::string fields = section(page, "### Fields of `events.jsonl`");
+    same(written, first_column(fields), "events.jsonl");
+    std::set<std::string> kinds;
+    for (const isostat::ArcKind kind : isostat::all_arc_kinds) {
+        kinds.emplace(to_string(kind));
+    }
+    const std::string row = table(fields, "`kind`");
+    same(kinds, matches(row.substr(row.find("| ", 3), row.find('\n') - row.find("| ", 3)), "`([^`]+)`"), "kinds");
+    const scratch::Folder folder;
+    scratch::write(folder / "s.json", R"({"format": "isostat-state", "version": 2, "no_such_key": 1})");
+    same(expected_names(run({"inspect", folder.at("s.json")}), ""), first_column(section(page, "## States")), "states");
 }
 
 BOOST_AUTO_TEST_CASE(links_of_the_pages_lead_somewhere) {
-    const std::regex link(R"(\]\(([^)\s]+)\))");
     int links = 0;
     for (auto at = fs::recursive_directory_iterator(project); at != fs::recursive_directory_iterator(); ++at) {
         const std::string name = at->path().filename().string();
@@ -218,9 +191,7 @@ BOOST_AUTO_TEST_CASE(links_of_the_pages_lead_somewhere) {
         if (at->path().extension() != ".md") {
             continue;
         }
-        const std::string page = scratch::read(at->path());
-        for (auto it = std::sregex_iterator(page.begin(), page.end(), link); it != std::sregex_iterator(); ++it) {
-            const std::string target = (*it)[1];
+        for (const std::string& target : matches(scratch::read(at->path()), R"(\]\(([^)\s]+)\))")) {
             if (target.find("://") != std::string::npos) {
                 continue;
             }
@@ -236,43 +207,6 @@ BOOST_AUTO_TEST_CASE(links_of_the_pages_lead_somewhere) {
         }
     }
     BOOST_TEST(links > 100);
-}
-
-BOOST_AUTO_TEST_CASE(the_page_of_files_has_every_field_of_an_arc) {
-    isostat::ArcRecord arc;
-    arc.opened = arc.closed = {isostat::ContactKind::disk_disk, 0, 1};
-    arc.power_turn = true;
-    arc.certificate.emplace();
-    arc.perturbed.push_back({"force", arc.opened, {}, {isostat::ContactKind::disk_disk, -1, -1}, {}});
-    std::set<std::string> written;
-    const nlohmann::json line = nlohmann::json::parse(isostat::event_line(arc));
-    for (auto field = line.begin(); field != line.end(); ++field) {
-        written.insert(field.key());
-    }
-    const std::string page = scratch::read(project / "src/io/README.md");
-    const std::set<std::string> told = as_set(first_column(section(page, "### Fields of `events.jsonl`")));
-    BOOST_TEST((written == told), "fields written:" << joined(written) << "; of the page:" << joined(told));
-}
-
-BOOST_AUTO_TEST_CASE(the_page_of_files_has_every_kind_of_an_arc) {
-    const std::string fields = section(scratch::read(project / "src/io/README.md"), "### Fields of `events.jsonl`");
-    const std::string row = "| `kind` |";
-    const std::size_t begin = fields.find(row) + row.size();
-    std::set<std::string> kinds;
-    for (const isostat::ArcKind kind : isostat::all_arc_kinds) {
-        kinds.emplace(to_string(kind));
-    }
-    const std::set<std::string> told = words_of(fields.substr(begin, fields.find('\n', begin) - begin));
-    BOOST_TEST((kinds == told), "kinds:" << joined(kinds) << "; of the page:" << joined(told));
-}
-
-BOOST_AUTO_TEST_CASE(the_page_of_files_has_every_field_of_a_state) {
-    const std::string page = scratch::read(project / "src/io/README.md");
-    const scratch::Folder folder;
-    scratch::write(folder / "s.json", R"({"format": "isostat-state", "version": 2, "no_such_key": 1})");
-    const std::set<std::string> known = expected_names(run({"inspect", (folder / "s.json").string()}), "");
-    const std::set<std::string> told = as_set(first_column(section(page, "## States")));
-    BOOST_TEST((known == told), "fields of the program:" << joined(known) << "; of the page:" << joined(told));
 }
 
 BOOST_AUTO_TEST_CASE(the_page_of_files_has_every_key_of_a_manifest) {
@@ -303,41 +237,23 @@ BOOST_AUTO_TEST_CASE(the_page_of_files_has_every_key_of_a_manifest) {
             text.insert(text.find('\n', at) + 1, "no_such_key = 1\n");
         }
         scratch::write(folder / "series.toml", text);
-        const auto known = expected_names(run({"compare", (folder / "series.toml").string()}), " in [" + section + "]");
-        BOOST_TEST((known == keys),
-                   section << ": keys of the program:" << joined(known) << "; of the page:" << joined(keys));
+        const auto known = expected_names(run({"compare", folder.at("series.toml")}), " in [" + section + "]");
+        same(known, {keys.begin(), keys.end()}, section);
     }
 }
 
 BOOST_AUTO_TEST_CASE(the_pages_and_the_help_have_the_same_exit_statuses) {
-    const std::string help = run({"--help"}).out;
-    const auto statuses = [](std::string text) {
-        std::set<std::string> found;
-        const std::regex number(R"((^|[ |])(\d+) )");
-        for (auto it = std::sregex_iterator(text.begin(), text.end(), number); it != std::sregex_iterator(); ++it) {
-            found.insert((*it)[2]);
-        }
-        return found;
-    };
-    const auto after = [](const std::string& text) {
+    const auto sentence = [](const std::string& text) {
         const std::size_t begin = text.find("Exit status");
-        BOOST_REQUIRE(begin != std::string::npos);
-        std::string sentence = text.substr(begin, text.find("Ctrl-C", begin) - begin);
-        std::replace(sentence.begin(), sentence.end(), '\n', ' ');
-        return sentence;
+        BOOST_TEST_REQUIRE((begin != std::string::npos));
+        return matches(text.substr(begin, text.find("Ctrl-C", begin) - begin), R"((?:^|[\s|])(\d+)\s)");
     };
-    const std::set<std::string> told = statuses(after(help));
-    BOOST_TEST(told.size() >= 6U);
-    BOOST_TEST((statuses(after(scratch::read(project / "README.md"))) == told));
-    std::set<std::string> table;
-    const std::regex row(R"(\| (\d+) \|)");
-    for (const std::string& line : lines(section(scratch::read(project / "src/io/README.md"), "## Exit status"))) {
-        std::smatch match;
-        if (std::regex_search(line, match, row)) {
-            table.insert(match[1]);
-        }
-    }
-    BOOST_TEST((table == told), "help:" << joined(told) << "; page:" << joined(table));
+    const std::vector<std::string> told = sentence(run({"--help"}).out);
+    const std::set<std::string> known(told.begin(), told.end());
+    BOOST_TEST(known.size() >= 6U);
+    same(known, sentence(scratch::read(project / "README.md")), "README");
+    same(known, matches(section(scratch::read(project / "src/io/README.md"), "## Exit status"), R"(\| (\d+) \|)"),
+         "table");
 }
 
 BOOST_AUTO_TEST_CASE(the_first_run_of_the_readme_does_what_it_shows) {
@@ -365,17 +281,13 @@ BOOST_AUTO_TEST_CASE(the_readme_names_every_command) {
     const std::string help = run({"--help"}).out;
     const std::size_t begin = help.find("Subcommands:");
     BOOST_REQUIRE(begin != std::string::npos);
-    const std::regex name(R"(\n  ([a-z]+) )");
-    int commands_found = 0;
-    for (auto it = std::sregex_iterator(help.begin() + static_cast<long>(begin), help.end(), name);
-         it != std::sregex_iterator(); ++it) {
-        const std::string command = (*it)[1];
+    const std::vector<std::string> commands_found = matches(help.substr(begin), R"(\n  ([a-z]+) )");
+    for (const std::string& command : commands_found) {
         const bool named = contains(page, "`" + command + "`") || contains(page, "isostat " + command) ||
                            contains(page, "`" + command + " ");
         BOOST_TEST(named, "README does not name " << command);
-        ++commands_found;
     }
-    BOOST_TEST(commands_found >= 11);
+    BOOST_TEST(commands_found.size() >= 11U);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -4,8 +4,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include <set>
-
 using namespace program;
 namespace fs = std::filesystem;
 
@@ -19,7 +17,7 @@ std::string scene(const std::string& packing, int equilibria) {
 /// Runs a scene in a folder of its own; the folder of the run is `run` in it.
 Outcome run_scene(const scratch::Folder& folder, const std::string& text) {
     scratch::write_scene(folder / "s.toml", text);
-    return run({"run", (folder / "s.toml").string(), "-o", (folder / "run").string(), "-q", "--force"});
+    return run({"run", folder.at("s.toml"), "-o", folder.at("run"), "-q", "--force"});
 }
 
 std::string mixture(int seed, const std::string& jitter) {
@@ -41,26 +39,24 @@ BOOST_AUTO_TEST_CASE(every_law_is_prepared_and_run, *boost::unit_test::label("sl
          {std::string("law = \"uniform\"\n"), std::string("law = \"equal\"\njitter = 1e-6\n"),
           std::string("law = \"bidisperse\"\njitter = 1e-6\n"), std::string("law = \"lognormal\"\n"),
           std::string("law = \"normal\"\n"), std::string("law = \"power\"\n"), from_file}) {
-        BOOST_TEST_CONTEXT(law) {
-            const scratch::Folder folder;
-            scratch::write(folder / "radii.txt", list);
-            const std::string text = scene(law, 3);
-            expect(run_scene(folder, law == from_file ? scratch::replaced(text, "disks = 100\n", "") : text), 0);
-            const std::string rows = scratch::read(folder / "run/equilibria.csv");
-            BOOST_TEST(std::count(rows.begin(), rows.end(), '\n') == 5); // names, the start, three equilibria
-            expect(run({"verify", (folder / "run").string()}), 0);
-        }
+        BOOST_TEST_INFO_SCOPE(law);
+        const scratch::Folder folder;
+        scratch::write(folder / "radii.txt", list);
+        const std::string text = scene(law, 3);
+        expect(run_scene(folder, law == from_file ? scratch::replaced(text, "disks = 100\n", "") : text), 0);
+        const std::string rows = scratch::read(folder / "run/equilibria.csv");
+        BOOST_TEST(std::count(rows.begin(), rows.end(), '\n') == 5); // names, the start, three equilibria
+        expect(run({"verify", folder.at("run")}), 0);
     }
 }
 
 BOOST_AUTO_TEST_CASE(a_mixture_of_two_radii_ties_and_a_jitter_leaves_no_tie, *boost::unit_test::label("slow")) {
     const scratch::Folder folder;
     for (const int seed : {2, 3, 9}) {
-        BOOST_TEST_CONTEXT("seed " << seed) {
-            expect(run_scene(folder, mixture(seed, "0.0")), 2, {"tie", "equal radii: try [packing] jitter = 1e-9"});
-            BOOST_TEST(contains(scratch::read(folder / "run/summary.json"), "jitter = 1e-9"));
-            expect(run_scene(folder, mixture(seed, "1e-9")), 0);
-        }
+        BOOST_TEST_INFO_SCOPE("seed " << seed);
+        expect(run_scene(folder, mixture(seed, "0.0")), 2, {"tie", "equal radii: try [packing] jitter = 1e-9"});
+        BOOST_TEST(contains(scratch::read(folder / "run/summary.json"), "jitter = 1e-9"));
+        expect(run_scene(folder, mixture(seed, "1e-9")), 0);
     }
     const auto start = nlohmann::json::parse(scratch::read(folder / "run/start.json"));
     BOOST_TEST(start.at("provenance").at("settings").at("packing").at("jitter").get<double>() == 1e-9);
@@ -77,18 +73,15 @@ BOOST_AUTO_TEST_CASE(a_mixture_of_two_radii_ties_and_a_jitter_leaves_no_tie, *bo
 BOOST_AUTO_TEST_CASE(nearly_equal_disks_are_followed_where_contacts_are_nearly_singular_and_verified,
                      *boost::unit_test::label("slow")) {
     for (const int seed : {4, 8, 12, 20, 34, 38}) {
-        BOOST_TEST_CONTEXT("seed " << seed) {
-            const scratch::Folder folder;
-            const std::string text = "law = \"equal\"\njitter = 1e-9\nseed = " + std::to_string(seed) + "\n";
-            expect(run_scene(folder, scratch::replaced(scene(text, 12), "disks = 100", "disks = 36")), 0);
-            const Outcome verified = run({"verify", (folder / "run").string()});
-            expect(verified, 0);
-            BOOST_TEST(contains(verified.out, "ends proved"));
-        }
+        BOOST_TEST_INFO_SCOPE("seed " << seed);
+        const scratch::Folder folder;
+        const std::string text = "law = \"equal\"\njitter = 1e-9\nseed = " + std::to_string(seed) + "\n";
+        expect(run_scene(folder, scratch::replaced(scene(text, 12), "disks = 100", "disks = 36")), 0);
+        says(run({"verify", folder.at("run")}), 0, {"ends proved"});
     }
     const scratch::Folder folder; // a force is known in double to 0.2 % only: a bound that says too little
     expect(run_scene(folder, scene("law = \"equal\"\njitter = 1e-9\nseed = 3\n", 22)), 0);
-    expect(run({"verify", (folder / "run").string()}), 0);
+    expect(run({"verify", folder.at("run")}), 0);
 }
 
 std::string equal_disks(int disks, int seed) {
@@ -109,12 +102,11 @@ void forge_rest(const fs::path& folder) {
         return entry.substr(from, entry.find(',', from) - from);
     };
     const auto refuted = [&](const std::string& from, const std::string& by, const std::string& said) {
-        BOOST_TEST_CONTEXT(from << " -> " << by) {
-            const isostat::RunVerification forged =
-                forger::altered(folder, "events.jsonl", entry, scratch::replaced(entry, from, by));
-            BOOST_TEST((forged.verdict == isostat::Verdict::refuted));
-            BOOST_TEST(contains(forged.wrong, said), forged.wrong);
-        }
+        BOOST_TEST_INFO_SCOPE(from << " -> " << by);
+        const isostat::RunVerification forged =
+            forger::altered(folder, "events.jsonl", entry, scratch::replaced(entry, from, by));
+        BOOST_TEST((forged.verdict == isostat::Verdict::refuted));
+        BOOST_TEST(contains(forged.wrong, said), forged.wrong);
     };
     refuted(field("contact"), "\"contact\":\"0-top\"", "does not touch");
     refuted(field("against"), "\"against\":\"0-top\"", "does not touch where 0-top opens");
@@ -127,19 +119,18 @@ BOOST_AUTO_TEST_CASE(equal_disks_are_prepared_and_followed_where_ties_are_chosen
         int disks, seed, status;
     };
     for (const Sample& sample : {Sample{36, 12, 0}, Sample{30, 8, 0}, Sample{24, 15, 1}, Sample{24, 5, 1}}) {
-        BOOST_TEST_CONTEXT(sample.disks << " disks, seed " << sample.seed) {
-            const scratch::Folder folder;
-            const Outcome outcome = run_scene(folder, equal_disks(sample.disks, sample.seed));
-            expect(outcome, sample.status,
-                   sample.status == 0 ? std::vector<std::string>{} // else it jams
-                                      : std::vector<std::string>{"supports every load"});
-            const auto start = nlohmann::json::parse(scratch::read(folder / "run/start.json"));
-            BOOST_TEST(start.at("provenance").contains("ties_left_to_the_run"));
-            const std::string verdict = run({"verify", (folder / "run").string()}).out;
-            BOOST_TEST((contains(verdict, "ends proved") || contains(verdict, "verdict        proved")), verdict);
-            if (sample.disks == 36) {
-                forge_rest(folder / "run");
-            }
+        BOOST_TEST_INFO_SCOPE(sample.disks << " disks, seed " << sample.seed);
+        const scratch::Folder folder;
+        const Outcome outcome = run_scene(folder, equal_disks(sample.disks, sample.seed));
+        expect(outcome, sample.status,
+               sample.status == 0 ? std::vector<std::string>{} // else it jams
+                                  : std::vector<std::string>{"supports every load"});
+        const auto start = nlohmann::json::parse(scratch::read(folder / "run/start.json"));
+        BOOST_TEST(start.at("provenance").contains("ties_left_to_the_run"));
+        const std::string verdict = run({"verify", folder.at("run")}).out;
+        BOOST_TEST((contains(verdict, "ends proved") || contains(verdict, "verdict        proved")), verdict);
+        if (sample.disks == 36) {
+            forge_rest(folder / "run");
         }
     }
 }
@@ -148,12 +139,10 @@ BOOST_AUTO_TEST_CASE(equal_disks_are_prepared_and_followed_where_ties_are_chosen
 /// contacts that are nearly dependent.
 BOOST_AUTO_TEST_CASE(a_hundred_equal_disks_are_prepared_where_ties_are_chosen, *boost::unit_test::label("slow")) {
     for (const int seed : {2, 3, 12}) {
-        BOOST_TEST_CONTEXT("seed " << seed) {
-            const scratch::Folder folder;
-            expect(run_scene(folder, scratch::replaced(equal_disks(100, seed), "equilibria = 30", "equilibria = 1")),
-                   0);
-            expect(run({"verify", (folder / "run").string()}), 0);
-        }
+        BOOST_TEST_INFO_SCOPE("seed " << seed);
+        const scratch::Folder folder;
+        expect(run_scene(folder, scratch::replaced(equal_disks(100, seed), "equilibria = 30", "equilibria = 1")), 0);
+        expect(run({"verify", folder.at("run")}), 0);
     }
 }
 
@@ -179,10 +168,9 @@ BOOST_AUTO_TEST_CASE(every_tie_offers_a_jitter) {
           Tie{mixture_30(21), "gaps that are zero beside those of the contacts kept", prepared},
           Tie{scratch::replaced(scene("law = \"equal\"\n", 3), "disks = 100", "disks = 30"),
               "0 as far as double-double", "equal radii: try [packing] jitter = 1e-4"}}) {
-        BOOST_TEST_CONTEXT(tie.said) {
-            const scratch::Folder folder;
-            expect(run_scene(folder, tie.scene), 2, {"tie: ", tie.said, tie.offered});
-        }
+        BOOST_TEST_INFO_SCOPE(tie.said);
+        const scratch::Folder folder;
+        expect(run_scene(folder, tie.scene), 2, {"tie: ", tie.said, tie.offered});
     }
     const scratch::Folder folder;
     // The load at which both forces vanish.
@@ -191,8 +179,8 @@ BOOST_AUTO_TEST_CASE(every_tie_offers_a_jitter) {
     expect(run_scene(folder, scene_from("zero.json", "[[programme]]\ndo = \"down\"\nequilibria = 1\n")), 2,
            {"tie: ", "the force is exactly 0", given});
     scratch::write(folder / "square.csv", "x,y,r\n1,1,1\n3,1,1\n1,3,1\n3,3,1\n");
-    const std::string out = (folder / "s.json").string();
-    expect(run({"import", (folder / "square.csv").string(), "--box", "0:4,0:4", "--contacts", "nearest", "-o", out}), 2,
+    const std::string out = folder.at("s.json");
+    expect(run({"import", folder.at("square.csv"), "--box", "0:4,0:4", "--contacts", "nearest", "-o", out}), 2,
            {"equal radii: try --jitter 1e-9"});
     BOOST_TEST(!fs::exists(out));
 }
@@ -201,7 +189,7 @@ BOOST_AUTO_TEST_CASE(the_plan_offers_a_jitter_for_equal_radii_only) {
     const scratch::Folder folder;
     const auto planned = [&](const std::string& packing) {
         scratch::write(folder / "s.toml", "[packing]\n" + packing);
-        const Outcome outcome = run({"plan", (folder / "s.toml").string()});
+        const Outcome outcome = run({"plan", folder.at("s.toml")});
         expect(outcome, 0);
         return outcome.out;
     };

@@ -19,7 +19,7 @@ std::string stopped(const scratch::Folder& folder, const std::string& name) {
         folder / "stop.toml",
         scratch::replaced(scratch::replaced(text, "ties = \"choose\"\nmax_choices = 0", "ties = \"stop\""), "file = \"",
                           "file = \"" + example("")));
-    return (folder / "stop.toml").string();
+    return folder.at("stop.toml");
 }
 
 } // namespace
@@ -28,55 +28,48 @@ BOOST_AUTO_TEST_SUITE(cli)
 
 BOOST_AUTO_TEST_CASE(ties_stop_the_run_or_are_settled_and_the_records_say_how) {
     for (const std::string name : {"two-gaps", "two-forces"}) {
-        BOOST_TEST_CONTEXT(name) {
-            const scratch::Folder folder;
-            const std::string out = (folder / "run").string();
-            expect(run({"run", stopped(folder, name), "-o", (folder / "stop").string(), "-q"}), 2,
-                   {"tie", "1-", "2-", "equal radii: try isostat import", "--jitter 1e-9"});
-            BOOST_TEST(contains(scratch::read(folder / "stop/summary.json"), "undecided"));
-            expect(run({"run", example(name + ".toml"), "-o", out, "-q"}), 0);
-            const std::string events = scratch::read(folder / "run/events.jsonl");
-            BOOST_TEST(contains(events, "\"perturbed\":[{\"decision\":"));
-            BOOST_TEST(contains(events, "\"first_order\":["));
-            const auto summary = nlohmann::json::parse(scratch::read(folder / "run/summary.json"));
-            long settled = 0;
-            for (const auto& [kind, count] :
-                 summary.at("counters").at("decisions").at("ties").at("perturbed").items()) {
-                settled += count.get<long>();
-            }
-            BOOST_TEST(settled > 0);
-            BOOST_TEST(contains(scratch::read(folder / "run/states/eq_000001.json"), "\"rho\":["));
-            const Outcome verified = run({"verify", out});
-            expect(verified, 0);
-            BOOST_TEST(contains(verified.out, "first-order decisions checked"));
-            const Outcome seen = run({"inspect", (folder / "run/states/eq_000001.json").string()});
-            const Outcome json = run({"inspect", (folder / "run/states/eq_000001.json").string(), "--json"});
-            if (name == "two-gaps") { // the other disk may carry load too, from nothing to all but what the first needs
-                BOOST_TEST(contains(seen.out, "touching besides"));
-                BOOST_TEST(contains(seen.out, "1 self-stresses"));
-                BOOST_TEST(nlohmann::json::parse(json.out).at("face").at("h") == 1);
-                BOOST_TEST(nlohmann::json::parse(json.out).at("face").at("forces_between").size() == 4U);
-            } else {
-                BOOST_TEST(contains(seen.out, "left at force 0"));
-                BOOST_TEST(nlohmann::json::parse(json.out).at("left_at_zero").size() == 1U);
-            }
+        BOOST_TEST_INFO_SCOPE(name);
+        const scratch::Folder folder;
+        const std::string out = folder.at("run");
+        expect(run({"run", stopped(folder, name), "-o", folder.at("stop"), "-q"}), 2,
+               {"tie", "1-", "2-", "equal radii: try isostat import", "--jitter 1e-9"});
+        BOOST_TEST(contains(scratch::read(folder / "stop/summary.json"), "undecided"));
+        expect(run({"run", example(name + ".toml"), "-o", out, "-q"}), 0);
+        const std::string events = scratch::read(folder / "run/events.jsonl");
+        BOOST_TEST(contains(events, "\"perturbed\":[{\"decision\":"));
+        BOOST_TEST(contains(events, "\"first_order\":["));
+        const auto summary = nlohmann::json::parse(scratch::read(folder / "run/summary.json"));
+        long settled = 0;
+        for (const auto& [kind, count] : summary.at("counters").at("decisions").at("ties").at("perturbed").items()) {
+            settled += count.get<long>();
+        }
+        BOOST_TEST(settled > 0);
+        BOOST_TEST(contains(scratch::read(folder / "run/states/eq_000001.json"), "\"rho\":["));
+        says(run({"verify", out}), 0, {"first-order decisions checked"});
+        const Outcome seen = run({"inspect", folder.at("run/states/eq_000001.json")});
+        const Outcome json = run({"inspect", folder.at("run/states/eq_000001.json"), "--json"});
+        if (name == "two-gaps") { // the other disk may carry load too, from nothing to all but what the first needs
+            BOOST_TEST(contains(seen.out, "touching besides"));
+            BOOST_TEST(contains(seen.out, "1 self-stresses"));
+            BOOST_TEST(nlohmann::json::parse(json.out).at("face").at("h") == 1);
+            BOOST_TEST(nlohmann::json::parse(json.out).at("face").at("forces_between").size() == 4U);
+        } else {
+            BOOST_TEST(contains(seen.out, "left at force 0"));
+            BOOST_TEST(nlohmann::json::parse(json.out).at("left_at_zero").size() == 1U);
         }
     }
 }
 
 BOOST_AUTO_TEST_CASE(a_hyperstatic_start_is_refused_with_its_self_stress_or_followed) {
     const scratch::Folder folder;
-    expect(run({"run", stopped(folder, "equal-pair"), "-o", (folder / "stop").string(), "-q"}), 65,
+    expect(run({"run", stopped(folder, "equal-pair"), "-o", folder.at("stop"), "-q"}), 65,
            {"h = 1", "self-stresses", "0-top", "1-top", "0-bottom", "1-bottom", "ties = \"choose\""});
-    expect(run({"run", example("equal-pair.toml"), "-o", (folder / "run").string(), "-q"}), 0);
+    expect(run({"run", example("equal-pair.toml"), "-o", folder.at("run"), "-q"}), 0);
     const std::string state = scratch::read(folder / "run/states/eq_000000.json");
     BOOST_TEST(contains(state, "\"open\":[["));
     BOOST_TEST(contains(state, "\"zero\":[["));
-    expect(run({"verify", (folder / "run").string()}), 0);
-    const Outcome planned = run({"plan", example("equal-pair.toml")});
-    expect(planned, 0);
-    BOOST_TEST(contains(planned.out, "first order in the radii"));
-    BOOST_TEST(contains(planned.out, "rho from seed 1"));
+    expect(run({"verify", folder.at("run")}), 0);
+    says(run({"plan", example("equal-pair.toml")}), 0, {"first order in the radii", "rho from seed 1"});
 }
 
 BOOST_AUTO_TEST_CASE(a_list_that_is_dependent_where_an_arc_ends_is_exchanged_before_and_recorded) {
@@ -84,12 +77,10 @@ BOOST_AUTO_TEST_CASE(a_list_that_is_dependent_where_an_arc_ends_is_exchanged_bef
     const scratch::Folder folder;
     scratch::write_scene(folder / "scene.toml", "[packing]\ndisks = 12\ndiameters = [1.0, 1.0]\nseed = 7\n[run]\n"
                                                 "ties = \"choose\"\n[[programme]]\ndo = \"up\"\nequilibria = 30\n");
-    expect(run({"run", (folder / "scene.toml").string(), "-o", (folder / "run").string(), "-q"}), 1,
+    expect(run({"run", folder.at("scene.toml"), "-o", folder.at("run"), "-q"}), 1,
            {"equilibrium 3 supports every load"});
     BOOST_TEST(contains(scratch::read(folder / "run/events.jsonl"), "\"decision\":\"end\",\"contact\":\"6-top\""));
-    const Outcome verified = run({"verify", (folder / "run").string(), "-q"});
-    expect(verified, 0);
-    BOOST_TEST(contains(verified.out, "4 of 4 proved"), verified.out);
+    says(run({"verify", folder.at("run"), "-q"}), 0, {"4 of 4 proved"});
 }
 
 BOOST_AUTO_TEST_CASE(a_run_with_a_force_at_zero_is_resumed_with_the_same_records) {
@@ -101,8 +92,8 @@ BOOST_AUTO_TEST_CASE(a_run_with_a_force_at_zero_is_resumed_with_the_same_records
     scratch::write_scene(folder / "two.toml",
                          scratch::replaced(text, "equilibria = 1",
                                            "equilibria = 1\n\n[[programme]]\ndo = \"down\"\nfrom = 1\nequilibria = 1"));
-    (void)run({"run", (folder / "one.toml").string(), "-o", (folder / "one").string(), "-q"});
-    (void)run({"run", (folder / "two.toml").string(), "-o", (folder / "two").string(), "-q"});
+    (void)run({"run", folder.at("one.toml"), "-o", folder.at("one"), "-q"});
+    (void)run({"run", folder.at("two.toml"), "-o", folder.at("two"), "-q"});
     BOOST_TEST(scratch::read(folder / "one/events.jsonl") == scratch::read(folder / "two/events.jsonl"));
     const auto reason = [&](const char* name) {
         const std::string summary = scratch::read(folder / (std::string(name) + "/summary.json"));

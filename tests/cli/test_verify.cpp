@@ -5,12 +5,7 @@
 #include <isostat/io/certificate_file.hpp>
 #include <isostat/io/state_file.hpp>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
-
-#include <cmath>
-#include <map>
-#include <sstream>
 
 using namespace program;
 
@@ -19,12 +14,10 @@ BOOST_AUTO_TEST_SUITE(cli)
 BOOST_AUTO_TEST_CASE(verify_answers_for_every_claim_of_a_certificate) {
     const scratch::Folder folder;
     const std::string state = scratch::data("vertex100.txt");
-    const std::string good = (folder / "good.json").string();
+    const std::string good = folder.at("good.json");
     expect(run({"certify", state, "-o", good}), 0);
     expect(run({"verify", good}), 0);
-    const Outcome outcome = run({"verify", good, "--input", state, "--json"});
-    expect(outcome, 0);
-    const nlohmann::json answer = nlohmann::json::parse(outcome.out);
+    const auto answer = json_of(run({"verify", good, "--input", state, "--json"}));
     BOOST_TEST(answer["verdict"] == "proved");
     std::vector<std::string> claims;
     for (const nlohmann::json& check : answer["checks"]) {
@@ -37,14 +30,12 @@ BOOST_AUTO_TEST_CASE(verify_answers_for_every_claim_of_a_certificate) {
 
     // Another input than the one that is named.
     scratch::write(folder / "other.txt", scratch::read(state) + "\n");
-    const Outcome other = run({"verify", good, "--input", (folder / "other.txt").string()});
-    expect(other, 1);
-    BOOST_TEST(contains(other.out, "refuted"));
+    says(run({"verify", good, "--input", folder.at("other.txt")}), 1, {"refuted"});
 }
 
 BOOST_AUTO_TEST_CASE(verify_tells_altered_false_and_incomplete_certificates_apart) {
     const scratch::Folder folder;
-    const std::string file = (folder / "certificate.json").string();
+    const std::string file = folder.at("certificate.json");
     expect(run({"certify", scratch::data("vertex100.txt"), "-o", file}), 0);
     const isostat::Certificate original = isostat::read_certificate(file);
 
@@ -54,27 +45,23 @@ BOOST_AUTO_TEST_CASE(verify_tells_altered_false_and_incomplete_certificates_apar
     isostat::Certificate altered = original;
     altered.claims.gaps->smallest *= 2;
     isostat::write_certificate(file, altered);
-    const Outcome refuted = run({"verify", file});
-    expect(refuted, 1);
-    BOOST_TEST(contains(refuted.out, "gaps           refuted"));
+    says(run({"verify", file}), 1, {"gaps           refuted"});
 
     altered = original;
     altered.claims.load_interval = {};
     isostat::write_certificate(file, altered);
-    const Outcome incomplete = run({"verify", file});
-    expect(incomplete, 2);
-    BOOST_TEST(contains(incomplete.out, "load_interval  absent"));
+    says(run({"verify", file}), 2, {"load_interval  absent"});
 
     expect(run({"verify", scratch::data("vertex100.txt")}), 65, {"vertex100.txt", "JSON"});
-    expect(run({"verify", (folder / "nothing.json").string()}), 65, {"nothing.json"});
+    expect(run({"verify", folder.at("nothing.json")}), 65, {"nothing.json"});
     expect(run({"verify"}), 64);
 }
 
 // A certificate whose state is not that of the file, with the hash of the file.
 BOOST_AUTO_TEST_CASE(the_state_of_a_certificate_is_compared_with_the_input_itself) {
     const scratch::Folder folder;
-    const std::string input = (folder / "two.json").string();
-    const std::string file = (folder / "two.cert.json").string();
+    const std::string input = folder.at("two.json");
+    const std::string file = folder.at("two.cert.json");
     scratch::write(input, isostat::state_text(crafted::two_disks(1, 2, 1, 1)));
     expect(run({"certify", input, "-o", file}), 0);
     expect(run({"verify", file, "--input", input}), 0);
@@ -82,19 +69,16 @@ BOOST_AUTO_TEST_CASE(the_state_of_a_certificate_is_compared_with_the_input_itsel
     isostat::Certificate certificate = isostat::read_certificate(file);
     certificate.input_hash = isostat::sha256(scratch::read(input));
     isostat::write_certificate(file, certificate);
-    const Outcome other = run({"verify", file, "--input", input});
-    expect(other, 1);
-    BOOST_TEST(contains(other.out, "the list of radii of the state in the certificate is not that of"));
+    says(run({"verify", file, "--input", input}), 1,
+         {"the list of radii of the state in the certificate is not that of"});
 }
 
 BOOST_AUTO_TEST_CASE(verify_replays_a_run_and_names_the_first_wrong_record) {
     const scratch::Folder folder;
     scratch::write_scene(folder / "scene.toml", scene_from(scratch::data("vertex100.txt"), up_6));
-    const std::string out = (folder / "out").string();
-    expect(run({"run", (folder / "scene.toml").string(), "-o", out, "-q"}), 0);
-    const Outcome good = run({"verify", out, "--json"});
-    expect(good, 0);
-    const nlohmann::json answer = nlohmann::json::parse(good.out);
+    const std::string out = folder.at("out");
+    expect(run({"run", folder.at("scene.toml"), "-o", out, "-q"}), 0);
+    const auto answer = json_of(run({"verify", out, "--json"}));
     BOOST_TEST(answer["verdict"] == "ends proved, way looked at");
     BOOST_TEST(answer["ends_proved"] == answer["arcs"]);
     BOOST_TEST(answer["ways_proved"] == 0);
@@ -102,19 +86,14 @@ BOOST_AUTO_TEST_CASE(verify_replays_a_run_and_names_the_first_wrong_record) {
 
     const std::string events = scratch::read(folder / "out/events.jsonl");
     scratch::write(folder / "out/events.jsonl", scratch::replaced(events, "\"power\":", "\"power\":1"));
-    const Outcome wrong = run({"verify", out});
-    expect(wrong, 1);
-    BOOST_TEST(contains(wrong.out, "events.jsonl: damaged"));
-    BOOST_TEST(contains(wrong.out, "refuted"));
+    says(run({"verify", out}), 1, {"events.jsonl: damaged", "refuted"});
     expect(run({"report", out}), 65, {"events.jsonl: damaged"});
     forger::seal(out);
     BOOST_TEST(contains(run({"verify", out}).out, "events.jsonl:1"));
 
     const std::string header = scratch::read(folder / "out/run.json");
     scratch::write(folder / "out/run.json", scratch::replaced(header, "\"completed\"", "\"running\""));
-    const Outcome going = run({"verify", out});
-    expect(going, 2);
-    BOOST_TEST(contains(going.out, "not finished"));
+    says(run({"verify", out}), 2, {"not finished"});
     scratch::write(folder / "out/run.json", header);
 
     scratch::write(folder / "out/events.jsonl", events.substr(0, events.size() / 2));
@@ -129,7 +108,7 @@ BOOST_AUTO_TEST_CASE(a_shear_near_0_is_known_as_well_as_the_largest_stress_asks)
     scratch::write(folder / "shear.toml",
                    "[packing]\ndisks = 200\ndiameters = [1.0, 2.0]\nseed = 9\n[cell]\nkind = \"tilted\"\n[load]\n"
                    "loaded = \"tilt\"\n[output]\npictures = false\n[[programme]]\ndo = \"up\"\nequilibria = 1\n");
-    expect(run({"run", (folder / "shear.toml").string(), "-o", out.string(), "-q"}), 0);
+    expect(run({"run", folder.at("shear.toml"), "-o", out.string(), "-q"}), 0);
     std::istringstream rows(scratch::read(out / "equilibria.csv"));
     std::string names, first;
     std::getline(rows, names);

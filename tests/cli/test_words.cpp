@@ -52,7 +52,7 @@ BOOST_AUTO_TEST_CASE(the_wrong_kind_of_file_names_the_commands_that_take_it) {
 
 BOOST_AUTO_TEST_CASE(a_held_coordinate_is_not_counted_as_a_contact_that_carries_force) {
     const scratch::Folder folder;
-    const std::string file = (folder / "few.json").string();
+    const std::string file = folder.at("few.json");
     expect(run({"import", scratch::data("vertex100.txt"), "-o", file}), 0);
     std::string state = scratch::read(file);
     const std::size_t list = state.find("\"contacts\": [") + std::string("\"contacts\": [").size();
@@ -67,10 +67,10 @@ BOOST_AUTO_TEST_CASE(a_run_that_is_stopped_says_how_to_go_on) {
     const scratch::Folder folder;
     scratch::write_scene(folder / "s.toml", scene_from(scratch::data("vertex1936.txt"), // longer than anyone waits
                                                        "[[programme]]\ndo = \"up\"\nequilibria = 100000\n"));
-    const std::string scene = (folder / "s.toml").string();
+    const std::string scene = folder.at("s.toml");
     // A second signal ends the program at once: `timeout` sends one to the group too, but in the foreground.
     for (const char* seconds : {"1", "8", "60", "600"}) { // on a busy machine it has not begun after one
-        const std::string out = (folder / "run").string() + seconds;
+        const std::string out = folder.at("run") + seconds;
         const Outcome stopped = run({"run", scene, "-o", out, "-q"},
                                     std::string("timeout --foreground --preserve-status -s INT ") + seconds + " ");
         if (scratch::read(out + "/equilibria.csv").find("\n0,") == std::string::npos) { // names of columns alone

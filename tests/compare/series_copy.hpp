@@ -5,11 +5,7 @@
 
 #include <isostat/compare/compare.hpp>
 
-#include <algorithm>
 #include <memory>
-#include <sstream>
-#include <string>
-#include <vector>
 
 namespace series {
 

@@ -2,15 +2,11 @@
 #include "compare/nearest_arc.hpp"
 #include "compare/report.hpp"
 #include "compare/series_copy.hpp"
+#include "io/bad_input.hpp"
+#include "support/segments.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/trajectory/trajectory.hpp>
-
-#include <boost/test/unit_test.hpp>
-#include <fmt/format.h>
-
-#include <functional>
-#include <utility>
 
 using namespace isostat;
 using compare::Comparison;
@@ -109,16 +105,7 @@ Copy with_listed_walls(bool by_name) {
 }
 
 void expect_error(Copy copy, const std::vector<std::string>& words) {
-    try {
-        (void)copy.compare();
-        BOOST_ERROR("no error; expected " << series::joined(words, ' '));
-    } catch (const Error& error) {
-        BOOST_TEST((error.kind() == ErrorKind::bad_input));
-        for (const std::string& word : words) {
-            BOOST_TEST(std::string(error.what()).find(word) != std::string::npos,
-                       "'" << word << "' is not in: " << error.what());
-        }
-    }
+    expect_bad_input([&] { (void)copy.compare(); }, words);
 }
 
 Copy changed(Copy copy, const std::function<void(Copy&)>& change) {
@@ -259,10 +246,8 @@ BOOST_AUTO_TEST_CASE(a_frame_in_motion_is_on_the_arc_of_the_exact_run_whose_cont
         std::vector<ArcRecord> arcs;
     } told;
     State state = result.path.front().state;
-    Segment far;
-    far.equilibria = 4;
     RunCounters counters;
-    BOOST_TEST(!run_segment(state, far, 0, {}, counters, told).failure);
+    BOOST_TEST(!run_segment(state, towards(4), 0, {}, counters, told).failure);
     BOOST_TEST_REQUIRE(told.arcs.size() > 3);
     std::vector<Contact> kept = compare::carrying(*told.start);
     std::vector<compare::JudgedFrame> frames(3);

@@ -7,14 +7,7 @@
 #include <isostat/io/state_file.hpp>
 #include <isostat/trajectory/trajectory.hpp>
 
-#include <boost/test/unit_test.hpp>
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
 #include <memory>
-#include <optional>
-#include <utility>
 
 using namespace isostat;
 using compare::Comparison;
@@ -73,9 +66,7 @@ class PeriodicSeries {
                                    cell, tilted_ && !cell.empty() ? "kind = \"tilted\"\n" : "", stiffness,
                                    reference_[0], reference_[1]));
         compare::SeriesReader reader(*folder_ / "series.toml");
-        compare::CompareOptions options;
-        options.bundle = 2;
-        options.start = start;
+        compare::CompareOptions options{.start = start, .bundle = 2};
         return compare::compare(reader, options);
     }
 
@@ -144,13 +135,12 @@ BOOST_AUTO_TEST_CASE(a_box_that_is_flipped_by_whole_periods_is_the_same_lattice)
         const Comparison found = series.compare();
         BOOST_TEST(found.status == expected.status);
         for (std::size_t k = 0; k < loads.size(); ++k) {
-            BOOST_TEST_CONTEXT("frame " << k) {
-                BOOST_TEST(compare::to_string(found.frames[k].status) == compare::to_string(expected.frames[k].status));
-                BOOST_TEST(found.frames[k].found == expected.frames[k].found);
-                BOOST_TEST(std::abs(found.frames[k].true_eps2 - expected.frames[k].true_eps2) < 1e-12);
-                const bool said = found.frames[k].reason.find("box flipped by") != std::string::npos;
-                BOOST_TEST(said == (k == 1 || k == 3));
-            }
+            BOOST_TEST_INFO_SCOPE("frame " << k);
+            BOOST_TEST(compare::to_string(found.frames[k].status) == compare::to_string(expected.frames[k].status));
+            BOOST_TEST(found.frames[k].found == expected.frames[k].found);
+            BOOST_TEST(std::abs(found.frames[k].true_eps2 - expected.frames[k].true_eps2) < 1e-12);
+            const bool said = found.frames[k].reason.find("box flipped by") != std::string::npos;
+            BOOST_TEST(said == (k == 1 || k == 3));
         }
         BOOST_TEST(found.frames[1].reason.find("by one period along x") != std::string::npos);
         BOOST_TEST(found.frames[3].reason.find("by 3 periods along x") != std::string::npos);
@@ -187,22 +177,20 @@ BOOST_AUTO_TEST_CASE(tables_of_a_periodic_cell_are_the_same_frames_as_dumps) {
 
 BOOST_AUTO_TEST_CASE(frames_of_the_exact_run_in_a_cell_are_the_same_and_their_forces_are_split) {
     for (const char* name : {"rect_16", "tilt_16"}) {
-        BOOST_TEST_CONTEXT(name) {
-            const Comparison result = PeriodicSeries(name, {1, 1.3, 1.45, 1.9, 2.0}).compare();
-            BOOST_TEST(result.status == 0);
-            BOOST_TEST(result.path_end.empty(), result.path_end);
-            BOOST_TEST_REQUIRE(result.frames.size() == 5U);
-            BOOST_TEST(result.frames.back().expected > 0); // it rearranged
-            for (const compare::FrameResult& frame : result.frames) {
-                BOOST_TEST((frame.status == FrameStatus::same), compare::to_string(frame.status)
-                                                                    << ": " << frame.reason);
-                BOOST_TEST(frame.counting.hyperstaticity == 0);
-                BOOST_TEST(frame.law < 1e-6);
-                BOOST_TEST(frame.rest < 1e-6);
-                BOOST_TEST(frame.stiffness > frame.rest);
-                BOOST_TEST(frame.stiffness < 1e-2);
-                BOOST_TEST(frame.distance < 1e-3);
-            }
+        BOOST_TEST_INFO_SCOPE(name);
+        const Comparison result = PeriodicSeries(name, {1, 1.3, 1.45, 1.9, 2.0}).compare();
+        BOOST_TEST(result.status == 0);
+        BOOST_TEST(result.path_end.empty(), result.path_end);
+        BOOST_TEST_REQUIRE(result.frames.size() == 5U);
+        BOOST_TEST(result.frames.back().expected > 0); // it rearranged
+        for (const compare::FrameResult& frame : result.frames) {
+            BOOST_TEST((frame.status == FrameStatus::same), compare::to_string(frame.status) << ": " << frame.reason);
+            BOOST_TEST(frame.counting.hyperstaticity == 0);
+            BOOST_TEST(frame.law < 1e-6);
+            BOOST_TEST(frame.rest < 1e-6);
+            BOOST_TEST(frame.stiffness > frame.rest);
+            BOOST_TEST(frame.stiffness < 1e-2);
+            BOOST_TEST(frame.distance < 1e-3);
         }
     }
 }

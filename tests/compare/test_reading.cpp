@@ -2,14 +2,6 @@
 #include "compare/report.hpp"
 #include "compare/series_copy.hpp"
 
-#include <boost/test/unit_test.hpp>
-#include <fmt/format.h>
-
-#include <cmath>
-#include <filesystem>
-#include <map>
-#include <random>
-
 using namespace isostat;
 using compare::Comparison;
 using compare::FrameStatus;

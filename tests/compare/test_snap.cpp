@@ -12,10 +12,6 @@
 
 #include <Eigen/Dense>
 #include <Eigen/SparseCore>
-#include <boost/test/unit_test.hpp>
-
-#include <cmath>
-#include <numeric>
 
 using namespace isostat;
 using compare::Snap;
@@ -60,24 +56,23 @@ BOOST_AUTO_TEST_SUITE(compare_snap)
 BOOST_AUTO_TEST_CASE(soft_grains_are_proved_near_the_vertex_that_they_came_from) {
     const Sample sample;
     for (const double stiffness : {1e5, 1e7}) {
-        BOOST_TEST_CONTEXT("stiffness " << stiffness) {
-            const Snap found = compare::snap(sample.soft(stiffness));
-            BOOST_TEST_REQUIRE((found.outcome == SnapOutcome::vertex), found.reason);
-            BOOST_TEST(found.counting.hyperstaticity == 0);
-            // The distance holds and is no worse than twice the way; the vertex is that of the sample.
-            double way = 0;
-            for (std::size_t b = 0; b < found.disks.size(); ++b) {
-                const auto i = static_cast<std::size_t>(found.disks[b]);
-                const SoftState soft = sample.soft(stiffness);
-                const double here = std::hypot(soft.packing.q[2 * i] - sample.state.packing.q[2 * i],
-                                               soft.packing.q[2 * i + 1] - sample.state.packing.q[2 * i + 1]);
-                BOOST_TEST(found.moved[i] >= here - 1e-12);
-                way = std::max(way, here);
-            }
-            BOOST_TEST(found.distance >= way - 1e-12);
-            BOOST_TEST(found.distance < way + 1e-11);
-            BOOST_TEST(found.truth.claims.vertex->radius < 1e-11);
+        BOOST_TEST_INFO_SCOPE("stiffness " << stiffness);
+        const Snap found = compare::snap(sample.soft(stiffness));
+        BOOST_TEST_REQUIRE((found.outcome == SnapOutcome::vertex), found.reason);
+        BOOST_TEST(found.counting.hyperstaticity == 0);
+        // The distance holds and is no worse than twice the way; the vertex is that of the sample.
+        double way = 0;
+        for (std::size_t b = 0; b < found.disks.size(); ++b) {
+            const auto i = static_cast<std::size_t>(found.disks[b]);
+            const SoftState soft = sample.soft(stiffness);
+            const double here = std::hypot(soft.packing.q[2 * i] - sample.state.packing.q[2 * i],
+                                           soft.packing.q[2 * i + 1] - sample.state.packing.q[2 * i + 1]);
+            BOOST_TEST(found.moved[i] >= here - 1e-12);
+            way = std::max(way, here);
         }
+        BOOST_TEST(found.distance >= way - 1e-12);
+        BOOST_TEST(found.distance < way + 1e-11);
+        BOOST_TEST(found.truth.claims.vertex->radius < 1e-11);
     }
 }
 
@@ -96,27 +91,26 @@ BOOST_AUTO_TEST_CASE(rattlers_come_to_rest_and_the_state_is_an_equilibrium_with_
 BOOST_AUTO_TEST_CASE(frames_of_a_periodic_cell_snap_to_their_vertex) {
     for (const char* name : {"rect_16", "tilt_16"}) {
         for (const double stiffness : {1e5, 1e7}) {
-            BOOST_TEST_CONTEXT(name << ", stiffness " << stiffness) {
-                const Sample sample = of_cell(name);
-                const SoftState soft = sample.soft(stiffness);
-                const Snap found = compare::snap(soft);
-                BOOST_TEST_REQUIRE((found.outcome == SnapOutcome::vertex), found.reason);
-                const auto state = compare::with_resting_rattlers(found, 3);
-                BOOST_TEST_REQUIRE(state.ok(), (state.ok() ? "" : state.failure().message()));
-                const Certification truth = certify(state.value());
-                BOOST_TEST((truth.verdict == Verdict::proved));
-                BOOST_TEST((compare::carrying(state.value(), truth) == sample.list));
-                for (std::size_t k = 32; k < soft.packing.q.size(); ++k) { // the cell of the sample
-                    BOOST_TEST(std::abs(found.packing.q[k] - sample.state.packing.q[k]) < 1e-9);
-                    BOOST_TEST(found.walls >= std::abs(soft.packing.q[k] - found.packing.q[k]));
-                }
-                // Another disk is pinned, one that carries nothing if there is one: the vertex is the same.
-                SoftState other = soft;
-                other.packing.cell.pin = found.rattlers.empty() ? 7 : found.rattlers.front();
-                const Snap again = compare::snap(other);
-                BOOST_TEST_REQUIRE((again.outcome == SnapOutcome::vertex), again.reason);
-                BOOST_TEST(again.packing.length(0) == found.packing.length(0), boost::test_tools::tolerance(1e-12));
+            BOOST_TEST_INFO_SCOPE(name << ", stiffness " << stiffness);
+            const Sample sample = of_cell(name);
+            const SoftState soft = sample.soft(stiffness);
+            const Snap found = compare::snap(soft);
+            BOOST_TEST_REQUIRE((found.outcome == SnapOutcome::vertex), found.reason);
+            const auto state = compare::with_resting_rattlers(found, 3);
+            BOOST_TEST_REQUIRE(state.ok(), (state.ok() ? "" : state.failure().message()));
+            const Certification truth = certify(state.value());
+            BOOST_TEST((truth.verdict == Verdict::proved));
+            BOOST_TEST((compare::carrying(state.value(), truth) == sample.list));
+            for (std::size_t k = 32; k < soft.packing.q.size(); ++k) { // the cell of the sample
+                BOOST_TEST(std::abs(found.packing.q[k] - sample.state.packing.q[k]) < 1e-9);
+                BOOST_TEST(found.walls >= std::abs(soft.packing.q[k] - found.packing.q[k]));
             }
+            // Another disk is pinned, one that carries nothing if there is one: the vertex is the same.
+            SoftState other = soft;
+            other.packing.cell.pin = found.rattlers.empty() ? 7 : found.rattlers.front();
+            const Snap again = compare::snap(other);
+            BOOST_TEST_REQUIRE((again.outcome == SnapOutcome::vertex), again.reason);
+            BOOST_TEST(again.packing.length(0) == found.packing.length(0), boost::test_tools::tolerance(1e-12));
         }
     }
 }

@@ -5,10 +5,6 @@
 #include "oracle/packings.hpp"
 #include "support/scale.hpp"
 
-#include <boost/test/unit_test.hpp>
-
-#include <set>
-
 using namespace isostat;
 using namespace isostat::oracle;
 

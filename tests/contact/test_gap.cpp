@@ -4,10 +4,7 @@
 
 #include <isostat/contact/contact.hpp>
 
-#include <boost/test/unit_test.hpp>
 #include <gmpxx.h>
-
-#include <cmath>
 
 using namespace isostat;
 using namespace isostat::oracle;

@@ -6,13 +6,6 @@
 
 #include <isostat/core/error.hpp>
 
-#include <boost/test/unit_test.hpp>
-
-#include <algorithm>
-#include <cmath>
-#include <random>
-#include <vector>
-
 using isostat::Contact;
 using isostat::Packing;
 using isostat::State;

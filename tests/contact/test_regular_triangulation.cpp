@@ -6,13 +6,7 @@
 
 #include <isostat/io/state_file.hpp>
 
-#include <boost/test/unit_test.hpp>
 #include <gmpxx.h>
-
-#include <cmath>
-#include <numbers>
-#include <set>
-#include <string>
 
 using namespace isostat;
 using namespace isostat::oracle;

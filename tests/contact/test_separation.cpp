@@ -1,10 +1,5 @@
 #include "contact/separation.hpp"
-
-#include <boost/test/unit_test.hpp>
-
-#include <algorithm>
-#include <array>
-#include <vector>
+#include "support/test.hpp"
 
 using namespace isostat;
 

@@ -1,11 +1,7 @@
 // Failures carry the contacts and disks that their words name.
 
 #include "contact/words.hpp"
-
-#include <boost/test/unit_test.hpp>
-
-#include <string>
-#include <vector>
+#include "support/test.hpp"
 
 using namespace isostat;
 

@@ -94,9 +94,7 @@ inline void stress_to_the_end(State& state, const Truth& truth, Random& random) 
 }
 
 inline CellOptions cell_options(CellKind kind, int disks, Random& random) {
-    CellOptions options;
-    options.kind = kind;
-    options.radii = cell_radii(disks, random);
+    CellOptions options{.kind = kind, .radii = cell_radii(disks, random)};
     if (random.integer(3) != 0) {
         options.force = {random.real(0.5, 2), random.real(0.5, 2)};
     }

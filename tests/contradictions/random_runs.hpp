@@ -68,10 +68,8 @@ inline std::optional<State> prepared_start(Random& random) {
 
 /// A pile, perhaps with fixed disks and forces on disks: rearrangements may end with "every load is supported".
 inline std::optional<State> piled_start(Random& random) {
-    PileOptions options;
-    options.disks = 2 + random.integer(7);
-    options.fixed = random.integer(3);
-    options.same = random.integer(2) == 0 ? 0.5 : 0;
+    PileOptions options{
+        .disks = 2 + random.integer(7), .fixed = random.integer(3), .same = random.integer(2) == 0 ? 0.5 : 0};
     auto state = pile(options, random);
     if (!state) {
         return {};

@@ -49,9 +49,7 @@ inline std::optional<State> pile(const PileOptions& options, Random& random) {
 }
 
 inline PileOptions small(Random& random, double same = 0) {
-    PileOptions options;
-    options.disks = 1 + random.integer(5);
-    options.same = same;
+    PileOptions options{.disks = 1 + random.integer(5), .same = same};
     return options;
 }
 

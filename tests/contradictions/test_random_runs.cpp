@@ -209,9 +209,8 @@ constexpr std::uint64_t seed = 2100;
 bool try_run(long number, bool in_cell, Draw draw, Results& results) {
     auto run = random_run(seed + 1'000'003ULL * static_cast<std::uint64_t>(number), in_cell, draw);
     if (run) {
-        BOOST_TEST_CONTEXT("run " << number << ": " << run->text()) {
-            try_one(*run, results);
-        }
+        BOOST_TEST_INFO_SCOPE("run " << number << ": " << run->text());
+        try_one(*run, results);
     }
     return run.has_value();
 }

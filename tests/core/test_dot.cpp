@@ -1,11 +1,6 @@
 // Sizes of long vectors.
 #include "core/dot.hpp"
-
-#include <boost/test/unit_test.hpp>
-
-#include <cmath>
-#include <limits>
-#include <vector>
+#include "support/test.hpp"
 
 BOOST_AUTO_TEST_SUITE(core)
 

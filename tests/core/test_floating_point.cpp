@@ -20,11 +20,7 @@
 #include <isostat/rigidity/counting.hpp>
 #include <isostat/scene/scene.hpp>
 
-#include <boost/test/unit_test.hpp>
-
 #include <cfenv>
-#include <functional>
-#include <string>
 #include <thread>
 #if defined(__SSE2__)
 #include <xmmintrin.h>

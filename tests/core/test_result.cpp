@@ -1,13 +1,11 @@
 // A result without a value is never read as one, in any build.
 
-#include <isostat/core/result.hpp>
+#include "support/test.hpp"
 
-#include <boost/test/unit_test.hpp>
+#include <isostat/core/result.hpp>
 
 #include <memory>
 #include <stdexcept>
-#include <string>
-#include <vector>
 
 using namespace isostat;
 

@@ -1,21 +1,17 @@
 // Work in pieces on several threads.
 
 #include "core/work.hpp"
+#include "support/test.hpp"
 #include "support/threads.hpp"
 
-#include <boost/test/unit_test.hpp>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <fstream>
 #include <stdexcept>
-#include <string>
 #include <thread>
-#include <vector>
 
 using namespace isostat;
 

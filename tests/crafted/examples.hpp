@@ -1,10 +1,7 @@
 #pragma once
 // The packings of examples/packings.
 
-#include <algorithm>
-#include <filesystem>
-#include <string>
-#include <vector>
+#include "support/test.hpp"
 
 /// Paths of all of them, sorted.
 inline std::vector<std::string> packing_files() {

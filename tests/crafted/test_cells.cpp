@@ -1,6 +1,7 @@
 // Crafted packings in cells: contacts through images, and what may not matter for them.
 
 #include "examples.hpp"
+#include "support/test.hpp"
 
 #include <isostat/certificate/inspect.hpp>
 #include <isostat/contact/contact.hpp>
@@ -8,11 +9,6 @@
 #include <isostat/io/state_file.hpp>
 
 #include <Eigen/Dense>
-#include <boost/test/unit_test.hpp>
-
-#include <algorithm>
-#include <random>
-#include <string>
 
 BOOST_AUTO_TEST_SUITE(crafted_cells)
 
@@ -106,29 +102,28 @@ BOOST_AUTO_TEST_CASE(representatives_and_the_pinned_disk_do_not_matter) {
             }
             other.cell.pin = static_cast<int>(random() % other.radius.size());
             const Inspection after = inspected(other);
-            BOOST_TEST_CONTEXT(path) {
-                std::vector<Contact> pairs;
-                for (const Contact& contact : after.contacts) {
-                    if (contact.kind == isostat::ContactKind::disk_disk) {
-                        pairs.push_back(contact);
-                    }
+            BOOST_TEST_INFO_SCOPE(path);
+            std::vector<Contact> pairs;
+            for (const Contact& contact : after.contacts) {
+                if (contact.kind == isostat::ContactKind::disk_disk) {
+                    pairs.push_back(contact);
                 }
-                BOOST_TEST((pairs == by_force(other, 7)));
-                BOOST_TEST(after.rank == before.rank);
-                BOOST_TEST(after.generic_rank == before.generic_rank);
-                BOOST_TEST((after.hold == before.hold));
-                BOOST_TEST((after.stable == before.stable));
-                BOOST_TEST((after.second_order == before.second_order));
-                BOOST_TEST(after.strains.has_value() == packing.cell.all());
-                if (after.jamming) {
-                    BOOST_TEST(after.jamming->disks == before.jamming->disks);
-                    BOOST_TEST((after.jamming->collective == before.jamming->collective));
-                    BOOST_TEST((after.jamming->strict == before.jamming->strict));
-                }
-                BOOST_TEST((!after.strains || same(*after.strains, *before.strains)));
-                if (before.forces_unique) {
-                    BOOST_TEST((sorted(after.forces) == sorted(before.forces)));
-                }
+            }
+            BOOST_TEST((pairs == by_force(other, 7)));
+            BOOST_TEST(after.rank == before.rank);
+            BOOST_TEST(after.generic_rank == before.generic_rank);
+            BOOST_TEST((after.hold == before.hold));
+            BOOST_TEST((after.stable == before.stable));
+            BOOST_TEST((after.second_order == before.second_order));
+            BOOST_TEST(after.strains.has_value() == packing.cell.all());
+            if (after.jamming) {
+                BOOST_TEST(after.jamming->disks == before.jamming->disks);
+                BOOST_TEST((after.jamming->collective == before.jamming->collective));
+                BOOST_TEST((after.jamming->strict == before.jamming->strict));
+            }
+            BOOST_TEST((!after.strains || same(*after.strains, *before.strains)));
+            if (before.forces_unique) {
+                BOOST_TEST((sorted(after.forces) == sorted(before.forces)));
             }
         }
     }

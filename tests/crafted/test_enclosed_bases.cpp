@@ -2,10 +2,7 @@
 
 #include "crafted/enclosed_bases.hpp"
 #include "crafted/examples.hpp"
-
-#include <boost/test/unit_test.hpp>
-
-#include <cmath>
+#include "support/exact_lattices.hpp"
 
 namespace {
 
@@ -57,20 +54,6 @@ int check(const std::vector<EnclosedVector>& vectors, const std::vector<std::vec
     return static_cast<int>(vectors.size());
 }
 
-ExactPacking triangular(int m) {
-    ExactPacking out;
-    const Number root = Number::parse("sqrt(3)");
-    for (int row = 0; row < m; ++row) {
-        for (int column = 0; column < m; ++column) {
-            out.centre.push_back({Number(1 + 2 * column + row % 2), Number(1) + Number(row) * root});
-            out.radius.emplace_back(1);
-        }
-    }
-    out.walls = isostat::Walls::box();
-    out.length = {Number(2 * m + 1), Number(2) + Number(m - 1) * root};
-    return out;
-}
-
 } // namespace
 
 BOOST_AUTO_TEST_SUITE(crafted_enclosed_bases)
@@ -86,17 +69,16 @@ BOOST_AUTO_TEST_CASE(enclosures_contain_the_exact_vectors_of_the_examples) {
             BOOST_TEST_MESSAGE(path << ": no enclosure");
             continue;
         }
-        BOOST_TEST_CONTEXT(path) {
-            stresses += check(bases.self_stresses, inspection.value().self_stresses, bases.free_contacts);
-            motions += check(bases.motions, inspection.value().motions, bases.free_dofs);
-        }
+        BOOST_TEST_INFO_SCOPE(path);
+        stresses += check(bases.self_stresses, inspection.value().self_stresses, bases.free_contacts);
+        motions += check(bases.motions, inspection.value().motions, bases.free_dofs);
     }
     BOOST_TEST(stresses > 50);
     BOOST_TEST(motions > 20);
 }
 
 BOOST_AUTO_TEST_CASE(a_lattice_without_exact_bases_gets_enclosures) {
-    const ExactPacking packing = triangular(15);
+    const ExactPacking packing = families::triangular_lattice(15, 15);
     const auto inspection = inspect(packing);
     BOOST_REQUIRE(inspection.ok());
     BOOST_TEST((inspection.value().bases_exact == Verdict::undecided));

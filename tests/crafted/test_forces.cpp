@@ -6,11 +6,6 @@
 #include <isostat/crafted/inspection.hpp>
 #include <isostat/preparation/preparation.hpp>
 
-#include <boost/test/unit_test.hpp>
-
-#include <cmath>
-#include <random>
-
 namespace {
 
 using namespace isostat::crafted;

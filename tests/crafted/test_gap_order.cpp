@@ -5,15 +5,10 @@
 #include <isostat/core/error.hpp>
 #include <isostat/exact/number.hpp>
 
-#include <boost/test/unit_test.hpp>
 #include <crafted/carrying.hpp>
 #include <crafted/gap_order.hpp>
 #include <crafted/peeling.hpp>
 #include <mpfr.h>
-
-#include <cmath>
-#include <limits>
-#include <random>
 
 namespace {
 

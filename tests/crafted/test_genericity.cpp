@@ -1,13 +1,10 @@
 // Perturbed radii: crystals become isostatic, isostatic packings keep their contacts.
 
 #include "crafted/genericity.hpp"
+#include "support/test.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/crafted/inspection.hpp>
-
-#include <boost/test/unit_test.hpp>
-
-#include <algorithm>
 
 namespace {
 
@@ -20,10 +17,7 @@ ExactPacking example(const std::string& name) {
 Genericity perturbed(const ExactPacking& exact, int samples, double size, bool tilt = false) {
     const auto contacts = exact_contacts(exact);
     BOOST_REQUIRE(contacts.ok());
-    GenericityOptions options;
-    options.samples = samples;
-    options.size = size;
-    options.tilt = tilt;
+    GenericityOptions options{.samples = samples, .size = size, .tilt = tilt};
     return genericity(approximate(exact), contacts.value(), options);
 }
 
@@ -60,23 +54,22 @@ BOOST_AUTO_TEST_CASE(an_isostatic_packing_keeps_its_contacts) {
 BOOST_AUTO_TEST_CASE(a_perturbed_lattice_is_isostatic_on_some_of_its_contacts) {
     for (const char* name : {"square_lattice_3.toml", "triangular_patch_3x3.toml"}) {
         const Genericity answer = perturbed(name, 20, 1e-4);
-        BOOST_TEST_CONTEXT(name) {
-            int within = 0;
-            for (const GenericitySample& sample : answer.samples) {
-                BOOST_TEST_MESSAGE(name << " seed " << sample.seed << ": "
-                                        << (sample.failure ? sample.failure->message()
-                                                           : std::to_string(sample.carrying.size()) + " carrying"));
-                if (!sample.failure) {
-                    BOOST_TEST(sample.contacts.size() == 20u);
-                    BOOST_TEST(static_cast<int>(sample.carrying.size()) == 2 * (9 - sample.rattlers) + 2);
-                    within += sample.within_original ? 1 : 0;
-                }
+        BOOST_TEST_INFO_SCOPE(name);
+        int within = 0;
+        for (const GenericitySample& sample : answer.samples) {
+            BOOST_TEST_MESSAGE(name << " seed " << sample.seed << ": "
+                                    << (sample.failure ? sample.failure->message()
+                                                       : std::to_string(sample.carrying.size()) + " carrying"));
+            if (!sample.failure) {
+                BOOST_TEST(sample.contacts.size() == 20u);
+                BOOST_TEST(static_cast<int>(sample.carrying.size()) == 2 * (9 - sample.rattlers) + 2);
+                within += sample.within_original ? 1 : 0;
             }
-            BOOST_TEST_MESSAGE(name << ": proved " << answer.proved << ", lists " << answer.lists.size()
-                                    << ", within the lattice " << within);
-            BOOST_TEST(answer.proved >= 15);
-            BOOST_TEST(answer.lists.size() > 1u);
         }
+        BOOST_TEST_MESSAGE(name << ": proved " << answer.proved << ", lists " << answer.lists.size()
+                                << ", within the lattice " << within);
+        BOOST_TEST(answer.proved >= 15);
+        BOOST_TEST(answer.lists.size() > 1u);
     }
 }
 
@@ -84,23 +77,22 @@ BOOST_AUTO_TEST_CASE(perturbations_far_below_the_tolerances_of_a_linear_solver_a
     for (const char* name : {"square_lattice_3.toml", "triangular_patch_3x3.toml"}) {
         for (const double size : {1e-7, 1e-10, 1e-12}) {
             const Genericity answer = perturbed(name, 20, size);
-            BOOST_TEST_CONTEXT(name << " " << size) {
-                BOOST_TEST(answer.proved >= 19);
-                int far = 0;
-                for (const GenericitySample& sample : answer.samples) {
-                    if (!sample.failure) {
-                        // Both margins scale with the perturbation.
-                        BOOST_TEST(sample.min_gap > 0);
-                        BOOST_TEST(sample.min_gap < 10 * size);
-                        BOOST_TEST(sample.min_force > 0);
-                        BOOST_TEST(sample.within_original);
-                        far += sample.rung == isostat::Rung::multiprecision ? 1 : 0;
-                    }
+            BOOST_TEST_INFO_SCOPE(name << " " << size);
+            BOOST_TEST(answer.proved >= 19);
+            int far = 0;
+            for (const GenericitySample& sample : answer.samples) {
+                if (!sample.failure) {
+                    // Both margins scale with the perturbation.
+                    BOOST_TEST(sample.min_gap > 0);
+                    BOOST_TEST(sample.min_gap < 10 * size);
+                    BOOST_TEST(sample.min_force > 0);
+                    BOOST_TEST(sample.within_original);
+                    far += sample.rung == isostat::Rung::multiprecision ? 1 : 0;
                 }
-                // Forces of the square lattice shrink like a power of the size: some need more than double-double.
-                if (name == std::string("square_lattice_3.toml") && size < 1e-9) {
-                    BOOST_TEST(far > 0);
-                }
+            }
+            // Forces of the square lattice shrink like a power of the size: some need more than double-double.
+            if (name == std::string("square_lattice_3.toml") && size < 1e-9) {
+                BOOST_TEST(far > 0);
             }
         }
     }
@@ -110,19 +102,15 @@ BOOST_AUTO_TEST_CASE(equal_radii_that_stay_equal_are_never_called_isostatic) {
     // Square lattice: a scaled copy, h = 4. Two sizes: two self-stresses are left for every ratio of the radii.
     for (const char* name : {"square_lattice_3.toml", "interstitial_lattice.toml"}) {
         const ExactPacking exact = example(name);
-        GenericityOptions options;
-        options.samples = 10;
-        options.size = 1e-3;
-        options.keep_equal = true;
+        GenericityOptions options{.samples = 10, .size = 1e-3, .keep_equal = true};
         const auto contacts = exact_contacts(exact).value();
         const Genericity equal = genericity(approximate(exact), contacts, options);
         options.keep_equal = false;
         const Genericity free = genericity(approximate(exact), contacts, options);
-        BOOST_TEST_CONTEXT(name) {
-            BOOST_TEST(equal.proved == 0);
-            BOOST_TEST(equal.ties == 10);
-            BOOST_TEST(free.proved == 10);
-        }
+        BOOST_TEST_INFO_SCOPE(name);
+        BOOST_TEST(equal.proved == 0);
+        BOOST_TEST(equal.ties == 10);
+        BOOST_TEST(free.proved == 10);
     }
 }
 
@@ -182,19 +170,16 @@ BOOST_AUTO_TEST_CASE(a_packing_or_an_option_that_does_not_fit_is_refused) {
     const auto box = approximate(example("two_disks.toml"));
     BOOST_CHECK_THROW((void)genericity(approximate(example("arch.toml")), {}, {}), isostat::Error);
     for (const double size : {-1.0, 0.5, 1e300}) {
-        GenericityOptions options;
-        options.size = size;
+        GenericityOptions options{.size = size};
         BOOST_CHECK_THROW((void)genericity(box, {}, options), isostat::Error);
     }
-    GenericityOptions tilt;
-    tilt.tilt = true;
+    GenericityOptions tilt{.tilt = true};
     BOOST_CHECK_THROW((void)genericity(box, {}, tilt), isostat::Error);
     BOOST_CHECK_THROW((void)genericity(approximate(example("channel_one_disk.toml")), {}, tilt), isostat::Error);
     auto half = approximate(example("cell_hexagonal_row.toml"));
     half.cell.period_moves = {true, false};
     BOOST_CHECK_THROW((void)genericity(half, {}, {}), isostat::Error);
-    GenericityOptions none;
-    none.samples = 0;
+    GenericityOptions none{.samples = 0};
     BOOST_CHECK_THROW((void)genericity(box, {}, none), isostat::Error);
 }
 

@@ -1,18 +1,14 @@
 // Inspection of exact packings: what must be refused, invariances, agreement with independent counts, large lattices.
 
 #include "examples.hpp"
+#include "support/exact_lattices.hpp"
+#include "support/test.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/crafted/inspection.hpp>
 #include <isostat/rigidity/counting.hpp>
 
-#include <boost/test/unit_test.hpp>
-#include <fmt/format.h>
-
 #include <chrono>
-#include <fstream>
-#include <random>
-#include <sstream>
 
 namespace {
 
@@ -41,19 +37,12 @@ crafted::Inspection inspected_alone(const ExactPacking& packing) {
 
 /// rows x columns triangular lattice of unit disks in its box, odd rows shifted by one radius.
 ExactPacking triangular(int rows, int columns, bool box) {
-    ExactPacking out;
-    const Number root = sqrt(Number(3));
-    for (int r = 0; r < rows; ++r) {
-        for (int c = 0; c < columns; ++c) {
-            out.centre.push_back({Number(1 + 2 * c + r % 2), Number(1) + Number(r) * root});
-            out.radius.emplace_back(1);
-        }
+    ExactPacking packing = families::triangular_lattice(columns, rows);
+    if (!box) {
+        packing.walls = ExactPacking().walls;
+        packing.length = ExactPacking().length;
     }
-    if (box) {
-        out.walls = isostat::Walls::box();
-        out.length = {Number(2 * columns + (rows > 1 ? 1 : 0)), Number(2) + Number(rows - 1) * root};
-    }
-    return out;
+    return packing;
 }
 
 bool refused(const std::string& text, int line, const std::string& part) {

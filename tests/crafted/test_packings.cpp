@@ -1,13 +1,9 @@
 // Every file of examples/packings is read, inspected and held against the answers it carries.
 
 #include "examples.hpp"
+#include "support/test.hpp"
 
 #include <isostat/crafted/inspection.hpp>
-
-#include <boost/test/unit_test.hpp>
-
-#include <string>
-#include <vector>
 
 BOOST_AUTO_TEST_SUITE(crafted_packings)
 
@@ -16,16 +12,15 @@ BOOST_AUTO_TEST_CASE(every_example_packing_has_the_answers_it_carries) {
     const std::vector<std::string> paths = packing_files();
     BOOST_TEST(paths.size() >= 25u);
     for (const std::string& path : paths) {
-        BOOST_TEST_CONTEXT(path) {
-            const PackingFile file = read_packing(path);
-            BOOST_TEST(file.expected.size() >= 3u);
-            const auto inspection = inspect(file.packing);
-            BOOST_REQUIRE_MESSAGE(inspection.ok(), (inspection.ok() ? "" : inspection.failure().message()));
-            for (const std::string& message : check_expected(inspection.value(), file, path)) {
-                BOOST_ERROR(message);
-            }
-            BOOST_TEST(!to_text(inspection.value(), file.packing).empty());
+        BOOST_TEST_INFO_SCOPE(path);
+        const PackingFile file = read_packing(path);
+        BOOST_TEST(file.expected.size() >= 3u);
+        const auto inspection = inspect(file.packing);
+        BOOST_REQUIRE_MESSAGE(inspection.ok(), (inspection.ok() ? "" : inspection.failure().message()));
+        for (const std::string& message : check_expected(inspection.value(), file, path)) {
+            BOOST_ERROR(message);
         }
+        BOOST_TEST(!to_text(inspection.value(), file.packing).empty());
     }
 }
 

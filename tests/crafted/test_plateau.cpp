@@ -8,11 +8,7 @@
 #include <isostat/preparation/preparation.hpp>
 #include <isostat/rigidity/counting.hpp>
 
-#include <boost/test/unit_test.hpp>
 #include <crafted/hold.hpp>
-
-#include <cmath>
-#include <random>
 
 namespace {
 
@@ -147,11 +143,10 @@ BOOST_AUTO_TEST_CASE(counts_agree_with_the_exact_inspection_of_the_examples) {
         const auto inspection = inspect(exact);
         BOOST_REQUIRE(inspection.ok());
         const Plateau answer = plateau(approximate(exact), {1e-12});
-        BOOST_TEST_CONTEXT(name) {
-            BOOST_TEST(answer.steps[0].backbone.rank == inspection.value().rank);
-            BOOST_TEST(answer.steps[0].backbone.hyperstaticity == inspection.value().hyperstaticity);
-            BOOST_TEST(answer.steps[0].backbone.mechanisms == inspection.value().mechanisms);
-        }
+        BOOST_TEST_INFO_SCOPE(name);
+        BOOST_TEST(answer.steps[0].backbone.rank == inspection.value().rank);
+        BOOST_TEST(answer.steps[0].backbone.hyperstaticity == inspection.value().hyperstaticity);
+        BOOST_TEST(answer.steps[0].backbone.mechanisms == inspection.value().mechanisms);
     }
 }
 

@@ -7,9 +7,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include <set>
-#include <sstream>
-
 using namespace program;
 namespace fs = std::filesystem;
 
@@ -50,7 +47,7 @@ BOOST_AUTO_TEST_SUITE(ensemble)
 BOOST_AUTO_TEST_CASE(the_tables_do_not_depend_on_the_number_of_jobs) {
     const scratch::Folder folder;
     scratch::write(folder / "s.toml", small);
-    const std::string scene = (folder / "s.toml").string();
+    const std::string scene = folder.at("s.toml");
     for (const char* jobs : {"1", "2", "7"}) {
         expect(run({"ensemble", scene, "--samples", "9", "-o", (folder / jobs).string(), "-j", jobs, "-q"}), 0);
         same_tables(folder / "1", folder / jobs);
@@ -76,11 +73,9 @@ BOOST_AUTO_TEST_CASE(the_tables_do_not_depend_on_the_number_of_jobs) {
 BOOST_AUTO_TEST_CASE(a_sample_is_the_run_of_its_scene) {
     const scratch::Folder folder;
     scratch::write(folder / "s.toml", small);
-    expect(run({"ensemble", (folder / "s.toml").string(), "-S", "2", "--first-seed", "41", "-o",
-                (folder / "e").string(), "-q"}),
-           0);
+    expect(run({"ensemble", folder.at("s.toml"), "-S", "2", "--first-seed", "41", "-o", folder.at("e"), "-q"}), 0);
     scratch::write(folder / "42.toml", scratch::replaced(small, "seed = 1", "seed = 42"));
-    expect(run({"run", (folder / "42.toml").string(), "-o", (folder / "r").string(), "-q"}), 0);
+    expect(run({"run", folder.at("42.toml"), "-o", folder.at("r"), "-q"}), 0);
     const fs::path sample = folder / "e/samples/seed_000042";
     BOOST_TEST((scratch::read(sample / "events.jsonl") == scratch::read(folder / "r/events.jsonl")));
     BOOST_TEST(scratch::without_times(scratch::read(sample / "equilibria.csv")) ==
@@ -91,19 +86,18 @@ BOOST_AUTO_TEST_CASE(a_sample_is_the_run_of_its_scene) {
 BOOST_AUTO_TEST_CASE(one_sample_that_cannot_be_written_loses_no_other_and_is_made_up_for) {
     const scratch::Folder folder;
     scratch::write(folder / "s.toml", small);
-    const std::string scene = (folder / "s.toml").string();
-    expect(run({"ensemble", scene, "-S", "4", "-o", (folder / "whole").string(), "-q"}), 0);
-    expect(run({"ensemble", scene, "-S", "1", "-o", (folder / "e").string(), "-q"}), 0);
+    const std::string scene = folder.at("s.toml");
+    expect(run({"ensemble", scene, "-S", "4", "-o", folder.at("whole"), "-q"}), 0);
+    expect(run({"ensemble", scene, "-S", "1", "-o", folder.at("e"), "-q"}), 0);
     fs::create_directories(folder / "e/samples/seed_000002");
     scratch::write(folder / "e/samples/seed_000002/mine.txt", "precious"); // a run goes where nothing else is
-    const Outcome broken =
-        run({"ensemble", scene, "-S", "4", "-o", (folder / "e").string(), "-q", "-j", "1", "--resume"});
+    const Outcome broken = run({"ensemble", scene, "-S", "4", "-o", folder.at("e"), "-q", "-j", "1", "--resume"});
     expect(broken, 1, {"seed 2: refused", "mine.txt"});
     const auto counts = nlohmann::json::parse(scratch::read(folder / "e/ensemble.json"))["counts"];
     BOOST_TEST(counts["completed"] == 3);
     BOOST_TEST(counts["refused"] == 1);
     fs::remove(folder / "e/samples/seed_000002/mine.txt");
-    expect(run({"ensemble", scene, "-S", "4", "-o", (folder / "e").string(), "-q", "--resume"}), 0);
+    expect(run({"ensemble", scene, "-S", "4", "-o", folder.at("e"), "-q", "--resume"}), 0);
     same_tables(folder / "e", folder / "whole");
 }
 
@@ -111,65 +105,64 @@ BOOST_AUTO_TEST_CASE(a_sample_that_fails_at_its_load_is_a_result) {
     const scratch::Folder folder;
     const std::string text = scratch::replaced(small, "to = 1.1", "to = 1000.0") + "[run]\nmax_strain = 0.01\n";
     scratch::write(folder / "s.toml", text);
-    const std::string scene = (folder / "s.toml").string();
-    const Outcome outcome = run({"ensemble", scene, "-S", "3", "-o", (folder / "e").string(), "--json"});
+    const std::string scene = folder.at("s.toml");
+    const Outcome outcome = run({"ensemble", scene, "-S", "3", "-o", folder.at("e"), "--json"});
     expect(outcome, 1, {"max_strain"});
     const auto object = nlohmann::json::parse(outcome.out);
     BOOST_TEST(object["counts"]["failed"] == 3);
     BOOST_TEST(object["equilibria"] == object["proved"]);
     // Results are not made again.
     const auto stamp = fs::last_write_time(folder / "e/samples/seed_000001/run.json");
-    expect(run({"ensemble", scene, "-S", "3", "-o", (folder / "e").string(), "-q", "--resume"}), 1);
+    expect(run({"ensemble", scene, "-S", "3", "-o", folder.at("e"), "-q", "--resume"}), 1);
     BOOST_TEST((fs::last_write_time(folder / "e/samples/seed_000001/run.json") == stamp));
 }
 
 BOOST_AUTO_TEST_CASE(killed_ensembles_and_killed_samples_resume_to_the_same_tables) {
     const scratch::Folder folder;
     scratch::write(folder / "s.toml", scratch::replaced(small, "disks = 30", "disks = 200"));
-    const std::string scene = (folder / "s.toml").string();
+    const std::string scene = folder.at("s.toml");
     const fs::path whole = folder / "whole";
     expect(run({"ensemble", scene, "-S", "3", "-o", whole.string(), "-q"}), 0);
     for (const int signal : {SIGKILL, SIGTERM, SIGSEGV}) {
-        BOOST_TEST_CONTEXT("signal " << signal) {
-            const fs::path out = folder / ("cut" + std::to_string(signal));
-            Background background({"ensemble", scene, "-S", "3", "-o", out.string(), "-q", "-j", "1"});
-            if (signal == SIGSEGV) { // of the second sample
-                BOOST_TEST(background.signal_at(out / "samples/seed_000002/run.json", 1, 0));
-                const pid_t child = child_of(background.pid());
-                BOOST_REQUIRE(child > 0); // 0 would be this process group
-                BOOST_TEST(::kill(child, signal) == 0);
-                BOOST_TEST(background.wait() == 1);
-                const std::string text = scratch::read(out / "ensemble.json");
-                BOOST_TEST(contains(text, "\"crashed\": 1"));
-                BOOST_TEST(contains(text, "\"completed\": 2"));
-            } else {
-                BOOST_TEST(background.signal_at(out / "samples/seed_000002/run.json", 1, signal));
-                const int status = background.wait();
-                BOOST_TEST(status == (signal == SIGTERM ? 130 : 128 + signal));
-                if (signal == SIGTERM) {
-                    BOOST_TEST(contains(scratch::read(out / "ensemble.json"), "\"missing\": 1"));
-                }
+        BOOST_TEST_INFO_SCOPE("signal " << signal);
+        const fs::path out = folder / ("cut" + std::to_string(signal));
+        Background background({"ensemble", scene, "-S", "3", "-o", out.string(), "-q", "-j", "1"});
+        if (signal == SIGSEGV) { // of the second sample
+            BOOST_TEST(background.signal_at(out / "samples/seed_000002/run.json", 1, 0));
+            const pid_t child = child_of(background.pid());
+            BOOST_REQUIRE(child > 0); // 0 would be this process group
+            BOOST_TEST(::kill(child, signal) == 0);
+            BOOST_TEST(background.wait() == 1);
+            const std::string text = scratch::read(out / "ensemble.json");
+            BOOST_TEST(contains(text, "\"crashed\": 1"));
+            BOOST_TEST(contains(text, "\"completed\": 2"));
+        } else {
+            BOOST_TEST(background.signal_at(out / "samples/seed_000002/run.json", 1, signal));
+            const int status = background.wait();
+            BOOST_TEST(status == (signal == SIGTERM ? 130 : 128 + signal));
+            if (signal == SIGTERM) {
+                BOOST_TEST(contains(scratch::read(out / "ensemble.json"), "\"missing\": 1"));
             }
-            // The samples of a killed parent get SIGTERM: they may still be ending.
-            for (int k = 0; signal == SIGKILL && k < 60000; ++k) {
-                if (!contains(scratch::read(out / "samples/seed_000002/run.json"), "\"running\"")) {
-                    break;
-                }
-                std::this_thread::sleep_for(std::chrono::milliseconds(10));
-            }
-            expect(run({"ensemble", scene, "-S", "3", "-o", out.string(), "-q", "--resume", "-j", "2"}), 0);
-            same_tables(out, whole);
         }
+        // The samples of a killed parent get SIGTERM: they may still be ending.
+        for (int k = 0; signal == SIGKILL && k < 60000; ++k) {
+            if (!contains(scratch::read(out / "samples/seed_000002/run.json"), "\"running\"")) {
+                break;
+            }
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        }
+        expect(run({"ensemble", scene, "-S", "3", "-o", out.string(), "-q", "--resume", "-j", "2"}), 0);
+        same_tables(out, whole);
     }
 }
 
 BOOST_AUTO_TEST_CASE(more_samples_are_added_to_a_finished_ensemble) {
     const scratch::Folder folder;
     scratch::write(folder / "s.toml", small);
-    const std::string scene = (folder / "s.toml").string();
-    expect(run({"ensemble", scene, "-S", "5", "-o", (folder / "five").string(), "-q"}), 0);
-    expect(run({"ensemble", scene, "-S", "2", "-o", (folder / "e").string(), "-q"}), 0);
-    expect(run({"ensemble", scene, "-S", "5", "-o", (folder / "e").string(), "-q", "--resume"}), 0);
+    const std::string scene = folder.at("s.toml");
+    expect(run({"ensemble", scene, "-S", "5", "-o", folder.at("five"), "-q"}), 0);
+    expect(run({"ensemble", scene, "-S", "2", "-o", folder.at("e"), "-q"}), 0);
+    expect(run({"ensemble", scene, "-S", "5", "-o", folder.at("e"), "-q", "--resume"}), 0);
     same_tables(folder / "e", folder / "five");
 }
 
@@ -179,7 +172,7 @@ BOOST_AUTO_TEST_CASE(wrong_use_is_refused_before_anything_is_made) {
     scratch::write(folder / "other.toml", small + "# another text\n");
     scratch::write_scene(folder / "read.toml", scene_from(scratch::data("vertex100.txt"), up_6));
     scratch::write(folder / "static.toml", "[packing]\ndisks = 12\n");
-    const std::string out = (folder / "e").string();
+    const std::string out = folder.at("e");
     const auto with = [&](const char* scene, const std::vector<std::string>& more) {
         std::vector<std::string> words{"ensemble", (folder / scene).string(), "-o", out, "-q"};
         words.insert(words.end(), more.begin(), more.end());
@@ -204,17 +197,14 @@ BOOST_AUTO_TEST_CASE(wrong_use_is_refused_before_anything_is_made) {
 BOOST_AUTO_TEST_CASE(two_ranks_of_mpirun_make_the_tables_of_one_process) {
     const scratch::Folder folder;
     scratch::write(folder / "s.toml", small);
-    const std::string scene = (folder / "s.toml").string();
+    const std::string scene = folder.at("s.toml");
     const std::string mpirun =
         std::string(ISOSTAT_MPIRUN) + " --allow-run-as-root --oversubscribe -n 2 "; // Open MPI refuses both by default
-    expect(run({"ensemble", scene, "-S", "9", "-o", (folder / "one").string(), "-q"}), 0);
-    const Outcome two = run({"ensemble", scene, "-S", "9", "-o", (folder / "two").string()}, mpirun);
-    expect(two, 0);
-    BOOST_TEST(contains(two.out, "on 2 ranks"));
+    expect(run({"ensemble", scene, "-S", "9", "-o", folder.at("one"), "-q"}), 0);
+    says(run({"ensemble", scene, "-S", "9", "-o", folder.at("two")}, mpirun), 0, {"on 2 ranks"});
     same_tables(folder / "two", folder / "one");
-    expect(run({"ensemble", (folder / "no.toml").string(), "-S", "9", "-o", (folder / "no").string(), "-q"}, mpirun),
-           65);
-    expect(run({"ensemble", scene, "-S", "9", "-o", (folder / "two").string(), "-q"}, mpirun),
+    expect(run({"ensemble", folder.at("no.toml"), "-S", "9", "-o", folder.at("no"), "-q"}, mpirun), 65);
+    expect(run({"ensemble", scene, "-S", "9", "-o", folder.at("two"), "-q"}, mpirun),
            64); // rank 0 alone knows
 }
 #endif

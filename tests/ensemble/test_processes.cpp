@@ -2,12 +2,7 @@
 #include "ensemble/processes.hpp"
 #include "support/scratch.hpp"
 
-#include <boost/test/unit_test.hpp>
-
-#include <algorithm>
 #include <csignal>
-#include <filesystem>
-#include <map>
 
 using namespace isostat;
 
@@ -81,7 +76,7 @@ BOOST_AUTO_TEST_CASE(never_more_than_jobs_at_a_time_and_as_many_as_that) {
 BOOST_AUTO_TEST_CASE(a_stop_reaches_those_that_run_and_starts_no_more) {
     std::atomic<bool> stop{false};
     const scratch::Folder folder;
-    const std::string ready = (folder / "ready").string();
+    const std::string ready = folder.at("ready");
     const Watch watch = run_shell(
         {"exec sleep 6000", "trap 'exit 5' TERM; touch " + ready + "; while :; do sleep 0.01; done", "exec sleep 6000"},
         2, stop, [&] { stop = std::filesystem::exists(ready); });

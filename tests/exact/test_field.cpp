@@ -1,11 +1,8 @@
 #include "exact/rank.hpp"
 #include "oracle/random.hpp"
+#include "support/test.hpp"
 
-#include <boost/test/unit_test.hpp>
 #include <gmpxx.h>
-
-#include <cmath>
-#include <limits>
 
 using namespace isostat;
 using exact::mersenne61;

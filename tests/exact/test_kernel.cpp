@@ -2,13 +2,9 @@
 // itself.
 
 #include "exact/reduction.hpp"
+#include "support/test.hpp"
 
 #include <isostat/exact/kernel.hpp>
-
-#include <boost/test/unit_test.hpp>
-
-#include <random>
-#include <vector>
 
 namespace {
 

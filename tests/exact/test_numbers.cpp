@@ -1,15 +1,11 @@
 // Exact numbers: field laws, canonical form, signs against MPFR, text form in both directions.
 
+#include "support/test.hpp"
+
 #include <isostat/core/error.hpp>
 #include <isostat/exact/number.hpp>
 
-#include <boost/test/unit_test.hpp>
 #include <mpfr.h>
-
-#include <cmath>
-#include <random>
-#include <string>
-#include <vector>
 
 namespace {
 

@@ -3,10 +3,6 @@
 #include "oracle/matrices.hpp"
 #include "support/scale.hpp"
 
-#include <boost/test/unit_test.hpp>
-
-#include <cmath>
-
 using namespace isostat;
 using namespace isostat::oracle;
 using exact::mersenne61;

@@ -1,6 +1,7 @@
 // Runs, not only states: what steers them decided at the edge too. And dynamics of any stiffness.
 #include "extreme/catalogue.hpp"
 #include "support/crafted.hpp"
+#include "support/segments.hpp"
 #include "support/shortcuts/soft_grains.hpp"
 
 #include <isostat/certificate/inspect.hpp>
@@ -24,49 +25,41 @@ PreparationOptions disks_of(int count, double smallest = 1, double largest = 2) 
 
 /// One row for a run; the state where it ends is a row of its own, checked to 200 digits. W never grows.
 void follow(const std::string& family, const std::string& parameter, State state, const Segment& segment) {
-    BOOST_TEST_CONTEXT(family << ", " << parameter) {
-        RunOptions options;
-        options.max_arcs = 2000;
-        options.max_strain = 1e3; // towards extreme ratios the box becomes a column
-        RunCounters counters;
-        crafted::Recorder records;
-        extreme::Row row;
-        row.family = family;
-        row.disks = state.packing.disk_count();
-        const extreme::Clock clock;
-        const SegmentOutcome outcome = run_segment(state, segment, 0, options, counters, records);
-        row.seconds = clock.seconds();
-        const auto found = static_cast<long>(records.equilibria.size());
-        row.parameter = fmt::format("{} ({} arcs, {} equilibria)", parameter, records.arcs.size(), found);
-        Rung rung = Rung::combinatorial;
-        for (const auto& e : records.equilibria) {
-            BOOST_TEST((e.verdict == Verdict::proved));
-            rung = std::max(rung, e.decided_by);
-        }
-        for (const auto& arc : records.arcs) {
-            rung = std::max(rung, arc.decided_by);
-            BOOST_TEST(arc.work > -1e-9 * state.load.stress[1] * state.packing.length(0) * state.packing.length(1));
-        }
-        row.rung = to_string(rung);
-        row.outcome = "proved";
-        row.checked = "W along every arc; the last state to 200 digits (next row)";
-        if (!outcome.completed) {
-            const FailureKind kind = outcome.failure->kind;
-            row.outcome = kind == FailureKind::undecided || kind == FailureKind::tie ? "undecided" : "refused";
-            row.reason = fmt::format("{}: {}", to_string(kind), outcome.failure->message());
-        }
-        extreme::add(row);
-        if (found > 0) {
-            const auto last = extreme::inspect(family, parameter + ", last equilibrium", records.states.back());
-            BOOST_TEST((last && last->record.verdict == Verdict::proved));
-        }
+    BOOST_TEST_INFO_SCOPE(family << ", " << parameter);
+    RunOptions options{.max_arcs = 2000};
+    options.max_strain = 1e3; // towards extreme ratios the box becomes a column
+    RunCounters counters;
+    crafted::Recorder records;
+    extreme::Row row;
+    row.family = family;
+    row.disks = state.packing.disk_count();
+    const extreme::Clock clock;
+    const SegmentOutcome outcome = run_segment(state, segment, 0, options, counters, records);
+    row.seconds = clock.seconds();
+    const auto found = static_cast<long>(records.equilibria.size());
+    row.parameter = fmt::format("{} ({} arcs, {} equilibria)", parameter, records.arcs.size(), found);
+    Rung rung = Rung::combinatorial;
+    for (const auto& e : records.equilibria) {
+        BOOST_TEST((e.verdict == Verdict::proved));
+        rung = std::max(rung, e.decided_by);
     }
-}
-
-Segment up(int equilibria) {
-    Segment segment;
-    segment.equilibria = equilibria;
-    return segment;
+    for (const auto& arc : records.arcs) {
+        rung = std::max(rung, arc.decided_by);
+        BOOST_TEST(arc.work > -1e-9 * state.load.stress[1] * state.packing.length(0) * state.packing.length(1));
+    }
+    row.rung = to_string(rung);
+    row.outcome = "proved";
+    row.checked = "W along every arc; the last state to 200 digits (next row)";
+    if (!outcome.completed) {
+        const FailureKind kind = outcome.failure->kind;
+        row.outcome = kind == FailureKind::undecided || kind == FailureKind::tie ? "undecided" : "refused";
+        row.reason = fmt::format("{}: {}", to_string(kind), outcome.failure->message());
+    }
+    extreme::add(row);
+    if (found > 0) {
+        const auto last = extreme::inspect(family, parameter + ", last equilibrium", records.states.back());
+        BOOST_TEST((last && last->record.verdict == Verdict::proved));
+    }
 }
 
 } // namespace
@@ -100,7 +93,7 @@ BOOST_AUTO_TEST_CASE(runs_from_extreme_packings) {
     for (const Case& c : cases) {
         if (const auto start = prepared(c.options)) {
             ++made;
-            follow("run", c.name, *start, up(4));
+            follow("run", c.name, *start, towards(4));
         }
     }
     BOOST_TEST(made >= 8); // those that end in the preparation have their rows there
@@ -111,10 +104,8 @@ BOOST_AUTO_TEST_CASE(runs_towards_every_stress_ratio) {
         const auto start = prepared(disks_of(count));
         BOOST_REQUIRE(start);
         for (const int power : {-12, -4, 4, 12}) {
-            Segment segment;
-            segment.direction = power < 0 ? -1 : +1;
-            segment.to_stress = std::pow(10.0, power);
-            follow("stress ratio", fmt::format("{} disks, run to σ₂/σ₁ = 1e{:+03d}", count, power), *start, segment);
+            follow("stress ratio", fmt::format("{} disks, run to σ₂/σ₁ = 1e{:+03d}", count, power), *start,
+                   until(power < 0 ? -1 : +1, std::pow(10.0, power)));
         }
     }
 }
@@ -130,9 +121,7 @@ BOOST_AUTO_TEST_CASE(soft_grains_of_any_stiffness_choose_their_step) {
         row.family = "stiff dynamics";
         row.disks = 30;
         row.rung = "none";
-        SoftGrainOptions options;
-        options.stiffness_ratio = kappa;
-        options.max_steps = 400'000;
+        SoftGrainOptions options{.stiffness_ratio = kappa, .max_steps = 400'000};
         const extreme::Clock clock;
         SoftGrains soft(start->packing, start->load, options);
         const bool relaxed = soft.relax();

@@ -32,54 +32,53 @@ State scaled(State state, double length, double stress) {
 void compare(const std::string& unit, const Played& base, const State& state, double length, double stress,
              bool same_bits) {
     extreme::inspect("units", unit + ", start", state);
-    BOOST_TEST_CONTEXT(unit) {
-        extreme::Row row;
-        row.family = "units";
-        row.parameter = unit + ", run";
-        row.disks = state.packing.disk_count();
-        row.rung = "none";
-        row.checked =
-            same_bits ? "every bit of positions, stresses and strains of a run" : "contacts and stresses of a run";
-        const extreme::Clock clock;
-        const Played run = play(state, +1, equilibria);
-        row.seconds = clock.seconds();
-        if (!run.outcome.completed) {
-            const FailureKind kind = run.outcome.failure->kind;
-            row.outcome = kind == FailureKind::undecided || kind == FailureKind::tie ? "undecided" : "refused";
-            row.reason = run.why();
-            row.checked = "no claim";
-        } else {
-            row.outcome = "proved";
-            Rung rung = Rung::combinatorial;
-            double bound = 0;
-            BOOST_REQUIRE(run.records.equilibria.size() == base.records.equilibria.size());
-            for (std::size_t k = 0; k < run.records.equilibria.size(); ++k) {
-                const auto& here = run.records.equilibria[k];
-                const auto& there = base.records.equilibria[k];
-                rung = std::max(rung, here.decided_by);
-                bound = std::max(bound, here.force_bound / here.stress / state.packing.max_radius());
-                BOOST_TEST((here.verdict == Verdict::proved));
-                BOOST_TEST((run.records.states[k].contacts == base.records.states[k].contacts));
-                BOOST_TEST(here.arcs == there.arcs);
-                if (same_bits) {
-                    BOOST_TEST(here.stress == there.stress * stress);
-                    // Of the true vertex: beyond 1e+-150 the correction of the enclosure is coarser, within its bound.
-                    for (std::size_t a = 0; a < 2; ++a) {
-                        BOOST_TEST(std::abs(here.strain[a] - there.strain[a]) <= 4e-15);
-                        BOOST_TEST(std::abs(here.length[a] / length - there.length[a]) <= 4e-15 * there.length[a]);
-                    }
-                    for (std::size_t c = 0; c < state.packing.q.size(); ++c) {
-                        BOOST_TEST(run.records.states[k].packing.q[c] == base.records.states[k].packing.q[c] * length);
-                    }
-                } else {
-                    BOOST_TEST(here.stress == there.stress * stress, boost::test_tools::tolerance(1e-9));
+    BOOST_TEST_INFO_SCOPE(unit);
+    extreme::Row row;
+    row.family = "units";
+    row.parameter = unit + ", run";
+    row.disks = state.packing.disk_count();
+    row.rung = "none";
+    row.checked =
+        same_bits ? "every bit of positions, stresses and strains of a run" : "contacts and stresses of a run";
+    const extreme::Clock clock;
+    const Played run = play(state, +1, equilibria);
+    row.seconds = clock.seconds();
+    if (!run.outcome.completed) {
+        const FailureKind kind = run.outcome.failure->kind;
+        row.outcome = kind == FailureKind::undecided || kind == FailureKind::tie ? "undecided" : "refused";
+        row.reason = run.why();
+        row.checked = "no claim";
+    } else {
+        row.outcome = "proved";
+        Rung rung = Rung::combinatorial;
+        double bound = 0;
+        BOOST_REQUIRE(run.records.equilibria.size() == base.records.equilibria.size());
+        for (std::size_t k = 0; k < run.records.equilibria.size(); ++k) {
+            const auto& here = run.records.equilibria[k];
+            const auto& there = base.records.equilibria[k];
+            rung = std::max(rung, here.decided_by);
+            bound = std::max(bound, here.force_bound / here.stress / state.packing.max_radius());
+            BOOST_TEST((here.verdict == Verdict::proved));
+            BOOST_TEST((run.records.states[k].contacts == base.records.states[k].contacts));
+            BOOST_TEST(here.arcs == there.arcs);
+            if (same_bits) {
+                BOOST_TEST(here.stress == there.stress * stress);
+                // Of the true vertex: beyond 1e+-150 the correction of the enclosure is coarser, within its bound.
+                for (std::size_t a = 0; a < 2; ++a) {
+                    BOOST_TEST(std::abs(here.strain[a] - there.strain[a]) <= 4e-15);
+                    BOOST_TEST(std::abs(here.length[a] / length - there.length[a]) <= 4e-15 * there.length[a]);
                 }
+                for (std::size_t c = 0; c < state.packing.q.size(); ++c) {
+                    BOOST_TEST(run.records.states[k].packing.q[c] == base.records.states[k].packing.q[c] * length);
+                }
+            } else {
+                BOOST_TEST(here.stress == there.stress * stress, boost::test_tools::tolerance(1e-9));
             }
-            row.rung = to_string(rung);
-            row.bound = bound;
         }
-        extreme::add(row);
+        row.rung = to_string(rung);
+        row.bound = bound;
     }
+    extreme::add(row);
 }
 
 } // namespace

@@ -7,14 +7,7 @@
 #include <isostat/contact/state.hpp>
 #include <isostat/core/error.hpp>
 
-#include <boost/test/unit_test.hpp>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdlib>
 #include <ctime>
-#include <functional>
-#include <string>
 
 namespace fuzz {
 

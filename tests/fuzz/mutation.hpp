@@ -2,10 +2,7 @@
 // Files that something went wrong with: what editors, other programs, disks and adversaries do to text.
 
 #include "oracle/random.hpp"
-
-#include <algorithm>
-#include <string>
-#include <vector>
+#include "support/scratch.hpp"
 
 namespace fuzz {
 
@@ -17,57 +14,15 @@ inline std::string any_of(const std::vector<std::string>& list, Random& random) 
 
 /// Words that readers fear.
 inline std::string feared_word(Random& random) {
-    static const std::vector<std::string> words{"nan",
-                                                "inf",
-                                                "-inf",
-                                                "-1",
-                                                "0",
-                                                "-0",
-                                                "-0.0",
-                                                "1e400",
-                                                "-1e400",
-                                                "1e-400",
-                                                "1e18",
-                                                "1e308",
-                                                "5e-324",
-                                                "1e200",
-                                                "1e-200",
-                                                "0.5D0",
-                                                "1,5",
-                                                "0x1p-3",
-                                                "0x1p5000",
-                                                "+",
-                                                "-",
-                                                "+-1",
-                                                ".",
-                                                "1.",
-                                                ".5",
-                                                "1_0",
-                                                "\n",
-                                                "\"",
-                                                "'",
-                                                "{",
-                                                "]",
-                                                "[[",
-                                                ",",
-                                                "#",
-                                                "ITEM:",
-                                                "\t",
-                                                "\xff\xfe",
-                                                "\xEF\xBB\xBF",
-                                                "null",
-                                                "true",
-                                                "\\",
-                                                "\\u0000",
-                                                "\\u001b[2J",
-                                                "`touch TRACE`",
-                                                "\x1b]0;owned\a",
-                                                "\xC3",
-                                                "99999999999999999999",
-                                                "18446744073709551615",
-                                                "9223372036854775808",
-                                                std::string(400, '7'),
-                                                std::string(1, '\0')};
+    static const std::vector<std::string> words = [] {
+        std::vector<std::string> list =
+            scratch::split("nan inf -inf -1 0 -0 -0.0 1e400 -1e400 1e-400 1e18 1e308 5e-324 1e200 1e-200 0.5D0 1,5 "
+                           "0x1p-3 0x1p5000 + - +-1 . 1. .5 1_0 \" ' { ] [[ , # ITEM: \xff\xfe \xEF\xBB\xBF null true "
+                           "\\ \\u0000 \\u001b[2J \x1b]0;owned\a \xC3 99999999999999999999 18446744073709551615 "
+                           "9223372036854775808");
+        list.insert(list.end(), {"\n", "\t", "`touch TRACE`", std::string(400, '7'), std::string(1, '\0')});
+        return list;
+    }();
     return any_of(words, random);
 }
 

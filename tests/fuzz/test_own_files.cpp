@@ -179,7 +179,7 @@ BOOST_AUTO_TEST_CASE(mutated_files_of_radii_are_refused_by_name_or_lose_no_row) 
         try {
             radii = read_radii(folder / "radii.txt");
         } catch (const Error& error) {
-            throw Error(error.kind(), scratch::replaced(error.what(), (folder / "radii.txt").string(), "FILE"));
+            throw Error(error.kind(), scratch::replaced(error.what(), folder.at("radii.txt"), "FILE"));
         }
         std::size_t rows = 0;
         for (const std::string& line : lines_of(changed)) {

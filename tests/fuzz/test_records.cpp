@@ -10,6 +10,7 @@
 #include "support/crafted.hpp"
 #include "support/forger.hpp"
 #include "support/scratch.hpp"
+#include "support/segments.hpp"
 
 #include <isostat/checker/verify.hpp>
 #include <isostat/io/certificate_file.hpp>
@@ -37,11 +38,8 @@ void play(const fs::path& folder) {
     RunCounters counters;
     RunDirectory directory(folder, header(), RunDirectory::Mode::fresh, counters);
     State state = ::crafted::two_disks(1, 2, 1, 1);
-    Segment segment;
-    segment.direction = -1;
-    segment.equilibria = 1;
-    RunOptions options;
-    options.max_strain = 1e9;
+    const Segment segment = towards(-1);
+    RunOptions options{.max_strain = 1e9};
     directory.begin_segment(0, segment, 0, 0);
     const SegmentOutcome outcome = run_segment(state, segment, 0, options, counters, directory);
     BOOST_TEST_REQUIRE(outcome.completed);

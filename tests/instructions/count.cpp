@@ -1,6 +1,8 @@
 // A fixed piece of work to count instructions on: count VERTEX_FILE EQUILIBRIA decisions|arcs. Prints the number of
 // arcs.
 
+#include "support/segments.hpp"
+
 #include <isostat/io/state_file.hpp>
 #include <isostat/trajectory/trajectory.hpp>
 
@@ -29,11 +31,8 @@ int main(int argc, char** argv) {
     } observer;
     State state = read_state(argv[1]).state;
     RunCounters counters;
-    Segment segment;
-    segment.equilibria = std::atoi(argv[2]);
-    RunOptions options;
-    options.certify = level == "arcs" ? CertifyLevel::arcs : CertifyLevel::decisions;
-    const auto outcome = run_segment(state, segment, 0, options, counters, observer);
+    RunOptions options{.certify = level == "arcs" ? CertifyLevel::arcs : CertifyLevel::decisions};
+    const auto outcome = run_segment(state, towards(std::atoi(argv[2])), 0, options, counters, observer);
     fmt::print("{}\n", counters.steps);
     return outcome.completed ? 0 : 1;
 }

@@ -1,12 +1,9 @@
 #pragma once
 // An expression must throw isostat::Error of a kind, with a message that contains all of some words.
 
+#include "support/test.hpp"
+
 #include <isostat/core/error.hpp>
-
-#include <boost/test/unit_test.hpp>
-
-#include <string>
-#include <vector>
 
 template <class Work> void expect_error(Work&& work, isostat::ErrorKind kind, const std::vector<std::string>& words) {
     try {

@@ -8,8 +8,6 @@
 #include <isostat/io/foreign.hpp>
 #include <isostat/io/state_file.hpp>
 
-#include <cmath>
-
 using namespace isostat;
 using scratch::replaced;
 
@@ -22,9 +20,8 @@ std::string tilted_text() {
 }
 
 void refuses(const std::string& text, const std::vector<std::string>& words) {
-    BOOST_TEST_CONTEXT(text) {
-        expect_bad_input([&] { (void)parse_any_state(text, "cell.json"); }, words);
-    }
+    BOOST_TEST_INFO_SCOPE(text);
+    expect_bad_input([&] { (void)parse_any_state(text, "cell.json"); }, words);
 }
 
 ForeignPacking read_foreign(const std::string& text, ForeignOptions options = {}) {
@@ -179,22 +176,21 @@ BOOST_AUTO_TEST_CASE(what_is_written_of_a_cell_is_read_bit_for_bit) {
         Packing wrapped = stored;
         BOOST_TEST(wrap_into_cell(wrapped).rounding > 0);
         for (const std::string format : {"lammps-data", "xyz"}) {
-            BOOST_TEST_CONTEXT(name << " " << format) {
-                ForeignOptions options;
-                options.periodic = format == "lammps-data"; // says nothing where no disk was moved
-                const bool channel = !stored.cell.periodic[1];
-                if (options.periodic && channel) {
-                    continue; // of a data file either both axes repeat or what its image flags say
-                }
-                const auto file =
-                    read_foreign(options.periodic ? lammps_data_text(stored, name) : xyz_text(stored, {}), options);
-                BOOST_TEST(file.format == format);
-                BOOST_TEST((file.packing.cell.periodic == stored.cell.periodic));
-                BOOST_TEST(file.packing.radius == stored.radius, boost::test_tools::per_element());
-                std::vector<double> wanted = wrapped.q;
-                wanted[wanted.size() - 2] = channel ? 0 : wanted[wanted.size() - 2]; // no wall is read
-                BOOST_TEST(file.packing.q == wanted, boost::test_tools::per_element());
+            BOOST_TEST_INFO_SCOPE(name << " " << format);
+            ForeignOptions options;
+            options.periodic = format == "lammps-data"; // says nothing where no disk was moved
+            const bool channel = !stored.cell.periodic[1];
+            if (options.periodic && channel) {
+                continue; // of a data file either both axes repeat or what its image flags say
             }
+            const auto file =
+                read_foreign(options.periodic ? lammps_data_text(stored, name) : xyz_text(stored, {}), options);
+            BOOST_TEST(file.format == format);
+            BOOST_TEST((file.packing.cell.periodic == stored.cell.periodic));
+            BOOST_TEST(file.packing.radius == stored.radius, boost::test_tools::per_element());
+            std::vector<double> wanted = wrapped.q;
+            wanted[wanted.size() - 2] = channel ? 0 : wanted[wanted.size() - 2]; // no wall is read
+            BOOST_TEST(file.packing.q == wanted, boost::test_tools::per_element());
         }
     }
     const State one = cells::one_tilted_disk(2, 1, 0.25);

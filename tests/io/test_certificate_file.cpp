@@ -5,9 +5,6 @@
 #include <isostat/io/certificate_file.hpp>
 #include <isostat/io/state_file.hpp>
 
-#include <limits>
-#include <random>
-
 using namespace isostat;
 using scratch::replaced;
 
@@ -38,9 +35,8 @@ Certificate full_certificate() {
 }
 
 void refuses_certificate(const std::string& text, const std::vector<std::string>& words) {
-    BOOST_TEST_CONTEXT(text) {
-        expect_bad_input([&] { (void)parse_certificate(text, "crafted.json"); }, words);
-    }
+    BOOST_TEST_INFO_SCOPE(text);
+    expect_bad_input([&] { (void)parse_certificate(text, "crafted.json"); }, words);
 }
 
 /// Spoils a text and gives it the digest that belongs to it then, as a forger would: taken from the reader's message.

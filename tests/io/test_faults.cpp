@@ -2,6 +2,7 @@
 #include "io/bad_input.hpp"
 #include "io/record_digests.hpp"
 #include "support/scratch.hpp"
+#include "support/segments.hpp"
 
 #include <isostat/io/certificate_file.hpp>
 #include <isostat/io/run_directory.hpp>
@@ -10,7 +11,6 @@
 #include <sys/resource.h>
 
 #include <csignal>
-#include <random>
 
 using namespace isostat;
 namespace fs = std::filesystem;
@@ -41,11 +41,8 @@ void play(const fs::path& path, RunDirectory::Mode mode, int equilibria) {
     } else {
         directory.store_start(state);
     }
-    Segment whole;
-    whole.equilibria = goal;
-    Segment part;
-    part.equilibria = equilibria - made;
-    directory.begin_segment(0, whole, made, state.equilibrium);
+    const Segment part = towards(equilibria - made);
+    directory.begin_segment(0, towards(goal), made, state.equilibrium);
     BOOST_REQUIRE(run_segment(state, part, 0, RunOptions(), counters, directory).completed);
     if (equilibria == goal) {
         directory.finish(RunStatus::completed, "");
@@ -101,9 +98,8 @@ BOOST_FIXTURE_TEST_CASE(a_flipped_bit_in_any_file_that_a_resume_needs_is_found, 
             const std::size_t at = random() % text.size();
             text[at] = static_cast<char>(text[at] ^ (1 << (random() % 7)));
             scratch::write(run / name, text);
-            BOOST_TEST_CONTEXT(name << " byte " << at) {
-                refused(name);
-            }
+            BOOST_TEST_INFO_SCOPE(name << " byte " << at);
+            refused(name);
         }
     }
     play(run, RunDirectory::Mode::resume, goal); // restored, it goes on
@@ -157,7 +153,7 @@ BOOST_FIXTURE_TEST_CASE(a_checkpoint_names_no_file_but_those_of_its_run, Killed)
     scratch::write(folder / "thesis.txt", "precious");
     scratch::write(run / "notes.txt", "precious");
     for (const std::string& name :
-         {std::string("../thesis.txt"), (folder / "thesis.txt").string(), std::string("notes.txt"),
+         {std::string("../thesis.txt"), folder.at("thesis.txt"), std::string("notes.txt"),
           std::string("states/../events.jsonl"), std::string("run.json"), std::string("start.json")}) {
         forge_checkpoint(run, "\"bytes\":{", "\"bytes\":{\"" + name + "\":0,");
         forge_checkpoint(run, "\"digests\":{", "\"digests\":{\"" + name + "\":\"\",");

@@ -7,10 +7,6 @@
 #include <isostat/io/foreign.hpp>
 #include <isostat/io/state_file.hpp>
 
-#include <boost/test/unit_test.hpp>
-
-#include <cmath>
-
 namespace {
 
 using namespace isostat;
@@ -55,18 +51,17 @@ bool says(const ForeignPacking& packing, const std::string& words) {
 
 /// The two disks of all the samples, whatever their order.
 void expect_disks(const ForeignPacking& file, const std::string& format) {
-    BOOST_TEST_CONTEXT(format) {
-        BOOST_TEST(file.format == format);
-        BOOST_REQUIRE_EQUAL(file.packing.radius.size(), 2u);
-        const std::size_t small = file.packing.radius[0] < file.packing.radius[1] ? 0 : 1;
-        BOOST_TEST(file.packing.radius[small] == 0.25);
-        BOOST_TEST(file.packing.radius[1 - small] == 0.75);
-        BOOST_TEST(file.packing.q[2 * small] == 0.0);
-        BOOST_TEST(file.packing.q[2 * small + 1] == 1.25);
-        BOOST_TEST(file.packing.q[2 - 2 * small] == 2.0);
-        BOOST_TEST(file.packing.q[3 - 2 * small] == 1.5);
-        BOOST_TEST((file.packing.walls == Walls::none()));
-    }
+    BOOST_TEST_INFO_SCOPE(format);
+    BOOST_TEST(file.format == format);
+    BOOST_REQUIRE_EQUAL(file.packing.radius.size(), 2u);
+    const std::size_t small = file.packing.radius[0] < file.packing.radius[1] ? 0 : 1;
+    BOOST_TEST(file.packing.radius[small] == 0.25);
+    BOOST_TEST(file.packing.radius[1 - small] == 0.75);
+    BOOST_TEST(file.packing.q[2 * small] == 0.0);
+    BOOST_TEST(file.packing.q[2 * small + 1] == 1.25);
+    BOOST_TEST(file.packing.q[2 - 2 * small] == 2.0);
+    BOOST_TEST(file.packing.q[3 - 2 * small] == 1.5);
+    BOOST_TEST((file.packing.walls == Walls::none()));
 }
 
 } // namespace

@@ -2,6 +2,7 @@
 #include "io/equilibria.hpp"
 #include "support/cells.hpp"
 #include "support/scratch.hpp"
+#include "support/segments.hpp"
 
 #include <isostat/io/run_directory.hpp>
 #include <isostat/io/state_file.hpp>
@@ -14,21 +15,14 @@ namespace fs = std::filesystem;
 namespace {
 
 RunHeader header() {
-    RunHeader h;
-    h.program = "isostat test";
-    h.command = "isostat run";
-    h.scene_name = "test.toml";
-    h.scene_text = "text";
-    h.programme = {"up"};
-    h.keep = {2};
-    h.checkpoint_seconds = 0;
+    RunHeader h{.program = "isostat test",
+                .command = "isostat run",
+                .scene_name = "test.toml",
+                .scene_text = "text",
+                .programme = {"up"},
+                .keep = {2},
+                .checkpoint_seconds = 0};
     return h;
-}
-
-Segment up(int equilibria) {
-    Segment segment;
-    segment.equilibria = equilibria;
-    return segment;
 }
 
 /// Writes the records, and raises a flag during some rearrangement.
@@ -65,11 +59,10 @@ bool play(const fs::path& path, RunDirectory::Mode mode, long stop_at, bool fini
         made = point->made;
     }
     std::atomic<bool> stop{false};
-    RunOptions options;
-    options.stop = &stop;
+    RunOptions options{.stop = &stop};
     Stopper stopper(directory, stop, stop_at);
-    directory.begin_segment(0, up(6), made, state.equilibrium);
-    const SegmentOutcome outcome = run_segment(state, up(6 - made), 0, options, counters, stopper);
+    directory.begin_segment(0, towards(6), made, state.equilibrium);
+    const SegmentOutcome outcome = run_segment(state, towards(6 - made), 0, options, counters, stopper);
     if (finish) {
         directory.finish(outcome.completed ? RunStatus::completed : RunStatus::interrupted, "");
     }
@@ -206,18 +199,17 @@ BOOST_AUTO_TEST_CASE(an_interrupted_run_goes_on_to_the_same_files) {
     // the start.
     for (const long stop_at : {1L, 9L, 14L}) {
         for (const bool finish : {true, false}) {
-            BOOST_TEST_CONTEXT("stopped at arc " << stop_at << (finish ? "" : ", killed")) {
-                const fs::path path = folder / ("cut" + std::to_string(stop_at) + (finish ? "f" : "k"));
-                BOOST_TEST(!play(path, RunDirectory::Mode::fresh, stop_at, finish));
-                BOOST_TEST(scratch::read(path / "events.jsonl") != scratch::read(folder / "whole/events.jsonl"));
-                BOOST_TEST(play(path, RunDirectory::Mode::resume, -1, true));
-                BOOST_TEST(scratch::read(path / "events.jsonl") == scratch::read(folder / "whole/events.jsonl"));
-                BOOST_TEST(scratch::without_times(scratch::read(path / "equilibria.csv")) ==
-                           scratch::without_times(scratch::read(folder / "whole/equilibria.csv")));
-                for (const char* name : {"eq_000000.json", "eq_000002.json", "eq_000006.json", "last.json"}) {
-                    BOOST_TEST((scratch::read(path / "states" / name) == scratch::read(folder / "whole/states" / name)),
-                               name);
-                }
+            BOOST_TEST_INFO_SCOPE("stopped at arc " << stop_at << (finish ? "" : ", killed"));
+            const fs::path path = folder / ("cut" + std::to_string(stop_at) + (finish ? "f" : "k"));
+            BOOST_TEST(!play(path, RunDirectory::Mode::fresh, stop_at, finish));
+            BOOST_TEST(scratch::read(path / "events.jsonl") != scratch::read(folder / "whole/events.jsonl"));
+            BOOST_TEST(play(path, RunDirectory::Mode::resume, -1, true));
+            BOOST_TEST(scratch::read(path / "events.jsonl") == scratch::read(folder / "whole/events.jsonl"));
+            BOOST_TEST(scratch::without_times(scratch::read(path / "equilibria.csv")) ==
+                       scratch::without_times(scratch::read(folder / "whole/equilibria.csv")));
+            for (const char* name : {"eq_000000.json", "eq_000002.json", "eq_000006.json", "last.json"}) {
+                BOOST_TEST((scratch::read(path / "states" / name) == scratch::read(folder / "whole/states" / name)),
+                           name);
             }
         }
     }

@@ -10,12 +10,8 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 
-#include <array>
 #include <bit>
-#include <cmath>
 #include <csignal>
-#include <cstdint>
-#include <limits>
 
 using namespace isostat;
 using scratch::replaced;
@@ -53,9 +49,8 @@ std::string two_disk_text() {
 }
 
 void refuses_state(const std::string& text, const std::vector<std::string>& words) {
-    BOOST_TEST_CONTEXT(text) {
-        expect_bad_input([&] { (void)parse_state(text, "crafted.json"); }, words);
-    }
+    BOOST_TEST_INFO_SCOPE(text);
+    expect_bad_input([&] { (void)parse_state(text, "crafted.json"); }, words);
 }
 
 } // namespace
@@ -293,7 +288,7 @@ BOOST_AUTO_TEST_CASE(links_are_kept_and_pipes_are_not_replaced) {
     BOOST_TEST(std::filesystem::is_symlink(folder / "link"));
     BOOST_TEST(scratch::read(folder / "target") == "new");
 
-    const std::string pipe = (folder / "pipe").string();
+    const std::string pipe = folder.at("pipe");
     BOOST_REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
     const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
     BOOST_REQUIRE(reader >= 0);

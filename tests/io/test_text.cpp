@@ -1,9 +1,6 @@
 // Text of files and names, made harmless for whoever reads it.
 #include "io/text.hpp"
-
-#include <boost/test/unit_test.hpp>
-
-#include <string>
+#include "support/test.hpp"
 
 using namespace isostat;
 

@@ -4,8 +4,6 @@
 
 #include <isostat/io/state_file.hpp>
 
-#include <algorithm>
-
 using namespace isostat;
 using scratch::replaced;
 
@@ -16,9 +14,8 @@ const std::string two_disks = "# two disks\n2\n1 1 1 0.1 -1\n\n2 3.8284271247461
                               "0 1 0\n1 0 -1\n2 0 -1\n2 1 -1\n3 1 -1\n4 1 -1\n";
 
 void refuses_vertex(const std::string& text, const std::vector<std::string>& words) {
-    BOOST_TEST_CONTEXT(text) {
-        expect_bad_input([&] { (void)parse_vertex_text(text, "v.txt"); }, words);
-    }
+    BOOST_TEST_INFO_SCOPE(text);
+    expect_bad_input([&] { (void)parse_vertex_text(text, "v.txt"); }, words);
 }
 
 } // namespace

@@ -1,9 +1,5 @@
 #include "motion/acceleration.hpp"
-
-#include <boost/test/unit_test.hpp>
-
-#include <algorithm>
-#include <cmath>
+#include "support/test.hpp"
 
 using namespace isostat;
 

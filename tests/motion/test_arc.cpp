@@ -4,10 +4,6 @@
 #include "motion/precise_end.hpp"
 #include "support/crafted.hpp"
 
-#include <boost/test/unit_test.hpp>
-
-#include <numbers>
-
 using namespace isostat;
 using namespace crafted;
 

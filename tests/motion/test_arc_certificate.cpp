@@ -4,10 +4,6 @@
 #include "support/channel_roll.hpp"
 #include "support/crafted.hpp"
 
-#include <boost/test/unit_test.hpp>
-
-#include <numbers>
-
 using namespace isostat;
 using namespace crafted;
 
@@ -275,17 +271,16 @@ BOOST_AUTO_TEST_CASE(an_arc_in_a_channel_is_certified_unless_a_pair_of_images_me
     };
     for (const int shift : {0, 1, -2}) {
         for (const double clearance : {1e-2, 1e-5, 1e-8, 1e-10}) {
-            BOOST_TEST_CONTEXT("disk 1 stored " << shift << " periods away, clearance " << clearance) {
-                const ArcCertificate passes = certify({clearance, shift});
-                BOOST_TEST(proved(passes), passes.reason);
-                BOOST_TEST((passes.power == Verdict::proved), passes.power_reason);
-                BOOST_TEST(passes.witness.whole);
-                BOOST_TEST(passes.tube < 1e-11);
-                const cells::ChannelRoll roll{-clearance, shift};
-                const ArcCertificate meets = certify(roll);
-                BOOST_TEST(!proved(meets));
-                BOOST_TEST(meets.reason.find("the gap of " + to_string(roll.passing())) == 0U, meets.reason);
-            }
+            BOOST_TEST_INFO_SCOPE("disk 1 stored " << shift << " periods away, clearance " << clearance);
+            const ArcCertificate passes = certify({clearance, shift});
+            BOOST_TEST(proved(passes), passes.reason);
+            BOOST_TEST((passes.power == Verdict::proved), passes.power_reason);
+            BOOST_TEST(passes.witness.whole);
+            BOOST_TEST(passes.tube < 1e-11);
+            const cells::ChannelRoll roll{-clearance, shift};
+            const ArcCertificate meets = certify(roll);
+            BOOST_TEST(!proved(meets));
+            BOOST_TEST(meets.reason.find("the gap of " + to_string(roll.passing())) == 0U, meets.reason);
         }
     }
 }

@@ -3,12 +3,9 @@
 #include "motion/curve_piece.hpp"
 #include "motion/gap_watch.hpp"
 #include "motion/power_watch.hpp"
+#include "support/test.hpp"
 
 #include <isostat/io/state_file.hpp>
-
-#include <boost/test/unit_test.hpp>
-
-#include <cmath>
 
 using namespace isostat;
 

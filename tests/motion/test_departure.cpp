@@ -1,12 +1,8 @@
 // What is known at the start of an arc, and what an arc hands on to the next.
 #include "motion/arc.hpp"
+#include "support/test.hpp"
 
 #include <isostat/io/state_file.hpp>
-
-#include <boost/test/unit_test.hpp>
-
-#include <algorithm>
-#include <cmath>
 
 using namespace isostat;
 

@@ -5,6 +5,7 @@
 #include "motion/arc.hpp"
 #include "oracle/reference_vertex.hpp"
 #include "support/recorder.hpp"
+#include "support/segments.hpp"
 
 #include <isostat/trajectory/trajectory.hpp>
 
@@ -72,12 +73,9 @@ inline ReferencePath reference_path(const State& start, int equilibria) {
     ReferencePath path;
     crafted::Recorder records;
     State state = start;
-    Segment segment;
-    segment.equilibria = equilibria;
-    RunOptions options;
-    options.certify = CertifyLevel::arcs;
+    RunOptions options{.certify = CertifyLevel::arcs};
     RunCounters counters;
-    const SegmentOutcome outcome = run_segment(state, segment, 0, options, counters, records);
+    const SegmentOutcome outcome = run_segment(state, towards(equilibria), 0, options, counters, records);
     if (outcome.failure) {
         path.stopped = outcome.failure->message();
     }

@@ -1,8 +1,7 @@
 #include "oracle/packings.hpp"
+#include "support/test.hpp"
 
 #include <isostat/packing/load.hpp>
-
-#include <boost/test/unit_test.hpp>
 
 using namespace isostat;
 using namespace isostat::oracle;
@@ -108,9 +107,7 @@ BOOST_AUTO_TEST_CASE(infinitesimal_loads_are_reproducible_generic_and_off_the_wa
 BOOST_AUTO_TEST_CASE(infinitesimal_loads_of_a_cell_sum_to_zero_exactly) {
     const std::vector<double> all = generic_infinitesimal({1, 2, 0.3, 1.7, 5}, 3);
     for (const std::array<bool, 2> periodic : {std::array{true, true}, {true, false}, {false, true}}) {
-        Cell cell;
-        cell.periodic = {periodic[0], periodic[1]};
-        cell.pin = 2;
+        Cell cell{.periodic = {periodic[0], periodic[1]}, .pin = 2};
         std::vector<double> g = all;
         balance(g, cell);
         for (std::size_t a = 0; a < 2; ++a) {

@@ -4,11 +4,7 @@
 #include <isostat/core/error.hpp>
 #include <isostat/packing/packing.hpp>
 
-#include <boost/test/unit_test.hpp>
 #include <gmpxx.h>
-
-#include <cmath>
-#include <limits>
 
 using namespace isostat;
 using namespace isostat::oracle;

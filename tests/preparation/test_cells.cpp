@@ -2,17 +2,13 @@
 
 #include "preparation/neighbours.hpp"
 #include "preparation/soft.hpp"
+#include "support/test.hpp"
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/certificate/inspect.hpp>
 #include <isostat/core/error.hpp>
 #include <isostat/io/state_file.hpp>
 #include <isostat/preparation/preparation.hpp>
-
-#include <boost/test/unit_test.hpp>
-
-#include <algorithm>
-#include <cmath>
 
 namespace {
 
@@ -40,26 +36,25 @@ BOOST_AUTO_TEST_SUITE(preparation)
 BOOST_AUTO_TEST_CASE(periodic_packings_are_proved_equilibria) {
     for (const auto& [disks, seeds] : {std::pair{30, 5}, {100, 2}}) {
         for (int seed = 1; seed <= seeds; ++seed) {
-            BOOST_TEST_CONTEXT("n = " << disks << ", seed " << seed) {
-                const State state = prepared(periodic(disks, static_cast<std::uint64_t>(seed)));
-                const Packing& packing = state.packing;
-                BOOST_TEST(packing.cell.all());
-                BOOST_TEST(packing.lattice(0, 1) == 0);
-                BOOST_TEST(state.contacts.size() == 2 * packing.radius.size());
-                BOOST_TEST(state.load.reference_length[0] == packing.length(0));
-                BOOST_TEST(state.load.reference_length[1] == packing.length(1));
-                for (std::size_t a = 0; a < 2; ++a) {
-                    double sum = 0;
-                    for (std::size_t k = a; k < state.load.infinitesimal.size(); k += 2) {
-                        sum += state.load.infinitesimal[k];
-                    }
-                    BOOST_TEST(sum == 0);
+            BOOST_TEST_INFO_SCOPE("n = " << disks << ", seed " << seed);
+            const State state = prepared(periodic(disks, static_cast<std::uint64_t>(seed)));
+            const Packing& packing = state.packing;
+            BOOST_TEST(packing.cell.all());
+            BOOST_TEST(packing.lattice(0, 1) == 0);
+            BOOST_TEST(state.contacts.size() == 2 * packing.radius.size());
+            BOOST_TEST(state.load.reference_length[0] == packing.length(0));
+            BOOST_TEST(state.load.reference_length[1] == packing.length(1));
+            for (std::size_t a = 0; a < 2; ++a) {
+                double sum = 0;
+                for (std::size_t k = a; k < state.load.infinitesimal.size(); k += 2) {
+                    sum += state.load.infinitesimal[k];
                 }
-                const Certification proof = certify(state);
-                BOOST_TEST((proof.verdict == Verdict::proved));
-                BOOST_TEST(packing.solid_fraction() > 0.75);
-                BOOST_TEST(packing.solid_fraction() < 0.9);
+                BOOST_TEST(sum == 0);
             }
+            const Certification proof = certify(state);
+            BOOST_TEST((proof.verdict == Verdict::proved));
+            BOOST_TEST(packing.solid_fraction() > 0.75);
+            BOOST_TEST(packing.solid_fraction() < 0.9);
         }
     }
 }

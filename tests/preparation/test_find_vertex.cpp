@@ -159,30 +159,27 @@ BOOST_AUTO_TEST_CASE(a_shaken_vertex_is_found_again) {
     const State vertex = prepared(100, 2);
     const auto before = inspect_vertex(vertex);
     for (const double amplitude : {0.0, 1e-9, 1e-6, 1e-4}) {
-        BOOST_TEST_CONTEXT("amplitude " << amplitude) {
-            Noise noise(5);
-            Packing shaken = vertex.packing;
-            for (double& x : shaken.q) {
-                x = x * (1 + amplitude) + amplitude * noise();
-            }
-            PreparationOptions options;
-            options.seed = 2; // the same infinitesimal loads
-            PreparationReport report;
-            const auto found = find_vertex(shaken, options, report);
-            BOOST_REQUIRE_MESSAGE(found.ok(), (found.ok() ? "" : found.failure().message()));
-            check::is_proved_vertex(found.value(), 1);
-            const auto after = inspect_vertex(found.value());
-            for (std::size_t l = 0; l < vertex.contacts.size(); ++l) {
-                if (before.value().structural_zero[l] == 0) { // a rattler may have another place to rest
-                    BOOST_TEST(std::binary_search(found.value().contacts.begin(), found.value().contacts.end(),
-                                                  vertex.contacts[l]));
-                }
-            }
-            BOOST_TEST(found.value().packing.length(0) == vertex.packing.length(0),
-                       boost::test_tools::tolerance(1e-14));
-            BOOST_TEST(found.value().packing.length(1) == vertex.packing.length(1),
-                       boost::test_tools::tolerance(1e-14));
+        BOOST_TEST_INFO_SCOPE("amplitude " << amplitude);
+        Noise noise(5);
+        Packing shaken = vertex.packing;
+        for (double& x : shaken.q) {
+            x = x * (1 + amplitude) + amplitude * noise();
         }
+        PreparationOptions options;
+        options.seed = 2; // the same infinitesimal loads
+        PreparationReport report;
+        const auto found = find_vertex(shaken, options, report);
+        BOOST_REQUIRE_MESSAGE(found.ok(), (found.ok() ? "" : found.failure().message()));
+        check::is_proved_vertex(found.value(), 1);
+        const auto after = inspect_vertex(found.value());
+        for (std::size_t l = 0; l < vertex.contacts.size(); ++l) {
+            if (before.value().structural_zero[l] == 0) { // a rattler may have another place to rest
+                BOOST_TEST(std::binary_search(found.value().contacts.begin(), found.value().contacts.end(),
+                                              vertex.contacts[l]));
+            }
+        }
+        BOOST_TEST(found.value().packing.length(0) == vertex.packing.length(0), boost::test_tools::tolerance(1e-14));
+        BOOST_TEST(found.value().packing.length(1) == vertex.packing.length(1), boost::test_tools::tolerance(1e-14));
     }
 }
 

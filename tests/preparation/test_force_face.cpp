@@ -2,10 +2,6 @@
 #include "preparation/force_face.hpp"
 #include "support/mirror.hpp"
 
-#include <boost/test/unit_test.hpp>
-
-#include <cmath>
-
 using namespace isostat;
 using namespace crafted;
 

@@ -44,14 +44,13 @@ BOOST_AUTO_TEST_SUITE(preparation)
 BOOST_AUTO_TEST_CASE(every_size_and_seed_ends_at_a_proved_vertex) {
     for (const auto& [disks, seeds] : {std::pair{1, 5}, {2, 30}, {3, 30}, {20, 20}, {100, 5}}) {
         for (int seed = 1; seed <= seeds; ++seed) {
-            BOOST_TEST_CONTEXT("n = " << disks << ", seed " << seed) {
-                const Outcome outcome = run(disks, static_cast<std::uint64_t>(seed));
-                must_be_vertex(outcome);
-                BOOST_TEST(
-                    outcome.result.value().load.infinitesimal ==
-                        generic_infinitesimal(outcome.result.value().packing.radius, outcome.report.infinitesimal_seed),
-                    boost::test_tools::per_element());
-            }
+            BOOST_TEST_INFO_SCOPE("n = " << disks << ", seed " << seed);
+            const Outcome outcome = run(disks, static_cast<std::uint64_t>(seed));
+            must_be_vertex(outcome);
+            BOOST_TEST(
+                outcome.result.value().load.infinitesimal ==
+                    generic_infinitesimal(outcome.result.value().packing.radius, outcome.report.infinitesimal_seed),
+                boost::test_tools::per_element());
         }
     }
 }
@@ -236,13 +235,12 @@ BOOST_AUTO_TEST_CASE(a_given_list_of_radii_is_kept_as_it_is) {
 
 BOOST_AUTO_TEST_CASE(size_ratio_twenty) {
     for (int seed = 1; seed <= 5; ++seed) {
-        BOOST_TEST_CONTEXT("seed " << seed) {
-            PreparationOptions options;
-            options.disks = 80;
-            options.seed = static_cast<std::uint64_t>(seed);
-            options.diameters = {0.1, 2};
-            must_be_vertex(run(options));
-        }
+        BOOST_TEST_INFO_SCOPE("seed " << seed);
+        PreparationOptions options;
+        options.disks = 80;
+        options.seed = static_cast<std::uint64_t>(seed);
+        options.diameters = {0.1, 2};
+        must_be_vertex(run(options));
     }
 }
 
@@ -281,23 +279,22 @@ BOOST_AUTO_TEST_CASE(a_stop_in_any_stage_keeps_the_last_configuration) {
     const auto stages = {"separation",          "compression",         "relaxation at 1e-03",
                          "relaxation at 1e-04", "relaxation at 1e-05", "linear programmes"};
     for (const std::string name : stages) {
-        BOOST_TEST_CONTEXT(name) {
-            std::atomic<bool> stop{false};
-            PreparationOptions options;
-            options.disks = 50;
-            options.stop = &stop;
-            options.progress = [&](const PreparationProgress& p) { stop = stop || p.stage == name; };
-            const Outcome outcome = run(options);
-            BOOST_REQUIRE(!outcome.result.ok());
-            BOOST_TEST((outcome.result.failure().kind == FailureKind::interrupted));
-            const std::string word = name == "linear programmes" ? "programme 1" : name;
-            BOOST_TEST(outcome.result.failure().message().find(word) != std::string::npos,
-                       outcome.result.failure().message());
-            BOOST_REQUIRE(outcome.report.last.has_value());
-            BOOST_TEST(outcome.report.last->radius.size() == 50U);
-            BOOST_TEST(outcome.report.last->q.size() == 102U);
-            BOOST_TEST(outcome.report.last->solid_fraction() > 0.5);
-        }
+        BOOST_TEST_INFO_SCOPE(name);
+        std::atomic<bool> stop{false};
+        PreparationOptions options;
+        options.disks = 50;
+        options.stop = &stop;
+        options.progress = [&](const PreparationProgress& p) { stop = stop || p.stage == name; };
+        const Outcome outcome = run(options);
+        BOOST_REQUIRE(!outcome.result.ok());
+        BOOST_TEST((outcome.result.failure().kind == FailureKind::interrupted));
+        const std::string word = name == "linear programmes" ? "programme 1" : name;
+        BOOST_TEST(outcome.result.failure().message().find(word) != std::string::npos,
+                   outcome.result.failure().message());
+        BOOST_REQUIRE(outcome.report.last.has_value());
+        BOOST_TEST(outcome.report.last->radius.size() == 50U);
+        BOOST_TEST(outcome.report.last->q.size() == 102U);
+        BOOST_TEST(outcome.report.last->solid_fraction() > 0.5);
     }
 }
 

@@ -4,10 +4,6 @@
 
 #include <isostat/preparation/preparation.hpp>
 
-#include <algorithm>
-#include <cmath>
-#include <functional>
-
 namespace {
 
 using namespace isostat;
@@ -15,8 +11,7 @@ using namespace isostat;
 constexpr int many = 20000;
 
 DiameterLaw law_of(RadiiLaw kind) {
-    DiameterLaw law;
-    law.kind = kind;
+    DiameterLaw law{.kind = kind};
     return law;
 }
 

@@ -1,10 +1,7 @@
 // Newton steps for soft disks, judged by the forces of the dynamics, which are other code.
 #include "../../src/preparation/soft_newton.hpp"
+#include "support/test.hpp"
 #include "support/threads.hpp"
-
-#include <boost/test/unit_test.hpp>
-
-#include <cmath>
 
 using namespace isostat;
 namespace room = isostat::preparation;

@@ -1,10 +1,7 @@
 // Estimates against published or closed-form values, and intervals against the share of cases that they must cover.
 #include "oracle/random.hpp"
 #include "report/inference.hpp"
-
-#include <boost/test/unit_test.hpp>
-
-#include <cmath>
+#include "support/test.hpp"
 
 using namespace isostat;
 using boost::test_tools::tolerance;

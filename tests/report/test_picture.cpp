@@ -2,11 +2,6 @@
 #include "support/cells.hpp"
 #include "support/crafted.hpp"
 
-#include <boost/test/unit_test.hpp>
-
-#include <cmath>
-#include <sstream>
-
 using namespace isostat;
 
 namespace {

@@ -1,8 +1,5 @@
 #include "report/statistics.hpp"
-
-#include <boost/test/unit_test.hpp>
-
-#include <cmath>
+#include "support/test.hpp"
 
 using namespace isostat;
 

@@ -6,8 +6,6 @@
 
 #include <isostat/core/error.hpp>
 
-#include <algorithm>
-
 using namespace program;
 using namespace isostat;
 namespace fs = std::filesystem;
@@ -22,7 +20,7 @@ void make_run(const scratch::Folder& folder, const std::string& start, const std
                                                        "[[programme]]\ndo = \"up\"\nfrom = 1\nto = " +
                                                            highest + "\n",
                                                        "states_every = 1\n"));
-    expect(run({"run", (folder / "s.toml").string(), "-o", (folder / "run").string(), "-q"}), 0);
+    expect(run({"run", folder.at("s.toml"), "-o", folder.at("run"), "-q"}), 0);
 }
 
 checker::RunRecords records_of(const fs::path& run) {

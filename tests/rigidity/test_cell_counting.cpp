@@ -2,10 +2,6 @@
 
 #include <isostat/rigidity/counting.hpp>
 
-#include <boost/test/unit_test.hpp>
-
-#include <vector>
-
 using isostat::Contact;
 using isostat::Counting;
 using isostat::State;

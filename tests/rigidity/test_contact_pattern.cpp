@@ -1,10 +1,7 @@
 // Where the contact matrix can have entries, whatever the stored numbers are.
 #include "rigidity/contact_pattern.hpp"
 #include "support/crafted.hpp"
-
-#include <boost/test/unit_test.hpp>
-
-#include <algorithm>
+#include "support/regular.hpp"
 
 using namespace isostat;
 using namespace crafted;
@@ -25,11 +22,10 @@ State side_by_side(double second_radius, double second_height) {
 }
 
 std::vector<unsigned char> carrying(const State& state, bool perturbed = false) {
-    const auto structure = IsostaticStructure::prove(state.packing, state.contacts);
-    BOOST_REQUIRE(structure.ok());
-    const DofMap& dofs = structure.value().dofs();
+    const auto structure = crafted::Regular::proved(state);
+    const DofMap& dofs = structure.dofs();
     const std::vector<int> right_wall{dofs.dof_of(4)};
-    return ContactPattern(state.packing, structure.value(), perturbed).carrying(right_wall);
+    return ContactPattern(state.packing, structure, perturbed).carrying(right_wall);
 }
 
 } // namespace

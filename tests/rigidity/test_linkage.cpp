@@ -5,10 +5,6 @@
 
 #include <isostat/contact/contact.hpp>
 
-#include <boost/test/unit_test.hpp>
-
-#include <cmath>
-
 using namespace isostat;
 using namespace crafted;
 

@@ -6,8 +6,6 @@
 
 #include <isostat/rigidity/counting.hpp>
 
-#include <boost/test/unit_test.hpp>
-
 using namespace isostat;
 using namespace crafted;
 

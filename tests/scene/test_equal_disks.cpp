@@ -1,10 +1,10 @@
 // Samples of equal disks that ended elsewhere once, numerically: they go on to where their packings end.
+#include "support/test.hpp"
+
 #include <isostat/preparation/preparation.hpp>
 #include <isostat/scene/scene.hpp>
 #include <isostat/trajectory/programme.hpp>
 #include <isostat/trajectory/trajectory.hpp>
-
-#include <boost/test/unit_test.hpp>
 
 using namespace isostat;
 

@@ -2,8 +2,6 @@
 
 #include <isostat/scene/scene.hpp>
 
-#include <string>
-
 using namespace isostat;
 
 namespace {
@@ -24,9 +22,8 @@ void accepts(const std::string& text) {
 }
 
 void refuses(const std::string& text, const std::vector<std::string>& words) {
-    BOOST_TEST_CONTEXT(text) {
-        expect_bad_input([&] { (void)parse(text); }, words);
-    }
+    BOOST_TEST_INFO_SCOPE(text);
+    expect_bad_input([&] { (void)parse(text); }, words);
 }
 
 } // namespace

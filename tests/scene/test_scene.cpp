@@ -4,9 +4,6 @@
 
 #include <isostat/scene/scene.hpp>
 
-#include <algorithm>
-#include <string>
-
 using namespace isostat;
 
 namespace {
@@ -16,9 +13,8 @@ Scene parse_scene_text(const std::string& text) {
 }
 
 void refuses_scene(const std::string& text, const std::vector<std::string>& words) {
-    BOOST_TEST_CONTEXT(text) {
-        expect_bad_input([&] { (void)parse_scene_text(text); }, words);
-    }
+    BOOST_TEST_INFO_SCOPE(text);
+    expect_bad_input([&] { (void)parse_scene_text(text); }, words);
 }
 
 const std::string head = "[packing]\ndisks = 10\n"; // lines 1 and 2

@@ -4,8 +4,6 @@
 #include <isostat/core/error.hpp>
 #include <isostat/scene/scene.hpp>
 
-#include <boost/test/unit_test.hpp>
-
 using namespace isostat;
 
 namespace {

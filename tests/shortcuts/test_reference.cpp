@@ -1,12 +1,9 @@
 // The reference of 320 bits that errors are measured against: closed forms, and certificates that must not be given.
 #include "oracle/reference_path.hpp"
 #include "support/crafted.hpp"
+#include "support/prepared.hpp"
 
 #include <isostat/preparation/preparation.hpp>
-
-#include <boost/test/unit_test.hpp>
-
-#include <cmath>
 
 using namespace isostat;
 using namespace crafted;
@@ -70,12 +67,7 @@ BOOST_AUTO_TEST_CASE(no_certificate_where_the_contact_matrix_is_singular) {
 }
 
 BOOST_AUTO_TEST_CASE(every_event_of_a_short_trajectory_is_certified) {
-    PreparationOptions options;
-    options.disks = 30;
-    PreparationReport report;
-    const auto start = prepare(options, report);
-    BOOST_REQUIRE(start.ok());
-    const oracle::ReferencePath path = oracle::reference_path(start.value(), 6);
+    const oracle::ReferencePath path = oracle::reference_path(prepared(30, 1), 6);
     BOOST_TEST(path.stopped == "");
     BOOST_REQUIRE(path.arcs.size() >= 5U);
     BOOST_REQUIRE(path.limits.size() == 5U);

@@ -1,12 +1,8 @@
 // Linear gaps against closed forms and against the exact path.
 #include "support/crafted.hpp"
 #include "support/prepared.hpp"
+#include "support/regular.hpp"
 #include "support/shortcuts/small_displacements.hpp"
-
-#include <boost/test/unit_test.hpp>
-
-#include <algorithm>
-#include <cmath>
 
 using namespace isostat;
 using namespace crafted;
@@ -14,13 +10,12 @@ using namespace crafted;
 namespace {
 
 LinearEvent event_of(const State& state, const Contact& opened) {
-    const auto structure = IsostaticStructure::prove(state.packing, state.contacts);
-    BOOST_REQUIRE(structure.ok());
-    const Factorisation factorisation(structure.value());
+    const auto structure = crafted::Regular::proved(state);
+    const Factorisation factorisation(structure);
     const auto at = std::find(state.contacts.begin(), state.contacts.end(), opened) - state.contacts.begin();
     const auto pairs = find_candidates(state.packing, 0.8).contacts;
     const auto event =
-        find_linear_event(state.packing, structure.value(), factorisation, ContactId(static_cast<int>(at)), +1, pairs);
+        find_linear_event(state.packing, structure, factorisation, ContactId(static_cast<int>(at)), +1, pairs);
     BOOST_REQUIRE(event.ok());
     return event.value();
 }

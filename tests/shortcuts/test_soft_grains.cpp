@@ -6,11 +6,7 @@
 #include <isostat/certificate/inspect.hpp>
 #include <isostat/core/error.hpp>
 
-#include <boost/test/unit_test.hpp>
 #include <eigen3/Eigen/Dense>
-
-#include <algorithm>
-#include <cmath>
 
 using namespace isostat;
 using namespace crafted;
@@ -18,8 +14,7 @@ using namespace crafted;
 namespace {
 
 SoftGrainOptions at_ratio(double kappa) {
-    SoftGrainOptions options;
-    options.stiffness_ratio = kappa;
+    SoftGrainOptions options{.stiffness_ratio = kappa};
     return options;
 }
 

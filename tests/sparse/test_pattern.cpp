@@ -2,10 +2,6 @@
 #include "sparse/pattern.hpp"
 #include "support/scale.hpp"
 
-#include <boost/test/unit_test.hpp>
-
-#include <set>
-
 using namespace isostat;
 using namespace isostat::oracle;
 

@@ -1,14 +1,12 @@
 // T5 and T6 against CGAL's regular triangulation with exact weights: attempts to find a tangent or nearly tangent pair
 // that is no edge, and what happens when a hypothesis is dropped.
 #include "families.hpp"
+#include "support/test.hpp"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Regular_triangulation_2.h>
 #include <CGAL/Regular_triangulation_vertex_base_2.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
-#include <boost/test/unit_test.hpp>
-
-#include <cmath>
 
 namespace {
 
@@ -142,15 +140,14 @@ BOOST_AUTO_TEST_CASE(the_pairwise_bound_is_attained_for_every_two_radii) {
         const double bound = pair_bound(a + b, m);
         const auto below = squeezed_pair(a, b, m, bound * (1 - 1e-9));
         const auto above = squeezed_pair(a, b, m, bound * (1 + 1e-9));
-        BOOST_TEST_CONTEXT("radii " << a << ", " << b) {
-            BOOST_TEST(edges_of(below).has(0, 1));
-            if (gap(above[2], above[3]) < 0) {
-                continue; // the two small disks overlap: not a packing, so no counterexample above the bound
-            }
-            ++tried;
-            BOOST_TEST(!edges_of(above).has(0, 1));
-            BOOST_TEST(edges_of(above).has(2, 3));
+        BOOST_TEST_INFO_SCOPE("radii " << a << ", " << b);
+        BOOST_TEST(edges_of(below).has(0, 1));
+        if (gap(above[2], above[3]) < 0) {
+            continue; // the two small disks overlap: not a packing, so no counterexample above the bound
         }
+        ++tried;
+        BOOST_TEST(!edges_of(above).has(0, 1));
+        BOOST_TEST(edges_of(above).has(2, 3));
     }
     BOOST_TEST(tried > 50);
     // The smallest bound of all: equal radii, 2 (sqrt 2 - 1).

@@ -3,14 +3,12 @@
 #include "contact/candidates.hpp"
 #include "families.hpp"
 #include "rigidity/isostatic.hpp"
+#include "support/prepared.hpp"
+#include "support/test.hpp"
 
 #include <isostat/preparation/preparation.hpp>
 
-#include <boost/test/unit_test.hpp>
 #include <eigen3/Eigen/Dense>
-
-#include <algorithm>
-#include <limits>
 
 using namespace isostat;
 
@@ -113,16 +111,6 @@ LinearPacking linearised(const State& state) {
     return p;
 }
 
-State prepared(int disks, std::uint64_t seed) {
-    PreparationOptions options;
-    options.disks = disks;
-    options.seed = seed;
-    PreparationReport report;
-    auto state = prepare(options, report);
-    BOOST_REQUIRE_MESSAGE(state.ok(), (state.ok() ? "" : state.failure().message()));
-    return state.value();
-}
-
 } // namespace
 
 BOOST_AUTO_TEST_SUITE(statements)
@@ -148,14 +136,13 @@ BOOST_AUTO_TEST_CASE(linear_gaps_make_every_cycle_of_the_load_reversible) {
             up.push_back(here);
             loads.push_back(sigma);
         }
-        BOOST_TEST_CONTEXT("seed " << seed << ", up to sigma2 = " << loads.back()) {
-            here = up.back();
-            for (std::size_t k = up.size() - 1; k-- > 0;) {
-                here = simplex(p, here.basis, here.u, loads[k], Rule::most_negative);
-                BOOST_REQUIRE(here.optimal);
-                BOOST_TEST((here.basis == up[k].basis));
-                BOOST_TEST((here.u - up[k].u).norm() < 1e-9);
-            }
+        BOOST_TEST_INFO_SCOPE("seed " << seed << ", up to sigma2 = " << loads.back());
+        here = up.back();
+        for (std::size_t k = up.size() - 1; k-- > 0;) {
+            here = simplex(p, here.basis, here.u, loads[k], Rule::most_negative);
+            BOOST_REQUIRE(here.optimal);
+            BOOST_TEST((here.basis == up[k].basis));
+            BOOST_TEST((here.u - up[k].u).norm() < 1e-9);
         }
     }
     BOOST_TEST(changes > 10); // a cycle without a rearrangement would prove nothing

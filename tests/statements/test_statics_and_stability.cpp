@@ -2,15 +2,12 @@
 #include "exact/reduction.hpp"
 #include "families.hpp"
 #include "linear/factorisation.hpp"
+#include "support/prepared.hpp"
+#include "support/test.hpp"
 
 #include <isostat/crafted/inspection.hpp>
 #include <isostat/packing/load.hpp>
 #include <isostat/preparation/preparation.hpp>
-
-#include <boost/test/unit_test.hpp>
-
-#include <algorithm>
-#include <cmath>
 
 using namespace isostat;
 using exact::Number;
@@ -146,16 +143,11 @@ BOOST_AUTO_TEST_CASE(counting_and_orthogonality_hold_for_random_matrices) {
 
 BOOST_AUTO_TEST_CASE(the_power_of_every_opening_is_minus_the_force) {
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-        PreparationOptions options;
-        options.disks = 15;
-        options.seed = seed;
-        PreparationReport report;
-        const auto state = prepare(options, report);
-        BOOST_REQUIRE(state.ok());
-        const auto structure = IsostaticStructure::prove(state.value().packing, state.value().contacts);
+        const State state = prepared(15, seed);
+        const auto structure = IsostaticStructure::prove(state.packing, state.contacts);
         BOOST_REQUIRE(structure.ok());
         const Factorisation factorisation(structure.value());
-        const auto load = state.value().load.external_force(state.value().packing);
+        const auto load = state.load.external_force(state.packing);
         auto force = load;
         factorisation.solve_forces(force);
         for (std::size_t l = 0; l < force.size(); ++l) {

@@ -4,14 +4,6 @@
 
 #include <isostat/exact/kernel.hpp>
 
-#include <boost/test/unit_test.hpp>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <random>
-#include <vector>
-
 namespace {
 
 using isostat::Contact;
@@ -132,13 +124,12 @@ BOOST_AUTO_TEST_SUITE(statements)
 
 BOOST_AUTO_TEST_CASE(radii_and_coordinates_follow_every_gap_in_cells_with_a_tilt_and_not_in_rectangles) {
     for (const auto& [columns, rows] : {std::pair(2, 2), {3, 2}, {3, 4}, {4, 4}, {5, 6}}) {
-        BOOST_TEST_CONTEXT(columns << " x " << rows) {
-            const ExactCell cell = triangles(columns, rows); // N = 3n: the most there are
-            BOOST_TEST(missing(cell, tilted) == 0);
-            BOOST_TEST(missing(cell, rectangle) == 1);
-            BOOST_TEST(missing(cell, fixed_cell) == 2);
-            BOOST_TEST(missing(cell, {true, true, true, false}) == columns * rows - 1);
-        }
+        BOOST_TEST_INFO_SCOPE(columns << " x " << rows);
+        const ExactCell cell = triangles(columns, rows); // N = 3n: the most there are
+        BOOST_TEST(missing(cell, tilted) == 0);
+        BOOST_TEST(missing(cell, rectangle) == 1);
+        BOOST_TEST(missing(cell, fixed_cell) == 2);
+        BOOST_TEST(missing(cell, {true, true, true, false}) == columns * rows - 1);
     }
     for (int m = 1; m <= 5; ++m) {
         ExactCell squares{cells::square_lattice(m, true)};
@@ -160,12 +151,11 @@ BOOST_AUTO_TEST_CASE(two_disks_of_a_centred_rectangle_for_many_radii) {
 
 BOOST_AUTO_TEST_CASE(radii_and_coordinates_follow_every_gap_in_channels) {
     for (const auto& [columns, rows] : {std::pair(1, 1), {2, 1}, {2, 2}, {3, 3}, {4, 2}, {3, 5}}) {
-        BOOST_TEST_CONTEXT(columns << " x " << rows) {
-            const ExactCell cell = strip_of_triangles(columns, rows);
-            BOOST_TEST(static_cast<int>(cell.state.contacts.size()) == 3 * columns * rows);
-            BOOST_TEST(missing(cell, top_wall) == 0); // 3n + 1 coordinates less a translation: the most there are
-            BOOST_TEST(missing(cell, fixed_cell) == 1);
-        }
+        BOOST_TEST_INFO_SCOPE(columns << " x " << rows);
+        const ExactCell cell = strip_of_triangles(columns, rows);
+        BOOST_TEST(static_cast<int>(cell.state.contacts.size()) == 3 * columns * rows);
+        BOOST_TEST(missing(cell, top_wall) == 0); // 3n + 1 coordinates less a translation: the most there are
+        BOOST_TEST(missing(cell, fixed_cell) == 1);
     }
 }
 

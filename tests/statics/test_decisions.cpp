@@ -1,53 +1,18 @@
 // Decisions of the statics: classes, ties, rules, and the ladder of precision.
 #include "statics/decisions.hpp"
 #include "support/crafted.hpp"
-
-#include <isostat/preparation/preparation.hpp>
-
-#include <boost/test/unit_test.hpp>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numeric>
-#include <set>
+#include "support/loaded.hpp"
+#include "support/prepared.hpp"
 
 using namespace isostat;
 using namespace crafted;
 
 namespace {
 
-/// A structure with its statics; the parts refer to each other, so it stays where it is made.
-struct Loaded {
-    State state;
-    IsostaticStructure structure;
-    Factorisation factorisation;
-    InverseBoundCache cache;
-    InverseBound inverse;
-    Statics statics;
-
-    explicit Loaded(State s)
-        : state(std::move(s)), structure(proved(state)), factorisation(structure),
-          inverse(bound_inverse(structure, factorisation, cache)),
-          statics(state.packing, state.load, structure, factorisation, inverse) {}
-    static IsostaticStructure proved(const State& s) {
-        auto result = IsostaticStructure::prove(s.packing, s.contacts);
-        BOOST_TEST_REQUIRE(result.ok());
-        return std::move(result.value());
-    }
-    [[nodiscard]] Contact contact(ContactId l) const { return state.contacts[l.index()]; }
-    [[nodiscard]] double sigma() const { return state.load.stress[1]; }
+/// About the stored configuration.
+struct Loaded : AtVertex {
+    explicit Loaded(State s) : AtVertex(std::move(s), false) {}
 };
-
-State prepared(int disks, std::uint64_t seed) {
-    PreparationOptions options;
-    options.disks = disks;
-    options.seed = seed;
-    PreparationReport report;
-    auto result = prepare(options, report);
-    BOOST_TEST_REQUIRE(result.ok());
-    return result.value();
-}
 
 } // namespace
 

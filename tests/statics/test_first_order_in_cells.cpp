@@ -1,19 +1,14 @@
 // First-order terms of gaps and forces in periodic cells, and second derivatives, against differences of packings that
 // Newton's method makes; the checker's own terms too.
 #include "checker/first_order.hpp"
-#include "linear/factorisation.hpp"
 #include "support/course.hpp"
 #include "support/mirror_cells.hpp"
+#include "support/regular.hpp"
 #include "support/scratch.hpp"
 #include "verified/first_order.hpp"
 #include "verified/precise_first_order.hpp"
 
 #include <isostat/io/state_file.hpp>
-
-#include <boost/test/unit_test.hpp>
-
-#include <cmath>
-#include <functional>
 
 using namespace isostat;
 using namespace crafted;
@@ -65,18 +60,12 @@ Derivatives derivatives(const std::function<double(double)>& f) {
     return {(after - before) / (2 * step), (after + before - 2 * f(0)) / (step * step)};
 }
 
-struct Vertex {
-    explicit Vertex(const State& state)
-        : packing(state.packing), structure(IsostaticStructure::prove(packing, state.contacts).value()),
-          factorisation(structure), bound(bound_inverse(structure, factorisation, cache)),
-          enclosure(enclose_vertex(packing, structure, factorisation, bound)), rho(tie_direction(packing.radius, 3)),
-          first(packing, structure, factorisation, bound, enclosure, rho),
-          precise(packing, structure, factorisation, bound, {}) {}
-    Packing packing;
-    IsostaticStructure structure;
-    Factorisation factorisation;
-    InverseBoundCache cache;
-    InverseBound bound;
+struct Vertex : crafted::Regular {
+    explicit Vertex(const State& s)
+        : Regular(s), enclosure(enclose_vertex(state.packing, structure, factorisation, inverse)),
+          rho(tie_direction(state.packing.radius, 3)),
+          first(state.packing, structure, factorisation, inverse, enclosure, rho),
+          precise(state.packing, structure, factorisation, inverse, {}) {}
     VertexEnclosure enclosure;
     std::vector<double> rho;
     FirstOrder first;

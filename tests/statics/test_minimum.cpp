@@ -1,9 +1,6 @@
 // The smallest of several quantities by comparisons that may be open, wrong at first guess, or contradictory.
 #include "statics/proved_minimum.hpp"
-
-#include <boost/test/unit_test.hpp>
-
-#include <cmath>
+#include "support/test.hpp"
 
 using namespace isostat;
 

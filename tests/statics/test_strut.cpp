@@ -4,11 +4,10 @@
 #include "statics/straight_strut.hpp"
 #include "support/crafted.hpp"
 #include "support/loaded.hpp"
+#include "support/prepared.hpp"
 #include "support/strut.hpp"
 
 #include <isostat/preparation/preparation.hpp>
-
-#include <boost/test/unit_test.hpp>
 
 #include <queue>
 
@@ -305,13 +304,7 @@ BOOST_AUTO_TEST_CASE(the_contacts_of_a_strut_are_those_of_the_definition) {
     int found = 0;
     int nothing = 0;
     for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
-        PreparationOptions options;
-        options.disks = 20;
-        options.seed = seed;
-        PreparationReport report;
-        auto prepared = prepare(options, report);
-        BOOST_TEST_REQUIRE(prepared.ok());
-        State state = prepared.value();
+        const State state = prepared(20, seed);
         // A coordinate of each disk in turn is held in place of one of its contacts; when two are left the disk is
         // moved between its neighbours: a strut.
         for (std::size_t l = 0; l < state.contacts.size(); ++l) {

@@ -3,11 +3,6 @@
 #include "support/crafted.hpp"
 #include "support/loaded.hpp"
 
-#include <boost/test/unit_test.hpp>
-
-#include <cmath>
-#include <limits>
-
 using namespace isostat;
 using namespace crafted;
 
@@ -112,8 +107,7 @@ BOOST_AUTO_TEST_CASE(equal_by_symmetry_is_a_tie_however_the_coordinates_were_rou
     for (int k = 1; k <= 12; ++k) {
         const double r = 0.1 * k + 0.03;
         const State state = three_disks(r, r, 0.1 * r, 1, -1);
-        LadderOptions options;
-        options.max_bits = 1024;
+        LadderOptions options{.max_bits = 1024};
         AtVertex stored(state, false, options);
         misled += decide_opening(stored.statics, -1, OpeningRule::most_negative, ContactId(), 0).ok() ? 1 : 0;
         AtVertex truth(state, true, options);

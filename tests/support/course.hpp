@@ -1,6 +1,7 @@
 #pragma once
 // A run of one segment, kept: events, arcs, equilibria, states, and how it ended.
 
+#include "support/segments.hpp"
 #include "support/test.hpp"
 
 #include <isostat/trajectory/trajectory.hpp>
@@ -58,13 +59,10 @@ class CourseRecorder : public RunObserver {
 inline Course follow_load(State state, int direction, int equilibria, Ties ties, std::uint64_t seed = 1) {
     Course course;
     CourseRecorder recorder(course);
-    Segment segment;
-    segment.direction = direction;
-    segment.equilibria = equilibria;
     RunOptions options;
     settle(options, ties);
     options.ties_seed = seed;
-    course.outcome = run_segment(state, segment, 0, options, course.counters, recorder);
+    course.outcome = run_segment(state, towards(direction * equilibria), 0, options, course.counters, recorder);
     return course;
 }
 

@@ -116,9 +116,7 @@ inline Answer strut(double delta) {
         inverse = bound_inverse_multiprecision(s.packing, proved.value());
     }
     ForceLadder ladder(s.packing, proved.value(), factorisation, inverse);
-    ForceExpression e;
-    e.contact = ContactId(0);
-    e.part = ladder.add({0, 1});
+    ForceExpression e{.contact = ContactId(0), .part = ladder.add({0, 1})};
     Order order = ladder.sign(e);
     while (!order.decided && ladder.climb()) {
         order = ladder.sign(e);

@@ -57,21 +57,20 @@ inline isostat::RunVerification altered(const std::filesystem::path& folder, con
 /// One text in a file in the place of another is no record: the message names the file, and what is wrong in it.
 inline void unreadable(const std::filesystem::path& folder, const std::string& file, const std::string& from,
                        const std::string& to, const std::string& said) {
-    BOOST_TEST_CONTEXT(file << ": " << from << " -> " << to) {
-        const std::string original = scratch::read(folder / file);
-        const std::string changed = scratch::replaced(original, from, to);
-        BOOST_REQUIRE(changed != original);
-        scratch::write(folder / file, changed);
-        seal(folder);
-        BOOST_CHECK_EXCEPTION((void)isostat::verify_run(folder), isostat::Error, [&](const isostat::Error& error) {
-            const std::string message = error.what();
-            BOOST_TEST_MESSAGE(message);
-            return error.kind() == isostat::ErrorKind::bad_input && message.find(file) != std::string::npos &&
-                   message.find(said) != std::string::npos;
-        });
-        scratch::write(folder / file, original);
-        seal(folder);
-    }
+    BOOST_TEST_INFO_SCOPE(file << ": " << from << " -> " << to);
+    const std::string original = scratch::read(folder / file);
+    const std::string changed = scratch::replaced(original, from, to);
+    BOOST_REQUIRE(changed != original);
+    scratch::write(folder / file, changed);
+    seal(folder);
+    BOOST_CHECK_EXCEPTION((void)isostat::verify_run(folder), isostat::Error, [&](const isostat::Error& error) {
+        const std::string message = error.what();
+        BOOST_TEST_MESSAGE(message);
+        return error.kind() == isostat::ErrorKind::bad_input && message.find(file) != std::string::npos &&
+               message.find(said) != std::string::npos;
+    });
+    scratch::write(folder / file, original);
+    seal(folder);
 }
 
 } // namespace forger

@@ -3,6 +3,7 @@
 
 #include "io/json.hpp"
 #include "support/forger.hpp"
+#include "support/segments.hpp"
 
 #include <isostat/io/run_directory.hpp>
 #include <isostat/trajectory/trajectory.hpp>
@@ -12,14 +13,6 @@ namespace played {
 using isostat::RunOptions;
 using isostat::RunVerification;
 using isostat::Segment;
-
-/// Up, or down where `equilibria` is negative.
-inline Segment towards(int equilibria) {
-    Segment segment;
-    segment.direction = equilibria > 0 ? 1 : -1;
-    segment.equilibria = std::abs(equilibria);
-    return segment;
-}
 
 /// As run.json has them.
 inline std::string settings(const RunOptions& options) {

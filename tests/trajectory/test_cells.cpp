@@ -1,6 +1,7 @@
 // Trajectories in periodic cells: three sequences of an independent program, and what is a matter of description.
 #include "support/disguised_cells.hpp"
 #include "support/scratch.hpp"
+#include "support/segments.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/io/state_file.hpp>
@@ -93,33 +94,30 @@ BOOST_AUTO_TEST_SUITE(trajectory_cells)
 BOOST_AUTO_TEST_CASE(sequences_of_an_independent_program) {
     for (const std::string& name : names) {
         const Json& sequence = sequences().at(name);
-        BOOST_TEST_CONTEXT(name) {
-            const Played played = play(start_of(name), +1, static_cast<int>(sequence.size()));
-            check_sequence(played, sequence, true);
-            BOOST_TEST(played.counters.tally.undecided == 0);
-        }
+        BOOST_TEST_INFO_SCOPE(name);
+        const Played played = play(start_of(name), +1, static_cast<int>(sequence.size()));
+        check_sequence(played, sequence, true);
+        BOOST_TEST(played.counters.tally.undecided == 0);
     }
 }
 
 BOOST_AUTO_TEST_CASE(every_arc_is_certified_with_its_power) {
-    RunOptions options;
-    options.certify = CertifyLevel::arcs;
+    RunOptions options{.certify = CertifyLevel::arcs};
     int parts = 0; // arcs of rattlers
     for (const std::string& name : names) {
         for (const int pin : {0, 8, 9}) {
-            BOOST_TEST_CONTEXT(name << ", disk " << pin << " pinned") {
-                State state = start_of(name);
-                state.packing.cell.pin = pin;
-                const Json& sequence = sequences().at(name);
-                const Played played = play(state, +1, static_cast<int>(sequence.size()), {}, options);
-                check_sequence(played, sequence, true);
-                for (const ArcRecord& arc : played.records.arcs) {
-                    BOOST_TEST_REQUIRE(arc.certificate.has_value());
-                    const ArcCertificate& c = *arc.certificate;
-                    BOOST_TEST((c.verdict == Verdict::proved), "arc " << arc.step << ": " << c.reason);
-                    BOOST_TEST((c.power == Verdict::proved), "arc " << arc.step << ": " << c.power_reason);
-                    parts += c.witness.whole ? 0 : 1;
-                }
+            BOOST_TEST_INFO_SCOPE(name << ", disk " << pin << " pinned");
+            State state = start_of(name);
+            state.packing.cell.pin = pin;
+            const Json& sequence = sequences().at(name);
+            const Played played = play(state, +1, static_cast<int>(sequence.size()), {}, options);
+            check_sequence(played, sequence, true);
+            for (const ArcRecord& arc : played.records.arcs) {
+                BOOST_TEST_REQUIRE(arc.certificate.has_value());
+                const ArcCertificate& c = *arc.certificate;
+                BOOST_TEST((c.verdict == Verdict::proved), "arc " << arc.step << ": " << c.reason);
+                BOOST_TEST((c.power == Verdict::proved), "arc " << arc.step << ": " << c.power_reason);
+                parts += c.witness.whole ? 0 : 1;
             }
         }
     }
@@ -129,31 +127,29 @@ BOOST_AUTO_TEST_CASE(every_arc_is_certified_with_its_power) {
 BOOST_AUTO_TEST_CASE(whichever_disk_is_pinned) {
     for (const std::string& name : names) {
         for (const int pin : {3, 8, 9, 15}) { // 8 and 9 become rattlers, or are
-            BOOST_TEST_CONTEXT(name << ", disk " << pin << " pinned") {
-                State state = start_of(name);
-                state.packing.cell.pin = pin;
-                const Json& sequence = sequences().at(name);
-                check_sequence(play(state, +1, static_cast<int>(sequence.size())), sequence, true);
-            }
+            BOOST_TEST_INFO_SCOPE(name << ", disk " << pin << " pinned");
+            State state = start_of(name);
+            state.packing.cell.pin = pin;
+            const Json& sequence = sequences().at(name);
+            check_sequence(play(state, +1, static_cast<int>(sequence.size())), sequence, true);
         }
     }
 }
 
 BOOST_AUTO_TEST_CASE(whichever_image_of_a_disk_is_stored) {
     for (const std::string& name : names) {
-        BOOST_TEST_CONTEXT(name) {
-            const State start = start_of(name);
-            std::vector<Image> k(16);
-            const int along_y = start.packing.cell.periodic[1] ? 1 : 0;
-            k[3] = cells::image(1, 0);
-            k[8] = cells::image(0, along_y);
-            k[9] = cells::image(0, -along_y);
-            const Disguised other = cells::shifted(start, k);
-            const Played a = play(start, +1, 6);
-            const Played b = play(other.state, +1, 6);
-            BOOST_TEST_REQUIRE(b.outcome.completed, b.why());
-            crafted::check_same_sequence(a, b, crafted::events(b.records, other.back), 1e-11);
-        }
+        BOOST_TEST_INFO_SCOPE(name);
+        const State start = start_of(name);
+        std::vector<Image> k(16);
+        const int along_y = start.packing.cell.periodic[1] ? 1 : 0;
+        k[3] = cells::image(1, 0);
+        k[8] = cells::image(0, along_y);
+        k[9] = cells::image(0, -along_y);
+        const Disguised other = cells::shifted(start, k);
+        const Played a = play(start, +1, 6);
+        const Played b = play(other.state, +1, 6);
+        BOOST_TEST_REQUIRE(b.outcome.completed, b.why());
+        crafted::check_same_sequence(a, b, crafted::events(b.records, other.back), 1e-11);
     }
 }
 
@@ -170,77 +166,72 @@ BOOST_AUTO_TEST_CASE(a_disk_that_rolled_many_periods_away_ends_the_run_with_word
 
 BOOST_AUTO_TEST_CASE(in_whichever_order_place_and_basis) {
     for (const std::string& name : names) {
-        BOOST_TEST_CONTEXT(name) {
-            const State start = start_of(name);
-            const Played played = play(start, +1, 6);
-            crafted::check_same_sequence(played, cells::reversed(start), 6);
-            crafted::check_same_sequence(played, elsewhere(start), 6);
-            if (name == "tilt_16") {
-                crafted::check_same_sequence(played, cells::in_other_basis(start, 1), 6);
-                crafted::check_same_sequence(played, cells::in_other_basis(start, -1), 6);
-            } else {
-                crafted::check_same_sequence(played, cells::transposed(start), 6);
-            }
+        BOOST_TEST_INFO_SCOPE(name);
+        const State start = start_of(name);
+        const Played played = play(start, +1, 6);
+        crafted::check_same_sequence(played, cells::reversed(start), 6);
+        crafted::check_same_sequence(played, elsewhere(start), 6);
+        if (name == "tilt_16") {
+            crafted::check_same_sequence(played, cells::in_other_basis(start, 1), 6);
+            crafted::check_same_sequence(played, cells::in_other_basis(start, -1), 6);
+        } else {
+            crafted::check_same_sequence(played, cells::transposed(start), 6);
         }
     }
 }
 
 BOOST_AUTO_TEST_CASE(down_and_up_again) {
     for (const std::string& name : names) {
-        BOOST_TEST_CONTEXT(name) {
-            const Played down = play(start_of(name), -1, 3);
-            BOOST_TEST_REQUIRE(down.outcome.completed, down.why());
-            const Played up = play(down.state, +1, {}, down.state.load.stress[1] * 1.0001);
-            BOOST_TEST(up.outcome.completed, up.why());
-        }
+        BOOST_TEST_INFO_SCOPE(name);
+        const Played down = play(start_of(name), -1, 3);
+        BOOST_TEST_REQUIRE(down.outcome.completed, down.why());
+        const Played up = play(down.state, +1, {}, down.state.load.stress[1] * 1.0001);
+        BOOST_TEST(up.outcome.completed, up.why());
     }
 }
 
 BOOST_AUTO_TEST_CASE(true_stresses_open_the_same_contacts_at_the_same_ratio_of_forces) {
     // F_2 / F_1 is sigma_2 L_1 / (sigma_1 L_2): with the reference lengths, or with those of the moment.
     for (const char* name : {"rect_16", "channel_16"}) {
-        BOOST_TEST_CONTEXT(name) {
-            State state = start_of(name);
-            const Played nominal = play(state, +1, 3);
-            state.load.kind = LoadKind::true_stress;
-            RunOptions options;
-            options.certify = CertifyLevel::arcs;
-            const Played present = play(state, +1, 3, {}, options);
-            BOOST_TEST_REQUIRE(present.outcome.completed, present.why());
-            BOOST_TEST_REQUIRE(present.records.arcs.size() == nominal.records.arcs.size());
-            for (std::size_t k = 0; k < present.records.arcs.size(); ++k) {
-                const ArcRecord& arc = present.records.arcs[k];
-                BOOST_TEST((arc.opened == nominal.records.arcs[k].opened));
-                BOOST_TEST((arc.closed == nominal.records.arcs[k].closed));
-                BOOST_TEST((arc.certificate->verdict == Verdict::proved), arc.certificate->reason);
-            }
-            const auto& reference = state.load.reference_length;
-            for (std::size_t e = 0; e + 1 < present.records.equilibria.size(); ++e) {
-                const auto& length = present.records.equilibria[e].length;
-                const double dead = nominal.records.equilibria[e + 1].stress * reference[0] / reference[1];
-                const double now = present.records.equilibria[e + 1].stress * length[0] / length[1];
-                BOOST_TEST(now == dead, boost::test_tools::tolerance(1e-9));
-            }
-            BOOST_TEST(present.records.equilibria[3].stress != nominal.records.equilibria[3].stress);
+        BOOST_TEST_INFO_SCOPE(name);
+        State state = start_of(name);
+        const Played nominal = play(state, +1, 3);
+        state.load.kind = LoadKind::true_stress;
+        RunOptions options{.certify = CertifyLevel::arcs};
+        const Played present = play(state, +1, 3, {}, options);
+        BOOST_TEST_REQUIRE(present.outcome.completed, present.why());
+        BOOST_TEST_REQUIRE(present.records.arcs.size() == nominal.records.arcs.size());
+        for (std::size_t k = 0; k < present.records.arcs.size(); ++k) {
+            const ArcRecord& arc = present.records.arcs[k];
+            BOOST_TEST((arc.opened == nominal.records.arcs[k].opened));
+            BOOST_TEST((arc.closed == nominal.records.arcs[k].closed));
+            BOOST_TEST((arc.certificate->verdict == Verdict::proved), arc.certificate->reason);
         }
+        const auto& reference = state.load.reference_length;
+        for (std::size_t e = 0; e + 1 < present.records.equilibria.size(); ++e) {
+            const auto& length = present.records.equilibria[e].length;
+            const double dead = nominal.records.equilibria[e + 1].stress * reference[0] / reference[1];
+            const double now = present.records.equilibria[e + 1].stress * length[0] / length[1];
+            BOOST_TEST(now == dead, boost::test_tools::tolerance(1e-9));
+        }
+        BOOST_TEST(present.records.equilibria[3].stress != nominal.records.equilibria[3].stress);
     }
 }
 
 BOOST_AUTO_TEST_CASE(forces_on_disks_do_not_depend_on_the_pin) {
     for (const std::string& name : names) {
-        BOOST_TEST_CONTEXT(name) {
-            const State start = with_forces(start_of(name));
-            const Played played = play(start, +1, 3);
-            BOOST_TEST_REQUIRE(played.outcome.completed, played.why());
-            const Played bare = play(start_of(name), +1, 3);
-            BOOST_TEST(played.records.equilibria[1].stress != bare.records.equilibria[1].stress);
-            for (const int pin : {3, 12}) { // none that becomes a rattler: its zeros are not seen then (C9)
-                State other = start;
-                other.packing.cell.pin = pin;
-                const Played again = play(other, +1, 3);
-                BOOST_TEST_REQUIRE(again.outcome.completed, again.why());
-                crafted::check_same_sequence(played, again, crafted::events(again.records, crafted::same), 1e-11);
-            }
+        BOOST_TEST_INFO_SCOPE(name);
+        const State start = with_forces(start_of(name));
+        const Played played = play(start, +1, 3);
+        BOOST_TEST_REQUIRE(played.outcome.completed, played.why());
+        const Played bare = play(start_of(name), +1, 3);
+        BOOST_TEST(played.records.equilibria[1].stress != bare.records.equilibria[1].stress);
+        for (const int pin : {3, 12}) { // none that becomes a rattler: its zeros are not seen then (C9)
+            State other = start;
+            other.packing.cell.pin = pin;
+            const Played again = play(other, +1, 3);
+            BOOST_TEST_REQUIRE(again.outcome.completed, again.why());
+            crafted::check_same_sequence(played, again, crafted::events(again.records, crafted::same), 1e-11);
         }
     }
 }
@@ -315,12 +306,9 @@ BOOST_AUTO_TEST_CASE(a_dead_shear_that_flows_ends_the_run) {
     State state = cells::one_tilted_disk(1, 1, 0.5);
     state.load.reference_length = {2, std::sqrt(3.0)};
     snap_to_grid(state.packing);
-    Segment segment;
-    segment.direction = -1;
-    segment.equilibria = 3;
     RunCounters counters;
     crafted::Recorder records;
-    const SegmentOutcome outcome = run_segment(state, segment, 0, {}, counters, records);
+    const SegmentOutcome outcome = run_segment(state, towards(-3), 0, {}, counters, records);
     BOOST_TEST_REQUIRE(outcome.failure.has_value());
     BOOST_TEST(to_string(outcome.failure->kind) == std::string("flows"), outcome.failure->message());
     BOOST_TEST(records.arcs.size() == 1U);

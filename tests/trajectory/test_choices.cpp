@@ -2,11 +2,10 @@
 // Mirror images whose rho are mirror images too, so that nothing of first order in the radii tells them apart.
 #include "support/course.hpp"
 #include "support/mirror.hpp"
+#include "support/segments.hpp"
 
 #include <isostat/core/machine.hpp>
 #include <isostat/preparation/preparation.hpp>
-
-#include <boost/test/unit_test.hpp>
 
 using namespace isostat;
 using namespace ::crafted;
@@ -178,13 +177,8 @@ BOOST_AUTO_TEST_CASE(a_run_chooses_as_often_as_it_may_and_then_ends_undecided) {
         Course course;
         CourseRecorder recorder(course);
         State state = start;
-        Segment segment;
-        segment.equilibria = 3;
-        RunOptions options;
-        options.ties = TiePolicy::choose;
-        options.ties_seed = 1;
-        options.max_choices = cap;
-        course.outcome = run_segment(state, segment, 0, options, course.counters, recorder);
+        RunOptions options{.ties = TiePolicy::choose, .ties_seed = 1, .max_choices = cap};
+        course.outcome = run_segment(state, towards(3), 0, options, course.counters, recorder);
         return course;
     };
     const Course as_many = capped(most);

@@ -3,10 +3,6 @@
 
 #include <isostat/certificate/inspect.hpp>
 
-#include <boost/test/unit_test.hpp>
-
-#include <cmath>
-
 using namespace isostat;
 using namespace ::crafted;
 

@@ -4,10 +4,8 @@
 #include "support/mirror.hpp"
 #include "support/mirror_cells.hpp"
 #include "support/really_perturbed.hpp"
+#include "support/segments.hpp"
 
-#include <boost/test/unit_test.hpp>
-
-#include <cmath>
 #include <tuple>
 
 using namespace isostat;
@@ -28,14 +26,12 @@ Loop follow_loads(State state, const std::vector<double>& loads, Ties ties) {
     for (const double load : loads) {
         Course& course = loop.courses.emplace_back();
         CourseRecorder recorder(course);
-        Segment segment;
-        segment.direction = load > stress ? +1 : -1;
-        segment.to_stress = load;
-        stress = load;
         RunOptions options;
         settle(options, ties);
         options.max_strain = 1e9; // reference lengths of 1
-        course.outcome = run_segment(state, segment, 0, options, course.counters, recorder);
+        course.outcome =
+            run_segment(state, until(load > stress ? +1 : -1, load), 0, options, course.counters, recorder);
+        stress = load;
         BOOST_TEST(course.outcome.completed,
                    (course.outcome.failure ? course.outcome.failure->message() : std::string()));
         BOOST_TEST_REQUIRE(!course.states.empty());
@@ -176,17 +172,16 @@ BOOST_AUTO_TEST_CASE(lattices_move_at_the_loads_at_which_their_rows_stretch_and_
     for (const auto& [columns, rows] :
          {std::pair{2, 2}, std::pair{3, 2}, std::pair{4, 2}, std::pair{2, 3}, std::pair{3, 3}, std::pair{2, 4},
           std::pair{3, 4}, std::pair{4, 4}, std::pair{5, 5}, std::pair{3, 6}, std::pair{3, 8}, std::pair{7, 8}}) {
-        BOOST_TEST_CONTEXT(columns << " x " << rows) {
-            const State patch = triangular(columns, rows);
-            const Course course = follow_load(patch, +1, 200, Ties::choose);
-            BOOST_TEST(course.end() == "no limit",
-                       (course.outcome.failure ? course.outcome.failure->message() : std::string()));
-            moves_at_known_loads(loads_of_motions(course), patch, columns, rows, 1e-11);
-            const Packing& end = course.states.back().packing;
-            BOOST_TEST(std::abs(end.length(0) - LatticeEnd(columns, rows).length) < 1e-11);
-            BOOST_TEST(std::abs(end.length(1) - LatticeEnd(columns, rows).height) < 1e-11);
-            lists += settled_as(course, "end") ? 1 : 0;
-        }
+        BOOST_TEST_INFO_SCOPE(columns << " x " << rows);
+        const State patch = triangular(columns, rows);
+        const Course course = follow_load(patch, +1, 200, Ties::choose);
+        BOOST_TEST(course.end() == "no limit",
+                   (course.outcome.failure ? course.outcome.failure->message() : std::string()));
+        moves_at_known_loads(loads_of_motions(course), patch, columns, rows, 1e-11);
+        const Packing& end = course.states.back().packing;
+        BOOST_TEST(std::abs(end.length(0) - LatticeEnd(columns, rows).length) < 1e-11);
+        BOOST_TEST(std::abs(end.length(1) - LatticeEnd(columns, rows).height) < 1e-11);
+        lists += settled_as(course, "end") ? 1 : 0;
     }
     BOOST_TEST(lists > 2);
 }
@@ -199,14 +194,13 @@ BOOST_AUTO_TEST_CASE(lattices_end_where_their_rows_meet_as_with_radii_that_are_r
         const State patch = triangular(columns, rows);
         const double above = last_yield_of(patch, columns, rows) + 1;
         for (std::uint64_t seed = 1; seed <= (columns < 7 ? 4U : 2U); ++seed) {
-            BOOST_TEST_CONTEXT(columns << " x " << rows << ", direction " << seed) {
-                const State changed = really_perturbed(patch, tie_direction(patch.packing.radius, seed), eps);
-                const Loop real = follow_loads(changed, {above}, Ties::stop);
-                moves_at_known_loads(loads_of_motions(real.courses[0]), patch, columns, rows, 100 * eps);
-                // In line, lengths change by the square root of what the heights do.
-                BOOST_TEST(std::abs(real.length(0, 0) - LatticeEnd(columns, rows).length) < 1e-3);
-                BOOST_TEST(std::abs(real.length(0, 1) - LatticeEnd(columns, rows).height) < 1e-3);
-            }
+            BOOST_TEST_INFO_SCOPE(columns << " x " << rows << ", direction " << seed);
+            const State changed = really_perturbed(patch, tie_direction(patch.packing.radius, seed), eps);
+            const Loop real = follow_loads(changed, {above}, Ties::stop);
+            moves_at_known_loads(loads_of_motions(real.courses[0]), patch, columns, rows, 100 * eps);
+            // In line, lengths change by the square root of what the heights do.
+            BOOST_TEST(std::abs(real.length(0, 0) - LatticeEnd(columns, rows).length) < 1e-3);
+            BOOST_TEST(std::abs(real.length(0, 1) - LatticeEnd(columns, rows).height) < 1e-3);
         }
     }
 }
@@ -216,19 +210,18 @@ BOOST_AUTO_TEST_CASE(lattices_end_where_their_rows_meet_as_with_radii_that_are_r
 BOOST_AUTO_TEST_CASE(lattices_in_cells_stretch_from_a_ratio_of_3_on_until_the_rows_next_but_one_meet) {
     for (const bool tilts : {false, true}) {
         for (const auto& [columns, rows] : {std::pair{2, 1}, std::pair{3, 1}, std::pair{3, 2}, std::pair{4, 2}}) {
-            BOOST_TEST_CONTEXT(columns << " x " << rows << (tilts ? ", tilts" : "")) {
-                State lattice = cells::loaded_lattice(columns, rows, tilts);
-                lattice.load.reference_length = {lattice.packing.length(0), lattice.packing.length(1)};
-                const Course course = follow_load(lattice, +1, 100, Ties::choose);
-                BOOST_TEST(course.end() == "no limit",
-                           (course.outcome.failure ? course.outcome.failure->message() : std::string()));
-                const std::vector<double> loads = loads_of_motions(course);
-                BOOST_TEST_REQUIRE(!loads.empty());
-                BOOST_TEST(std::abs(loads[0] - 3) < 1e-11);
-                const Packing& end = course.states.back().packing;
-                BOOST_TEST(std::abs(end.length(0) - columns * std::sqrt(3.0)) < 1e-11);
-                BOOST_TEST(std::abs(end.length(1) - rows) < 1e-11);
-            }
+            BOOST_TEST_INFO_SCOPE(columns << " x " << rows << (tilts ? ", tilts" : ""));
+            State lattice = cells::loaded_lattice(columns, rows, tilts);
+            lattice.load.reference_length = {lattice.packing.length(0), lattice.packing.length(1)};
+            const Course course = follow_load(lattice, +1, 100, Ties::choose);
+            BOOST_TEST(course.end() == "no limit",
+                       (course.outcome.failure ? course.outcome.failure->message() : std::string()));
+            const std::vector<double> loads = loads_of_motions(course);
+            BOOST_TEST_REQUIRE(!loads.empty());
+            BOOST_TEST(std::abs(loads[0] - 3) < 1e-11);
+            const Packing& end = course.states.back().packing;
+            BOOST_TEST(std::abs(end.length(0) - columns * std::sqrt(3.0)) < 1e-11);
+            BOOST_TEST(std::abs(end.length(1) - rows) < 1e-11);
         }
     }
 }

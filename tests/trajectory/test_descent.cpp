@@ -1,13 +1,11 @@
 // The potential falls along every arc, and a run ends when somebody objects to an equilibrium.
 #include "support/crafted.hpp"
+#include "support/segments.hpp"
 #include "trajectory/descent.hpp"
 
 #include <isostat/io/state_file.hpp>
 
 #include <boost/multiprecision/mpfr.hpp>
-#include <boost/test/unit_test.hpp>
-
-#include <cmath>
 
 using namespace isostat;
 using namespace ::crafted;
@@ -164,10 +162,7 @@ BOOST_AUTO_TEST_CASE(a_run_ends_with_the_objection_of_its_observer) {
     State state = two_disks(1, 2, 1, 1);
     Objector objector(0);
     RunCounters counters;
-    Segment segment;
-    segment.direction = -1;
-    segment.equilibria = 5;
-    const SegmentOutcome outcome = run_segment(state, segment, 0, {}, counters, objector);
+    const SegmentOutcome outcome = run_segment(state, towards(-5), 0, {}, counters, objector);
     BOOST_REQUIRE(outcome.failure.has_value());
     BOOST_TEST((outcome.failure->kind == FailureKind::contradiction));
     BOOST_TEST(objector.equilibria.size() == 1U);
@@ -177,12 +172,9 @@ BOOST_AUTO_TEST_CASE(an_equilibrium_at_another_load_keeps_the_smallest_gap_of_it
     State state = two_disks(1, 2, 1, 1);
     Recorder records;
     RunCounters counters;
-    Segment up;
-    up.to_stress = 2;
+    const Segment up = until(+1, 2);
     BOOST_REQUIRE((run_segment(state, up, 0, {}, counters, records).completed));
-    Segment down;
-    down.direction = -1;
-    down.to_stress = 1.5;
+    const Segment down = until(-1, 1.5);
     BOOST_REQUIRE((run_segment(state, down, 1, {}, counters, records).completed));
     BOOST_REQUIRE(records.equilibria.size() == 3U);
     for (const auto& record : records.equilibria) {

@@ -4,8 +4,6 @@
 #include "trajectory/prover.hpp"
 #include "trajectory/ties/first_order_side.hpp"
 
-#include <boost/test/unit_test.hpp>
-
 using namespace isostat;
 
 BOOST_AUTO_TEST_SUITE(trajectory)
@@ -25,8 +23,7 @@ BOOST_AUTO_TEST_CASE(an_end_that_was_steered_badly_is_put_at_its_true_vertex_whe
     constexpr double badly = 1e-11;
     State state = prepared(12, 1);
     const FirstOrderSide side(state, 1, true);
-    RunOptions options;
-    options.ties = TiePolicy::choose;
+    RunOptions options{.ties = TiePolicy::choose};
     Prover prover(options, side);
     prover.start_at(state.packing);
     const LimitLoad at{state.load};
@@ -34,8 +31,7 @@ BOOST_AUTO_TEST_CASE(an_end_that_was_steered_badly_is_put_at_its_true_vertex_whe
     BOOST_TEST_REQUIRE(vertex.ok());
     int arcs = 0;
     for (std::size_t l = 0; l < state.contacts.size(); ++l) {
-        Opening opening;
-        opening.contact = ContactId(l);
+        Opening opening{.contact = ContactId(l)};
         BoundedSteering steering(vertex.value(), {opening, ArcKind::limit, 1, &at.load, {}}, Departure{}, 0.1,
                                  prover.candidates());
         auto arc = steering.propose();

@@ -1,9 +1,6 @@
 // Families that approach a degeneracy: the right answer on either side however small delta is, and a tie at 0.
 #include "support/families.hpp"
-
-#include <boost/test/unit_test.hpp>
-
-#include <cmath>
+#include "support/test.hpp"
 
 using families::Answer;
 
@@ -11,20 +8,19 @@ namespace {
 
 template <class Ask>
 void has_opposite_answers_and_a_tie(const char* name, Ask ask, std::initializer_list<int> decades) {
-    BOOST_TEST_CONTEXT(name) {
-        const int orientation = ask(+1, 1).sign;
-        BOOST_TEST_REQUIRE(orientation != 0, ask(+1, 1).why);
-        for (const int decade : decades) {
-            for (const int sign : {+1, -1}) {
-                const Answer answer = ask(sign, decade);
-                BOOST_TEST(answer.sign == sign * orientation, sign << "e-" << decade << ": " << answer.why);
-                BOOST_TEST(answer.margin > 1);
-            }
+    BOOST_TEST_INFO_SCOPE(name);
+    const int orientation = ask(+1, 1).sign;
+    BOOST_TEST_REQUIRE(orientation != 0, ask(+1, 1).why);
+    for (const int decade : decades) {
+        for (const int sign : {+1, -1}) {
+            const Answer answer = ask(sign, decade);
+            BOOST_TEST(answer.sign == sign * orientation, sign << "e-" << decade << ": " << answer.why);
+            BOOST_TEST(answer.margin > 1);
         }
-        const Answer zero = ask(+1, 0);
-        BOOST_TEST(zero.sign == 0, zero.why);
-        BOOST_TEST((zero.rung != isostat::Rung::none), zero.why); // a tie, not a failure
     }
+    const Answer zero = ask(+1, 0);
+    BOOST_TEST(zero.sign == 0, zero.why);
+    BOOST_TEST((zero.rung != isostat::Rung::none), zero.why); // a tie, not a failure
 }
 
 auto of_double(Answer (*ask)(double)) {

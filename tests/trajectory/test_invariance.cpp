@@ -2,13 +2,9 @@
 // or the unit.
 #include "support/crafted.hpp"
 #include "support/same_sequence.hpp"
+#include "support/segments.hpp"
 
 #include <isostat/certificate/inspect.hpp>
-
-#include <boost/test/unit_test.hpp>
-
-#include <numeric>
-#include <random>
 
 using namespace isostat;
 using namespace ::crafted;
@@ -30,8 +26,7 @@ BOOST_AUTO_TEST_SUITE(trajectory)
 BOOST_FIXTURE_TEST_CASE(the_sequence_does_not_depend_on_the_predictor_step, Base) {
     BOOST_TEST(played.records.arcs.size() > 20);
     for (const double fraction : {0.4, 0.01}) {
-        RunOptions options;
-        options.step_fraction = fraction;
+        RunOptions options{.step_fraction = fraction};
         const Played other = play(start, +1, equilibria, {}, options);
         check_same_sequence(played, other, events(other.records, same));
     }
@@ -68,8 +63,7 @@ BOOST_FIXTURE_TEST_CASE(the_sequence_does_not_depend_on_noise_far_below_the_marg
         for (double& r : noisy.packing.radius) {
             r *= 1 + noise * (2.0 * static_cast<double>(random()) / 4294967295.0 - 1);
         }
-        RunOptions options;
-        options.certify = CertifyLevel::arcs;
+        RunOptions options{.certify = CertifyLevel::arcs};
         const Played other = play(noisy, +1, equilibria, {}, options);
         check_same_sequence(played, other, events(other.records, same), 1e-8 + 100 * noise / sigma);
         BOOST_TEST(other.counters.arcs.undecided == 0, "noise " << noise);
@@ -113,11 +107,9 @@ BOOST_FIXTURE_TEST_CASE(the_same_start_gives_the_same_bits, Base) {
 BOOST_FIXTURE_TEST_CASE(a_run_in_two_parts_gives_the_same_bits_as_in_one, Base) {
     Played first = play(start, +1, equilibria / 2);
     BOOST_REQUIRE(first.outcome.completed);
-    Segment segment;
-    segment.equilibria = equilibria - equilibria / 2;
-    RunOptions options;
-    options.max_strain = 1e9;
-    const auto outcome = run_segment(first.state, segment, 0, options, first.counters, first.records);
+    RunOptions options{.max_strain = 1e9};
+    const auto outcome =
+        run_segment(first.state, towards(equilibria - equilibria / 2), 0, options, first.counters, first.records);
     BOOST_REQUIRE(outcome.completed);
     BOOST_TEST((first.state.packing.q == played.state.packing.q));
     BOOST_TEST(first.counters.steps == played.counters.steps);
@@ -131,8 +123,7 @@ BOOST_FIXTURE_TEST_CASE(rearrangements_of_one_arc_are_the_same_under_every_openi
             continue;
         }
         for (const OpeningRule rule : {OpeningRule::random, OpeningRule::least_negative, OpeningRule::least_index}) {
-            RunOptions options;
-            options.rule = rule;
+            RunOptions options{.rule = rule};
             const Played other = play(played.records.states[k - 1], +1, 1, {}, options);
             BOOST_REQUIRE_MESSAGE(other.outcome.completed, other.why());
             BOOST_TEST((other.state.contacts == played.records.states[k].contacts));
@@ -146,8 +137,7 @@ BOOST_AUTO_TEST_CASE(every_opening_rule_reaches_equilibria_whose_checks_hold) {
     const State start = prepared(40, 2);
     for (const OpeningRule rule :
          {OpeningRule::most_negative, OpeningRule::random, OpeningRule::least_negative, OpeningRule::least_index}) {
-        RunOptions options;
-        options.rule = rule;
+        RunOptions options{.rule = rule};
         const Played run = play(start, +1, 6, {}, options);
         // The weakest traction may be that of a disk that carries nothing but what its turn was rounded by: a tie,
         // named.
@@ -212,8 +202,7 @@ BOOST_AUTO_TEST_CASE(true_stresses_have_a_strict_minimum_of_a_potential_of_their
 }
 
 BOOST_AUTO_TEST_CASE(a_cap_on_arcs_ends_the_run_with_the_last_equilibrium) {
-    RunOptions options;
-    options.max_arcs = 1;
+    RunOptions options{.max_arcs = 1};
     const Played run = play(prepared(60, 5), +1, 12, {}, options);
     BOOST_REQUIRE(run.outcome.failure);
     BOOST_TEST((run.outcome.failure->kind == FailureKind::cap_reached));
@@ -224,8 +213,7 @@ BOOST_AUTO_TEST_CASE(a_cap_on_arcs_ends_the_run_with_the_last_equilibrium) {
 
 BOOST_AUTO_TEST_CASE(a_stop_request_ends_the_run_with_the_last_equilibrium) {
     const std::atomic<bool> stop{true};
-    RunOptions options;
-    options.stop = &stop;
+    RunOptions options{.stop = &stop};
     const Played run = play(prepared(20, 1), +1, 12, {}, options);
     BOOST_REQUIRE(run.outcome.failure);
     BOOST_TEST((run.outcome.failure->kind == FailureKind::interrupted));

@@ -1,11 +1,8 @@
 // Flags of candidates kept from vertex to vertex, against sets made anew.
 #include "contact/contact_set.hpp"
 #include "oracle/random.hpp"
+#include "support/test.hpp"
 #include "trajectory/kept_candidates.hpp"
-
-#include <boost/test/unit_test.hpp>
-
-#include <algorithm>
 
 using namespace isostat;
 

@@ -2,9 +2,8 @@
 #include "core/work.hpp"
 #include "support/crafted.hpp"
 #include "support/prepared.hpp"
+#include "support/segments.hpp"
 #include "support/threads.hpp"
-
-#include <boost/test/unit_test.hpp>
 
 using namespace isostat;
 using namespace ::crafted;
@@ -12,8 +11,7 @@ using namespace ::crafted;
 namespace {
 
 RunOptions with_arcs() {
-    RunOptions options;
-    options.certify = CertifyLevel::arcs;
+    RunOptions options{.certify = CertifyLevel::arcs};
     return options;
 }
 
@@ -106,13 +104,10 @@ BOOST_AUTO_TEST_CASE(a_run_that_is_stopped_shows_no_arc_that_was_steered_ahead, 
     const Threads threads(2);
     for (const long at : {1L, 4L, 9L, 14L}) {
         Stopper stopper(at);
-        RunOptions options;
-        options.stop = &stopper.stop;
+        RunOptions options{.stop = &stopper.stop};
         State state = start;
         RunCounters counters;
-        Segment segment;
-        segment.equilibria = 8;
-        const SegmentOutcome outcome = run_segment(state, segment, 0, options, counters, stopper);
+        const SegmentOutcome outcome = run_segment(state, towards(8), 0, options, counters, stopper);
         BOOST_TEST_REQUIRE(outcome.failure.has_value());
         BOOST_TEST((outcome.failure->kind == FailureKind::interrupted));
         BOOST_TEST(stopper.last == at);
@@ -162,12 +157,9 @@ BOOST_AUTO_TEST_CASE(a_power_that_turns_within_the_first_step_is_found_whatever_
     // At equilibrium 59 the power of a limit arc grows from 0 and turns within a tenth of a radius.
     std::vector<std::pair<Contact, Contact>> events;
     for (const double fraction : {0.1, 0.01}) {
-        RunOptions options;
-        options.step_fraction = fraction;
+        RunOptions options{.step_fraction = fraction};
         Played run = play(prepared(100, 1), +1, 40, {}, options);
-        Segment down;
-        down.direction = -1;
-        down.equilibria = 20;
+        const Segment down = towards(-20);
         options.max_strain = 1e9;
         const auto outcome = run_segment(run.state, down, 1, options, run.counters, run.records);
         BOOST_TEST(outcome.completed, (outcome.failure ? outcome.failure->message() : std::string()));

@@ -1,8 +1,7 @@
 // Tasks done in order beside the thread that submits them.
+#include "support/test.hpp"
 #include "support/threads.hpp"
 #include "trajectory/pipeline.hpp"
-
-#include <boost/test/unit_test.hpp>
 
 #include <stdexcept>
 

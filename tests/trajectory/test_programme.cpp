@@ -4,8 +4,6 @@
 #include <isostat/io/state_file.hpp>
 #include <isostat/trajectory/programme.hpp>
 
-#include <boost/test/unit_test.hpp>
-
 using namespace isostat;
 
 namespace {

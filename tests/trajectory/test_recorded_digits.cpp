@@ -44,26 +44,25 @@ BOOST_AUTO_TEST_CASE(recorded_numbers_hold_in_every_digit_at_the_true_vertex) {
         const State& state = run.records.states[k];
         const oracle::Truth truth(state);
         BOOST_TEST_REQUIRE(truth.known, truth.why);
-        BOOST_TEST_CONTEXT("equilibrium " << k) {
-            Real potential = 0;
-            for (std::size_t a = 0; a < 2; ++a) {
-                const Real length = truth.q[2 * state.packing.radius.size() + a];
-                const Real reference = state.load.reference_length[a];
-                const Real strain = (reference - length) / reference;
-                compare("L", e.length[a], e.length_bound[a], length, 1);
-                compare("eps", e.strain[a], e.strain_bound[a], strain, 1);
-                most = std::max(most,
-                                std::abs((state.load.reference_length[a] - state.packing.length(static_cast<int>(a))) /
-                                             state.load.reference_length[a] -
-                                         e.strain[a]));
-                potential += Real(state.load.stress[a]) * Real(state.load.reference_length[1 - a]) * length;
-            }
-            compare("W", e.potential, e.potential_bound, potential, 1);
-            within("low", e.stress_low, e.stress_low_bound, vanishing_stress(state, truth, e.opens_low));
-            within("high", e.stress_high, e.stress_high_bound, vanishing_stress(state, truth, e.opens_high));
-            BOOST_TEST(std::max(e.stress_low_bound, e.stress_high_bound) < 1e-9);
-            compare("min_gap", e.min_gap, e.min_gap_bound, truth.gap(e.min_gap_contact), 0x1p40);
+        BOOST_TEST_INFO_SCOPE("equilibrium " << k);
+        Real potential = 0;
+        for (std::size_t a = 0; a < 2; ++a) {
+            const Real length = truth.q[2 * state.packing.radius.size() + a];
+            const Real reference = state.load.reference_length[a];
+            const Real strain = (reference - length) / reference;
+            compare("L", e.length[a], e.length_bound[a], length, 1);
+            compare("eps", e.strain[a], e.strain_bound[a], strain, 1);
+            most =
+                std::max(most, std::abs((state.load.reference_length[a] - state.packing.length(static_cast<int>(a))) /
+                                            state.load.reference_length[a] -
+                                        e.strain[a]));
+            potential += Real(state.load.stress[a]) * Real(state.load.reference_length[1 - a]) * length;
         }
+        compare("W", e.potential, e.potential_bound, potential, 1);
+        within("low", e.stress_low, e.stress_low_bound, vanishing_stress(state, truth, e.opens_low));
+        within("high", e.stress_high, e.stress_high_bound, vanishing_stress(state, truth, e.opens_high));
+        BOOST_TEST(std::max(e.stress_low_bound, e.stress_high_bound) < 1e-9);
+        compare("min_gap", e.min_gap, e.min_gap_bound, truth.gap(e.min_gap_contact), 0x1p40);
     }
     BOOST_TEST(most > 0); // the stored coordinates say something else
     for (const ArcRecord& arc : run.records.arcs) {

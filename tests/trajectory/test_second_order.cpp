@@ -4,10 +4,6 @@
 #include "support/mirror.hpp"
 #include "support/really_perturbed.hpp"
 
-#include <boost/test/unit_test.hpp>
-
-#include <cmath>
-
 using namespace isostat;
 using namespace ::crafted;
 

@@ -2,8 +2,6 @@
 #include "support/crafted.hpp"
 #include "support/same_sequence.hpp"
 
-#include <boost/test/unit_test.hpp>
-
 using namespace isostat;
 using namespace ::crafted;
 
@@ -35,23 +33,22 @@ BOOST_AUTO_TEST_CASE(a_straight_strut_lets_go_at_the_same_end_for_all_labels_sid
     for (const auto& [disks, seed] : samples) {
         const State start = prepared(disks, seed);
         const Played run = play(start, +1, played_equilibria);
-        BOOST_TEST_CONTEXT(disks << " disks, seed " << seed) {
-            check_same_sequence(run, relabelled(start, 5), played_equilibria);
-            check_same_sequence(run, relabelled(start, 6), played_equilibria);
-            check_same_sequence(run, exchanged(start), played_equilibria);
-            // A held coordinate is counted from the walls that do not move: seen from the other side it is another
-            // one once the movable walls move. What is the same is what came before, the choice at the turn included.
-            const std::size_t k = strut_opening(run.records.arcs);
-            BOOST_TEST_REQUIRE(k > 0U);
-            BOOST_TEST((run.records.arcs[k].decided_by <= Rung::double_bound), "no climb after digits without meaning");
-            BOOST_TEST(run.counters.tally.structural_ties > 0);
-            for (const Disguised& other : {mirrored(start), quarter_turned(start)}) {
-                const auto seen = events(play(other.state, +1, played_equilibria).records, other.back);
-                BOOST_TEST_REQUIRE(seen.size() > k);
-                for (std::size_t j = 0; j <= k; ++j) {
-                    BOOST_TEST((seen[j].first == run.records.arcs[j].opened), "arc " << j + 1);
-                    BOOST_TEST((j == k || seen[j].second == run.records.arcs[j].closed), "arc " << j + 1);
-                }
+        BOOST_TEST_INFO_SCOPE(disks << " disks, seed " << seed);
+        check_same_sequence(run, relabelled(start, 5), played_equilibria);
+        check_same_sequence(run, relabelled(start, 6), played_equilibria);
+        check_same_sequence(run, exchanged(start), played_equilibria);
+        // A held coordinate is counted from the walls that do not move: seen from the other side it is another
+        // one once the movable walls move. What is the same is what came before, the choice at the turn included.
+        const std::size_t k = strut_opening(run.records.arcs);
+        BOOST_TEST_REQUIRE(k > 0U);
+        BOOST_TEST((run.records.arcs[k].decided_by <= Rung::double_bound), "no climb after digits without meaning");
+        BOOST_TEST(run.counters.tally.structural_ties > 0);
+        for (const Disguised& other : {mirrored(start), quarter_turned(start)}) {
+            const auto seen = events(play(other.state, +1, played_equilibria).records, other.back);
+            BOOST_TEST_REQUIRE(seen.size() > k);
+            for (std::size_t j = 0; j <= k; ++j) {
+                BOOST_TEST((seen[j].first == run.records.arcs[j].opened), "arc " << j + 1);
+                BOOST_TEST((j == k || seen[j].second == run.records.arcs[j].closed), "arc " << j + 1);
             }
         }
     }
@@ -79,8 +76,7 @@ BOOST_AUTO_TEST_CASE(grains_that_hang_on_a_strut_without_force_do_not_hide_it) {
 BOOST_AUTO_TEST_CASE(the_weakest_traction_is_never_that_of_a_grain_that_carries_nothing_at_the_turn) {
     int after_turns = 0;
     for (const std::uint64_t seed : {1U, 3U, 5U, 10U}) {
-        RunOptions options;
-        options.rule = OpeningRule::least_negative;
+        RunOptions options{.rule = OpeningRule::least_negative};
         const Played run = play(prepared(36, seed), +1, 4, {}, options);
         const auto& arcs = run.records.arcs;
         for (std::size_t k = 1; k < arcs.size(); ++k) {

@@ -2,10 +2,7 @@
 // a small eps, run under `stop`, must open and close the same contacts in the same order.
 #include "support/agreement.hpp"
 #include "support/mirror.hpp"
-
-#include <boost/test/unit_test.hpp>
-
-#include <set>
+#include "support/segments.hpp"
 
 using namespace isostat;
 using namespace ::crafted;
@@ -119,15 +116,12 @@ BOOST_AUTO_TEST_CASE(a_hyperstatic_start_is_followed_with_the_contacts_that_the_
     int first = 0;
     for (std::uint64_t seed = 1; seed <= 8; ++seed) {
         State state = equal_pair();
-        Segment segment;
-        segment.direction = -1;
-        segment.to_stress = 0.5;
         RunOptions options;
         settle(options, Ties::first_order);
         options.ties_seed = seed;
         Course course;
         CourseRecorder recorder(course);
-        course.outcome = run_segment(state, segment, 0, options, course.counters, recorder);
+        course.outcome = run_segment(state, until(-1, 0.5), 0, options, course.counters, recorder);
         BOOST_TEST(course.outcome.completed);
         const std::vector<double> rho = tie_direction(state.packing.radius, seed);
         // The larger one bears the top wall; the other is pressed to the bottom by a contact that is tilted O(eps).

@@ -3,10 +3,6 @@
 #include "support/agreement.hpp"
 #include "support/mirror_cells.hpp"
 
-#include <boost/test/unit_test.hpp>
-
-#include <set>
-
 using namespace isostat;
 using namespace ::crafted;
 

@@ -100,16 +100,13 @@ void check(const Structure& s, Random& random, Count& count) {
     const std::vector<double> force = random_load(static_cast<int>(n), random);
     const std::vector<mpq_class> x = oracle.solve({force.begin(), force.end()});
     BOOST_TEST_REQUIRE(x.size() == n);
-    LadderOptions options;
-    options.max_bits = 512;
+    LadderOptions options{.max_bits = 512};
     ForceLadder ladder(s.packing, structure, factorisation, inverse, options);
     const int part = ladder.add(force);
     // Two comparisons and a sign on every rung: right where decided, and decided at the end.
     const std::size_t l = static_cast<std::size_t>(random.integer(static_cast<int>(n)));
     const std::size_t m = static_cast<std::size_t>(random.integer(static_cast<int>(n)));
-    ForceExpression a;
-    a.contact = ContactId(l);
-    a.part = part;
+    ForceExpression a{.contact = ContactId(l), .part = part};
     ForceExpression b = a;
     b.contact = ContactId(m);
     bool first = true;
@@ -239,16 +236,13 @@ void check_layers(int rows, int top, double height, LadderOptions options) {
 } // namespace
 
 BOOST_AUTO_TEST_CASE(rungs_in_floating_point_hold_at_400_disks) {
-    LadderOptions options;
-    options.max_bits = 512;
-    options.exact_size = 100;
+    LadderOptions options{.max_bits = 512, .exact_size = 100};
     check_layers(16, 18, 0.5, options);
     check_layers(16, 18, 1e-4, options);
 }
 
 BOOST_AUTO_TEST_CASE(rungs_in_floating_point_hold_at_5000_disks) {
-    LadderOptions options;
-    options.max_bits = 512;
+    LadderOptions options{.max_bits = 512};
     check_layers(60, 54, 0.5, options);
     check_layers(60, 54, 1e-3, options);
 }
@@ -271,9 +265,7 @@ BOOST_AUTO_TEST_CASE(what_a_stress_lacks_to_a_limit_is_known_after_the_ladder_wa
         ladder.add(aside);
         return ladder;
     };
-    ForceExpression force;
-    force.contact = ContactId(0);
-    force.slope_part = 1;
+    ForceExpression force{.contact = ContactId(0), .slope_part = 1};
     ForceLadder other = loaded(1);
     std::shared_ptr<const LoadShift> shift;
     {

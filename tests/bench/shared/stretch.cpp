@@ -1,6 +1,7 @@
 #include "bench/shared/stretch.hpp"
 
 #include "bench/shared/references.hpp"
+#include "support/segments.hpp"
 
 #include <isostat/core/machine.hpp>
 #include <isostat/io/state_file.hpp>
@@ -87,15 +88,11 @@ Stretch run_stretch(const State& from, const StretchOptions& options) {
     Stretch out;
     Watcher watcher(options, out);
     State state = from;
-    Segment segment;
-    segment.equilibria = options.equilibria;
-    RunOptions run;
-    run.certify = options.level;
-    run.stop = &watcher.stop;
+    RunOptions run{.certify = options.level, .stop = &watcher.stop};
     set_threads(options.threads);
     const double begin = watcher.time();
     const double process_begin = process_milliseconds();
-    const SegmentOutcome outcome = run_segment(state, segment, 0, run, out.counters, watcher);
+    const SegmentOutcome outcome = run_segment(state, towards(options.equilibria), 0, run, out.counters, watcher);
     const auto arcs = static_cast<double>(std::max(1L, out.counters.steps));
     out.milliseconds_per_arc = (watcher.time() - begin - watcher.lost) / arcs;
     out.cpu_per_arc = (process_milliseconds() - process_begin - watcher.process_lost) / arcs;

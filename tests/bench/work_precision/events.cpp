@@ -370,9 +370,7 @@ bool stresses(const ReferencePath& path, int n, Table& table) {
             return static_cast<double>(Reference(abs(sigma - limit.stress) / limit.stress));
         };
         for (const bool truth : {false, true}) {
-            LadderOptions options;
-            options.max_bits = 256;
-            options.exact_size = 0;
+            LadderOptions options{.max_bits = 256, .exact_size = 0};
             const double begin = cpu_seconds();
             ForceLadder ladder(state.packing, structure.value(), factorisation, inverse, options,
                                truth ? &vertex : nullptr);

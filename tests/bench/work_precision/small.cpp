@@ -2,6 +2,7 @@
 #include "bench/work_precision/report.hpp"
 #include "motion/arc.hpp"
 #include "support/recorder.hpp"
+#include "support/segments.hpp"
 #include "support/shortcuts/small_displacements.hpp"
 
 #include <isostat/trajectory/trajectory.hpp>
@@ -63,11 +64,9 @@ bool small_displacements(const Settings& settings) {
             const State start = prepared(n, seed);
             crafted::Recorder exact;
             State state = start;
-            Segment segment;
-            segment.equilibria = settings.drift_equilibria;
             RunCounters counters;
             const double run_begin = cpu_seconds();
-            (void)run_segment(state, segment, 0, {}, counters, exact);
+            (void)run_segment(state, towards(settings.drift_equilibria), 0, {}, counters, exact);
             const double run_time = cpu_seconds() - run_begin;
             // Exact ends of all arcs, and one linear step from every vertex.
             std::vector<std::vector<double>> ends;

@@ -1,6 +1,7 @@
 // Soft grains against the rigid states that they approximate: contacts, forces, strain, the next rearrangement.
 #include "bench/work_precision/report.hpp"
 #include "support/recorder.hpp"
+#include "support/segments.hpp"
 #include "support/shortcuts/soft_grains.hpp"
 
 #include <isostat/certificate/inspect.hpp>
@@ -102,11 +103,9 @@ bool soft_grains(const Settings& settings) {
             crafted::Recorder exact;
             State state = prepared(n, seed);
             const State start = state;
-            Segment segment;
-            segment.equilibria = settings.soft_equilibria + 1;
             RunCounters counters;
             const double run_begin = cpu_seconds();
-            (void)run_segment(state, segment, 0, {}, counters, exact);
+            (void)run_segment(state, towards(settings.soft_equilibria + 1), 0, {}, counters, exact);
             exact_time += cpu_seconds() - run_begin;
             exact_states += static_cast<int>(exact.equilibria.size()) - 1;
             const double reference = start.load.reference_length[1];
@@ -125,9 +124,7 @@ bool soft_grains(const Settings& settings) {
                     ++sum.states;
                     Load load = exact.states[k].load;
                     load.stress[1] = sigma;
-                    SoftGrainOptions options;
-                    options.stiffness_ratio = kappa;
-                    options.max_steps = 3'000'000;
+                    SoftGrainOptions options{.stiffness_ratio = kappa, .max_steps = 3'000'000};
                     double begin = cpu_seconds();
                     SoftGrains soft(exact.states[k].packing, load, options);
                     const bool relaxed = soft.relax();

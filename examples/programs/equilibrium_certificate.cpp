@@ -5,7 +5,7 @@
 #include <isostat/certificate/certify.hpp>
 #include <isostat/core/error.hpp>
 #include <isostat/exact/number.hpp>
-#include <isostat/io/certificate_file.hpp>
+#include <isostat/io/state_file.hpp>
 #include <isostat/preparation/preparation.hpp>
 
 #include <Eigen/SparseCholesky>

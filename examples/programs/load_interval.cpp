@@ -2,7 +2,7 @@
 //
 // Disk 0 in the bottom left corner, disk 1 on the bottom, the right and the top wall. With t = (R1 - R0) / (2 sqrt(R0
 // R1)) the structure carries every sigma2 >= t sigma1: below, disk 1 leaves the bottom.
-#include <isostat/certificate/inspect.hpp>
+#include <isostat/certificate/certify.hpp>
 
 #include <cmath>
 #include <cstdio>

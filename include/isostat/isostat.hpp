@@ -4,11 +4,9 @@
 /// what is in which.
 
 #include <isostat/certificate/certify.hpp>
-#include <isostat/certificate/inspect.hpp>
 #include <isostat/checker/verify.hpp>
 #include <isostat/compare/compare.hpp>
 #include <isostat/compare/snap.hpp>
-#include <isostat/contact/contact.hpp>
 #include <isostat/contact/state.hpp>
 #include <isostat/core/contact.hpp>
 #include <isostat/core/error.hpp>
@@ -16,21 +14,16 @@
 #include <isostat/core/result.hpp>
 #include <isostat/core/verdict.hpp>
 #include <isostat/crafted/exact_packing.hpp>
-#include <isostat/crafted/inspection.hpp>
 #include <isostat/crafted/plateau.hpp>
-#include <isostat/exact/kernel.hpp>
 #include <isostat/exact/number.hpp>
-#include <isostat/io/certificate_file.hpp>
 #include <isostat/io/foreign.hpp>
 #include <isostat/io/run_directory.hpp>
 #include <isostat/io/state_file.hpp>
 #include <isostat/motion/arc_certificate.hpp>
-#include <isostat/packing/load.hpp>
 #include <isostat/packing/packing.hpp>
 #include <isostat/preparation/preparation.hpp>
 #include <isostat/rigidity/counting.hpp>
 #include <isostat/scene/scene.hpp>
 #include <isostat/statics/rules.hpp>
-#include <isostat/trajectory/programme.hpp>
 #include <isostat/trajectory/records.hpp>
 #include <isostat/trajectory/trajectory.hpp>

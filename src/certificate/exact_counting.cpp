@@ -2,7 +2,7 @@
 
 #include "contact/separation.hpp"
 
-#include <isostat/exact/kernel.hpp>
+#include <isostat/exact/number.hpp>
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 #include "contact/contact_set.hpp"
 #include "core/roundoff.hpp"
 
-#include <isostat/certificate/inspect.hpp>
+#include <isostat/certificate/certify.hpp>
 
 #include <fmt/format.h>
 

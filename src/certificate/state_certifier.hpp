@@ -2,7 +2,7 @@
 /// \file
 /// Certificates of the equilibria of a run, as they come (level `states`).
 
-#include <isostat/io/certificate_file.hpp>
+#include <isostat/io/state_file.hpp>
 #include <isostat/trajectory/trajectory.hpp>
 
 #include <filesystem>

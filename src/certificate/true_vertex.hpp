@@ -5,7 +5,7 @@
 #include "certificate/subject.hpp"
 #include "verified/centre.hpp"
 
-#include <isostat/io/certificate_file.hpp>
+#include <isostat/io/state_file.hpp>
 
 #include <memory>
 #include <optional>

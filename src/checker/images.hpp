@@ -2,7 +2,7 @@
 /// \file
 /// The disks of a cell and their images near it, for the sweep over all pairs (proofs/checker.md, K9).
 
-#include <isostat/contact/contact.hpp>
+#include <isostat/contact/state.hpp>
 #include <isostat/packing/packing.hpp>
 
 #include <array>

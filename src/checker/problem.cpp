@@ -1,6 +1,6 @@
 #include "checker/problem.hpp"
 
-#include <isostat/contact/contact.hpp>
+#include <isostat/contact/state.hpp>
 
 #include <algorithm>
 #include <bit>

@@ -4,7 +4,7 @@
 
 #include "cli/common.hpp"
 
-#include <isostat/certificate/inspect.hpp>
+#include <isostat/certificate/certify.hpp>
 
 namespace isostat::cli {
 

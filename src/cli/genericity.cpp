@@ -8,7 +8,7 @@
 #include "io/vertex_text.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/crafted/inspection.hpp>
+#include <isostat/crafted/exact_packing.hpp>
 #include <isostat/io/foreign.hpp>
 #include <isostat/io/state_file.hpp>
 #include <isostat/rigidity/counting.hpp>

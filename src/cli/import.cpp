@@ -12,7 +12,7 @@
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/core/error.hpp>
-#include <isostat/crafted/inspection.hpp>
+#include <isostat/crafted/exact_packing.hpp>
 #include <isostat/io/foreign.hpp>
 #include <isostat/io/state_file.hpp>
 

@@ -6,7 +6,7 @@
 #include "cli/true_vertex_text.hpp"
 #include "packing/words.hpp"
 
-#include <isostat/certificate/inspect.hpp>
+#include <isostat/certificate/certify.hpp>
 #include <isostat/core/error.hpp>
 #include <isostat/io/state_file.hpp>
 

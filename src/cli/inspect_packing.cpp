@@ -5,7 +5,6 @@
 
 #include <isostat/core/error.hpp>
 #include <isostat/crafted/exact_packing.hpp>
-#include <isostat/crafted/inspection.hpp>
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 /// \file
 /// Pairs of disks by number, as other programs list them, and the images that they mean.
 
-#include <isostat/contact/contact.hpp>
+#include <isostat/contact/state.hpp>
 #include <isostat/packing/packing.hpp>
 
 #include <map>

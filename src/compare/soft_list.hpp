@@ -4,7 +4,7 @@
 
 #include "compare/frame_file.hpp"
 
-#include <isostat/contact/contact.hpp>
+#include <isostat/contact/state.hpp>
 #include <isostat/crafted/plateau.hpp>
 
 #include <optional>

@@ -3,7 +3,7 @@
 /// What the rounding of the file that a state was imported from leaves open. Proofs speak of the doubles of the state;
 /// of the packing that the file was written from they hold where no gap and no force is that small.
 
-#include <isostat/certificate/inspect.hpp>
+#include <isostat/certificate/certify.hpp>
 
 #include <string>
 #include <vector>

@@ -2,7 +2,7 @@
 /// \file
 /// Complete lists of contact candidates and the certificate of non-overlap (proofs/contact_candidates.md).
 
-#include <isostat/contact/contact.hpp>
+#include <isostat/contact/state.hpp>
 #include <isostat/core/verdict.hpp>
 
 #include <memory>

@@ -1,6 +1,6 @@
 #include "contact/separation.hpp"
 
-#include <isostat/contact/contact.hpp>
+#include <isostat/contact/state.hpp>
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 /// \file
 /// Fast membership in a contact list, and parts of one.
 
-#include <isostat/contact/contact.hpp>
+#include <isostat/contact/state.hpp>
 
 #include <vector>
 

@@ -1,7 +1,7 @@
 #pragma once
 // Exact sign of a gap.
 
-#include <isostat/contact/contact.hpp>
+#include <isostat/contact/state.hpp>
 
 namespace isostat {
 

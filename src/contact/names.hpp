@@ -2,7 +2,7 @@
 /// \file
 /// Lists of names for records and messages.
 
-#include <isostat/contact/contact.hpp>
+#include <isostat/contact/state.hpp>
 #include <isostat/packing/packing.hpp>
 
 #include <string>

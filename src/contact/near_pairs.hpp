@@ -4,7 +4,7 @@
 
 #include "contact/regular_triangulation.hpp"
 
-#include <isostat/contact/contact.hpp>
+#include <isostat/contact/state.hpp>
 
 #include <limits>
 #include <memory>

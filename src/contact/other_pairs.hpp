@@ -2,7 +2,7 @@
 /// \file
 /// The pairs of grains that are not contacts, as far as a claim about their gaps needs them.
 
-#include <isostat/contact/contact.hpp>
+#include <isostat/contact/state.hpp>
 
 #include <cmath>
 #include <vector>

@@ -2,7 +2,7 @@
 /// \file
 /// Disks that touch themselves through a period that does not move.
 
-#include <isostat/contact/contact.hpp>
+#include <isostat/contact/state.hpp>
 
 #include <vector>
 

@@ -1,7 +1,7 @@
 #pragma once
 // The regular triangulation of the disks of a packing, made by CGAL and carried along with disks that move.
 
-#include <isostat/contact/contact.hpp>
+#include <isostat/contact/state.hpp>
 
 #include <array>
 #include <memory>

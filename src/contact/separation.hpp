@@ -2,7 +2,7 @@
 /// \file
 /// How the grains of a contact stand to each other: the one place that forms r = x_j - x_i + A m.
 
-#include <isostat/contact/contact.hpp>
+#include <isostat/contact/state.hpp>
 
 #include <array>
 #include <cstddef>

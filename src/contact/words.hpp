@@ -2,7 +2,7 @@
 /// \file
 /// Words of failures that name contacts, put together when they are shown: private to the library.
 
-#include <isostat/contact/contact.hpp>
+#include <isostat/contact/state.hpp>
 #include <isostat/core/result.hpp>
 
 #include <fmt/format.h>

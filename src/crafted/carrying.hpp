@@ -2,7 +2,7 @@
 // Which contacts can carry a force >= 0, from the normals around each disk. `Vector` has cross_sign(a, b) and
 // dot_sign(a, b), both decided.
 
-#include <isostat/crafted/inspection.hpp>
+#include <isostat/crafted/exact_packing.hpp>
 
 #include <algorithm>
 #include <utility>

@@ -3,7 +3,7 @@
 /// Self-stresses and mechanisms of packings that are too large for exact bases.
 
 #include <isostat/core/verdict.hpp>
-#include <isostat/crafted/inspection.hpp>
+#include <isostat/crafted/exact_packing.hpp>
 
 #include <string>
 #include <vector>

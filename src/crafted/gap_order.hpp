@@ -1,7 +1,7 @@
 #pragma once
 // Gaps of stored doubles compared exactly with each other and with thresholds.
 
-#include <isostat/contact/contact.hpp>
+#include <isostat/contact/state.hpp>
 #include <isostat/packing/packing.hpp>
 
 #include <memory>

@@ -3,7 +3,7 @@
 /// What becomes of a crafted packing when its radii, or its radii and the tilt of its cell, are perturbed. A cell of
 /// which nothing moves keeps its shape: its size is free.
 
-#include <isostat/contact/contact.hpp>
+#include <isostat/contact/state.hpp>
 #include <isostat/core/result.hpp>
 #include <isostat/core/verdict.hpp>
 #include <isostat/packing/packing.hpp>

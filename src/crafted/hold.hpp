@@ -1,7 +1,7 @@
 #pragma once
 // Which disks and contacts can carry a force, from the positions of the normals.
 
-#include <isostat/crafted/inspection.hpp>
+#include <isostat/crafted/exact_packing.hpp>
 
 namespace isostat::crafted {
 

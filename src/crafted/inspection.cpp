@@ -6,7 +6,7 @@
 #include "rigidity/strained_matrix.hpp"
 
 #include <isostat/core/machine.hpp>
-#include <isostat/crafted/inspection.hpp>
+#include <isostat/crafted/exact_packing.hpp>
 
 #include <algorithm>
 

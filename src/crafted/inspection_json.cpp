@@ -1,6 +1,6 @@
 #include "contact/names.hpp"
 
-#include <isostat/crafted/inspection.hpp>
+#include <isostat/crafted/exact_packing.hpp>
 
 #include <nlohmann/json.hpp>
 

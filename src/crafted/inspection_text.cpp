@@ -2,7 +2,7 @@
 #include "core/words.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/crafted/inspection.hpp>
+#include <isostat/crafted/exact_packing.hpp>
 
 #include <fmt/format.h>
 

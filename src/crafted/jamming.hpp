@@ -1,7 +1,7 @@
 #pragma once
 // Whether a crafted packing in a cell is jammed: in exact arithmetic.
 
-#include <isostat/crafted/inspection.hpp>
+#include <isostat/crafted/exact_packing.hpp>
 
 namespace isostat::crafted {
 

@@ -1,7 +1,7 @@
 #pragma once
 // Rattlers and carrying contacts for every initial part of a list of contacts at once.
 
-#include <isostat/contact/contact.hpp>
+#include <isostat/contact/state.hpp>
 #include <isostat/packing/packing.hpp>
 
 #include <vector>

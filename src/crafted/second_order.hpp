@@ -1,7 +1,7 @@
 #pragma once
 // Second-order quantities of mechanisms.
 
-#include <isostat/crafted/inspection.hpp>
+#include <isostat/crafted/exact_packing.hpp>
 
 namespace isostat::crafted {
 

@@ -1,4 +1,4 @@
-#include <isostat/exact/kernel.hpp>
+#include <isostat/exact/number.hpp>
 
 #include <cassert>
 #include <cstddef>

@@ -1,7 +1,7 @@
 #include "exact/reduction.hpp"
 #include "exact/terms.hpp"
 
-#include <isostat/exact/kernel.hpp>
+#include <isostat/exact/number.hpp>
 
 #include <algorithm>
 #include <optional>

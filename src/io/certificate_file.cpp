@@ -2,7 +2,6 @@
 #include "io/files.hpp"
 #include "io/state_json.hpp"
 
-#include <isostat/io/certificate_file.hpp>
 #include <isostat/io/state_file.hpp>
 
 #include <fmt/format.h>

@@ -4,7 +4,7 @@
 
 #include "io/json.hpp"
 
-#include <isostat/io/certificate_file.hpp>
+#include <isostat/io/state_file.hpp>
 
 #include <string>
 

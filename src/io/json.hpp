@@ -5,7 +5,7 @@
 
 #include "core/words.hpp"
 
-#include <isostat/contact/contact.hpp>
+#include <isostat/contact/state.hpp>
 
 #include <nlohmann/json.hpp>
 

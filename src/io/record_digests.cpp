@@ -4,7 +4,7 @@
 #include "io/folders.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/io/certificate_file.hpp>
+#include <isostat/io/state_file.hpp>
 
 #include <fmt/format.h>
 

@@ -9,7 +9,6 @@
 #include "io/record_text.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/io/certificate_file.hpp>
 #include <isostat/io/run_directory.hpp>
 #include <isostat/io/state_file.hpp>
 

@@ -1,7 +1,7 @@
 #pragma once
 // The equations of one arc: private to the room (statements A1 to A4, proofs/arcs.md).
 
-#include <isostat/contact/contact.hpp>
+#include <isostat/contact/state.hpp>
 
 #include <array>
 #include <cstddef>

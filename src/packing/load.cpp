@@ -1,4 +1,4 @@
-#include <isostat/packing/load.hpp>
+#include <isostat/packing/packing.hpp>
 
 #include <algorithm>
 #include <cassert>

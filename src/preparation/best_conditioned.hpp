@@ -2,7 +2,7 @@
 /// \file
 /// Another list of contacts at a vertex where more pairs touch.
 
-#include <isostat/contact/contact.hpp>
+#include <isostat/contact/state.hpp>
 
 #include <optional>
 #include <vector>

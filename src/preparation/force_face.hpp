@@ -2,9 +2,9 @@
 /// \file
 /// The forces that a hyperstatic vertex admits: no single choice of them is the truth.
 
-#include <isostat/contact/contact.hpp>
+#include <isostat/contact/state.hpp>
 #include <isostat/core/result.hpp>
-#include <isostat/packing/load.hpp>
+#include <isostat/packing/packing.hpp>
 
 #include <vector>
 

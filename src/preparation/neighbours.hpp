@@ -2,7 +2,7 @@
 /// \file
 /// The disks and walls near each other, of soft packings too.
 
-#include <isostat/contact/contact.hpp>
+#include <isostat/contact/state.hpp>
 
 #include <vector>
 

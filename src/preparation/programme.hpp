@@ -5,7 +5,7 @@
 
 #include "preparation/interior_point.hpp"
 
-#include <isostat/contact/contact.hpp>
+#include <isostat/contact/state.hpp>
 #include <isostat/packing/packing.hpp>
 
 #include <atomic>

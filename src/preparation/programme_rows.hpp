@@ -5,7 +5,7 @@
 #include "contact/separation.hpp"
 #include "preparation/programme.hpp"
 
-#include <isostat/contact/contact.hpp>
+#include <isostat/contact/state.hpp>
 
 #include <cstddef>
 #include <numeric>

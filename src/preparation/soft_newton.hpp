@@ -6,7 +6,7 @@
 #include "preparation/clique_matrix.hpp"
 #include "preparation/soft.hpp"
 
-#include <isostat/contact/contact.hpp>
+#include <isostat/contact/state.hpp>
 #include <isostat/packing/packing.hpp>
 
 #include <atomic>

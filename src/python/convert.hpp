@@ -3,10 +3,9 @@
 /// What every part of the bindings needs: arrays that look into the library's memory, contacts as pairs of integers,
 /// verdicts as the Python enumeration, failures as exceptions.
 
-#include <isostat/contact/contact.hpp>
+#include <isostat/contact/state.hpp>
 #include <isostat/core/result.hpp>
 #include <isostat/core/verdict.hpp>
-#include <isostat/io/certificate_file.hpp>
 #include <isostat/io/state_file.hpp>
 
 #include <pybind11/numpy.h>

@@ -4,7 +4,6 @@
 
 #include <isostat/core/error.hpp>
 #include <isostat/crafted/exact_packing.hpp>
-#include <isostat/crafted/inspection.hpp>
 #include <isostat/exact/number.hpp>
 
 #include <pybind11/operators.h>

@@ -3,9 +3,8 @@
 #include "io/files.hpp"
 
 #include <isostat/certificate/certify.hpp>
-#include <isostat/certificate/inspect.hpp>
 #include <isostat/checker/verify.hpp>
-#include <isostat/io/certificate_file.hpp>
+#include <isostat/io/state_file.hpp>
 
 namespace isostat::python {
 

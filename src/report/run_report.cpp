@@ -11,7 +11,7 @@
 #include "report/picture.hpp"
 #include "report/tables.hpp"
 
-#include <isostat/certificate/inspect.hpp>
+#include <isostat/certificate/certify.hpp>
 #include <isostat/core/error.hpp>
 #include <isostat/io/run_directory.hpp>
 #include <isostat/io/state_file.hpp>

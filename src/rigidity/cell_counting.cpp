@@ -3,7 +3,7 @@
 #include "exact/rank.hpp"
 #include "rigidity/strained_matrix.hpp"
 
-#include <isostat/exact/kernel.hpp>
+#include <isostat/exact/number.hpp>
 #include <isostat/rigidity/counting.hpp>
 
 #include <algorithm>

@@ -5,7 +5,7 @@
 
 #include "rigidity/isostatic.hpp"
 
-#include <isostat/contact/contact.hpp>
+#include <isostat/contact/state.hpp>
 #include <isostat/core/contact.hpp>
 
 #include <optional>

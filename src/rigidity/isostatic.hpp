@@ -5,7 +5,7 @@
 #include "core/parallel.hpp"
 #include "sparse/pattern.hpp"
 
-#include <isostat/contact/contact.hpp>
+#include <isostat/contact/state.hpp>
 #include <isostat/core/contact.hpp>
 #include <isostat/core/result.hpp>
 #include <isostat/packing/packing.hpp>

@@ -3,7 +3,7 @@
 /// Pairs that keep touching while grains move against each other: bodies that turn alike, parallel bars, mirror images
 /// at a wall (proofs/degenerate.md, R2). Private to the rooms on the right.
 
-#include <isostat/contact/contact.hpp>
+#include <isostat/contact/state.hpp>
 #include <isostat/packing/packing.hpp>
 
 #include <vector>

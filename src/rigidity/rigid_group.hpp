@@ -2,7 +2,7 @@
 /// \file
 /// Grains that move as one body, told by counting (proofs/degenerate.md, R1): private to the rooms on the right.
 
-#include <isostat/contact/contact.hpp>
+#include <isostat/contact/state.hpp>
 #include <isostat/packing/packing.hpp>
 
 #include <vector>

@@ -4,7 +4,7 @@
 
 #include "sparse/pattern.hpp"
 
-#include <isostat/exact/kernel.hpp>
+#include <isostat/exact/number.hpp>
 #include <isostat/rigidity/counting.hpp>
 
 #include <cstdint>

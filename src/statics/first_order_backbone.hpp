@@ -2,9 +2,9 @@
 /// \file
 /// The contacts of a hyperstatic packing that carry the load when the radii change a little.
 
-#include <isostat/contact/contact.hpp>
+#include <isostat/contact/state.hpp>
 #include <isostat/core/result.hpp>
-#include <isostat/packing/load.hpp>
+#include <isostat/packing/packing.hpp>
 
 #include <vector>
 

@@ -2,7 +2,7 @@
 /// \file
 /// Which candidates are contacts already: private to the room.
 
-#include <isostat/contact/contact.hpp>
+#include <isostat/contact/state.hpp>
 
 #include <vector>
 

@@ -5,7 +5,7 @@
 #include "motion/arc.hpp"
 #include "rigidity/isostatic.hpp"
 
-#include <isostat/packing/load.hpp>
+#include <isostat/packing/packing.hpp>
 
 #include <cmath>
 #include <cstddef>

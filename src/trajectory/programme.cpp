@@ -1,5 +1,5 @@
 #include <isostat/core/error.hpp>
-#include <isostat/trajectory/programme.hpp>
+#include <isostat/trajectory/trajectory.hpp>
 
 #include <fmt/format.h>
 

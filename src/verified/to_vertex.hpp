@@ -4,7 +4,7 @@
 
 #include "core/roundoff.hpp"
 
-#include <isostat/contact/contact.hpp>
+#include <isostat/contact/state.hpp>
 #include <isostat/core/result.hpp>
 
 #include <optional>

@@ -6,7 +6,7 @@
 #include "bench/shared/report.hpp"
 #include "support/exact_lattices.hpp"
 
-#include <isostat/crafted/inspection.hpp>
+#include <isostat/crafted/exact_packing.hpp>
 #include <isostat/crafted/plateau.hpp>
 
 #include <fmt/format.h>

@@ -7,7 +7,7 @@
 #include "support/scratch.hpp"
 #include "verified/configuration.hpp"
 
-#include <isostat/certificate/inspect.hpp>
+#include <isostat/certificate/certify.hpp>
 #include <isostat/checker/verify.hpp>
 #include <isostat/io/state_file.hpp>
 

@@ -5,7 +5,7 @@
 #include "oracle/truth.hpp"
 #include "support/test.hpp"
 
-#include <isostat/io/certificate_file.hpp>
+#include <isostat/io/state_file.hpp>
 
 namespace maker {
 

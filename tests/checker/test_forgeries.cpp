@@ -9,7 +9,6 @@
 #include <isostat/certificate/certify.hpp>
 #include <isostat/checker/verify.hpp>
 #include <isostat/core/error.hpp>
-#include <isostat/io/certificate_file.hpp>
 #include <isostat/io/run_directory.hpp>
 #include <isostat/io/state_file.hpp>
 

@@ -3,7 +3,6 @@
 #include "cli/program.hpp"
 #include "support/cells.hpp"
 
-#include <isostat/io/certificate_file.hpp>
 #include <isostat/io/state_file.hpp>
 
 #include <nlohmann/json.hpp>

@@ -3,7 +3,7 @@
 #include "cli/program.hpp"
 #include "io/record_digests.hpp"
 
-#include <isostat/io/certificate_file.hpp>
+#include <isostat/io/state_file.hpp>
 
 #include <sys/stat.h>
 

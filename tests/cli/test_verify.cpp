@@ -2,7 +2,6 @@
 #include "support/crafted.hpp"
 #include "support/forger.hpp"
 
-#include <isostat/io/certificate_file.hpp>
 #include <isostat/io/state_file.hpp>
 
 #include <nlohmann/json.hpp>

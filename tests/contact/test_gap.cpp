@@ -2,7 +2,7 @@
 #include "oracle/packings.hpp"
 #include "support/scale.hpp"
 
-#include <isostat/contact/contact.hpp>
+#include <isostat/contact/state.hpp>
 
 #include <gmpxx.h>
 

@@ -5,8 +5,8 @@
 #include "contradictions/exact.hpp"
 #include "support/test.hpp"
 
-#include <isostat/certificate/inspect.hpp>
-#include <isostat/crafted/inspection.hpp>
+#include <isostat/certificate/certify.hpp>
+#include <isostat/crafted/exact_packing.hpp>
 
 #include <ClpSimplex.hpp>
 #include <CoinPackedMatrix.hpp>

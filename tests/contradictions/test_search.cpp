@@ -4,10 +4,10 @@
 #include "contradictions/states.hpp"
 #include "support/crafted.hpp"
 
-#include <isostat/certificate/inspect.hpp>
+#include <isostat/certificate/certify.hpp>
 #include <isostat/checker/verify.hpp>
 #include <isostat/core/error.hpp>
-#include <isostat/crafted/inspection.hpp>
+#include <isostat/crafted/exact_packing.hpp>
 #include <isostat/io/state_file.hpp>
 #include <isostat/scene/scene.hpp>
 

@@ -7,12 +7,10 @@
 #include "support/threads.hpp"
 
 #include <isostat/certificate/certify.hpp>
-#include <isostat/certificate/inspect.hpp>
 #include <isostat/checker/verify.hpp>
 #include <isostat/core/error.hpp>
 #include <isostat/core/machine.hpp>
 #include <isostat/crafted/exact_packing.hpp>
-#include <isostat/crafted/inspection.hpp>
 #include <isostat/crafted/plateau.hpp>
 #include <isostat/io/foreign.hpp>
 #include <isostat/io/state_file.hpp>

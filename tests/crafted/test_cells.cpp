@@ -3,9 +3,9 @@
 #include "examples.hpp"
 #include "support/test.hpp"
 
-#include <isostat/certificate/inspect.hpp>
-#include <isostat/contact/contact.hpp>
-#include <isostat/crafted/inspection.hpp>
+#include <isostat/certificate/certify.hpp>
+#include <isostat/contact/state.hpp>
+#include <isostat/crafted/exact_packing.hpp>
 #include <isostat/io/state_file.hpp>
 
 #include <Eigen/Dense>

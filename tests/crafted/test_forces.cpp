@@ -3,7 +3,7 @@
 #include "rigidity/isostatic.hpp"
 #include "support/scale.hpp"
 
-#include <isostat/crafted/inspection.hpp>
+#include <isostat/crafted/exact_packing.hpp>
 #include <isostat/preparation/preparation.hpp>
 
 namespace {

@@ -5,7 +5,7 @@
 #include "support/test.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/crafted/inspection.hpp>
+#include <isostat/crafted/exact_packing.hpp>
 #include <isostat/rigidity/counting.hpp>
 
 #include <chrono>

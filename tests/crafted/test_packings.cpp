@@ -3,7 +3,7 @@
 #include "examples.hpp"
 #include "support/test.hpp"
 
-#include <isostat/crafted/inspection.hpp>
+#include <isostat/crafted/exact_packing.hpp>
 
 BOOST_AUTO_TEST_SUITE(crafted_packings)
 

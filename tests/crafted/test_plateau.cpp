@@ -3,7 +3,7 @@
 #include "support/scale.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/crafted/inspection.hpp>
+#include <isostat/crafted/exact_packing.hpp>
 #include <isostat/crafted/plateau.hpp>
 #include <isostat/preparation/preparation.hpp>
 #include <isostat/rigidity/counting.hpp>

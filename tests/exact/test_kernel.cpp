@@ -4,7 +4,7 @@
 #include "exact/reduction.hpp"
 #include "support/test.hpp"
 
-#include <isostat/exact/kernel.hpp>
+#include <isostat/exact/number.hpp>
 
 namespace {
 

@@ -4,7 +4,7 @@
 #include "oracle/truth.hpp"
 #include "support/scratch.hpp"
 
-#include <isostat/certificate/inspect.hpp>
+#include <isostat/certificate/certify.hpp>
 
 #include <regex>
 

@@ -4,7 +4,7 @@
 #include "support/segments.hpp"
 #include "support/shortcuts/soft_grains.hpp"
 
-#include <isostat/certificate/inspect.hpp>
+#include <isostat/certificate/certify.hpp>
 
 using namespace isostat;
 

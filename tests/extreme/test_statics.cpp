@@ -3,7 +3,7 @@
 #include "support/crafted.hpp"
 #include "support/prepared.hpp"
 
-#include <isostat/certificate/inspect.hpp>
+#include <isostat/certificate/certify.hpp>
 
 using namespace isostat;
 using namespace crafted;

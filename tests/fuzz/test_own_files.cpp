@@ -12,7 +12,6 @@
 #include <isostat/certificate/certify.hpp>
 #include <isostat/checker/verify.hpp>
 #include <isostat/crafted/exact_packing.hpp>
-#include <isostat/io/certificate_file.hpp>
 #include <isostat/io/state_file.hpp>
 #include <isostat/scene/scene.hpp>
 

@@ -13,7 +13,6 @@
 #include "support/segments.hpp"
 
 #include <isostat/checker/verify.hpp>
-#include <isostat/io/certificate_file.hpp>
 #include <isostat/io/run_directory.hpp>
 #include <isostat/io/state_file.hpp>
 

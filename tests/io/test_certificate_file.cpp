@@ -2,7 +2,6 @@
 #include "support/crafted.hpp"
 #include "support/scratch.hpp"
 
-#include <isostat/io/certificate_file.hpp>
 #include <isostat/io/state_file.hpp>
 
 using namespace isostat;

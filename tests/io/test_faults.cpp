@@ -4,7 +4,6 @@
 #include "support/scratch.hpp"
 #include "support/segments.hpp"
 
-#include <isostat/io/certificate_file.hpp>
 #include <isostat/io/run_directory.hpp>
 #include <isostat/io/state_file.hpp>
 

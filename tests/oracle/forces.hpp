@@ -3,7 +3,7 @@
 
 #include "oracle/random.hpp"
 
-#include <isostat/contact/contact.hpp>
+#include <isostat/contact/state.hpp>
 
 #include <flint/fmpz_mat.h>
 #include <gmpxx.h>

@@ -1,7 +1,7 @@
 #pragma once
 // Exact signs of gaps with GMP rationals, written apart from the library.
 
-#include <isostat/contact/contact.hpp>
+#include <isostat/contact/state.hpp>
 
 #include <gmpxx.h>
 

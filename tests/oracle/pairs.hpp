@@ -1,7 +1,7 @@
 #pragma once
 // Every pair of grains, by brute force.
 
-#include <isostat/contact/contact.hpp>
+#include <isostat/contact/state.hpp>
 
 #include <vector>
 

@@ -2,7 +2,7 @@
 // Reference forces of any regular structure, with as many bits as wanted: LU of UMFPACK, residuals in GMP floats, made
 // apart from the library. Links with UMFPACK.
 
-#include <isostat/contact/contact.hpp>
+#include <isostat/contact/state.hpp>
 
 #include <gmpxx.h>
 #include <umfpack.h>

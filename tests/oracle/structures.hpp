@@ -4,7 +4,7 @@
 
 #include "oracle/random.hpp"
 
-#include <isostat/contact/contact.hpp>
+#include <isostat/contact/state.hpp>
 
 #include <cmath>
 #include <set>

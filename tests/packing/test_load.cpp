@@ -1,7 +1,7 @@
 #include "oracle/packings.hpp"
 #include "support/test.hpp"
 
-#include <isostat/packing/load.hpp>
+#include <isostat/packing/packing.hpp>
 
 using namespace isostat;
 using namespace isostat::oracle;

@@ -5,7 +5,6 @@
 #include "support/test.hpp"
 
 #include <isostat/certificate/certify.hpp>
-#include <isostat/certificate/inspect.hpp>
 #include <isostat/core/error.hpp>
 #include <isostat/io/state_file.hpp>
 #include <isostat/preparation/preparation.hpp>

@@ -6,7 +6,7 @@
 #include "support/prepared.hpp"
 #include "support/test.hpp"
 
-#include <isostat/certificate/inspect.hpp>
+#include <isostat/certificate/certify.hpp>
 #include <isostat/core/error.hpp>
 
 namespace {

@@ -3,7 +3,7 @@
 #include "check.hpp"
 #include "support/test.hpp"
 
-#include <isostat/certificate/inspect.hpp>
+#include <isostat/certificate/certify.hpp>
 #include <isostat/core/error.hpp>
 #include <isostat/core/machine.hpp>
 

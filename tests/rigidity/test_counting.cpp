@@ -6,7 +6,7 @@
 #include "support/regular.hpp"
 #include "support/threads.hpp"
 
-#include <isostat/certificate/inspect.hpp>
+#include <isostat/certificate/certify.hpp>
 #include <isostat/core/error.hpp>
 #include <isostat/rigidity/counting.hpp>
 

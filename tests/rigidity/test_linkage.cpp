@@ -3,7 +3,7 @@
 #include "rigidity/linkage.hpp"
 #include "support/crafted.hpp"
 
-#include <isostat/contact/contact.hpp>
+#include <isostat/contact/state.hpp>
 
 using namespace isostat;
 using namespace crafted;

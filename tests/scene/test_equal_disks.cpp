@@ -3,7 +3,6 @@
 
 #include <isostat/preparation/preparation.hpp>
 #include <isostat/scene/scene.hpp>
-#include <isostat/trajectory/programme.hpp>
 #include <isostat/trajectory/trajectory.hpp>
 
 using namespace isostat;

@@ -3,7 +3,7 @@
 #include "support/prepared.hpp"
 #include "support/shortcuts/soft_grains.hpp"
 
-#include <isostat/certificate/inspect.hpp>
+#include <isostat/certificate/certify.hpp>
 #include <isostat/core/error.hpp>
 
 #include <eigen3/Eigen/Dense>

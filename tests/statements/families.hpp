@@ -5,7 +5,7 @@
 #include "support/exact_lattices.hpp"
 #include "support/test.hpp"
 
-#include <isostat/exact/kernel.hpp>
+#include <isostat/exact/number.hpp>
 
 namespace families {
 

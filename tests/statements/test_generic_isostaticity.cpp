@@ -3,7 +3,7 @@
 #include "families.hpp"
 #include "support/test.hpp"
 
-#include <isostat/crafted/inspection.hpp>
+#include <isostat/crafted/exact_packing.hpp>
 
 using namespace isostat;
 using namespace families;

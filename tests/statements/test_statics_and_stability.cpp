@@ -5,8 +5,8 @@
 #include "support/prepared.hpp"
 #include "support/test.hpp"
 
-#include <isostat/crafted/inspection.hpp>
-#include <isostat/packing/load.hpp>
+#include <isostat/crafted/exact_packing.hpp>
+#include <isostat/packing/packing.hpp>
 #include <isostat/preparation/preparation.hpp>
 
 using namespace isostat;

@@ -2,7 +2,7 @@
 // they do not, and the lemma about one triangle on which this rests.
 #include "support/cells.hpp"
 
-#include <isostat/exact/kernel.hpp>
+#include <isostat/exact/number.hpp>
 
 namespace {
 

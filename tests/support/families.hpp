@@ -11,7 +11,7 @@
 #include "support/crafted.hpp"
 #include "verified/inverse_bound_multiprecision.hpp"
 
-#include <isostat/crafted/inspection.hpp>
+#include <isostat/crafted/exact_packing.hpp>
 
 #include <algorithm>
 #include <functional>

@@ -6,7 +6,7 @@
 
 #include <isostat/checker/verify.hpp>
 #include <isostat/core/error.hpp>
-#include <isostat/io/certificate_file.hpp>
+#include <isostat/io/state_file.hpp>
 
 namespace forger {
 

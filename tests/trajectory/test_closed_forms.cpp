@@ -1,7 +1,7 @@
 // The closed-form cases: one, two and three disks, against their formulas.
 #include "support/crafted.hpp"
 
-#include <isostat/certificate/inspect.hpp>
+#include <isostat/certificate/certify.hpp>
 
 using namespace isostat;
 using namespace ::crafted;

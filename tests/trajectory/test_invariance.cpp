@@ -4,7 +4,7 @@
 #include "support/same_sequence.hpp"
 #include "support/segments.hpp"
 
-#include <isostat/certificate/inspect.hpp>
+#include <isostat/certificate/certify.hpp>
 
 using namespace isostat;
 using namespace ::crafted;

@@ -2,7 +2,7 @@
 #include "support/crafted.hpp"
 
 #include <isostat/io/state_file.hpp>
-#include <isostat/trajectory/programme.hpp>
+#include <isostat/trajectory/trajectory.hpp>
 
 using namespace isostat;
 

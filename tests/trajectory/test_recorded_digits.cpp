@@ -4,7 +4,7 @@
 #include "support/crafted.hpp"
 #include "support/prepared.hpp"
 
-#include <isostat/contact/contact.hpp>
+#include <isostat/contact/state.hpp>
 
 using namespace isostat;
 using namespace ::crafted;

@@ -3,7 +3,7 @@
 // bits is allowed, another event is not.
 #include "support/crafted.hpp"
 
-#include <isostat/certificate/inspect.hpp>
+#include <isostat/certificate/certify.hpp>
 #include <isostat/io/state_file.hpp>
 
 using namespace isostat;

@@ -5,7 +5,7 @@
 /// neighbours. Mathematics, what is proved and what is only compared: proofs/checker.md (K1 to K26; "Runs").
 
 #include <isostat/core/verdict.hpp>
-#include <isostat/io/certificate_file.hpp>
+#include <isostat/io/state_file.hpp>
 
 #include <filesystem>
 #include <functional>

@@ -4,8 +4,7 @@
 /// of rigid ones.
 
 #include <isostat/compare/snap.hpp>
-#include <isostat/contact/contact.hpp>
-#include <isostat/packing/load.hpp>
+#include <isostat/contact/state.hpp>
 #include <isostat/packing/packing.hpp>
 #include <isostat/statics/rules.hpp>
 

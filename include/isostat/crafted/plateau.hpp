@@ -2,7 +2,7 @@
 /// \file
 /// Packings made elsewhere: counts against the gap below which a pair is taken for a contact.
 
-#include <isostat/contact/contact.hpp>
+#include <isostat/contact/state.hpp>
 #include <isostat/core/verdict.hpp>
 #include <isostat/packing/packing.hpp>
 #include <isostat/rigidity/counting.hpp>

@@ -2,7 +2,7 @@
 /// \file
 /// Packings of disks written by other programs.
 
-#include <isostat/contact/contact.hpp>
+#include <isostat/contact/state.hpp>
 #include <isostat/packing/packing.hpp>
 
 #include <array>

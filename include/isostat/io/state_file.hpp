@@ -1,10 +1,12 @@
 #pragma once
 /// \file
-/// State files: one vertex, complete, with numbers that come back bit for bit.
+/// Files: a state, and a certificate of what is proved of it.
 
 #include <isostat/contact/state.hpp>
+#include <isostat/core/verdict.hpp>
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -45,5 +47,112 @@ StateFile parse_any_state(const std::string& text, const std::string& source);
 /// Reads a state file or, recognised by its first character, a vertex text (`vertex_text.hpp`).
 StateFile read_state(const std::filesystem::path& path);
 StateFile read_any_state(const std::filesystem::path& path);
+
+/// The exact value lies in [lower, upper]; the ends may be infinite, never NaN.
+struct Interval {
+    double lower = 0;
+    double upper = 0;
+    friend bool operator==(const Interval&, const Interval&) = default;
+};
+
+/// N_f, N, rank of H, h = N - rank, k = N_f - rank. Of the *stored* coordinates as rational numbers and, where
+/// `CertificateClaims::vertex` is claimed too, of the true vertex.
+struct CountingClaim {
+    int dof_count = 0;
+    int contact_count = 0;
+    int rank = 0;
+    int hyperstaticity = 0;
+    int hypostaticity = 0;
+    Rung rung = Rung::exact;
+};
+
+/// There is a configuration q* with |q*_i - q_i| <= radius for every coordinate, at which the gap of every contact is
+/// exactly 0; no other one has |q_i - q'_i| <= unique_radius for every coordinate (radius <= unique_radius). This q* is
+/// the *true vertex* of which the other claims speak.
+struct VertexClaim {
+    double radius = 0;
+    double unique_radius = 0;
+    Rung rung = Rung::double_bound;
+};
+
+/// Forces at the true vertex under the load of the state, compressive positive, one per contact in the state's order.
+/// Those listed in `structural_zeros` are exactly 0 there for combinatorial reasons: some set of degrees of freedom
+/// without finite load is touched by exactly as many contacts, all of them listed. Their infinitesimal forces (per unit
+/// of eps, same order as the list) decide. All finite forces that are not structural zeros, and all infinitesimal
+/// forces listed, are claimed to lie in intervals above 0.
+struct ForcesClaim {
+    std::vector<Interval> finite;
+    std::vector<int> structural_zeros; ///< increasing positions in the contact list
+    std::vector<Interval> infinitesimal;
+    Rung rung = Rung::double_bound;
+};
+
+/// Every pair of grains that is not a contact (and can move relative to each other) has a gap >= `smallest` > 0 at the
+/// true vertex; `where` is the pair that comes nearest, or one whose gap is as small up to
+/// 2^-46 of the largest coordinate or radius. Without any such pair `smallest` is infinite and `where` is not
+/// written.
+struct GapsClaim {
+    double smallest = 0;
+    Contact where;
+    Rung rung = Rung::double_bound;
+};
+
+/// One end of the interval of the loaded stress within which all finite forces stay >= 0 at the true vertex: force
+/// `opens` vanishes there. `unbounded`: no force decreases in this direction.
+struct LoadEndClaim {
+    bool unbounded = false;
+    Interval stress;
+    Contact opens; ///< where several forces vanish together for structural reasons: one of them
+};
+
+/// The supported interval of the loaded stress.
+struct LoadIntervalClaim {
+    LoadEndClaim low;
+    LoadEndClaim high;
+    Rung rung = Rung::double_bound;
+};
+
+/// The claims of a certificate. An absent claim was not proved; `undecided` says why. When all are there, the true
+/// vertex is an isostatic equilibrium without overlap, and a strict local minimum of the potential of the load
+/// (`stable`; statement T8: all forces positive and no mechanism).
+struct CertificateClaims {
+    std::optional<CountingClaim> counting;
+    std::optional<VertexClaim> vertex;
+    std::optional<ForcesClaim> forces;
+    std::optional<GapsClaim> gaps;
+    std::optional<LoadIntervalClaim> load_interval;
+    bool stable = false;
+    std::vector<std::string> undecided; ///< one sentence per claim that is absent
+};
+
+/// A certificate: claims about one state.
+struct Certificate {
+    State state;            ///< the input, complete: a checker needs nothing else
+    std::string input;      ///< name of the input file, for people
+    std::string input_hash; ///< SHA-256 of that file's bytes, in hexadecimal
+    std::string program;    ///< name and version of the program that claims
+    CertificateClaims claims;
+};
+
+/// SHA-256 in hexadecimal (64 digits).
+std::string sha256(const std::string& bytes);
+
+/// The JSON text of a certificate (format "isostat-certificate", version 1): the state as in a state file, the claims
+/// (null where absent), and `digest`, the SHA-256 of the same JSON without that field, dumped without white space and
+/// with sorted keys. Infinite ends of intervals are the strings "inf" and "-inf". Throws `Error(bad_input)` when a
+/// number is NaN, or infinite where it must not be, or an interval has its ends in the wrong order.
+std::string certificate_text(const Certificate& certificate);
+
+/// Reads what `certificate_text` wrote; `source` (a file name) starts every message. Throws `Error(bad_input)` with
+/// file, field, value and what was expected: unknown, missing or repeated fields, lists of the wrong length, NaN,
+/// intervals whose ends are in the wrong order, and a digest that does not belong to the content. It does not check the
+/// claims, except that they can be understood: counts, radii and the smallest gap have the signs that such things have.
+Certificate parse_certificate(const std::string& text, const std::string& source);
+
+/// Reads a certificate file. Throws `Error(bad_input)`.
+Certificate read_certificate(const std::filesystem::path& path);
+
+/// Writes `certificate_text` atomically. Throws `Error(cannot_write)`.
+void write_certificate(const std::filesystem::path& path, const Certificate& certificate);
 
 } // namespace isostat

@@ -3,7 +3,7 @@
 /// Counting for any contact list: rank, hyperstaticity h, mechanisms k (statement T1); for a periodic packing under
 /// each way in which its cell may strain.
 
-#include <isostat/contact/contact.hpp>
+#include <isostat/contact/state.hpp>
 #include <isostat/core/verdict.hpp>
 #include <isostat/packing/packing.hpp>
 

@@ -5,7 +5,7 @@
 
 #include <isostat/io/run_directory.hpp>
 #include <isostat/preparation/preparation.hpp>
-#include <isostat/trajectory/programme.hpp>
+#include <isostat/trajectory/trajectory.hpp>
 
 #include <atomic>
 #include <cstdint>

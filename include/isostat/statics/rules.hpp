@@ -3,7 +3,7 @@
 /// Which contact opens where forces are negative; and what a comparison of first order settled
 /// (proofs/perturbation.md), or the rule chose (proofs/degenerate.md), where quantities cannot be told apart.
 
-#include <isostat/contact/contact.hpp>
+#include <isostat/contact/state.hpp>
 #include <isostat/core/verdict.hpp>
 
 #include <array>

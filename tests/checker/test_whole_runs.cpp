@@ -28,7 +28,7 @@ void play_whole(State state, int equilibria, const RunOptions& options, const fs
     RunCounters counters;
     RunDirectory directory(folder, header, RunDirectory::Mode::fresh, counters);
     directory.store_start(state);
-    const Segment segment = played::towards(equilibria);
+    const Segment segment = towards(equilibria);
     directory.begin_segment(0, segment, 0, 0);
     const SegmentOutcome outcome = run_segment(state, segment, 0, options, counters, directory);
     directory.finish(outcome.completed ? RunStatus::completed : RunStatus::failed,

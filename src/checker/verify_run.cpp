@@ -278,6 +278,12 @@ class Replay {
             start.contacts = std::move(*list);
             start.perturbation = start.perturbation ? start.perturbation : file->state.perturbation;
         }
+        const bool ties = std::any_of(arcs.begin(), arcs.end(), [](const EventRecord* e) { return !e->ties.empty(); });
+        if (ties && !start.perturbation) { // the run ended before it stored a state
+            leave(line.where,
+                  "the arcs from the start are not checked: no stored state has the direction of the radii");
+            return;
+        }
         go_to_stored(std::move(start), line.where);
         if (here_.state) {
             judged(check_start(here_, *records_.start), line.where);

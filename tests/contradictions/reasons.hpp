@@ -26,6 +26,7 @@ inline constexpr std::array reasons{
     Reason{"vanish together", "two forces are not ordered"},
     Reason{"certificates/", "a claim of a certificate is narrower than what the checker encloses"},
     Reason{"claimed in", "the stress of an arc is off by more than the bound in the row, by a rounding"},
+    Reason{"no stored state has the direction", "a run that chose ended before it stored a state"},
     Reason{"the potential does not decrease", "an arc of length 0, as far as is seen"},
     Reason{"which the run left at 0", "a load is 0: forces that the run left at 0 by choice vanish by counting"},
     Reason{"says too little", "a bound says nothing, and the number beside it is off"},

@@ -31,7 +31,8 @@ BOOST_AUTO_TEST_CASE(an_end_that_was_steered_badly_is_put_at_its_true_vertex_whe
     BOOST_TEST_REQUIRE(vertex.ok());
     int arcs = 0;
     for (std::size_t l = 0; l < state.contacts.size(); ++l) {
-        Opening opening{.contact = ContactId(l)};
+        Opening opening;
+        opening.contact = ContactId(l);
         BoundedSteering steering(vertex.value(), {opening, ArcKind::limit, 1, &at.load, {}}, Departure{}, 0.1,
                                  prover.candidates());
         auto arc = steering.propose();

@@ -175,7 +175,8 @@ class LinearLoading {
             stress() += std::max(4 * limit.value().stress_error, frozen_excess * std::abs(limit.value().stress));
         }
         arcs_ = 0;
-        Opening opening{.contact = limit.value().opens};
+        Opening opening;
+        opening.contact = limit.value().opens;
         return opening;
     }
 

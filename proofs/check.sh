@@ -14,7 +14,7 @@ if ! command -v coqc >/dev/null || [ ! -d "$(coqc -where)/user-contrib/mathcomp/
   echo "proofs/coq: SKIPPED, no theorem was checked: Coq or MathComp is not installed (Debian: ${isostat_proof_packages[*]})"
   exit 0
 fi
-make --no-print-directory -C proofs/coq
+make --no-print-directory -j "$(nproc)" -C proofs/coq
 if [ $# -gt 0 ]; then
   bash proofs/coq/check_certificates.sh "$1/examples/example_rank_certificate" "$1/certificates" 6 24
   bash proofs/coq/check_equilibria.sh "$1/isostat" "$1/examples/example_equilibrium_certificate" "$1/certificates" 6 30 100

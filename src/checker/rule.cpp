@@ -63,11 +63,27 @@ ChoiceRule opening_choice(const Place& place, std::size_t opened, const std::str
     return {"opening", tied, load};
 }
 
-/// A coordinate held where its power turned, up to the accuracy with which a turn is located (`turn_tolerance`):
-/// exactly at the turn its multiplier is 0, and it competes with nothing (K22).
-bool rests_at_turn(const Place& place, std::size_t contact, const std::vector<Range>& forces) {
-    const Rational room = Rational(turn_tolerance) * Rational(largest_force(forces));
-    return place.is_held(contact) && forces[contact].upper <= room && forces[contact].lower >= -room;
+/// A held coordinate that turns back where it stands when it is released, which leaves no record (descent.md): moved by
+/// the last bits that the place of a turn is known to, its multiplier has the other sign, so the power vanished before.
+bool turns_back_at_once(const Place& place, std::size_t contact, bool finite) {
+    constexpr double last_bits = 0x1p-40; // of the largest radius
+    if (!place.is_held(contact)) {
+        return false;
+    }
+    const auto multiplier = [contact, finite](const Place& at) {
+        return (finite ? at.evidence->forces : at.evidence->infinitesimal())[contact];
+    };
+    const bool falls = multiplier(place).positive();
+    State state = *place.state;
+    const auto coordinate = static_cast<std::size_t>(state.contacts[contact].i);
+    state.packing.q[coordinate] += (falls ? -last_bits : last_bits) * state.packing.max_radius();
+    Place moved;
+    moved.chooses = place.chooses;
+    (void)make_place(std::move(state), moved, place.load, -1, place.evidence->solver); // its other forces do not matter
+    if (!moved.evidence->vertex.found) {
+        return false;
+    }
+    return falls ? multiplier(moved).negative() : multiplier(place).negative() && multiplier(moved).positive();
 }
 
 /// Nothing, or why the rule does not put `opened` before another contact that may open.
@@ -87,7 +103,7 @@ Objections check_order(const Place& place, const std::string& kind, std::size_t 
         sign = strut_order(place, other, opened).value_or(0);
     }
     if (most || by_name ? sign < 0 : rule == "least_negative" && sign > 0) {
-        if (rests_at_turn(place, other, forces)) {
+        if (turns_back_at_once(place, other, kind != "rattler")) {
             return {};
         }
         const bool holds = holds_may_explain(place, other, opened);

@@ -279,8 +279,8 @@ BOOST_AUTO_TEST_CASE(nor_those_that_chose_and_were_refuted_once) {
 }
 
 // 16: forces that vanish at one load by counting, with one that is always 0; 24, 42: branches that cross 1e-5 from the
-// start; 29: held coordinates with multipliers of 1e-15; 41: the run itself leaves the way of an arc open; 140: an arc
-// that doubles cannot tell from none.
+// start; 29: held coordinates that turn back where they stand; 41: the run itself leaves the way of an arc open; 140:
+// an arc that doubles cannot tell from none.
 BOOST_AUTO_TEST_CASE(nor_are_those_undecided_that_were_once) {
     Results results;
     for (const long number : {16, 24, 29, 41, 42, 140}) {

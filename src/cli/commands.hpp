@@ -49,6 +49,7 @@ struct InspectArguments {
     Common common;
     std::string file;
     std::optional<double> at; ///< loaded stress instead of that of the state
+    std::string contacts;     ///< table to write; empty: none
 };
 int inspect(const InspectArguments& arguments);
 /// `inspect` of a crafted packing with exact numbers (TOML, examples/packings): prints the exact answers and compares

@@ -198,7 +198,8 @@ Examples: isostat ensemble examples/biaxial-400.toml --samples 8 -o many
     void add_inspect() {
         auto& a = keep<InspectArguments>();
         CLI::App& command = add(
-            "inspect", "N, N_f, rank, h, k, rattlers, smallest force and gap, supported interval of a state",
+            "inspect",
+            "N, N_f, rank, h, k, rattlers, smallest force and gap, supported interval of a state (spheres too)",
             R"(Nothing moves. Exit status 0: proved to be an isostatic equilibrium; 1: proved not to be one; 2: undecided.
 A TOML file is a crafted packing with exact numbers (examples/packings): exact contacts, rank, bases, stability;
 its [expected] entries are checked. A scene is not a packing: see plan.
@@ -207,6 +208,8 @@ Examples: isostat inspect start.json
         needed(command, "file", a.file, "state file, or vertex text", "FILE");
         option(command, "--at", a.at, "under this sigma_2 instead of that of the state; prints every force",
                ranges::number(-ranges::largest, ranges::largest), "SIGMA2");
+        option(command, "--contacts", a.contacts,
+               "writes a table of the contacts: point, normal, gap, force with bounds", "FILE.csv");
         add_threads(command, a.common);
         does(command, a, inspect, false);
     }
@@ -423,15 +426,16 @@ Example: isostat compare series.toml -o comparison)");
         auto& a = keep<ExportArguments>();
         CLI::App& command = add(
             "export", "a state, or the states of a run, for other programs",
-            R"(LAMMPS data (.data), extended XYZ for OVITO (.xyz), CSV (.csv): disks and box; contacts and load have no place there. Of the
+            R"(LAMMPS data (.data), extended XYZ for OVITO (.xyz), CSV (.csv): grains and box; ParaView (.vtk): contacts with forces too. Of the
 folder of a run: XYZ has a frame for each state stored, with the displacement from the first; the others the last state.
-ParaView files: isostat report --vtk.
+Every state of a run for ParaView: isostat report --vtk.
 Examples: isostat export start.json -o start.data
           isostat export out -o out.xyz)");
         needed(command, "input", a.input, "state file, vertex text, or folder of a run", "STATE|DIR");
         needed(command, "-o,--output", a.output, "file to write", "FILE");
-        option(command, "--format", a.format, "lammps-data, xyz, csv (default: from the end of the name of the file)",
-               CLI::IsMember({"lammps-data", "xyz", "csv"}));
+        option(command, "--format", a.format,
+               "lammps-data, xyz, csv, vtk (default: from the end of the name of the file)",
+               CLI::IsMember({"lammps-data", "xyz", "csv", "vtk"}));
         does(command, a, export_states, false);
     }
 

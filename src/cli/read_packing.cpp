@@ -142,7 +142,7 @@ ReadPacking read_any_packing(const std::string& file, const ForeignArguments& ar
         return out;
     }
     const State state = format != "state" ? parse_vertex_text(text, file)
-                        : arguments.cells ? parse_any_state(text, file).state
+                        : arguments.cells ? parse_any_state(text, file, Dimensions::any).state
                                           : parse_state(text, file).state;
     ReadPacking out{
         state.packing, format, {}, {}, std::max(rounding_of(state.packing), compare::imported_rounding(state))};

@@ -46,9 +46,15 @@ double Packing::max_radius() const {
 }
 
 double Packing::solid_fraction() const {
+    return solid_fraction_without({});
+}
+
+double Packing::solid_fraction_without(std::span<const int> left_out) const {
     double grains = 0;
-    for (const double r : radius) {
-        grains += dimension == plane ? std::numbers::pi * r * r : 4 * std::numbers::pi / 3 * r * r * r;
+    for (int i = 0; i < disk_count(); ++i) {
+        const double r = radius[static_cast<std::size_t>(i)];
+        const bool counts = std::find(left_out.begin(), left_out.end(), i) == left_out.end();
+        grains += !counts ? 0 : dimension == plane ? std::numbers::pi * r * r : 4 * std::numbers::pi / 3 * r * r * r;
     }
     double cell_size = 1;
     for (int a = 0; a < dimension; ++a) {

@@ -52,6 +52,10 @@ template <class T> class TrueVertexAt final : public TrueVertex {
     [[nodiscard]] T number(double x) const { return arithmetic().number(x); }
     [[nodiscard]] double unit() const { return above(arithmetic().unit()); }
     void claim_radii();
+    /// A length under a load: where it is a coordinate, that of the corrected configuration.
+    [[nodiscard]] T now(double length, int at) const {
+        return at < 0 ? number(length) : number(length) + vertex_.at().correction()[static_cast<std::size_t>(at)];
+    }
     /// How far the pinned grain of a cell is from where it is stored: it was put on the grid.
     [[nodiscard]] double pin_moved(const std::vector<double>& stored) const {
         const Cell& cell = centre_.packing.cell;
@@ -62,13 +66,17 @@ template <class T> class TrueVertexAt final : public TrueVertex {
         }
         return most;
     }
+    /// |F* - F| over the radius: what true stresses, or the loaded one alone at 1, change as their lengths do (V6).
+    [[nodiscard]] double load_turn(bool loaded_wall_only) const;
     Solution solve(const std::vector<T>& load, double load_error) const;
     std::vector<T> external_force(bool loaded_wall_only) const;
     const Solution& present();
     const Solution& unit_load();
     const Solution& infinitesimal_solution();
     [[nodiscard]] static std::size_t index(int l) { return static_cast<std::size_t>(l); }
-    [[nodiscard]] std::string name(int l) const { return to_string(subject_.state.contacts[index(l)]); }
+    [[nodiscard]] std::string name(int l) const {
+        return to_string(subject_.state.contacts[index(l)], subject_.state.packing.dimension);
+    }
     /// Of the force in contact l when the load goes in the direction.
     double rate(int l, int direction) { return direction * A::rounded(unit_load().value[index(l)]); }
     std::string open_rate(int l);
@@ -155,22 +163,35 @@ template <class T> std::vector<T> TrueVertexAt<T>::external_force(bool loaded_wa
         }
         const double stress = loaded_wall_only ? 1.0 : wall.stress;
         const auto dof = static_cast<std::size_t>(dofs.dof_of(static_cast<std::size_t>(wall.coordinate)));
-        force[dof] = wall.length_at < 0
-                         ? -arithmetic().product(stress, wall.length)
-                         : -(number(stress) * (number(wall.length) +
-                                               vertex_.at().correction()[static_cast<std::size_t>(wall.length_at)]));
+        force[dof] = wall.length_at < 0 ? -arithmetic().product(stress, wall.length)
+                                        : -(number(stress) * now(wall.length, wall.length_at));
+        if (subject_.state.packing.dimension > plane) {
+            force[dof] = force[dof] * now(wall.other, wall.other_at);
+        }
     }
     return force;
 }
 
+template <class T> double TrueVertexAt<T>::load_turn(bool loaded_wall_only) const {
+    double sum = 0;
+    for (const WallForce& wall : subject_.state.load.wall_forces(centre_.packing)) {
+        if (wall.length_at < 0 || (loaded_wall_only && !wall.loaded)) {
+            continue; // dead
+        }
+        const double stress = loaded_wall_only ? 1.0 : wall.stress;
+        const double weight =
+            wall.other_at < 0
+                ? wall.other
+                : (std::abs(wall.length) + std::abs(wall.other) + 2 * above(vertex_.distance())) * (1 + 8 * u);
+        sum = std::hypot(sum, stress * weight);
+    }
+    return sum;
+}
+
 template <class T> auto TrueVertexAt<T>::present() -> const Solution& {
     if (!present_) {
-        const Load& load = subject_.state.load;
         // True stresses act on the lengths of the true vertex.
-        const double error = load.kind == LoadKind::nominal
-                                 ? 0.0
-                                 : std::hypot(load.stress[0], load.stress[1]) * above(vertex_.radius()) * (1 + 8 * u);
-        present_ = solve(external_force(false), error);
+        present_ = solve(external_force(false), load_turn(false) * above(vertex_.radius()) * (1 + 8 * u));
         for (std::size_t l = 0; l < subject_.zero.size(); ++l) {
             if (subject_.zero[l] != 0) {
                 present_->value[l] = number(0); // known exactly
@@ -182,8 +203,7 @@ template <class T> auto TrueVertexAt<T>::present() -> const Solution& {
 
 template <class T> auto TrueVertexAt<T>::unit_load() -> const Solution& {
     if (!unit_) {
-        unit_ =
-            solve(external_force(true), subject_.state.load.kind == LoadKind::nominal ? 0.0 : above(vertex_.radius()));
+        unit_ = solve(external_force(true), load_turn(true) * above(vertex_.radius()));
     }
     return *unit_;
 }

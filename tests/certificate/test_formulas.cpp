@@ -245,6 +245,35 @@ BOOST_AUTO_TEST_CASE(pairs_beyond_the_list_of_a_cell_have_the_weight_of_C4) {
     check_above(reach - c.claims.gaps->smallest, weight * c.claims.vertex->radius * (1 - 1e-3), 0.01); // Ly alone moves
 }
 
+BOOST_AUTO_TEST_CASE(true_stresses_on_a_sphere_press_on_the_areas_of_the_true_vertex) {
+    constexpr double side = 2000; // of the cube at the vertex: what an area lacks is far more than what a length lacks
+    State state;
+    state.packing.dimension = state.packing.cell.dimension = state.load.dimension = 3;
+    state.packing.walls = Walls::box(3);
+    state.packing.radius = {side / 2};
+    state.packing.q = {side / 2, side / 2, side / 2, side + 1e-6, side + 2e-6, side - 1e-6};
+    state.load.kind = LoadKind::true_stress;
+    state.load.stress = {1, 2, 3};
+    state.load.loaded_axis = 2;
+    for (int a = 0; a < 3; ++a) {
+        state.contacts.push_back({ContactKind::lower_wall, 0, a});
+        state.contacts.push_back({ContactKind::upper_wall, 0, a});
+    }
+    const auto centre = std::move(Centre::make(state.packing, state.contacts).value());
+    const Subject subject(state, centre->structure);
+    const auto vertex = in_double(subject, *centre);
+    BOOST_TEST_REQUIRE(vertex->exists());
+    const std::vector<Interval> forces = vertex->forces();
+    for (std::size_t l = 0; l < forces.size(); ++l) {
+        const double exact = state.load.stress[l / 2] * side * side;
+        BOOST_TEST((forces[l].lower <= exact && exact <= forces[l].upper));
+        BOOST_TEST(forces[l].upper - forces[l].lower < 1e-6 * exact);
+    }
+    const LoadEndAnswer end = vertex->load_end(-1); // the force along z vanishes without a stress
+    BOOST_TEST_REQUIRE(end.claim.has_value());
+    BOOST_TEST((end.claim->stress.lower <= 0 && end.claim->stress.upper >= 0));
+}
+
 BOOST_AUTO_TEST_CASE(periods_in_space_are_stretched_as_little_as_C4_counts_on) {
     oracle::Random random(8);
     Packing packing; // one sphere, which has no extent

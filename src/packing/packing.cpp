@@ -179,7 +179,7 @@ void require_box(const Packing& packing, const std::string& source, const std::s
 
 void validate(const Packing& packing, const std::string& source) {
     const auto bad = [&](const std::string& what) { throw Error(ErrorKind::bad_input, source + ": " + what); };
-    if (packing.dimension != 2 || packing.cell.dimension != 2) {
+    if ((packing.dimension != 2 && packing.dimension != 3) || packing.cell.dimension != packing.dimension) {
         bad(fmt::format("dimension {}: Isostat has disks only, dimension 2; spheres are not written yet",
                         packing.dimension));
     }

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 /// What the first lines of a file in this format have.
 std::string mark_of(const std::string& format) {
-    return format == "xyz" ? "\nLattice=\"" : format == "csv" ? "\nid,x,y,r\n" : " of isostat ";
+    return format == "xyz" ? "\nLattice=\"" : format == "csv" ? "\nid,x,y," : " of isostat ";
 }
 
 std::string format_of(const ExportArguments& a) {

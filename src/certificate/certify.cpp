@@ -36,6 +36,7 @@ class Prover {
     Prover(const State& state, const CertifyOptions& options) : state_(state), options_(options) {}
 
     Certification run() {
+        result_.dimension = state_.packing.dimension;
         if (prove_counting() && put_on_grid() && prove_vertex()) {
             const bool forces = prove_forces();
             const bool gaps = prove_gaps();
@@ -65,15 +66,25 @@ class Prover {
             absent(claim, reason);
         }
     }
-    static std::string fixed_and_overlap(const Contact& pair) {
-        return fmt::format("{} overlap, and cannot move", to_string(pair));
+    [[nodiscard]] std::string named(const Contact& contact) const {
+        return to_string(contact, state_.packing.dimension);
+    }
+    [[nodiscard]] std::string fixed_and_overlap(const Contact& pair) const {
+        return fmt::format("{} overlap, and cannot move", named(pair));
     }
     /// With all digits: shorter ones would be other numbers.
     static std::string shown(const Interval& interval) {
         return fmt::format("[{:.17g}, {:.17g}]", interval.lower, interval.upper);
     }
+    [[nodiscard]] double shortest_side() const {
+        double shortest = infinity;
+        for (int a = 0; a < centre_->packing.dimension; ++a) {
+            shortest = std::min(shortest, centre_->packing.length(a));
+        }
+        return shortest;
+    }
     [[nodiscard]] std::string in_contact(std::size_t l, const Interval& f) const {
-        return fmt::format("in contact {} is in {}", to_string(state_.contacts[l]), shown(f));
+        return fmt::format("in contact {} is in {}", named(state_.contacts[l]), shown(f));
     }
 
     bool prove_counting();
@@ -348,7 +359,7 @@ bool Prover::prove_gaps() {
     const OtherPairs pairs = other_pairs(centre_->packing, state_.contacts);
     if (pairs.far() || any_far(pairs.near)) {
         absent("gaps",
-               fmt::format("a disk may touch an image more than {} periods away: put the disks into the cell, or "
+               fmt::format("a grain may touch an image more than {} periods away: put the grains into the cell, or "
                            "take a basis of short periods",
                            farthest_image));
         return false;
@@ -364,11 +375,11 @@ bool Prover::prove_gaps() {
         for (const Contact& pair : pairs.near) {
             const Interval h = gaps.emplace_back(vertex_->gap(pair));
             if (h.upper < 0) {
-                refute("gaps", fmt::format("{} overlap: the gap is in {}", to_string(pair), shown(h)));
+                refute("gaps", fmt::format("{} overlap: the gap is in {}", named(pair), shown(h)));
                 return false;
             }
             if (!(h.lower > 0) && doubtful.empty()) {
-                doubtful = fmt::format("the gap of {} is in {}", to_string(pair), shown(h));
+                doubtful = fmt::format("the gap of {} is in {}", named(pair), shown(h));
             }
             claim.smallest = std::min(claim.smallest, h.lower);
             if (h.upper < nearest.upper) {
@@ -405,7 +416,10 @@ bool is_vague(const LoadEndClaim& end, double largest) {
 /// Climbs until both ends are proved, and well known where the rungs reach that.
 void Prover::prove_load_interval() {
     std::optional<LoadIntervalClaim>& claim = result_.claims.load_interval;
-    const double largest = std::max(std::abs(state_.load.stress[0]), std::abs(state_.load.stress[1]));
+    double largest = 0;
+    for (const double stress : state_.load.stress) {
+        largest = std::max(largest, std::abs(stress));
+    }
     std::string open;
     do {
         const LoadEndAnswer low = vertex_->load_end(-1);
@@ -434,8 +448,8 @@ void Prover::prove_stability(bool forces, bool gaps) {
         result_.potential = "the potential of the load";
     } else if (std::any_of(load.disk_force.begin(), load.disk_force.end(), [](double f) { return f != 0; })) {
         absent("stability", "true stresses together with forces on disks have no potential");
-    } else if (!(std::min(centre_->packing.length(0), centre_->packing.length(1)) > vertex_->distance())) {
-        absent("stability", "the potential of true stresses needs two positive lengths");
+    } else if (!(shortest_side() > vertex_->distance())) {
+        absent("stability", "the potential of true stresses needs positive lengths");
     } else {
         result_.claims.stable = true;
         result_.potential = "sum sigma_a ln L_a, the potential of the true stresses";

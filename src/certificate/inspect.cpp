@@ -111,9 +111,11 @@ Result<Inspection> inspect_vertex(const State& state) {
     if (counting.hyperstaticity > 0) {
         return Failure{FailureKind::not_isostatic, numbers(counting) + ": forces are not determined by the geometry"};
     }
-    if (state.packing.cell.any() && (counting.mechanisms > 0 || has_held(state))) {
+    const bool space = state.packing.dimension != plane;
+    if ((space || state.packing.cell.any()) && (counting.mechanisms > 0 || has_held(state))) {
         return Failure{FailureKind::not_isostatic,
-                       numbers(counting) + ": mechanisms in a periodic cell are counted, not followed yet"};
+                       fmt::format("{}: mechanisms {} are counted, not followed yet", numbers(counting),
+                                   space ? "of spheres" : "in a periodic cell")};
     }
     if (counting.mechanisms > 0 || has_held(state)) {
         auto found = inspect_mechanism(state, counting.mechanisms > 0 ? count_contacts(state.packing, state.contacts)

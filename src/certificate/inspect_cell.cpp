@@ -28,27 +28,52 @@ State strained(State state, const std::vector<Contact>& own) {
     return state;
 }
 
-/// The forces under an isotropic pressure are unique and say whether it is jammed strictly. It is a pressure where the
-/// stresses are as the stored lengths over the true ones, which are known to the radius: forces are affine between.
-JammingAnswer strictly(const State& state, const std::vector<unsigned char>& zero, double radius) {
+/// The forces of the contacts under stresses that are a pressure for some lengths within `radius` of the stored ones:
+/// as these over the true ones, that along x being 1 (a factor changes no sign). Forces are affine in every stress, so
+/// they lie between those of the corners. Nothing where a corner is not known.
+std::vector<std::vector<Interval>> pressed(State state, double radius) {
     constexpr double rounded = 0x1p-48; // nine operations, each to 2^-53
-    const double x = state.packing.length(0), y = state.packing.length(1);
-    const auto low = forces_at(state, (1 - radius / x) / (1 + radius / y) * (1 - rounded));
-    const auto high = forces_at(state, (1 + radius / x) / (1 - radius / y) * (1 + rounded));
-    if (!(radius < y) || !low.ok() || !high.ok()) {
+    const double x = state.packing.length(0);
+    std::vector<std::vector<Interval>> corners;
+    for (unsigned corner = 0; corner < 1U << (state.packing.axes() - 1); ++corner) {
+        for (std::size_t a = 1; a < state.packing.axes(); ++a) {
+            const double length = state.packing.lattice(a, a);
+            const bool high = (corner >> (a - 1) & 1U) != 0;
+            if (!(radius < length)) {
+                return {};
+            }
+            state.load.stress[a] = high ? (1 + radius / x) / (1 - radius / length) * (1 + rounded)
+                                        : (1 - radius / x) / (1 + radius / length) * (1 - rounded);
+        }
+        Certification truth = certify(state);
+        if (!truth.claims.vertex) {
+            return {};
+        }
+        corners.push_back(std::move(truth.finite));
+    }
+    return corners;
+}
+
+/// The forces under an isotropic pressure are unique and say whether it is jammed strictly. It is a pressure where the
+/// stresses are as the stored lengths over the true ones, which are known to the radius.
+JammingAnswer strictly(const State& state, const std::vector<unsigned char>& zero, double radius) {
+    const std::vector<std::vector<Interval>> corners = pressed(state, radius);
+    if (corners.empty()) {
         return {Verdict::undecided, "k = 0 for full strain; its forces under an isotropic pressure are not known"};
     }
     JammingAnswer out{Verdict::proved,
                       "k = 0 for full strain, and every force of the backbone is positive under an isotropic pressure"};
     for (std::size_t l = 0; l < state.contacts.size(); ++l) {
-        const Interval &a = low.value()[l], &b = high.value()[l];
-        const std::string name = to_string(state.contacts[l]);
-        if (a.upper < 0 && b.upper < 0) {
+        const auto every = [&](auto test) {
+            return std::all_of(corners.begin(), corners.end(), [&](const auto& forces) { return test(forces[l]); });
+        };
+        const std::string name = to_string(state.contacts[l], state.packing.dimension);
+        if (every([](const Interval& f) { return f.upper < 0; })) {
             return {Verdict::refuted, fmt::format("the force of {} is negative under an isotropic pressure: it opens "
                                                   "alone while the volume falls",
                                                   name)};
         }
-        if ((l >= zero.size() || zero[l] == 0) && !(a.lower > 0 && b.lower > 0)) {
+        if ((l >= zero.size() || zero[l] == 0) && !every([](const Interval& f) { return f.lower > 0; })) {
             out = {Verdict::undecided,
                    fmt::format("k = 0 for full strain; the force of {} under an isotropic pressure may be 0", name)};
         }
@@ -72,7 +97,7 @@ void judge(const State& state, const Certification& truth, const std::vector<Con
     } else if (missing == 1 && !others.empty()) {
         out.strict = {Verdict::undecided, fmt::format("N is 1 short of N_f for full strain, and a rattler touches its "
                                                       "own image ({})",
-                                                      to_string(others.front()))};
+                                                      to_string(others.front(), state.packing.dimension))};
     } else {
         out.strict = {Verdict::refuted,
                       fmt::format("N is {} short of N_f for full strain{}: a strain of the cell keeps every contact "

@@ -52,6 +52,10 @@ template <class T> class TrueVertexAt final : public TrueVertex {
     [[nodiscard]] T number(double x) const { return arithmetic().number(x); }
     [[nodiscard]] double unit() const { return above(arithmetic().unit()); }
     void claim_radii();
+    /// A length under a load: where it is a coordinate, that of the corrected configuration.
+    [[nodiscard]] T now(double length, int at) const {
+        return at < 0 ? number(length) : number(length) + vertex_.at().correction()[static_cast<std::size_t>(at)];
+    }
     /// How far the pinned grain of a cell is from where it is stored: it was put on the grid.
     [[nodiscard]] double pin_moved(const std::vector<double>& stored) const {
         const Cell& cell = centre_.packing.cell;
@@ -68,7 +72,9 @@ template <class T> class TrueVertexAt final : public TrueVertex {
     const Solution& unit_load();
     const Solution& infinitesimal_solution();
     [[nodiscard]] static std::size_t index(int l) { return static_cast<std::size_t>(l); }
-    [[nodiscard]] std::string name(int l) const { return to_string(subject_.state.contacts[index(l)]); }
+    [[nodiscard]] std::string name(int l) const {
+        return to_string(subject_.state.contacts[index(l)], subject_.state.packing.dimension);
+    }
     /// Of the force in contact l when the load goes in the direction.
     double rate(int l, int direction) { return direction * A::rounded(unit_load().value[index(l)]); }
     std::string open_rate(int l);
@@ -155,10 +161,11 @@ template <class T> std::vector<T> TrueVertexAt<T>::external_force(bool loaded_wa
         }
         const double stress = loaded_wall_only ? 1.0 : wall.stress;
         const auto dof = static_cast<std::size_t>(dofs.dof_of(static_cast<std::size_t>(wall.coordinate)));
-        force[dof] = wall.length_at < 0
-                         ? -arithmetic().product(stress, wall.length)
-                         : -(number(stress) * (number(wall.length) +
-                                               vertex_.at().correction()[static_cast<std::size_t>(wall.length_at)]));
+        force[dof] = wall.length_at < 0 ? -arithmetic().product(stress, wall.length)
+                                        : -(number(stress) * now(wall.length, wall.length_at));
+        if (subject_.state.packing.dimension > plane) {
+            force[dof] = force[dof] * now(wall.other, wall.other_at);
+        }
     }
     return force;
 }

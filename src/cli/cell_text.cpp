@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <span>
+
 namespace isostat::cli {
 
 namespace {
@@ -15,15 +17,22 @@ std::vector<std::string> moving(const Cell& cell) {
     if (cell.keeps_shape) {
         return {"scale"};
     }
-    for (std::size_t a = 0; a < 2; ++a) {
+    for (std::size_t a = 0; a < most_axes; ++a) {
         if (cell.period_moves[a]) {
             names.emplace_back(axis_names[a]);
         }
     }
-    if (cell.tilt_moves[0]) {
-        names.emplace_back(tilt_names[0]);
+    for (std::size_t t = 0; t < most_tilts; ++t) {
+        if (cell.tilt_moves[t]) {
+            names.emplace_back(tilt_names[t]);
+        }
     }
     return names;
+}
+
+/// In the order xy, xz, yz.
+std::span<const double> tilts_of(const Packing& packing) {
+    return std::span(packing.q).subspan(packing.length_at(packing.axes()), packing.tilts());
 }
 
 /// A number that is only bounded is marked.
@@ -50,16 +59,16 @@ Json strains_json(const StrainCounts& counts) {
 
 std::string cell_words(const Packing& packing) {
     std::string text;
-    for (std::size_t a = 0; a < 2; ++a) {
+    for (std::size_t a = 0; a < packing.axes(); ++a) {
         text += fmt::format("{}{} ({})", a == 0 ? "" : " x ", packing.length(static_cast<int>(a)),
                             packing.cell.periodic[a] ? "periodic" : "walls");
     }
     const std::vector<std::string> names = moving(packing.cell);
-    return fmt::format("{}, tilt {}; {}, disk {} is pinned", text, packing.lattice(0, 1),
+    return fmt::format("{}, tilt {}; {}, {} {} is pinned", text, fmt::join(tilts_of(packing), ", "),
                        names.empty()              ? "no period moves"
                        : packing.cell.keeps_shape ? "it keeps its shape"
                                                   : fmt::format("{} move", fmt::join(names, ", ")),
-                       packing.cell.pin);
+                       grain_word(packing.dimension), packing.cell.pin);
 }
 
 void print_counts(const std::string& title, const StrainCounts& counts) {
@@ -72,9 +81,10 @@ void print_counts(const std::string& title, const StrainCounts& counts) {
 }
 
 void print_cell(const CellInspection& cell) {
-    print_counts("all disks", cell.all);
+    const char* const grain = grain_word(cell.dimension);
+    print_counts(fmt::format("all {}s", grain), cell.all);
     if (cell.backbone) {
-        print_counts(fmt::format("backbone, {} disks", cell.backbone_disks), *cell.backbone);
+        print_counts(fmt::format("backbone, {} {}s", cell.backbone_disks, grain), *cell.backbone);
         say("{:<24} {} for a bulk modulus, {} for all moduli (Goodrich et al., by counting); here {}\n",
             "contacts needed", contacts_for_bulk_modulus(cell.backbone_disks, cell.dimension),
             contacts_for_all_moduli(cell.backbone_disks, cell.dimension), (*cell.backbone)[0].contact_count);
@@ -87,7 +97,11 @@ void print_cell(const CellInspection& cell) {
 Json cell_json(const Packing& packing, const CellInspection& cell) {
     Json out;
     out["moves"] = moving(packing.cell);
-    out["tilt"] = number(packing.lattice(0, 1));
+    if (packing.dimension == plane) {
+        out["tilt"] = number(packing.lattice(0, 1));
+    } else {
+        out["tilt"] = tilts_of(packing);
+    }
     out["all"] = strains_json(cell.all);
     out["backbone_disks"] = cell.backbone_disks;
     out["backbone"] = cell.backbone ? strains_json(*cell.backbone) : Json();

@@ -11,28 +11,49 @@
 #include <isostat/io/state_file.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <span>
 
 namespace isostat::cli {
 
 namespace {
 
+std::span<const double> lengths_of(const State& state) {
+    return std::span(state.packing.q).subspan(state.packing.length_at(0), state.packing.axes());
+}
+
+std::span<const double> stresses_of(const State& state) {
+    return std::span(state.load.stress).first(state.packing.axes());
+}
+
+Json numbers(std::span<const double> values) {
+    Json out = Json::array();
+    for (const double value : values) {
+        out.push_back(number(value));
+    }
+    return out;
+}
+
 void print_counting(const State& state, const Counting& c) {
-    say("disks                    {}\n", state.packing.disk_count());
+    say("{:<25}{}\n", fmt::format("{}s", grain_word(state.packing.dimension)), state.packing.disk_count());
     const bool periodic = state.packing.cell.any();
     say("{:<25}{}, solid fraction {:.6f}\n", periodic ? "cell" : "box",
-        periodic ? cell_words(state.packing) : fmt::format("{} x {}", state.packing.length(0), state.packing.length(1)),
+        periodic ? cell_words(state.packing) : fmt::format("{}", fmt::join(lengths_of(state), " x ")),
         state.packing.solid_fraction());
-    say("load                     sigma = ({}, {}){}, {}\n", state.load.stress[0], state.load.stress[1],
-        state.load.shear[0] != 0 ? fmt::format(", shear {}", state.load.shear[0]) : "",
+    const auto shears = std::span(state.load.shear).first(state.packing.tilts());
+    const bool sheared = std::any_of(shears.begin(), shears.end(), [](double shear) { return shear != 0; });
+    say("load                     sigma = ({}){}, {}\n", fmt::format("{}", fmt::join(stresses_of(state), ", ")),
+        sheared ? fmt::format(", shear {}", fmt::join(shears, ", ")) : "",
         state.load.kind != LoadKind::nominal ? "true stresses"
-        : state.packing.cell.keeps_shape     ? "along y; on the size of the cell, it scales all forces alike"
-        : periodic                           ? "nominal (constant forces on the periods)"
-                                             : "nominal (constant wall forces)");
+        : state.packing.cell.keeps_shape ? fmt::format("along {}; on the size of the cell, it scales all forces alike",
+                                                       axis_names[state.packing.axes() - 1])
+        : periodic                       ? "nominal (constant forces on the periods)"
+                                         : "nominal (constant wall forces)");
     say("degrees of freedom N_f   {}\n", c.dof_count);
     say("contacts N               {}\n", c.contact_count);
     say("rank, stored coordinates {} ({})\n", c.rank, c.rank_exact == Verdict::proved ? "exact" : "proved lower bound");
@@ -52,19 +73,19 @@ Interval smallest_force(const Inspection& inspection) {
     return smallest;
 }
 
-void print_forces(const Inspection& inspection) {
+void print_forces(const Inspection& inspection, int dimension) {
     const EquilibriumRecord& r = inspection.record;
     const CertificateClaims& claims = inspection.truth.claims;
     if (claims.load_interval) {
-        say("supported interval       from {}\n", end_text(claims.load_interval->low));
-        say("                         to   {}\n", end_text(claims.load_interval->high));
+        say("supported interval       from {}\n", end_text(claims.load_interval->low, dimension));
+        say("                         to   {}\n", end_text(claims.load_interval->high, dimension));
     } else {
         say("supported interval       undecided\n");
     }
     if (r.backbone > 0) {
         const Interval smallest = smallest_force(inspection);
         say("smallest force           {} in {} (every force known to {})\n", with_bound(smallest.lower, smallest.upper),
-            to_string(r.min_force_contact), rounded_up(r.force_bound, 2));
+            to_string(r.min_force_contact, dimension), rounded_up(r.force_bound, 2));
     }
 }
 
@@ -82,15 +103,16 @@ void print_inspection(const Inspection& inspection) {
     say("rattlers                 {}\n", inspection.rattlers.size());
     say("force-carrying contacts  {}\n", carrying_count(inspection));
     if (inspection.equilibrium) {
-        print_forces(inspection);
+        print_forces(inspection, inspection.truth.dimension);
     }
     if (inspection.truth.claims.gaps) {
         say("smallest gap             {}\n",
             !std::isfinite(r.min_gap)
                 ? "there is no other pair"
                 : fmt::format("at least {} ({})", rounded_down(r.min_gap, 6),
-                              r.min_gap_contact.i < 0 ? "no other pair is near"
-                                                      : "nearest: " + to_string(r.min_gap_contact)));
+                              r.min_gap_contact.i < 0
+                                  ? "no other pair is near"
+                                  : "nearest: " + to_string(r.min_gap_contact, inspection.truth.dimension)));
     }
     if (inspection.truth.claims.vertex) {
         say("largest gap of a contact at most {}\n", rounded_up(r.gap_residual, 2));
@@ -105,10 +127,10 @@ void print_inspection(const Inspection& inspection) {
 Json counting_json(const std::string& file, const State& state, const Counting& c) {
     Json object;
     object["file"] = file;
-    object["disks"] = state.packing.disk_count();
-    object["length"] = {number(state.packing.length(0)), number(state.packing.length(1))};
+    object[fmt::format("{}s", grain_word(state.packing.dimension))] = state.packing.disk_count();
+    object["length"] = numbers(lengths_of(state));
     object["solid_fraction"] = number(state.packing.solid_fraction());
-    object["stress"] = {number(state.load.stress[0]), number(state.load.stress[1])};
+    object["stress"] = numbers(stresses_of(state));
     object["load"] = word_of(state.load.kind, load_kind_words);
     object["N_f"] = c.dof_count;
     object["N"] = c.contact_count;
@@ -134,13 +156,13 @@ void add_inspection(Json& object, const Inspection& inspection) {
             const LoadEndClaim* const known = interval && !((*interval).*end).unbounded ? &((*interval).*end) : nullptr;
             object[key] = known != nullptr ? Json::array({number(known->stress.lower), number(known->stress.upper)})
                                            : Json::array({nullptr, nullptr});
-            opens.push_back(known != nullptr ? Json(to_string(known->opens)) : Json());
+            opens.push_back(known != nullptr ? Json(to_string(known->opens, inspection.truth.dimension)) : Json());
         }
         object["opens"] = std::move(opens);
         const Interval smallest = smallest_force(inspection);
         object["min_force"] = number(r.min_force);
         object["min_force_between"] = {number(smallest.lower), number(smallest.upper)};
-        object["min_force_contact"] = to_string(r.min_force_contact);
+        object["min_force_contact"] = to_string(r.min_force_contact, inspection.truth.dimension);
         object["force_bound"] = number(r.force_bound);
         object["margin"] = number(r.margin);
     }
@@ -151,7 +173,7 @@ void add_inspection(Json& object, const Inspection& inspection) {
     }
     object["min_gap"] = inspection.truth.claims.gaps ? number(r.min_gap) : Json();
     object["min_gap_contact"] = inspection.truth.claims.gaps && std::isfinite(r.min_gap) && r.min_gap_contact.i >= 0
-                                    ? Json(to_string(r.min_gap_contact))
+                                    ? Json(to_string(r.min_gap_contact, inspection.truth.dimension))
                                     : Json();
     object["verdict"] = to_string(r.verdict);
     object["stable"] = to_string(inspection.stable);
@@ -161,7 +183,7 @@ void add_inspection(Json& object, const Inspection& inspection) {
 /// The forces one by one, when a load was asked for.
 void print_forces_at(const InspectArguments& arguments, const State& state, const Certification& truth) {
     for (std::size_t l = 0; arguments.at && l < truth.finite.size(); ++l) {
-        say("force {:<18} {}\n", to_string(state.contacts[l]),
+        say("force {:<18} {}\n", to_string(state.contacts[l], state.packing.dimension),
             with_bound(truth.finite[l].lower, truth.finite[l].upper));
     }
 }
@@ -169,7 +191,8 @@ void print_forces_at(const InspectArguments& arguments, const State& state, cons
 Json forces_json(const State& state, const Certification& truth) {
     Json out = Json::array();
     for (std::size_t l = 0; l < truth.finite.size(); ++l) {
-        out.push_back({to_string(state.contacts[l]), number(truth.finite[l].lower), number(truth.finite[l].upper)});
+        out.push_back({to_string(state.contacts[l], state.packing.dimension), number(truth.finite[l].lower),
+                       number(truth.finite[l].upper)});
     }
     return out;
 }
@@ -183,7 +206,7 @@ int inspect(const InspectArguments& arguments) {
         }
         return inspect_packing(arguments);
     }
-    StateFile file = read_any_state(arguments.file);
+    StateFile file = read_any_state(arguments.file, Dimensions::any);
     State& state = file.state;
     if (arguments.at) {
         state.load.loaded_stress() = *arguments.at;

@@ -33,12 +33,12 @@ std::pair<double, double> smallest_and_widest(const ForcesClaim& forces) {
     return {smallest, widest};
 }
 
-Json end_json(const LoadEndClaim& end) {
+Json end_json(const LoadEndClaim& end, int dimension) {
     Json object;
     object["unbounded"] = end.unbounded;
     if (!end.unbounded) {
         object["stress"] = {number(end.stress.lower), number(end.stress.upper)};
-        object["opens"] = to_string(end.opens);
+        object["opens"] = to_string(end.opens, dimension);
     }
     return object;
 }
@@ -71,10 +71,10 @@ std::optional<FileForces> compared_forces(const StateFile& file, const Certifica
 
 } // namespace
 
-std::string end_text(const LoadEndClaim& end) {
-    return end.unbounded
-               ? "unbounded"
-               : fmt::format("{} (opens {})", with_bound(end.stress.lower, end.stress.upper), to_string(end.opens));
+std::string end_text(const LoadEndClaim& end, int dimension) {
+    return end.unbounded ? "unbounded"
+                         : fmt::format("{} (opens {})", with_bound(end.stress.lower, end.stress.upper),
+                                       to_string(end.opens, dimension));
 }
 
 void print_claims(const Certification& certification) {
@@ -103,15 +103,16 @@ void print_claims(const Certification& certification) {
     }
     if (c.gaps) {
         line("gaps",
-             std::isfinite(c.gaps->smallest) ? fmt::format("all other gaps >= {}, nearest {}",
-                                                           rounded_down(c.gaps->smallest, 6), to_string(c.gaps->where))
-                                             : "there is no other pair",
+             std::isfinite(c.gaps->smallest)
+                 ? fmt::format("all other gaps >= {}, nearest {}", rounded_down(c.gaps->smallest, 6),
+                               to_string(c.gaps->where, certification.dimension))
+                 : "there is no other pair",
              std::string(to_string(c.gaps->rung)));
     }
     if (c.load_interval) {
         const std::string rung(to_string(c.load_interval->rung));
-        line("load interval", "from " + end_text(c.load_interval->low), rung);
-        line("", "to   " + end_text(c.load_interval->high), rung);
+        line("load interval", "from " + end_text(c.load_interval->low, certification.dimension), rung);
+        line("", "to   " + end_text(c.load_interval->high, certification.dimension), rung);
     }
     if (c.stable) {
         line("stable", "strict local minimum of " + certification.potential, "");
@@ -144,12 +145,15 @@ Json claims_json(const Certification& certification) {
                             {"widest_interval", number(widest)},
                             {"rung", to_string(c.forces->rung)}};
     }
-    object["gaps"] = c.gaps ? Json{{"smallest", number(c.gaps->smallest)},
-                                   {"where", std::isfinite(c.gaps->smallest) ? Json(to_string(c.gaps->where)) : Json()},
-                                   {"rung", to_string(c.gaps->rung)}}
-                            : Json();
-    object["load_interval"] = c.load_interval ? Json{{"low", end_json(c.load_interval->low)},
-                                                     {"high", end_json(c.load_interval->high)},
+    object["gaps"] =
+        c.gaps
+            ? Json{{"smallest", number(c.gaps->smallest)},
+                   {"where",
+                    std::isfinite(c.gaps->smallest) ? Json(to_string(c.gaps->where, certification.dimension)) : Json()},
+                   {"rung", to_string(c.gaps->rung)}}
+            : Json();
+    object["load_interval"] = c.load_interval ? Json{{"low", end_json(c.load_interval->low, certification.dimension)},
+                                                     {"high", end_json(c.load_interval->high, certification.dimension)},
                                                      {"rung", to_string(c.load_interval->rung)}}
                                               : Json();
     object["stable"] = c.stable;
@@ -197,13 +201,14 @@ Json true_vertex_json(const Certification& certification) {
 void print_forces_in_file(const StateFile& file, const Certification& truth) {
     if (const auto forces = compared_forces(file, truth)) {
         say("forces in the file       differ from the proved ones by at most {}, in {}\n",
-            rounded_up(forces->difference, 2), to_string(forces->where));
+            rounded_up(forces->difference, 2), to_string(forces->where, truth.dimension));
     }
 }
 
 void add_forces_in_file(Json& object, const StateFile& file, const Certification& truth) {
     if (const auto forces = compared_forces(file, truth)) {
-        object["forces_in_file"] = {{"difference", number(forces->difference)}, {"contact", to_string(forces->where)}};
+        object["forces_in_file"] = {{"difference", number(forces->difference)},
+                                    {"contact", to_string(forces->where, truth.dimension)}};
     }
 }
 

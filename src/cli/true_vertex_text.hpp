@@ -14,7 +14,7 @@ namespace isostat::cli {
 void print_claims(const Certification& certification);
 
 /// One end of the supported interval with its bound, and what opens there.
-std::string end_text(const LoadEndClaim& end);
+std::string end_text(const LoadEndClaim& end, int dimension);
 
 /// The same for programs; null where a claim is absent.
 Json claims_json(const Certification& certification);

@@ -235,6 +235,7 @@ class Disks {
             frame.velocity.clear();
         }
         validate(frame.packing, dump_.where(rows.header.line));
+        require_plane(frame.packing, dump_.where(rows.header.line), "compare");
         frame.rounding = f * rounding_of_gaps(places.rounding(), sides.digits.rounding(),
                                               sizes.rounding() * (manifest_.diameters ? 0.5 : 1),
                                               {2, manifest_.periodic && sides.tilt != 0});

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 
 namespace isostat {
@@ -54,6 +55,7 @@ struct Used {
     double strain = 0;
 
     template <class Moved> Used(const CandidateList& list, const Packing& packing, Moved moved) {
+        assert(packing.dimension == plane); // lists of spheres are not carried along
         const std::vector<double>& from = list.reference;
         const std::size_t disks = 2 * packing.radius.size();
         const Strain affine(from, packing, {moved(disks), moved(disks + 1), moved(disks + 2)});

@@ -1,8 +1,11 @@
 #include "contact/images.hpp"
 
+#include "packing/words.hpp"
+
 #include <isostat/core/error.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -12,29 +15,41 @@ namespace isostat {
 
 namespace {
 
-/// Fractional coordinates of a point along the periodic axes, rounded; 0 along the others.
-std::array<double, 2> fractional(const Packing& packing, double x, double y) {
-    std::array<double, 2> s{};
-    if (packing.cell.periodic[1]) {
-        s[1] = y / packing.lattice(1, 1);
-    }
-    if (packing.cell.periodic[0]) {
-        s[0] = (x - s[1] * packing.lattice(0, 1)) / packing.lattice(0, 0);
+/// A_aa, or 1 along an axis with walls, whose tilts are 0.
+double period_of(const Packing& packing, std::size_t a) {
+    return packing.cell.periodic[a] ? packing.lattice(a, a) : 1;
+}
+
+/// A_ab, or 0 where an axis has walls or is not there.
+double tilt_of(const Packing& packing, std::size_t a, std::size_t b) {
+    return b < packing.axes() && packing.cell.periodic[a] && packing.cell.periodic[b] ? packing.lattice(a, b) : 0;
+}
+
+/// Fractional coordinates of a disk along the periodic axes, rounded; 0 along the others.
+PerAxis<double> fractional(const Packing& packing, int disk) {
+    PerAxis<double> s{};
+    for (std::size_t a = packing.axes(); a-- > 0;) {
+        double rest = packing.cell.periodic[a] ? packing.coordinate(DiskId(disk), static_cast<int>(a)) : 0;
+        for (std::size_t b = a + 1; b < packing.axes(); ++b) {
+            rest -= s[b] * tilt_of(packing, a, b);
+        }
+        s[a] = rest / period_of(packing, a);
     }
     return s;
 }
 
 /// Distance of the two sides of the cell along each periodic axis: 1 / |row of A^-1|.
-std::array<double, 2> heights(const Packing& packing) {
-    const Cell& cell = packing.cell;
-    std::array<double, 2> h{};
-    if (cell.periodic[1]) {
-        h[1] = packing.lattice(1, 1);
+PerAxis<double> heights(const Packing& packing) {
+    const double y = tilt_of(packing, 0, 1) / period_of(packing, 1);
+    PerAxis<double> lean{std::hypot(1, y), 1, 1};
+    if (packing.dimension > plane) {
+        const double height = period_of(packing, 2);
+        lean[0] = std::hypot(1, y, (y * tilt_of(packing, 1, 2) - tilt_of(packing, 0, 2)) / height);
+        lean[1] = std::hypot(1, tilt_of(packing, 1, 2) / height);
     }
-    if (cell.periodic[0]) {
-        const double tilt = packing.lattice(0, 1);
-        const double lean = cell.periodic[1] ? std::hypot(1, tilt / packing.lattice(1, 1)) : 1;
-        h[0] = packing.lattice(0, 0) / lean;
+    PerAxis<double> h{};
+    for (std::size_t a = 0; a < packing.axes(); ++a) {
+        h[a] = packing.cell.periodic[a] ? packing.lattice(a, a) / lean[a] : 0;
     }
     return h;
 }
@@ -52,11 +67,11 @@ Range range_of(double s, double margin) {
 
 /// So many periods apart may disks be whose gap is below `reach`. The rounding of s and of the heights moves an image
 /// by far less than a hundredth of it.
-std::array<double, 2> margin_of(const Packing& packing, double reach) {
+PerAxis<double> margin_of(const Packing& packing, double reach) {
     const double near = 1.01 * (2 * packing.max_radius() + reach);
-    const std::array<double, 2> height = heights(packing);
-    std::array<double, 2> margin{};
-    for (std::size_t a = 0; a < 2; ++a) {
+    const PerAxis<double> height = heights(packing);
+    PerAxis<double> margin{};
+    for (std::size_t a = 0; a < packing.axes(); ++a) {
         margin[a] = packing.cell.periodic[a] ? near / height[a] + 1e-9 : 0;
     }
     return margin;
@@ -76,20 +91,33 @@ double largest_length(const Packing& packing, const Images& images) {
 } // namespace
 
 std::optional<std::string> disk_beyond(const Packing& packing, double reach, double most) {
-    const std::array<double, 2> margin = margin_of(packing, reach);
+    const PerAxis<double> margin = margin_of(packing, reach);
     for (int i = 0; i < packing.disk_count(); ++i) {
-        const auto k = static_cast<std::size_t>(i);
-        const std::array<double, 2> s = fractional(packing, packing.q[2 * k], packing.q[2 * k + 1]);
-        for (std::size_t a = 0; a < 2; ++a) {
+        const PerAxis<double> s = fractional(packing, i);
+        for (std::size_t a = 0; a < packing.axes(); ++a) {
             if (packing.cell.periodic[a] && !(std::abs(s[a]) < most && margin[a] < most - 1)) {
-                return fmt::format("disk {} is {:.3g} periods from the origin and pairs up to {:.3g} periods apart may "
+                return fmt::format("{} {} is {:.3g} periods from the origin and pairs up to {:.3g} periods apart may "
                                    "touch: expected less than {} (put it into the cell, or take a basis of short "
                                    "periods)",
-                                   i, s[a], margin[a], most);
+                                   grain_word(packing.dimension), i, s[a], margin[a], most);
             }
         }
     }
     return std::nullopt;
+}
+
+void Images::add(const Packing& of, int i, const std::array<int, most_axes>& m) {
+    packing.radius.push_back(of.radius[static_cast<std::size_t>(i)]);
+    disk.push_back(i);
+    Image& here = offset.emplace_back();
+    for (std::size_t a = 0; a < of.axes(); ++a) {
+        double shift = 0;
+        for (std::size_t b = a; b < of.axes(); ++b) {
+            shift += m[b] == 0 ? 0 : m[b] * of.lattice(a, b);
+        }
+        packing.q.push_back(of.coordinate(DiskId(i), static_cast<int>(a)) + shift);
+        here.m[a] = static_cast<std::int8_t>(m[a]);
+    }
 }
 
 Contact Images::contact(int a, int b) const {
@@ -105,41 +133,36 @@ Contact Images::contact(int a, int b) const {
 Images images_near_cell(const Packing& packing, double reach) {
     constexpr double most = 1e8;
     Images images;
+    images.packing.dimension = packing.dimension;
     images.packing.walls = Walls::none();
-    const std::array<double, 2> height = heights(packing);
-    const std::array<double, 2> margin = margin_of(packing, reach);
+    const PerAxis<double> margin = margin_of(packing, reach);
     if (const auto beyond = disk_beyond(packing, reach, farthest_disk)) {
         throw Error(ErrorKind::bad_input, *beyond);
     }
-    if (!((1 + 2 * margin[0]) * (1 + 2 * margin[1]) * packing.disk_count() < most)) {
+    if (!((1 + 2 * margin[0]) * (1 + 2 * margin[1]) * (1 + 2 * margin[2]) * packing.disk_count() < most)) {
+        const PerAxis<double> height = heights(packing);
         throw Error(ErrorKind::bad_input,
-                    fmt::format("the cell has heights {:.3g} and {:.3g}, disks up to {:.3g}: more than {:.0g} images "
-                                "are near it; expected a basis of short periods",
-                                height[0], height[1], packing.max_radius(), most));
+                    fmt::format("the cell has heights {:.3g}, {} up to {:.3g}: more than {:.0g} images are near it; "
+                                "expected a basis of short periods",
+                                fmt::join(height.begin(), height.begin() + packing.dimension, ", "),
+                                std::string(grain_word(packing.dimension)) + "s", packing.max_radius(), most));
     }
     for (int i = 0; i < packing.disk_count(); ++i) {
-        const auto k = static_cast<std::size_t>(i);
-        const double x = packing.q[2 * k];
-        const double y = packing.q[2 * k + 1];
-        const std::array<double, 2> s = fractional(packing, x, y);
-        std::array<Range, 2> range;
-        for (std::size_t a = 0; a < 2; ++a) {
+        const PerAxis<double> s = fractional(packing, i);
+        PerAxis<Range> range{};
+        for (std::size_t a = 0; a < packing.axes(); ++a) {
             range[a] = packing.cell.periodic[a] ? range_of(s[a], margin[a]) : Range{};
         }
-        for (int m = range[0].first; m <= range[0].last; ++m) {
-            for (int p = range[1].first; p <= range[1].last; ++p) {
-                images.packing.radius.push_back(packing.radius[k]);
-                images.packing.q.push_back(
-                    x + (packing.cell.periodic[0] ? m * packing.lattice(0, 0) + p * packing.lattice(0, 1) : 0));
-                images.packing.q.push_back(y + (packing.cell.periodic[1] ? p * packing.lattice(1, 1) : 0));
-                images.disk.push_back(i);
-                images.offset.push_back({{static_cast<std::int8_t>(m), static_cast<std::int8_t>(p), 0}});
+        for (int x = range[0].first; x <= range[0].last; ++x) {
+            for (int y = range[1].first; y <= range[1].last; ++y) {
+                for (int z = range[2].first; z <= range[2].last; ++z) {
+                    images.add(packing, i, {x, y, z});
+                }
             }
         }
     }
-    // Each centre: two products and two sums per component, of numbers below 122 times the largest length.
-    images.rounding = 0x1p-42 * largest_length(packing, images);
-    images.packing.q.insert(images.packing.q.end(), {0, 0});
+    images.rounding = 0x1p-40 * largest_length(packing, images); // C3
+    images.packing.q.insert(images.packing.q.end(), packing.axes(), 0);
     return images;
 }
 

@@ -31,6 +31,8 @@ struct Images {
     std::vector<Image> offset; ///< and where it is: x_disk + A offset
     double rounding = 0;       ///< bound of what the rounding of two centres does to a gap
 
+    /// One more: grain i of the packing, m periods away.
+    void add(const Packing& of, int i, const std::array<int, most_axes>& m);
     /// The contact that two of them stand for.
     [[nodiscard]] Contact contact(int a, int b) const;
 };

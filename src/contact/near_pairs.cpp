@@ -3,6 +3,7 @@
 #include "contact/candidates.hpp"
 #include "contact/images.hpp"
 #include "contact/pair_list.hpp"
+#include "contact/regular_edges_in_space.hpp"
 #include "contact/separation.hpp"
 
 #include <algorithm>
@@ -33,8 +34,9 @@ class Gaps {
     explicit Gaps(const Packing& packing) : packing_(packing), plain_(lengths_are_plain(packing.q, packing.radius)) {}
 
     [[nodiscard]] Gap of(const Contact& pair) const {
-        const auto [dx, dy, none] = separation(packing_.layout(), packing_.q, pair);
-        const double distance = plain_ ? std::sqrt(dx * dx + dy * dy) : std::hypot(dx, dy); // slow; error below 1 ulp
+        const auto [dx, dy, dz] = separation(packing_.layout(), packing_.q, pair);
+        const double distance =
+            plain_ ? std::sqrt(dx * dx + dy * dy + dz * dz) : std::hypot(dx, dy, dz); // slow; error below 1 ulp
         const double radii = touching_distance(packing_.radius, pair);
         return {distance - radii, 0x1p-50 * (distance + radii + lengths_of_image(packing_, pair))};
     }
@@ -65,15 +67,18 @@ void sort_pairs(std::vector<Contact>& pairs, std::size_t disk_count) {
 
 } // namespace
 
-std::optional<std::vector<Contact>> near_edges(const Packing& packing, double reach,
-                                               const RegularTriangulation& triangulation) {
+namespace {
+
+/// `for_each_edge(visit)`: visit(i, j), i < j, of a regular triangulation.
+template <class Edges>
+std::optional<std::vector<Contact>> near_among(const Packing& packing, double reach, Edges for_each_edge) {
     const Gaps gaps(packing);
     const double smallest = packing.min_radius();
     const auto share = [&](std::size_t i) { return smallest / packing.radius[i]; };
     std::vector<Contact> pairs;
     pairs.reserve(3 * packing.radius.size());
     bool applies = true;
-    triangulation.for_each_edge([&](int first, int second) {
+    for_each_edge([&](int first, int second) {
         const auto i = static_cast<std::size_t>(first);
         const auto j = static_cast<std::size_t>(second);
         const Contact pair{ContactKind::disk_disk, first, second};
@@ -88,6 +93,22 @@ std::optional<std::vector<Contact>> near_edges(const Packing& packing, double re
     }
     sort_pairs(pairs, packing.radius.size());
     return pairs;
+}
+
+} // namespace
+
+std::optional<std::vector<Contact>> near_edges(const Packing& packing, double reach,
+                                               const RegularTriangulation& triangulation) {
+    return near_among(packing, reach, [&](auto visit) { triangulation.for_each_edge(visit); });
+}
+
+std::optional<std::vector<Contact>> near_edges_in_space(const Packing& packing, double reach) {
+    const auto edges = regular_edges_in_space(packing);
+    return !edges ? std::nullopt : near_among(packing, reach, [&](auto visit) {
+        for (const auto& [i, j] : *edges) {
+            visit(i, j);
+        }
+    });
 }
 
 std::vector<Contact> pairs_within(const Packing& packing, double reach, int most_per_disk) {
@@ -121,6 +142,10 @@ NearPairs near_pairs(const Packing& packing, double reach, const std::shared_ptr
     const bool applies = !packing.cell.any() && reach <= largest_reach * packing.min_radius();
     if (applies && packing.disk_count() > 0 && lengths_are_plain(packing.q, packing.radius) &&
         packing.max_radius() <= largest_ratio * packing.min_radius()) {
+        if (packing.dimension > plane) {
+            auto pairs = near_edges_in_space(packing, reach);
+            return {pairs ? std::move(*pairs) : pairs_within(packing, reach), nullptr};
+        }
         auto triangulation =
             from && from->disk_count() == packing.disk_count() ? Triangulation::carry(from, packing) : nullptr;
         if (!triangulation) {

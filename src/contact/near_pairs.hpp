@@ -32,6 +32,9 @@ NearPairs near_pairs(const Packing& packing, double reach,
 std::optional<std::vector<Contact>> near_edges(const Packing& packing, double reach,
                                                const RegularTriangulation& triangulation);
 
+/// The same of spheres, from a triangulation that is made for the purpose. Empty also where a sphere is hidden.
+std::optional<std::vector<Contact>> near_edges_in_space(const Packing& packing, double reach);
+
 /// The same pairs from the grid: complete without any hypothesis. Throws `Error(bad_input)` when they are more than
 /// `most_per_disk` of each disk.
 std::vector<Contact> pairs_within(const Packing& packing, double reach,

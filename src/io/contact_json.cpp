@@ -107,7 +107,8 @@ Contact contact_of(const Field& field, const Packing& packing) {
         }
         return {lower ? ContactKind::lower_wall : ContactKind::upper_wall, i, static_cast<int>(a)};
     }
-    second.fail("a disk or one of \"left\", \"right\", \"bottom\", \"top\"");
+    second.fail(fmt::format("a grain or one of \"left\", \"right\", \"bottom\", \"top\"{}",
+                            packing.dimension == plane ? "" : ", \"back\", \"front\""));
 }
 
 } // namespace

@@ -93,7 +93,9 @@ void read_moves(const Field& moves, Packing& packing) {
             cell.tilt_moves[t] = cell.tilt_moves[t] || name == tilt_names[t];
         }
         if (!known) {
-            moves.at(k).fail("\"x\", \"y\" (periods), \"xy\" (tilt) or \"scale\" (isotropic)");
+            moves.at(k).fail(packing.dimension == plane
+                                 ? "\"x\", \"y\" (periods), \"xy\" (tilt) or \"scale\" (isotropic)"
+                                 : "periods \"x\" to \"z\", tilts \"xy\", \"xz\", \"yz\", or \"scale\" (isotropic)");
         }
     }
 }
@@ -206,6 +208,7 @@ Load load_of(const Field& document, const Packing& packing) {
     Load load;
     std::fill_n(load.stress.begin(), packing.dimension, 1);
     load.dimension = packing.dimension;
+    load.loaded_axis = packing.dimension - 1;
     load.refer_to(packing);
     if (document.has("load")) {
         const Field field = document.at("load");
@@ -234,11 +237,16 @@ Load load_of(const Field& document, const Packing& packing) {
         }
         if (field.has("loaded_axis")) {
             const long axis = field.at("loaded_axis").integer();
-            const bool tilts = packing.cell.any() && packing.cell.tilt_moves[0];
-            if (axis < 0 || axis >= packing.dimension + (tilts ? 1 : 0)) {
+            const auto& tilts = packing.cell.tilt_moves;
+            const bool any_tilt = packing.cell.any() && std::find(tilts.begin(), tilts.end(), true) != tilts.end();
+            const bool is_tilt = any_tilt && axis >= packing.dimension && axis < packing.dimension + long{most_tilts} &&
+                                 tilts[static_cast<std::size_t>(axis - packing.dimension)];
+            if (!is_tilt && (axis < 0 || axis >= packing.dimension)) {
                 field.at("loaded_axis")
-                    .fail(
-                        fmt::format("an axis from 0 to {}{}", packing.dimension - 1, tilts ? ", or the tilt, 2" : ""));
+                    .fail(fmt::format("an axis from 0 to {}{}", packing.dimension - 1,
+                                      !any_tilt                    ? ""
+                                      : packing.dimension == plane ? ", or the tilt, 2"
+                                                                   : ", or a tilt that moves, from 3 on"));
             }
             load.loaded_axis = static_cast<int>(axis);
         }
@@ -312,9 +320,13 @@ StateFile of_box(StateFile file, const std::string& source) {
 
 } // namespace
 
-StateFile parse_any_state(const std::string& text, const std::string& source) {
+StateFile parse_any_state(const std::string& text, const std::string& source, Dimensions dimensions) {
     const json::Json parsed = Field::parse(text, source);
-    return json::state_from_json(Field(parsed, source), source);
+    StateFile file = json::state_from_json(Field(parsed, source), source);
+    if (dimensions == Dimensions::plane) {
+        require_plane(file.state.packing, source, "this command");
+    }
+    return file;
 }
 
 StateFile parse_state(const std::string& text, const std::string& source) {
@@ -325,11 +337,11 @@ StateFile read_state(const std::filesystem::path& path) {
     return of_box(read_any_state(path), path.string());
 }
 
-StateFile read_any_state(const std::filesystem::path& path) {
+StateFile read_any_state(const std::filesystem::path& path, Dimensions dimensions) {
     const std::string text = read_text(path);
     const std::string_view content = without_byte_order_mark(text);
     if (content[content.find_first_not_of(" \t\r\n")] == '{') {
-        return parse_any_state(text, path.string());
+        return parse_any_state(text, path.string(), dimensions);
     }
     try {
         return {parse_vertex_text(text, path.string()), {}};

@@ -17,24 +17,40 @@ void Load::refer_to(const Packing& packing) {
 }
 
 std::vector<WallForce> Load::wall_forces(const Packing& packing) const {
-    assert(dimension == plane && packing.dimension == plane); // the area that a wall is pressed on is one length
+    assert(dimension == packing.dimension);
     std::vector<WallForce> forces;
     forces.reserve(packing.axes() + packing.tilts());
-    for (int a = 0; a < dimension; ++a) {
-        const int other = 1 - a;
-        const bool follows = kind == LoadKind::true_stress;
-        const int walls = dimension * packing.disk_count();
-        const auto axis = static_cast<std::size_t>(a);
-        if (packing.cell.periodic[axis] ? packing.cell.period_moves[axis]
-                                        : packing.walls.upper[axis] == WallKind::movable) {
-            forces.push_back({walls + a, a, stress[static_cast<std::size_t>(a)],
-                              follows ? packing.length(other) : reference_length[static_cast<std::size_t>(other)],
-                              follows ? walls + other : -1, a == loaded_axis});
+    const std::size_t walls = packing.length_at(0);
+    const bool follows = kind == LoadKind::true_stress;
+    // The stress presses on the lengths of all axes but one.
+    const auto add = [&](std::size_t place, std::size_t axis, double pressure, std::size_t but) {
+        WallForce force;
+        force.coordinate = static_cast<int>(walls + place);
+        force.axis = static_cast<int>(axis);
+        force.stress = pressure;
+        force.loaded = static_cast<int>(place) == loaded_axis;
+        const auto times = [&](std::size_t along, double& length, int& at) {
+            length = follows ? packing.q[walls + along] : reference_length[along];
+            at = follows ? static_cast<int>(walls + along) : -1;
+        };
+        times(but == 0 ? 1 : 0, force.length, force.length_at);
+        if (dimension > plane) {
+            times(but == 2 ? 1 : 2, force.other, force.other_at);
+        }
+        forces.push_back(force);
+    };
+    for (std::size_t a = 0; a < packing.axes(); ++a) {
+        if (packing.cell.periodic[a] ? packing.cell.period_moves[a] : packing.walls.upper[a] == WallKind::movable) {
+            add(a, a, stress[a], a);
         }
     }
-    assert(!loads_tilt() || (packing.cell.any() && packing.cell.tilt_moves[0]));
-    if (packing.cell.any() && packing.cell.tilt_moves[0]) {
-        forces.push_back({dimension * (packing.disk_count() + 1), 0, shear[0], reference_length[0], -1, loads_tilt()});
+    assert(!loads_tilt() || (packing.cell.any() && packing.cell.tilt_moves[loaded_tilt()]));
+    for (std::size_t b = 1; b < packing.axes() && packing.cell.any(); ++b) {
+        for (std::size_t a = 0; a < b; ++a) {
+            if (const std::size_t t = Cell::tilt(a, b); packing.cell.tilt_moves[t]) {
+                add(packing.axes() + t, a, shear[t], b);
+            }
+        }
     }
     return forces;
 }
@@ -47,7 +63,7 @@ std::vector<int> Load::loaded_rows(const Packing& packing, const DofMap& dofs) c
         }
     }
     for (const WallForce& wall : wall_forces(packing)) {
-        if (!wall.loaded && wall.stress != 0 && wall.length != 0) {
+        if (!wall.loaded && wall.stress != 0 && wall.length * wall.other != 0) {
             rows.push_back(dofs.dof_of(static_cast<std::size_t>(wall.coordinate)));
         }
     }
@@ -56,7 +72,7 @@ std::vector<int> Load::loaded_rows(const Packing& packing, const DofMap& dofs) c
 
 int Load::loaded_wall_row(const Packing& packing, const DofMap& dofs) const {
     for (const WallForce& wall : wall_forces(packing)) {
-        if (wall.loaded && wall.length != 0) {
+        if (wall.loaded && wall.length * wall.other != 0) {
             return dofs.dof_of(static_cast<std::size_t>(wall.coordinate));
         }
     }
@@ -73,7 +89,7 @@ std::vector<double> Load::unit_force(const Packing& packing) const {
     std::vector<double> force(packing.q.size(), 0.0);
     for (const WallForce& wall : wall_forces(packing)) {
         if (wall.loaded) {
-            force[static_cast<std::size_t>(wall.coordinate)] = -wall.length;
+            force[static_cast<std::size_t>(wall.coordinate)] = -(wall.length * wall.other);
         }
     }
     return force;
@@ -84,7 +100,7 @@ std::vector<double> Load::fixed_force(const Packing& packing) const {
     std::copy(disk_force.begin(), disk_force.end(), force.begin());
     for (const WallForce& wall : wall_forces(packing)) {
         if (!wall.loaded) {
-            force[static_cast<std::size_t>(wall.coordinate)] = -(wall.stress * wall.length);
+            force[static_cast<std::size_t>(wall.coordinate)] = -(wall.stress * wall.length * wall.other);
         }
     }
     return force;

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <numbers>
 
@@ -47,12 +46,15 @@ double Packing::max_radius() const {
 }
 
 double Packing::solid_fraction() const {
-    assert(dimension == plane);
-    double area = 0;
+    double grains = 0;
     for (const double r : radius) {
-        area += std::numbers::pi * r * r;
+        grains += dimension == plane ? std::numbers::pi * r * r : 4 * std::numbers::pi / 3 * r * r * r;
     }
-    return area / (length(0) * length(1));
+    double cell_size = 1;
+    for (int a = 0; a < dimension; ++a) {
+        cell_size *= length(a);
+    }
+    return grains / cell_size;
 }
 
 DofMap::DofMap(const Packing& packing)
@@ -87,7 +89,7 @@ std::string DofMap::name(int dof) const {
     const auto coordinate = static_cast<std::size_t>(coordinate_of(dof));
     const std::size_t d = layout_.axes();
     if (coordinate < layout_.of_length(0)) {
-        return fmt::format("{} of disk {}", axis_names[coordinate % d], coordinate / d);
+        return fmt::format("{} of {} {}", axis_names[coordinate % d], grain_word(layout_.dimension), coordinate / d);
     }
     const std::size_t axis = coordinate - layout_.of_length(0);
     return axis >= d         ? fmt::format("tilt {}", tilt_name[axis - d])
@@ -134,12 +136,13 @@ void validate_cell(const Packing& packing, const std::string& source) {
         bad("the cell keeps its shape: expected periodic axes alone, and nothing else that moves");
     }
     if (cell.keeps_shape && !(2 * packing.max_radius() < packing.lattice(0, 0) * (1 - 1e-9))) { // proofs/cells.md, C13
-        bad(fmt::format("the cell keeps its shape and a disk of diameter {} touches its own image along x, {} away: "
+        bad(fmt::format("the cell keeps its shape and a {} of diameter {} touches its own image along x, {} away: "
                         "expected a period along x that is larger",
-                        2 * packing.max_radius(), packing.lattice(0, 0)));
+                        grain_word(packing.dimension), 2 * packing.max_radius(), packing.lattice(0, 0)));
     }
     if (cell.pin < 0 || cell.pin >= packing.disk_count()) {
-        bad(fmt::format("disk {} is pinned: expected one from 0 to {}", cell.pin, packing.disk_count() - 1));
+        bad(fmt::format("{} {} is pinned: expected one from 0 to {}", grain_word(packing.dimension), cell.pin,
+                        packing.disk_count() - 1));
     }
     if (std::find(packing.fixed.begin(), packing.fixed.end(), 1) != packing.fixed.end()) {
         bad("fixed disks in a periodic cell are not supported: expected none (the pinned one says where the origin "
@@ -147,23 +150,37 @@ void validate_cell(const Packing& packing, const std::string& source) {
     }
 }
 
-/// Periods that a disk can meet itself through: the short ones among those of a few cells.
+/// The length of the period A m.
+double period_length(const Packing& packing, const std::array<int, most_axes>& m) {
+    PerAxis<double> period{};
+    for (std::size_t a = 0; a < packing.axes(); ++a) {
+        for (std::size_t b = a; b < packing.axes(); ++b) {
+            period[a] += m[b] == 0 ? 0 : m[b] * packing.lattice(a, b);
+        }
+    }
+    return packing.dimension == plane ? std::hypot(period[0], period[1]) : std::hypot(period[0], period[1], period[2]);
+}
+
+/// Periods that a grain can meet itself through: the short ones among those of a few cells.
 void validate_own_images(const Packing& packing, const std::string& source) {
     constexpr int few = 3;
     const auto largest = std::max_element(packing.radius.begin(), packing.radius.end());
-    for (int x = -few; x <= few; ++x) {
-        for (int y = 0; y <= few; ++y) {
-            const bool there = (x == 0 || packing.cell.periodic[0]) && (y == 0 || packing.cell.periodic[1]);
-            if (!there || (y == 0 && x <= 0)) {
-                continue;
-            }
-            const double period =
-                std::hypot(x * packing.lattice(0, 0) + y * packing.lattice(0, 1), y * packing.lattice(1, 1));
-            if (2 * *largest > period * (1 + 1e-9)) { // beyond rounding: whatever the configuration
-                throw Error(ErrorKind::bad_input,
-                            fmt::format("{}: disk {} of diameter {} overlaps its own image ({}, {}), {} away: expected "
-                                        "a diameter of at most the shortest period",
-                                        source, largest - packing.radius.begin(), 2 * *largest, x, y, period));
+    std::array<int, most_axes> most{};
+    for (std::size_t a = 0; a < packing.axes(); ++a) {
+        most[a] = packing.cell.periodic[a] ? few : 0;
+    }
+    for (int z = 0; z <= most[2]; ++z) {
+        for (int y = z == 0 ? 0 : -most[1]; y <= most[1]; ++y) {
+            for (int x = y == 0 && z == 0 ? 1 : -most[0]; x <= most[0]; ++x) {
+                const double period = period_length(packing, {x, y, z});
+                if (2 * *largest > period * (1 + 1e-9)) { // beyond rounding: whatever the configuration
+                    throw Error(ErrorKind::bad_input,
+                                fmt::format("{}: {} {} of diameter {} overlaps its own image ({}, {}{}), {} away: "
+                                            "expected a diameter of at most the shortest period",
+                                            source, grain_word(packing.dimension), largest - packing.radius.begin(),
+                                            2 * *largest, x, y,
+                                            packing.dimension == plane ? "" : fmt::format(", {}", z), period));
+                }
             }
         }
     }
@@ -177,33 +194,42 @@ void require_box(const Packing& packing, const std::string& source, const std::s
     }
 }
 
+void require_plane(const Packing& packing, const std::string& source, const std::string& what) {
+    if (packing.dimension != plane) {
+        throw Error(ErrorKind::bad_input, fmt::format("{}: a packing of spheres (dimension {}); {} takes disks only so "
+                                                      "far, isostat inspect takes spheres",
+                                                      source, packing.dimension, what));
+    }
+}
+
 void validate(const Packing& packing, const std::string& source) {
     const auto bad = [&](const std::string& what) { throw Error(ErrorKind::bad_input, source + ": " + what); };
-    if ((packing.dimension != 2 && packing.dimension != 3) || packing.cell.dimension != packing.dimension) {
-        bad(fmt::format("dimension {}: Isostat has disks only, dimension 2; spheres are not written yet",
-                        packing.dimension));
+    if (packing.dimension < plane || packing.axes() > most_axes || packing.cell.dimension != packing.dimension) {
+        bad(fmt::format("dimension {}, of the cell {}: expected 2 (disks) or 3 (spheres), the same of both",
+                        packing.dimension, packing.cell.dimension));
     }
+    const char* const grain = grain_word(packing.dimension);
     if (packing.radius.empty()) {
-        bad("no disks: a packing needs at least one disk");
+        bad(fmt::format("no {0}s: a packing needs at least one {0}", grain));
     }
     if (packing.q.size() != packing.coordinate_count()) {
-        bad(fmt::format("{} coordinates for {} disks: expected {}", packing.q.size(), packing.radius.size(),
+        bad(fmt::format("{} coordinates for {} {}s: expected {}", packing.q.size(), packing.radius.size(), grain,
                         packing.coordinate_count()));
     }
     if (!packing.fixed.empty() && packing.fixed.size() != packing.radius.size()) {
-        bad(fmt::format("{} flags 'fixed' for {} disks", packing.fixed.size(), packing.radius.size()));
+        bad(fmt::format("{} flags 'fixed' for {} {}s", packing.fixed.size(), packing.radius.size(), grain));
     }
     for (std::size_t i = 0; i < packing.radius.size(); ++i) {
         const double r = packing.radius[i];
         if (!(r >= shortest_length && r <= longest_length)) {
-            bad(fmt::format("radius of disk {} is {}: expected a positive finite number from {} to {}", i, r,
+            bad(fmt::format("radius of {} {} is {}: expected a positive finite number from {} to {}", grain, i, r,
                             shortest_length, longest_length));
         }
         for (std::size_t a = 0; a < packing.axes(); ++a) {
             const double x = packing.q[packing.axes() * i + a];
             if (!(std::abs(x) <= longest_length)) {
-                bad(fmt::format("{} of disk {} is {}: expected a finite number of size at most {}", axis_names[a], i, x,
-                                longest_length));
+                bad(fmt::format("{} of {} {} is {}: expected a finite number of size at most {}", axis_names[a], grain,
+                                i, x, longest_length));
             }
         }
     }
@@ -226,7 +252,7 @@ void validate(const Packing& packing, const std::string& source) {
         for (std::size_t i = 0; i < packing.radius.size(); ++i) {
             // 2R > L beyond one rounding of L: the disk cannot fit, whatever the configuration.
             if (2 * packing.radius[i] > length * (1 + 1e-9)) {
-                bad(fmt::format("disk {} of diameter {} is larger than the box: its length along {} is {}", i,
+                bad(fmt::format("{} {} of diameter {} is larger than the box: its length along {} is {}", grain, i,
                                 2 * packing.radius[i], axis_names[a], length));
             }
         }
@@ -246,8 +272,8 @@ double grid_step(const Packing& packing) {
     if (mantissa == 0.5) {
         --exponent; // an exact power of two is its own bound
     }
-    // |x_j - x_i| + |A m| stays below 2^53 steps for |m_a| <= 3 (proofs/cells.md, C2).
-    const int coarser = packing.cell.any() ? 2 : 0;
+    // |x_j - x_i| + |A m| stays below 2^53 steps for |m_a| <= 3 (proofs/cells.md, C2): 8 lengths, in space 11.
+    const int coarser = packing.cell.any() ? packing.dimension : 0;
     return std::ldexp(1.0, exponent - 52 + coarser);
 }
 

@@ -13,4 +13,9 @@ inline constexpr std::array load_kind_words{"nominal", "true"};            ///< 
 inline constexpr std::array axis_names{"x", "y", "z"};
 inline constexpr std::array tilt_names{"xy", "xz", "yz"};
 
+/// What a grain is called.
+constexpr const char* grain_word(int dimension) {
+    return dimension == plane ? "disk" : "sphere";
+}
+
 } // namespace isostat

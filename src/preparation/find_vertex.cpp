@@ -75,6 +75,7 @@ void require_sensible(const Packing& start, const PreparationOptions& options) {
         checked.length(a) = start.length(a) > 0 ? std::max(start.length(a), 2 * start.max_radius()) : start.length(a);
     }
     validate(checked, "start of the linear programmes");
+    require_plane(checked, "start of the linear programmes", "preparation");
     const auto is_fixed = [](unsigned char flag) { return flag != 0; };
     const Cell& cell = start.cell;
     bool gives_way = std::none_of(start.fixed.begin(), start.fixed.end(), is_fixed);

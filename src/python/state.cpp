@@ -116,6 +116,7 @@ Packing packing_of(const py::array_t<double, py::array::c_style | py::array::for
         packing.walls.upper[a] = wall_kind(upper[a]);
     }
     validate(packing, "Packing");
+    require_plane(packing, "Packing", "the module");
     return packing;
 }
 
@@ -216,11 +217,14 @@ void bind_state_class(py::module_& module) {
         module, "State",
         "A packing with its contacts and its load. It does not change; arrays are read-only views of its memory.");
     state
-        .def_static("read", &read_any_state, py::arg("path"), py::call_guard<py::gil_scoped_release>(),
-                    "Reads a state file or a plain vertex text. Raises BadInput with file, field, value.")
-        .def_static("parse", &parse_any_state, py::arg("text"), py::arg("source") = "State",
-                    py::call_guard<py::gil_scoped_release>(),
-                    "Reads a state from the text of a file; `source` begins messages.")
+        .def_static(
+            "read", [](const std::filesystem::path& path) { return read_any_state(path); }, py::arg("path"),
+            py::call_guard<py::gil_scoped_release>(),
+            "Reads a state file or a plain vertex text. Raises BadInput with file, field, value.")
+        .def_static(
+            "parse", [](const std::string& text, const std::string& source) { return parse_any_state(text, source); },
+            py::arg("text"), py::arg("source") = "State", py::call_guard<py::gil_scoped_release>(),
+            "Reads a state from the text of a file; `source` begins messages.")
         .def(
             "text", [](const PyState& self) { return state_text(self.state, self.forces); },
             "The JSON text of the state file.")

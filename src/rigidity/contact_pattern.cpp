@@ -143,13 +143,13 @@ ContactPattern::ContactPattern(const Packing& packing, const DofMap& dofs, const
         const auto of = [&](int disk, int axis) {
             return level[packing.layout().of_disk(disk) + static_cast<std::size_t>(axis)];
         };
-        const auto vanishes = [&](int axis) { // of a tilt: 0, what it moves along (packing.dimension = 2)
+        const auto vanishes = [&](int axis) {
             return contact.kind == ContactKind::disk_disk && !level.empty() && of(contact.i, axis) != 0 &&
                    of(contact.i, axis) == of(contact.j, axis) && !is_displaced(contact, axis);
         };
-        Separation(contact, packing.layout()).for_each_coordinate([&](std::size_t coordinate, std::size_t, int) {
+        Separation(contact, packing.layout()).for_each_coordinate([&](std::size_t coordinate, std::size_t axis, int) {
             const int mu = pinned.row(coordinate);
-            if (mu >= 0 && !vanishes(static_cast<int>(coordinate) % packing.dimension)) {
+            if (mu >= 0 && !vanishes(static_cast<int>(axis))) {
                 parts.row.push_back(mu);
             }
         });

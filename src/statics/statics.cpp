@@ -5,6 +5,7 @@
 #include <qd/dd_real.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace isostat {
@@ -30,6 +31,7 @@ Statics::Statics(const Packing& packing, const Load& load, const IsostaticStruct
         return std::vector<double>(x.begin(), x.end());
     };
     LoadTerms now{{}, follows ? stress * (1 + 4 * u) : 0};
+    assert(packing.dimension == plane); // products of two stored numbers
     for (const WallForce& wall : load.wall_forces(packing)) {
         now.products.push_back({dofs.dof_of(static_cast<std::size_t>(wall.coordinate)), wall.stress, wall.length});
     }

@@ -30,6 +30,7 @@ struct ForceSigns {
 
 /// Claims, and what became of the others.
 struct Certification {
+    int dimension = 2; ///< of the grains
     CertificateClaims claims;
     /// `proved`: every claim is there, so the true vertex is an isostatic, stable equilibrium without overlap.
     /// `refuted`: one of them is proved to be wrong (`refuted` says which). `undecided`: neither.
@@ -47,6 +48,9 @@ struct Certification {
                                ///< vertex; 0: none
 };
 
+/// Of disks and of spheres: where a statement counts roundings or axes differently in space, its page says both
+/// (proofs/status.md).
+///
 /// Proves what it can of `state` with its coordinates exactly as they are stored (they are not put on the grid):
 /// 1. counting: exact rank of the contact matrix of the stored coordinates (T4; where the rank mod p is not full and
 ///    the matrix is small, a kernel checked in rationals);

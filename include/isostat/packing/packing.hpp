@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// The grains and where they are: disks (dimension 2; `validate` refuses spheres, which nothing computes yet), flat
-/// walls normal to the axes, and axes that repeat; and the load: F_ext = F_fixed + sigma_loaded * F_unit, plus
+/// The grains and where they are: disks (dimension 2) or spheres (3, taken by `inspect` and `import`), flat walls
+/// normal to the axes, and axes that repeat; and the load: F_ext = F_fixed + sigma_loaded * F_unit, plus
 /// infinitesimal loads eps*g.
 
 #include <isostat/core/contact.hpp>
@@ -118,7 +118,7 @@ struct Packing {
     [[nodiscard]] bool is_fixed(DiskId disk) const { return !fixed.empty() && fixed[disk.index()] != 0; }
     [[nodiscard]] double min_radius() const;
     [[nodiscard]] double max_radius() const;
-    /// Sum of the disks' areas (d = 2) over Lx*Ly, the area of box and cell.
+    /// Sum of the grains' areas (d = 2) or volumes (d = 3) over the product of the lengths, the size of box and cell.
     [[nodiscard]] double solid_fraction() const;
 };
 
@@ -155,6 +155,9 @@ class DofMap {
 /// disks that touch through several images are no trouble). `source` (a file name) starts the message.
 void validate(const Packing& packing, const std::string& source);
 
+/// Throws `Error(bad_input)` when the grains are spheres: `what` takes disks only. "FILE: a packing of spheres ..."
+void require_plane(const Packing& packing, const std::string& source, const std::string& what);
+
 /// Throws `Error(bad_input)` when an axis is periodic: `what` takes boxes only. "FILE: a periodic cell; ..."
 void require_box(const Packing& packing, const std::string& source, const std::string& what);
 
@@ -162,8 +165,8 @@ void require_box(const Packing& packing, const std::string& source, const std::s
 /// that is not below any coordinate of a disk or of a wall that is there. Fixed disks and walls stay where they are, on
 /// the grid or not; where all coordinates are on it, their differences are exact. Moves a coordinate by at most half a
 /// grid step (2^-53 of the box); returns the largest such move. Idempotent; commutes with scaling by powers of two.
-/// With periodic axes the grid is four times as coarse, so that x_j - x_i + A m is exact too for |m_a| <= 3, and every
-/// coordinate is rounded: of the pinned grain, and of a cell that does not move.
+/// With periodic axes the grid is four times as coarse, of spheres eight times, so that x_j - x_i + A m is exact too
+/// for |m_a| <= 3, and every coordinate is rounded: of the pinned grain, and of a cell that does not move.
 double snap_to_grid(Packing& packing);
 
 /// Whether `snap_to_grid` would leave every coordinate where it is.
@@ -179,14 +182,16 @@ double grid_step(const Packing& packing);
 enum class LoadKind : unsigned char { nominal, true_stress };
 
 /// The force on the movable wall of one axis, on a moving period or on a moving tilt, in the real numbers: minus
-/// `stress` times `length`, two stored numbers (proofs/definition.md). `external_force` rounds the product; what
-/// decides a sign must not.
+/// `stress` times `length` times `other`, stored numbers (proofs/definition.md). `external_force` rounds the product;
+/// what decides a sign must not.
 struct WallForce {
     int coordinate = 0; ///< of the wall
     int axis = 0;       ///< of a tilt: the one that it moves along
     double stress = 0;
     double length = 0;   ///< of the other axis: the reference length, or under true stresses the present one
     int length_at = -1;  ///< true stresses: the coordinate that is that length; -1: it does not change
+    double other = 1;    ///< in space the length of the third axis: the stress presses on an area
+    int other_at = -1;   ///< as `length_at`
     bool loaded = false; ///< its stress is the one that the programme changes
 };
 
@@ -195,13 +200,14 @@ struct WallForce {
 struct Load {
     int dimension = 2; ///< that of the packing
     LoadKind kind = LoadKind::nominal;
-    PerAxis<double> stress{};           ///< sigma_1, sigma_2 (axis 0, axis 1)
+    PerAxis<double> stress{};           ///< sigma_1, sigma_2 (axis 0, axis 1), in space sigma_3
     PerAxis<double> reference_length{}; ///< L_a at which nominal stress and strain are defined
-    /// Nominal shear stresses on the tilts of a cell that move: the dead force on A_ab is - shear L_a,ref.
+    /// Nominal shear stresses on the tilts of a cell that move: the dead force on A_ab, a < b, is - shear times the
+    /// reference lengths of all axes but b.
     PerTilt<double> shear{};
     /// A_ab of the cell at which the strain of a tilt is 0.
     PerTilt<double> reference_tilt{};
-    /// The axis whose stress the programme changes (sigma_2). `dimension`: that is the shear stress on the tilt. \pre
+    /// The axis whose stress the programme changes (sigma_2). From `dimension` on: the shear stress on that tilt. \pre
     /// it moves.
     int loaded_axis = 1;
     std::vector<double> disk_force;    ///< empty, or d n external forces on the disks
@@ -210,11 +216,13 @@ struct Load {
     [[nodiscard]] bool loads_tilt() const { return loaded_axis >= dimension; }
     /// The stress that the programme changes.
     [[nodiscard]] double loaded_stress() const {
-        return loads_tilt() ? shear[0] : stress[static_cast<std::size_t>(loaded_axis)];
+        return loads_tilt() ? shear[loaded_tilt()] : stress[static_cast<std::size_t>(loaded_axis)];
     }
     [[nodiscard]] double& loaded_stress() {
-        return loads_tilt() ? shear[0] : stress[static_cast<std::size_t>(loaded_axis)];
+        return loads_tilt() ? shear[loaded_tilt()] : stress[static_cast<std::size_t>(loaded_axis)];
     }
+    /// \pre `loads_tilt()`
+    [[nodiscard]] std::size_t loaded_tilt() const { return static_cast<std::size_t>(loaded_axis - dimension); }
     /// The axis whose stress the ratio of a programme is taken over: of a shear, the last one, whose force is F_2:
     /// both act over the same reference length, and their ratio is that of the stresses.
     [[nodiscard]] int other_axis() const { return loads_tilt() || loaded_axis == 0 ? dimension - 1 : 0; }
@@ -249,7 +257,7 @@ struct Load {
             visit(k, disk_force[k]);
         }
         for (const WallForce& wall : wall_forces(packing)) {
-            visit(static_cast<std::size_t>(wall.coordinate), -(wall.stress * wall.length));
+            visit(static_cast<std::size_t>(wall.coordinate), -(wall.stress * wall.length * wall.other));
         }
     }
     /// External force on every coordinate (as many as `Packing::q` has): the same, none left out.

@@ -282,7 +282,7 @@ std::string load_by_default(const ImportArguments& a, const Imported& found) {
 }
 
 std::string grains_of(const Packing& packing) {
-    return packing.dimension == plane ? "disks" : "spheres";
+    return grain_word(packing.dimension) + std::string("s");
 }
 
 std::vector<double> stress_of(const Load& load) {

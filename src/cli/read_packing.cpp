@@ -88,6 +88,12 @@ ForeignOptions options_of(const ForeignArguments& a) {
     return out;
 }
 
+void require_plane_unless(bool spheres, const Packing& packing, const std::string& file) {
+    if (!spheres) {
+        require_plane(packing, file, "this command");
+    }
+}
+
 /// What the doubles of a file of this program leave open of a gap.
 double rounding_of(const Packing& packing) {
     double largest = packing.max_radius();
@@ -128,12 +134,7 @@ ReadPacking read_any_packing(const std::string& file, const ForeignArguments& ar
     const bool own = format == "state" || format == "vertex" || format == "packing";
     if (!own) {
         ForeignPacking foreign = parse_foreign(text, file, options);
-        if (foreign.packing.dimension != 2 && !arguments.spheres) {
-            throw Error(ErrorKind::bad_input,
-                        fmt::format("{}: a packing of spheres, as z differs: expected one of disks, which this command "
-                                    "takes only so far (isostat import takes spheres)",
-                                    file));
-        }
+        require_plane_unless(arguments.spheres, foreign.packing, file);
         return {std::move(foreign.packing), std::move(foreign.format), std::move(foreign.notes), std::move(foreign.ids),
                 foreign.rounding};
     }
@@ -156,6 +157,7 @@ ReadPacking read_any_packing(const std::string& file, const ForeignArguments& ar
                                           : parse_state(text, file).state;
     ReadPacking out{
         state.packing, format, {}, {}, std::max(rounding_of(state.packing), compare::imported_rounding(state))};
+    require_plane_unless(arguments.spheres, state.packing, file);
     out.notes.emplace_back("the contact list of the file is not used");
     return out;
 }

@@ -72,9 +72,7 @@ Packing read_any(const std::filesystem::path& path, const std::string& walls,
         options.size = SizeStatement{SizeMeaning::diameter, diameter, 0};
     }
     Packing packing = read_foreign(path, options).packing;
-    if (packing.dimension != 2) {
-        throw Error(ErrorKind::bad_input, path.string() + ": a packing of spheres, as z differs: expected disks");
-    }
+    require_plane(packing, path.string(), "read_packing");
     return packing;
 }
 

@@ -92,6 +92,8 @@ int verify(const VerifyArguments& arguments);
 struct ForeignArguments {
     std::string format, radius, diameter, walls, box, columns, select;
     std::string frame = "last";
+    std::optional<int> dimension;
+    bool spheres = false; ///< the command takes them
     bool periodic = false, not_periodic = false;
     bool walls_unless_periodic = false; ///< `walls` were not stated
     bool cells = false;                 ///< the command takes periodic cells

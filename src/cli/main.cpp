@@ -289,16 +289,23 @@ Examples: isostat verify certificate.json --input state.json
                "COLUMN|NUMBER");
         option(command, "--diameter", a.diameter, "the same for diameters", "COLUMN|NUMBER")->excludes("--radius");
         option(command, "--walls", a.walls,
-               "none; box: left and bottom fixed, right and top movable; fixed: all four (default: none for files of "
-               "other programs)",
+               "none; box: left and bottom (of spheres the lower ones) fixed, the others movable; fixed: all (default: "
+               "none for files of other programs)",
                CLI::IsMember({"none", "box", "fixed"}));
-        option(command, "--box", a.box, "positions of the walls instead of the bounds in the file", "XLO:XHI,YLO:YHI");
+        option(command, "--box", a.box,
+               "positions of the walls instead of the bounds in the file (spheres: ,ZLO:ZHI too); with --periodic the "
+               "periods, of a file without bounds",
+               "XLO:XHI,YLO:YHI");
+        option(command, "--dimension", a.dimension,
+               "2: disks; 3: spheres (default: spheres where the file has a z that is not the same for all)",
+               CLI::IsMember({2, 3}));
         option(command, "--frame", a.frame, "of a file with several, from 0 (default: last)", "NUMBER|last");
         option(command, "--columns", a.columns, "names of the columns of a table without a header; - leaves one out",
                "x,y,r");
         option(command, "--select", a.select, "rows with this value in this column are the disks, e.g. type=1",
                "COLUMN=VALUE");
-        option(command, "--format", a.format, "lammps-data, lammps-dump, xyz, table (default: from the content)");
+        option(command, "--format", a.format,
+               "lammps-data, lammps-dump, xyz, table, centres (default: from the content)");
         command.add_flag("--not-periodic", a.not_periodic,
                          "take periodic boundaries for open ones: contacts across them are not looked for");
         command
@@ -325,6 +332,8 @@ rounded to doubles and keeps its contacts and its load; a vertex text keeps them
 In a periodic cell or a channel: the vertex downhill whatever its contacts, unless --contacts says more.
 Proofs are of the doubles written. Where gaps or forces are below what the digits of the file tell, so that they may be 0 in its
 packing, they are named and the answer is undecided, here and when inspect or certify read the state.
+Spheres: the pairs that touch as the digits of the file tell (or at --threshold) are the contacts, Newton's method goes to their vertex
+where they determine one, and the state is written whatever is proved of it: isostat inspect says more.
 Exit status 0: written and certified; 1: no such equilibrium; 2: undecided.
 Examples: isostat import disks.dump --box 0:15.46,0:14.88 -o start.json
           isostat import disks.dump --box 0:15.46,0:14.88 --contacts pairs.dump --contact-columns 'c_1[1],c_1[2],c_2[2]' -o start.json)");
@@ -340,7 +349,8 @@ Examples: isostat import disks.dump --box 0:15.46,0:14.88 -o start.json
         option(command, "--threshold", a.threshold, "pairs with this gap or less are the contacts",
                ranges::number(-ranges::largest, ranges::largest))
             ->excludes(contacts);
-        option(command, "--stress", a.stress, "sigma_1 and sigma_2 (default 1,1, or those of a state)", "S1,S2");
+        option(command, "--stress", a.stress,
+               "sigma_1 and sigma_2, of spheres sigma_3 too (default: ones, or those of a state)", "S1,S2");
         option(command, "--load", a.load, "nominal: dead wall forces; true: stress x present length",
                CLI::IsMember({"nominal", "true"}));
         option(command, "--seed", a.seed, "of the infinitesimal loads and of the jitter (default 1)",

@@ -34,7 +34,10 @@ struct Evidence {
     [[nodiscard]] const std::vector<Range>& infinitesimal() const;
     std::shared_ptr<const Solver> solver; ///< when square
 
-    [[nodiscard]] std::string name(std::size_t contact) const { return to_string(state.contacts[contact]); }
+    [[nodiscard]] std::string name(std::size_t contact) const { return named(state.contacts[contact]); }
+    [[nodiscard]] std::string named(const Contact& contact) const {
+        return to_string(contact, state.packing.dimension);
+    }
     [[nodiscard]] std::string why_no_inverse() const;
     [[nodiscard]] std::string why_no_vertex() const;
 

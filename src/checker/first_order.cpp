@@ -123,7 +123,7 @@ Range Velocities::gap_rate(const Contact& pair, const Solution& v) const {
     const auto i = static_cast<std::size_t>(pair.i);
     const auto j = static_cast<std::size_t>(pair.j);
     if (pair.kind == ContactKind::disk_disk) {
-        const Row row(pair, e_.problem.disks);
+        const Row row(pair, e_.problem.layout);
         const auto x = separate(row, [&](std::size_t k) { return place(e_.problem, e_.vertex, k); });
         const auto change = separate(row, [&](std::size_t k) { return component(e_.problem, v, k); });
         const Range sum = x[0] * change[0] + x[1] * change[1];
@@ -131,9 +131,7 @@ Range Velocities::gap_rate(const Contact& pair, const Solution& v) const {
         return sum / Range(distance);
     }
     const Range x = component(e_.problem, v, 2 * i + j);
-    return pair.kind == ContactKind::lower_wall
-               ? x
-               : component(e_.problem, v, 2 * static_cast<std::size_t>(e_.problem.disks) + j) - x;
+    return pair.kind == ContactKind::lower_wall ? x : component(e_.problem, v, e_.problem.layout.of_length(j)) - x;
 }
 
 /// |D v|^2: what the velocity adds to F'' of a pair of disks.
@@ -141,7 +139,7 @@ Range Velocities::turning(const Contact& pair, const Solution& v) const {
     if (pair.kind != ContactKind::disk_disk) {
         return Range(Rational(0));
     }
-    const Row row(pair, e_.problem.disks);
+    const Row row(pair, e_.problem.layout);
     const auto [x, y] = separate(row, [&](std::size_t k) { return component(e_.problem, v, k); });
     return x * x + y * y;
 }
@@ -211,7 +209,7 @@ std::vector<Range> FirstOrder::forces(const std::vector<Range>& f0) const {
     }
     if (e_.state.load.kind == LoadKind::true_stress) { // the force of a wall follows the other length
         for (std::size_t a = 0; a < 2; ++a) {
-            const std::size_t wall = 2 * static_cast<std::size_t>(e_.problem.disks);
+            const std::size_t wall = e_.problem.layout.of_length(0);
             add(wall + a, Range(-Rational(e_.state.load.stress[a])) * component(e_.problem, change_, wall + 1 - a));
         }
     }

@@ -23,7 +23,7 @@ double gap_at(const Packing& packing, const std::vector<double>& q, const Contac
         double dx = q[2 * i] - q[2 * j];
         double dy = q[2 * i + 1] - q[2 * j + 1];
         if (!c.image.is_here()) {
-            const Row row(c, packing.disk_count());
+            const Row row(c, packing.layout());
             row.separate(q, 0, dx);
             row.separate(q, 1, dy);
         }
@@ -44,15 +44,15 @@ std::optional<std::vector<Contact>> near_pairs_in_cell(const Packing& packing, c
     const auto margin = [reach](int spread) { return 1.5 * reach * spread; }; // of the fastest of its coordinates
     const double farthest = widest + margin(2 + images.periods(*range));
     std::vector<Placed> places = images.near_cell(*range, farthest);
-    std::sort(places.begin(), places.end(), [](const Placed& a, const Placed& b) { return a.x < b.x; });
+    std::sort(places.begin(), places.end(), [](const Placed& a, const Placed& b) { return a.at[0] < b.at[0]; });
     std::set<Contact> pairs; // one of each
     for (std::size_t p = 0; p < places.size(); ++p) {
-        for (std::size_t k = p + 1; k < places.size() && places[k].x - places[p].x < farthest; ++k) {
-            if ((!places[p].central && !places[k].central) || std::abs(places[k].y - places[p].y) >= farthest) {
+        for (std::size_t k = p + 1; k < places.size() && places[k].at[0] - places[p].at[0] < farthest; ++k) {
+            if ((!places[p].central && !places[k].central) || std::abs(places[k].at[1] - places[p].at[1]) >= farthest) {
                 continue;
             }
             const Contact pair = pair_between(places[p], places[k]);
-            const Row row(pair, packing.disk_count());
+            const Row row(pair, packing.layout());
             if (gap_at(packing, q, pair) < margin(row.spread())) {
                 pairs.insert(pair);
             }

@@ -8,21 +8,26 @@ namespace isostat::checker {
 
 namespace {
 
-/// Force of the wall of an axis per unit stress on it, outwards negative: minus the length of the other axis.
-Range wall_force(const Problem& problem, const State& state, const TrueVertex& vertex, std::size_t axis) {
-    const std::size_t other = 1 - axis;
-    if (state.load.kind == LoadKind::nominal) {
-        return Range(-Rational(state.load.reference_length[other]));
-    }
-    const std::size_t coordinate = 2 * static_cast<std::size_t>(problem.disks) + other;
-    const bool moves = problem.dof_of[coordinate] >= 0;
-    const Rational length = problem.length(vertex.middle[coordinate]);
-    return Range::around(-length, moves ? vertex.radius : Rational(0));
+/// A length and the tilts that lean over it: what is pressed on by the lengths of all other axes.
+std::size_t axis_of(std::size_t place, std::size_t axes) {
+    return place < axes ? place : place == axes ? 1 : 2;
 }
 
-/// On the tilt per unit of shear stress: minus the reference length that it acts on.
-Range tilt_force(const State& state) {
-    return Range(-Rational(state.load.reference_length[0]));
+/// Force on a length, or on a tilt, per unit of its stress, outwards negative: minus the lengths of all axes but its
+/// own. \pre of a tilt: dead loads
+Range force_per_stress(const Problem& problem, const State& state, const TrueVertex& vertex, std::size_t place) {
+    Range force(Rational(-1));
+    for (std::size_t b = 0; b < problem.layout.axes(); ++b) {
+        if (b == axis_of(place, problem.layout.axes())) {
+            continue;
+        }
+        const std::size_t at = problem.layout.of_length(b);
+        force = force * (state.load.kind == LoadKind::nominal
+                             ? Range(Rational(state.load.reference_length[b]))
+                             : Range::around(problem.length(vertex.middle[at]),
+                                             problem.dof_of[at] >= 0 ? vertex.radius : Rational(0)));
+    }
+    return force;
 }
 
 Forces disk_loads(const Problem& problem, const std::vector<double>& per_coordinate) {
@@ -40,16 +45,12 @@ Forces disk_loads(const Problem& problem, const std::vector<double>& per_coordin
 
 Forces finite_load(const Problem& problem, const State& state, const TrueVertex& vertex) {
     Forces load = disk_loads(problem, state.load.disk_force);
-    for (std::size_t a = 0; a < 2; ++a) {
-        const int dof = problem.dof_of[2 * static_cast<std::size_t>(problem.disks) + a];
-        if (dof >= 0) {
-            load[static_cast<std::size_t>(dof)] =
-                Range(Rational(state.load.stress[a])) * wall_force(problem, state, vertex, a);
-        }
-    }
-    if (state.packing.cell.any()) { // on the tilt: the shear stress times the reference length that it acts on
-        if (const int dof = problem.dof_of[state.packing.tilt_at(0, 1)]; dof >= 0) {
-            load[static_cast<std::size_t>(dof)] = Range(Rational(state.load.shear[0])) * tilt_force(state);
+    const std::size_t walls = problem.layout.of_length(0);
+    const std::size_t axes = problem.layout.axes();
+    for (std::size_t place = 0; walls + place < problem.dof_of.size(); ++place) {
+        if (const int dof = problem.dof_of[walls + place]; dof >= 0) {
+            const double stress = place < axes ? state.load.stress[place] : state.load.shear[place - axes];
+            load[at(dof)] = Range(Rational(stress)) * force_per_stress(problem, state, vertex, place);
         }
     }
     return load;
@@ -57,10 +58,9 @@ Forces finite_load(const Problem& problem, const State& state, const TrueVertex&
 
 Forces unit_load(const Problem& problem, const State& state, const TrueVertex& vertex) {
     Forces load(static_cast<std::size_t>(problem.dofs()), Range(Rational(0)));
-    const auto axis = static_cast<std::size_t>(state.load.loaded_axis); // 2: the tilt, whose coordinate follows
-    const int dof = problem.dof_of[2 * static_cast<std::size_t>(problem.disks) + axis];
-    if (dof >= 0) {
-        load[static_cast<std::size_t>(dof)] = axis == 2 ? tilt_force(state) : wall_force(problem, state, vertex, axis);
+    const std::size_t place = at(state.load.loaded_axis); // tilts follow the lengths
+    if (const int dof = problem.dof_of[problem.layout.of_length(place)]; dof >= 0) {
+        load[at(dof)] = force_per_stress(problem, state, vertex, place);
     }
     return load;
 }
@@ -92,7 +92,7 @@ class Balance {
             unknown_.push_back(ceiling_of(-force.lower, shift - problem.fine) - target_.back());
         }
         for (const Row& row : problem.rows) {
-            for (std::size_t a = 0; row.quadratic && a < 2; ++a) {
+            for (std::size_t a = 0; row.quadratic && a < problem.layout.axes(); ++a) {
                 row.separate(vertex.middle, a, difference_.emplace_back());
             }
         }
@@ -154,10 +154,12 @@ class Balance {
         auto difference = difference_.begin();
         for (std::size_t l = 0; l < sought_.size(); ++l) {
             const Row& row = problem_.rows[l];
-            std::array<Integer, 2> products;
-            for (Integer& along : products) {
-                along = row.quadratic ? Integer(*difference++ * sought_[l])
-                                      : shifted_left(sought_[l], problem_.weight_bits);
+            std::array<Integer, most_axes> products;
+            for (std::size_t a = 0; row.quadratic && a < problem_.layout.axes(); ++a) {
+                products[a] = *difference++ * sought_[l];
+            }
+            if (!row.quadratic) {
+                products[row.axis[0]] = shifted_left(sought_[l], problem_.weight_bits);
             }
             for (std::size_t k = 0; k < at(row.count); ++k) {
                 if (const int dof = problem_.dof_of[at(row.coordinate[k])]; dof >= 0) {
@@ -170,7 +172,7 @@ class Balance {
     const Problem& problem_;
     std::vector<Integer> sought_, target_, residual_;
     std::vector<Integer> unknown_;    ///< width of the load
-    std::vector<Integer> difference_; ///< entries of the contacts of two disks, x and y
+    std::vector<Integer> difference_; ///< entries of the contacts of two disks, axis by axis
     Integer blur_;
     long rounding_ = 0; ///< bits of a residual when g is off by some units
 };
@@ -230,21 +232,21 @@ int free_of_others(const Problem& problem, const std::vector<int>& contacts, con
                            [&listed](int l) { return listed[static_cast<std::size_t>(l)]; });
     };
     int count = 0;
-    std::array<int, 2> free_disks{}; // per axis
+    std::array<int, most_axes> free_disks{}; // per axis
     bool on_disks = false;
     for (std::size_t j = 0; j < problem.acting_on.size(); ++j) {
         const bool loaded = load[j].lower != 0 || load[j].upper != 0;
         const int coordinate = problem.coordinate_of[j];
-        const bool of_disk = coordinate < 2 * problem.disks;
+        const bool of_disk = problem.of_disk(coordinate);
         on_disks = on_disks || (loaded && of_disk);
         if (!loaded && free(problem.acting_on[j])) {
             ++count;
-            free_disks[at(coordinate % 2)] += of_disk ? 1 : 0;
+            free_disks[at(coordinate) % problem.layout.axes()] += of_disk ? 1 : 0;
         }
     }
     // The balance of the pinned disk follows from the others; any one of all those of an axis does (C1 in cells.md).
     for (const Problem::Pinned& along : problem.pinned) {
-        count += !on_disks && free(along.acting) && free_disks[along.axis] + 1 < problem.disks ? 1 : 0;
+        count += !on_disks && free(along.acting) && free_disks[along.axis] + 1 < problem.layout.disks ? 1 : 0;
     }
     return count;
 }

@@ -251,14 +251,15 @@ std::optional<std::vector<Contact>> GapCourses::near_images(const Tube& tube, co
     }
     const double slack = 0x1p-48 * (1 + images.periods(*range)) * largest_entry(q);
     std::vector<Placed> places = images.near_cell(*range, farthest + slack);
-    std::sort(places.begin(), places.end(), [](const Placed& a, const Placed& b) { return a.x < b.x; });
+    std::sort(places.begin(), places.end(), [](const Placed& a, const Placed& b) { return a.at[0] < b.at[0]; });
     std::set<Contact> pairs; // one of each
     for (std::size_t p = 0; p < places.size(); ++p) {
         const Placed& one = places[p];
-        for (std::size_t k = p + 1; k < places.size() && places[k].x - one.x <= farthest + slack; ++k) {
+        for (std::size_t k = p + 1; k < places.size() && places[k].at[0] - one.at[0] <= farthest + slack; ++k) {
             const Placed& two = places[k];
             const double near = reach(at(one.disk), at(two.disk)) + slack;
-            if ((one.central || two.central) && two.x - one.x <= near && std::abs(two.y - one.y) <= near) {
+            if ((one.central || two.central) && two.at[0] - one.at[0] <= near &&
+                std::abs(two.at[1] - one.at[1]) <= near) {
                 if (const Contact pair = pair_between(one, two); moving_.takes_part(pair)) {
                     pairs.insert(pair);
                 }

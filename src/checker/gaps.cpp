@@ -16,8 +16,15 @@ bool is_fixed(const Packing& packing, int disk) {
 /// The periods between a disk and its own image move.
 bool own_image_moves(const Packing& packing, const Contact& pair) {
     const Cell& cell = packing.cell;
-    const auto& m = pair.image.m;
-    return (m[0] != 0 && cell.period_moves[0]) || (m[1] != 0 && (cell.period_moves[1] || cell.tilt_moves[0]));
+    bool moves = false;
+    for (std::size_t b = 0; b < packing.axes(); ++b) {
+        bool column = cell.period_moves[b];
+        for (std::size_t a = 0; a < b; ++a) {
+            column = column || cell.tilt_moves[Cell::tilt(a, b)];
+        }
+        moves = moves || (pair.image.m[b] != 0 && column);
+    }
+    return moves;
 }
 
 bool exists_and_moves(const Packing& packing, const Contact& pair) {
@@ -57,23 +64,26 @@ struct Approximation {
         for (const Integer& r : problem.radius) {
             radius.push_back(approximate(r, -largest));
         }
-        // K9: 64 roundings of numbers up to 1, and three radii of the enclosure.
+        // K9: 64 roundings of numbers up to 1, and four radii of the enclosure.
         error = 0x1p-47 + 4 * rounded_up(vertex.radius * power_of_two(-largest - problem.fine));
     }
-    [[nodiscard]] double gap(const Contact& pair, std::size_t disks) const {
+    [[nodiscard]] double gap(const Contact& pair, const Layout& layout) const {
         const auto i = static_cast<std::size_t>(pair.i);
         const auto j = static_cast<std::size_t>(pair.j);
-        if (pair.kind == ContactKind::disk_disk) {
-            double dx = q[2 * i] - q[2 * j];
-            double dy = q[2 * i + 1] - q[2 * j + 1];
-            if (!pair.image.is_here()) {
-                dx -= pair.image.m[0] * q[2 * disks] + pair.image.m[1] * q[2 * disks + 2];
-                dy -= pair.image.m[1] * q[2 * disks + 1];
-            }
-            return std::sqrt(dx * dx + dy * dy) - (radius[i] + radius[j]);
+        const std::size_t of_i = layout.of_disk(pair.i);
+        if (pair.kind != ContactKind::disk_disk) {
+            const double x = q[of_i + j];
+            return (pair.kind == ContactKind::lower_wall ? x : q[layout.of_length(j)] - x) - radius[i];
         }
-        const double x = q[2 * i + j];
-        return (pair.kind == ContactKind::lower_wall ? x : q[2 * disks + j] - x) - radius[i];
+        double square = 0;
+        for (std::size_t a = 0; a < layout.axes(); ++a) {
+            double d = q[of_i + a] - q[layout.of_disk(pair.j) + a];
+            for (std::size_t b = a; b < layout.axes() && !pair.image.is_here(); ++b) {
+                d -= pair.image.m[b] * q[a == b ? layout.of_length(a) : layout.of_tilt(a, b)];
+            }
+            square += d * d;
+        }
+        return std::sqrt(square) - (radius[i] + radius[j]);
     }
 };
 
@@ -82,20 +92,15 @@ Range exact_gap(const Problem& problem, const TrueVertex& vertex, const Contact&
     const auto i = static_cast<std::size_t>(pair.i);
     const auto j = static_cast<std::size_t>(pair.j);
     const std::vector<Integer>& q = vertex.middle;
-    const Row row(pair, problem.disks);
-    const Range blur = Range::around(0, (3 * std::max(2, row.spread()) + 1) / 2 * vertex.radius);
+    const Row row(pair, problem.layout);
+    const Range blur = Range::around(0, 2 * std::max(2, row.spread()) * vertex.radius);
     if (pair.kind == ContactKind::disk_disk) {
-        Integer dx;
-        Integer dy;
-        row.separate(q, 0, dx);
-        row.separate(q, 1, dy);
-        const Integer root = sqrt(Integer(dx * dx + dy * dy));
+        const Integer root = sqrt(row.square(q, problem.layout.axes()));
         const Integer distance = problem.radius[i] + problem.radius[j];
         return Range(problem.length(root - distance), problem.length(root + 1 - distance)) + blur;
     }
-    const Integer& x = q[2 * i + j];
-    const Integer wall =
-        pair.kind == ContactKind::lower_wall ? Integer(0) : q[2 * static_cast<std::size_t>(problem.disks) + j];
+    const Integer& x = q[problem.layout.of_disk(pair.i) + j];
+    const Integer wall = pair.kind == ContactKind::lower_wall ? Integer(0) : q[problem.layout.of_length(j)];
     const Integer gap = (pair.kind == ContactKind::lower_wall ? x : Integer(wall - x)) - problem.radius[i];
     return Range(problem.length(gap)) + blur;
 }
@@ -103,13 +108,13 @@ Range exact_gap(const Problem& problem, const TrueVertex& vertex, const Contact&
 /// Collects the pairs whose approximate gap is nearly the smallest one so far.
 class Collector {
   public:
-    Collector(const State& state, const Approximation& at) : state_(state), at_(at) {
+    Collector(const State& state, const Approximation& at) : state_(state), layout_(state.packing.layout()), at_(at) {
         contacts_.insert(state.contacts.begin(), state.contacts.end());
     }
     /// Pairs with an approximate gap above this are certainly not the nearest.
     [[nodiscard]] double limit() const { return best_ + 4 * at_.error; }
     void offer(const Contact& pair) {
-        const double gap = at_.gap(pair, state_.packing.radius.size());
+        const double gap = at_.gap(pair, layout_);
         if (gap > limit() || !exists_and_moves(state_.packing, pair) || contacts_.contains(pair)) {
             return;
         }
@@ -129,6 +134,7 @@ class Collector {
 
   private:
     const State& state_;
+    Layout layout_;
     const Approximation& at_;
     std::set<Contact> contacts_;
     std::vector<std::pair<double, Contact>> near_;
@@ -152,23 +158,16 @@ std::optional<Contact> overlapping_image(const Problem& problem, const State& st
     if (!images.usable() || !range) {
         return Contact{ContactKind::disk_disk, -1, -1};
     }
-    for (int m = -(*range)[0]; m <= (*range)[0]; ++m) {
-        for (int p = 0; p <= (*range)[1]; ++p) {
-            const Contact pair = pair_of(disk, disk, {{static_cast<std::int8_t>(m), static_cast<std::int8_t>(p), 0}});
-            if (pair.image.is_here() || own_image_moves(state.packing, pair)) {
-                continue;
-            }
-            const Row row(pair, problem.disks);
-            Integer dx;
-            Integer dy;
-            row.separate(problem.stored, 0, dx);
-            row.separate(problem.stored, 1, dy);
-            if (dx * dx + dy * dy < 4 * *widest * *widest) {
-                return pair;
-            }
+    std::optional<Contact> overlap;
+    for_each_image(*range, [&](const Periods& m) {
+        const auto times = [&m](std::size_t a) { return static_cast<std::int8_t>(m[a]); };
+        const Contact pair = pair_of(disk, disk, {{times(0), times(1), times(2)}});
+        if (!pair.image.is_here() && !own_image_moves(state.packing, pair) &&
+            Row(pair, problem.layout).square(problem.stored, problem.layout.axes()) < 4 * *widest * *widest) {
+            overlap = pair;
         }
-    }
-    return {};
+    });
+    return overlap;
 }
 
 } // namespace
@@ -178,13 +177,14 @@ std::optional<Contact> fixed_overlap(const Problem& problem, const State& state)
         return overlapping_image(problem, state);
     }
     std::vector<int> fixed;
-    for (int i = 0; i < problem.disks; ++i) {
+    for (int i = 0; i < problem.layout.disks; ++i) {
         if (is_fixed(state.packing, i)) {
             fixed.push_back(i);
         }
     }
     const std::vector<Integer>& q = problem.stored;
-    const auto coordinate = [&q](int i, std::size_t a) { return q[2 * static_cast<std::size_t>(i) + a]; };
+    const Layout& layout = problem.layout;
+    const auto coordinate = [&](int i, std::size_t a) { return q[layout.of_disk(i) + a]; };
     const auto radius = [&problem](int i) { return problem.radius[static_cast<std::size_t>(i)]; };
     std::sort(fixed.begin(), fixed.end(), [&](int i, int j) { return coordinate(i, 0) < coordinate(j, 0); });
     Integer widest = 0;
@@ -193,9 +193,9 @@ std::optional<Contact> fixed_overlap(const Problem& problem, const State& state)
     }
     for (std::size_t k = 0; k < fixed.size(); ++k) {
         const int i = fixed[k];
-        for (int a = 0; a < 2; ++a) {
+        for (int a = 0; a < layout.dimension; ++a) {
             const auto axis = static_cast<std::size_t>(a);
-            const Integer wall = q[2 * state.packing.radius.size() + axis];
+            const Integer wall = q[layout.of_length(axis)];
             if (state.packing.walls.lower[axis] != WallKind::absent && coordinate(i, axis) < radius(i)) {
                 return Contact{ContactKind::lower_wall, i, a};
             }
@@ -205,14 +205,13 @@ std::optional<Contact> fixed_overlap(const Problem& problem, const State& state)
         }
         for (std::size_t m = k + 1; m < fixed.size(); ++m) {
             const int j = fixed[m];
-            const Integer dx = coordinate(j, 0) - coordinate(i, 0);
-            if (dx >= radius(i) + widest) {
+            if (coordinate(j, 0) - coordinate(i, 0) >= radius(i) + widest) {
                 break;
             }
-            const Integer dy = coordinate(j, 1) - coordinate(i, 1);
+            const Contact pair = pair_of(std::min(i, j), std::max(i, j));
             const Integer sum = radius(i) + radius(j);
-            if (dx * dx + dy * dy < sum * sum) {
-                return Contact{ContactKind::disk_disk, std::min(i, j), std::max(i, j)};
+            if (Row(pair, layout).square(q, layout.axes()) < sum * sum) {
+                return pair;
             }
         }
     }
@@ -226,21 +225,23 @@ bool is_free_pair(const State& state, const Contact& pair) {
 
 namespace {
 
-/// All pairs, one of each being in the cell itself. Sweep along x: a pair whose centres are further apart in x, or in
-/// y, alone cannot be nearer.
+/// All pairs, one of each being in the cell itself. Sweep along x: a pair whose centres are further apart along one
+/// axis alone cannot be nearer.
 void sweep(std::vector<Placed> places, const Approximation& at, double widest, Collector& collector) {
     std::sort(places.begin(), places.end(), [](const Placed& a, const Placed& b) {
-        return a.x < b.x || (a.x == b.x && (a.disk < b.disk || (a.disk == b.disk && a.image < b.image)));
+        return a.at[0] < b.at[0] ||
+               (a.at[0] == b.at[0] && (a.disk < b.disk || (a.disk == b.disk && a.image < b.image)));
     });
     for (std::size_t p = 0; p < places.size(); ++p) {
         const Placed& one = places[p];
         for (std::size_t k = p + 1; k < places.size(); ++k) {
             const Placed& two = places[k];
             const double farthest = widest + collector.limit() + at.error;
-            if (two.x - one.x > farthest) {
+            if (two.at[0] - one.at[0] > farthest) {
                 break;
             }
-            if ((one.central || two.central) && std::abs(two.y - one.y) <= farthest) {
+            if ((one.central || two.central) && std::abs(two.at[1] - one.at[1]) <= farthest &&
+                std::abs(two.at[2] - one.at[2]) <= farthest) {
                 collector.offer(pair_between(one, two));
             }
         }
@@ -248,8 +249,8 @@ void sweep(std::vector<Placed> places, const Approximation& at, double widest, C
 }
 
 void sweep_walls(const Problem& problem, Collector& collector) {
-    for (int i = 0; i < problem.disks; ++i) {
-        for (int a = 0; a < 2; ++a) {
+    for (int i = 0; i < problem.layout.disks; ++i) {
+        for (int a = 0; a < problem.layout.dimension; ++a) {
             collector.offer({ContactKind::lower_wall, i, a});
             collector.offer({ContactKind::upper_wall, i, a});
         }
@@ -261,9 +262,9 @@ std::optional<std::vector<Contact>> nearest_pairs(const Problem& problem, const 
     const double widest = 2 * *std::max_element(at.radius.begin(), at.radius.end());
     if (!state.packing.cell.any()) {
         std::vector<Placed> places;
-        for (int i = 0; i < problem.disks; ++i) {
-            const auto at_x = 2 * static_cast<std::size_t>(i);
-            places.push_back({i, {}, true, at.q[at_x], at.q[at_x + 1]});
+        for (int i = 0; i < problem.layout.disks; ++i) {
+            const auto first = at.q.begin() + static_cast<std::ptrdiff_t>(problem.layout.of_disk(i));
+            std::copy_n(first, problem.layout.dimension, places.emplace_back(Placed{i}).at.begin());
         }
         Collector collector(state, at);
         sweep_walls(problem, collector);
@@ -273,7 +274,7 @@ std::optional<std::vector<Contact>> nearest_pairs(const Problem& problem, const 
     const CellImages images(state.packing, at.q);
     const double error = at.error;
     double reach = 1.25 * widest; // of what is swept: the smallest gap is far below a quarter of that
-    std::optional<std::array<int, 2>> range = images.range(reach);
+    std::optional<Periods> range = images.range(reach);
     while (range && images.usable()) {
         at.error = error * (1 + images.periods(*range)); // K9 with images
         Collector collector(state, at);

@@ -16,82 +16,107 @@ constexpr int most_periods = 16;
 
 Contact pair_between(const Placed& one, const Placed& two) {
     Image m;
-    for (std::size_t a = 0; a < 2; ++a) {
+    for (std::size_t a = 0; a < m.m.size(); ++a) {
         m.m[a] = static_cast<std::int8_t>(two.image.m[a] - one.image.m[a]);
     }
     return pair_of(one.disk, two.disk, m);
 }
 
+double CellImages::lattice(std::size_t a, std::size_t b) const {
+    const auto& periodic = packing_.cell.periodic;
+    return periodic[a] && periodic[b] ? q_[a == b ? packing_.length_at(a) : packing_.tilt_at(a, b)] : a == b ? 1 : 0;
+}
+
 CellImages::CellImages(const Packing& packing, const std::vector<double>& q) : packing_(packing), q_(q) {
-    const auto& periodic = packing.cell.periodic;
-    const double tilt = lattice(0, 1);
-    const double stretch = packing.cell.all() ? std::hypot(1.0, tilt / lattice(1, 1)) : 1;
-    height_ = {lattice(0, 0) / stretch, lattice(1, 1)};
+    const std::size_t axes = packing.axes();
+    for (std::size_t a = 0; a < axes; ++a) { // 1 / |row a of A^-1|
+        PerAxis<double> row{};
+        double square = 0;
+        for (std::size_t b = a; b < axes; ++b) {
+            double rest = a == b ? 1 : 0;
+            for (std::size_t c = a; c < b; ++c) {
+                rest -= row[c] * lattice(c, b);
+            }
+            row[b] = rest / lattice(b, b);
+            square += row[b] * row[b];
+        }
+        height_[a] = packing.cell.periodic[a] ? 1 / std::sqrt(square) : 0;
+    }
     for (std::size_t i = 0; i < packing.radius.size() && usable_; ++i) {
-        std::array<int, 2>& wrap = wraps_.emplace_back();
-        double x = q[2 * i];
-        for (const std::size_t a : {std::size_t{1}, std::size_t{0}}) {
-            if (!periodic[a]) {
-                continue;
+        Periods& wrap = wraps_.emplace_back();
+        PerAxis<double> fraction{};
+        for (std::size_t a = axes; a-- > 0;) {
+            double x = packing.cell.periodic[a] ? q[axes * i + a] : 0;
+            for (std::size_t b = a + 1; b < axes; ++b) {
+                x -= fraction[b] * lattice(a, b);
             }
-            const double fraction = (a == 0 ? x : q[2 * i + 1]) / lattice(a, a);
-            usable_ = usable_ && std::abs(fraction) < farthest_disk;
+            fraction[a] = x / lattice(a, a);
+            usable_ = usable_ && std::abs(fraction[a]) < farthest_disk;
             if (usable_) {
-                wrap[a] = static_cast<int>(std::floor(fraction));
+                wrap[a] = static_cast<int>(std::floor(fraction[a]));
                 farthest_[a] = std::max(farthest_[a], std::abs(wrap[a]));
-                x -= a == 1 ? fraction * tilt : 0; // 0 unless both axes repeat
             }
         }
     }
 }
 
-int CellImages::periods(const std::array<int, 2>& range) const {
-    return 2 * farthest_[0] + range[0] + 2 * farthest_[1] + range[1];
+int CellImages::periods(const Periods& range) const {
+    int sum = 0;
+    for (std::size_t a = 0; a < range.size(); ++a) {
+        sum += 2 * farthest_[a] + range[a];
+    }
+    return sum;
 }
 
-std::vector<Placed> CellImages::places(const std::array<int, 2>& range) const {
-    std::vector<Placed> all;
-    for (std::size_t i = 0; i < wraps_.size(); ++i) {
-        for (int m = -range[0]; m <= range[0]; ++m) {
-            for (int p = -range[1]; p <= range[1]; ++p) {
-                const int along = m - wraps_[i][0];
-                const int across = p - wraps_[i][1];
-                all.push_back(
-                    {static_cast<int>(i),
-                     {{static_cast<std::int8_t>(along), static_cast<std::int8_t>(across), 0}},
-                     m == 0 && p == 0,
-                     q_[2 * i] + along * (packing_.cell.periodic[0] ? lattice(0, 0) : 0) + across * lattice(0, 1),
-                     q_[2 * i + 1] + across * (packing_.cell.periodic[1] ? lattice(1, 1) : 0)});
-            }
+Placed CellImages::placed(std::size_t disk, const Periods& m) const {
+    Placed place{static_cast<int>(disk), {}, m == Periods{}, {}};
+    for (std::size_t b = packing_.axes(); b-- > 0;) {
+        place.at[b] += q_[packing_.axes() * disk + b];
+        const int times = m[b] - wraps_[disk][b];
+        place.image.m[b] = static_cast<std::int8_t>(times);
+        for (std::size_t a = 0; a <= b && times != 0; ++a) {
+            place.at[a] += times * lattice(a, b);
         }
     }
-    return all;
+    return place;
 }
 
-std::vector<Placed> CellImages::near_cell(const std::array<int, 2>& range, double distance) const {
-    std::vector<Placed> all = places(range);
+std::vector<Placed> CellImages::near_cell(const Periods& range, double distance) const {
     constexpr double infinity = std::numeric_limits<double>::infinity();
-    std::array<double, 4> box{infinity, -infinity, infinity, -infinity}; // of the disks in the cell
-    for (const Placed& place : all) {
-        if (place.central) {
-            box = {std::min(box[0], place.x), std::max(box[1], place.x), std::min(box[2], place.y),
-                   std::max(box[3], place.y)};
+    PerAxis<double> from; // of the disks in the cell
+    PerAxis<double> to;
+    from.fill(infinity);
+    to.fill(-infinity);
+    for (std::size_t i = 0; i < wraps_.size(); ++i) {
+        const Placed central = placed(i, {});
+        for (std::size_t a = 0; a < from.size(); ++a) {
+            from[a] = std::min(from[a], central.at[a]);
+            to[a] = std::max(to[a], central.at[a]);
         }
     }
-    std::erase_if(all, [&](const Placed& place) {
-        return place.x < box[0] - distance || place.x > box[1] + distance || place.y < box[2] - distance ||
-               place.y > box[3] + distance;
-    });
-    return all;
+    std::vector<Placed> near;
+    for (std::size_t i = 0; i < wraps_.size(); ++i) {
+        for_each_image(range, [&](const Periods& m) {
+            const Placed place = placed(i, m);
+            bool beyond = false;
+            for (std::size_t a = 0; a < from.size(); ++a) {
+                beyond = beyond || place.at[a] < from[a] - distance || place.at[a] > to[a] + distance;
+            }
+            if (!beyond) {
+                near.push_back(place);
+            }
+        });
+    }
+    return near;
 }
 
 double CellImages::longest() const {
-    return std::max(packing_.cell.periodic[0] ? height_[0] : 0, packing_.cell.periodic[1] ? height_[1] : 0);
+    return *std::max_element(height_.begin(), height_.end());
 }
 
-std::optional<std::array<int, 2>> CellImages::range(double distance) const {
-    std::array<int, 2> found{};
-    for (std::size_t a = 0; a < 2; ++a) {
+std::optional<Periods> CellImages::range(double distance) const {
+    Periods found{};
+    for (std::size_t a = 0; a < packing_.axes(); ++a) {
         if (!packing_.cell.periodic[a]) {
             continue;
         }

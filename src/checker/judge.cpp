@@ -90,9 +90,8 @@ Rational equally_near(const State& state) {
     double largest = 0;
     const Packing& packing = state.packing;
     for (std::size_t k = 0; k < packing.q.size(); ++k) {
-        const std::size_t axis = k % 2;
-        const bool exists =
-            k < 2 * packing.radius.size() || packing.cell.any() || packing.walls.upper[axis] != WallKind::absent;
+        const std::size_t walls = packing.length_at(0);
+        const bool exists = k < walls || packing.cell.any() || packing.walls.upper[k - walls] != WallKind::absent;
         largest = exists ? std::max(largest, std::abs(packing.q[k])) : largest;
     }
     for (const double r : packing.radius) {
@@ -108,7 +107,7 @@ ClaimCheck judge_gaps(const Evidence& evidence, const GapsClaim& claim) {
     if (const auto pair = fixed_overlap(evidence.problem, evidence.state)) {
         return pair->i < 0
                    ? answer(check, Verdict::undecided, too_far)
-                   : answer(check, Verdict::refuted, fmt::format("{} overlap, and cannot move", to_string(*pair)));
+                   : answer(check, Verdict::refuted, fmt::format("{} overlap, and cannot move", evidence.named(*pair)));
     }
     const std::vector<Gap> near = smallest_gaps(evidence.problem, evidence.state, evidence.vertex);
     if (near.empty()) {
@@ -129,19 +128,19 @@ ClaimCheck judge_gaps(const Evidence& evidence, const GapsClaim& claim) {
     const Rational& most = nearest->value.upper;
     check.numbers = {{"smallest_gap", rounded_down(least)}};
     const std::string found =
-        fmt::format("smallest gap in {}, of {}", shown(Range(least, most)), to_string(nearest->pair));
+        fmt::format("smallest gap in {}, of {}", shown(Range(least, most)), evidence.named(nearest->pair));
     if (std::isinf(claim.smallest) || most < Rational(claim.smallest)) {
         return answer(check, Verdict::refuted, fmt::format("{}; claimed >= {:.17g}", found, claim.smallest));
     }
     const Rational room = equally_near(evidence.state);
     if (named == nullptr || named->value.lower > most + room) {
-        return answer(check, Verdict::refuted, fmt::format("{}; claimed of {}", found, to_string(claim.where)));
+        return answer(check, Verdict::refuted, fmt::format("{}; claimed of {}", found, evidence.named(claim.where)));
     }
     if (least >= Rational(claim.smallest) && named->value.upper <= least + room) {
         return answer(check, Verdict::proved, found);
     }
     return answer(check, Verdict::undecided,
-                  fmt::format("{}; claimed >= {:.17g} of {}", found, claim.smallest, to_string(claim.where)));
+                  fmt::format("{}; claimed >= {:.17g} of {}", found, claim.smallest, evidence.named(claim.where)));
 }
 
 /// True stresses: the load is minus the volume times the gradient of sum sigma_a ln L_a (S5) when no disk carries a
@@ -151,10 +150,9 @@ bool has_volume_potential(const Evidence& evidence) {
     if (!std::all_of(state.load.disk_force.begin(), state.load.disk_force.end(), [](double f) { return f == 0; })) {
         return false;
     }
-    for (std::size_t a = 0; a < 2; ++a) {
-        const std::size_t coordinate = 2 * state.packing.radius.size() + a;
+    for (std::size_t a = 0; a < state.packing.axes(); ++a) {
         if (!evidence.vertex.found ||
-            Rational(evidence.problem.length(evidence.vertex.middle[coordinate])) <= evidence.vertex.radius) {
+            evidence.problem.length(evidence.vertex.middle[state.packing.length_at(a)]) <= evidence.vertex.radius) {
             return false;
         }
     }

@@ -45,7 +45,7 @@ struct End {
         const auto found = std::find(evidence.state.contacts.begin(), evidence.state.contacts.end(), claim.opens);
         const auto opens = static_cast<std::size_t>(found - evidence.state.contacts.begin());
         if (opens >= evidence.slopes().size()) {
-            text = to_string(claim.opens) + ", which is no contact";
+            text = evidence.named(claim.opens) + ", which is no contact";
             return Verdict::refuted;
         }
         const Range& slope = evidence.slopes()[opens];

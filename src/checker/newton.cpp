@@ -34,7 +34,7 @@ template <class T> T System::value(const std::vector<T>& q, const Contact& c) co
         return weight_ * (q[i] - held_value(c));
     }
     if (c.kind == ContactKind::disk_disk) {
-        const Row row(c, packing_.disk_count());
+        const Row row(c, packing_.layout());
         T dx = 0;
         T dy = 0;
         row.separate(q, 0, dx);

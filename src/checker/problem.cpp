@@ -45,8 +45,9 @@ std::vector<Known> known_coordinates(const State& state, const std::vector<Integ
                                      const std::vector<Integer>& radius) {
     std::vector<Known> known(stored.size());
     const auto at = [](int index) { return static_cast<std::size_t>(index); };
-    for (std::size_t k = 0; k < 2 * radius.size(); ++k) {
-        if (!state.packing.fixed.empty() && state.packing.fixed[k / 2] != 0) {
+    const Layout layout = state.packing.layout();
+    for (std::size_t k = 0; k < layout.of_length(0); ++k) {
+        if (!state.packing.fixed.empty() && state.packing.fixed[k / layout.axes()] != 0) {
             known[k] = {Known::origin, stored[k]};
         }
     }
@@ -54,10 +55,10 @@ std::vector<Known> known_coordinates(const State& state, const std::vector<Integ
         switch (contact.kind) {
         case ContactKind::disk_disk: break;
         case ContactKind::lower_wall:
-            known[at(2 * contact.i + contact.j)] = {Known::origin, radius[at(contact.i)]};
+            known[layout.of_disk(contact.i) + at(contact.j)] = {Known::origin, radius[at(contact.i)]};
             break;
         case ContactKind::upper_wall:
-            known[at(2 * contact.i + contact.j)] = {Known::upper_wall, radius[at(contact.i)]};
+            known[layout.of_disk(contact.i) + at(contact.j)] = {Known::upper_wall, radius[at(contact.i)]};
             break;
         case ContactKind::held: known[at(contact.i)] = {Known::origin, stored[at(contact.i)]}; break;
         }
@@ -67,15 +68,15 @@ std::vector<Known> known_coordinates(const State& state, const std::vector<Integ
 
 /// Whether a coordinate is a degree of freedom (proofs/definition.md).
 bool moves(const Packing& packing, std::size_t k) {
-    const std::size_t disk = k / 2;
+    const std::size_t disk = k / packing.axes();
     const Cell& cell = packing.cell;
     if (disk < packing.radius.size()) {
-        const bool pinned = disk == static_cast<std::size_t>(cell.pin) && cell.periodic[k % 2];
+        const bool pinned = disk == static_cast<std::size_t>(cell.pin) && cell.periodic[k % packing.axes()];
         return !pinned && (packing.fixed.empty() || packing.fixed[disk] == 0);
     }
-    const std::size_t behind = k - 2 * packing.radius.size();
-    if (behind >= 2) {
-        return cell.tilt_moves[0];
+    const std::size_t behind = k - packing.length_at(0);
+    if (behind >= packing.axes()) {
+        return cell.tilt_moves[behind - packing.axes()];
     }
     return cell.periodic[behind] ? cell.period_moves[behind] : packing.walls.upper[behind] == WallKind::movable;
 }
@@ -83,17 +84,18 @@ bool moves(const Packing& packing, std::size_t k) {
 /// Why the checker does not handle a cell; empty: it does.
 std::string unsupported_cell(const State& state) {
     const Packing& packing = state.packing;
-    if (state.load.kind != LoadKind::nominal && packing.cell.tilt_moves[0]) {
+    const auto& tilts = packing.cell.tilt_moves;
+    if (state.load.kind != LoadKind::nominal && std::find(tilts.begin(), tilts.end(), true) != tilts.end()) {
         return "true stresses in a periodic cell whose tilt moves: not checked";
     }
     for (const std::vector<double>* load : {&state.load.disk_force, &state.load.infinitesimal}) {
-        for (std::size_t a = 0; a < 2; ++a) {
+        for (std::size_t a = 0; a < packing.axes(); ++a) {
             Rational sum = 0;
-            for (std::size_t k = a; k < load->size() && packing.cell.periodic[a]; k += 2) {
+            for (std::size_t k = a; k < load->size() && packing.cell.periodic[a]; k += packing.axes()) {
                 sum += Rational((*load)[k]);
             }
             if (sum != 0) {
-                return "loads on the disks do not sum to 0 along a periodic axis: not checked";
+                return "loads on the grains do not sum to 0 along a periodic axis: not checked";
             }
         }
     }
@@ -102,42 +104,43 @@ std::string unsupported_cell(const State& state) {
 
 } // namespace
 
-Row::Row(const Contact& contact, int disks) {
-    const auto add = [this](int at, int times, int along) {
+Row::Row(const Contact& contact, const Layout& layout) {
+    const auto add = [this](std::size_t at, int times, std::size_t along) {
         const auto k = static_cast<std::size_t>(count++);
-        coordinate[k] = at;
+        coordinate[k] = static_cast<int>(at);
         sign[k] = times;
         axis[k] = static_cast<std::uint8_t>(along);
     };
-    const int behind = 2 * disks;
-    const int i = 2 * contact.i;
+    const auto axis = static_cast<std::size_t>(contact.j);
     if (contact.kind == ContactKind::held) {
-        add(contact.i, 1, 0);
+        add(static_cast<std::size_t>(contact.i), 1, 0);
         return;
     }
     if (contact.kind != ContactKind::disk_disk) {
         const bool lower = contact.kind == ContactKind::lower_wall;
-        add(i + contact.j, lower ? 1 : -1, contact.j);
+        add(layout.of_disk(contact.i) + axis, lower ? 1 : -1, axis);
         if (!lower) {
-            add(behind + contact.j, 1, contact.j);
+            add(layout.of_length(axis), 1, axis);
         }
         return;
     }
     quadratic = true;
-    for (int a = 0; a < 4 && contact.i != contact.j; ++a) {
-        add((a < 2 ? i : 2 * contact.j) + a % 2, a < 2 ? 1 : -1, a % 2);
-    }
-    for (int a = 0; a < 2; ++a) {
-        if (const std::int8_t m = contact.image.m[static_cast<std::size_t>(a)]; m != 0) {
-            add(behind + a, -m, a);
+    for (const int grain : {contact.i, contact.j}) {
+        for (std::size_t a = 0; a < layout.axes() && contact.i != contact.j; ++a) {
+            add(layout.of_disk(grain) + a, grain == contact.i ? 1 : -1, a);
         }
     }
-    if (contact.image.m[1] != 0) { // the tilt moves the images along the second axis sideways
-        add(behind + 2, -contact.image.m[1], 0);
+    for (std::size_t b = 0; b < layout.axes(); ++b) {
+        if (const std::int8_t m = contact.image.m[b]; m != 0) {
+            add(layout.of_length(b), -m, b);
+            for (std::size_t a = 0; a < b; ++a) { // the tilts move the images along an axis sideways
+                add(layout.of_tilt(a, b), -m, a);
+            }
+        }
     }
 }
 
-Structure::Structure(const Packing& packing, const std::vector<Contact>& contacts) {
+Structure::Structure(const Packing& packing, const std::vector<Contact>& contacts) : layout(packing.layout()) {
     dof_of.assign(packing.q.size(), -1);
     for (std::size_t k = 0; k < packing.q.size(); ++k) {
         if (moves(packing, k)) {
@@ -146,7 +149,7 @@ Structure::Structure(const Packing& packing, const std::vector<Contact>& contact
         }
     }
     for (const Contact& contact : contacts) {
-        rows.emplace_back(contact, packing.disk_count());
+        rows.emplace_back(contact, layout);
     }
     double mean = 0;
     for (const double r : packing.radius) {
@@ -159,19 +162,20 @@ namespace {
 
 /// Why a contact is not one of the packing, or is none; empty: nothing.
 std::string unsupported_contact(const Packing& packing, const Contact& contact) {
+    const auto name = [&] { return to_string(contact, packing.dimension); };
     for (std::size_t a = 0; a < contact.image.m.size(); ++a) {
-        if (contact.image.m[a] != 0 && (a >= 2 || !packing.cell.periodic[a])) {
-            return "the contact " + to_string(contact) + " is with an image along an axis with walls";
+        if (contact.image.m[a] != 0 && !packing.cell.periodic[a]) {
+            return "the contact " + name() + " is with an image along an axis with walls";
         }
     }
     if (contact.kind == ContactKind::held) {
-        return "the state has a " + to_string(contact) + ", which is no contact: not checked";
+        return "the state has a " + name() + ", which is no contact: not checked";
     }
     const auto axis = static_cast<std::size_t>(contact.j);
     const bool lower = contact.kind == ContactKind::lower_wall;
     if (contact.kind != ContactKind::disk_disk &&
         (lower ? packing.walls.lower : packing.walls.upper)[axis] == WallKind::absent) {
-        return "there is no wall for the contact " + to_string(contact);
+        return "there is no wall for the contact " + name();
     }
     return {};
 }
@@ -181,7 +185,6 @@ std::string unsupported_contact(const Packing& packing, const Contact& contact) 
 Problem::Problem(const State& state, bool held_allowed, int asked)
     : Structure(state.packing, state.contacts), digits(asked) {
     const Packing& packing = state.packing;
-    disks = packing.disk_count();
     if (packing.cell.any()) {
         unsupported = unsupported_cell(state);
         if (!unsupported.empty()) {
@@ -231,9 +234,9 @@ Problem::Problem(const State& state, bool held_allowed, int asked)
 
 void Problem::find_contacts_of(const State& state) {
     const std::vector<Known> known = known_coordinates(state, stored, radius);
-    const auto level = [&known](const Contact& pair, const Row& row, std::size_t a) {
-        const Known& at_i = known[2 * static_cast<std::size_t>(pair.i) + a];
-        const Known& at_j = known[2 * static_cast<std::size_t>(pair.j) + a];
+    const auto level = [this, &known](const Contact& pair, const Row& row, std::size_t a) {
+        const Known& at_i = known[layout.of_disk(pair.i) + a];
+        const Known& at_j = known[layout.of_disk(pair.j) + a];
         return at_i.from != Known::nothing && at_i.from == at_j.from && at_i.value == at_j.value &&
                row.spread(a) == 2; // no period is in between
     };
@@ -242,11 +245,9 @@ void Problem::find_contacts_of(const State& state) {
     std::vector<unsigned long> change(coordinate_of.size(), 0);
     for (std::size_t l = 0; l < rows.size(); ++l) {
         const Row& row = rows[l];
-        const std::array<int, 2> spread{row.spread(0), row.spread(1)};
-        row_curvature_ =
-            row.quadratic
-                ? std::max(row_curvature_, static_cast<unsigned long>(spread[0] * spread[0] + spread[1] * spread[1]))
-                : row_curvature_;
+        const std::array<int, most_axes> spread{row.spread(0), row.spread(1), row.spread(2)};
+        const int curvature = spread[0] * spread[0] + spread[1] * spread[1] + spread[2] * spread[2];
+        row_curvature_ = std::max(row_curvature_, row.quadratic ? static_cast<unsigned long>(curvature) : 0UL);
         for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
             const int dof = dof_of[static_cast<std::size_t>(row.coordinate[k])];
             if (dof < 0) {
@@ -285,12 +286,12 @@ int most_touched_of(const std::vector<Contact>& contacts, int disks) {
 void Problem::find_pinned(const State& state) {
     const Cell& cell = state.packing.cell;
     const bool holds = std::any_of(state.contacts.begin(), state.contacts.end(),
-                                   [this](const Contact& c) { return c.kind == ContactKind::held && c.i < 2 * disks; });
-    for (std::size_t a = 0; a < 2 && !holds; ++a) {
+                                   [this](const Contact& c) { return c.kind == ContactKind::held && of_disk(c.i); });
+    for (std::size_t a = 0; a < layout.axes() && !holds; ++a) {
         if (!cell.periodic[a]) {
             continue;
         }
-        most_touched = most_touched < 0 ? most_touched_of(state.contacts, disks) : most_touched;
+        most_touched = most_touched < 0 ? most_touched_of(state.contacts, layout.disks) : most_touched;
         Pinned& along = pinned.emplace_back(Pinned{a, {}});
         for (std::size_t l = 0; l < rows.size(); ++l) {
             const Contact& c = state.contacts[l];
@@ -322,7 +323,7 @@ std::vector<Integer> Problem::twice_residuals(const std::vector<Integer>& q) con
         Integer& value = residuals.emplace_back();
         if (row.quadratic) {
             mpz_neg(value.get_mpz_t(), sum_square[l].get_mpz_t());
-            for (const std::size_t a : {std::size_t{0}, std::size_t{1}}) {
+            for (std::size_t a = 0; a < layout.axes(); ++a) {
                 row.separate(q, a, difference);
                 mpz_addmul(value.get_mpz_t(), difference.get_mpz_t(), difference.get_mpz_t());
             }

@@ -18,15 +18,15 @@ namespace isostat::checker {
 /// - x_j - A m has d_a = sum of `sign` times coordinate over the entries of axis a, and the entries of the row are
 /// `sign` times d_axis; for walls they are +-weight on the coordinates, independent of the configuration.
 struct Row {
-    static constexpr std::size_t most = 7; ///< two disks and the three entries of a cell
+    static constexpr std::size_t most =
+        2 * most_axes + most_axes + most_tilts; ///< two grains and the entries of a cell
     bool quadratic = false;
     int count = 0;
-    std::array<int, most>
-        coordinate{};             ///< quadratic: x_i, y_i, x_j, y_j, then the cell; of an own image the cell alone
-    std::array<int, most> sign{}; ///< of the cell -m_b
+    std::array<int, most> coordinate{}; ///< quadratic: those of i, of j, then the cell; of an own image the cell alone
+    std::array<int, most> sign{};       ///< of the cell -m_b
     std::array<std::uint8_t, most> axis{};
 
-    Row(const Contact& contact, int disks);
+    Row(const Contact& contact, const Layout& layout);
     /// d_a of anything that has one number per coordinate. \pre quadratic
     template <class Number> void separate(const std::vector<Number>& of, std::size_t a, Number& d) const {
         d = 0;
@@ -52,7 +52,17 @@ struct Row {
         }
         return sum;
     }
-    [[nodiscard]] int spread() const { return std::max(spread(0), spread(1)); }
+    [[nodiscard]] int spread() const { return std::max({spread(0), spread(1), spread(2)}); }
+    /// |d|^2: of anything as `separate`.
+    template <class Number> [[nodiscard]] Number square(const std::vector<Number>& of, std::size_t axes) const {
+        Number sum = 0;
+        Number d;
+        for (std::size_t a = 0; a < axes; ++a) {
+            separate(of, a, d);
+            sum += d * d;
+        }
+        return sum;
+    }
 };
 
 /// `Problem::digits` when more are not asked for.
@@ -66,6 +76,7 @@ inline constexpr int most_digits = 1280;
 /// Which coordinates move, and what each contact depends on.
 struct Structure {
     Structure(const Packing& packing, const std::vector<Contact>& contacts);
+    Layout layout;                  ///< of the coordinates
     std::vector<int> dof_of;        ///< per coordinate: its degree of freedom, or -1
     std::vector<int> coordinate_of; ///< per degree of freedom
     std::vector<Row> rows;          ///< per contact
@@ -82,7 +93,6 @@ class Problem : public Structure {
 
     /// Empty, or why this state is outside what the checker handles.
     std::string unsupported;
-    int disks = 0;
     std::vector<Integer> sum;        ///< per contact: R_i + R_j, or R of the disk at a wall
     std::vector<Integer> sum_square; ///< of two disks
     std::vector<Integer> stored;     ///< coordinates
@@ -104,10 +114,13 @@ class Problem : public Structure {
     int digits;           ///< bits beyond the stored ones in which the true vertex is sought
     long weight_bits = 0; ///< the weight of walls is 2^weight_bits units
 
+    [[nodiscard]] bool of_disk(int coordinate) const {
+        return static_cast<std::size_t>(coordinate) < layout.of_length(0);
+    }
     [[nodiscard]] int dofs() const { return static_cast<int>(coordinate_of.size()); }
     [[nodiscard]] int contacts() const { return static_cast<int>(rows.size()); }
     /// K1 (b): a row times a vector changes by at most this, times the distance, times the largest component. 8 in a
-    /// box.
+    /// box, of spheres 12.
     [[nodiscard]] unsigned long row_curvature() const { return row_curvature_; }
     /// K2: the magnitudes of a column change together by at most this times the distance: in a box twice the most
     /// contacts of two disks that touch one degree of freedom.

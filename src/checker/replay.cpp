@@ -99,7 +99,7 @@ Range Place::coordinate(std::size_t k) const {
 }
 
 Range Place::length(int axis) const {
-    return coordinate(2 * static_cast<std::size_t>(evidence->problem.disks) + static_cast<std::size_t>(axis));
+    return coordinate(evidence->problem.layout.of_length(static_cast<std::size_t>(axis)));
 }
 
 Objections make_place(State state, Place& place, const ExactLoad& load, int fresh, std::shared_ptr<const Solver> near,

@@ -66,7 +66,7 @@ std::set<Contact> contact_set(const State& state) {
 }
 
 int rattlers(const Place& place) {
-    std::vector<bool> carries(static_cast<std::size_t>(place.evidence->problem.disks), false);
+    std::vector<bool> carries(static_cast<std::size_t>(place.evidence->problem.layout.disks), false);
     for (std::size_t l = 0; l < place.state->contacts.size(); ++l) {
         if (!std::binary_search(place.zeros.begin(), place.zeros.end(), static_cast<int>(l))) {
             const Contact& c = place.state->contacts[l];

@@ -312,7 +312,7 @@ std::optional<Rational> smallest_singular_value(const Problem& problem) {
         if (square <= 0) {
             continue;
         }
-        const Integer rounding = std::max<unsigned long>(4, normal.touching);
+        const Integer rounding(static_cast<unsigned long>(normal.touching));
         const Integer sigma = sqrt(square) - rounding;
         if (sigma > 0) {
             return Rational(sigma) * power_of_two(normal.scale + problem.fine - point);

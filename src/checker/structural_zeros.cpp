@@ -47,7 +47,7 @@ class Matching {
 std::vector<std::vector<int>> with_another_pin(const Problem& problem) {
     std::vector<std::vector<int>> contacts_of = problem.contacts_of;
     for (const Problem::Pinned& along : problem.pinned) {
-        const int dof = problem.dof_of[2 * static_cast<std::size_t>(problem.most_touched) + along.axis];
+        const int dof = problem.dof_of[problem.layout.of_disk(problem.most_touched) + along.axis];
         if (dof >= 0) { // else it is the pinned disk
             contacts_of[static_cast<std::size_t>(dof)] = along.acting;
         }
@@ -57,7 +57,7 @@ std::vector<std::vector<int>> with_another_pin(const Problem& problem) {
 
 bool acts_on_disks(const Problem& problem, const Forces& load) {
     for (std::size_t j = 0; j < load.size(); ++j) {
-        if (problem.coordinate_of[j] < 2 * problem.disks && (load[j].lower != 0 || load[j].upper != 0)) {
+        if (problem.of_disk(problem.coordinate_of[j]) && (load[j].lower != 0 || load[j].upper != 0)) {
             return true;
         }
     }

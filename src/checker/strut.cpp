@@ -16,7 +16,7 @@ Vector outward(const State& state, const Contact& c, std::size_t disk) {
         normal[static_cast<std::size_t>(c.j)] = c.kind == ContactKind::upper_wall ? 1 : -1;
         return normal;
     }
-    const Row row(c, state.packing.disk_count());
+    const Row row(c, state.packing.layout());
     double x = 0; // from j to i
     double y = 0;
     row.separate(state.packing.q, 0, x);
@@ -38,7 +38,7 @@ struct Bare {
     Bare(const Place& place, const std::vector<int>& loose) {
         const State& state = *place.state;
         const Problem& problem = place.evidence->problem;
-        const auto disks = static_cast<std::size_t>(problem.disks);
+        const auto disks = static_cast<std::size_t>(problem.layout.disks);
         movable.assign(disks, true);
         left_out.assign(state.contacts.size(), false);
         load.assign(disks, Vector{});

@@ -20,7 +20,7 @@ int certify(const CertifyArguments& arguments) {
     certificate.input = input.filename().string();
     certificate.input_hash = sha256(read_text(input));
     certificate.program = program_name();
-    const StateFile file = read_any_state(input);
+    const StateFile file = read_any_state(input, Dimensions::any);
     certificate.state = file.state;
     Certification result = isostat::certify(certificate.state);
     certificate.claims = result.claims;

@@ -4,6 +4,7 @@
 #include "cli/verify_run.hpp"
 #include "ensemble/members.hpp"
 #include "io/files.hpp"
+#include "packing/words.hpp"
 
 #include <isostat/checker/verify.hpp>
 #include <isostat/core/error.hpp>
@@ -23,7 +24,7 @@ ClaimCheck check_input(const Certificate& certificate, const std::string& input)
     check.claim = "input";
     check.claimed = true;
     const std::string hash = sha256(read_text(input));
-    const std::string difference = state_difference(read_any_state(input).state, certificate.state);
+    const std::string difference = state_difference(read_any_state(input, Dimensions::any).state, certificate.state);
     const bool same = hash == certificate.input_hash;
     check.verdict = same && difference.empty() ? Verdict::proved : Verdict::refuted;
     check.detail = !difference.empty()
@@ -76,8 +77,9 @@ int verify(const VerifyArguments& arguments) {
         print_json(object);
         return status_of(verification.verdict);
     }
-    say("{}: claims of {} about {} ({} disks, {} contacts)\n", arguments.certificate, certificate.program,
-        certificate.input, certificate.state.packing.disk_count(), certificate.state.contacts.size());
+    say("{}: claims of {} about {} ({} {}s, {} contacts)\n", arguments.certificate, certificate.program,
+        certificate.input, certificate.state.packing.disk_count(), grain_word(certificate.state.packing.dimension),
+        certificate.state.contacts.size());
     for (const ClaimCheck& check : verification.checks) {
         say("{:<14} {:<9} {}\n", check.claim, check.claimed ? to_string(check.verdict) : "absent", check.detail);
     }

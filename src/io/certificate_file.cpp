@@ -87,7 +87,6 @@ Certificate parse_certificate(const std::string& text, const std::string& source
         state.at("forces").fail("no such field in a certificate: forces are claims");
     }
     certificate.state = json::state_from_json(state, source).state;
-    require_plane(certificate.state.packing, source, "a certificate");
     certificate.claims = json::claims_of(document.at("claims"), certificate.state);
     return certificate;
 }

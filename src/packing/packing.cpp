@@ -46,9 +46,15 @@ double Packing::max_radius() const {
 }
 
 double Packing::solid_fraction() const {
+    return solid_fraction_without({});
+}
+
+double Packing::solid_fraction_without(std::span<const int> left_out) const {
     double grains = 0;
-    for (const double r : radius) {
-        grains += dimension == plane ? std::numbers::pi * r * r : 4 * std::numbers::pi / 3 * r * r * r;
+    for (int i = 0; i < disk_count(); ++i) {
+        const double r = radius[static_cast<std::size_t>(i)];
+        const bool counts = std::find(left_out.begin(), left_out.end(), i) == left_out.end();
+        grains += !counts ? 0 : dimension == plane ? std::numbers::pi * r * r : 4 * std::numbers::pi / 3 * r * r * r;
     }
     double cell_size = 1;
     for (int a = 0; a < dimension; ++a) {
@@ -202,7 +208,7 @@ void require_box(const Packing& packing, const std::string& source, const std::s
 void require_plane(const Packing& packing, const std::string& source, const std::string& what) {
     if (packing.dimension != plane) {
         throw Error(ErrorKind::bad_input, fmt::format("{}: a packing of spheres (dimension {}); {} takes disks only so "
-                                                      "far, isostat inspect takes spheres",
+                                                      "far, isostat inspect, certify and verify take spheres",
                                                       source, packing.dimension, what));
     }
 }

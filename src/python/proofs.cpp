@@ -28,7 +28,7 @@ Certified certify_file(const std::filesystem::path& path) {
     Certificate certificate;
     certificate.input = path.filename().string();
     certificate.input_hash = sha256(read_text(path));
-    certificate.state = read_any_state(path).state;
+    certificate.state = read_any_state(path, Dimensions::any).state;
     return certified(std::move(certificate));
 }
 

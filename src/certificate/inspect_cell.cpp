@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cassert>
+#include <iterator>
+#include <set>
 
 namespace isostat {
 
@@ -81,6 +83,14 @@ JammingAnswer strictly(const State& state, const std::vector<unsigned char>& zer
     return out;
 }
 
+/// Along so many periods do grains touch images of their own.
+int periods_of(const std::vector<Contact>& own) {
+    std::set<Image> images;
+    std::transform(own.begin(), own.end(), std::inserter(images, images.end()),
+                   [](const Contact& pair) { return pair.image; });
+    return static_cast<int>(images.size());
+}
+
 /// An isostatic equilibrium has no mechanism while its own cell moves, so none while the cell stays (C6). What its own
 /// contacts leave of full strain, own images may close (C7). \p own: those of the backbone; \p others: of rattlers.
 void judge(const State& state, const Certification& truth, const std::vector<Contact>& own,
@@ -89,7 +99,7 @@ void judge(const State& state, const Certification& truth, const std::vector<Con
         std::count(state.packing.cell.period_moves.begin(), state.packing.cell.period_moves.end(), true) +
         std::count(state.packing.cell.tilt_moves.begin(), state.packing.cell.tilt_moves.end(), true);
     const int missing = strain_count(Strain::full, state.packing.dimension) - static_cast<int>(moving);
-    const int closed = own.empty() ? 0 : 1;
+    const int closed = periods_of(own); // in space up to 2, and then more are missing
     out.collective = {Verdict::proved, "positive forces, and no mechanism: k = 0 at the true vertex"};
     out.local = {Verdict::proved, "it is jammed collectively"};
     if (missing == closed) {

@@ -35,14 +35,24 @@ std::optional<std::string> out_of_range(const State& state) {
     return std::nullopt;
 }
 
-/// The smallest stretch of a lattice vector, from below: |A m| >= that times |m|.
+/// The smallest stretch of a lattice vector, from below: |A m| >= that times |m|. It is 1 / |A^-1|, in the Frobenius
+/// norm and with the entries of A^-1 from above: sums of products of magnitudes, without cancellation (proofs/cells.md,
+/// C4).
 double least_stretch(const Packing& packing) {
-    const auto period = [&](std::size_t a) { return packing.cell.periodic[a] ? packing.lattice(a, a) : infinity; };
-    if (!packing.cell.all()) {
-        return std::min(period(0), period(1));
+    PerAxis<double> column{}; // of A^-1
+    double inverse_norm = 0;
+    for (std::size_t b = 0; b < packing.axes(); ++b) {
+        column.fill(0);
+        for (std::size_t a = b + 1; a-- > 0 && packing.cell.periodic[b];) {
+            double sum = a == b ? 1 : 0;
+            for (std::size_t c = a + 1; c <= b; ++c) {
+                sum += std::abs(packing.lattice(a, c)) * column[c];
+            }
+            column[a] = packing.cell.periodic[a] ? sum / packing.lattice(a, a) : 0;
+            inverse_norm = std::hypot(inverse_norm, column[a]);
+        }
     }
-    const double size = std::hypot(period(0), packing.lattice(0, 1), period(1));
-    return period(0) / size * period(1) * (1 - 1e-12); // determinant / norm
+    return 1 / inverse_norm * (1 - 1e-12);
 }
 
 } // namespace

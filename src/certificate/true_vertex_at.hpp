@@ -66,6 +66,8 @@ template <class T> class TrueVertexAt final : public TrueVertex {
         }
         return most;
     }
+    /// |F* - F| over the radius: what true stresses, or the loaded one alone at 1, change as their lengths do (V6).
+    [[nodiscard]] double load_turn(bool loaded_wall_only) const;
     Solution solve(const std::vector<T>& load, double load_error) const;
     std::vector<T> external_force(bool loaded_wall_only) const;
     const Solution& present();
@@ -170,14 +172,26 @@ template <class T> std::vector<T> TrueVertexAt<T>::external_force(bool loaded_wa
     return force;
 }
 
+template <class T> double TrueVertexAt<T>::load_turn(bool loaded_wall_only) const {
+    double sum = 0;
+    for (const WallForce& wall : subject_.state.load.wall_forces(centre_.packing)) {
+        if (wall.length_at < 0 || (loaded_wall_only && !wall.loaded)) {
+            continue; // dead
+        }
+        const double stress = loaded_wall_only ? 1.0 : wall.stress;
+        const double weight =
+            wall.other_at < 0
+                ? wall.other
+                : (std::abs(wall.length) + std::abs(wall.other) + 2 * above(vertex_.distance())) * (1 + 8 * u);
+        sum = std::hypot(sum, stress * weight);
+    }
+    return sum;
+}
+
 template <class T> auto TrueVertexAt<T>::present() -> const Solution& {
     if (!present_) {
-        const Load& load = subject_.state.load;
         // True stresses act on the lengths of the true vertex.
-        const double error = load.kind == LoadKind::nominal
-                                 ? 0.0
-                                 : std::hypot(load.stress[0], load.stress[1]) * above(vertex_.radius()) * (1 + 8 * u);
-        present_ = solve(external_force(false), error);
+        present_ = solve(external_force(false), load_turn(false) * above(vertex_.radius()) * (1 + 8 * u));
         for (std::size_t l = 0; l < subject_.zero.size(); ++l) {
             if (subject_.zero[l] != 0) {
                 present_->value[l] = number(0); // known exactly
@@ -189,8 +203,7 @@ template <class T> auto TrueVertexAt<T>::present() -> const Solution& {
 
 template <class T> auto TrueVertexAt<T>::unit_load() -> const Solution& {
     if (!unit_) {
-        unit_ =
-            solve(external_force(true), subject_.state.load.kind == LoadKind::nominal ? 0.0 : above(vertex_.radius()));
+        unit_ = solve(external_force(true), load_turn(true) * above(vertex_.radius()));
     }
     return *unit_;
 }

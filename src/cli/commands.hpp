@@ -49,6 +49,7 @@ struct InspectArguments {
     Common common;
     std::string file;
     std::optional<double> at; ///< loaded stress instead of that of the state
+    std::string contacts;     ///< table to write; empty: none
 };
 int inspect(const InspectArguments& arguments);
 /// `inspect` of a crafted packing with exact numbers (TOML, examples/packings): prints the exact answers and compares
@@ -91,6 +92,8 @@ int verify(const VerifyArguments& arguments);
 struct ForeignArguments {
     std::string format, radius, diameter, walls, box, columns, select;
     std::string frame = "last";
+    std::optional<int> dimension;
+    bool spheres = false; ///< the command takes them
     bool periodic = false, not_periodic = false;
     bool walls_unless_periodic = false; ///< `walls` were not stated
     bool cells = false;                 ///< the command takes periodic cells

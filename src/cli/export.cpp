@@ -3,7 +3,9 @@
 #include "cli/terminal.hpp"
 #include "io/files.hpp"
 #include "io/folders.hpp"
+#include "report/picture.hpp"
 
+#include <isostat/certificate/certify.hpp>
 #include <isostat/core/error.hpp>
 #include <isostat/io/foreign.hpp>
 #include <isostat/io/state_file.hpp>
@@ -21,7 +23,10 @@ namespace fs = std::filesystem;
 
 /// What the first lines of a file in this format have.
 std::string mark_of(const std::string& format) {
-    return format == "xyz" ? "\nLattice=\"" : format == "csv" ? "\nid,x,y,r\n" : " of isostat ";
+    return format == "xyz"   ? "\nLattice=\""
+           : format == "csv" ? "\nid,x,y,"
+           : format == "vtk" ? vtk_mark
+                             : " of isostat ";
 }
 
 std::string format_of(const ExportArguments& a) {
@@ -29,15 +34,18 @@ std::string format_of(const ExportArguments& a) {
         return a.format;
     }
     const std::string end = fs::path(a.output).extension().string();
-    for (const auto& [extension, format] :
-         {std::pair{".data", "lammps-data"}, {".lmp", "lammps-data"}, {".xyz", "xyz"}, {".csv", "csv"}}) {
+    for (const auto& [extension, format] : {std::pair{".data", "lammps-data"},
+                                            {".lmp", "lammps-data"},
+                                            {".xyz", "xyz"},
+                                            {".csv", "csv"},
+                                            {".vtk", "vtk"}}) {
         if (end == extension) {
             return format;
         }
     }
-    throw Error(ErrorKind::usage,
-                fmt::format("--output is '{}': expected a name that ends in .data, .xyz or .csv, or --format{}",
-                            a.output, end == ".vtk" ? " (isostat report --vtk writes ParaView files)" : ""));
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("--output is '{}': expected a name that ends in .data, .xyz, .csv or .vtk, or --format", a.output));
 }
 
 /// The stored states of a run in their order, or the one state.
@@ -62,7 +70,7 @@ std::string series_text(const std::vector<fs::path>& files) {
     std::string text;
     std::vector<double> first;
     for (const fs::path& file : files) {
-        const Packing packing = read_any_state(file).state.packing;
+        const Packing packing = read_any_state(file, Dimensions::any).state.packing;
         if (first.empty()) {
             first = packing.q;
         }
@@ -73,6 +81,17 @@ std::string series_text(const std::vector<fs::path>& files) {
         text += xyz_text(packing, displacement);
     }
     return text;
+}
+
+/// Those of the file, or the proved ones where it has none; empty where neither is known.
+std::vector<double> forces_of(const StateFile& file) {
+    std::vector<double> forces = file.forces;
+    if (forces.empty()) {
+        for (const Interval& f : certify(file.state).finite) {
+            forces.push_back(0.5 * f.lower + 0.5 * f.upper);
+        }
+    }
+    return forces;
 }
 
 } // namespace
@@ -88,11 +107,11 @@ int export_states(const ExportArguments& arguments) {
         text = series_text(files);
     } else {
         files = {files.back()};
-        const Packing packing = read_any_state(files.front()).state.packing;
-        text =
-            format == "csv"
-                ? csv_text(packing)
-                : lammps_data_text(packing, fmt::format("{} of {}", files.front().filename().string(), program_name()));
+        const StateFile file = read_any_state(files.front(), Dimensions::any);
+        const std::string title = fmt::format("{} of {}", files.front().filename().string(), program_name());
+        text = format == "csv"   ? csv_text(file.state.packing)
+               : format == "vtk" ? vtk_text(file.state, forces_of(file), title)
+                                 : lammps_data_text(file.state.packing, title);
     }
     write_output(arguments.output, text, mark_of(format));
     if (arguments.common.json) {

@@ -17,6 +17,7 @@
 #include <isostat/io/state_file.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gmpxx.h>
 
 #include <algorithm>
@@ -51,10 +52,41 @@ void keep_load(ImportArguments& a) {
     }
 }
 
+Load load_of(const ImportArguments& a, const Packing& packing) {
+    Load load;
+    load.dimension = packing.dimension;
+    load.kind = value_of<LoadKind>(a.load, load_kind_words).value_or(LoadKind::nominal);
+    load.stress = parse_stress(a.stress, packing.dimension);
+    load.loaded_axis = packing.dimension - 1;
+    load.refer_to(packing);
+    return load;
+}
+
+/// Spheres in the pairs that touch as the digits of the file tell, or at a threshold: no way downhill leads them.
+Imported from_spheres(const ImportArguments& a, const ReadPacking& file) {
+    if (!a.contacts.empty() || a.jitter != 0) {
+        throw Error(
+            ErrorKind::usage,
+            fmt::format("{} is a packing of spheres: expected no --contacts and no --jitter, which are of disks "
+                        "so far (--threshold T lists the pairs with that gap or less)",
+                        a.file));
+    }
+    Imported out;
+    out.from = file.packing.q;
+    compare::WantedList list = compare::list_up_to(file.packing, a.threshold.value_or(file.rounding));
+    const std::string words = list.words + (a.threshold ? "" : ", which the digits of the file leave open");
+    static_cast<compare::NearestVertex&>(out) =
+        compare::vertex_as_listed({file.packing, std::move(list.contacts), load_of(a, file.packing)}, words, a.seed);
+    return out;
+}
+
 /// The vertex of a packing of another program.
 Result<Imported> from_foreign(const ImportArguments& a, ReadPacking& file) {
-    const PerAxis<double> stress = parse_stress(a.stress);
+    const Load load = load_of(a, file.packing);
     compare::check_nearness(a.file, file.packing);
+    if (file.packing.dimension != plane) {
+        return from_spheres(a, file);
+    }
     std::optional<compare::WantedList> wanted;
     if (a.threshold || a.contacts == "plateau") {
         auto below = compare::list_below(file.packing, a.threshold, file.rounding);
@@ -69,10 +101,6 @@ Result<Imported> from_foreign(const ImportArguments& a, ReadPacking& file) {
     Imported out;
     out.from = file.packing.q;
     file.packing.radius = with_jitter(file.packing.radius, a.jitter, a.seed);
-    Load load;
-    load.kind = value_of<LoadKind>(a.load, load_kind_words).value_or(LoadKind::nominal);
-    load.stress = stress;
-    load.refer_to(file.packing);
     auto found = wanted ? compare::vertex_of_list({file.packing, wanted->contacts, load}, wanted->words, a.seed)
                         : compare::vertex_downhill({file.packing, {}, load}, a.seed);
     if (!found.ok()) {
@@ -83,7 +111,7 @@ Result<Imported> from_foreign(const ImportArguments& a, ReadPacking& file) {
 }
 
 void set_cell(ImportArguments& a, bool own, Packing& packing) {
-    a.contacts = a.contacts.empty() ? "nearest" : a.contacts;
+    a.contacts = a.contacts.empty() && packing.dimension == plane ? "nearest" : a.contacts;
     const Cell before = packing.cell;
     take_cell({a.file, a.cell}, packing);
     if (own && a.cell.empty()) { // a state says what moves
@@ -101,12 +129,17 @@ ReadPacking read_imported(ImportArguments& a, bool crafted, bool own) {
         a.foreign.walls = "box";
         a.foreign.walls_unless_periodic = true;
     }
-    if (!crafted && !own && a.foreign.walls != "box") {
+    a.foreign.cells = !crafted;
+    a.foreign.spheres = true;
+    ReadPacking file = read_any_packing(a.file, a.foreign);
+    const bool spheres = file.packing.dimension != plane;
+    if (!crafted && !own && !spheres && a.foreign.walls != "box") {
         throw Error(ErrorKind::usage,
                     fmt::format("--walls is '{}': expected box, two fixed and two movable walls", a.foreign.walls));
     }
-    a.foreign.cells = !crafted;
-    ReadPacking file = read_any_packing(a.file, a.foreign);
+    if (own && spheres) {
+        compare::refuse(a.file, "is a state of spheres: expected one of disks, which --jitter takes only so far");
+    }
     if (crafted && !a.cell.empty()) {
         throw Error(ErrorKind::usage,
                     fmt::format("--cell is '{}' and {} is a crafted packing, which says what moves: expected no --cell",
@@ -118,7 +151,7 @@ ReadPacking read_imported(ImportArguments& a, bool crafted, bool own) {
         if (!crafted) { // a crafted packing says what moves
             take_cell({a.file, a.cell}, file.packing);
         }
-        a.contacts = a.contacts.empty() ? "plateau" : a.contacts;
+        a.contacts = a.contacts.empty() && !spheres ? "plateau" : a.contacts;
     }
     return file;
 }
@@ -210,12 +243,14 @@ void judge_moves(const ImportArguments& a, const Imported& found, const compare:
     }
 }
 
-constexpr const char* moves_head = "disk,x,y,moved,rattler\n";
+constexpr const char* moves_mark = ",moved,rattler\n";
 
 std::string moves_csv(const Imported& found, const compare::Moves& moves) {
-    std::string text = moves_head;
+    const Packing& packing = found.state.packing;
+    const std::size_t d = packing.axes();
+    std::string text = (d == 2 ? "disk,x,y" : "sphere,x,y,z") + std::string(moves_mark);
     for (std::size_t i = 0; i < moves.disk.size(); ++i) {
-        text += fmt::format("{},{},{},{},{}\n", i, found.state.packing.q[2 * i], found.state.packing.q[2 * i + 1],
+        text += fmt::format("{},{},{},{}\n", i, fmt::join(&packing.q[d * i], &packing.q[d * i] + d, ","),
                             rounded_up(moves.disk[i], 6), moves.rattler[i]);
     }
     return text;
@@ -246,6 +281,14 @@ std::string load_by_default(const ImportArguments& a, const Imported& found) {
                                                 : "";
 }
 
+std::string grains_of(const Packing& packing) {
+    return grain_word(packing.dimension) + std::string("s");
+}
+
+std::vector<double> stress_of(const Load& load) {
+    return {load.stress.begin(), load.stress.begin() + load.dimension};
+}
+
 void print_import(const ImportArguments& a, const ReadPacking& file, const Imported& found,
                   const compare::Moves& moves) {
     const State& state = found.state;
@@ -255,19 +298,20 @@ void print_import(const ImportArguments& a, const ReadPacking& file, const Impor
     }
     const auto rattlers = std::count(moves.rattler.begin(), moves.rattler.end(), 1);
     say("contacts  {}\n", found.contacts);
-    say("moved     disks with a force at most {}, {} {}", rounded_up(moves.backbone, 3),
+    say("moved     {} with a force at most {}, {} {}", grains_of(state.packing), rounded_up(moves.backbone, 3),
         state.packing.cell.any() ? "cell" : "walls", rounded_up(moves.walls, 3));
     say("{}\n", rattlers == 0 ? ""
                               : fmt::format(", {} rattlers, which rest on infinitesimal loads, {}", rattlers,
                                             rounded_up(moves.rattlers, 3)));
-    say("load      sigma = ({}, {}), {}{}\n", state.load.stress[0], state.load.stress[1],
+    const auto stress = stress_of(state.load);
+    say("load      sigma = ({}), {}{}\n", fmt::format("{}", fmt::join(stress, ", ")),
         state.load.kind == LoadKind::nominal ? "nominal" : "true stresses", load_by_default(a, found));
     if (found.copy) {
         say("jitter    this is a copy with other radii: gaps or forces are so small that h, the contacts and the "
             "strict verdict may differ from those of the file\n");
     }
-    say("{:<9} {}: {} disks, {} contacts, solid fraction {:.6f}{}\n", to_string(found.verdict()), a.output,
-        state.packing.disk_count(), state.contacts.size(), state.packing.solid_fraction(),
+    say("{:<9} {}: {} {}, {} contacts, solid fraction {:.6f}{}\n", to_string(found.verdict()), a.output,
+        state.packing.disk_count(), grains_of(state.packing), state.contacts.size(), state.packing.solid_fraction(),
         found.untold.any()
             ? fmt::format("; {}; {} of the stored doubles", found.untold.words(), to_string(found.truth.verdict))
             : "");
@@ -276,9 +320,9 @@ void print_import(const ImportArguments& a, const ReadPacking& file, const Impor
 void print_import_json(const ImportArguments& a, const ReadPacking& file, const Imported& imported, Json object) {
     object["state"] = a.output;
     object["notes"] = file.notes;
-    object["disks"] = imported.state.packing.disk_count();
+    object[grains_of(imported.state.packing)] = imported.state.packing.disk_count();
     object["load"] = {
-        {"stress", {imported.state.load.stress[0], imported.state.load.stress[1]}},
+        {"stress", stress_of(imported.state.load)},
         {"kind", word_of(imported.state.load.kind, load_kind_words)},
         {"by_default",
          {{"stress", a.stress.empty() && !imported.load_of_file}, {"kind", a.load.empty() && !imported.load_of_file}}}};
@@ -317,7 +361,7 @@ void require_importable(const ImportArguments& a, bool own, bool crafted) {
 int import(const ImportArguments& arguments) {
     ImportArguments a = arguments;
     check_output(a.output, "\"isostat-state\"", {a.file, a.contacts});
-    check_output(a.moved, moves_head, {a.file, a.contacts});
+    check_output(a.moved, moves_mark, {a.file, a.contacts});
     const std::string text = read_text(a.file);
     const std::string format = a.foreign.format.empty() ? recognise_format(text) : a.foreign.format;
     const bool listed = format == "vertex" && a.jitter == 0;
@@ -336,8 +380,9 @@ int import(const ImportArguments& arguments) {
         const double jitter = 2 * a.jitter * file.packing.max_radius();
         f.copy = a.jitter > 0 && compare::untold_by(jitter + file.rounding, f.state, f.truth).any();
     }
+    const bool spheres = file.packing.dimension != plane; // written as the file lists them, whatever is proved
     const bool refuted = found.ok() && found.value().verdict() == Verdict::refuted;
-    if (!found.ok() || refuted) {
+    if (!found.ok() || (refuted && !spheres)) {
         const std::string why = found.ok() ? found.value().truth.refuted.front() : found.failure().message();
         say(stderr, "isostat: {}: {}{}\n", a.file, why, advice(a, crafted, file.packing.radius));
         return refuted ? failed : status_of(found.failure().kind);
@@ -353,12 +398,12 @@ int import(const ImportArguments& arguments) {
         say(stderr, "isostat: {}: {}{}\n", a.file, fmt::format("{}", fmt::join(imported.truth.claims.undecided, "; ")),
             advice(a, crafted, file.packing.radius));
     }
-    if (!imported.truth.claims.vertex || !imported.truth.claims.forces) {
+    if (!spheres && (!imported.truth.claims.vertex || !imported.truth.claims.forces)) {
         return undecided;
     }
     write_state(a.output, imported.state);
     if (!a.moved.empty()) {
-        write_output(a.moved, moves_csv(imported, moves), moves_head);
+        write_output(a.moved, moves_csv(imported, moves), moves_mark);
     }
     if (a.common.json) {
         print_import_json(a, file, imported, provenance);

@@ -1,14 +1,18 @@
+#include "certificate/contact_table.hpp"
+#include "certificate/smallest_singular_values.hpp"
 #include "cli/cell_text.hpp"
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
 #include "cli/face_text.hpp"
 #include "cli/terminal.hpp"
 #include "cli/true_vertex_text.hpp"
+#include "io/files.hpp"
 #include "packing/words.hpp"
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/core/error.hpp>
 #include <isostat/io/state_file.hpp>
+#include <isostat/rigidity/counting.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -98,9 +102,13 @@ int carrying_count(const Inspection& inspection) {
     return inspection.record.backbone - held;
 }
 
-void print_inspection(const Inspection& inspection) {
+void print_inspection(const State& state, const Inspection& inspection) {
     const EquilibriumRecord& r = inspection.record;
-    say("rattlers                 {}\n", inspection.rattlers.size());
+    const std::vector<int> few = rattlers_by_coordination(state.packing, state.contacts);
+    say("rattlers                 {} by forces, {} by coordination (at most {} contacts, counted until none is left)\n",
+        inspection.rattlers.size(), few.size(), state.packing.dimension);
+    say("solid fraction           {:.6f} without the rattlers by forces\n",
+        state.packing.solid_fraction_without(inspection.rattlers));
     say("force-carrying contacts  {}\n", carrying_count(inspection));
     if (inspection.equilibrium) {
         print_forces(inspection, inspection.truth.dimension);
@@ -141,9 +149,11 @@ Json counting_json(const std::string& file, const State& state, const Counting& 
     return object;
 }
 
-void add_inspection(Json& object, const Inspection& inspection) {
+void add_inspection(Json& object, const State& state, const Inspection& inspection) {
     const EquilibriumRecord& r = inspection.record;
     object["rattlers"] = inspection.rattlers;
+    object["rattlers_by_coordination"] = rattlers_by_coordination(state.packing, state.contacts);
+    object["solid_fraction_without_rattlers"] = number(state.packing.solid_fraction_without(inspection.rattlers));
     object["backbone"] = carrying_count(inspection);
     object["held"] = r.held;
     if (inspection.equilibrium) {
@@ -180,6 +190,13 @@ void add_inspection(Json& object, const Inspection& inspection) {
     object["remark"] = inspection.remark;
 }
 
+/// The ten smallest, of a structure that is proved regular.
+std::vector<double> singular_values_of(const State& state) {
+    constexpr int shown = 10;
+    const auto structure = IsostaticStructure::prove(state.packing, state.contacts);
+    return structure.ok() ? smallest_singular_values(structure.value(), shown) : std::vector<double>();
+}
+
 /// The forces one by one, when a load was asked for.
 void print_forces_at(const InspectArguments& arguments, const State& state, const Certification& truth) {
     for (std::size_t l = 0; arguments.at && l < truth.finite.size(); ++l) {
@@ -201,8 +218,8 @@ Json forces_json(const State& state, const Certification& truth) {
 
 int inspect(const InspectArguments& arguments) {
     if (arguments.file.ends_with(".toml")) {
-        if (arguments.at) {
-            throw Error(ErrorKind::usage, arguments.file + " is a crafted packing: expected no --at");
+        if (arguments.at || !arguments.contacts.empty()) {
+            throw Error(ErrorKind::usage, arguments.file + " is a crafted packing: expected no --at, no --contacts");
         }
         return inspect_packing(arguments);
     }
@@ -222,11 +239,15 @@ int inspect(const InspectArguments& arguments) {
     if (cell) {
         withhold(untold, *cell);
     }
+    if (!arguments.contacts.empty()) {
+        write_output(arguments.contacts, contact_table(state, truth), contact_table_mark);
+    }
+    const std::vector<double> singular = singular_values_of(state);
     const bool refuted = !result.ok() && result.failure().kind == FailureKind::not_isostatic;
     if (arguments.common.json) {
         Json object = counting_json(arguments.file, state, truth.counting);
         if (result.ok()) {
-            add_inspection(object, result.value());
+            add_inspection(object, state, result.value());
         } else {
             object["verdict"] = refuted ? "refuted" : "undecided";
             object["remark"] = result.failure().message();
@@ -234,6 +255,7 @@ int inspect(const InspectArguments& arguments) {
         add_untold(object, untold, truth.verdict);
         object["true_configuration"] = true_vertex_json(truth);
         object["forces"] = forces_json(state, truth);
+        object["singular_values"] = numbers(singular);
         if (cell) {
             object["cell"] = cell_json(state.packing, *cell);
         }
@@ -243,11 +265,15 @@ int inspect(const InspectArguments& arguments) {
     } else {
         print_counting(state, truth.counting);
         if (result.ok()) {
-            print_inspection(result.value());
+            print_inspection(state, result.value());
         } else {
             say("isostatic equilibrium    {}: {}\n", refuted ? "refuted" : "undecided", result.failure().message());
         }
         print_true_vertex(truth);
+        if (!singular.empty()) {
+            say("smallest singular values {} (of the stored coordinates, computed)\n",
+                fmt::format("{:.4g}", fmt::join(singular, ", ")));
+        }
         if (cell) {
             print_cell(*cell);
         }

@@ -198,7 +198,8 @@ Examples: isostat ensemble examples/biaxial-400.toml --samples 8 -o many
     void add_inspect() {
         auto& a = keep<InspectArguments>();
         CLI::App& command = add(
-            "inspect", "N, N_f, rank, h, k, rattlers, smallest force and gap, supported interval of a state",
+            "inspect",
+            "N, N_f, rank, h, k, rattlers, smallest force and gap, supported interval of a state (spheres too)",
             R"(Nothing moves. Exit status 0: proved to be an isostatic equilibrium; 1: proved not to be one; 2: undecided.
 A TOML file is a crafted packing with exact numbers (examples/packings): exact contacts, rank, bases, stability;
 its [expected] entries are checked. A scene is not a packing: see plan.
@@ -207,6 +208,8 @@ Examples: isostat inspect start.json
         needed(command, "file", a.file, "state file, or vertex text", "FILE");
         option(command, "--at", a.at, "under this sigma_2 instead of that of the state; prints every force",
                ranges::number(-ranges::largest, ranges::largest), "SIGMA2");
+        option(command, "--contacts", a.contacts,
+               "writes a table of the contacts: point, normal, gap, force with bounds", "FILE.csv");
         add_threads(command, a.common);
         does(command, a, inspect, false);
     }
@@ -286,16 +289,23 @@ Examples: isostat verify certificate.json --input state.json
                "COLUMN|NUMBER");
         option(command, "--diameter", a.diameter, "the same for diameters", "COLUMN|NUMBER")->excludes("--radius");
         option(command, "--walls", a.walls,
-               "none; box: left and bottom fixed, right and top movable; fixed: all four (default: none for files of "
-               "other programs)",
+               "none; box: left and bottom (of spheres the lower ones) fixed, the others movable; fixed: all (default: "
+               "none for files of other programs)",
                CLI::IsMember({"none", "box", "fixed"}));
-        option(command, "--box", a.box, "positions of the walls instead of the bounds in the file", "XLO:XHI,YLO:YHI");
+        option(command, "--box", a.box,
+               "positions of the walls instead of the bounds in the file (spheres: ,ZLO:ZHI too); with --periodic the "
+               "periods, of a file without bounds",
+               "XLO:XHI,YLO:YHI");
+        option(command, "--dimension", a.dimension,
+               "2: disks; 3: spheres (default: spheres where the file has a z that is not the same for all)",
+               CLI::IsMember({2, 3}));
         option(command, "--frame", a.frame, "of a file with several, from 0 (default: last)", "NUMBER|last");
         option(command, "--columns", a.columns, "names of the columns of a table without a header; - leaves one out",
                "x,y,r");
         option(command, "--select", a.select, "rows with this value in this column are the disks, e.g. type=1",
                "COLUMN=VALUE");
-        option(command, "--format", a.format, "lammps-data, lammps-dump, xyz, table (default: from the content)");
+        option(command, "--format", a.format,
+               "lammps-data, lammps-dump, xyz, table, centres (default: from the content)");
         command.add_flag("--not-periodic", a.not_periodic,
                          "take periodic boundaries for open ones: contacts across them are not looked for");
         command
@@ -322,6 +332,8 @@ rounded to doubles and keeps its contacts and its load; a vertex text keeps them
 In a periodic cell or a channel: the vertex downhill whatever its contacts, unless --contacts says more.
 Proofs are of the doubles written. Where gaps or forces are below what the digits of the file tell, so that they may be 0 in its
 packing, they are named and the answer is undecided, here and when inspect or certify read the state.
+Spheres: the pairs that touch as the digits of the file tell (or at --threshold) are the contacts, Newton's method goes to their vertex
+where they determine one, and the state is written whatever is proved of it: isostat inspect says more.
 Exit status 0: written and certified; 1: no such equilibrium; 2: undecided.
 Examples: isostat import disks.dump --box 0:15.46,0:14.88 -o start.json
           isostat import disks.dump --box 0:15.46,0:14.88 --contacts pairs.dump --contact-columns 'c_1[1],c_1[2],c_2[2]' -o start.json)");
@@ -337,7 +349,8 @@ Examples: isostat import disks.dump --box 0:15.46,0:14.88 -o start.json
         option(command, "--threshold", a.threshold, "pairs with this gap or less are the contacts",
                ranges::number(-ranges::largest, ranges::largest))
             ->excludes(contacts);
-        option(command, "--stress", a.stress, "sigma_1 and sigma_2 (default 1,1, or those of a state)", "S1,S2");
+        option(command, "--stress", a.stress,
+               "sigma_1 and sigma_2, of spheres sigma_3 too (default: ones, or those of a state)", "S1,S2");
         option(command, "--load", a.load, "nominal: dead wall forces; true: stress x present length",
                CLI::IsMember({"nominal", "true"}));
         option(command, "--seed", a.seed, "of the infinitesimal loads and of the jitter (default 1)",
@@ -423,15 +436,16 @@ Example: isostat compare series.toml -o comparison)");
         auto& a = keep<ExportArguments>();
         CLI::App& command = add(
             "export", "a state, or the states of a run, for other programs",
-            R"(LAMMPS data (.data), extended XYZ for OVITO (.xyz), CSV (.csv): disks and box; contacts and load have no place there. Of the
+            R"(LAMMPS data (.data), extended XYZ for OVITO (.xyz), CSV (.csv): grains and box; ParaView (.vtk): contacts with forces too. Of the
 folder of a run: XYZ has a frame for each state stored, with the displacement from the first; the others the last state.
-ParaView files: isostat report --vtk.
+Every state of a run for ParaView: isostat report --vtk.
 Examples: isostat export start.json -o start.data
           isostat export out -o out.xyz)");
         needed(command, "input", a.input, "state file, vertex text, or folder of a run", "STATE|DIR");
         needed(command, "-o,--output", a.output, "file to write", "FILE");
-        option(command, "--format", a.format, "lammps-data, xyz, csv (default: from the end of the name of the file)",
-               CLI::IsMember({"lammps-data", "xyz", "csv"}));
+        option(command, "--format", a.format,
+               "lammps-data, xyz, csv, vtk (default: from the end of the name of the file)",
+               CLI::IsMember({"lammps-data", "xyz", "csv", "vtk"}));
         does(command, a, export_states, false);
     }
 

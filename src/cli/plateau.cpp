@@ -7,6 +7,7 @@
 #include "core/words.hpp"
 #include "crafted/told_ranges.hpp"
 #include "io/files.hpp"
+#include "packing/words.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/crafted/plateau.hpp>
@@ -41,7 +42,7 @@ void print_strains(const ReadPacking& file, const crafted::Plateau& plateau, dou
     const int disks =
         file.packing.disk_count() - static_cast<int>(untouched(file.packing.disk_count(), backbone).size());
     say("\nbackbone at the threshold {:.17g}, for every way to strain the cell\n", threshold);
-    print_counts(fmt::format("{} disks", disks), strains_of(file, backbone));
+    print_counts(fmt::format("{} {}s", disks, grain_word(file.packing.dimension)), strains_of(file, backbone));
     say("contacts needed          {} for a bulk modulus, {} for all moduli (Goodrich et al., by counting)\n",
         contacts_for_bulk_modulus(disks, file.packing.dimension),
         contacts_for_all_moduli(disks, file.packing.dimension));
@@ -110,7 +111,7 @@ void print_headline(const crafted::Plateau& plateau, const crafted::Told& told,
             range.open ? "at its end" : "up to its end", range.told ? "" : "; below the rounding of gaps");
     }
     print_ranges("backbone isostatic, proved", told.backbone, none);
-    print_ranges("all disks isostatic, proved", told.all, none);
+    print_ranges("all isostatic, proved", told.all, none);
     if (!told.elsewhere.empty()) {
         print_ranges("isostatic in less wide ones", told.elsewhere, "");
     }
@@ -125,8 +126,8 @@ void print_text(const PlateauArguments& a, const ReadPacking& file, const crafte
     for (const std::string& note : file.notes) {
         say("                            {}\n", note);
     }
-    say("disks                       {}, radii {:.6g} to {:.6g}\n", file.packing.disk_count(),
-        file.packing.min_radius(), file.packing.max_radius());
+    say("{:<28}{}, radii {:.6g} to {:.6g}\n", fmt::format("{}s", grain_word(file.packing.dimension)),
+        file.packing.disk_count(), file.packing.min_radius(), file.packing.max_radius());
     say("thresholds                  {:.6g} to {:.6g} (unit of the file)\n", thresholds[0], thresholds[1]);
     say("candidates                  {}, smallest gap {:.6g}; the contact list changes at {} thresholds\n",
         plateau.candidates, plateau.deepest_overlap, plateau.changes);
@@ -144,8 +145,8 @@ void print_text(const PlateauArguments& a, const ReadPacking& file, const crafte
     }
     const int rigid = plateau.steps.empty() ? 0 : plateau.steps.back().all.rigid_motions;
     say("\nN_f, N, rank, h, k: backbone, that is without disks and contacts that can carry no force by the "
-        "position of the normals;\nall: every disk. k includes {} common rigid motions. <=: proved bound.\n\n",
-        rigid);
+        "position of the normals;\nall: every {}. k includes {} common rigid motions. <=: proved bound.\n\n",
+        grain_word(file.packing.dimension), rigid);
     print_headline(plateau, told, thresholds);
     if (told.special) {
         print_ranges("N = N_f but rank deficient", plateau.special, "");

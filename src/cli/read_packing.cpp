@@ -12,6 +12,7 @@
 #include <isostat/io/state_file.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -30,10 +31,11 @@ constexpr std::int64_t most_frames = 1'000'000'000'000'000;
 ForeignOptions options_of(const ForeignArguments& a) {
     ForeignOptions out;
     out.format = a.format;
-    if (!a.format.empty() && a.format != "lammps-data" && a.format != "lammps-dump" && a.format != "xyz" &&
-        a.format != "table") {
-        usage("--format", a.format, "lammps-data, lammps-dump, xyz or table");
+    const std::vector<std::string>& formats = foreign_formats();
+    if (!a.format.empty() && std::find(formats.begin(), formats.end(), a.format) == formats.end()) {
+        usage("--format", a.format, fmt::format("one of {}", fmt::join(formats, ", ")));
     }
+    out.dimension = a.dimension;
     if (!a.radius.empty() || !a.diameter.empty()) {
         const bool radius = !a.radius.empty();
         const std::string& text = radius ? a.radius : a.diameter;
@@ -52,13 +54,15 @@ ForeignOptions options_of(const ForeignArguments& a) {
     out.walls = a.walls == "box" ? ForeignWalls::box : (a.walls == "fixed" ? ForeignWalls::fixed : ForeignWalls::none);
     if (!a.box.empty()) {
         const auto axes = parse_list(a.box);
-        if (axes.size() != 2) {
-            usage("--box", a.box, "XLO:XHI,YLO:YHI");
+        if (axes.size() != 2 && axes.size() != most_axes) {
+            usage("--box", a.box, "XLO:XHI,YLO:YHI, of spheres XLO:XHI,YLO:YHI,ZLO:ZHI");
         }
-        const auto x = parse_range(axes[0], "--box"), y = parse_range(axes[1], "--box");
-        out.box = {x[0], x[1], y[0], y[1]};
-        if (out.walls == ForeignWalls::none) {
-            usage("--box", a.box, "--walls box or --walls fixed beside it");
+        for (const std::string& axis : axes) {
+            const auto range = parse_range(axis, "--box");
+            out.box.insert(out.box.end(), range.begin(), range.end());
+        }
+        if (out.walls == ForeignWalls::none && !a.periodic) {
+            usage("--box", a.box, "--walls box or --walls fixed beside it, or --periodic");
         }
     }
     if (a.frame != "last") {
@@ -84,6 +88,12 @@ ForeignOptions options_of(const ForeignArguments& a) {
     return out;
 }
 
+void require_plane_unless(bool spheres, const Packing& packing, const std::string& file) {
+    if (!spheres) {
+        require_plane(packing, file, "this command");
+    }
+}
+
 /// What the doubles of a file of this program leave open of a gap.
 double rounding_of(const Packing& packing) {
     double largest = packing.max_radius();
@@ -91,7 +101,7 @@ double rounding_of(const Packing& packing) {
         largest = std::max(largest, std::abs(x));
     }
     const double rounding = 0x1p-53 * largest;
-    return rounding_of_gaps(rounding, rounding, rounding);
+    return rounding_of_gaps(rounding, rounding, rounding, {packing.dimension});
 }
 
 } // namespace
@@ -124,14 +134,15 @@ ReadPacking read_any_packing(const std::string& file, const ForeignArguments& ar
     const bool own = format == "state" || format == "vertex" || format == "packing";
     if (!own) {
         ForeignPacking foreign = parse_foreign(text, file, options);
+        require_plane_unless(arguments.spheres, foreign.packing, file);
         return {std::move(foreign.packing), std::move(foreign.format), std::move(foreign.notes), std::move(foreign.ids),
                 foreign.rounding};
     }
-    if (options.size || options.box || options.select || !arguments.walls.empty() || !options.columns.empty() ||
-        options.frame || options.not_periodic || options.periodic) {
+    if (options.size || !options.box.empty() || options.dimension || options.select || !arguments.walls.empty() ||
+        !options.columns.empty() || options.frame || options.not_periodic || options.periodic) {
         throw Error(ErrorKind::usage, fmt::format("{} is a {} file of isostat, which says all of its sizes and walls: "
                                                   "expected none of --radius, --diameter, --walls, --box, --frame, "
-                                                  "--columns, --select, --periodic, --not-periodic",
+                                                  "--dimension, --columns, --select, --periodic, --not-periodic",
                                                   file, format));
     }
     if (format == "packing") {
@@ -142,10 +153,11 @@ ReadPacking read_any_packing(const std::string& file, const ForeignArguments& ar
         return out;
     }
     const State state = format != "state" ? parse_vertex_text(text, file)
-                        : arguments.cells ? parse_any_state(text, file).state
+                        : arguments.cells ? parse_any_state(text, file, Dimensions::any).state
                                           : parse_state(text, file).state;
     ReadPacking out{
         state.packing, format, {}, {}, std::max(rounding_of(state.packing), compare::imported_rounding(state))};
+    require_plane_unless(arguments.spheres, state.packing, file);
     out.notes.emplace_back("the contact list of the file is not used");
     return out;
 }

@@ -6,27 +6,41 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace isostat::cli {
 
-PerAxis<double> parse_stress(const std::string& text) {
-    const auto [s1, s2] = text.empty() ? std::array<double, 2>{1, 1} : parse_pair(text, "--stress", "S1,S2");
-    return {s1, s2};
+namespace {
+
+PerAxis<double> positive(const std::string& text, std::size_t count, const char* option, const char* names) {
+    const std::vector<std::string> words = parse_list(text);
+    PerAxis<double> out{};
+    bool good = words.size() == count;
+    for (std::size_t k = 0; good && k < count; ++k) {
+        const auto value = ranges::number_in(words[k], ranges::smallest);
+        good = value.has_value();
+        out[k] = value.value_or(0);
+    }
+    if (!good) {
+        throw Error(ErrorKind::usage, fmt::format("{} is '{}': expected {}, {} positive numbers", option, text, names,
+                                                  count == 2 ? "two" : "three"));
+    }
+    return out;
+}
+
+} // namespace
+
+PerAxis<double> parse_stress(const std::string& text, int dimension) {
+    PerAxis<double> ones{};
+    std::fill_n(ones.begin(), dimension, 1);
+    return text.empty()
+               ? ones
+               : positive(text, static_cast<std::size_t>(dimension), "--stress", dimension == 2 ? "S1,S2" : "S1,S2,S3");
 }
 
 std::array<double, 2> parse_pair(const std::string& text, const char* option, const char* names) {
-    const std::vector<std::string> words = parse_list(text);
-    std::array<double, 2> pair{};
-    bool good = words.size() == 2;
-    for (std::size_t k = 0; good && k < 2; ++k) {
-        const auto value = ranges::number_in(words[k], ranges::smallest);
-        good = value.has_value();
-        pair[k] = value.value_or(0);
-    }
-    if (!good) {
-        throw Error(ErrorKind::usage,
-                    fmt::format("{} is '{}': expected {}, two positive numbers", option, text, names));
-    }
-    return pair;
+    const PerAxis<double> pair = positive(text, 2, option, names);
+    return {pair[0], pair[1]};
 }
 
 void take_cell(const CellStatement& statement, Packing& packing) {
@@ -40,9 +54,11 @@ void take_cell(const CellStatement& statement, Packing& packing) {
         return;
     }
     if (!packing.cell.all() && !cell.empty()) {
-        throw Error(ErrorKind::usage, fmt::format("--cell is '{}' and {} is periodic along one axis only, whose period "
-                                                  "moves: expected no --cell",
-                                                  cell, file));
+        const bool one = packing.cell.periodic_axes() == 1;
+        throw Error(ErrorKind::usage,
+                    fmt::format("--cell is '{}' and {} is periodic along {}, whose period{} "
+                                "move{}: expected no --cell",
+                                cell, file, one ? "one axis only" : "two axes only", one ? "" : "s", one ? "s" : ""));
     }
     if (cell == "isotropic") {
         packing.cell.keep_shape();
@@ -50,8 +66,14 @@ void take_cell(const CellStatement& statement, Packing& packing) {
     }
     packing.cell.keeps_shape = false;
     packing.cell.period_moves = packing.cell.periodic;
-    std::fill_n(packing.cell.tilt_moves.begin(), packing.tilts(),
-                cell == "tilted" || (cell.empty() && packing.lattice(0, 1) != 0));
+    const auto tilts = packing.q.begin() + static_cast<std::ptrdiff_t>(packing.length_at(packing.axes()));
+    const bool tilted = std::any_of(tilts, packing.q.end(), [](double tilt) { return tilt != 0; });
+    for (std::size_t b = 1; b < packing.axes(); ++b) {
+        for (std::size_t a = 0; a < b; ++a) {
+            packing.cell.tilt_moves[Cell::tilt(a, b)] =
+                packing.cell.periodic[a] && packing.cell.periodic[b] && (cell == "tilted" || (cell.empty() && tilted));
+        }
+    }
 }
 
 compare::SoftList stated_list(const std::string& file, const ReadPacking& packing, const std::string& frame,

@@ -16,7 +16,8 @@ Packing of_disks(const Packing& packing, const std::vector<int>& disks);
 State backbone_of(const State& state, const std::vector<Contact>& carrying);
 
 /// The contacts that can carry a force by the positions of the normals, in their order: soft rattlers touch now and
-/// then, and hard ones rest on two contacts. Held coordinates are left out.
+/// then, and hard ones rest on two contacts. Held coordinates are left out. Of spheres nothing else is: normals in
+/// space are not looked at.
 std::vector<Contact> able_to_carry(const Packing& packing, std::vector<Contact> contacts);
 
 } // namespace isostat::compare

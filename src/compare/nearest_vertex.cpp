@@ -1,6 +1,8 @@
 #include "compare/nearest_vertex.hpp"
 
 #include "compare/soft_list.hpp"
+#include "preparation/neighbours.hpp"
+#include "verified/to_vertex.hpp"
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/crafted/plateau.hpp>
@@ -11,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 namespace isostat::compare {
 
@@ -97,6 +100,44 @@ Result<NearestVertex> vertex_of_list(SoftState soft, const std::string& words, s
     return out;
 }
 
+WantedList list_up_to(const Packing& packing, double threshold) {
+    const double reach = std::nextafter(std::max(threshold, 0.0), HUGE_VAL);
+    WantedList out{preparation::near_contacts(packing, reach, reach), fmt::format("gaps up to {:.6g}", threshold)};
+    std::erase_if(out.contacts, [&](const Contact& c) { return !(gap(packing, c) <= threshold); });
+    std::sort(out.contacts.begin(), out.contacts.end());
+    return out;
+}
+
+NearestVertex vertex_as_listed(const SoftState& soft, const std::string& words, std::uint64_t seed) {
+    NearestVertex out;
+    State& state = out.state;
+    state.packing = soft.packing;
+    state.contacts = soft.contacts;
+    long steps = 0;
+    constexpr double near = 0.1; // of the smallest radius
+    const auto failure = to_vertex(state.packing, state.contacts, steps, near * state.packing.min_radius());
+    out.contacts = fmt::format("{}, {}{}{}", state.contacts.size(), words,
+                               failure ? "; as they stand in the file: " : "", failure ? failure->message() : "");
+    state.load = soft.load;
+    state.load.refer_to(state.packing);
+    state.load.infinitesimal.assign(state.packing.length_at(0), 0);
+    std::mt19937_64 random(seed);
+    const double unit = state.packing.min_radius() * state.packing.min_radius();
+    for (const Contact& contact : state.contacts) {
+        const double force = unit * (1 + static_cast<double>(random() >> 11U) * 0x1p-53);
+        const GapGradient gradient = gap_gradient(state.packing, contact);
+        for (std::size_t k = 0; k < static_cast<std::size_t>(gradient.count); ++k) {
+            if (const auto at = static_cast<std::size_t>(gradient.coordinate[k]);
+                at < state.load.infinitesimal.size()) {
+                state.load.infinitesimal[at] -= force * gradient.value[k];
+            }
+        }
+    }
+    balance(state.load.infinitesimal, state.packing.cell);
+    out.truth = certify(state);
+    return out;
+}
+
 Moves moves_to(const State& state, const Certification& truth, const std::vector<double>& from) {
     const Packing& packing = state.packing;
     const double radius = truth.claims.vertex ? truth.claims.vertex->radius : HUGE_VAL;
@@ -108,12 +149,14 @@ Moves moves_to(const State& state, const Certification& truth, const std::vector
     for (const int rattler : untouched(packing.disk_count(), carrying(state, truth))) {
         moves.rattler[static_cast<std::size_t>(rattler)] = 1;
     }
+    const std::size_t d = packing.axes();
     for (std::size_t i = 0; i < n; ++i) {
-        moves.disk.push_back(std::hypot(way(2 * i), way(2 * i + 1)) * up);
+        const double in_plane = std::hypot(way(d * i), way(d * i + 1)) * up;
+        moves.disk.push_back(d == 2 ? in_plane : std::hypot(in_plane, way(d * i + 2)) * up);
         double& largest = moves.rattler[i] != 0 ? moves.rattlers : moves.backbone;
         largest = std::max(largest, moves.disk[i]);
     }
-    for (std::size_t k = 2 * n; k < packing.q.size(); ++k) {
+    for (std::size_t k = d * n; k < packing.q.size(); ++k) {
         moves.walls = std::max(moves.walls, way(k));
     }
     return moves;

@@ -33,6 +33,14 @@ Result<NearestVertex> vertex_downhill(const SoftState& soft, std::uint64_t seed)
 /// The vertex of the list, under the stresses times the lengths that the box has there. \p words: of the list.
 Result<NearestVertex> vertex_of_list(SoftState soft, const std::string& words, std::uint64_t seed);
 
+/// The pairs of grains and walls with a gap of at most `threshold` as they stand in the file, sorted.
+WantedList list_up_to(const Packing& packing, double threshold);
+
+/// The state of a packing of spheres in the contacts of `soft`, at their vertex where it is determined and near, else
+/// where the file has them; what is proved of it, which may be nothing. Infinitesimal loads are such that each contact
+/// of a rattler that rests on as many as there are axes carries one: so it rests where it is. \p words: of the list.
+NearestVertex vertex_as_listed(const SoftState& soft, const std::string& words, std::uint64_t seed);
+
 /// How far the true vertex may be from a place in the file: per disk, and at most for walls, backbone and rattlers.
 struct Moves {
     std::vector<double> disk;

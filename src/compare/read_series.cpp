@@ -237,7 +237,8 @@ class Disks {
         validate(frame.packing, dump_.where(rows.header.line));
         require_plane(frame.packing, dump_.where(rows.header.line), "compare");
         frame.rounding = f * rounding_of_gaps(places.rounding(), sides.digits.rounding(),
-                                              sizes.rounding() * (manifest_.diameters ? 0.5 : 1));
+                                              sizes.rounding() * (manifest_.diameters ? 0.5 : 1),
+                                              {2, manifest_.periodic && sides.tilt != 0});
         keep(frame);
     }
 
@@ -295,13 +296,18 @@ class Disks {
     /// The bounds of a dump are the cell.
     [[nodiscard]] Sides sides_of(const FrameHeader& header) const {
         const double f = manifest_.length_factor;
-        const std::array<double, 4> box = header.box.value();
-        return {std::array{box[0] * f, box[2] * f, box[1] * f, box[3] * f}, header.tilt * f, header.sides};
+        const auto& [x, y, z] = header.box.value();
+        Digits digits = header.sides[0];
+        digits.see(header.sides[1]);
+        return {std::array{x[0] * f, y[0] * f, x[1] * f, y[1] * f}, header.tilt[0] * f, digits};
     }
 
     /// Walls, or both axes periodic: as the manifest says. A cell is stated once.
     void check_boundaries(const FileFrame& rows, const Sides& sides) const {
         const FrameHeader& header = rows.header;
+        if (!header.not_plane.empty()) {
+            throw Error(ErrorKind::bad_input, header.not_plane);
+        }
         if (manifest_.periodic && sides.at && header.box) {
             throw Error(ErrorKind::bad_input,
                         fmt::format("{}: bounds of the cell here, and columns left, bottom, right, top in {}: expected "

@@ -44,7 +44,7 @@ void take_backbone(const SoftState& soft, Snap& out) {
     out.backbone.load = soft.load;
     out.backbone.load.disk_force.clear();
     // Where several forces vanish together for structural reasons, the end of the interval needs them.
-    out.backbone.load.infinitesimal = generic_infinitesimal(packing.radius, 1);
+    out.backbone.load.infinitesimal = generic_infinitesimal(packing.radius, 1, packing.dimension);
     balance(out.backbone.load.infinitesimal, packing.cell);
 }
 
@@ -128,15 +128,16 @@ void judge_room(Snap& out) {
 
 Packing of_disks(const Packing& packing, const std::vector<int>& disks) {
     Packing out;
+    out.dimension = packing.dimension;
     out.walls = packing.walls;
     out.cell = packing.cell;
     for (const int disk : disks) {
         const auto i = static_cast<std::size_t>(disk);
         out.radius.push_back(packing.radius[i]);
-        out.q.insert(out.q.end(), {packing.q[2 * i], packing.q[2 * i + 1]});
+        const double* const x = &packing.q[packing.axes() * i];
+        out.q.insert(out.q.end(), x, x + packing.axes());
     }
-    out.q.insert(out.q.end(), packing.q.begin() + static_cast<std::ptrdiff_t>(2 * packing.radius.size()),
-                 packing.q.end());
+    out.q.insert(out.q.end(), packing.q.begin() + static_cast<std::ptrdiff_t>(packing.length_at(0)), packing.q.end());
     const auto pin = std::find(disks.begin(), disks.end(), packing.cell.pin);
     out.cell.pin = pin == disks.end() ? 0 : static_cast<int>(pin - disks.begin());
     return out;
@@ -155,6 +156,9 @@ State backbone_of(const State& state, const std::vector<Contact>& carrying) {
 
 std::vector<Contact> able_to_carry(const Packing& packing, std::vector<Contact> contacts) {
     std::erase_if(contacts, [](const Contact& c) { return c.kind == ContactKind::held; });
+    if (packing.dimension != plane) {
+        return contacts;
+    }
     const std::vector<int> from = crafted::peel(packing, contacts).contact_from;
     std::vector<Contact> out;
     for (std::size_t l = 0; l < contacts.size(); ++l) {
@@ -220,11 +224,11 @@ std::vector<Contact> carrying(const State& equilibrium) {
                          structure.ok() ? Subject(equilibrium, structure.value()).zero : std::vector<unsigned char>());
 }
 
-std::string names_of(const std::vector<Contact>& contacts) {
+std::string names_of(const std::vector<Contact>& contacts, int dimension) {
     constexpr std::size_t most = 8;
     std::string text;
     for (std::size_t k = 0; k < std::min(most, contacts.size()); ++k) {
-        text += " " + to_string(contacts[k]);
+        text += " " + to_string(contacts[k], dimension);
     }
     return contacts.empty()         ? " none"
            : contacts.size() > most ? fmt::format("{} and {} more", text, contacts.size() - most)

@@ -66,15 +66,16 @@ void refuse(const std::string& file, const std::string& what) {
 
 std::string far_wall(const Packing& packing) {
     for (const ContactKind kind : {ContactKind::lower_wall, ContactKind::upper_wall}) {
-        for (const int axis : {0, 1}) {
+        for (int axis = 0; axis < packing.dimension; ++axis) {
             const auto a = static_cast<std::size_t>(axis);
             const WallKind wall = kind == ContactKind::lower_wall ? packing.walls.lower[a] : packing.walls.upper[a];
             const auto [nearest, distance] = nearest_to(packing, kind, axis);
             if (wall != WallKind::absent && nearest >= 0 && distance > nearly_touching * packing.min_radius()) {
                 return fmt::format("no disk is near the {} wall, the nearest gap is {:.3g} (disk {}): expected the "
-                                   "positions of the walls, --box XLO:XHI,YLO:YHI (bounds of a file often are not "
+                                   "positions of the walls, --box XLO:XHI,YLO:YHI{} (bounds of a file often are not "
                                    "those)",
-                                   to_string(Contact{kind, 0, axis}).substr(2), distance, nearest);
+                                   to_string(Contact{kind, 0, axis}, packing.dimension).substr(2), distance, nearest,
+                                   packing.dimension == plane ? "" : ",ZLO:ZHI");
             }
         }
     }
@@ -109,7 +110,14 @@ void check_nearness(const std::string& file, const Packing& packing) {
     if (const std::string words = far_wall(packing); !words.empty()) {
         refuse(file, words);
     }
-    const double deepest = crafted::plateau(packing, {near}).deepest_overlap;
+    double deepest = HUGE_VAL;
+    if (packing.dimension == plane) {
+        deepest = crafted::plateau(packing, {near}).deepest_overlap;
+    } else {
+        for (const Contact& c : preparation::near_contacts(packing, near, near)) {
+            deepest = std::min(deepest, gap(packing, c));
+        }
+    }
     if (deepest < -near) {
         refuse(file, fmt::format("two grains overlap by {:.3g}: expected at most {:.3g}, {} of the smallest radius",
                                  -deepest, near, nearly_touching));

@@ -131,6 +131,7 @@ double imported_rounding(const State& state) {
 Untold untold_by(double rounding, const State& state, const Certification& truth) {
     Untold out;
     out.rounding = rounding;
+    out.dimension = state.packing.dimension;
     if (rounding == 0 || !truth.claims.vertex || truth.finite.empty()) {
         return out;
     }
@@ -175,10 +176,10 @@ std::string Untold::words() const {
     const auto count = [](std::size_t n, const char* what) {
         return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
     };
-    std::string text = gaps.empty() ? "" : count(gaps.size(), "gap") + " (" + names_of(gaps).substr(1) + ")";
+    std::string text = gaps.empty() ? "" : count(gaps.size(), "gap") + " (" + names_of(gaps, dimension).substr(1) + ")";
     text += forces.empty() ? ""
                            : fmt::format("{}{} ({})", text.empty() ? "" : " and ", count(forces.size(), "force"),
-                                         names_of(forces).substr(1));
+                                         names_of(forces, dimension).substr(1));
     text += fmt::format(" cannot be told from 0: gaps of the file are known to {}", rounded_up(rounding, 2));
     return gaps.empty() ? text
            : rattlers   ? text + "; some are of rattlers, which may be held"

@@ -17,6 +17,7 @@ double imported_rounding(const State& state);
 /// What cannot be told apart from 0 when every gap of a contact is off by the rounding.
 struct Untold {
     double rounding = 0;
+    int dimension = 2;           ///< of the packing
     std::vector<Contact> gaps;   ///< of other pairs: there may be a contact
     bool rattlers = false;       ///< some of them are of rattlers, which may then carry a force
     std::vector<Contact> forces; ///< of contacts: there may be none

@@ -49,15 +49,20 @@ std::optional<std::string> disk_beyond(const Packing& packing, double reach, dou
 /// 10^8 images would be needed: a cell that flat has another basis.
 Images images_near_cell(const Packing& packing, double reach);
 
-/// Sum of the lengths that r of an image is made of, which the rounding of r goes with; 0 without an image.
+/// Sum of the lengths that r of an image is made of, which the rounding of r goes with; 0 without an image. More where
+/// more than eight periods are added: so many roundings (proofs/contact_candidates.md, "Filters").
 inline double lengths_of_image(const Packing& packing, const Contact& pair) {
     double sum = 0;
+    double periods = 0;
     if (!pair.image.is_here()) {
         Separation(pair, packing.layout()).for_each_coordinate([&](std::size_t k, std::size_t, int multiple) {
             sum += std::abs(multiple) * std::abs(packing.q[k]);
         });
+        for (const int m : pair.image.m) {
+            periods += std::abs(m);
+        }
     }
-    return sum;
+    return sum * std::max(1.0, periods / 8);
 }
 
 } // namespace isostat

@@ -83,8 +83,9 @@ struct GapOrder::Exact {
         const auto minus = [](const Integer& a, const Integer& b) -> Integer { return a - b; };
         const Integer r = integer(packing.radius[static_cast<std::size_t>(contact.i)], unit);
         if (contact.kind == ContactKind::disk_disk) {
-            const auto [dx, dy, none] = separation.of_disks(at, minus);
-            return {dx * dx + dy * dy, r + integer(packing.radius[static_cast<std::size_t>(contact.j)], unit)};
+            const auto [dx, dy, dz] = separation.of_disks(at, minus);
+            return {dx * dx + dy * dy + dz * dz,
+                    r + integer(packing.radius[static_cast<std::size_t>(contact.j)], unit)};
         }
         return {0, r - separation.of_wall(at, minus)};
     }
@@ -106,8 +107,8 @@ GapOrder::Item GapOrder::item(const Contact& contact) const {
     const std::vector<double>& q = packing_->q;
     const double touching = touching_distance(packing_->radius, contact);
     if (contact.kind == ContactKind::disk_disk) {
-        const auto [dx, dy, none] = separation(packing_->layout(), q, contact);
-        const double distance = std::hypot(dx, dy);
+        const auto [dx, dy, dz] = separation(packing_->layout(), q, contact);
+        const double distance = std::hypot(dx, dy, dz);
         return {contact, distance - touching,
                 relative_bound * (distance + touching + lengths_of_image(*packing_, contact))};
     }

@@ -20,4 +20,8 @@ struct Peeling {
 /// near-parallel normals, which are decided in rationals.
 Peeling peel(const Packing& packing, const std::vector<Contact>& contacts);
 
+/// The same of spheres: by planes through a centre that leave every contact of the sphere on one side, each sign
+/// decided by intervals or in rationals. Cost: for a sphere with z contacts O(z^3) signs whenever it loses one.
+Peeling peel_in_space(const Packing& packing, const std::vector<Contact>& contacts);
+
 } // namespace isostat::crafted

@@ -200,7 +200,7 @@ class Sequence {
             }
         }
         for (int i = 0; i < packing_.disk_count(); ++i) {
-            for (int a = 0; a < 2; ++a) {
+            for (int a = 0; a < packing_.dimension; ++a) {
                 const auto axis = static_cast<std::size_t>(a);
                 const auto moves = [&](WallKind wall) {
                     return wall == WallKind::movable || (wall == WallKind::fixed && !packing_.is_fixed(DiskId(i)));
@@ -216,7 +216,7 @@ class Sequence {
     }
 
     void count_backbones() {
-        peeling_ = peel(packing_, contacts_);
+        peeling_ = packing_.dimension == plane ? peel(packing_, contacts_) : peel_in_space(packing_, contacts_);
         const auto count = static_cast<std::size_t>(size()) + 1;
         carrying_.assign(count, 0);
         rattlers_.assign(count, 0);
@@ -259,7 +259,7 @@ class Sequence {
         const auto k = static_cast<std::size_t>(m);
         PlateauCounts out;
         const auto pinned = static_cast<int>(packing_.cell.periodic_axes());
-        out.dof_count = 2 * free_[k] + moving_ + cell_coordinates() - (free_[k] > 0 ? pinned : 0);
+        out.dof_count = packing_.dimension * free_[k] + moving_ + cell_coordinates() - (free_[k] > 0 ? pinned : 0);
         out.contact_count = carrying_[k];
         out.rigid_motions = std::min(out.dof_count, rigid_motions(packing_, packing_.disk_count() - rattlers_[k]));
         return out;

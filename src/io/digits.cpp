@@ -21,6 +21,11 @@ void Digits::see(std::string_view number) {
     largest_ = std::max(largest_, std::abs(*value));
 }
 
+void Digits::see(const Digits& others) {
+    most_ = std::max(most_, others.most_);
+    largest_ = std::max(largest_, others.largest_);
+}
+
 double Digits::rounding(int others) const {
     constexpr int few = 4;
     if (largest_ == 0) {
@@ -31,9 +36,12 @@ double Digits::rounding(int others) const {
     return std::max(last, 0x1p-53 * largest_);
 }
 
-double rounding_of_gaps(double place, double side, double radius) {
+double rounding_of_gaps(double place, double side, double radius, BoxKind box) {
     constexpr double up = 1 + 0x1p-40;
-    return up * (2 * std::sqrt(2.0) * place + 4 * side + 2 * radius); // an image: periods and tilt
+    // r_a = x_j - x_i + sum A_ab m_b, |m_b| <= 1. A period is a difference of two bounds, in a tilted dump less |A_ab|
+    // of the axes after it: with A_ab m_b itself r_a is off by up to 2 and 2 for each of them, (4, 2) and (6, 4, 2).
+    const double of_sides = !box.tilted ? 4 : box.dimension == 2 ? std::sqrt(20.0) : std::sqrt(56.0);
+    return up * (2 * std::sqrt(static_cast<double>(box.dimension)) * place + of_sides * side + 2 * radius);
 }
 
 } // namespace isostat

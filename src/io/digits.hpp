@@ -10,6 +10,8 @@ namespace isostat {
 class Digits {
   public:
     void see(std::string_view number);
+    /// And those that others saw.
+    void see(const Digits& others);
     /// So far may the numbers be from what was meant: half a unit of the last digit of the largest one, and what
     /// doubles round. \p others: digits of other numbers of the file; where these have more, the zeros after the last
     /// digit were left out, not the digits.
@@ -23,8 +25,13 @@ class Digits {
     double largest_ = 0;
 };
 
-/// Bound of the change of a gap of disks and walls when every coordinate is off by `place`, every side or period by
-/// `side`, every radius by `radius`.
-double rounding_of_gaps(double place, double side, double radius);
+/// Bound of the change of a gap of grains and walls when every coordinate is off by `place`, every bound of the box,
+/// period and tilt by `side`, every radius by `radius`. Of an image in a neighbouring cell. A tilted box may be that of
+/// a dump, whose bounds are those of all its corners.
+struct BoxKind {
+    int dimension = 2;
+    bool tilted = false;
+};
+double rounding_of_gaps(double place, double side, double radius, BoxKind box = {});
 
 } // namespace isostat

@@ -1,7 +1,6 @@
 #include "io/files.hpp"
-#include "io/foreign_source.hpp"
+#include "io/foreign_box.hpp"
 #include "io/numbers.hpp"
-#include "packing/cell_wrap.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/io/foreign.hpp>
@@ -16,41 +15,60 @@ namespace isostat {
 
 namespace {
 
-using foreign::Boundary;
 using foreign::Raw;
 
 [[noreturn]] void refuse(const std::string& source, const std::string& message) {
     throw Error(ErrorKind::bad_input, source + ": " + message);
 }
 
-void check_boundaries(Raw& raw, const std::string& source, const ForeignOptions& options) {
-    for (std::size_t a = 0; a < 2; ++a) {
-        const char axis = a == 0 ? 'x' : 'y';
-        if (options.not_periodic) {
-            raw.boundary[a] = Boundary::open;
-            continue;
-        }
-        if (options.periodic && raw.boundary[a] == Boundary::unknown) {
-            raw.boundary[a] = Boundary::periodic;
-            raw.notes.push_back(fmt::format("{} is periodic, as stated", axis));
-        }
-        if (raw.boundary[a] == Boundary::periodic && !options.cells) {
-            refuse(source, fmt::format("boundaries along {} are periodic: expected open ones or walls; contacts across "
-                                       "them are not supported (--not-periodic looks at the disks as they lie)",
-                                       axis));
-        }
-        if (raw.boundary[a] == Boundary::unknown && raw.box) {
-            raw.notes.push_back(fmt::format(
-                "the file does not say whether {} is periodic: no contact is looked for across the boundary", axis));
+/// Whether period vectors are written as the cell is. \p d: so many axes of them count.
+bool are_upper(const PerAxis<PerAxis<double>>& vectors, std::size_t d) {
+    bool upper = true;
+    for (std::size_t a = 0; a < d; ++a) {
+        upper = upper && vectors[a][a] > 0;
+        for (std::size_t b = a + 1; b < d; ++b) {
+            upper = upper && vectors[a][b] == 0;
         }
     }
-    const bool both = raw.boundary[0] == Boundary::periodic && raw.boundary[1] == Boundary::periodic;
-    if (raw.tilt != 0 && !both) {
+    return upper;
+}
+
+/// Disks where z is the same, or differs by so little that no gap of two disks, sqrt(d^2 + z^2), is another double.
+int dimension_of(Raw& raw, const std::string& source, const ForeignOptions& options) {
+    const std::optional<int> stated = options.dimension ? options.dimension : raw.dimension;
+    if (stated.value_or(2) != raw.dimension.value_or(stated.value_or(2))) {
         refuse(source,
-               fmt::format(
-                   "the box (Lattice, or xy) is tilted by {}: expected one along the axes, or both axes periodic{}",
-                   raw.tilt, options.cells ? " (--periodic says so where the file does not)" : ""));
+               fmt::format("dimension {} was stated and the file has {}: expected that", *stated, *raw.dimension));
     }
+    if (stated == 3 && !raw.has_z) {
+        refuse(source, "dimension 3 was stated and there is no column z: expected one");
+    }
+    const auto off = [&](std::size_t i) { return std::abs(raw.centre[i][2] - raw.centre[0][2]); };
+    std::size_t farthest = 0;
+    for (std::size_t i = 0; i < raw.centre.size(); ++i) {
+        farthest = off(i) > off(farthest) ? i : farthest;
+    }
+    const double radius =
+        *std::min_element(raw.size.begin(), raw.size.end()) / (raw.meaning == SizeMeaning::radius ? 1 : 2);
+    const bool flat = off(farthest) <= 0x1p-27 * radius;
+    const int dimension = stated.value_or(flat ? 2 : 3);
+    if (dimension == 2 && !flat) {
+        refuse(fmt::format("{}:{}", source, raw.line[farthest]),
+               fmt::format("z of disk {} is '{}': expected {}, as of disk 0: disks were stated, in a plane "
+                           "(--dimension 3 takes spheres)",
+                           farthest, raw.centre[farthest][2], raw.centre[0][2]));
+    }
+    if (dimension == 2 && off(farthest) > 0) {
+        raw.notes.push_back(
+            fmt::format("z differs by up to {:.2g}, which changes no gap: taken for a plane", off(farthest)));
+    }
+    if (dimension == 2 && !raw.not_plane.empty()) {
+        throw Error(ErrorKind::bad_input, raw.not_plane);
+    }
+    if (raw.vectors && are_upper(*raw.vectors, static_cast<std::size_t>(dimension))) {
+        raw.vectors.reset();
+    }
+    return dimension;
 }
 
 /// Not `validate`: disks of any size may overlap, and reach beyond the walls.
@@ -68,141 +86,65 @@ void check_range(const Packing& packing, const std::string& source) {
     }
 }
 
-/// x - origin; the rounding of the difference (Knuth's, exact) goes to `worst` if it is larger.
-double shifted(double x, double origin, double& worst) {
-    const double d = x - origin;
-    const double moved = x - d;
-    worst = std::max(worst, std::abs((x - (d + moved)) + (moved - origin)));
-    return d;
+/// Three rows with one number each: in XYZ the third one has a place at least.
+bool begins_with_centres(const std::vector<TextLine>& start) {
+    return start.size() >= 3 && std::all_of(start.begin(), start.begin() + 3, [](const TextLine& line) {
+               return line.size() == 1 && finite_number(line.field(0));
+           });
 }
 
-/// The walls of one axis, where they were asked for.
-void add_wall_pair(ForeignPacking& out, std::size_t a, const Raw& raw, const std::string& source,
-                   const ForeignOptions& options, double& worst) {
-    Packing& packing = out.packing;
-    if (options.walls == ForeignWalls::none) {
-        packing.q.push_back(0);
-        return;
+/// What multiplying out scaled coordinates rounds, and (`factor`) what it makes of their digits.
+struct Scaling {
+    double factor = 1, rounding = 0;
+};
+Scaling scaling_of(const Raw& raw, std::size_t axes) {
+    if (!raw.scaled) {
+        return {};
     }
-    const std::array<double, 4> box = options.box ? *options.box : *raw.box;
-    if (!options.box && raw.loose[a]) {
-        refuse(source, fmt::format("bounds along {} are shrink-wrapped: expected fixed ones for walls, or --box",
-                                   a == 0 ? 'x' : 'y'));
-    }
-    const double low = box[2 * a], high = box[2 * a + 1];
-    if (!(low < high)) {
-        refuse(source, fmt::format("box from {} to {}: expected a lower and a higher bound", low, high));
-    }
-    for (std::size_t i = 0; i < packing.radius.size(); ++i) {
-        double& x = packing.q[2 * i + a];
-        if (!(low < x && x < high)) {
-            refuse(source, fmt::format("{} of disk {} is {}: expected a centre between the walls at {} and {}{}{}",
-                                       a == 0 ? 'x' : 'y', i, x, low, high, raw.types.empty() ? "" : "; ", raw.types));
+    Scaling out{0, 0};
+    double bound = 0;
+    for (std::size_t a = 0; a < axes; ++a) {
+        const auto& [low, high] = (*raw.box)[a];
+        double reach = high - low;
+        for (std::size_t b = a + 1; b < axes; ++b) {
+            reach += std::abs(raw.tilt[Cell::tilt(a, b)]);
         }
-        x = shifted(x, low, worst);
+        out.factor = std::max(out.factor, reach);
+        bound = std::max({bound, std::abs(low), std::abs(high)});
     }
-    packing.q.push_back(shifted(high, low, worst));
-    packing.walls.lower[a] = WallKind::fixed;
-    packing.walls.upper[a] = options.walls == ForeignWalls::box ? WallKind::movable : WallKind::fixed;
-}
-
-/// Periodic axes: the cell of the file, which does not move, with its lower corner at 0 and the disks in it. By how
-/// much that rounds a coordinate.
-double add_cell(ForeignPacking& out, const Raw& raw, const std::string& source, const ForeignOptions& options) {
-    Packing& packing = out.packing;
-    if (!raw.box) {
-        refuse(source, "periodic, and the file has no bounds of a box: expected some");
-    }
-    const bool all = raw.boundary[0] == raw.boundary[1];
-    if (all && ((options.walls != ForeignWalls::none && !options.walls_unless_periodic) || options.box)) {
-        refuse(source, "walls or a box were stated of a periodic packing: expected none (--not-periodic looks at the "
-                       "disks as they lie)");
-    }
-    packing.walls = Walls::none();
-    double worst = 0;
-    for (std::size_t a = 0; a < 2; ++a) {
-        packing.cell.periodic[a] = raw.boundary[a] == Boundary::periodic;
-        if (!packing.cell.periodic[a]) {
-            add_wall_pair(out, a, raw, source, options, worst);
-            continue;
-        }
-        const double low = (*raw.box)[2 * a];
-        for (std::size_t i = 0; i < packing.radius.size(); ++i) {
-            double& x = packing.q[2 * i + a];
-            x = shifted(x, low, worst);
-        }
-        packing.q.push_back(shifted((*raw.box)[2 * a + 1], low, worst));
-    }
-    packing.q.push_back(raw.tilt);
-    for (std::size_t a = 0; a < 2; ++a) {
-        if (packing.cell.periodic[a] && !(packing.lattice(a, a) > 0)) {
-            refuse(source, fmt::format("period {} along {}: expected a positive one", packing.lattice(a, a),
-                                       a == 0 ? 'x' : 'y'));
-        }
-    }
-    worst = std::max(worst, wrap_into_cell(packing).rounding);
-    const std::string along = options.walls == ForeignWalls::none ? "open along" : "walls along";
-    out.notes.push_back(fmt::format("periodic along {}: lengths {} and {}, tilt {}",
-                                    packing.cell.all()         ? "x and y"
-                                    : packing.cell.periodic[0] ? "x, " + along + " y"
-                                                               : "y, " + along + " x",
-                                    packing.lattice(0, 0), packing.lattice(1, 1), raw.tilt));
-    if (worst > 0) {
-        out.notes.push_back(fmt::format("coordinates were moved into the cell: rounded by up to {:.2g}", worst));
-    }
-    return worst;
-}
-
-/// By how much the shift to them rounds a coordinate.
-double add_walls(ForeignPacking& out, const Raw& raw, const std::string& source, const ForeignOptions& options) {
-    Packing& packing = out.packing;
-    packing.walls = Walls::none();
-    if (options.walls == ForeignWalls::none) {
-        packing.q.insert(packing.q.end(), {0, 0});
-        if (options.box) {
-            refuse(source, "a box was stated without walls: expected walls box or fixed");
-        }
-        if (raw.box) {
-            out.notes.emplace_back("no walls: the bounds of the box in the file are not used");
-        }
-        return 0;
-    }
-    if (!options.box && !raw.box) {
-        refuse(source, "walls were asked for and the file has no bounds of a box: expected --box xlo:xhi,ylo:yhi");
-    }
-    const std::array<double, 4> box = options.box ? *options.box : *raw.box;
-    double worst = 0;
-    for (std::size_t a = 0; a < 2; ++a) {
-        add_wall_pair(out, a, raw, source, options, worst);
-    }
-    out.notes.push_back(
-        fmt::format("walls at x = {}, {} and y = {}, {}: {}", box[0], box[1], box[2], box[3],
-                    options.walls == ForeignWalls::box ? "left and bottom fixed, right and top movable" : "fixed"));
-    if (worst > 0) {
-        out.notes.push_back(fmt::format("coordinates were shifted to the lower walls: rounded by up to {:.2g}", worst));
-    }
-    return worst;
+    out.rounding = 0x1p-52 * static_cast<double>(axes) * (out.factor + bound); // two operations for each axis
+    return out;
 }
 
 /// \p moved: the rounding of a coordinate that came with the walls or the cell.
 double rounding_of(const Raw& raw, const ForeignPacking& found, const ForeignOptions& options, double moved) {
-    const bool walls = !(found.packing.walls == Walls::none());
-    const bool sides = found.packing.cell.any() || (walls && !options.box);
-    const int digits = std::max({raw.places.most(), raw.sizes.most(), sides ? raw.sides.most() : 0});
-    const double scaled = raw.scale == 1 ? 0 : 0x1p-51 * raw.scale; // three operations
-    double size = raw.sizes.rounding(digits);
-    size = std::max(raw.meaning == SizeMeaning::radius ? size : size / 2, 0x1p-53 * found.packing.max_radius());
-    double side = sides ? raw.sides.rounding(digits) + moved : 0;
-    for (std::size_t k = 0; options.box && k < 4; ++k) {
-        side = std::max(side, 0x1p-53 * std::abs((*options.box)[k]) + moved);
+    const Packing& packing = found.packing;
+    const bool walls = !(packing.walls == Walls::none());
+    const bool in_file = packing.cell.any() || (walls && options.box.empty());
+    Digits places, sides;
+    for (std::size_t a = 0; a < packing.axes(); ++a) {
+        places.see(raw.places[a]);
+        sides.see(in_file ? raw.sides[a] : Digits());
     }
-    return rounding_of_gaps(raw.places.rounding(digits) * raw.scale + scaled + moved, side, size);
+    const int digits = std::max({places.most(), raw.sizes.most(), sides.most()});
+    double size = raw.sizes.rounding(digits);
+    size = std::max(raw.meaning == SizeMeaning::radius ? size : size / 2, 0x1p-53 * packing.max_radius());
+    double side = in_file ? sides.rounding(digits) + moved : 0;
+    for (const double stated : options.box) {
+        side = std::max(side, 0x1p-53 * std::abs(stated) + moved);
+    }
+    const bool tilted =
+        raw.vectors || std::any_of(raw.tilt.begin(), raw.tilt.end(), [](double tilt) { return tilt != 0; });
+    const Scaling scaling = scaling_of(raw, packing.axes());
+    // Coordinates of a packing have as many digits as they were given: fewer than radii have were cut off.
+    return rounding_of_gaps(places.rounding() * scaling.factor + scaling.rounding + moved, side, size,
+                            {packing.dimension, packing.cell.any() && tilted});
 }
 
 } // namespace
 
 const std::vector<std::string>& foreign_formats() {
-    static const std::vector<std::string> formats{"lammps-data", "lammps-dump", "xyz", "table"};
+    static const std::vector<std::string> formats{"lammps-data", "lammps-dump", "xyz", "table", "centres"};
     return formats;
 }
 
@@ -224,7 +166,7 @@ std::string recognise_format(const std::string& marked) {
     // Vertex texts and XYZ start with a number of rows; the next row tells them apart.
     TextLines rows = lines;
     std::vector<TextLine> start;
-    while (!rows.at_end() && start.size() < 2) {
+    while (!rows.at_end() && start.size() < 3) {
         const std::string_view line = rows.take("");
         if (start.empty() && (blank(line) || line[line.find_first_not_of(" \t\r")] == '#')) {
             continue;
@@ -237,7 +179,10 @@ std::string recognise_format(const std::string& marked) {
     if (!start.empty() && is_count(start[0]) && start[0].size() > 1 && start[0].field(1) == "x") {
         return "vertex";
     }
-    if (start.size() == 2 && is_count(start[0]) && start[0].size() == 1) {
+    if (begins_with_centres(start)) {
+        return "centres";
+    }
+    if (start.size() >= 2 && is_count(start[0]) && start[0].size() == 1) {
         const bool numbers = start[1].size() == 5 && finite_number(start[1].field(0)).has_value();
         return numbers || (!start[1].text().empty() && start[1].text().starts_with('#')) ? "vertex" : "xyz";
     }
@@ -266,8 +211,9 @@ ForeignPacking parse_foreign(const std::string& text, const std::string& source,
     if (!options.columns.empty() && out.format != "table") {
         refuse(source, fmt::format("names of columns were stated: expected a table, the format is {}", out.format));
     }
-    if (out.format == "lammps-data" && options.frame.value_or(0) != 0) {
-        refuse(source, fmt::format("frame {} was asked for: expected frame 0, a data file has one", *options.frame));
+    if ((out.format == "lammps-data" || out.format == "centres") && options.frame.value_or(0) != 0) {
+        refuse(source, fmt::format("frame {} was asked for: expected frame 0, a file of {} has one", *options.frame,
+                                   out.format));
     }
     Raw raw;
     if (out.format == "lammps-data") {
@@ -278,23 +224,29 @@ ForeignPacking parse_foreign(const std::string& text, const std::string& source,
         raw = foreign::read_xyz(text, source, options);
     } else if (out.format == "table") {
         raw = foreign::read_table(text, source, options);
+    } else if (out.format == "centres") {
+        raw = foreign::read_centres(text, source, options);
     } else {
         refuse(source, fmt::format("format '{}': expected one of {}", out.format, fmt::join(foreign_formats(), ", ")));
     }
-    check_boundaries(raw, source, options);
+    Packing& packing = out.packing;
+    packing.dimension = packing.cell.dimension = dimension_of(raw, source, options);
+    packing.walls = Walls::none();
+    const std::size_t d = packing.axes();
+    ForeignOptions stated = options;
+    foreign::settle_bounds(raw, d, source, stated);
     out.notes = raw.notes;
     out.ids = raw.ids;
     if (!text.ends_with('\n')) {
         out.notes.emplace_back("the last line has no end: was the file cut there?");
     }
-    for (std::size_t i = 0; i < raw.x.size(); ++i) {
-        out.packing.q.push_back(raw.x[i]);
-        out.packing.q.push_back(raw.y[i]);
-        out.packing.radius.push_back(raw.meaning == SizeMeaning::radius ? raw.size[i] : raw.size[i] / 2);
+    for (std::size_t i = 0; i < raw.centre.size(); ++i) {
+        packing.q.insert(packing.q.end(), raw.centre[i].begin(),
+                         raw.centre[i].begin() + static_cast<std::ptrdiff_t>(d));
+        packing.radius.push_back(raw.meaning == SizeMeaning::radius ? raw.size[i] : raw.size[i] / 2);
     }
-    const bool periodic = raw.boundary[0] == Boundary::periodic || raw.boundary[1] == Boundary::periodic;
-    const double moved = (periodic ? add_cell : add_walls)(out, raw, source, options);
-    check_range(out.packing, source);
+    const double moved = foreign::add_box(out, raw, source, stated);
+    check_range(packing, source);
     out.rounding = rounding_of(raw, out, options, moved);
     return out;
 }

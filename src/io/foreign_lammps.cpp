@@ -62,9 +62,8 @@ bool is_counter(const std::string& keyword) {
 
 struct DataHeader {
     long atoms = -1;
-    double tilt = 0; ///< xy
-    Digits sides;
-    std::array<std::optional<std::array<double, 2>>, 2> bounds;
+    Bounds box;
+    PerAxis<std::optional<std::array<double, 2>>> bounds;
     std::set<std::string> seen; ///< keywords
 
     void take(const HeaderLine& header) {
@@ -87,19 +86,13 @@ struct DataHeader {
             if (!(low < high)) {
                 line.fail(line.field(1), "upper bound", fmt::format("a number above the lower bound {}", low));
             }
-            if (axis < 2) {
-                sides.see(line.field(0));
-                sides.see(line.field(1));
-                bounds[axis] = {low, high};
-            }
+            box.sides[axis].see(line.field(0));
+            box.sides[axis].see(line.field(1));
+            bounds[axis] = {low, high};
         } else if (header.keyword == "xy xz yz") {
             numbers(3);
-            tilt = line.number(0, "tilt");
-            sides.see(line.field(0));
-            for (std::size_t k = 1; k < 3; ++k) {
-                if (line.number(k, "tilt") != 0) {
-                    line.fail(line.field(k), "tilt of the box", "0: only packings in a plane are read");
-                }
+            for (std::size_t k = 0; k < most_tilts; ++k) {
+                take_tilt(line, k, k, box);
             }
         } else if (is_counter(header.keyword)) {
             numbers(1);
@@ -123,9 +116,7 @@ void read_atoms(TextLines& lines, const std::string& style, const DataHeader& he
     const int shift = style == "sphere" ? 0 : 1;
     columns.id = 0;
     columns.size = 2 + shift;
-    columns.x = 4 + shift;
-    columns.y = 5 + shift;
-    columns.z = 6 + shift;
+    columns.at = {4 + shift, 5 + shift, 6 + shift};
     columns.meaning = raw.meaning = SizeMeaning::diameter;
     if (options.size) {
         if (!options.size->column.empty() || options.size->meaning != SizeMeaning::diameter) {
@@ -155,7 +146,7 @@ void read_atoms(TextLines& lines, const std::string& style, const DataHeader& he
             line.require_size(width, what);
         }
         for (std::size_t k = width; k < line.size(); ++k) {
-            if (line.integer(k, "image flag", -1000000, 1000000) != 0 && k < width + 2) {
+            if (line.integer(k, "image flag", -1000000, 1000000) != 0) {
                 raw.boundary[k - width] = Boundary::periodic;
             }
         }
@@ -165,28 +156,37 @@ void read_atoms(TextLines& lines, const std::string& style, const DataHeader& he
 }
 
 /// Coordinates as wrapped, unwrapped or scaled to the box.
-struct Coordinates {
-    bool scaled = false;
-    void find(Columns& columns, const std::vector<std::string>& names, const std::string& where, Raw& raw) {
-        for (const auto& [x, y, z, is_scaled, note] : {std::tuple{"x", "y", "z", false, ""},
-                                                       {"xu", "yu", "zu", false, "unwrapped coordinates xu yu"},
-                                                       {"xs", "ys", "zs", true, "scaled coordinates xs ys"},
-                                                       {"xsu", "ysu", "zsu", true, "scaled coordinates xsu ysu"}}) {
-            columns.x = find_column(names, x);
-            columns.y = find_column(names, y);
-            if (columns.x >= 0 && columns.y >= 0) {
-                columns.z = find_column(names, z);
-                scaled = is_scaled;
-                if (*note != '\0') {
-                    raw.notes.emplace_back(note);
-                }
-                return;
+void find_coordinates(Columns& columns, const std::vector<std::string>& names, const std::string& where, Raw& raw) {
+    for (const auto& [x, y, z, is_scaled, note] : {std::tuple{"x", "y", "z", false, ""},
+                                                   {"xu", "yu", "zu", false, "unwrapped coordinates xu yu"},
+                                                   {"xs", "ys", "zs", true, "scaled coordinates xs ys"},
+                                                   {"xsu", "ysu", "zsu", true, "scaled coordinates xsu ysu"}}) {
+        columns.at = {find_column(names, x), find_column(names, y), find_column(names, z)};
+        if (columns.at[0] >= 0 && columns.at[1] >= 0) {
+            raw.scaled = is_scaled;
+            if (*note != '\0') {
+                raw.notes.emplace_back(note);
+            }
+            return;
+        }
+    }
+    throw Error(ErrorKind::bad_input,
+                fmt::format("{}: no coordinates: expected columns x y, xu yu, xs ys or xsu ysu", where));
+}
+
+/// In units of the box: lengths.
+void multiply_out(Raw& raw) {
+    const auto& box = raw.box.value();
+    for (PerAxis<double>& x : raw.centre) {
+        for (std::size_t a = 0; a < most_axes; ++a) {
+            x[a] = box[a][0] + x[a] * (box[a][1] - box[a][0]);
+            for (std::size_t b = a + 1; b < most_axes; ++b) {
+                x[a] += x[b] * raw.tilt[Cell::tilt(a, b)];
             }
         }
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{}: no coordinates: expected columns x y, xu yu, xs ys or xsu ysu", where));
     }
-};
+    raw.notes.emplace_back("scaled coordinates were multiplied out in double: rounded at 2^-52 of the box");
+}
 
 } // namespace
 
@@ -232,9 +232,10 @@ Raw read_lammps_data(const std::string& text, const std::string& source, const F
         lines.fail("the file ends here: expected a section 'Atoms # sphere'");
     }
     if (header.bounds[0] && header.bounds[1]) {
-        raw.box = {(*header.bounds[0])[0], (*header.bounds[0])[1], (*header.bounds[1])[0], (*header.bounds[1])[1]};
-        raw.tilt = header.tilt;
-        raw.sides = header.sides;
+        constexpr std::array<double, 2> none{};
+        header.box.box = {*header.bounds[0], *header.bounds[1], header.bounds[2].value_or(none)};
+        header.box.boundary = raw.boundary; // image flags told
+        static_cast<Bounds&>(raw) = header.box;
     }
     return raw;
 }
@@ -250,20 +251,13 @@ Raw read_lammps_dump(const std::string& text, const std::string& source, const F
                     fmt::format("{}: frame {} has 0 atoms: expected at least 1", where, frame.number));
     }
     Columns columns;
-    Coordinates coordinates;
-    coordinates.find(columns, header.names, where, raw);
+    find_coordinates(columns, header.names, where, raw);
     find_size(columns, header.names, options, where, raw);
     find_selection(columns, header.names, options, where);
     columns.id = find_column(header.names, "id");
     frame.read(Rows(columns, source), raw);
-    if (coordinates.scaled) {
-        const std::array<double, 4> box = raw.box.value();
-        raw.scale = std::max(box[1] - box[0] + std::abs(raw.tilt), box[3] - box[2]);
-        for (std::size_t i = 0; i < raw.x.size(); ++i) {
-            raw.x[i] = box[0] + raw.x[i] * (box[1] - box[0]) + raw.y[i] * raw.tilt;
-            raw.y[i] = box[2] + raw.y[i] * (box[3] - box[2]);
-        }
-        raw.notes.emplace_back("scaled coordinates were multiplied out in double: rounded at 2^-52 of the box");
+    if (raw.scaled) {
+        multiply_out(raw);
     }
     raw.notes.push_back(fmt::format("frame {} (time step {})", frame.number, header.timestep));
     return raw;

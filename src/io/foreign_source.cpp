@@ -1,5 +1,7 @@
 #include "io/foreign_source.hpp"
 
+#include "packing/words.hpp"
+
 #include <isostat/core/error.hpp>
 
 #include <fmt/format.h>
@@ -96,22 +98,20 @@ void Rows::add(const TextLine& line, Raw& raw) {
     if (columns_.select >= 0 && line.field(static_cast<std::size_t>(columns_.select)) != columns_.selected) {
         return;
     }
-    const std::size_t disk = raw.x.size();
+    const std::size_t disk = raw.centre.size();
     const auto number = [&](int column, const char* name) {
         return line.number(static_cast<std::size_t>(column), fmt::format("{} of disk {}", name, disk));
     };
-    raw.x.push_back(number(columns_.x, "x"));
-    raw.y.push_back(number(columns_.y, "y"));
-    raw.places.see(line.field(static_cast<std::size_t>(columns_.x)));
-    raw.places.see(line.field(static_cast<std::size_t>(columns_.y)));
-    if (columns_.z >= 0) {
-        const double z = number(columns_.z, "z");
-        if (z != z_.value_or(z)) {
-            line.fail(line.field(static_cast<std::size_t>(columns_.z)), fmt::format("z of disk {}", disk),
-                      fmt::format("{}, as before: only packings in a plane are read", *z_));
+    PerAxis<double> centre{};
+    for (std::size_t a = 0; a < most_axes; ++a) {
+        if (columns_.at[a] >= 0) {
+            centre[a] = number(columns_.at[a], axis_names[a]);
+            raw.places[a].see(line.field(static_cast<std::size_t>(columns_.at[a])));
         }
-        z_ = z;
     }
+    raw.has_z = columns_.at[2] >= 0;
+    raw.centre.push_back(centre);
+    raw.line.push_back(line.number());
     if (columns_.id >= 0) {
         raw.ids.push_back(
             line.integer(static_cast<std::size_t>(columns_.id), fmt::format("id of disk {}", disk), 0, 1L << 62));
@@ -128,13 +128,13 @@ void Rows::add(const TextLine& line, Raw& raw) {
 }
 
 void Rows::finish(Raw& raw) {
-    if (columns_.select >= 0 && seen_ > 0 && raw.x.empty()) {
+    if (columns_.select >= 0 && seen_ > 0 && raw.centre.empty()) {
         throw Error(ErrorKind::bad_input,
                     fmt::format("{}: no row has '{}' in the column that selects disks: expected one at least", source_,
                                 columns_.selected));
     }
     if (columns_.select >= 0) {
-        raw.notes.push_back(fmt::format("{} of {} rows are disks, as selected", raw.x.size(), seen_));
+        raw.notes.push_back(fmt::format("{} of {} rows are disks, as selected", raw.centre.size(), seen_));
     } else if (types_.size() > 1) {
         std::vector<std::string> words;
         for (const auto& [type, rows] : types_) {

@@ -20,13 +20,20 @@ constexpr long most_disks = 100'000'000;
 
 enum class Boundary { open, periodic, unknown };
 
+/// Of three axes where the file has them: whether it holds disks or spheres is known when its rows are.
 struct Bounds {
-    std::optional<std::array<double, 4>> box; ///< xlo, xhi, ylo, yhi
-    double tilt = 0;                          ///< x component of the second period
-    std::array<Boundary, 2> boundary{Boundary::unknown, Boundary::unknown};
-    std::array<bool, 2> loose{}; ///< the bounds only follow the disks: no walls there
-    Digits sides;                ///< of box and tilt
+    std::optional<PerAxis<std::array<double, 2>>> box; ///< low and high
+    PerTilt<double> tilt{};                            ///< A_ab, a < b
+    /// The period vectors where they are not as `box` and `tilt` say: these are then to be turned.
+    std::optional<PerAxis<PerAxis<double>>> vectors;
+    PerAxis<Boundary> boundary{Boundary::unknown, Boundary::unknown, Boundary::unknown};
+    PerAxis<bool> loose{}; ///< the bounds only follow the disks: no walls there
+    PerAxis<Digits> sides; ///< of box and tilts; those of a packing of disks are in the first two
+    std::string not_plane; ///< why this is no box of disks: a message, or empty
 };
+
+/// A tilt xy, xz or yz of LAMMPS, in a field of the line.
+void take_tilt(const TextLine& line, std::size_t field, std::size_t tilt, Bounds& bounds);
 
 /// What stands before the rows of a frame.
 struct FrameHeader : Bounds {
@@ -45,18 +52,24 @@ std::optional<long> xyz_timestep(const TextLine& comment, const std::string& sou
 
 /// What a reader found, before walls and checks.
 struct Raw : Bounds {
-    std::vector<double> x, y, size;
+    std::optional<int> dimension; ///< where the format states it
+    bool has_z = false;
+    std::vector<PerAxis<double>> centre;
+    std::vector<double> size;
+    std::vector<int> line; ///< of each disk
     std::vector<long> ids; ///< one per disk, or none
     SizeMeaning meaning = SizeMeaning::radius;
     std::vector<std::string> notes;
-    Digits places, sizes; ///< digits of coordinates, of radii or diameters
-    double scale = 1;     ///< of coordinates in units of the box: the largest length that multiplied them
-    std::string types;    ///< empty, or which there are, and that all are taken for disks; a note too
+    PerAxis<Digits> places; ///< digits of coordinates
+    Digits sizes;           ///< of radii or diameters
+    bool scaled = false;    ///< coordinates are in units of the box
+    std::string types;      ///< empty, or which there are, and that all are taken for disks; a note too
 };
 
 /// Which columns hold what.
 struct Columns {
-    int x = -1, y = -1, z = -1, id = -1, size = -1; ///< -1: not there
+    PerAxis<int> at{-1, -1, -1}; ///< x, y, z; -1: not there
+    int id = -1, size = -1;
     SizeMeaning meaning = SizeMeaning::radius;
     std::string size_name; ///< empty: a constant
     double constant = 0;
@@ -80,7 +93,7 @@ void refuse_twice(const std::vector<std::string>& names, const std::string& wher
 /// Column `name`, or -1. \pre no name is there twice.
 int find_column(const std::vector<std::string>& names, std::string_view name);
 
-/// Adds the rows that are selected to a raw packing; finds ids given twice and different z.
+/// Adds the rows that are selected to a raw packing; finds ids given twice.
 class Rows {
   public:
     Rows(Columns columns, std::string source) : columns_(std::move(columns)), source_(std::move(source)) {}
@@ -92,7 +105,6 @@ class Rows {
   private:
     Columns columns_;
     std::string source_;
-    std::optional<double> z_;
     std::vector<std::pair<long, int>> ids_; ///< with their lines
     std::map<std::string, int, std::less<>> types_;
     long seen_ = 0; ///< rows
@@ -123,5 +135,6 @@ Raw read_lammps_data(const std::string& text, const std::string& source, const F
 Raw read_lammps_dump(const std::string& text, const std::string& source, const ForeignOptions& options);
 Raw read_xyz(const std::string& text, const std::string& source, const ForeignOptions& options);
 Raw read_table(const std::string& text, const std::string& source, const ForeignOptions& options);
+Raw read_centres(const std::string& text, const std::string& source, const ForeignOptions& options);
 
 } // namespace isostat::foreign

@@ -1,5 +1,6 @@
 // Rows of numbers under names: x y r text, CSV.
 #include "io/foreign_source.hpp"
+#include "packing/words.hpp"
 
 #include <isostat/core/error.hpp>
 
@@ -31,10 +32,13 @@ std::vector<std::string> names_of(const TextLine& line) {
     return names;
 }
 
-/// "# x y r", "#format x_y_z_r": the names in a comment, or nothing.
+/// "# x y r", "# x y r; words", "#format x_y_z_r": the names in a comment, or nothing.
 std::vector<std::string> names_in_comment(std::string_view line, int number, const std::string& source) {
     line.remove_prefix(line.find('#') + 1);
     std::vector<std::string> names = names_of(TextLine(line, number, &source, separator_of(line)));
+    if (const std::size_t end = line.find(';'); end != std::string_view::npos && find_column(names, "x") < 0) {
+        names = names_of(TextLine(line.substr(0, end), number, &source, blanks_or_commas)); // words come after them
+    }
     if (names.size() == 2 && names[0] == "format") {
         std::string fields = names[1];
         std::replace(fields.begin(), fields.end(), '_', ' ');
@@ -123,11 +127,11 @@ Raw read_table(const std::string& text, const std::string& source, const Foreign
     const TableNames header = read_table_names(lines, options, raw);
     const std::string where = header.line == 0 ? source : fmt::format("{}:{}", source, header.line);
     Columns columns;
-    columns.x = find_column(header.names, "x");
-    columns.y = find_column(header.names, "y");
-    columns.z = find_column(header.names, "z");
+    for (std::size_t a = 0; a < most_axes; ++a) {
+        columns.at[a] = find_column(header.names, axis_names[a]);
+    }
     columns.id = find_column(header.names, "id");
-    if (columns.x < 0 || columns.y < 0) {
+    if (columns.at[0] < 0 || columns.at[1] < 0) {
         throw Error(ErrorKind::bad_input, fmt::format("{}: no columns x and y: expected them in the header", where));
     }
     find_size(columns, header.names, options, where, raw);
@@ -139,7 +143,7 @@ Raw read_table(const std::string& text, const std::string& source, const Foreign
         rows.add(line, raw);
     }
     rows.finish(raw);
-    if (raw.x.empty()) {
+    if (raw.centre.empty()) {
         lines.fail("the file ends here: expected rows of numbers after the names");
     }
     return raw;

@@ -110,24 +110,27 @@ std::vector<double> numbers_of(const TextLine& line, const std::string& key, con
 void read_box(const TextLine& line, const std::map<std::string, std::string>& keys, FrameHeader& out) {
     const auto lattice = keys.find("lattice");
     if (lattice != keys.end()) {
-        const std::vector<double> v = numbers_of(line, "Lattice", lattice->second, 9, out.sides);
-        std::array<double, 2> origin{};
+        const std::vector<double> v = numbers_of(line, "Lattice", lattice->second, 9, out.sides[0]);
+        std::vector<double> origin(most_axes, 0);
         if (const auto o = keys.find("origin"); o != keys.end()) {
-            const std::vector<double> w = numbers_of(line, "Origin", o->second, 3, out.sides);
-            origin = {w[0], w[1]};
+            origin = numbers_of(line, "Origin", o->second, 3, out.sides[0]);
         }
-        for (const std::size_t off : {1U, 2U, 5U, 6U, 7U}) { // of the second vector its x may differ from 0
-            if (v[off] != 0) {
-                line.fail(lattice->second, "Lattice",
-                          "a first vector along x, a second one in the plane: only these are read");
-            }
-        }
-        out.tilt = v[3];
+        const auto refuse_in_plane = [&](const char* expected) {
+            out.not_plane = fmt::format("{}: Lattice is '{}': expected {}", line.place(), lattice->second, expected);
+        };
         if (!(v[0] > 0 && v[4] > 0)) {
-            line.fail(lattice->second, "Lattice", "positive lengths");
+            refuse_in_plane("positive lengths");
         }
-        out.box = {origin[0], origin[0] + v[0], origin[1], origin[1] + v[4]};
-        out.boundary = {Boundary::periodic, Boundary::periodic}; // unless pbc says otherwise
+        if (v[1] != 0 || v[2] != 0 || v[5] != 0 || v[6] != 0 || v[7] != 0) {
+            refuse_in_plane("a first vector along x, a second one in the plane: only these are read of disks");
+        }
+        out.vectors = {{{v[0], v[1], v[2]}, {v[3], v[4], v[5]}, {v[6], v[7], v[8]}}};
+        out.tilt = {v[3], v[6], v[7]};
+        out.box.emplace();
+        for (std::size_t a = 0; a < most_axes; ++a) {
+            (*out.box)[a] = {origin[a], origin[a] + v[4 * a]};
+        }
+        out.boundary.fill(Boundary::periodic); // unless pbc says otherwise
     }
     if (const auto pbc = keys.find("pbc"); pbc != keys.end()) {
         const std::string source;
@@ -137,7 +140,7 @@ void read_box(const TextLine& line, const std::map<std::string, std::string>& ke
         if (fields.size() != 3 && fields.size() != 2) {
             line.fail(pbc->second, "pbc", "three of T and F");
         }
-        for (std::size_t a = 0; a < 2; ++a) {
+        for (std::size_t a = 0; a < fields.size(); ++a) {
             const std::string word = lower(fields.field(a));
             const bool yes = word == "t" || word == "true" || word == "1";
             if (!yes && word != "f" && word != "false" && word != "0") {
@@ -188,17 +191,15 @@ Raw read_xyz(const std::string& text, const std::string& source, const ForeignOp
     const std::vector<std::string>& names = frame.header.names;
     const std::string where = comment->place();
     Columns columns;
-    columns.x = find_column(names, "pos.0");
-    columns.y = find_column(names, "pos.1");
-    columns.z = find_column(names, "pos.2");
+    columns.at = {find_column(names, "pos.0"), find_column(names, "pos.1"), find_column(names, "pos.2")};
     columns.id = find_column(names, "id");
-    if (columns.x < 0) {
+    if (columns.at[0] < 0) {
         throw Error(ErrorKind::bad_input,
                     fmt::format("{}: no coordinates: expected pos:R:2 or pos:R:3 in Properties", where));
     }
     find_size(columns, names, options, where, raw);
     find_selection(columns, names, options, where);
-    if (const auto& box = frame.header.box; box && ((*box)[0] != 0 || (*box)[2] != 0)) {
+    if (const auto& box = frame.header.box; box && ((*box)[0][0] != 0 || (*box)[1][0] != 0 || (*box)[2][0] != 0)) {
         raw.notes.emplace_back("upper bounds = Origin + Lattice in double: rounded at 2^-53 of them");
     }
     frame.read(Rows(columns, source), raw);

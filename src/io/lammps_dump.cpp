@@ -28,38 +28,44 @@ void read_bounds(TextLines& lines, std::string_view flags_text, FrameHeader& fra
     if (!codes.empty() && codes.size() != 3) {
         flags.fail(flags_text, "boundaries", "three of them");
     }
-    for (std::size_t a = 0; a < codes.size() && a < 2; ++a) {
+    for (std::size_t a = 0; a < codes.size(); ++a) {
         frame.boundary[a] = codes[a].find('p') != std::string_view::npos ? Boundary::periodic : Boundary::open;
         frame.loose[a] = codes[a].find_first_of("sm") != std::string_view::npos;
     }
-    std::array<double, 4> box{};
-    for (std::size_t a = 0; a < 3; ++a) {
+    PerAxis<std::array<double, 2>> box{};
+    for (std::size_t a = 0; a < most_axes; ++a) {
         const TextLine line = lines.next("the bounds of the box: low high");
         line.require_size(tilted ? 3 : 2, "bounds of the box");
         const double low = line.number(0, "lower bound"), high = line.number(1, "upper bound");
         if (!(low <= high)) {
             line.fail(line.field(1), "upper bound", fmt::format("a number above the lower bound {}", low));
         }
-        for (std::size_t k = 0; a < 2 && k < line.size(); ++k) {
-            frame.sides.see(line.field(k));
+        frame.sides[a].see(line.field(0));
+        frame.sides[a].see(line.field(1));
+        if (tilted) {
+            take_tilt(line, 2, a, frame);
         }
-        if (tilted && a == 0) {
-            frame.tilt = line.number(2, "tilt");
-        } else if (tilted && line.number(2, "tilt") != 0) {
-            line.fail(line.field(2), "tilt of the box", "0: only packings in a plane are read");
-        }
-        if (a < 2) {
-            box[2 * a] = low;
-            box[2 * a + 1] = high;
-        }
+        box[a] = {low, high};
     }
-    // A dump bounds the whole parallelepiped: xlo + min(0, xy), xhi + max(0, xy).
-    box[0] -= std::min(0.0, frame.tilt);
-    box[1] -= std::max(0.0, frame.tilt);
+    // A dump bounds the whole parallelepiped: xlo + min(0, xy, xz, xy + xz), xhi + max(...), ylo + min(0, yz).
+    const auto& [xy, xz, yz] = frame.tilt;
+    box[0][0] -= std::min({0.0, xy, xz, xy + xz});
+    box[0][1] -= std::max({0.0, xy, xz, xy + xz});
+    box[1][0] -= std::min(0.0, yz);
+    box[1][1] -= std::max(0.0, yz);
     frame.box = box;
 }
 
 } // namespace
+
+void take_tilt(const TextLine& line, std::size_t field, std::size_t tilt, Bounds& bounds) {
+    bounds.tilt[tilt] = line.number(field, "tilt");
+    bounds.sides[0].see(line.field(field));
+    if (tilt > 0 && bounds.tilt[tilt] != 0 && bounds.not_plane.empty()) {
+        bounds.not_plane = fmt::format("{}: tilt of the box is '{}': expected 0 in a packing in a plane", line.place(),
+                                       line.field(field));
+    }
+}
 
 FrameHeader read_dump_header(TextLines& lines, const std::string& item) {
     FrameHeader frame;

@@ -7,22 +7,29 @@ namespace isostat {
 
 Wrapped wrap_into_cell(Packing& packing) {
     Wrapped out;
+    const std::size_t d = packing.axes();
     out.periods.resize(packing.radius.size());
-    const double lean = packing.cell.all() ? packing.lattice(0, 1) / packing.lattice(1, 1) : 0;
+    const double unit = 0x1p-51 * static_cast<double>(d - 1); // a coordinate moves up to d times, three roundings each
     for (std::size_t i = 0; i < packing.radius.size(); ++i) {
-        for (const std::size_t a : {1U, 0U}) { // a step along the second period moves x too
-            if (!packing.cell.periodic[a]) {
-                continue;
+        double* const x = &packing.q[d * i];
+        PerAxis<double> within{}; // what is left of x when it is written in period vectors
+        const auto left = [&](std::size_t a) {
+            double rest = x[a];
+            for (std::size_t b = a + 1; b < d; ++b) {
+                const double tilt = packing.lattice(a, b);
+                rest -= tilt != 0 ? within[b] * (tilt / packing.lattice(b, b)) : 0;
             }
-            const double x = packing.q[2 * i + a] - (a == 0 ? packing.q[2 * i + 1] * lean : 0);
-            const double periods = std::floor(x / packing.lattice(a, a));
+            return rest;
+        };
+        for (std::size_t a = d; a-- > 0;) { // a step along a period moves the coordinates before it too
+            const double periods = packing.cell.periodic[a] ? std::floor(left(a) / packing.lattice(a, a)) : 0;
             out.periods[i][a] = periods;
             for (std::size_t b = 0; b <= a && periods != 0; ++b) {
-                double& moved = packing.q[2 * i + b];
-                const double before = moved;
-                moved -= periods * packing.lattice(b, a);
-                out.rounding = std::max(out.rounding, 0x1p-51 * (std::abs(before) + std::abs(moved)));
+                const double before = x[b];
+                x[b] -= periods * packing.lattice(b, a);
+                out.rounding = std::max(out.rounding, unit * (std::abs(before) + std::abs(x[b])));
             }
+            within[a] = left(a);
         }
     }
     return out;

@@ -1,21 +1,20 @@
 #pragma once
 /// \file
-/// Disks of a periodic packing put into the cell.
+/// Grains of a periodic packing put into the cell.
 
 #include <isostat/packing/packing.hpp>
 
-#include <array>
 #include <vector>
 
 namespace isostat {
 
 /// What `wrap_into_cell` did.
 struct Wrapped {
-    std::vector<std::array<double, 2>> periods; ///< of each disk: it was moved by minus so many along each axis
-    double rounding = 0;                        ///< no coordinate was rounded by more; 0: none was moved
+    std::vector<PerAxis<double>> periods; ///< of each disk: it was moved by minus so many along each axis
+    double rounding = 0;                  ///< no coordinate was rounded by more; 0: none was moved
 };
 
-/// Moves every disk by whole periods so that its fractional coordinates, as rounded, are in [0, 1); along axes with
+/// Moves every grain by whole periods so that its fractional coordinates, as rounded, are in [0, 1); along axes with
 /// walls nothing moves. Exact where the coordinates are on the grid of `snap_to_grid`.
 /// \pre there are periodic axes
 Wrapped wrap_into_cell(Packing& packing);

@@ -46,9 +46,15 @@ double Packing::max_radius() const {
 }
 
 double Packing::solid_fraction() const {
+    return solid_fraction_without({});
+}
+
+double Packing::solid_fraction_without(std::span<const int> left_out) const {
     double grains = 0;
-    for (const double r : radius) {
-        grains += dimension == plane ? std::numbers::pi * r * r : 4 * std::numbers::pi / 3 * r * r * r;
+    for (int i = 0; i < disk_count(); ++i) {
+        const double r = radius[static_cast<std::size_t>(i)];
+        const bool counts = std::find(left_out.begin(), left_out.end(), i) == left_out.end();
+        grains += !counts ? 0 : dimension == plane ? std::numbers::pi * r * r : 4 * std::numbers::pi / 3 * r * r * r;
     }
     double cell_size = 1;
     for (int a = 0; a < dimension; ++a) {
@@ -135,11 +141,6 @@ void validate_cell(const Packing& packing, const std::string& source) {
     if (cell.keeps_shape && (!cell.all() || shaped != cell)) {
         bad("the cell keeps its shape: expected periodic axes alone, and nothing else that moves");
     }
-    if (cell.keeps_shape && !(2 * packing.max_radius() < packing.lattice(0, 0) * (1 - 1e-9))) { // proofs/cells.md, C13
-        bad(fmt::format("the cell keeps its shape and a {} of diameter {} touches its own image along x, {} away: "
-                        "expected a period along x that is larger",
-                        grain_word(packing.dimension), 2 * packing.max_radius(), packing.lattice(0, 0)));
-    }
     if (cell.pin < 0 || cell.pin >= packing.disk_count()) {
         bad(fmt::format("{} {} is pinned: expected one from 0 to {}", grain_word(packing.dimension), cell.pin,
                         packing.disk_count() - 1));
@@ -173,6 +174,16 @@ void validate_own_images(const Packing& packing, const std::string& source) {
         for (int y = z == 0 ? 0 : -most[1]; y <= most[1]; ++y) {
             for (int x = y == 0 && z == 0 ? 1 : -most[0]; x <= most[0]; ++x) {
                 const double period = period_length(packing, {x, y, z});
+                const bool rests = packing.dimension == plane ? y == 0 : z == 0; // while the last period moves
+                if (packing.cell.keeps_shape && rests &&
+                    !(2 * *largest < period * (1 - 1e-9))) { // proofs/cells.md, C13
+                    throw Error(
+                        ErrorKind::bad_input,
+                        fmt::format("{}: the cell keeps its shape and a {} of diameter {} touches its own image "
+                                    "along {}, {} away: expected a larger period there",
+                                    source, grain_word(packing.dimension), 2 * *largest,
+                                    packing.dimension == plane ? "x" : "x and y", period));
+                }
                 if (2 * *largest > period * (1 + 1e-9)) { // beyond rounding: whatever the configuration
                     throw Error(ErrorKind::bad_input,
                                 fmt::format("{}: {} {} of diameter {} overlaps its own image ({}, {}{}), {} away: "

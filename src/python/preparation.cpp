@@ -54,23 +54,26 @@ std::shared_ptr<PyState> vertex_near(const Packing& packing, std::array<double, 
         options, [&packing](const PreparationOptions& o, PreparationReport& r) { return find_vertex(packing, o, r); });
 }
 
-Packing read_any(const std::filesystem::path& path, const std::string& walls, std::optional<std::array<double, 4>> box,
-                 const std::string& radius, const std::string& diameter) {
+Packing read_any(const std::filesystem::path& path, const std::string& walls,
+                 const std::optional<std::vector<double>>& box, const std::string& radius,
+                 const std::string& diameter) {
     ForeignOptions options;
     if (walls != "none" && walls != "fixed" && walls != "box") {
         throw Error(ErrorKind::bad_input, "walls is '" + walls + "': expected \"box\", \"fixed\" or \"none\"");
     }
-    for (const double side : box.value_or(std::array<double, 4>{})) {
+    options.box = box.value_or(std::vector<double>());
+    for (const double side : options.box) {
         finite(side, "box");
     }
     options.walls = walls == "none" ? ForeignWalls::none : walls == "fixed" ? ForeignWalls::fixed : ForeignWalls::box;
-    options.box = box;
     if (!radius.empty()) {
         options.size = SizeStatement{SizeMeaning::radius, radius, 0};
     } else if (!diameter.empty()) {
         options.size = SizeStatement{SizeMeaning::diameter, diameter, 0};
     }
-    return read_foreign(path, options).packing;
+    Packing packing = read_foreign(path, options).packing;
+    require_plane(packing, path.string(), "read_packing");
+    return packing;
 }
 
 void bind_plateau(py::module_& module) {

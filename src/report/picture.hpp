@@ -18,10 +18,13 @@ namespace isostat {
 /// moved into it, images beyond it are fainter, and a contact with an image is drawn from both sides.
 std::string force_picture(const State& state, std::span<const double> forces, const std::string& caption);
 
-/// VTK legacy file (ASCII POLYDATA): a point and a vertex per disk with `radius` and `rattler`, a line per contact with
-/// `force`; contacts with walls end in extra points of radius 0 on the wall, those with images at the
-/// centre of the image, of radius 0 too. The last line, of force 0, is the outline of a cell. 17 digits.
-/// `displacement`: empty, or two per disk: `displacement`, 0 on the extra points.
+/// What a VTK file begins with.
+inline constexpr const char* vtk_mark = "# vtk DataFile Version 3.0\n";
+
+/// VTK legacy file (ASCII POLYDATA) of disks or spheres: a point and a vertex per grain with `radius` and `rattler`, a
+/// line per contact with `force`; contacts with walls end in extra points of radius 0 on the wall, those with images at
+/// the centre of the image, of radius 0 too. The last lines, of force 0, are the outline of a cell. 17 digits.
+/// `displacement`: empty, or d per grain: `displacement`, 0 on the extra points.
 std::string vtk_text(const State& state, std::span<const double> forces, const std::string& title,
                      std::span<const double> displacement = {});
 

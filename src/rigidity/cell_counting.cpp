@@ -187,6 +187,34 @@ std::vector<int> untouched(int disks, const std::vector<Contact>& pairs) {
     return out;
 }
 
+std::vector<int> rattlers_by_coordination(const Packing& packing, std::vector<Contact> contacts) {
+    std::vector<unsigned char> gone(packing.radius.size(), 0);
+    for (bool changes = true; changes;) {
+        std::vector<int> count(gone.size(), 0);
+        std::erase_if(contacts, [&](const Contact& c) {
+            return c.kind == ContactKind::held || gone[static_cast<std::size_t>(c.i)] != 0 ||
+                   (c.kind == ContactKind::disk_disk && gone[static_cast<std::size_t>(c.j)] != 0);
+        });
+        for (const Contact& c : contacts) {
+            ++count[static_cast<std::size_t>(c.i)];
+            count[static_cast<std::size_t>(c.j)] += c.kind == ContactKind::disk_disk ? 1 : 0;
+        }
+        changes = false;
+        for (std::size_t i = 0; i < gone.size(); ++i) {
+            const bool few = gone[i] == 0 && !packing.is_fixed(DiskId(i)) && count[i] <= packing.dimension;
+            gone[i] = few ? 1 : gone[i];
+            changes = changes || few;
+        }
+    }
+    std::vector<int> out;
+    for (std::size_t i = 0; i < gone.size(); ++i) {
+        if (gone[i] != 0) {
+            out.push_back(static_cast<int>(i));
+        }
+    }
+    return out;
+}
+
 Packing without_disks(Packing packing, const std::vector<int>& disks) {
     packing.fixed.resize(packing.radius.size(), 0);
     for (const int disk : disks) {

@@ -48,6 +48,7 @@ class ExchangedContacts {
 
   public:
     [[nodiscard]] const std::vector<Contact>& contacts() const { return contacts_; }
+    [[nodiscard]] const DofMap& dofs() const { return *dofs_; }
     [[nodiscard]] const sparse::Matrix<double>& matrix() const { return *matrix_; }
     /// Column matched to each row.
     [[nodiscard]] const std::vector<int>& matching() const { return matching_; }

@@ -83,7 +83,7 @@ void BlockCholesky::arrange(const std::vector<int>& order) {
     row_start_.assign(blocks_ + 1, 0);
     const auto contacts = static_cast<std::size_t>(h_->cols);
     for (std::size_t l = 0; l < contacts; ++l) {
-        std::array<Part, 8> parts{};
+        std::array<Part, 8> parts{}; // of spheres: two for each, and four for the six coordinates of a cell
         std::size_t count = 0;
         int last = -1;
         for (auto e = static_cast<std::size_t>(h_->start[l]); e < static_cast<std::size_t>(h_->start[l + 1]); ++e) {

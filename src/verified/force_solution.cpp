@@ -35,14 +35,14 @@ struct Row {
 };
 
 /// Residual F - H x in double, with a bound of its distance from the exact residual (exact H: entries of fl(H) carry
-/// 5u). Returns an upper bound of the 2-norm of the exact residual.
+/// the error of V0). Returns an upper bound of the 2-norm of the exact residual.
 Residual residual_in_double(const sparse::Matrix<double>& h, const std::vector<double>& x,
                             const std::vector<double>& force, std::vector<double>& r) {
     const auto n = static_cast<std::size_t>(h.rows);
     std::vector<Row> rows(n);
     for (std::size_t i = 0; i < n; ++i) {
         rows[i] = {force[i], std::abs(force[i]),
-                   7}; // 5u of the entries, the product and the final sum; of the force: its own
+                   7}; // the error of the entries (V0) and the product; of the force: its own
     }
     Row* const row = rows.data();
     const double* const value = h.value.data();

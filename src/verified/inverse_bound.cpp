@@ -38,7 +38,7 @@ double estimate(const ApproximateInverse& inverse, std::vector<double>& x, int i
     return 1 / lambda;
 }
 
-InverseBound by_rows(const sparse::Matrix<double>& h, const Factorisation& factorisation) {
+InverseBound by_rows(const sparse::Matrix<double>& h, int dimension, const Factorisation& factorisation) {
     const auto n = static_cast<std::size_t>(h.rows);
     std::vector<double> column_sum_r(n, 0.0);
     std::vector<double> column_sum_e(n, 0.0);
@@ -66,8 +66,8 @@ InverseBound by_rows(const sparse::Matrix<double>& h, const Factorisation& facto
                 size += std::abs(term);
             }
             const double terms = h.start[j + 1] - h.start[j] + 2;
-            // The last term covers the error of the entries of fl(H), 5u each.
-            const double error = std::abs(dot) + gamma(terms) * size + 5.01 * u * size;
+            // The last term covers the error of the entries of fl(H).
+            const double error = std::abs(dot) + gamma(terms) * size + roundoff::entry_units(dimension) * u * size;
             sum_e += error;
             column_sum_e[j] += error;
         }
@@ -99,7 +99,7 @@ struct CholeskyOutcome {
     double entry_error = 0; ///< |H - fl(H)|
 };
 
-CholeskyOutcome by_cholesky(const sparse::Matrix<double>& unscaled, const ApproximateInverse& inverse,
+CholeskyOutcome by_cholesky(const sparse::Matrix<double>& unscaled, int dimension, const ApproximateInverse& inverse,
                             InverseBoundCache& cache) {
     const auto n = static_cast<std::size_t>(unscaled.rows);
     sparse::Matrix<double> h = unscaled;
@@ -118,7 +118,7 @@ CholeskyOutcome by_cholesky(const sparse::Matrix<double>& unscaled, const Approx
     }
     count_work(Work::inverse_bounds);
     CholeskyOutcome outcome;
-    outcome.entry_error = rounding_of_entries(unscaled); // scaled it is smaller
+    outcome.entry_error = rounding_of_entries(unscaled, dimension); // scaled it is smaller
     if (cache.workspace == nullptr) {
         cache.workspace = std::make_shared<BlockCholesky>();
     }
@@ -151,7 +151,8 @@ InverseBound bound_inverse(const IsostaticStructure& structure, const Factorisat
                            InverseBoundCache& cache, const std::function<bool()>& worth_more, int row_limit) {
     require_floating_point();
     const sparse::Matrix<double>& h = structure.matrix();
-    const CholeskyOutcome first = by_cholesky(h, factorisation.approximate(), cache);
+    const int dimension = structure.dofs().layout().dimension;
+    const CholeskyOutcome first = by_cholesky(h, dimension, factorisation.approximate(), cache);
     if (first.bound.verdict == Verdict::proved) {
         return first.bound;
     }
@@ -172,12 +173,13 @@ InverseBound bound_inverse(const IsostaticStructure& structure, const Factorisat
         }
         square /= 64;
     }
-    return h.rows <= row_limit ? by_rows(h, factorisation) : InverseBound{};
+    return h.rows <= row_limit ? by_rows(h, dimension, factorisation) : InverseBound{};
 }
 
 std::optional<ProvedExchange> bound_exchanged(const ExchangedContacts& contacts, const ApproximateInverse& inverse,
                                               InverseBoundCache& cache) {
-    const InverseBound bound = by_cholesky(contacts.matrix(), inverse, cache).bound;
+    const int dimension = contacts.dofs().layout().dimension;
+    const InverseBound bound = by_cholesky(contacts.matrix(), dimension, inverse, cache).bound;
     if (bound.verdict != Verdict::proved) {
         return std::nullopt;
     }

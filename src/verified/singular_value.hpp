@@ -10,8 +10,8 @@
 
 namespace isostat {
 
-/// |H - fl(H)|_2: every entry of fl(H) has a relative error of at most 5u, |.|_2 <= sqrt(|.|_1 |.|_inf).
-inline double rounding_of_entries(const sparse::Matrix<double>& h) {
+/// |H - fl(H)|_2: every entry of fl(H) has the relative error of V0, |.|_2 <= sqrt(|.|_1 |.|_inf).
+inline double rounding_of_entries(const sparse::Matrix<double>& h, int dimension) {
     using roundoff::u;
     std::vector<double> row_sum(static_cast<std::size_t>(h.rows), 0.0);
     double column_norm = 0;
@@ -25,7 +25,7 @@ inline double rounding_of_entries(const sparse::Matrix<double>& h) {
         column_norm = std::max(column_norm, sum);
     }
     const double row_norm = *std::max_element(row_sum.begin(), row_sum.end());
-    return 5.01 * u * std::sqrt(column_norm * row_norm);
+    return roundoff::entry_units(dimension) * u * std::sqrt(column_norm * row_norm);
 }
 
 /// Lower bound of sigma_min(H) from one of sigma_min(fl(H))^2 and |H - fl(H)|_2; not positive: there is none.

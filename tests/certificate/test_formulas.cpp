@@ -1,7 +1,9 @@
 // What is claimed of a true vertex against statements V4 to V7, with a bound of the inverse that is made worse on
 // purpose: then every term of every bound is large enough to be seen.
+#include "certificate/reach.hpp"
 #include "certificate/true_vertex.hpp"
 #include "contact/candidates.hpp"
+#include "oracle/random.hpp"
 #include "support/cells.hpp"
 #include "support/crafted.hpp"
 #include "support/scratch.hpp"
@@ -241,6 +243,75 @@ BOOST_AUTO_TEST_CASE(pairs_beyond_the_list_of_a_cell_have_the_weight_of_C4) {
     const double stretch = height / std::hypot(1.0, tilt, height); // determinant over the norm
     const double weight = std::sqrt(2.0) + (2 * 0.5 + reach) / stretch;
     check_above(reach - c.claims.gaps->smallest, weight * c.claims.vertex->radius * (1 - 1e-3), 0.01); // Ly alone moves
+}
+
+BOOST_AUTO_TEST_CASE(true_stresses_on_a_sphere_press_on_the_areas_of_the_true_vertex) {
+    constexpr double side = 2000; // of the cube at the vertex: what an area lacks is far more than what a length lacks
+    State state;
+    state.packing.dimension = state.packing.cell.dimension = state.load.dimension = 3;
+    state.packing.walls = Walls::box(3);
+    state.packing.radius = {side / 2};
+    state.packing.q = {side / 2, side / 2, side / 2, side + 1e-6, side + 2e-6, side - 1e-6};
+    state.load.kind = LoadKind::true_stress;
+    state.load.stress = {1, 2, 3};
+    state.load.loaded_axis = 2;
+    for (int a = 0; a < 3; ++a) {
+        state.contacts.push_back({ContactKind::lower_wall, 0, a});
+        state.contacts.push_back({ContactKind::upper_wall, 0, a});
+    }
+    const auto centre = std::move(Centre::make(state.packing, state.contacts).value());
+    const Subject subject(state, centre->structure);
+    const auto vertex = in_double(subject, *centre);
+    BOOST_TEST_REQUIRE(vertex->exists());
+    const std::vector<Interval> forces = vertex->forces();
+    for (std::size_t l = 0; l < forces.size(); ++l) {
+        const double exact = state.load.stress[l / 2] * side * side;
+        BOOST_TEST((forces[l].lower <= exact && exact <= forces[l].upper));
+        BOOST_TEST(forces[l].upper - forces[l].lower < 1e-6 * exact);
+    }
+    const LoadEndAnswer end = vertex->load_end(-1); // the force along z vanishes without a stress
+    BOOST_TEST_REQUIRE(end.claim.has_value());
+    BOOST_TEST((end.claim->stress.lower <= 0 && end.claim->stress.upper >= 0));
+}
+
+BOOST_AUTO_TEST_CASE(periods_in_space_are_stretched_as_little_as_C4_counts_on) {
+    oracle::Random random(8);
+    Packing packing; // one sphere, which has no extent
+    packing.dimension = packing.cell.dimension = 3;
+    packing.walls = Walls::none();
+    packing.radius = {1};
+    double nearest = 0; // of the least stretch found to the bound
+    for (int trial = 0; trial < 200; ++trial) {
+        packing.q.assign(9, 0.0);
+        for (std::size_t a = 0; a < 3; ++a) {
+            packing.cell.periodic[a] = a == static_cast<std::size_t>(trial % 3) || random.integer(2) == 0;
+            packing.q[3 + a] = packing.cell.periodic[a] ? random.real(0.2, 3) : 5;
+        }
+        for (std::size_t b = 1; b < 3; ++b) {
+            for (std::size_t a = 0; a < b; ++a) {
+                packing.q[packing.tilt_at(a, b)] =
+                    packing.cell.periodic[a] && packing.cell.periodic[b] ? random.real(-2, 2) : 0;
+            }
+        }
+        const double least = (2 + 0.5) / (far_weight(packing, 0.5) - 1.4143);
+        for (int k = 1; k < 13 * 13 * 13; ++k) {
+            const std::array<int, 3> m{k % 13 - 6, k / 13 % 13 - 6, k / 169 - 6};
+            std::array<double, 3> x{};
+            bool there = m != std::array<int, 3>{};
+            for (std::size_t b = 0; b < 3; ++b) {
+                there = there && (m[b] == 0 || packing.cell.periodic[b]);
+                for (std::size_t a = 0; a <= b; ++a) {
+                    x[a] += packing.lattice(a, b) * m[b];
+                }
+            }
+            const double stretch = std::hypot(x[0], x[1], x[2]) / std::hypot(m[0], m[1], m[2]);
+            if (there) {
+                BOOST_TEST(stretch >= least * (1 - 1e-9));
+                nearest = std::max(nearest, least / stretch);
+            }
+        }
+    }
+    BOOST_TEST(nearest > 0.99);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

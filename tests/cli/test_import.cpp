@@ -245,4 +245,52 @@ BOOST_AUTO_TEST_CASE(a_run_is_exported_as_frames_with_displacements) {
     BOOST_TEST((read.radius == last.radius));
 }
 
+namespace {
+
+const std::string sphere_files = scratch::data("spheres/");
+const std::string box_of_100 = "0:13.995847242391138,0:15.063850881057951,0:13.924292277825588";
+
+} // namespace
+
+/// Rounded to 9 to 12 digits and put into the cell: the contacts are those of the originals.
+BOOST_AUTO_TEST_CASE(spheres_of_another_program_are_imported_with_the_contacts_that_they_have) {
+    const scratch::Folder folder;
+    const std::string out = folder.at("s.json");
+    for (const auto& [file, options, contacts, rattlers, carrying] :
+         {std::tuple{"box_uniform_100_1.txt", std::vector<std::string>{"--box", box_of_100}, 303, 7, 282},
+          {"ortho_uniform_30_1.xyz", {"--cell", "rectangular"}, 90, 2, 84},
+          {"tri_bidisperse_60_1.dump", {}, 183, 3, 174}}) {
+        BOOST_TEST_INFO_SCOPE(file);
+        std::vector<std::string> words{"import", sphere_files + file, "-o", out, "--json"};
+        words.insert(words.end(), options.begin(), options.end());
+        const auto answer = json_of(run(words));
+        BOOST_TEST(answer.at("verdict") == "proved");
+        BOOST_TEST(answer.at("moved").at("backbone").get<double>() < 1e-7);
+        const State state = read_any_state(out).state;
+        BOOST_TEST(state.contacts.size() == static_cast<std::size_t>(contacts));
+        BOOST_TEST(state.packing.dimension == 3);
+        const auto found = json_of(run({"inspect", out, "--json"}));
+        BOOST_TEST(found.at("N_f") == contacts);
+        BOOST_TEST(found.at("h") == 0);
+        BOOST_TEST(found.at("k") == 0);
+        BOOST_TEST(found.at("rattlers").size() == static_cast<std::size_t>(rattlers));
+        BOOST_TEST(found.at("backbone") == carrying);
+        fs::remove(out);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(what_is_not_written_for_spheres_is_refused_by_name) {
+    const scratch::Folder folder;
+    const std::string file = sphere_files + "ortho_uniform_30_1.xyz", out = folder.at("s.json");
+    expect(run({"import", file, "-o", out, "--contacts", "nearest"}), 64, {"packing of spheres", "--contacts"});
+    expect(run({"import", file, "-o", out, "--jitter", "1e-6"}), 64, {"packing of spheres", "--jitter"});
+    expect(run({"import", file, "-o", out, "--stress", "1,2"}), 64, {"--stress", "three positive numbers"});
+    expect(run({"import", file, "-o", out, "--dimension", "2"}), 65, {"ortho_uniform_30_1.xyz:", "z of disk"});
+    expect(run({"import", sphere_files + "box_uniform_100_1.txt", "-o", out, "--box", "0:14,0:15.1"}), 65,
+           {"4 bounds", "expected 6"});
+    expect(run({"plateau", file}), 65, {"a packing of spheres", "this command"});
+    expect(run({"snap", file, "-o", out}), 65, {"a packing of spheres", "this command"});
+    BOOST_TEST(!fs::exists(out));
+}
+
 BOOST_AUTO_TEST_SUITE_END()

@@ -113,7 +113,7 @@ std::string block(const std::string& page, const std::string& language, const st
 }
 
 /// Commands of a section: the words behind `build/release/isostat` in lines that are set in by four blanks.
-std::vector<std::vector<std::string>> commands(const std::string& text) {
+std::vector<std::vector<std::string>> commands_of(const std::string& text) {
     std::vector<std::vector<std::string>> found;
     const std::string program = "    build/release/isostat ";
     for (const std::string& line : lines(text)) {
@@ -261,7 +261,7 @@ BOOST_AUTO_TEST_CASE(the_first_run_of_the_readme_does_what_it_shows) {
     const scratch::Folder folder;
     scratch::write(folder / "first.toml", block(page, "toml", "## A first run"));
     const std::string here = "cd " + quoted(folder.path().string()) + "; ";
-    const auto known = commands(section(page, "## A first run"));
+    const auto known = commands_of(section(page, "## A first run"));
     BOOST_TEST_REQUIRE(known.size() == 5U);
     std::string shown;
     for (const std::vector<std::string>& command : known) {

@@ -76,6 +76,19 @@ bool all_there(const std::vector<Contact>& wanted, const std::vector<Contact>& f
 
 BOOST_AUTO_TEST_SUITE(images)
 
+BOOST_AUTO_TEST_CASE(a_pair_many_periods_apart_is_listed_whatever_its_sums_lose) {
+    // Each of 116 periods is rounded the same way: the gap as computed is 8.5e-13 above the true one.
+    const double x = -0x1.6174d7ec396b3p+6, y = 118;
+    State state = cells::in_cell({{0.5, x, -y}, {0.5, 0, y}}, {2, 4, 0.5}, true, 1, 1, {});
+    Packing& packing = state.packing;
+    packing.q = {x, -y, 0x1.6024c1add3ea5p+6, y, 0x1.0000000081e40p+0, 4, 0x1.000000000006fp+1};
+    const Contact pair(isostat::ContactKind::disk_disk, 0, 1, cells::image(-57, -59));
+    const double computed = isostat::gap(packing, pair);
+    BOOST_TEST(computed == 0x1.6666666667584p+0 - 1);
+    const auto near = isostat::near_pairs(packing, computed - 8e-13).pairs;
+    BOOST_TEST((std::find(near.begin(), near.end(), pair) != near.end()));
+}
+
 BOOST_AUTO_TEST_CASE(pairs_are_all_found_in_cells_of_one_disk_and_more) {
     std::mt19937_64 random(11);
     int seen = 0;

@@ -80,8 +80,7 @@ inline Count fuzz(const std::string& name, const std::string& text, int samples,
 inline std::string unsound(const Packing& packing) {
     const auto finite = [](double x) { return std::isfinite(x); };
     const auto positive = [](double r) { return r > 0 && std::isfinite(r); };
-    const std::size_t lengths = packing.cell.any() ? 3 : 2; // with a tilt
-    if (packing.radius.empty() || packing.q.size() != 2 * packing.radius.size() + lengths ||
+    if (packing.radius.empty() || packing.q.size() != packing.coordinate_count() ||
         !(packing.fixed.empty() || packing.fixed.size() == packing.radius.size())) {
         return "sizes do not fit";
     }
@@ -105,12 +104,12 @@ inline std::string unsound(const State& state) {
         const bool pair = c.kind == ContactKind::disk_disk;
         const bool ordered = c.i < c.j || (c.i == c.j && c.image != Image());
         if (c.i < 0 || c.j < 0 || c.i >= (c.kind == ContactKind::held ? static_cast<int>(state.packing.q.size()) : n) ||
-            !(pair ? ordered && c.j < n : c.j < 2)) {
+            !(pair ? ordered && c.j < n : c.j < state.packing.dimension)) {
             return "a contact is out of range";
         }
     }
     const std::size_t loads = state.load.infinitesimal.size();
-    return loads == 0 || loads == 2U * static_cast<std::size_t>(n) ? "" : "infinitesimal loads do not fit";
+    return loads == 0 || loads == state.packing.length_at(0) ? "" : "infinitesimal loads do not fit";
 }
 
 /// Lines, with or without the last end of line; a byte order mark is none of them, nor is the \r of Windows.

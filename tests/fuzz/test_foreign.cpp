@@ -22,8 +22,11 @@ const std::string data_file = "LAMMPS data file\n\n2 atoms\n1 atom types\n\n-1 3
                               "Velocities\n\n1 0 0 0 0 0 0\n2 0 0 0 0 0 0\n";
 const std::string xyz = "2\nLattice=\"4 0 0 0 2 0 0 0 1\" Origin=\"-1 0.5 0\" pbc=\"F F F\" "
                         "Properties=species:S:1:pos:R:3:radius:R:1 Time=3\nA 0 1.25 0 0.25\nB 2 1.5 0 0.75\n";
+const std::string sphere_xyz = "2\nLattice=\"4 1 0 0 2 0 0.5 0 1\" Properties=pos:R:3:radius:R:1\n"
+                               "0 1.25 0.5 0.25\n2 1.5 0.25 0.75\n";
 const std::string table = "# made by hand\n# x y r\n0 1.25 0.25\n2 1.5 0.75\n4 0.5 0.125\n";
 const std::string csv = "id,x,y,diameter,name\n7,0,1.25,0.5,a\n3,2,1.5,1.5,b\n";
+const std::string spheres = "3\n2\n0.5\n1 0 0\n0.25 2 0\n0.5 0.5 4\n0.25 0.5 0.75\n0.75 0.5 0.25\n";
 const std::string bare = "0.5 0.5 0.5\n1.5 0.5 0.5\n2.5 0.5 0.5\n";
 
 /// Numbers by the C library, another reader than ours.
@@ -115,10 +118,24 @@ std::string xyz_rows(const std::string& text, std::size_t read) {
     return rows_differ(read, announced);
 }
 
+/// Two or three axes: rows of one number, of the dimension, the number of centres and the diameter; then as many as
+/// said, and as many as there are axes where there are period vectors.
+std::string centre_rows(const std::string& text, std::size_t read) {
+    std::vector<std::string> rows;
+    for (const std::string& line : lines_of(text)) {
+        if (has_content(line) && line.find_first_not_of(" \t\r,") != std::string::npos) {
+            rows.push_back(line);
+        }
+    }
+    const std::size_t axes = std::stoul(rows.at(0));
+    return rows.size() == 3 + read || rows.size() == 3 + axes + read ? "" : rows_differ(read, rows.size() - 3);
+}
+
 std::string rows_of(const std::string& format, const std::string& text, std::size_t read) {
     return format == "table"         ? table_rows(text, read)
            : format == "lammps-data" ? data_rows(text, read)
            : format == "lammps-dump" ? dump_rows(text, read)
+           : format == "centres"     ? centre_rows(text, read)
                                      : xyz_rows(text, read);
 }
 
@@ -136,8 +153,13 @@ std::string check(const std::string& changed, ForeignOptions options) {
     if (std::string wrong = rows_of(read.format, changed, read.packing.radius.size()); !wrong.empty()) {
         return wrong;
     }
+    if (read.packing.cell.any()) {
+        return ""; // no walls
+    }
     options.walls = ForeignWalls::box;
-    options.box = {-1e30, 1e30, -1e30, 1e30};
+    for (std::size_t a = 0; a < read.packing.axes(); ++a) {
+        options.box.insert(options.box.end(), {-1e30, 1e30});
+    }
     const auto far = [](double x) { return !(std::abs(x) < 1e30); };
     const bool outside = std::any_of(read.packing.q.begin(), read.packing.q.end(), far);
     return outside ? "" : unsound(parse_foreign(changed, "FILE", options).packing);
@@ -148,11 +170,17 @@ std::string check(const std::string& changed, ForeignOptions options) {
 BOOST_AUTO_TEST_SUITE(fuzz_foreign)
 
 BOOST_AUTO_TEST_CASE(mutated_packings_of_other_programs_are_refused_by_name_or_lose_no_row) {
-    for (const auto& [format, text] :
-         {std::pair{"lammps-dump", dump}, {"lammps-data", data_file}, {"xyz", xyz}, {"table", table}, {"table", csv}}) {
+    for (const auto& [format, text] : {std::pair{"lammps-dump", dump},
+                                       {"lammps-data", data_file},
+                                       {"xyz", xyz},
+                                       {"table", table},
+                                       {"table", csv},
+                                       {"centres", spheres},
+                                       {"xyz", sphere_xyz}}) {
         for (const char* stated : {format, ""}) {
             ForeignOptions options;
             options.format = stated;
+            options.cells = text == spheres || text == sphere_xyz;
             const Count tally = fuzz::fuzz(std::string(format) + " " + stated, text, 1500,
                                            [&](const std::string& changed) { return check(changed, options); });
             BOOST_TEST(tally.refused > 100);

@@ -160,8 +160,8 @@ BOOST_AUTO_TEST_CASE(disks_are_put_into_the_cell_by_whole_periods) {
     const Wrapped wrapped = wrap_into_cell(state.packing);
     // (-0.5, 4.25) less two periods (1, 1.75) is (-2.5, 0.75), in fractions (-2.93 / 2, 0.43): two more along x.
     BOOST_TEST(state.packing.q == (std::vector<double>{1.5, 0.75, 0.75, 0.5, 2, 1.75, 1}));
-    BOOST_TEST((wrapped.periods[0] == std::array<double, 2>{-2, 2}));
-    BOOST_TEST((wrapped.periods[1] == std::array<double, 2>{0, 0}));
+    BOOST_TEST((wrapped.periods[0] == PerAxis<double>{-2, 2}));
+    BOOST_TEST((wrapped.periods[1] == PerAxis<double>{}));
     BOOST_TEST(wrap_into_cell(state.packing).rounding == 0);
     state.packing.cell.periodic = {false, true}; // nothing moves along x, nor does the tilt count
     state.packing.q = {-5, 4.25, 9, 0.5, 2, 1.75, 0};

@@ -224,7 +224,10 @@ BOOST_AUTO_TEST_CASE(what_does_not_fit_is_refused_with_line_value_and_what_was_e
         expect_bad_input([&] { read(text); }, words);
     };
     using scratch::replaced;
-    refused(replaced(dump, "1 1 0 1.25 0 0.25", "1 1 0 1.25 1 0.25"), {"FILE:21", "z of disk 1", "in a plane"});
+    ForeignOptions disks;
+    disks.dimension = 2;
+    expect_bad_input([&] { read(replaced(dump, "1 1 0 1.25 0 0.25", "1 1 0 1.25 1 0.25"), disks); },
+                     {"FILE:21", "z of disk 1", "in a plane"});
     refused(replaced(dump, "1 1 0 1.25 0 0.25", "2 1 0 1.25 0 0.25"), {"FILE:21", "id 2", "line 20"});
     refused(replaced(dump, "1 1 0 1.25 0 0.25", "1 1 0 1.25 0 -0.25"),
             {"FILE:21", "radius of disk 1", "-0.25", "positive"});

@@ -164,6 +164,19 @@ BOOST_AUTO_TEST_CASE(valid_packings_pass) {
     BOOST_TEST(complaint(tight).empty());
 }
 
+BOOST_AUTO_TEST_CASE(a_cell_of_spheres_keeps_its_shape_where_none_touches_itself_along_a_period_at_rest) {
+    Packing packing;
+    packing.dimension = packing.cell.dimension = 3;
+    packing.walls = Walls::none();
+    packing.radius = {1};
+    packing.q = {0, 0, 0, 3, 2.5, 2, 0, 0, 0};
+    packing.cell.repeat();
+    packing.cell.keep_shape();
+    BOOST_TEST(complaint(packing).empty());
+    packing.q[4] = 2; // L_y
+    BOOST_TEST(says(complaint(packing), {"keeps its shape", "sphere"}));
+}
+
 BOOST_AUTO_TEST_CASE(each_defect_is_named_with_its_place_and_value) {
     Packing good = square_lattice(3, 2);
     enclose(good, 0);

@@ -89,7 +89,7 @@ std::vector<Contact> carrying(const State& state, const Certification& truth);
 std::vector<Contact> carrying(const State& equilibrium);
 
 /// Names of contacts, " 1-2 3-left", " none", or the first of them and how many more.
-std::string names_of(const std::vector<Contact>& contacts);
+std::string names_of(const std::vector<Contact>& contacts, int dimension = 2);
 
 /// Those of `a` that are not in `b`; both sorted.
 std::vector<Contact> without(const std::vector<Contact>& a, const std::vector<Contact>& b);

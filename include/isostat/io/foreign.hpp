@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Packings of disks written by other programs.
+/// Packings of disks and of spheres written by other programs.
 
 #include <isostat/contact/state.hpp>
 #include <isostat/packing/packing.hpp>
@@ -25,8 +25,8 @@ struct SizeStatement {
 };
 
 /// Which walls a foreign packing gets; their positions are the bounds of the box.
-/// - `none`; - `box`: left and bottom fixed, right and top movable, as in the paper (two more degrees of freedom);
-/// - `fixed`: all four fixed.
+/// - `none`; - `box`: the lower ones fixed, the upper ones movable, as in the paper (as many more degrees of freedom as
+///   there are axes); - `fixed`: all fixed.
 enum class ForeignWalls { none, box, fixed };
 
 /// What the file does not say, stated by the user. Nothing of it is guessed.
@@ -34,10 +34,15 @@ struct ForeignOptions {
     std::string format; ///< a name of `foreign_formats()`, or empty: recognised from the content
     std::optional<SizeStatement> size;
     ForeignWalls walls = ForeignWalls::none;
-    bool walls_unless_periodic = false;       ///< `walls` are for packings without a periodic axis
-    std::optional<std::array<double, 4>> box; ///< xlo, xhi, ylo, yhi instead of the bounds in the file
-    std::optional<long> frame;                ///< of a file with several, from 0; the last one otherwise
-    std::vector<std::string> columns;         ///< of a table without a header; "-" is a column to leave out
+    bool walls_unless_periodic = false; ///< `walls` are for packings without a periodic axis
+    /// Disks or spheres; none: disks where all z are the same (to 2^-27 of the smallest radius, as no gap is another
+    /// double then) or the file has none, else spheres.
+    std::optional<int> dimension;
+    /// Empty, or xlo, xhi, ylo, yhi (of spheres: zlo, zhi too) instead of the bounds in the file; with `periodic`, of a
+    /// file without bounds, the periods.
+    std::vector<double> box;
+    std::optional<long> frame;        ///< of a file with several, from 0; the last one otherwise
+    std::vector<std::string> columns; ///< of a table without a header; "-" is a column to leave out
     std::optional<std::pair<std::string, std::string>> select; ///< column and value: rows that have it are the disks
     bool cells = false;        ///< periodic boundaries make a cell; else they are refused
     bool periodic = false;     ///< boundaries that the file leaves open are periodic
@@ -45,12 +50,12 @@ struct ForeignOptions {
 };
 
 struct ForeignPacking {
-    Packing packing;       ///< disks in the order of the file; with walls, shifted so that the lower ones are at 0
+    Packing packing;       ///< grains in the order of the file; with walls, shifted so that the lower ones are at 0
     std::string format;    ///< a name of `foreign_formats()`
     std::vector<long> ids; ///< those of the file, one per disk; none: it has no column of them
     /// So far may the gap of a pair be from that of the packing that was written: by the last digits of the file (half
-    /// a unit; numbers of at most four digits, or fewer than others have, are taken as they stand), by doubles, by
-    /// scaling and shifting. Stated sizes and walls are taken to the doubles.
+    /// a unit; numbers of at most four digits, and sides and sizes of fewer than others have, are taken as they stand),
+    /// by doubles, by scaling, shifting and turning. Stated sizes and walls are taken to the doubles.
     double rounding = 0;
     /// What was done to the numbers and what the file left open, one sentence each: which column gave the size, whether
     /// scaled or shifted coordinates were rounded and by how much, boundaries that are not known, several types of
@@ -58,7 +63,7 @@ struct ForeignPacking {
     std::vector<std::string> notes;
 };
 
-/// "lammps-data", "lammps-dump", "xyz", "table".
+/// "lammps-data", "lammps-dump", "xyz", "table", "centres".
 const std::vector<std::string>& foreign_formats();
 
 /// Reads a packing from text. Numbers are rounded to the nearest double.
@@ -72,12 +77,17 @@ const std::vector<std::string>& foreign_formats();
 ///   comment `# x y r`, `#format x_y_z_r`, or `columns`. Names: x, y, z, id; r, R, radius, Radius; d, D, diameter,
 ///   Diameter; others are ignored. A first row is of names when none of its fields is a value (begins like a number, or
 ///   is nan, inf, NA, null, none); every other row is a disk. Where `columns` are stated too, a note says so.
+/// - `centres`: the dimension (2 or 3), the number of grains, their diameter, each in a row; then rows of centres
+///   (CALiPPSO, Lubachevsky-Stillinger), or the period vectors, one a row, and then the centres (TJ).
+///
+/// Cells of spheres: period vectors that are not upper triangular are turned. A single sphere, or a layer of them with
+/// the same z, is one of disks unless `dimension` says otherwise.
 ///
 /// A byte order mark is skipped. Exponents are written with e: the D of Fortran is refused, with nan and inf.
 ///
 /// Throws `Error(bad_input)` with file, line, value and what was expected: also for sizes whose meaning nobody stated,
-/// periodic boundaries unless `cells`, tilted boxes that are not periodic, different z, ids given twice, more or fewer
-/// rows than announced, disks with their centre outside the walls. Overlaps are not looked at.
+/// periodic boundaries unless `cells`, tilted boxes that are not periodic, disks with different z, ids given twice,
+/// more or fewer rows than announced, disks with their centre outside the walls. Overlaps are not looked at.
 ForeignPacking parse_foreign(const std::string& text, const std::string& source, const ForeignOptions& options);
 
 /// The same from a file.

@@ -120,6 +120,8 @@ struct Packing {
     [[nodiscard]] double max_radius() const;
     /// Sum of the grains' areas (d = 2) or volumes (d = 3) over the product of the lengths, the size of box and cell.
     [[nodiscard]] double solid_fraction() const;
+    /// The same without some grains: rattlers.
+    [[nodiscard]] double solid_fraction_without(std::span<const int> grains) const;
 };
 
 /// Which coordinates of a packing are degrees of freedom, numbered 0 .. N_f-1 in the order of q.

@@ -65,6 +65,10 @@ StrainCounts count_strains(const Packing& packing, const std::vector<Contact>& c
 /// Disks that no contact of the list touches, ascending.
 std::vector<int> untouched(int disks, const std::vector<Contact>& pairs);
 
+/// Rattlers as codes of soft grains count them: grains with at most d contacts are taken away, with their contacts,
+/// until none is left. Ascending. A grain with more contacts that bears no force is not among them.
+std::vector<int> rattlers_by_coordination(const Packing& packing, std::vector<Contact> contacts);
+
 /// The packing with some disks fixed, so that only the others count: rattlers.
 Packing without_disks(Packing packing, const std::vector<int>& disks);
 

@@ -1,0 +1,192 @@
+#include "contact/separation.hpp"
+#include "crafted/peeling.hpp"
+
+#include <isostat/core/error.hpp>
+
+#include <CGAL/Exact_rational.h>
+#include <CGAL/Interval_nt.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+
+namespace isostat::crafted {
+
+namespace {
+
+/// A direction out of a sphere, not normalised: towards the other centre, or towards a wall.
+struct Direction {
+    int contact;
+    bool reversed; ///< out of the second sphere of the pair
+
+    template <class Number>
+    [[nodiscard]] PerAxis<Number> in(const Packing& packing, const std::vector<Contact>& all) const {
+        const Contact& c = all[static_cast<std::size_t>(contact)];
+        PerAxis<Number> d{Number(0), Number(0), Number(0)};
+        if (c.kind != ContactKind::disk_disk) {
+            d[static_cast<std::size_t>(c.j)] = Number(c.kind == ContactKind::lower_wall ? -1 : 1);
+            return d;
+        }
+        const auto minus = [](const Number& a, const Number& b) -> Number { return a - b; };
+        d = Separation(c, packing.layout()).of_disks([&](std::size_t k) { return Number(packing.q[k]); }, minus);
+        for (Number& component : d) {
+            component = reversed ? Number(-component) : component;
+        }
+        return d;
+    }
+};
+
+template <class Number> PerAxis<Number> cross(const PerAxis<Number>& a, const PerAxis<Number>& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+template <class Number> Number dot(const PerAxis<Number>& a, const PerAxis<Number>& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/// Signs of expressions in directions: intervals, then rationals.
+class Signs {
+  public:
+    Signs(const Packing& packing, const std::vector<Contact>& contacts) : packing_(packing), contacts_(contacts) {}
+
+    /// sign of `expression(directions)`, the directions in the arithmetic that tells.
+    template <std::size_t Count, class Expression>
+    [[nodiscard]] int of(const std::array<Direction, Count>& directions, Expression expression) const {
+        using Interval = CGAL::Interval_nt<false>;
+        {
+            const Interval::Protector upward;
+            if (const auto sign = CGAL::sign(value<Interval>(directions, expression)); sign.is_certain()) {
+                return sign.make_certain();
+            }
+        }
+        return CGAL::sign(value<CGAL::Exact_rational>(directions, expression));
+    }
+
+  private:
+    template <class Number, std::size_t Count, class Expression>
+    [[nodiscard]] Number value(const std::array<Direction, Count>& directions, Expression expression) const {
+        std::array<PerAxis<Number>, Count> in;
+        for (std::size_t k = 0; k < Count; ++k) {
+            in[k] = directions[k].template in<Number>(packing_, contacts_);
+        }
+        return expression(in);
+    }
+    const Packing& packing_;
+    const std::vector<Contact>& contacts_;
+};
+
+/// The directions that a combination with positive factors that is 0 can contain. Those beside a plane through 0 that
+/// leaves every direction on one side are none of them; a cone that no such plane bounds is the space that its
+/// directions span, and then all are (a facet of a cone is spanned by two of its directions, or in a plane by one).
+std::vector<Direction> able(std::vector<Direction> left, const Signs& signs) {
+    /// Takes away those that are not 0 by `sign_of`, if the others are on one side: whether any were.
+    const auto cut = [&left](auto sign_of) {
+        std::vector<int> sign;
+        std::transform(left.begin(), left.end(), std::back_inserter(sign), sign_of);
+        const auto [least, most] = std::minmax_element(sign.begin(), sign.end());
+        if (sign.empty() || (*least < 0 && *most > 0) || (*least == 0 && *most == 0)) {
+            return false;
+        }
+        std::size_t k = 0;
+        std::erase_if(left, [&](const Direction&) { return sign[k++] != 0; });
+        return true;
+    };
+    const auto once = [&] {
+        for (std::size_t a = 0; a < left.size(); ++a) {
+            for (std::size_t b = a + 1; b < left.size(); ++b) {
+                const Direction first = left[a], second = left[b];
+                if (cut([&](const Direction& d) {
+                        return signs.of<3>({first, second, d},
+                                           [](const auto& x) { return dot(cross(x[0], x[1]), x[2]); });
+                    })) {
+                    return true;
+                }
+            }
+        }
+        for (std::size_t a = 0; a < left.size(); ++a) { // no plane: all in one, or all directions are able
+            for (std::size_t b = 0; b < left.size(); ++b) {
+                const Direction along = left[a], beside = left[b];
+                if (cut([&](const Direction& d) { // the component across `along` in the plane of the two
+                        return signs.of<3>({along, beside, d},
+                                           [](const auto& x) { return dot(cross(cross(x[0], x[1]), x[0]), x[2]); });
+                    })) {
+                    return true;
+                }
+            }
+        }
+        const Direction first = left.empty() ? Direction{} : left.front();
+        return cut([&](const Direction& d) {
+            return signs.of<2>({first, d}, [](const auto& x) { return dot(x[0], x[1]); });
+        });
+    };
+    while (once()) {
+    }
+    return left;
+}
+
+} // namespace
+
+Peeling peel_in_space(const Packing& packing, const std::vector<Contact>& contacts) {
+    const Signs signs(packing, contacts);
+    std::vector<std::vector<Direction>> around(packing.radius.size());
+    for (std::size_t l = 0; l < contacts.size(); ++l) {
+        const Direction direction{static_cast<int>(l), false};
+        if (signs.of<1>({direction}, [](const auto& x) { return dot(x[0], x[0]); }) == 0) {
+            throw Error(ErrorKind::bad_input,
+                        fmt::format("{}: the two spheres have the same centre", to_string(contacts[l], 3)));
+        }
+        around[static_cast<std::size_t>(contacts[l].i)].push_back(direction);
+        if (contacts[l].kind == ContactKind::disk_disk) {
+            around[static_cast<std::size_t>(contacts[l].j)].push_back({static_cast<int>(l), true});
+        }
+    }
+    Peeling out;
+    out.contact_from.assign(contacts.size(), 0);
+    out.disk_from.assign(around.size(), 0);
+    int now = static_cast<int>(contacts.size()); // what fails from here on needs more contacts than these
+    std::vector<std::size_t> waiting(around.size());
+    std::iota(waiting.begin(), waiting.end(), std::size_t{0});
+    const auto take = [&](std::size_t sphere, int contact) {
+        std::erase_if(around[sphere], [contact](const Direction& d) { return d.contact == contact; });
+        waiting.push_back(sphere);
+    };
+    const auto drop = [&](int l) {
+        if (out.contact_from[static_cast<std::size_t>(l)] != 0) {
+            return;
+        }
+        out.contact_from[static_cast<std::size_t>(l)] = now + 1;
+        const Contact& c = contacts[static_cast<std::size_t>(l)];
+        take(static_cast<std::size_t>(c.i), l);
+        if (c.kind == ContactKind::disk_disk) {
+            take(static_cast<std::size_t>(c.j), l);
+        }
+    };
+    const auto settle = [&] {
+        while (!waiting.empty()) {
+            const std::size_t sphere = waiting.back();
+            waiting.pop_back();
+            if (packing.is_fixed(DiskId(sphere)) || out.disk_from[sphere] != 0) {
+                continue;
+            }
+            const std::vector<Direction> before = around[sphere];
+            const std::vector<Direction> after = able(before, signs);
+            for (const Direction& d : before) {
+                const bool stays = std::any_of(after.begin(), after.end(),
+                                               [&](const Direction& other) { return other.contact == d.contact; });
+                if (!stays) {
+                    drop(d.contact);
+                }
+            }
+            out.disk_from[sphere] = after.empty() ? now + 1 : 0;
+        }
+    };
+    settle();
+    for (int l = now; l-- > 0;) {
+        now = l;
+        drop(l);
+        settle();
+    }
+    return out;
+}
+
+} // namespace isostat::crafted

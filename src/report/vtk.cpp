@@ -1,0 +1,161 @@
+#include "contact/separation.hpp"
+#include "io/text.hpp"
+#include "report/picture.hpp"
+
+#include <fmt/format.h>
+
+#include <functional>
+#include <vector>
+
+namespace isostat {
+
+namespace {
+
+using Place = PerAxis<double>; // in the plane z = 0
+
+Place place_of(const Packing& packing, int grain) {
+    Place at{};
+    for (std::size_t a = 0; a < packing.axes(); ++a) {
+        at[a] = packing.coordinate(DiskId(grain), static_cast<int>(a));
+    }
+    return at;
+}
+
+/// Where the line of a contact ends: on the wall, or at the centre of the second grain or of its image.
+Place end_of(const Packing& packing, const Contact& contact) {
+    Place at = place_of(packing, contact.i);
+    if (contact.kind != ContactKind::disk_disk) {
+        at[static_cast<std::size_t>(contact.j)] =
+            contact.kind == ContactKind::lower_wall ? 0 : packing.length(contact.j);
+        return at;
+    }
+    at = place_of(packing, contact.j);
+    for (std::size_t a = 0; a < packing.axes(); ++a) {
+        for (std::size_t b = a; b < packing.axes(); ++b) {
+            at[a] += contact.image.m[b] == 0 ? 0 : contact.image.m[b] * packing.lattice(a, b);
+        }
+    }
+    return at;
+}
+
+/// The corner 0 or A_a of the cell along each axis, by the bits of a number. Along an axis with walls from wall to
+/// wall.
+Place corner(const Packing& packing, unsigned bits) {
+    Place at{};
+    for (std::size_t a = 0; a < packing.axes(); ++a) {
+        for (std::size_t b = a; b < packing.axes(); ++b) {
+            at[a] += (bits >> b & 1U) != 0 ? packing.lattice(a, b) : 0;
+        }
+    }
+    return at;
+}
+
+/// Lines of a VTK file, with the points that they add, and a force for each.
+struct VtkLines {
+    std::string lines;
+    std::string forces;
+    std::size_t count = 0;
+    std::size_t ends = 0;
+
+    void add(const std::vector<std::size_t>& through, double force) {
+        lines += fmt::format("{}", through.size());
+        for (const std::size_t point : through) {
+            lines += fmt::format(" {}", point);
+        }
+        lines += "\n";
+        forces += fmt::format("{:.17g}\n", force);
+        ++count;
+        ends += through.size();
+    }
+};
+
+/// The outline of a cell: a parallelogram, or the edges of a parallelepiped as two of them and four lines.
+void add_outline(const Packing& packing, std::vector<Place>& points, VtkLines& made) {
+    const std::size_t first = points.size();
+    for (unsigned z = 0; z < (packing.dimension == plane ? 1U : 2U); ++z) {
+        for (const unsigned bits : {0U, 1U, 3U, 2U}) {
+            points.push_back(corner(packing, bits + 4 * z));
+        }
+        const std::size_t here = first + 4 * z;
+        made.add({here, here + 1, here + 2, here + 3, here}, 0);
+    }
+    for (std::size_t k = first; packing.dimension != plane && k < first + 4; ++k) {
+        made.add({k, k + 4}, 0);
+    }
+}
+
+VtkLines vtk_lines(const State& state, std::span<const double> forces, std::vector<Place>& points) {
+    VtkLines made;
+    for (std::size_t l = 0; l < state.contacts.size(); ++l) {
+        const Contact& contact = state.contacts[l];
+        if (contact.kind == ContactKind::held) {
+            continue;
+        }
+        auto end = static_cast<std::size_t>(contact.j);
+        if (contact.kind != ContactKind::disk_disk || !contact.image.is_here()) {
+            end = points.size();
+            points.push_back(end_of(state.packing, contact));
+        }
+        made.add({static_cast<std::size_t>(contact.i), end}, forces.empty() ? 0 : forces[l]);
+    }
+    if (state.packing.cell.any()) {
+        add_outline(state.packing, points, made);
+    }
+    return made;
+}
+
+std::string rows_of(const std::vector<Place>& places) {
+    std::string text;
+    for (const Place& p : places) {
+        text += fmt::format("{:.17g} {:.17g} {:.17g}\n", p[0], p[1], p[2]);
+    }
+    return text;
+}
+
+} // namespace
+
+std::string vtk_text(const State& state, std::span<const double> forces, const std::string& title,
+                     std::span<const double> displacement) {
+    const std::size_t grains = state.packing.radius.size();
+    std::vector<Place> points;
+    for (std::size_t i = 0; i < grains; ++i) {
+        points.push_back(place_of(state.packing, static_cast<int>(i)));
+    }
+    const VtkLines contacts = vtk_lines(state, forces, points);
+    std::vector<unsigned char> rattler(grains, 0);
+    if (!forces.empty()) {
+        rattler = rattler_flags(state, forces);
+    }
+    rattler.resize(points.size(), 0);
+    // The title is one line of at most 256 characters; ours is short.
+    std::string text = fmt::format("{}{}\nASCII\nDATASET POLYDATA\nPOINTS {} double\n", vtk_mark,
+                                   text::shown(title).substr(0, 200), points.size());
+    text += rows_of(points) + fmt::format("VERTICES {} {}\n", grains, 2 * grains);
+    for (std::size_t i = 0; i < grains; ++i) {
+        text += fmt::format("1 {}\n", i);
+    }
+    text += fmt::format("LINES {} {}\n{}", contacts.count, contacts.count + contacts.ends, contacts.lines);
+    text += fmt::format("POINT_DATA {}\nSCALARS radius double 1\nLOOKUP_TABLE default\n", points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        text += fmt::format("{:.17g}\n", i < grains ? state.packing.radius[i] : 0.0);
+    }
+    text += "SCALARS rattler int 1\nLOOKUP_TABLE default\n";
+    for (const unsigned char flag : rattler) {
+        text += fmt::format("{}\n", static_cast<int>(flag));
+    }
+    if (!displacement.empty()) {
+        std::vector<Place> moved(points.size(), Place{});
+        for (std::size_t k = 0; k < state.packing.length_at(0); ++k) {
+            moved[k / state.packing.axes()][k % state.packing.axes()] = displacement[k];
+        }
+        text += "VECTORS displacement double\n" + rows_of(moved);
+    }
+    // Cell data: vertices first, then lines, as VTK numbers the cells.
+    text += fmt::format("CELL_DATA {}\nSCALARS force double 1\nLOOKUP_TABLE default\n", grains + contacts.count);
+    for (std::size_t i = 0; i < grains; ++i) {
+        text += "0\n";
+    }
+    return text + contacts.forces;
+}
+
+} // namespace isostat

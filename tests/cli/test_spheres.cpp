@@ -1,0 +1,101 @@
+// What the program answers for spheres, and what it refuses.
+#include "cli/program.hpp"
+#include "support/spheres.hpp"
+
+#include <isostat/io/state_file.hpp>
+
+using namespace program;
+
+namespace {
+
+/// A reference packing as a state file.
+std::string state_file(const scratch::Folder& folder, const std::string& name) {
+    const isostat::State state = isostat::test::state_of_spheres(isostat::test::read_spheres(name));
+    scratch::write(folder / (name + ".json"), isostat::state_text(state));
+    return folder.at(name + ".json");
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(cli_spheres)
+
+BOOST_AUTO_TEST_CASE(inspect_answers_for_a_box_a_slab_and_cells) {
+    const scratch::Folder folder;
+    says(run({"inspect", state_file(folder, "box_uniform_30_1")}), 0,
+         {"spheres                  30", "degrees of freedom N_f   93", "rattlers                 6 by forces",
+          "(opens 5-28)", "(opens 13-23)", "isostatic equilibrium    proved", "stable                   proved",
+          "smallest singular values "});
+    says(run({"inspect", state_file(folder, "slab_uniform_30_1")}), 0, {"N_f   91", "(opens 4-22)", "proved"});
+    says(run({"inspect", state_file(folder, "tri_uniform_30_1")}), 0,
+         {"tilt 0.53779", "x, y, z, xy, xz, yz move, sphere 0 is pinned", "(opens 19-22(-1,0,0))",
+          "backbone, 29 spheres", "jammed collectively      proved"});
+    const auto json = nlohmann::json::parse(run({"inspect", "--json", folder.at("slab_uniform_30_1.json")}).out);
+    BOOST_TEST(json["spheres"] == 30);
+    BOOST_TEST(json["length"].size() == 3U);
+    BOOST_TEST(json["rattlers"] == json["rattlers_by_coordination"]);
+    BOOST_TEST(json["singular_values"].size() == 10U);
+    const double smallest = isostat::test::read_spheres("slab_uniform_30_1")["expected"]["smallest_singular_value"];
+    BOOST_TEST(json["singular_values"][0].get<double>() == smallest, boost::test_tools::tolerance(1e-5));
+}
+
+BOOST_AUTO_TEST_CASE(a_table_of_contacts_has_a_row_for_each_and_forces_between_their_ends) {
+    const scratch::Folder folder;
+    expect(run({"inspect", state_file(folder, "slab_uniform_30_1"), "--contacts", folder.at("c.csv")}), 0);
+    std::istringstream table(scratch::read(folder / "c.csv"));
+    std::string line;
+    std::getline(table, line);
+    BOOST_TEST(line == "contact,i,j,mx,my,mz,x,y,z,nx,ny,nz,gap,force,force_low,force_high,force_infinitesimal");
+    int rows = 0, infinitesimal = 0;
+    while (std::getline(table, line)) {
+        ++rows;
+        infinitesimal += line.back() != ',' ? 1 : 0;
+        const std::string rest = line.substr(line.rfind('"') + 2);
+        std::vector<std::string> fields(1);
+        for (const char c : rest) {
+            c == ',' ? fields.emplace_back() : fields.back().append(1, c);
+        }
+        BOOST_TEST_REQUIRE(fields.size() == 16U);
+        const auto number = [&](std::size_t k) { return std::stod(fields[k]); };
+        BOOST_TEST(number(8) * number(8) + number(9) * number(9) + number(10) * number(10) == 1,
+                   boost::test_tools::tolerance(1e-14));
+        BOOST_TEST(std::abs(number(11)) < 1e-12);
+        BOOST_TEST((number(13) <= number(12) && number(12) <= number(14)));
+    }
+    BOOST_TEST(rows == 91);
+    BOOST_TEST(infinitesimal == 15);
+    // The table is written over, another file is not.
+    scratch::write(folder / "mine.csv", "x\n1\n");
+    expect(run({"inspect", folder.at("slab_uniform_30_1.json"), "--contacts", folder.at("c.csv")}), 0);
+    expect(run({"inspect", folder.at("slab_uniform_30_1.json"), "--contacts", folder.at("mine.csv")}), 64);
+    BOOST_TEST(scratch::read(folder / "mine.csv") == "x\n1\n");
+}
+
+BOOST_AUTO_TEST_CASE(plateau_and_paraview_files_take_spheres) {
+    const scratch::Folder folder;
+    const std::string state = state_file(folder, "ortho_uniform_30_1");
+    says(run({"plateau", state, "--cell", "diagonal"}), 0,
+         {"spheres                     30", "N = 84 with 2 rattlers"});
+    expect(run({"export", state, "-o", folder.at("o.vtk")}), 0);
+    const std::string vtk = scratch::read(folder / "o.vtk");
+    BOOST_TEST(contains(vtk, "VERTICES 30 60\n"));
+    BOOST_TEST(contains(vtk, "LINES 96 ")); // 90 contacts, 2 sides and 4 edges of the cell
+    BOOST_TEST(!contains(vtk, "nan"));
+}
+
+BOOST_AUTO_TEST_CASE(what_takes_disks_only_says_so_in_one_sentence) {
+    const scratch::Folder folder;
+    const std::string state = state_file(folder, "box_uniform_30_1");
+    scratch::write(folder / "s.toml",
+                   "[packing]\nfile = \"box_uniform_30_1.json\"\n[[programme]]\ndo = \"up\"\nequilibria = 1\n");
+    for (const std::vector<std::string>& command :
+         {std::vector<std::string>{"run", folder.at("s.toml"), "-o", folder.at("out")},
+          {"genericity", state},
+          {"snap", state, "-o", folder.at("t.json")},
+          {"report", state}}) {
+        const Outcome outcome = run(command);
+        BOOST_TEST(outcome.status == 65, command[0] << ": " << outcome.err);
+        BOOST_TEST(contains(outcome.err, "spheres"), command[0] << ": " << outcome.err);
+    }
+}
+
+BOOST_AUTO_TEST_SUITE_END()

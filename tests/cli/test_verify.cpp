@@ -38,14 +38,12 @@ BOOST_AUTO_TEST_CASE(certificates_of_spheres_are_made_and_verified) {
     const std::string file = folder.at("spheres.json");
     const std::string made = folder.at("certificate.json");
     isostat::write_state(file, isostat::test::state_of_spheres(isostat::test::read_spheres("tri_uniform_30_1")));
-    says(run({"certify", file, "-o", made}), 0, {"N_f = 90, N = 90, rank 90", "proved"});
-    says(run({"verify", made, "--input", file}), 0, {"(30 spheres, 90 contacts)", "input          proved"});
+    says(run({"certify", file, "-o", made}), 0, {"N_f = 93, N = 93, rank 93", "proved"});
+    says(run({"verify", made, "--input", file}), 0, {"(30 spheres, 93 contacts)", "input          proved"});
     isostat::Certificate forged = isostat::read_certificate(made);
     forged.claims.gaps->smallest *= 2;
     isostat::write_certificate(made, forged);
     says(run({"verify", made}), 1, {"gaps           refuted", to_string(forged.claims.gaps->where, 3)});
-    expect(run({"export", file, "-o", folder.at("spheres.csv")}), 65,
-           {"spheres.json", "certify and verify take spheres"});
 }
 
 BOOST_AUTO_TEST_CASE(verify_tells_altered_false_and_incomplete_certificates_apart) {

@@ -5,7 +5,6 @@
 #include <isostat/core/error.hpp>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -140,12 +139,14 @@ Images images_near_cell(const Packing& packing, double reach) {
         throw Error(ErrorKind::bad_input, *beyond);
     }
     if (!((1 + 2 * margin[0]) * (1 + 2 * margin[1]) * (1 + 2 * margin[2]) * packing.disk_count() < most)) {
-        const PerAxis<double> height = heights(packing);
+        std::string heights_text;
+        for (std::size_t a = 0; a < packing.axes(); ++a) {
+            heights_text += fmt::format("{}{:.3g}", a == 0 ? "" : ", ", heights(packing)[a]);
+        }
         throw Error(ErrorKind::bad_input,
-                    fmt::format("the cell has heights {:.3g}, {} up to {:.3g}: more than {:.0g} images are near it; "
+                    fmt::format("the cell has heights {}, {}s up to {:.3g}: more than {:.0g} images are near it; "
                                 "expected a basis of short periods",
-                                fmt::join(height.begin(), height.begin() + packing.dimension, ", "),
-                                std::string(grain_word(packing.dimension)) + "s", packing.max_radius(), most));
+                                heights_text, grain_word(packing.dimension), packing.max_radius(), most));
     }
     for (int i = 0; i < packing.disk_count(); ++i) {
         const PerAxis<double> s = fractional(packing, i);

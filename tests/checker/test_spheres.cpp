@@ -433,15 +433,15 @@ BOOST_AUTO_TEST_CASE(the_sweep_finds_the_smallest_gap_of_spheres_among_images) {
     }
 }
 
-// A rectangular lattice in a basis that leans by four periods: the nearest image is far along it.
+// A rectangular lattice in a basis that leans by six periods: the nearest image is far along it.
 BOOST_AUTO_TEST_CASE(the_sweep_reaches_the_nearest_image_in_a_sheared_cell) {
     struct Shear {
         std::array<double, 3> length, tilt; ///< xy, xz, yz
         Image nearest;
     };
     for (const Shear& shear :
-         {Shear{{1.2, 1, 1.2}, {4.8, 0, 0}, {{-4, 1, 0}}}, Shear{{1.2, 1.2, 1}, {0, 4.8, 0}, {{-4, 0, 1}}},
-          Shear{{1.2, 1.2, 1}, {0, 0, 4.8}, {{0, -4, 1}}}, Shear{{1.2, 1.2, 1}, {2.4, 0, 2.4}, {{4, -2, 1}}}}) {
+         {Shear{{1.2, 1, 1.2}, {7.2, 0, 0}, {{-6, 1, 0}}}, Shear{{1.2, 1.2, 1}, {0, 7.2, 0}, {{-6, 0, 1}}},
+          Shear{{1.2, 1.2, 1}, {0, 0, 7.2}, {{0, -6, 1}}}, Shear{{1.2, 1.2, 1}, {3.6, 0, 2.4}, {{6, -2, 1}}}}) {
         State state = loose({{0, 0, 0, 0.45}}, true);
         for (std::size_t k = 0; k < 3; ++k) {
             state.packing.q[state.packing.length_at(k)] = shear.length[k];

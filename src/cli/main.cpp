@@ -565,6 +565,10 @@ int explain(const CLI::App& app, const CLI::ParseError& error) {
 
 int run_program(int argc, char** argv) {
     Program program(quoted(argc, argv));
+    if (argc <= 1) {
+        say("{}", program.app.help());
+        return isostat::Error(isostat::ErrorKind::usage, "").exit_status();
+    }
     const std::string wrong = argc > 1 ? wrong_command(program.app, argv[1]) : ""; // NOLINT(*-pointer-arithmetic)
     if (!wrong.empty()) {
         return complain(isostat::ErrorKind::usage, wrong);

@@ -283,7 +283,7 @@ int plateau(const PlateauArguments& a) {
         thresholds = parse_range(a.thresholds, "--thresholds");
     }
     ForeignArguments foreign = a.foreign;
-    foreign.cells = true;
+    foreign.cells = foreign.spheres = true;
     ReadPacking file = read_any_packing(a.file, foreign);
     const Strain strain = value_of<Strain>(a.strain, std::array{"fixed", "isotropic", "diagonal", "full"}).value();
     if (a.thresholds.empty()) {

@@ -59,7 +59,6 @@ Read from_foreign(const SnapArguments& a) {
                     fmt::format("--walls is '{}': expected box, two fixed and two movable walls", foreign.walls));
     }
     ReadPacking file = read_any_packing(a.file, foreign);
-    require_plane(file.packing, a.file, "snap");
     take_cell({a.file, a.cell}, file.packing);
     compare::check_nearness(a.file, file.packing);
     compare::SoftList list = a.contacts.empty()

@@ -11,10 +11,10 @@
 namespace isostat {
 
 /// "12-40", "3-left", ...
-inline std::vector<std::string> contact_names(const std::vector<Contact>& contacts) {
+inline std::vector<std::string> contact_names(const std::vector<Contact>& contacts, int dimension = 2) {
     std::vector<std::string> names;
     for (const Contact& contact : contacts) {
-        names.push_back(to_string(contact));
+        names.push_back(to_string(contact, dimension));
     }
     return names;
 }

@@ -185,8 +185,8 @@ EquilibriumRow row_of(const Fields& fields) {
 std::pair<int, int> contact_columns(const Contact& contact) {
     switch (contact.i < 0 ? ContactKind::held : contact.kind) {
     case ContactKind::disk_disk: return {contact.i, contact.j};
-    case ContactKind::lower_wall: return {contact.i, -1 - contact.j};
-    case ContactKind::upper_wall: return {contact.i, -3 - contact.j};
+    case ContactKind::lower_wall: return {contact.i, contact.j < plane ? -1 - contact.j : back_wall};
+    case ContactKind::upper_wall: return {contact.i, contact.j < plane ? -3 - contact.j : front_wall};
     case ContactKind::held: break;
     }
     return {contact.i < 0 ? no_contact : contact.i, no_contact};

@@ -33,8 +33,9 @@ bool are_upper(const PerAxis<PerAxis<double>>& vectors, std::size_t d) {
     return upper;
 }
 
-/// Disks where z is the same, or differs by so little that no gap of two disks, sqrt(d^2 + z^2), is another double.
-int dimension_of(Raw& raw, const std::string& source, const ForeignOptions& options) {
+/// Disks where z is the same, or differs by so little that no gap of two disks, sqrt(d^2 + z^2), is another double:
+/// `rounding` is by how much.
+int dimension_of(Raw& raw, const std::string& source, const ForeignOptions& options, double& rounding) {
     const std::optional<int> stated = options.dimension ? options.dimension : raw.dimension;
     if (stated.value_or(2) != raw.dimension.value_or(stated.value_or(2))) {
         refuse(source,
@@ -61,6 +62,7 @@ int dimension_of(Raw& raw, const std::string& source, const ForeignOptions& opti
     if (dimension == 2 && off(farthest) > 0) {
         raw.notes.push_back(
             fmt::format("z differs by up to {:.2g}, which changes no gap: taken for a plane", off(farthest)));
+        rounding = off(farthest) * off(farthest) / radius; // of two disks, 2 off
     }
     if (dimension == 2 && !raw.not_plane.empty()) {
         throw Error(ErrorKind::bad_input, raw.not_plane);
@@ -230,7 +232,7 @@ ForeignPacking parse_foreign(const std::string& text, const std::string& source,
         refuse(source, fmt::format("format '{}': expected one of {}", out.format, fmt::join(foreign_formats(), ", ")));
     }
     Packing& packing = out.packing;
-    packing.dimension = packing.cell.dimension = dimension_of(raw, source, options);
+    packing.dimension = packing.cell.dimension = dimension_of(raw, source, options, out.rounding);
     packing.walls = Walls::none();
     const std::size_t d = packing.axes();
     ForeignOptions stated = options;
@@ -247,7 +249,7 @@ ForeignPacking parse_foreign(const std::string& text, const std::string& source,
     }
     const double moved = foreign::add_box(out, raw, source, stated);
     check_range(packing, source);
-    out.rounding = rounding_of(raw, out, options, moved);
+    out.rounding += rounding_of(raw, out, options, moved);
     return out;
 }
 

@@ -21,6 +21,7 @@ struct Snapped {
 };
 
 Snapped snapped(const PyState& file, double stiffness) {
+    require_plane(file.state.packing, "State", "snap");
     Snapped out;
     compare::SoftForces grains = compare::soft_grains(file, "state");
     if (finite(stiffness, "stiffness") > 0) {

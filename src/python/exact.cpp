@@ -168,6 +168,7 @@ void bind_crafted(py::module_& module) {
         .def_static(
             "of_state",
             [](const PyState& state) {
+                require_plane(state.state.packing, "State", "an exact packing");
                 return Crafted{crafted::exact_copy(state.state.packing), state.state.contacts, ""};
             },
             py::arg("state"), "The stored doubles of a State as exact numbers, with its contacts.")

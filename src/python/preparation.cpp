@@ -46,6 +46,7 @@ std::shared_ptr<PyState> prepare_disks(int disks, std::uint64_t seed, std::pair<
 }
 
 std::shared_ptr<PyState> vertex_near(const Packing& packing, std::array<double, 2> stress, std::uint64_t seed) {
+    require_plane(packing, "Packing", "find_vertex");
     PreparationOptions options;
     options.stress = finite(stress[0], "stress");
     options.ratio = finite(stress[1] / stress[0], "ratio of the stresses");

@@ -7,6 +7,10 @@
 #include <isostat/core/error.hpp>
 #include <isostat/rigidity/counting.hpp>
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
 namespace isostat::python {
 
 namespace {
@@ -27,9 +31,12 @@ template <class T> py::list per_axis(const PerAxis<T>& values, int dimension) {
     return list;
 }
 
-py::dict walls_dict(const Walls& walls) {
-    const auto words = [](const PerAxis<WallKind>& kinds) {
-        return py::make_tuple(word_of(kinds[0], wall_kind_words), word_of(kinds[1], wall_kind_words));
+py::dict walls_dict(const Walls& walls, int dimension) {
+    const auto words = [dimension](const PerAxis<WallKind>& kinds) {
+        PerAxis<std::string> names;
+        std::transform(kinds.begin(), kinds.end(), names.begin(),
+                       [](WallKind kind) { return word_of(kind, wall_kind_words); });
+        return py::tuple(per_axis(names, dimension));
     };
     py::dict dict;
     dict["lower"] = words(walls.lower);
@@ -44,16 +51,16 @@ template <class Bound, class Of> void bind_grains(Bound& bound, const Of& of) {
             "positions",
             [of](const py::object& self) {
                 const Packing& packing = of(self);
-                return view(packing.q.data(), {packing.disk_count(), 2}, self);
+                return view(packing.q.data(), {packing.disk_count(), packing.dimension}, self);
             },
-            "(n, 2) centres; length. A read-only view.")
+            "(n, d) centres; length. A read-only view.")
         .def_property_readonly(
             "length",
             [of](const py::object& self) {
                 const Packing& packing = of(self);
-                return view(packing.q.data() + 2 * packing.radius.size(), {2}, self);
+                return view(packing.q.data() + packing.length_at(0), {packing.dimension}, self);
             },
-            "(2,) positions of the right and the top wall, or the periods of a cell; length. A read-only view.")
+            "(d,) positions of the right, top and front wall, or the periods of a cell; length. A read-only view.")
         .def_property_readonly(
             "radii", [of](const py::object& self) { return view(of(self).radius, self); },
             "(n,) radii; length. A read-only view.")
@@ -61,22 +68,27 @@ template <class Bound, class Of> void bind_grains(Bound& bound, const Of& of) {
             "fixed", [of](const py::object& self) { return view(of(self).fixed, self); },
             "(n,) flags, 1: cannot move; empty where no disk is fixed.")
         .def_property_readonly(
-            "walls", [of](const py::object& self) { return walls_dict(of(self).walls); },
-            "{\"lower\": (left, bottom), \"upper\": (right, top)}, each \"absent\", \"fixed\" or \"movable\".")
+            "walls", [of](const py::object& self) { return walls_dict(of(self).walls, of(self).dimension); },
+            "{\"lower\": (left, bottom), \"upper\": (right, top)}, of spheres (left, bottom, back), (right, top, "
+            "front), each \"absent\", \"fixed\" or \"movable\".")
         .def_property_readonly(
             "tilt",
             [of](const py::object& self) {
                 const Packing& packing = of(self);
-                return packing.cell.any() ? std::optional(packing.lattice(0, 1)) : std::nullopt;
+                if (packing.cell.any() && packing.dimension != plane) {
+                    return py::object(
+                        py::make_tuple(packing.lattice(0, 1), packing.lattice(0, 2), packing.lattice(1, 2)));
+                }
+                return packing.cell.any() ? py::object(py::float_(packing.lattice(0, 1))) : py::object(py::none());
             },
-            "Of a periodic cell: x of the second period; None in a box.")
+            "Of a periodic cell: x of the second period, of spheres (xy, xz, yz); None in a box.")
         .def_property_readonly(
             "periodic",
             [of](const py::object& self) { return py::tuple(per_axis(of(self).cell.periodic, of(self).dimension)); },
-            "(along x, along y): whether the packing repeats.")
+            "Along x, y (and z): whether the packing repeats.")
         .def_property_readonly(
             "solid_fraction", [of](const py::object& self) { return of(self).solid_fraction(); },
-            "Area of the disks over that of the box.")
+            "Area of the disks over that of the box; of spheres volumes.")
         .def_property_readonly(
             "dof_names", [of](const py::object& self) { return dof_names(of(self)); },
             "Names of the N_f degrees of freedom, in their order: \"x of disk 3\", \"top wall\".");
@@ -145,25 +157,27 @@ void bind_contacts(StateClass& state) {
     state
         .def_property_readonly(
             "contacts", [](const PyState& self) { return contact_array(self.state.contacts); },
-            "(N, 2) integers: disks i < j; or a disk and -1 left, -2 bottom, -3 right, -4 top wall; or a held "
-            "coordinate and -9. A copy.")
+            "(N, 2) integers: disks i < j; or a disk and -1 left, -2 bottom, -3 right, -4 top wall, of spheres -5 "
+            "back, -6 front; or a held coordinate and -9. A copy.")
         .def_property_readonly(
             "images",
             [](const PyState& self) {
                 const std::vector<Contact>& contacts = self.state.contacts;
-                py::array_t<int> out({static_cast<py::ssize_t>(contacts.size()), py::ssize_t{2}});
+                const std::size_t axes = self.state.packing.axes();
+                py::array_t<int> out({contacts.size(), axes});
                 auto rows = out.mutable_unchecked<2>();
                 for (std::size_t l = 0; l < contacts.size(); ++l) {
-                    for (std::size_t a = 0; a < 2; ++a) {
+                    for (std::size_t a = 0; a < axes; ++a) {
                         const int periods{contacts[l].image.m[a]};
                         rows(static_cast<py::ssize_t>(l), static_cast<py::ssize_t>(a)) = periods;
                     }
                 }
                 return out;
             },
-            "(N, 2) integers: the second disk of a contact is moved by so many periods; 0 in a box. A copy.")
+            "(N, d) integers: the second grain of a contact is moved by so many periods; 0 in a box. A copy.")
         .def_property_readonly(
-            "contact_names", [](const PyState& self) { return contact_names(self.state.contacts); },
+            "contact_names",
+            [](const PyState& self) { return contact_names(self.state.contacts, self.state.packing.dimension); },
             "Names of the N contacts: \"3-7\", \"3-8(1,0)\", \"3-left\".")
         .def_property_readonly("forces", vector_of(&PyState::forces),
                                "(N,) forces that the file has, stress x length, positive in compression; empty where "
@@ -175,16 +189,17 @@ void bind_load(StateClass& state) {
         .def_property_readonly(
             "stress",
             [](const PyState& self) { return per_axis(self.state.load.stress, self.state.packing.dimension); },
-            "[sigma_1, sigma_2]: on the right and on the top wall; positive in compression.")
+            "[sigma_1, sigma_2], of spheres sigma_3 too: on the right, top and front wall; positive in compression.")
         .def_property_readonly(
             "reference_length",
             [](const PyState& self) {
                 return per_axis(self.state.load.reference_length, self.state.packing.dimension);
             },
-            "[Lx, Ly] at which nominal stress and strain are defined; length.")
+            "[Lx, Ly], of spheres Lz too, at which nominal stress and strain are defined; length.")
         .def_property_readonly(
             "loaded_axis", [](const PyState& self) { return self.state.load.loaded_axis; },
-            "Axis whose stress a programme changes: 0 or 1; 2: the shear stress on the tilt of a cell.")
+            "Axis whose stress a programme changes: 0 or 1 (of spheres 2); d and more: the shear stress on a tilt of a "
+            "cell.")
         .def_property_readonly(
             "load", [](const PyState& self) { return word_of(self.state.load.kind, load_kind_words); },
             "\"nominal\": force = stress x reference length; \"true\": force = stress x length.")
@@ -192,16 +207,18 @@ void bind_load(StateClass& state) {
             "infinitesimal",
             [](const py::object& self) {
                 const std::vector<double>& g = state_of(self).load.infinitesimal;
-                return view(g.data(), {static_cast<py::ssize_t>(g.size() / 2), 2}, self);
+                const auto axes = static_cast<py::ssize_t>(state_of(self).packing.axes());
+                return view(g.data(), {static_cast<py::ssize_t>(g.size()) / axes, axes}, self);
             },
-            "(n, 2) infinitesimal loads, on which rattlers rest, or (0, 2).")
+            "(n, d) infinitesimal loads, on which rattlers rest, or (0, d).")
         .def_property_readonly(
             "disk_force",
             [](const py::object& self) {
                 const std::vector<double>& force = state_of(self).load.disk_force;
-                return view(force.data(), {static_cast<py::ssize_t>(force.size() / 2), 2}, self);
+                const auto axes = static_cast<py::ssize_t>(state_of(self).packing.axes());
+                return view(force.data(), {static_cast<py::ssize_t>(force.size()) / axes, axes}, self);
             },
-            "(n, 2) external forces on disks, stress x length, or (0, 2).")
+            "(n, d) external forces on grains, stress x length (of spheres x length squared), or (0, d).")
         .def_property_readonly(
             "external_force",
             [](const PyState& self) {
@@ -218,11 +235,14 @@ void bind_state_class(py::module_& module) {
         "A packing with its contacts and its load. It does not change; arrays are read-only views of its memory.");
     state
         .def_static(
-            "read", [](const std::filesystem::path& path) { return read_any_state(path); }, py::arg("path"),
-            py::call_guard<py::gil_scoped_release>(),
+            "read", [](const std::filesystem::path& path) { return read_any_state(path, Dimensions::any); },
+            py::arg("path"), py::call_guard<py::gil_scoped_release>(),
             "Reads a state file or a plain vertex text. Raises BadInput with file, field, value.")
         .def_static(
-            "parse", [](const std::string& text, const std::string& source) { return parse_any_state(text, source); },
+            "parse",
+            [](const std::string& text, const std::string& source) {
+                return parse_any_state(text, source, Dimensions::any);
+            },
             py::arg("text"), py::arg("source") = "State", py::call_guard<py::gil_scoped_release>(),
             "Reads a state from the text of a file; `source` begins messages.")
         .def(
@@ -248,14 +268,18 @@ void bind_state_class(py::module_& module) {
         .def("_matrix", [](const PyState& self) { return matrix_parts(self.state.packing, self.state.contacts); })
         .def(
             "with_stress",
-            [](const PyState& self, std::array<double, 2> stress, std::optional<double> shear) {
+            [](const PyState& self, const std::vector<double>& stress, std::optional<double> shear) {
                 State changed = self.state;
+                if (stress.size() != changed.packing.axes()) {
+                    throw Error(ErrorKind::bad_input, fmt::format("stress has {} numbers: expected {}", stress.size(),
+                                                                  changed.packing.axes()));
+                }
                 std::copy(stress.begin(), stress.end(), changed.load.stress.begin());
                 changed.load.shear[0] = shear.value_or(changed.load.shear[0]);
-                return parse_any_state(state_text(changed), "State");
+                return parse_any_state(state_text(changed), "State", Dimensions::any);
             },
             py::arg("stress"), py::arg("shear") = py::none(),
-            "The same state under other stresses [sigma_1, sigma_2], and another shear stress on a tilt that moves.");
+            "The same state under other stresses, one per axis, and another shear stress on a tilt xy that moves.");
 }
 
 } // namespace

@@ -18,6 +18,11 @@ namespace isostat {
 /// moved into it, images beyond it are fainter, and a contact with an image is drawn from both sides.
 std::string force_picture(const State& state, std::span<const double> forces, const std::string& caption);
 
+/// The same of spheres: seen along y, far ones first and darker; the forces as lines; what horizontal planes cut at a
+/// quarter, half and three quarters of the height, images included. Rattlers are blue. In a cell the spheres are moved
+/// into it. \pre `state.packing.dimension` is 3
+std::string sphere_picture(const State& state, std::span<const double> forces, const std::string& caption);
+
 /// What a VTK file begins with.
 inline constexpr const char* vtk_mark = "# vtk DataFile Version 3.0\n";
 

@@ -45,17 +45,20 @@ class Writer {
         }
     }
     void picture(const fs::path& path, const std::string& name) {
-        StateFile file = read_any_state(path);
+        StateFile file = read_any_state(path, Dimensions::any);
         if (file.forces.empty()) {
             file.forces = solve_forces(file.state, path);
         }
         const State& state = file.state;
         const std::string caption =
-            fmt::format("equilibrium {}, {} disks, {} = {:.6g}", state.equilibrium, state.packing.disk_count(),
-                        load_words(state.load.loads_tilt()).ratio_sign, state.load.ratio());
+            state.packing.dimension != plane
+                ? fmt::format("{} spheres", state.packing.disk_count())
+                : fmt::format("equilibrium {}, {} disks, {} = {:.6g}", state.equilibrium, state.packing.disk_count(),
+                              load_words(state.load.loads_tilt()).ratio_sign, state.load.ratio());
         if (options_.pictures) {
             count_work(Work::pictures);
-            write(name + ".svg", force_picture(state, file.forces, caption), " by isostat ");
+            const auto draw = state.packing.dimension == plane ? force_picture : sphere_picture;
+            write(name + ".svg", draw(state, file.forces, caption), " by isostat ");
         }
         if (options_.vtk) {
             count_work(Work::vtk_files);

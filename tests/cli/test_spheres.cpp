@@ -82,6 +82,26 @@ BOOST_AUTO_TEST_CASE(plateau_and_paraview_files_take_spheres) {
     BOOST_TEST(!contains(vtk, "nan"));
 }
 
+BOOST_AUTO_TEST_CASE(a_picture_shows_every_sphere_its_forces_and_three_cuts) {
+    const scratch::Folder folder;
+    for (const std::string name : {"box_uniform_30_1", "slab_uniform_30_1", "tri_uniform_30_1"}) {
+        expect(run({"report", state_file(folder, name), "-o", folder.at(name)}), 0);
+        const std::string svg = scratch::read(folder / name / ("forces_" + name + ".svg"));
+        const auto count = [&svg](const std::string& word) {
+            int found = 0;
+            for (std::size_t at = svg.find(word); at != std::string::npos; at = svg.find(word, at + 1)) {
+                ++found;
+            }
+            return found;
+        };
+        const auto file = isostat::test::read_spheres(name);
+        BOOST_TEST(count("class=\"force\"") == file["expected"]["contacts_with_force"].get<int>());
+        BOOST_TEST(count("<circle") > 30 + 3 * 5);
+        BOOST_TEST(count("<clipPath") == 3);
+        BOOST_TEST(count("nan") + count("inf,") == 0);
+    }
+}
+
 BOOST_AUTO_TEST_CASE(what_takes_disks_only_says_so_in_one_sentence) {
     const scratch::Folder folder;
     const std::string state = state_file(folder, "box_uniform_30_1");
@@ -90,8 +110,7 @@ BOOST_AUTO_TEST_CASE(what_takes_disks_only_says_so_in_one_sentence) {
     for (const std::vector<std::string>& command :
          {std::vector<std::string>{"run", folder.at("s.toml"), "-o", folder.at("out")},
           {"genericity", state},
-          {"snap", state, "-o", folder.at("t.json")},
-          {"report", state}}) {
+          {"snap", state, "-o", folder.at("t.json")}}) {
         const Outcome outcome = run(command);
         BOOST_TEST(outcome.status == 65, command[0] << ": " << outcome.err);
         BOOST_TEST(contains(outcome.err, "spheres"), command[0] << ": " << outcome.err);

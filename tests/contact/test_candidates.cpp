@@ -76,9 +76,61 @@ Packing pair_at(double x, double y, double r0, double r1) {
     return packing;
 }
 
+/// Spheres each of which touches one before it, or nearly, without overlap; `axes` that they spread along.
+Packing spheres_that_cling(Random& random, int axes) {
+    Packing packing;
+    packing.dimension = packing.cell.dimension = 3;
+    packing.walls = Walls::none();
+    packing.radius = {1};
+    packing.q = {0, 0, 0};
+    const double ratio = random.integer(2) == 0 ? 1 : random.real(1, 4);
+    for (int tries = 0; tries < 400; ++tries) {
+        const double radius = random.real(1, ratio);
+        const auto parent = static_cast<std::size_t>(random.integer(packing.disk_count()));
+        std::array<double, 3> x{};
+        std::generate_n(x.begin(), axes, [&] { return random.real(-1, 1); });
+        const double gap = random.integer(2) == 0 ? 0 : random.real(0, 1);
+        const double scale = (packing.radius[parent] + radius + gap) / std::hypot(x[0], x[1], x[2]);
+        for (std::size_t a = 0; a < 3; ++a) {
+            x[a] = packing.q[3 * parent + a] + x[a] * scale;
+        }
+        bool apart = true;
+        for (std::size_t k = 0; k < packing.radius.size(); ++k) {
+            const double distance =
+                std::hypot(x[0] - packing.q[3 * k], x[1] - packing.q[3 * k + 1], x[2] - packing.q[3 * k + 2]);
+            apart = apart && distance > (packing.radius[k] + radius) * (1 - 1e-14);
+        }
+        if (apart) {
+            packing.radius.push_back(radius);
+            packing.q.insert(packing.q.end(), x.begin(), x.end());
+        }
+    }
+    packing.q.insert(packing.q.end(), {0, 0, 0});
+    return packing;
+}
+
 } // namespace
 
 BOOST_AUTO_TEST_SUITE(candidates)
+
+BOOST_AUTO_TEST_CASE(edges_of_spheres_are_all_the_pairs_that_the_grid_finds) {
+    Random random(31);
+    for (int trial = 0; trial < isostat::testing::scaled(40); ++trial) {
+        const Packing packing = spheres_that_cling(random, trial % 4 == 0 ? trial / 4 % 3 + 1 : 3); // flat ones too
+        const double reach = 0.82 * packing.min_radius();
+        const auto edges = near_edges_in_space(packing, reach);
+        BOOST_TEST_REQUIRE(edges.has_value());
+        BOOST_TEST((*edges == pairs_within(packing, reach)));
+        BOOST_TEST(edges->size() + 1 >= packing.radius.size() / 2);
+    }
+    Packing octahedron = spheres_that_cling(random, 1);
+    const double s = std::sqrt(2.0); // of three diagonals with the gap of T6 one is an edge
+    octahedron.radius.assign(6, 1);
+    octahedron.q = {s, 0, 0, -s, 0, 0, 0, s, 0, 0, -s, 0, 0, 0, s, 0, 0, -s, 0, 0, 0};
+    BOOST_TEST(near_edges_in_space(octahedron, 0.825)->size() == 12U);
+    octahedron.q[0] = 0.5; // it overlaps others
+    BOOST_TEST(!near_edges_in_space(octahedron, 0.825));
+}
 
 BOOST_AUTO_TEST_CASE(lists_are_complete_in_random_clusters_at_any_size_ratio) {
     Random random(20240601);

@@ -63,7 +63,7 @@ BOOST_AUTO_TEST_CASE(bad_cells_are_named) {
     refuses(replaced(text, "\"length\": [2.0", "\"length\": [-2.0"),
             {"period along x is -2", "inverted or degenerate"});
     refuses(replaced(text, "\"length\": [2.0", "\"length\": [0.0"), {"period along x is 0"});
-    refuses(replaced(text, "\"length\": [2.0", "\"length\": [1.5"), {"overlaps its own image (-1, 1)"});
+    refuses(replaced(text, "\"length\": [2.0", "\"length\": [1.5"), {"overlaps its own image (1, 0), 1.5 away"});
     refuses(replaced(text, "\"lower\":[\"absent\"", "\"lower\":[\"fixed\""), {"x is periodic and has walls"});
     refuses(replaced(text, "\"moves\":[\"x\"", "\"moves\":[\"z\""), {"cell.moves[0]", "\"xy\" (tilt)"});
     refuses(replaced(text, "\"pin\":0", "\"pin\":1"), {"cell.pin"});

@@ -156,6 +156,7 @@ BOOST_AUTO_TEST_CASE(disks_are_of_one_height_to_what_changes_no_gap) {
         expect_bad_input([&] { (void)read(at_height(text, "2.5"), of_dimension(2)); },
                          {"FILE:", "z of disk 1 is '2.5'", "expected 2", "--dimension 3"});
     }
+    BOOST_TEST(read(at_height(table, "2.0000000001")).rounding > read(table).rounding);
     expect_bad_input([&] { (void)read(at_height(table, "2.5"), of_dimension(2)); }, {"FILE:3:"});
     expect_bad_input([&] { (void)read("x,y,r\n1,1,1\n", of_dimension(3)); }, {"no column z"});
     expect_bad_input([&] { (void)read(at_height(table, "nan")); }, {"FILE:3:", "z of disk 1", "finite"});

@@ -159,7 +159,8 @@ BOOST_AUTO_TEST_CASE(rounding_of_entries_is_that_of_V1) {
             }
             most = std::max(most, column);
         }
-        check_above(rounding_of_entries(h, state.packing.dimension), 5 * u * sqrt(most * *std::max_element(row.begin(), row.end())), 0.01);
+        check_above(rounding_of_entries(h, state.packing.dimension),
+                    5 * u * sqrt(most * *std::max_element(row.begin(), row.end())), 0.01);
     }
 }
 

@@ -130,7 +130,7 @@ double climbed_error(oracle::Random& random) {
 
 /// As many contacts as degrees of freedom, drawn at random (nothing touches): walls, or images up to three periods away
 /// of spheres on a grid.
-State random_structure(std::uint64_t seed, bool cell) {
+State structure_in_space(std::uint64_t seed, bool cell) {
     constexpr int n = 4;
     oracle::Random random(seed);
     State state;
@@ -262,7 +262,7 @@ BOOST_AUTO_TEST_CASE(bounds_of_inverse_and_forces_hold_for_spheres_off_the_grid_
         int proved = 0;
         std::size_t longest = 0;
         for (std::uint64_t seed = 1; seed <= 60 && proved < 10; ++seed) {
-            const State state = random_structure(seed, cell);
+            const State state = structure_in_space(seed, cell);
             const auto h = contact_matrix(state.packing, DofMap(state.packing), state.contacts);
             for (std::size_t l = 0; l < state.contacts.size(); ++l) {
                 longest = std::max(longest, static_cast<std::size_t>(h.start[l + 1] - h.start[l]));

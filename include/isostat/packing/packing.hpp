@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// The grains and where they are: disks (dimension 2) or spheres (3, taken by `inspect` and `import`), flat walls
-/// normal to the axes, and axes that repeat; and the load: F_ext = F_fixed + sigma_loaded * F_unit, plus
-/// infinitesimal loads eps*g.
+/// The grains and where they are: disks (dimension 2) or spheres (3, of states: `certify`, `verify`, `inspect_cell`;
+/// runs take disks), flat walls normal to the axes, and axes that repeat; and the load: F_ext = F_fixed + sigma_loaded
+/// * F_unit, plus infinitesimal loads eps*g.
 
 #include <isostat/core/contact.hpp>
 #include <isostat/core/machine.hpp>

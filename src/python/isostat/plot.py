@@ -129,6 +129,8 @@ def packing(
     -------
     matplotlib axes
     """
+    if state.positions.shape[1] != 2:
+        raise BadInput("a packing of spheres: expected disks (isostat export writes ParaView files of spheres)")
     ax = _axes(ax)
     if forces is None and isinstance(state, State) and len(state.forces):
         forces = state.forces

@@ -1,0 +1,271 @@
+#include "io/text.hpp"
+#include "packing/cell_wrap.hpp"
+#include "report/picture.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+namespace isostat {
+
+namespace {
+
+using Place = PerAxis<double>;
+
+constexpr double margin = 20;
+constexpr double heading = 34; // above a panel
+
+/// A sphere or an image of one.
+struct Ball {
+    Place at;
+    double radius;
+    bool rattler;
+};
+
+Place shifted(const Packing& packing, Place at, const PerAxis<double>& periods) {
+    for (std::size_t a = 0; a < packing.axes(); ++a) {
+        for (std::size_t b = a; b < packing.axes(); ++b) {
+            at[a] += periods[b] == 0 ? 0 : periods[b] * packing.lattice(a, b);
+        }
+    }
+    return at;
+}
+
+/// Spheres in their cell, seen along y or cut at a height, in millimetres of no particular size.
+class Drawing {
+  public:
+    Drawing(State state, std::span<const double> forces) : state_(std::move(state)), forces_(forces) {
+        Packing& packing = state_.packing;
+        if (packing.cell.any()) {
+            wrapped_ = wrap_into_cell(packing).periods;
+        }
+        const std::vector<unsigned char> rattler =
+            forces.empty() ? std::vector<unsigned char>(packing.radius.size(), 0) : rattler_flags(state_, forces);
+        for (std::size_t i = 0; i < packing.radius.size(); ++i) {
+            const auto disk = static_cast<int>(i);
+            balls_.push_back({{packing.coordinate(DiskId(disk), 0), packing.coordinate(DiskId(disk), 1),
+                               packing.coordinate(DiskId(disk), 2)},
+                              packing.radius[i],
+                              rattler[i] != 0});
+        }
+        find_extent();
+    }
+
+    /// Width over height of a panel whose horizontal axis is x.
+    [[nodiscard]] double aspect(std::size_t up) const { return (high_[0] - low_[0]) / (high_[up] - low_[up]); }
+
+    /// The spheres from the far side to the near one.
+    [[nodiscard]] std::string seen_along_y(double width) const {
+        std::vector<std::size_t> order(balls_.size());
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        std::sort(order.begin(), order.end(),
+                  [this](std::size_t a, std::size_t b) { return balls_[a].at[1] > balls_[b].at[1]; });
+        std::string text;
+        for (const std::size_t i : order) {
+            const Ball& ball = balls_[i];
+            const double depth = (ball.at[1] - low_[1]) / (high_[1] - low_[1]); // 0: near
+            const int light = 245 - static_cast<int>(std::lround(75 * std::clamp(depth, 0.0, 1.0)));
+            text += circle(ball, 2, width, ball.radius,
+                           ball.rattler ? fmt::format("rgb({},{},{})", light - 60, light - 30, light)
+                                        : fmt::format("rgb({},{},{})", light, light - 4, light - 12));
+        }
+        return text;
+    }
+
+    /// Lines from centre to centre, or to the wall, as wide as the force is large; rattlers in blue.
+    [[nodiscard]] std::string forces(double width) const {
+        double mean = 0, radius = 0;
+        int count = 0;
+        for (const double f : forces_) {
+            mean += std::abs(f);
+            count += f != 0 ? 1 : 0;
+        }
+        mean = count > 0 ? mean / count : 1;
+        std::string text;
+        for (const Ball& ball : balls_) {
+            radius += ball.radius / static_cast<double>(balls_.size());
+            text += ball.rattler ? circle(ball, 2, width, ball.radius, "#cfdbe6") : "";
+        }
+        for (std::size_t l = 0; l < state_.contacts.size(); ++l) {
+            const Contact& contact = state_.contacts[l];
+            if (contact.kind == ContactKind::held) {
+                continue;
+            }
+            const double force = forces_.empty() ? 0 : forces_[l];
+            const Place from = balls_[static_cast<std::size_t>(contact.i)].at, to = end_of(contact);
+            const double thickness = 0.1 * radius * scale(width) * std::abs(force) / mean;
+            text += fmt::format("<line class=\"{}\" x1=\"{:.2f}\" y1=\"{:.2f}\" x2=\"{:.2f}\" y2=\"{:.2f}\" "
+                                "stroke-width=\"{:.2f}\"/>\n",
+                                force == 0  ? "contact"
+                                : force > 0 ? "force"
+                                            : "traction",
+                                x(from, width), y(from, 2, width), x(to, width), y(to, 2, width),
+                                force == 0 ? 0.6 : std::max(0.3, thickness));
+        }
+        return text;
+    }
+
+    /// What a horizontal plane cuts, images included, within the cell. `name`: of the clip.
+    [[nodiscard]] std::string slice(double share, double width, const std::string& name) const {
+        const Packing& packing = state_.packing;
+        const double height = share * packing.length(2);
+        const bool lean = packing.cell.any();
+        const auto side = [&](std::size_t a, std::size_t b) { return a == b || lean ? entry(a, b) : 0; };
+        const Place corner{share * side(0, 2), share * side(1, 2), height};
+        const Place across{side(0, 0), 0, 0}, up{side(0, 1), side(1, 1), 0};
+        std::string outline;
+        for (const auto& [s, t] : {std::pair(0, 0), {1, 0}, {1, 1}, {0, 1}}) {
+            const Place p{corner[0] + s * across[0] + t * up[0], corner[1] + t * up[1], height};
+            outline += fmt::format("{:.2f},{:.2f} ", x(p, width), y(p, 1, width));
+        }
+        std::string text = fmt::format("<clipPath id=\"{0}\"><polygon points=\"{1}\"/></clipPath>\n"
+                                       "<g clip-path=\"url(#{0})\">\n",
+                                       name, outline);
+        for (const Ball& ball : balls_) {
+            for_each_image([&](const PerAxis<double>& m) {
+                Ball image = ball;
+                image.at = shifted(packing, ball.at, m);
+                const double off = image.at[2] - height;
+                if (std::abs(off) < ball.radius) {
+                    text += circle(image, 1, width, std::sqrt((ball.radius - off) * (ball.radius + off)),
+                                   ball.rattler ? "#9fb8cf" : "#e9e6df");
+                }
+            });
+        }
+        return text + fmt::format("</g>\n<polygon class=\"cell\" points=\"{}\"/>\n", outline);
+    }
+
+    /// The edges of box or cell.
+    [[nodiscard]] std::string edges(double width) const {
+        std::string text;
+        for (unsigned bits = 0; bits < 8; ++bits) {
+            for (unsigned a = 0; a < 3; ++a) {
+                if ((bits >> a & 1U) == 0) {
+                    const Place from = corner(bits), to = corner(bits | 1U << a);
+                    text +=
+                        fmt::format("<line class=\"cell\" x1=\"{:.2f}\" y1=\"{:.2f}\" x2=\"{:.2f}\" y2=\"{:.2f}\"/>\n",
+                                    x(from, width), y(from, 2, width), x(to, width), y(to, 2, width));
+                }
+            }
+        }
+        return text;
+    }
+
+  private:
+    [[nodiscard]] double entry(std::size_t a, std::size_t b) const { return state_.packing.lattice(a, b); }
+    [[nodiscard]] Place corner(unsigned bits) const {
+        PerAxis<double> periods{};
+        for (std::size_t a = 0; a < periods.size(); ++a) {
+            periods[a] = (bits >> a & 1U) != 0 ? 1 : 0;
+        }
+        if (state_.packing.cell.any()) {
+            return shifted(state_.packing, Place{}, periods);
+        }
+        return {periods[0] * state_.packing.length(0), periods[1] * state_.packing.length(1),
+                periods[2] * state_.packing.length(2)};
+    }
+    template <class Visit> void for_each_image(Visit visit) const {
+        const auto& periodic = state_.packing.cell.periodic;
+        for (int m = 0; m < 27; ++m) {
+            const PerAxis<double> periods{m % 3 - 1.0, m / 3 % 3 - 1.0, m / 9 - 1.0};
+            bool there = true;
+            for (std::size_t a = 0; a < periods.size(); ++a) {
+                there = there && (periods[a] == 0 || periodic[a]);
+            }
+            if (there) {
+                visit(periods);
+            }
+        }
+    }
+    void find_extent() {
+        low_.fill(HUGE_VAL);
+        high_.fill(-HUGE_VAL);
+        const auto show = [this](const Place& at, double room) {
+            for (std::size_t a = 0; a < at.size(); ++a) {
+                low_[a] = std::min(low_[a], at[a] - room);
+                high_[a] = std::max(high_[a], at[a] + room);
+            }
+        };
+        for (unsigned bits = 0; bits < 8; ++bits) {
+            show(corner(bits), 0);
+        }
+        for (const Ball& ball : balls_) {
+            show(ball.at, ball.radius);
+        }
+    }
+    [[nodiscard]] Place end_of(const Contact& contact) const {
+        const Place at = balls_[static_cast<std::size_t>(contact.i)].at;
+        if (contact.kind != ContactKind::disk_disk) {
+            Place foot = at;
+            foot[static_cast<std::size_t>(contact.j)] =
+                contact.kind == ContactKind::lower_wall ? 0 : state_.packing.length(contact.j);
+            return foot;
+        }
+        const Place other = balls_[static_cast<std::size_t>(contact.j)].at;
+        PerAxis<double> periods{};
+        for (std::size_t a = 0; a < periods.size() && !wrapped_.empty(); ++a) {
+            periods[a] = contact.image.m[a] + wrapped_[static_cast<std::size_t>(contact.j)][a] -
+                         wrapped_[static_cast<std::size_t>(contact.i)][a];
+        }
+        return wrapped_.empty() ? other : shifted(state_.packing, other, periods);
+    }
+    [[nodiscard]] double scale(double width) const { return width / (high_[0] - low_[0]); }
+    [[nodiscard]] double x(const Place& at, double width) const { return (at[0] - low_[0]) * scale(width); }
+    [[nodiscard]] double y(const Place& at, std::size_t up, double width) const {
+        return (high_[up] - at[up]) * scale(width);
+    }
+    [[nodiscard]] std::string circle(const Ball& ball, std::size_t up, double width, double radius,
+                                     const std::string& fill) const {
+        return fmt::format("<circle cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"{:.2f}\" fill=\"{}\"/>\n", x(ball.at, width),
+                           y(ball.at, up, width), radius * scale(width), fill);
+    }
+
+    State state_;
+    std::span<const double> forces_;
+    std::vector<PerAxis<double>> wrapped_; ///< periods that each sphere was moved by; empty in a box
+    std::vector<Ball> balls_;
+    Place low_{}, high_{};
+};
+
+} // namespace
+
+std::string sphere_picture(const State& state, std::span<const double> forces, const std::string& caption) {
+    constexpr double width = 480, narrow = 313; // of the two upper panels, and of three slices
+    const Drawing drawing(state, forces);
+    const double upper = width / drawing.aspect(2), lower = narrow / drawing.aspect(1);
+    const double total = 2 * width + 3 * margin, down = heading + upper + heading;
+    const double height = down + lower + 2 * heading;
+    std::string text = fmt::format(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<!-- spheres by isostat -->\n<svg "
+        "xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" viewBox=\"0 0 {0:.0f} {1:.0f}\">\n"
+        "<style>circle{{stroke:#8b877d;stroke-width:0.5}}.force{{stroke:#8c1c13;stroke-linecap:round}}.traction{{"
+        "stroke:"
+        "#1b5fbf;stroke-dasharray:6 3}}.contact{{stroke:#777}}.cell{{stroke:#222;stroke-dasharray:8 5;fill:none}}"
+        "text{{font-family:sans-serif;font-size:16px;fill:#222}}</style>\n<title>{2}</title>\n"
+        "<rect width=\"{0:.0f}\" height=\"{1:.0f}\" fill=\"#ffffff\"/>\n",
+        total, height, text::markup(caption));
+    const auto panel = [&text](double x, double y, double wide, double tall, const std::string& title,
+                               const std::string& content) {
+        text += fmt::format("<text x=\"{0:.1f}\" y=\"{1:.1f}\">{2}</text>\n<svg x=\"{0:.1f}\" y=\"{3:.1f}\" "
+                            "width=\"{4:.1f}\" height=\"{5:.1f}\">\n{6}</svg>\n",
+                            x, y - 8, title, y, wide, tall, content);
+    };
+    const std::string edges = drawing.edges(width);
+    panel(margin, heading, width, upper, "seen along y (rattlers blue)", drawing.seen_along_y(width) + edges);
+    panel(width + 2 * margin, heading, width, upper, "forces, seen along y", drawing.forces(width) + edges);
+    int place = 0;
+    for (const double share : {0.25, 0.5, 0.75}) {
+        panel(margin + place * (narrow + margin), down, narrow, lower,
+              fmt::format("cut at z = {} of the height", share),
+              drawing.slice(share, narrow, fmt::format("cut{}", place)));
+        ++place;
+    }
+    return text +
+           fmt::format("<text x=\"{}\" y=\"{:.0f}\">{}</text>\n</svg>\n", margin, height - 16, text::markup(caption));
+}
+
+} // namespace isostat

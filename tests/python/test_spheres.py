@@ -1,0 +1,55 @@
+"""States of spheres: three columns, proofs, and what takes disks only."""
+
+import unittest
+
+import numpy as np
+from common import Folder, project
+
+import isostat
+import isostat.plot
+
+cell = project / "examples/spheres/cell-30.json"
+
+
+class Spheres(Folder):
+    def test_arrays_have_a_column_for_each_axis(self):
+        state = isostat.State.read(cell)
+        self.assertEqual(state.positions.shape, (30, 3))
+        self.assertEqual(state.length.shape, (3,))
+        self.assertEqual(state.images.shape, (93, 3))
+        self.assertEqual(state.infinitesimal.shape, (30, 3))
+        self.assertEqual(len(state.tilt), 3)
+        self.assertEqual(state.periodic, (True,) * 3)
+        self.assertEqual(len(state.stress), 3)
+        self.assertAlmostEqual(state.solid_fraction, 0.6480034322378443, places=12)
+        again = isostat.State.parse(state.text())
+        np.testing.assert_array_equal(again.positions, state.positions)
+        np.testing.assert_array_equal(again.images, state.images)
+
+    def test_walls_in_front_and_behind_have_numbers_of_their_own(self):
+        state = isostat.State.read(project / "examples/spheres/tetrahedron.json")
+        self.assertEqual(len(state.walls["upper"]), 3)
+        self.assertIn((0, -5), [tuple(c) for c in state.contacts])
+        self.assertIn((2, -6), [tuple(c) for c in state.contacts])
+        self.assertIn("2-front", state.contact_names)
+        # H f = F with the forces of the closed form: stress 1 on faces of 5 x 5.
+        forces = 25 * 0.25 * np.array([3, 3, 3, 2, 2, 1, 2, 1, 2, 1, 2, 2, 3, 3, 3])
+        self.assertLess(np.abs(isostat.contact_matrix(state) @ forces - state.external_force).max(), 1e-15)
+
+    def test_a_state_is_inspected_certified_and_verified(self):
+        state = isostat.State.read(cell)
+        seen = isostat.inspect(state)
+        self.assertEqual(seen.counting.rank, 93)
+        proof = isostat.certify(state)
+        self.assertIs(proof.verdict, isostat.Verdict.PROVED)
+        self.assertIs(isostat.verify(proof).verdict, isostat.Verdict.PROVED)
+
+    def test_what_takes_disks_only_says_so(self):
+        state = isostat.State.read(cell)
+        for call in (isostat.plot.packing, isostat.ExactPacking.of_state, lambda s: isostat.find_vertex(s.packing)):
+            with self.assertRaisesRegex(isostat.BadInput, "spheres"):
+                call(state)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -433,6 +433,28 @@ BOOST_AUTO_TEST_CASE(the_sweep_finds_the_smallest_gap_of_spheres_among_images) {
     }
 }
 
+// A rectangular lattice in a basis that leans by six periods: the nearest image is far along it.
+BOOST_AUTO_TEST_CASE(the_sweep_reaches_the_nearest_image_in_a_sheared_cell) {
+    struct Shear {
+        std::array<double, 3> length, tilt; ///< xy, xz, yz
+        Image nearest;
+    };
+    for (const Shear& shear :
+         {Shear{{1.2, 1, 1.2}, {7.2, 0, 0}, {{-6, 1, 0}}}, Shear{{1.2, 1.2, 1}, {0, 7.2, 0}, {{-6, 0, 1}}},
+          Shear{{1.2, 1.2, 1}, {0, 0, 7.2}, {{0, -6, 1}}}, Shear{{1.2, 1.2, 1}, {3.6, 0, 2.4}, {{6, -2, 1}}}}) {
+        State state = loose({{0, 0, 0, 0.45}}, true);
+        for (std::size_t k = 0; k < 3; ++k) {
+            state.packing.q[state.packing.length_at(k)] = shear.length[k];
+            state.packing.q[state.packing.length_at(3 + k)] = shear.tilt[k];
+        }
+        const Problem problem(state);
+        const std::vector<room::Gap> gaps = smallest_gaps(problem, state, blurred(problem, 0));
+        BOOST_TEST_REQUIRE(gaps.size() == 1U);
+        BOOST_TEST((gaps[0].pair == pair_of(0, 0, shear.nearest)), to_string(gaps[0].pair, 3));
+        BOOST_TEST(std::abs(gaps[0].value.lower.get_d() - 0.1) < 1e-12);
+    }
+}
+
 // Eight unit spheres of a simple cubic lattice, held by 27 of the 36 contacts: the other nine touch.
 BOOST_AUTO_TEST_CASE(a_lattice_whose_other_pairs_touch_is_not_proved) {
     State state;

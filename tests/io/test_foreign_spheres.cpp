@@ -10,6 +10,8 @@
 
 #include <cmath>
 
+namespace foreign_spheres { // names of its own, beside test_foreign.cpp
+
 namespace {
 
 using namespace isostat;
@@ -310,3 +312,5 @@ BOOST_AUTO_TEST_CASE(the_bound_of_a_gap_is_reached_in_a_triclinic_cell) {
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace foreign_spheres

@@ -362,7 +362,7 @@ BOOST_AUTO_TEST_CASE(statements_that_do_not_fit_a_cell_are_refused) {
     expect(run({"import", file, "-o", out, "--box", "0:9,0:9"}), 65, {"walls or a box were stated of a periodic"});
     expect(run({"import", file, "-o", out, "--load", "true", "--cell", "tilted"}), 65, {"nominal stresses"});
     expect(run({"import", file, "-o", out, "--load", "true"}), 0);
-    expect(run({"import", file, "-o", out, "--walls", "fixed"}), 64, {"--walls"});
+    expect(run({"import", file, "-o", out, "--walls", "fixed"}), 65, {"walls or a box were stated of a periodic"});
     expect(run({"import", file, "-o", out, "--not-periodic", "--box", "-1:14,-1:14", "--cell", "tilted"}), 64,
            {"--cell", "not periodic"});
     scratch::write(file, scratch::replaced(dump(), "pp pp pp", "pp ff pp"));

@@ -92,7 +92,7 @@ Touching touching(const Packing& p, double threshold) {
 
 ForeignPacking reference(const std::string& name, ForeignOptions options = {}) {
     options.cells = true;
-    return read_foreign(scratch::data("spheres/" + name), options);
+    return isostat::read_foreign(scratch::data("spheres/" + name), options);
 }
 
 void near(double found, double expected) {

@@ -181,7 +181,7 @@ BOOST_AUTO_TEST_CASE(an_empty_list_of_fixed_disks_is_none) {
 BOOST_AUTO_TEST_CASE(a_state_of_spheres_is_refused_in_words) {
     refuses_state(R"({"format": "isostat-state", "version": 2, "dimension": 3, "length": [4, 4, 4],
                       "disks": [[1, 1, 1, 1], [1, 1, 3, 1]], "contacts": [[0, 1], [0, "left"]]})",
-                  {"dimension 3", "spheres are not written yet"});
+                  {"dimension 3", "a packing of spheres", "isostat inspect"});
 }
 
 BOOST_AUTO_TEST_CASE(bad_fields_are_named_with_their_value_and_what_was_expected) {

@@ -214,6 +214,83 @@ Json forces_json(const State& state, const Certification& truth) {
     return out;
 }
 
+/// What is answered of a state.
+struct Answer {
+    const InspectArguments& arguments;
+    const StateFile& file;
+    Result<Inspection> result;
+    Certification truth;
+    std::optional<CellInspection> cell;
+    compare::Untold untold;
+    std::vector<double> singular;
+
+    [[nodiscard]] bool refuted() const { return !result.ok() && result.failure().kind == FailureKind::not_isostatic; }
+};
+
+void print_all(const Answer& answer) {
+    const State& state = answer.file.state;
+    print_counting(state, answer.truth.counting);
+    if (answer.result.ok()) {
+        print_inspection(state, answer.result.value());
+    } else {
+        say("isostatic equilibrium    {}: {}\n", answer.refuted() ? "refuted" : "undecided",
+            answer.result.failure().message());
+    }
+    print_true_vertex(answer.truth);
+    if (!answer.singular.empty()) {
+        say("smallest singular values {} (of the stored coordinates, computed)\n",
+            fmt::format("{:.4g}", fmt::join(answer.singular, ", ")));
+    }
+    if (answer.cell) {
+        print_cell(*answer.cell);
+    }
+    print_face(state);
+    print_forces_in_file(answer.file, answer.truth);
+    print_forces_at(answer.arguments, state, answer.truth);
+}
+
+Json answer_json(const Answer& answer) {
+    const State& state = answer.file.state;
+    Json object = counting_json(answer.arguments.file, state, answer.truth.counting);
+    if (answer.result.ok()) {
+        add_inspection(object, state, answer.result.value());
+    } else {
+        object["verdict"] = answer.refuted() ? "refuted" : "undecided";
+        object["remark"] = answer.result.failure().message();
+    }
+    add_untold(object, answer.untold, answer.truth.verdict);
+    object["true_configuration"] = true_vertex_json(answer.truth);
+    object["forces"] = forces_json(state, answer.truth);
+    object["singular_values"] = numbers(answer.singular);
+    if (answer.cell) {
+        object["cell"] = cell_json(state.packing, *answer.cell);
+    }
+    add_face(object, state);
+    add_forces_in_file(object, answer.file, answer.truth);
+    return object;
+}
+
+Answer answer_of(const InspectArguments& arguments, const StateFile& file) {
+    const State& state = file.state;
+    Result<Inspection> result = inspect_vertex(state);
+    Certification truth = result.ok() ? result.value().truth : certify(state);
+    auto cell = state.packing.cell.all() ? std::optional(inspect_cell(state, truth)) : std::nullopt;
+    compare::Untold untold = compare::untold_by(compare::imported_rounding(state), state, truth);
+    if (result.ok()) {
+        withhold(untold, result.value());
+    }
+    if (cell) {
+        withhold(untold, *cell);
+    }
+    return {arguments,
+            file,
+            std::move(result),
+            std::move(truth),
+            std::move(cell),
+            std::move(untold),
+            singular_values_of(state)};
+}
+
 } // namespace
 
 int inspect(const InspectArguments& arguments) {
@@ -224,64 +301,21 @@ int inspect(const InspectArguments& arguments) {
         return inspect_packing(arguments);
     }
     StateFile file = read_any_state(arguments.file, Dimensions::any);
-    State& state = file.state;
     if (arguments.at) {
-        state.load.loaded_stress() = *arguments.at;
+        file.state.load.loaded_stress() = *arguments.at;
         file.forces.clear(); // of another load
     }
-    Result<Inspection> result = inspect_vertex(state);
-    const Certification truth = result.ok() ? result.value().truth : certify(state);
-    auto cell = state.packing.cell.all() ? std::optional(inspect_cell(state, truth)) : std::nullopt;
-    const compare::Untold untold = compare::untold_by(compare::imported_rounding(state), state, truth);
-    if (result.ok()) {
-        withhold(untold, result.value());
-    }
-    if (cell) {
-        withhold(untold, *cell);
-    }
+    const Answer answer = answer_of(arguments, file);
     if (!arguments.contacts.empty()) {
-        write_output(arguments.contacts, contact_table(state, truth), contact_table_mark);
+        write_output(arguments.contacts, contact_table(file.state, answer.truth), contact_table_mark);
     }
-    const std::vector<double> singular = singular_values_of(state);
-    const bool refuted = !result.ok() && result.failure().kind == FailureKind::not_isostatic;
     if (arguments.common.json) {
-        Json object = counting_json(arguments.file, state, truth.counting);
-        if (result.ok()) {
-            add_inspection(object, state, result.value());
-        } else {
-            object["verdict"] = refuted ? "refuted" : "undecided";
-            object["remark"] = result.failure().message();
-        }
-        add_untold(object, untold, truth.verdict);
-        object["true_configuration"] = true_vertex_json(truth);
-        object["forces"] = forces_json(state, truth);
-        object["singular_values"] = numbers(singular);
-        if (cell) {
-            object["cell"] = cell_json(state.packing, *cell);
-        }
-        add_face(object, state);
-        add_forces_in_file(object, file, truth);
-        print_json(object);
+        print_json(answer_json(answer));
     } else {
-        print_counting(state, truth.counting);
-        if (result.ok()) {
-            print_inspection(state, result.value());
-        } else {
-            say("isostatic equilibrium    {}: {}\n", refuted ? "refuted" : "undecided", result.failure().message());
-        }
-        print_true_vertex(truth);
-        if (!singular.empty()) {
-            say("smallest singular values {} (of the stored coordinates, computed)\n",
-                fmt::format("{:.4g}", fmt::join(singular, ", ")));
-        }
-        if (cell) {
-            print_cell(*cell);
-        }
-        print_face(state);
-        print_forces_in_file(file, truth);
-        print_forces_at(arguments, state, truth);
+        print_all(answer);
     }
-    return result.ok() ? status_of(result.value().record.verdict) : status_of(result.failure().kind);
+    return answer.result.ok() ? status_of(answer.result.value().record.verdict)
+                              : status_of(answer.result.failure().kind);
 }
 
 } // namespace isostat::cli

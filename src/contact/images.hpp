@@ -58,7 +58,7 @@ inline double lengths_of_image(const Packing& packing, const Contact& pair) {
         Separation(pair, packing.layout()).for_each_coordinate([&](std::size_t k, std::size_t, int multiple) {
             sum += std::abs(multiple) * std::abs(packing.q[k]);
         });
-        for (const int m : pair.image.m) {
+        for (const std::int8_t m : pair.image.m) {
             periods += std::abs(m);
         }
     }

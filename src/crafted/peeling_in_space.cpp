@@ -124,69 +124,90 @@ std::vector<Direction> able(std::vector<Direction> left, const Signs& signs) {
     return left;
 }
 
+class SpacePeeler {
+  public:
+    SpacePeeler(const Packing& packing, const std::vector<Contact>& contacts)
+        : packing_(packing), contacts_(contacts), signs_(packing, contacts), around_(packing.radius.size()),
+          waiting_(packing.radius.size()), now_(static_cast<int>(contacts.size())) {
+        for (std::size_t l = 0; l < contacts.size(); ++l) {
+            const Direction direction{static_cast<int>(l), false};
+            if (signs_.of<1>({direction}, [](const auto& x) { return dot(x[0], x[0]); }) == 0) {
+                throw Error(ErrorKind::bad_input,
+                            fmt::format("{}: the two spheres have the same centre", to_string(contacts[l], 3)));
+            }
+            around_[static_cast<std::size_t>(contacts[l].i)].push_back(direction);
+            if (contacts[l].kind == ContactKind::disk_disk) {
+                around_[static_cast<std::size_t>(contacts[l].j)].push_back({static_cast<int>(l), true});
+            }
+        }
+        out_.contact_from.assign(contacts.size(), 0);
+        out_.disk_from.assign(around_.size(), 0);
+        std::iota(waiting_.begin(), waiting_.end(), std::size_t{0});
+    }
+
+    Peeling run() {
+        settle();
+        for (int l = now_; l-- > 0;) {
+            now_ = l;
+            drop(l);
+            settle();
+        }
+        return std::move(out_);
+    }
+
+  private:
+    void take(int sphere, int contact) {
+        const auto place = static_cast<std::size_t>(sphere);
+        std::erase_if(around_[place], [contact](const Direction& d) { return d.contact == contact; });
+        waiting_.push_back(place);
+    }
+    void drop(int l) {
+        int& from = out_.contact_from[static_cast<std::size_t>(l)];
+        if (from != 0) {
+            return;
+        }
+        from = now_ + 1;
+        const Contact& c = contacts_[static_cast<std::size_t>(l)];
+        take(c.i, l);
+        if (c.kind == ContactKind::disk_disk) {
+            take(c.j, l);
+        }
+    }
+    void settle() {
+        while (!waiting_.empty()) {
+            const std::size_t sphere = waiting_.back();
+            waiting_.pop_back();
+            if (!packing_.is_fixed(DiskId(sphere)) && out_.disk_from[sphere] == 0) {
+                judge(sphere);
+            }
+        }
+    }
+    void judge(std::size_t sphere) {
+        const std::vector<Direction> before = around_[sphere];
+        const std::vector<Direction> after = able(before, signs_);
+        for (const Direction& d : before) {
+            const bool stays = std::any_of(after.begin(), after.end(),
+                                           [&](const Direction& other) { return other.contact == d.contact; });
+            if (!stays) {
+                drop(d.contact);
+            }
+        }
+        out_.disk_from[sphere] = after.empty() ? now_ + 1 : 0;
+    }
+
+    const Packing& packing_;
+    const std::vector<Contact>& contacts_;
+    Signs signs_;
+    std::vector<std::vector<Direction>> around_; ///< each sphere
+    std::vector<std::size_t> waiting_;
+    int now_; ///< what fails from here on needs more contacts than these
+    Peeling out_;
+};
+
 } // namespace
 
 Peeling peel_in_space(const Packing& packing, const std::vector<Contact>& contacts) {
-    const Signs signs(packing, contacts);
-    std::vector<std::vector<Direction>> around(packing.radius.size());
-    for (std::size_t l = 0; l < contacts.size(); ++l) {
-        const Direction direction{static_cast<int>(l), false};
-        if (signs.of<1>({direction}, [](const auto& x) { return dot(x[0], x[0]); }) == 0) {
-            throw Error(ErrorKind::bad_input,
-                        fmt::format("{}: the two spheres have the same centre", to_string(contacts[l], 3)));
-        }
-        around[static_cast<std::size_t>(contacts[l].i)].push_back(direction);
-        if (contacts[l].kind == ContactKind::disk_disk) {
-            around[static_cast<std::size_t>(contacts[l].j)].push_back({static_cast<int>(l), true});
-        }
-    }
-    Peeling out;
-    out.contact_from.assign(contacts.size(), 0);
-    out.disk_from.assign(around.size(), 0);
-    int now = static_cast<int>(contacts.size()); // what fails from here on needs more contacts than these
-    std::vector<std::size_t> waiting(around.size());
-    std::iota(waiting.begin(), waiting.end(), std::size_t{0});
-    const auto take = [&](std::size_t sphere, int contact) {
-        std::erase_if(around[sphere], [contact](const Direction& d) { return d.contact == contact; });
-        waiting.push_back(sphere);
-    };
-    const auto drop = [&](int l) {
-        if (out.contact_from[static_cast<std::size_t>(l)] != 0) {
-            return;
-        }
-        out.contact_from[static_cast<std::size_t>(l)] = now + 1;
-        const Contact& c = contacts[static_cast<std::size_t>(l)];
-        take(static_cast<std::size_t>(c.i), l);
-        if (c.kind == ContactKind::disk_disk) {
-            take(static_cast<std::size_t>(c.j), l);
-        }
-    };
-    const auto settle = [&] {
-        while (!waiting.empty()) {
-            const std::size_t sphere = waiting.back();
-            waiting.pop_back();
-            if (packing.is_fixed(DiskId(sphere)) || out.disk_from[sphere] != 0) {
-                continue;
-            }
-            const std::vector<Direction> before = around[sphere];
-            const std::vector<Direction> after = able(before, signs);
-            for (const Direction& d : before) {
-                const bool stays = std::any_of(after.begin(), after.end(),
-                                               [&](const Direction& other) { return other.contact == d.contact; });
-                if (!stays) {
-                    drop(d.contact);
-                }
-            }
-            out.disk_from[sphere] = after.empty() ? now + 1 : 0;
-        }
-    };
-    settle();
-    for (int l = now; l-- > 0;) {
-        now = l;
-        drop(l);
-        settle();
-    }
-    return out;
+    return SpacePeeler(packing, contacts).run();
 }
 
 } // namespace isostat::crafted

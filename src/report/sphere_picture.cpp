@@ -171,7 +171,9 @@ class Drawing {
     template <class Visit> void for_each_image(Visit visit) const {
         const auto& periodic = state_.packing.cell.periodic;
         for (int m = 0; m < 27; ++m) {
-            const PerAxis<double> periods{m % 3 - 1.0, m / 3 % 3 - 1.0, m / 9 - 1.0};
+            const std::array<int, most_axes> times{m % 3 - 1, m / 3 % 3 - 1, m / 9 - 1};
+            PerAxis<double> periods{};
+            std::copy(times.begin(), times.end(), periods.begin());
             bool there = true;
             for (std::size_t a = 0; a < periods.size(); ++a) {
                 there = there && (periods[a] == 0 || periodic[a]);

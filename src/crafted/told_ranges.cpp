@@ -15,21 +15,23 @@ bool meet(const PlateauRange& a, const PlateauRange& b) {
 
 Told told_of(const Plateau& plateau) {
     Told out;
+    const auto in_widest = [&plateau](const PlateauRange& range) { // there is none where no contact can carry
+        return plateau.widest && meet(range, plateau.widest->range);
+    };
     for (const PlateauRange& range : plateau.ranges) {
         if (!range.told) {
             ++out.noise;
         } else {
-            (meet(range, plateau.widest->range) ? out.backbone : out.elsewhere).push_back(range);
+            (in_widest(range) ? out.backbone : out.elsewhere).push_back(range);
         }
     }
     for (const PlateauRange& range : plateau.ranges_all) {
-        if (range.told && meet(range, plateau.widest->range)) {
+        if (range.told && in_widest(range)) {
             out.all.push_back(range);
         }
     }
-    out.special = plateau.widest && std::any_of(plateau.special.begin(), plateau.special.end(), [&](const auto& range) {
-                      return range.told && meet(range, plateau.widest->range);
-                  });
+    out.special = std::any_of(plateau.special.begin(), plateau.special.end(),
+                              [&](const auto& range) { return range.told && in_widest(range); });
     return out;
 }
 

@@ -38,7 +38,7 @@ class PeriodicSeries {
                 segment.to_stress = load;
             }
             const SegmentOutcome outcome = run_segment(state, segment, 0, {}, counters, nobody);
-            BOOST_REQUIRE_MESSAGE(!outcome.failure, outcome.failure->message());
+            BOOST_REQUIRE_MESSAGE(!outcome.failure, (outcome.failure ? outcome.failure->message() : ""));
             add(state);
         }
     }

@@ -172,7 +172,7 @@ BOOST_AUTO_TEST_CASE(a_prepared_packing_with_noise_is_isostatic_over_decades) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(what_follows_from_monotony_is_what_an_elimination_says) {
+BOOST_AUTO_TEST_CASE(what_follows_from_monotony_is_what_an_elimination_says, *boost::unit_test::label("slow")) {
     std::mt19937_64 random(21);
     int proved = 0, hyperstatic = 0, skipped = 0;
     for (int sample = 0; sample < isostat::testing::scaled(40); ++sample) {

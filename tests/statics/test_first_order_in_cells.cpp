@@ -110,7 +110,8 @@ std::vector<Contact> other_pairs(const State& state) {
 
 BOOST_AUTO_TEST_SUITE(statics)
 
-BOOST_AUTO_TEST_CASE(gaps_and_forces_of_changed_radii_in_cells_are_those_of_packings_that_are_made) {
+BOOST_AUTO_TEST_CASE(gaps_and_forces_of_changed_radii_in_cells_are_those_of_packings_that_are_made,
+                     *boost::unit_test::label("slow")) {
     for (const std::string name : {"tilt_16", "rect_16", "channel_16"}) {
         State state = read_any_state(scratch::data("cells/" + name + ".json")).state;
         snap_to_grid(state.packing);

@@ -186,7 +186,8 @@ BOOST_AUTO_TEST_CASE(lattices_move_at_the_loads_at_which_their_rows_stretch_and_
     BOOST_TEST(lists > 2);
 }
 
-BOOST_AUTO_TEST_CASE(lattices_end_where_their_rows_meet_as_with_radii_that_are_really_changed) {
+BOOST_AUTO_TEST_CASE(lattices_end_where_their_rows_meet_as_with_radii_that_are_really_changed,
+                     *boost::unit_test::label("slow")) {
     constexpr double eps = 1e-8;
     for (const auto& [columns, rows] :
          {std::pair{3, 2}, std::pair{4, 2}, std::pair{2, 3}, std::pair{3, 4}, std::pair{4, 4}, std::pair{4, 5},
@@ -207,7 +208,8 @@ BOOST_AUTO_TEST_CASE(lattices_end_where_their_rows_meet_as_with_radii_that_are_r
 
 /// Disks of diameter 1, two rows per period sqrt(4 - a^2): the work of stresses vanishes at a = 1 when their ratio
 /// is 3. Rows next but one meet at a = sqrt 3.
-BOOST_AUTO_TEST_CASE(lattices_in_cells_stretch_from_a_ratio_of_3_on_until_the_rows_next_but_one_meet) {
+BOOST_AUTO_TEST_CASE(lattices_in_cells_stretch_from_a_ratio_of_3_on_until_the_rows_next_but_one_meet,
+                     *boost::unit_test::label("slow")) {
     for (const bool tilts : {false, true}) {
         for (const auto& [columns, rows] : {std::pair{2, 1}, std::pair{3, 1}, std::pair{3, 2}, std::pair{4, 2}}) {
             BOOST_TEST_INFO_SCOPE(columns << " x " << rows << (tilts ? ", tilts" : ""));

@@ -28,7 +28,8 @@ BOOST_AUTO_TEST_CASE(a_tie_in_a_cell_stops_the_run_and_names_the_contacts) {
     BOOST_TEST(mentions(course, "4096 bits"));
 }
 
-BOOST_AUTO_TEST_CASE(the_same_contacts_open_and_close_in_cells_when_the_radii_are_really_changed) {
+BOOST_AUTO_TEST_CASE(the_same_contacts_open_and_close_in_cells_when_the_radii_are_really_changed,
+                     *boost::unit_test::label("slow")) {
     std::set<std::string> kinds;
     int events = 0;
     int undecided = 0;

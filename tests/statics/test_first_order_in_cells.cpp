@@ -143,8 +143,8 @@ BOOST_AUTO_TEST_CASE(gaps_and_forces_of_changed_radii_in_cells_are_those_of_pack
     }
 }
 
-BOOST_AUTO_TEST_CASE(
-    rates_and_second_derivatives_of_pairs_that_touch_through_images_are_those_of_motions_that_are_made) {
+BOOST_AUTO_TEST_CASE(rates_and_second_derivatives_of_pairs_that_touch_through_images_are_those_of_motions_that_are_made,
+                     *boost::unit_test::label("slow")) {
     int images = 0;
     int bent = 0;
     for (const State& state : vertices_with_touching_pairs()) {

@@ -25,7 +25,7 @@ std::vector<double> smallest_singular_values(const IsostaticStructure& structure
         factors.solve_velocities(columns, width); // H^-T x: its singular values are those of H^-1 on this subspace
         const Eigen::VectorXd inverse = Eigen::BDCSVD<Eigen::MatrixXd>(x).singularValues().head(wanted);
         const Eigen::VectorXd now = inverse.cwiseInverse();
-        const bool settled = ((now - values).cwiseAbs().array() <= 1e-6 * now.array()).all();
+        const bool settled = ((now - values).cwiseAbs().array() <= 1e-4 * now.array()).all();
         values = now;
         if (settled) {
             break;

@@ -48,8 +48,9 @@ int ensemble(const EnsembleArguments& arguments);
 struct InspectArguments {
     Common common;
     std::string file;
-    std::optional<double> at; ///< loaded stress instead of that of the state
-    std::string contacts;     ///< table to write; empty: none
+    std::optional<double> at;           ///< loaded stress instead of that of the state
+    std::string contacts;               ///< table to write; empty: none
+    std::optional<int> singular_values; ///< how many; none: ten of spheres, none of disks
 };
 int inspect(const InspectArguments& arguments);
 /// `inspect` of a crafted packing with exact numbers (TOML, examples/packings): prints the exact answers and compares

@@ -22,10 +22,9 @@ namespace {
 namespace fs = std::filesystem;
 
 /// What the first lines of a file in this format have.
-std::string mark_of(const std::string& format) {
+std::string mark_of(const std::string& format, int dimension) {
     return format == "xyz"   ? "\nLattice=\""
-           : format == "csv" ? "\nid,x,y,"
-           : format == "vtk" ? vtk_mark
+           : format == "csv" ? (dimension == plane ? "\nid,x,y,r\n" : "\nid,x,y,z,r\n")
                              : " of isostat ";
 }
 
@@ -99,21 +98,22 @@ std::vector<double> forces_of(const StateFile& file) {
 int export_states(const ExportArguments& arguments) {
     const std::string format = format_of(arguments);
     std::vector<fs::path> files = states_of(arguments.input);
+    const StateFile last = read_any_state(files.back(), Dimensions::any);
+    const std::string mark = mark_of(format, last.state.packing.dimension);
     for (const fs::path& file : files) {
-        check_output(arguments.output, mark_of(format), {file});
+        check_output(arguments.output, mark, {file});
     }
     std::string text;
     if (format == "xyz") {
         text = series_text(files);
     } else {
         files = {files.back()};
-        const StateFile file = read_any_state(files.front(), Dimensions::any);
         const std::string title = fmt::format("{} of {}", files.front().filename().string(), program_name());
-        text = format == "csv"   ? csv_text(file.state.packing)
-               : format == "vtk" ? vtk_text(file.state, forces_of(file), title)
-                                 : lammps_data_text(file.state.packing, title);
+        text = format == "csv"   ? csv_text(last.state.packing)
+               : format == "vtk" ? vtk_text(last.state, forces_of(last), title)
+                                 : lammps_data_text(last.state.packing, title);
     }
-    write_output(arguments.output, text, mark_of(format));
+    write_output(arguments.output, text, mark);
     if (arguments.common.json) {
         print_json(Json{{"file", arguments.output}, {"format", format}, {"states", files.size()}});
     } else {

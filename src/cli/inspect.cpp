@@ -190,11 +190,15 @@ void add_inspection(Json& object, const State& state, const Inspection& inspecti
     object["remark"] = inspection.remark;
 }
 
-/// The ten smallest, of a structure that is proved regular.
-std::vector<double> singular_values_of(const State& state) {
-    constexpr int shown = 10;
+/// The smallest ones, of a structure that is proved regular.
+std::vector<double> singular_values_of(const InspectArguments& arguments, const State& state) {
+    constexpr int of_spheres = 10;
+    const int count = arguments.singular_values.value_or(state.packing.dimension == plane ? 0 : of_spheres);
+    if (count == 0) {
+        return {};
+    }
     const auto structure = IsostaticStructure::prove(state.packing, state.contacts);
-    return structure.ok() ? smallest_singular_values(structure.value(), shown) : std::vector<double>();
+    return structure.ok() ? smallest_singular_values(structure.value(), count) : std::vector<double>();
 }
 
 /// The forces one by one, when a load was asked for.
@@ -288,17 +292,21 @@ Answer answer_of(const InspectArguments& arguments, const StateFile& file) {
             std::move(truth),
             std::move(cell),
             std::move(untold),
-            singular_values_of(state)};
+            singular_values_of(arguments, state)};
 }
 
 } // namespace
 
 int inspect(const InspectArguments& arguments) {
     if (arguments.file.ends_with(".toml")) {
-        if (arguments.at || !arguments.contacts.empty()) {
-            throw Error(ErrorKind::usage, arguments.file + " is a crafted packing: expected no --at, no --contacts");
+        if (arguments.at || !arguments.contacts.empty() || arguments.singular_values) {
+            throw Error(ErrorKind::usage, arguments.file + " is a crafted packing: expected no --at, no --contacts, "
+                                                           "no --singular-values");
         }
         return inspect_packing(arguments);
+    }
+    if (!arguments.contacts.empty()) {
+        check_output(arguments.contacts, contact_table_mark, {arguments.file});
     }
     StateFile file = read_any_state(arguments.file, Dimensions::any);
     if (arguments.at) {

@@ -206,10 +206,16 @@ its [expected] entries are checked. A scene is not a packing: see plan.
 Examples: isostat inspect start.json
           isostat inspect examples/packings/triangular_patch_3x3.toml)");
         needed(command, "file", a.file, "state file, or vertex text", "FILE");
-        option(command, "--at", a.at, "under this sigma_2 instead of that of the state; prints every force",
+        option(command, "--at", a.at,
+               "under this sigma_2 (of spheres sigma_3) instead of that of the state; prints every force",
                ranges::number(-ranges::largest, ranges::largest), "SIGMA2");
         option(command, "--contacts", a.contacts,
                "writes a table of the contacts: point, normal, gap, force with bounds", "FILE.csv");
+        option(
+            command, "--singular-values", a.singular_values,
+            "so many of the smallest, as computed (default: 10 of spheres, none of disks, where they take as long as "
+            "the rest)",
+            ranges::integer(0, 1000), "COUNT");
         add_threads(command, a.common);
         does(command, a, inspect, false);
     }

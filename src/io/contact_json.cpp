@@ -121,7 +121,8 @@ Contact contact_from_json(const Field& field, const Packing& packing) {
     return contact;
 }
 
-void refuse_duplicates(const std::vector<Contact>& contacts, const std::string& source, const std::string& name) {
+void refuse_duplicates(const std::vector<Contact>& contacts, int dimension, const std::string& source,
+                       const std::string& name) {
     std::vector<std::size_t> order(contacts.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(),
@@ -130,7 +131,7 @@ void refuse_duplicates(const std::vector<Contact>& contacts, const std::string& 
         if (contacts[order[k]] == contacts[order[k - 1]]) {
             throw Error(ErrorKind::bad_input,
                         fmt::format("{}: {}[{}] is {}, as {}[{}] already: expected each contact once", source, name,
-                                    order[k], to_string(contacts[order[k]]), name, order[k - 1]));
+                                    order[k], to_string(contacts[order[k]], dimension), name, order[k - 1]));
         }
     }
 }

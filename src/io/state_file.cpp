@@ -297,7 +297,7 @@ StateFile json::state_from_json(const Field& document, const std::string& source
     for (std::size_t l = 0; l < contacts.size(); ++l) {
         state.contacts.push_back(json::contact_from_json(contacts.at(l), state.packing));
     }
-    json::refuse_duplicates(state.contacts, source, "contacts");
+    json::refuse_duplicates(state.contacts, state.packing.dimension, source, "contacts");
     if (document.has("perturbation")) {
         state.perturbation = json::perturbation_from_json(document.at("perturbation"), state.packing);
     }

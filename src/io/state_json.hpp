@@ -17,7 +17,8 @@ Json contact_to_json(const Contact& contact, int dimension);
 /// spells it otherwise (disks in increasing order, no image [0, 0]).
 Contact contact_from_json(const Field& field, const Packing& packing);
 /// Throws naming the first contact that is listed twice, and its position. `name` is that of the list.
-void refuse_duplicates(const std::vector<Contact>& contacts, const std::string& source, const std::string& name);
+void refuse_duplicates(const std::vector<Contact>& contacts, int dimension, const std::string& source,
+                       const std::string& name);
 
 /// What a run under `ties = "choose"` adds: {"seed", "rho": [...], "load_zero": contact, "stress_rate": [value, bound],
 /// "open": [[contact, value, bound], ...], "zero": the same}; the last four only when they say something.

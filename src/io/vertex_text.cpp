@@ -87,7 +87,7 @@ State parse_vertex_text(const std::string& text, const std::string& source) {
             contact_of(rows.next_row(fmt::format("contact {} of {}: type i j", l, contacts), 3), disks));
     }
     rows.finish(fmt::format("the end of the file after {} contacts", contacts));
-    json::refuse_duplicates(state.contacts, source, "contacts");
+    json::refuse_duplicates(state.contacts, plane, source, "contacts");
     std::sort(state.contacts.begin(), state.contacts.end());
     state.load.refer_to(state.packing);
     state.provenance = json::dumped({{"converted_from", source}});

@@ -36,6 +36,9 @@ BOOST_AUTO_TEST_CASE(inspect_answers_for_a_box_a_slab_and_cells) {
     BOOST_TEST(json["singular_values"].size() == 10U);
     const double smallest = isostat::test::read_spheres("slab_uniform_30_1")["expected"]["smallest_singular_value"];
     BOOST_TEST(json["singular_values"][0].get<double>() == smallest, boost::test_tools::tolerance(1e-5));
+    const std::string disks = scratch::data("vertex100.txt");
+    BOOST_TEST(!contains(says(run({"inspect", disks}), 0, {}).out, "singular values")); // not asked for, not computed
+    says(run({"inspect", disks, "--singular-values", "3"}), 0, {"smallest singular values 0.0"});
 }
 
 BOOST_AUTO_TEST_CASE(a_table_of_contacts_has_a_row_for_each_and_forces_between_their_ends) {
@@ -80,6 +83,26 @@ BOOST_AUTO_TEST_CASE(plateau_and_paraview_files_take_spheres) {
     BOOST_TEST(contains(vtk, "VERTICES 30 60\n"));
     BOOST_TEST(contains(vtk, "LINES 96 ")); // 90 contacts, 2 sides and 4 edges of the cell
     BOOST_TEST(!contains(vtk, "nan"));
+    expect(run({"export", state, "-o", folder.at("o.vtk")}), 0); // written over
+    for (const auto& [name, text] : {std::pair("mine.vtk", "# vtk DataFile Version 3.0\nmine\nASCII\n"),
+                                     {"mine.csv", "# mine\nid,x,y,mass\n0,1,2,3\n"}}) {
+        scratch::write(folder / name, text); // another program's
+        expect(run({"export", state, "-o", folder.at(name)}), 64);
+        BOOST_TEST(scratch::read(folder / name) == text);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_contact_given_twice_is_named_with_all_its_periods) {
+    const scratch::Folder folder;
+    auto file = nlohmann::json::parse(scratch::read(state_file(folder, "tri_uniform_30_1")));
+    for (const auto& contact : file["contacts"]) {
+        if (contact == nlohmann::json{0, 12, {0, 0, 1}}) {
+            file["contacts"].push_back(contact);
+            break;
+        }
+    }
+    scratch::write(folder / "twice.json", file.dump());
+    expect(run({"inspect", folder.at("twice.json")}), 65, {"twice.json", "0-12(0,0,1)", "each contact once"});
 }
 
 BOOST_AUTO_TEST_CASE(a_picture_shows_every_sphere_its_forces_and_three_cuts) {

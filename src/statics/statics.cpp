@@ -14,6 +14,17 @@ namespace {
 
 using roundoff::u;
 
+/// |F(q) - F(q*)|_2 <= rate |q - q*|_2 for F_a = the product of the lengths of the other axes. In the plane F is
+/// linear. In space F_a changes by at most (L + |q - q*|) (|dL_b| + |dL_c|), L the largest length, and the squares of
+/// these sums add up to at most 4 |dL|^2: 4 L is enough while |q - q*| <= L, that is as long as there is a true vertex.
+double rate_of_areas(const Packing& packing) {
+    double longest = 0;
+    for (int a = 0; a < packing.dimension; ++a) {
+        longest = std::max(longest, packing.length(a));
+    }
+    return packing.dimension == plane ? 1 : 4 * longest;
+}
+
 } // namespace
 
 Statics::Statics(const Packing& packing, const Load& load, const IsostaticStructure& structure,
@@ -22,7 +33,7 @@ Statics::Statics(const Packing& packing, const Load& load, const IsostaticStruct
       sigma_(load.loaded_stress()), ladder_(packing, structure, factorisation, inverse, hints.ladder, hints.vertex),
       pattern_(packing, structure) {
     const DofMap& dofs = structure.dofs();
-    // Under true stresses a wall's force follows the length of the other wall.
+    // Under true stresses a wall's force follows the lengths of the other axes.
     const bool follows = load.kind == LoadKind::true_stress;
     const double stress = std::abs(*std::max_element(load.stress.begin(), load.stress.end(),
                                                      [](double a, double b) { return std::abs(a) < std::abs(b); }));
@@ -30,14 +41,19 @@ Statics::Statics(const Packing& packing, const Load& load, const IsostaticStruct
         const std::span<const double> x = near != nullptr ? near->ladder_.known(part) : std::span<const double>();
         return std::vector<double>(x.begin(), x.end());
     };
-    LoadTerms now{{}, follows ? stress * (1 + 4 * u) : 0};
-    assert(packing.dimension == plane); // products of two stored numbers
+    const double rate = follows ? rate_of_areas(packing) : 0;
+    LoadTerms now{{}, rate * stress * (1 + 4 * u)};
+    LoadTerms per_unit{{}, rate};
     for (const WallForce& wall : load.wall_forces(packing)) {
-        now.products.push_back({dofs.dof_of(static_cast<std::size_t>(wall.coordinate)), wall.stress, wall.length});
+        const int row = dofs.dof_of(static_cast<std::size_t>(wall.coordinate));
+        now.products.push_back({row, wall.stress, wall.length, wall.other});
+        if (wall.loaded && packing.dimension > plane) { // in the plane the double is the length itself
+            per_unit.products.push_back({row, 1, wall.length, wall.other});
+        }
     }
     ladder_.add(on_dofs(load.external_force(packing), dofs), std::move(now),
                 hints.forces.empty() && hints.near != nullptr ? hints.near->guess(sigma_) : std::move(hints.forces));
-    ladder_.add(on_dofs(load.unit_force(packing), dofs), {{}, follows ? 1.0 : 0.0}, known(unit));
+    ladder_.add(on_dofs(load.unit_force(packing), dofs), std::move(per_unit), known(unit));
     ladder_.add(on_dofs(load.infinitesimal, dofs), {}, known(infinitesimal_part));
     loaded_rows_ = load.loaded_rows(packing, dofs);
     loaded_wall_row_ = load.loaded_wall_row(packing, dofs);

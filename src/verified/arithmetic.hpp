@@ -15,7 +15,8 @@
 namespace isostat {
 
 /// `unit`: a sum of two numbers errs by at most unit (|a| + |b|), a product, a quotient or a root by unit times the
-/// result. `difference` and `product` of two doubles err by at most unit times the result. `Bound`: upper bounds, in a
+/// result. `difference` of two doubles errs by at most unit times the result,
+/// `product` of three by twice that. `Bound`: upper bounds, in a
 /// range that the type does not leave. `corrections`, `refinements`: caps of the iterations, which stop by themselves
 /// at the rounding of the type. `size`: a bound of |x|; `about`: |x| as rounded, where a bound counts 2 % more anyway.
 /// `scaled`: x 2^-exponent in double; `number`: the inverse.
@@ -39,7 +40,7 @@ template <> class Arithmetic<double> : public ArithmeticOfDoubles<double> {
     static constexpr int refinements = 2;
     static double unit() { return 0x1p-53; }
     static double difference(double a, double b) { return a - b; }
-    static double product(double a, double b) { return a * b; }
+    static double product(double a, double b, double c = 1) { return a * b * c; }
     static double rounded(double x) { return x; }
 };
 
@@ -52,7 +53,7 @@ template <> class Arithmetic<dd_real> : public ArithmeticOfDoubles<dd_real> {
     static constexpr int refinements = 8;
     static double unit() { return 0x1p-98; }
     static dd_real difference(double a, double b) { return dd_real::sub(a, b); }
-    static dd_real product(double a, double b) { return dd_real::mul(a, b); }
+    static dd_real product(double a, double b, double c = 1) { return dd_real::mul(a, b) * c; }
     static double rounded(const dd_real& x) { return x.x[0]; }
 };
 
@@ -74,7 +75,7 @@ template <> class Arithmetic<Real> {
         return result;
     }
     [[nodiscard]] Real difference(double a, double b) const { return number(a) - number(b); }
-    [[nodiscard]] Real product(double a, double b) const { return number(a) * number(b); }
+    [[nodiscard]] Real product(double a, double b, double c = 1) const { return number(a) * number(b) * number(c); }
     static double rounded(const Real& x) { return x.nearest(); }
     static UpperBound about(const Real& x) { return UpperBound::magnitude(x); }
     static UpperBound size(const Real& x) { return UpperBound::magnitude(x); }

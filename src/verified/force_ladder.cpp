@@ -68,7 +68,7 @@ int ForceLadder::add(std::vector<double> force, LoadTerms terms, std::vector<dou
     RightHandSide part;
     part.zero = std::all_of(force.begin(), force.end(), [](double f) { return f == 0; }) &&
                 std::all_of(terms.products.begin(), terms.products.end(), [](const ExactProduct& p) {
-                    return p.a == 0 || p.b == 0; // a product may underflow
+                    return p.a == 0 || p.b == 0 || p.c == 0; // a product may underflow
                 });
     part.terms = std::move(terms);
     part.force = std::move(force);

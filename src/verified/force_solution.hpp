@@ -32,11 +32,13 @@ ForceSolution solve_forces(const IsostaticStructure& structure, const Factorisat
                            const InverseBound& inverse, const std::vector<double>& force,
                            std::span<const double> guess = {}, double accuracy = 0);
 
-/// A component of a right-hand side that is meant as minus the product of two doubles, in the real numbers.
+/// A component of a right-hand side that is meant as minus the product of doubles, in the real numbers: of two in the
+/// plane, of three in space.
 struct ExactProduct {
     int row = 0;
     double a = 0;
     double b = 0;
+    double c = 1;
 };
 
 } // namespace isostat

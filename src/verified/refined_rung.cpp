@@ -75,7 +75,7 @@ template <class T> class RefinedRung final : public IntervalRung {
     ContactSystem<T> system_;
 };
 
-/// Products are exact.
+/// Products of two doubles are exact; the residual grants two roundings to those of three.
 template <class T> std::vector<T> RefinedRung<T>::load(const RightHandSide& part) const {
     const A& a = system_.arithmetic();
     std::vector<T> force;
@@ -84,7 +84,7 @@ template <class T> std::vector<T> RefinedRung<T>::load(const RightHandSide& part
         force.push_back(a.number(f));
     }
     for (const ExactProduct& product : part.terms.products) {
-        force[static_cast<std::size_t>(product.row)] = -a.product(product.a, product.b);
+        force[static_cast<std::size_t>(product.row)] = -a.product(product.a, product.b, product.c);
     }
     return force;
 }

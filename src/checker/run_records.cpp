@@ -78,13 +78,14 @@ bool claims_way(const Field& certificate) {
     return proved("verdict") && proved("power");
 }
 
-EventRecord event_of(const std::string& line, const std::string& where) {
+EventRecord event_of(const std::string& line, const RecordColumns& names, const std::string& where) {
     const json::Json parsed = Field::parse(line, where);
     const Field field(parsed, where);
-    field.only({"step",        "equilibrium", "arc",         "kind",      "opened",     "closed",
-                "power_turn",  "held_at",     "sigma2",      "eps2",      "eps2_bound", "force",
-                "force_bound", "power",       "power_bound", "work",      "work_bound", "displacement",
-                "steps",       "margin",      "decided_by",  "perturbed", "certificate"});
+    const std::string strain_bound = names.strain + "_bound";
+    const auto [stress, strain, bound] = std::array{names.stress.c_str(), names.strain.c_str(), strain_bound.c_str()};
+    field.only({"step",       "equilibrium",  "arc",   "kind",   "opened",      "closed",    "power_turn",  "held_at",
+                stress,       strain,         bound,   "force",  "force_bound", "power",     "power_bound", "work",
+                "work_bound", "displacement", "steps", "margin", "decided_by",  "perturbed", "certificate"});
     const auto number = [&field](const char* name) {
         const Field value = field.at(name);
         return value.value().is_null() ? std::numeric_limits<double>::quiet_NaN() : value.number();
@@ -99,9 +100,9 @@ EventRecord event_of(const std::string& line, const std::string& where) {
     event.opened = contact_name(field.at("opened"));
     event.closed = contact_name(field.at("closed"));
     event.power_turn = field.at("power_turn").boolean();
-    event.stress = number("sigma2");
-    event.strain = number("eps2");
-    event.strain_bound = number("eps2_bound");
+    event.stress = number(stress);
+    event.strain = number(strain);
+    event.strain_bound = number(bound);
     event.force_bound = number("force_bound");
     event.power_bound = number("power_bound");
     event.work_bound = number("work_bound");
@@ -184,8 +185,10 @@ RunRecords read_records(const std::filesystem::path& directory, LastLine last) {
     const std::filesystem::path events = directory / "events.jsonl";
     if (!std::filesystem::exists(events) || std::filesystem::file_size(events) > 0) {
         long choices = 0;
+        const Load load = records.start ? records.start->load : Load();
+        const RecordColumns names = record_columns(load, false);
         for_each_line(records_text(events, last), [&](int number, const std::string& line) {
-            records.events.push_back(event_of(line, fmt::format("{}:{}", events.string(), number)));
+            records.events.push_back(event_of(line, names, fmt::format("{}:{}", events.string(), number)));
             EventRecord& event = records.events.back();
             choices += std::count_if(event.ties.begin(), event.ties.end(),
                                      [](const TieRecord& tie) { return !tie.choice.empty(); });

@@ -156,7 +156,7 @@ ExactLoad meant_load(const State& state) {
     // A stored load is that one rounded. One farther away is meant by no file: then the stored load is taken as it is.
     const Range step = step_to_limit(at, l);
     const auto& stress = state.load.stress;
-    const Rational room(record_tolerance * std::max(std::abs(stress[0]), std::abs(stress[1])));
+    const Rational room(record_tolerance * std::max({std::abs(stress[0]), std::abs(stress[1]), std::abs(stress[2])}));
     if (step.lower < -room || step.upper > room) {
         return {};
     }

@@ -74,6 +74,10 @@ struct Place {
 
     [[nodiscard]] bool is_held(std::size_t contact) const { return state->contacts[contact].kind == ContactKind::held; }
 
+    /// A contact as records spell it.
+    [[nodiscard]] std::string named(const Contact& contact) const {
+        return to_string(contact, state->packing.dimension);
+    }
     [[nodiscard]] double stress() const { return state->load.loaded_stress(); }
     /// The nearest pairs (K9); swept for when first asked for, by one thread.
     [[nodiscard]] const std::vector<Gap>& gaps() const;

@@ -35,11 +35,11 @@ Objections compare(const std::string& name, int recorded, int found) {
     return Objection{true, fmt::format("{} is {}, found {}", name, recorded, found)};
 }
 
-/// 0 without a length of reference. Axes from the dimension on: tilts.
+/// 0 without a length of reference. Behind the axes the tilts: A_ab over the length of b.
 Range strain_of(const Place& place, int axis) {
     const Load& load = place.state->load;
-    const Range length{Rational(load.strain_length(axis))};
-    return length.positive() ? (Range(Rational(load.at_rest(axis))) - place.length(axis)) / length : Range(Rational(0));
+    const Range over{Rational(load.strain_length(axis))};
+    return over.positive() ? (Range(Rational(load.at_rest(axis))) - place.length(axis)) / over : Range(Rational(0));
 }
 
 /// Work of a load between two vertices.
@@ -120,7 +120,7 @@ Objections check_smallest_gap(const Place& place, const EquilibriumLine& line) {
         [&](std::size_t l) { return compare("min_gap", line, near[l].value, size); });
     return found ? *found
                  : Objection{true, fmt::format("min_gap is said to be of {}, found of {}",
-                                               pair ? to_string(*pair) : "no pair", to_string(near[0].pair))};
+                                               pair ? place.named(*pair) : "no pair", place.named(near[0].pair))};
 }
 
 Objections check_smallest_force(const Place& place, const EquilibriumLine& line) {
@@ -174,13 +174,13 @@ Objections check_interval(const Place& place, const EquilibriumLine& line, bool 
         ExactLoad unused;
         const Range& slope = place.evidence->slopes()[opened];
         if (high ? slope.positive() : slope.negative()) {
-            return Objection{true, fmt::format("the force of {} grows in this direction", to_string(*opens))};
+            return Objection{true, fmt::format("the force of {} grows in this direction", place.named(*opens))};
         }
         return place.first ? check_limit_at(place, stress, opened, unused, nullptr)
                            : check_load_end(place, stress, opened, direction);
     });
     if (!found) {
-        return Objection{true, fmt::format("{} ends the supported interval, but is no contact", to_string(*opens))};
+        return Objection{true, fmt::format("{} ends the supported interval, but is no contact", place.named(*opens))};
     }
     if (*found) {
         (*found)->text = fmt::format("{}: {}", name, (*found)->text);
@@ -189,9 +189,9 @@ Objections check_interval(const Place& place, const EquilibriumLine& line, bool 
 }
 
 /// What the record says of a pair that touches at the end; null: nothing.
-const TieRecord* said_of_gap(const EventRecord& event, const Contact& pair) {
+const TieRecord* said_of_gap(const EventRecord& event, const std::string& pair) {
     const auto tie = std::find_if(event.ties.begin(), event.ties.end(),
-                                  [&](const TieRecord& t) { return t.what == "gap" && t.against == to_string(pair); });
+                                  [&](const TieRecord& t) { return t.what == "gap" && t.against == pair; });
     return tie == event.ties.end() ? nullptr : &*tie;
 }
 
@@ -201,9 +201,8 @@ bool is_first_order_step(const EventRecord& event) {
 }
 
 /// A pair touches, and would overlap with radii R_i + eps rho_i.
-Objection touches(const Contact& pair, const char* where, const Range& first) {
-    return {first.negative(),
-            fmt::format("{} touch at {}, first-order gap in {}", to_string(pair), where, shown(first))};
+Objection touches(const std::string& pair, const char* where, const Range& first) {
+    return {first.negative(), fmt::format("{} touch at {}, first-order gap in {}", pair, where, shown(first))};
 }
 
 /// No pair overlaps. `settled`: what is to be said of pairs that touch, with their first-order gaps.
@@ -216,11 +215,11 @@ template <class Settled> Objections check_no_overlap(const Place& place, const c
             continue;
         }
         if (gap.value.negative()) {
-            return Objection{true,
-                             fmt::format("{} overlap at {}, gap in {}", to_string(gap.pair), where, shown(gap.value))};
+            return Objection{
+                true, fmt::format("{} overlap at {}, gap in {}", place.named(gap.pair), where, shown(gap.value))};
         }
         if (!gap.value.positive()) {
-            return Objection{false, fmt::format("{} may overlap at {}", to_string(gap.pair), where)};
+            return Objection{false, fmt::format("{} may overlap at {}", place.named(gap.pair), where)};
         }
     }
     return {};
@@ -255,7 +254,7 @@ Objections check_power_at_contact(const Place& to, const EventRecord& event, boo
 /// By how much Phi = sum sigma_a ln L_a falls (S5 (b), stability.md). \pre true stresses, without loads on disks
 Range fall_of_phi(const Place& from, const Place& to) {
     Range fall(Rational(0));
-    for (int a = 0; a < 2; ++a) {
+    for (int a = 0; a < to.state->packing.dimension; ++a) {
         const Range stress{Rational(to.state->load.stress[static_cast<std::size_t>(a)])};
         fall = fall + stress * logarithm(from.length(a) / to.length(a));
     }
@@ -424,15 +423,15 @@ Objections check_end(const Place& from, const Place& to, const EventRecord& even
         return wrong;
     }
     const auto settled = [&](const Contact& pair, const Range& first) -> Objections {
-        const TieRecord* said = said_of_gap(event, pair);
+        const TieRecord* said = said_of_gap(event, to.named(pair));
         const bool left = to.chooses && (first.has_zero() || (said != nullptr && said->choice == "watched"));
         if (!first.positive() && !left) {
-            return touches(pair, "the end of the arc", first);
+            return touches(to.named(pair), "the end of the arc", first);
         }
         return said != nullptr ? Objections() // else a run with more digits may have told the gap from 0
                                : Objection{false, fmt::format("{} touch at the end of the arc as far as is seen, and "
                                                               "the record does not name them",
-                                                              to_string(pair))};
+                                                              to.named(pair))};
     };
     if (Objections wrong = check_no_overlap(to, "the end of the arc", settled)) {
         return wrong;
@@ -447,7 +446,7 @@ Objections check_end(const Place& from, const Place& to, const EventRecord& even
 Objections check_start(const Place& place, const State& given) {
     const auto settled = [&](const Contact& pair, const Range& first) {
         const bool left = place.chooses && first.has_zero();
-        return first.positive() || left ? Objections() : touches(pair, "the start", first);
+        return first.positive() || left ? Objections() : touches(place.named(pair), "the start", first);
     };
     if (!place.first && contact_set(given) != contact_set(*place.state)) {
         return Objection{true, "start.json has other contacts than those with which its arcs lead to equilibrium 0"};
@@ -480,7 +479,7 @@ Objections check_equilibrium(const Place& place, const EquilibriumLine& line) {
 namespace {
 
 /// First-order terms of one list of a stored state against those found, by name.
-Objections check_terms(const char* what, const std::vector<std::pair<Contact, Enclosure>>& said,
+Objections check_terms(const Place& place, const char* what, const std::vector<std::pair<Contact, Enclosure>>& said,
                        const std::vector<Gap>& found) {
     if (said.size() != found.size()) {
         return Objection{true, fmt::format("{} of {} {}, found {}", said.size(), what, "in the state", found.size())};
@@ -488,7 +487,7 @@ Objections check_terms(const char* what, const std::vector<std::pair<Contact, En
     for (const auto& [contact, term] : said) {
         const auto at = std::find_if(found.begin(), found.end(),
                                      [&contact = contact](const Gap& one) { return one.pair == contact; });
-        const std::string name = fmt::format("the first-order {} of {}", what, to_string(contact));
+        const std::string name = fmt::format("the first-order {} of {}", what, place.named(contact));
         if (at == found.end()) {
             return Objection{true, name + ": there is no such one"};
         }
@@ -508,10 +507,10 @@ Objections check_direction(const Place& place, const RadiusPerturbation& said) {
         zero.push_back({place.state->contacts[index], place.first_force[index]});
         moves = moves || !place.evidence->slopes()[index].has_zero();
     }
-    if (Objections wrong = check_terms("gap", said.open, place.touching)) {
+    if (Objections wrong = check_terms(place, "gap", said.open, place.touching)) {
         return wrong;
     }
-    if (Objections wrong = check_terms("force", said.zero, zero)) {
+    if (Objections wrong = check_terms(place, "force", said.zero, zero)) {
         return wrong;
     }
     const bool at_limit = moves && (place.load.shift.lower != 0 || place.load.shift.upper != 0);
@@ -519,7 +518,7 @@ Objections check_direction(const Place& place, const RadiusPerturbation& said) {
         std::find_if(zero.begin(), zero.end(), [&](const Gap& one) { return one.pair == said.load_zero; });
     if ((said.load_zero.i >= 0) != at_limit || (at_limit && named == zero.end())) {
         return Objection{true, fmt::format("load_zero is {}: {} vanishes at the exact load",
-                                           said.load_zero.i < 0 ? "missing" : to_string(said.load_zero),
+                                           said.load_zero.i < 0 ? "missing" : place.named(said.load_zero),
                                            at_limit ? "another force" : "no force")};
     }
     return at_limit ? check_said("stress_rate", {said.stress_rate.value, said.stress_rate.radius}, place.load.rate)

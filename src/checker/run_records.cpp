@@ -38,14 +38,14 @@ std::string word(const Field& field, std::initializer_list<std::string_view> wor
     return field.string();
 }
 
-std::string contact_name(const Field& field) {
-    if (!contact_spelt(field.string())) {
+std::string contact_name(const Field& field, int dimension) {
+    if (!contact_spelt(field.string(), dimension)) {
         field.fail("a contact as records spell it, 3-7, 3-left or held x of grain 4");
     }
     return field.string();
 }
 
-TieRecord tie_of(const Field& entry) {
+TieRecord tie_of(const Field& entry, int dimension) {
     entry.only({"decision", "contact", "first_order", "against", "against_first_order", "choice", "log2_zero", "bits"});
     const auto term = [](const Field& pair, double& value, double& bound) {
         pair.require_size(2, "[value, bound]");
@@ -58,10 +58,10 @@ TieRecord tie_of(const Field& entry) {
     TieRecord tie;
     tie.what = word(entry.at("decision"),
                     {"force", "opening", "limit", "zero all along", "gap", "step", "second order", "end", "rest"});
-    tie.contact = contact_name(entry.at("contact"));
+    tie.contact = contact_name(entry.at("contact"), dimension);
     term(entry.at("first_order"), tie.first, tie.first_bound);
     if (entry.has("against") || entry.has("against_first_order")) {
-        tie.against = contact_name(entry.at("against"));
+        tie.against = contact_name(entry.at("against"), dimension);
         term(entry.at("against_first_order"), tie.other, tie.other_bound);
     }
     if (entry.has("choice")) {
@@ -78,7 +78,8 @@ bool claims_way(const Field& certificate) {
     return proved("verdict") && proved("power");
 }
 
-EventRecord event_of(const std::string& line, const RecordColumns& names, const std::string& where) {
+EventRecord event_of(const std::string& line, const std::string& where, const Load& load) {
+    const RecordColumns names = record_columns(load, false);
     const json::Json parsed = Field::parse(line, where);
     const Field field(parsed, where);
     const std::string strain_bound = names.strain + "_bound";
@@ -97,8 +98,8 @@ EventRecord event_of(const std::string& line, const RecordColumns& names, const 
     event.equilibrium = field.at("equilibrium").integer(0, most);
     event.arc = field.at("arc").integer(0, most);
     event.kind = word(field.at("kind"), {"limit", "tension", "rattler", "release"});
-    event.opened = contact_name(field.at("opened"));
-    event.closed = contact_name(field.at("closed"));
+    event.opened = contact_name(field.at("opened"), load.dimension);
+    event.closed = contact_name(field.at("closed"), load.dimension);
     event.power_turn = field.at("power_turn").boolean();
     event.stress = number(stress);
     event.strain = number(strain);
@@ -120,7 +121,7 @@ EventRecord event_of(const std::string& line, const RecordColumns& names, const 
         event.claims_way = claims_way(field.at("certificate"));
     }
     for (std::size_t k = 0; field.has("perturbed") && k < field.at("perturbed").size(); ++k) {
-        event.ties.push_back(tie_of(field.at("perturbed").at(k)));
+        event.ties.push_back(tie_of(field.at("perturbed").at(k), load.dimension));
     }
     return event;
 }
@@ -130,7 +131,7 @@ void require_spelling(const EquilibriumLine& line, const std::string& what) {
     const int i = line.integer((what + "_i").c_str());
     const int j = line.integer((what + "_j").c_str());
     const bool none = j == no_contact && i >= no_contact;
-    if (!none && (i < 0 || j < -4 || (j >= 0 && j < i))) {
+    if (!none && (i < 0 || j < front_wall || (j >= 0 && j < i))) {
         throw Error(ErrorKind::bad_input,
                     fmt::format("{}: {}_i,{}_j is '{},{}': expected a disk and a later one or a wall, or -9,-9",
                                 line.where, what, what, i, j));
@@ -186,9 +187,8 @@ RunRecords read_records(const std::filesystem::path& directory, LastLine last) {
     if (!std::filesystem::exists(events) || std::filesystem::file_size(events) > 0) {
         long choices = 0;
         const Load load = records.start ? records.start->load : Load();
-        const RecordColumns names = record_columns(load, false);
         for_each_line(records_text(events, last), [&](int number, const std::string& line) {
-            records.events.push_back(event_of(line, names, fmt::format("{}:{}", events.string(), number)));
+            records.events.push_back(event_of(line, fmt::format("{}:{}", events.string(), number), load));
             EventRecord& event = records.events.back();
             choices += std::count_if(event.ties.begin(), event.ties.end(),
                                      [](const TieRecord& tie) { return !tie.choice.empty(); });

@@ -319,9 +319,9 @@ class Replay {
         coarsest_ = std::max(coarsest_, grid_step(packing));
         const auto off = [&](std::size_t a) {
             return packing.cell.periodic[a] &&
-                   std::fmod(packing.q[2 * static_cast<std::size_t>(packing.cell.pin) + a], coarsest_) != 0;
+                   std::fmod(packing.coordinate(DiskId(packing.cell.pin), static_cast<int>(a)), coarsest_) != 0;
         };
-        return off(0) || off(1);
+        return off(0) || off(1) || (packing.dimension > plane && off(2));
     }
 
     /// What a record says opens and closes at `here_`.

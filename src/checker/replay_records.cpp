@@ -14,7 +14,7 @@ namespace isostat::checker {
 namespace {
 
 /// A recorded number against what was found, to `record_tolerance` of `size`.
-Objections compare(const char* name, double recorded, const Range& found, double size) {
+Objections compare(const std::string& name, double recorded, const Range& found, double size) {
     const Rational room = Rational(record_tolerance) * Rational(std::max(size, 1e-300));
     if (std::isfinite(recorded) && Rational(recorded) >= found.lower - room &&
         Rational(recorded) <= found.upper + room) {
@@ -24,11 +24,11 @@ Objections compare(const char* name, double recorded, const Range& found, double
 }
 
 /// A column with its column `_bound`.
-Objections compare(const char* name, const EquilibriumLine& line, const Range& found, double size) {
+Objections compare(const std::string& name, const EquilibriumLine& line, const Range& found, double size) {
     return compare(name, Bounded{line.at(name), line.bound(name)}, found, record_tolerance * size);
 }
 
-Objections compare(const char* name, int recorded, int found) {
+Objections compare(const std::string& name, int recorded, int found) {
     if (recorded == found) {
         return {};
     }
@@ -149,7 +149,7 @@ Objections check_smallest_force(const Place& place, const EquilibriumLine& line)
 }
 
 Objections check_interval(const Place& place, const EquilibriumLine& line, bool high) {
-    const char* name = high ? "sigma2_high" : "sigma2_low";
+    const std::string name = line.names->stress + (high ? "_high" : "_low");
     const Bounded stress{line.at(name), line.bound(name)};
     const auto opens = contact_of_columns(line.integer(high ? "opens_high_i" : "opens_low_i"),
                                           line.integer(high ? "opens_high_j" : "opens_low_j"), place.state->packing);
@@ -373,30 +373,29 @@ Range potential_of(const Place& place, double& size) {
 /// Stresses, strains, lengths, potential and solid fraction.
 Objections check_measures(const Place& place, const EquilibriumLine& line) {
     const Load& load = place.state->load;
-    const bool shears = load.loaded_axis == 2;
-    const int other = shears ? 1 : 1 - load.loaded_axis;
-    const double sigma = shears ? load.shear[0] : load.stress[static_cast<std::size_t>(load.loaded_axis)];
-    const double across = load.stress[static_cast<std::size_t>(other)];
-    const double box = std::max(place.state->packing.length(0), place.state->packing.length(1));
-    const std::vector<std::tuple<const char*, Range, double>> without_bound{
-        {"sigma2", Range(Rational(sigma)), std::abs(sigma)},
+    const double sigma = load.loaded_stress();
+    const double across = load.other_stress();
+    double box = 0;
+    for (int a = 0; a < load.dimension; ++a) {
+        box = std::max(box, place.state->packing.length(a));
+    }
+    const std::vector<std::tuple<std::string, Range, double>> without_bound{
+        {line.names->stress, Range(Rational(sigma)), std::abs(sigma)},
         {"ratio", Range(Rational(sigma)) / Range(Rational(across)), std::abs(sigma / across)}};
     for (const auto& [name, found, scale] : without_bound) {
         if (Objections wrong = compare(name, line.at(name), found, scale)) {
             return wrong;
         }
     }
-    std::vector<std::tuple<const char*, Range, double>> with_bound{{"eps1", strain_of(place, other), 1},
-                                                                   {"eps2", strain_of(place, load.loaded_axis), 1},
-                                                                   {"L1", place.length(other), box},
-                                                                   {"L2", place.length(load.loaded_axis), box}};
-    if (line.has("L3") != place.state->packing.cell.tilt_moves[0]) {
-        return Objection{true, "the columns of a third length belong to cells whose tilt moves"};
+    std::vector<std::tuple<std::string, Range, double>> with_bound;
+    const RecordColumns names = record_columns(load, place.state->packing.cell.shears());
+    if (names.measures.size() != line.names->measures.size() || names.stress != line.names->stress) {
+        return Objection{true, "the columns are those of another dimension, of another load, or of tilts that move or "
+                               "do not"};
     }
-    if (line.has("L3")) {
-        const int third = shears ? 0 : 2;
-        with_bound.emplace_back("eps3", strain_of(place, third), 1);
-        with_bound.emplace_back("L3", place.length(third), box);
+    for (const auto& [strain, length, axis] : names.measures) {
+        with_bound.emplace_back(strain, strain_of(place, static_cast<int>(axis)), 1);
+        with_bound.emplace_back(length, place.length(static_cast<int>(axis)), box);
     }
     if (load.kind == LoadKind::nominal) {
         double size = 0;
@@ -418,8 +417,9 @@ Objections check_measures(const Place& place, const EquilibriumLine& line) {
 } // namespace
 
 Objections check_end(const Place& from, const Place& to, const EventRecord& event, bool rattles) {
-    if (Objections wrong = compare_if_bounded("eps2", {event.strain, event.strain_bound},
-                                              strain_of(to, to.state->load.loaded_axis), arc_strain_tolerance)) {
+    if (Objections wrong =
+            compare_if_bounded(record_columns(to.state->load, false).strain, {event.strain, event.strain_bound},
+                               strain_of(to, to.state->load.loaded_axis), arc_strain_tolerance)) {
         return wrong;
     }
     const auto settled = [&](const Contact& pair, const Range& first) -> Objections {

@@ -78,13 +78,15 @@ bool claims_way(const Field& certificate) {
     return proved("verdict") && proved("power");
 }
 
-EventRecord event_of(const std::string& line, const std::string& where, int dimension) {
+EventRecord event_of(const std::string& line, const std::string& where, const Load& load) {
+    const RecordColumns names = record_columns(load, false);
     const json::Json parsed = Field::parse(line, where);
     const Field field(parsed, where);
-    field.only({"step",        "equilibrium", "arc",         "kind",      "opened",     "closed",
-                "power_turn",  "held_at",     "sigma2",      "eps2",      "eps2_bound", "force",
-                "force_bound", "power",       "power_bound", "work",      "work_bound", "displacement",
-                "steps",       "margin",      "decided_by",  "perturbed", "certificate"});
+    const std::string strain_bound = names.strain + "_bound";
+    const auto [stress, strain, bound] = std::array{names.stress.c_str(), names.strain.c_str(), strain_bound.c_str()};
+    field.only({"step",       "equilibrium",  "arc",   "kind",   "opened",      "closed",    "power_turn",  "held_at",
+                stress,       strain,         bound,   "force",  "force_bound", "power",     "power_bound", "work",
+                "work_bound", "displacement", "steps", "margin", "decided_by",  "perturbed", "certificate"});
     const auto number = [&field](const char* name) {
         const Field value = field.at(name);
         return value.value().is_null() ? std::numeric_limits<double>::quiet_NaN() : value.number();
@@ -96,12 +98,12 @@ EventRecord event_of(const std::string& line, const std::string& where, int dime
     event.equilibrium = field.at("equilibrium").integer(0, most);
     event.arc = field.at("arc").integer(0, most);
     event.kind = word(field.at("kind"), {"limit", "tension", "rattler", "release"});
-    event.opened = contact_name(field.at("opened"), dimension);
-    event.closed = contact_name(field.at("closed"), dimension);
+    event.opened = contact_name(field.at("opened"), load.dimension);
+    event.closed = contact_name(field.at("closed"), load.dimension);
     event.power_turn = field.at("power_turn").boolean();
-    event.stress = number("sigma2");
-    event.strain = number("eps2");
-    event.strain_bound = number("eps2_bound");
+    event.stress = number(stress);
+    event.strain = number(strain);
+    event.strain_bound = number(bound);
     event.force_bound = number("force_bound");
     event.power_bound = number("power_bound");
     event.work_bound = number("work_bound");
@@ -119,7 +121,7 @@ EventRecord event_of(const std::string& line, const std::string& where, int dime
         event.claims_way = claims_way(field.at("certificate"));
     }
     for (std::size_t k = 0; field.has("perturbed") && k < field.at("perturbed").size(); ++k) {
-        event.ties.push_back(tie_of(field.at("perturbed").at(k), dimension));
+        event.ties.push_back(tie_of(field.at("perturbed").at(k), load.dimension));
     }
     return event;
 }
@@ -180,13 +182,13 @@ RunRecords read_records(const std::filesystem::path& directory, LastLine last) {
     if (std::filesystem::exists(directory / "start.json")) {
         records.start = read_any_state(directory / "start.json").state;
     }
-    const int dimension = records.start ? records.start->packing.dimension : plane;
     // A run that never left its start has no events: the file is empty then.
     const std::filesystem::path events = directory / "events.jsonl";
     if (!std::filesystem::exists(events) || std::filesystem::file_size(events) > 0) {
         long choices = 0;
+        const Load load = records.start ? records.start->load : Load();
         for_each_line(records_text(events, last), [&](int number, const std::string& line) {
-            records.events.push_back(event_of(line, fmt::format("{}:{}", events.string(), number), dimension));
+            records.events.push_back(event_of(line, fmt::format("{}:{}", events.string(), number), load));
             EventRecord& event = records.events.back();
             choices += std::count_if(event.ties.begin(), event.ties.end(),
                                      [](const TieRecord& tie) { return !tie.choice.empty(); });

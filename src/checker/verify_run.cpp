@@ -86,11 +86,12 @@ class Replay {
                           [this](const EventRecord& event) { return event.equilibrium == result_.equilibria; });
         const EventRecord& first = records_.events[event_];
         const auto ends_there = [&first](const EquilibriumLine& line) {
-            const auto is_at = [&](const char* name) {
+            const auto is_at = [&](const char* end) {
+                const std::string name = line.names->stress + end;
                 const double room = line.bound(name) + record_tolerance * std::abs(first.stress);
                 return std::abs(line.at(name) - first.stress) <= room;
             };
-            return is_at("sigma2_low") || is_at("sigma2_high");
+            return is_at("_low") || is_at("_high");
         };
         const auto from = std::find_if(records_.equilibria.rbegin(), records_.equilibria.rend(), ends_there);
         const int last = result_.equilibria - 1;
@@ -449,8 +450,8 @@ class Replay {
             return check_rule(here_, event, change.position, records_);
         }
         const double here = here_.stress();
-        const bool up = event.stress > here || (event.stress == here && before_->at("sigma2_high") == here);
-        const double bound = before_->bound(up ? "sigma2_high" : "sigma2_low");
+        const bool up = event.stress > here || (event.stress == here && before_->stress("_high") == here);
+        const double bound = before_->bound(before_->names->stress + (up ? "_high" : "_low"));
         return check_limit(here_, event, bound, change.position, change.load);
     }
 
@@ -560,7 +561,7 @@ class Replay {
     /// A row without arcs: the same vertex under another load.
     void reload(const EquilibriumLine& line) {
         State state = *here_.state;
-        state.load.loaded_stress() = line.at("sigma2");
+        state.load.loaded_stress() = line.stress();
         go_to(std::move(state), line.where, {});
     }
 

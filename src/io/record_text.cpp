@@ -126,7 +126,7 @@ template <class Value> void read_from(const json::Field& document, const std::st
 
 } // namespace
 
-std::string event_line(const ArcRecord& arc) {
+std::string event_line(const ArcRecord& arc, const RecordColumns& names) {
     Json line;
     line["step"] = arc.step;
     line["equilibrium"] = arc.equilibrium;
@@ -138,9 +138,9 @@ std::string event_line(const ArcRecord& arc) {
     if (arc.power_turn) {
         line["held_at"] = arc.held_at;
     }
-    for (const auto& [name, value] : {std::pair{"sigma2", arc.stress},
-                                      {"eps2", arc.strain},
-                                      {"eps2_bound", arc.strain_bound},
+    for (const auto& [name, value] : {std::pair{names.stress, arc.stress},
+                                      {names.strain, arc.strain},
+                                      {names.strain + "_bound", arc.strain_bound},
                                       {"force", arc.force},
                                       {"force_bound", arc.force_bound},
                                       {"power", arc.power},

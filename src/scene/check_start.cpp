@@ -60,7 +60,6 @@ void check_start(const State& state, const std::string& source, bool hyperstatic
         throw Error(ErrorKind::bad_input, fmt::format("{}: {}", source, what));
     };
     validate(state.packing, source);
-    require_plane(state.packing, source, "a run");
     require_pressed_sides(state.packing, state.load, true, source);
     if (const auto pair = fixed_overlap(state.packing)) {
         bad(fmt::format("{} overlap, and cannot move: expected every gap >= 0", to_string(*pair)));

@@ -6,6 +6,7 @@
 #include "scene/section.hpp"
 
 #include <isostat/core/error.hpp>
+#include <isostat/io/state_file.hpp>
 #include <isostat/scene/scene.hpp>
 
 #include <fmt/format.h>
@@ -154,15 +155,38 @@ void read_loaded(Section& section, Scene& scene) {
     if (!section.string("loaded")) { // without it the state of a file says what is loaded
         return;
     }
-    scene.loads_tilt = section.word("loaded", 0, {"y", "tilt"}) == 1;
+    const std::vector<std::string> words{"y", "tilt", "x", "z", "xy", "xz", "yz"};
+    scene.loaded = words[section.word("loaded", 0, words)];
     if (!scene.start.empty()) {
-        return; // the state of the file tells whether it has a tilt
+        return; // the state of the file tells its dimension and whether it has a tilt
     }
-    if (*scene.loads_tilt && scene.preparation.cell != PreparedCell::tilted) {
+    if (scene.loaded != "y" && scene.loaded != "tilt") {
+        section.refuse("loaded", fmt::format("'loaded' in [load] is \"{}\", which is of spheres read from a file: "
+                                             "expected \"y\" or \"tilt\"",
+                                             scene.loaded));
+    }
+    scene.preparation.loads_tilt = scene.loaded == "tilt";
+    if (scene.preparation.loads_tilt && scene.preparation.cell != PreparedCell::tilted) {
         section.refuse("loaded",
                        "'loaded' in [load] is \"tilt\" and no tilt moves: expected kind = \"tilted\" in [cell]");
     }
-    scene.preparation.loads_tilt = *scene.loads_tilt;
+}
+
+/// What a programme will find loaded: its dimension and axis tell what the ratios are called.
+Load load_at_start(const Scene& scene) {
+    Load load;
+    if (scene.start.empty()) {
+        load.loaded_axis = scene.preparation.loads_tilt ? plane : 1;
+        return load;
+    }
+    try {
+        State state = read_any_state(scene.start, Dimensions::any).state;
+        choose_loaded(state, scene, scene.start.string());
+        return state.load;
+    } catch (const Error&) { // whoever reads the start says what is wrong
+        load.loaded_axis = scene.loaded == "tilt" ? plane : 1;
+        return load;
+    }
 }
 
 void read_load(Section& section, Scene& scene) {
@@ -206,9 +230,10 @@ void read_load(Section& section, Scene& scene) {
     }
 }
 
-ProgrammeStep read_step(Section& section, bool of_shear) {
+ProgrammeStep read_step(Section& section, const Load& load) {
     ProgrammeStep step;
-    step.of_shear = of_shear;
+    step.of_shear = load.loads_tilt();
+    step.ratio = load.ratio_name();
     step.line = section.line_of("");
     if (!section.has("do")) {
         section.refuse("", "a [[programme]] segment has no 'do': expected \"up\", \"down\" or \"to\"");
@@ -218,11 +243,11 @@ ProgrammeStep read_step(Section& section, bool of_shear) {
         step.equilibria = static_cast<int>(section.integer("equilibria", 0, 1, 1'000'000'000));
     }
     if (const auto to = section.number("to")) {
-        step.to = of_shear ? section.number("to", 0, -largest_number, largest_number, "a ratio shear/sigma2")
-                           : section.number("to", 0, 0, largest_number,
-                                            "a ratio sigma2/sigma1 that is not negative (one of the shear has either "
-                                            "sign: loaded = \"tilt\" in "
-                                            "[load])");
+        step.to = step.of_shear ? section.number("to", 0, -largest_number, largest_number, "a ratio " + step.ratio)
+                                : section.number("to", 0, 0, largest_number,
+                                                 "a ratio " + step.ratio +
+                                                     " that is not negative (one of the shear has either sign: loaded "
+                                                     "= \"tilt\" in [load])");
     }
     if (const auto from = section.integer("from")) {
         step.from = static_cast<int>(section.integer("from", 0, 0, 1'000'000'000));
@@ -324,9 +349,12 @@ void read_programme(const toml::table& document, Scene& scene) {
                 fmt::format("{}:{}: 'programme' is not a list of tables: expected [[programme]] for each segment",
                             source, node->source().begin.line));
         }
+        const bool ratios = std::any_of(steps->begin(), steps->end(),
+                                        [](const toml::node& step) { return step.as_table()->contains("to"); });
+        const Load load = ratios ? load_at_start(scene) : Load();
         for (const toml::node& step : *steps) {
             Section one(step.as_table(), "[programme]", source, scene.settings);
-            scene.programme.push_back(read_step(one, scene.loads_tilt.value_or(false)));
+            scene.programme.push_back(read_step(one, load));
         }
     }
     if (scene.preparation.cell == PreparedCell::isotropic && !scene.programme.empty()) {

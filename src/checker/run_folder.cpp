@@ -82,7 +82,8 @@ Objections check_checkpoint(const CheckedRecords& checked, const RunRecords& rec
     const auto rows = static_cast<long>(records.equilibria.size());
     Repeated here("checkpoint.json");
     if (checked.state != read_text(records.directory / "states" / "last.json")) {
-        const std::string difference = state_difference(last, parse_any_state(checked.state, "checkpoint.json").state);
+        const std::string difference =
+            state_difference(last, parse_any_state(checked.state, "checkpoint.json", Dimensions::any).state);
         return wrong(fmt::format("states/last.json: {} is not that of checkpoint.json",
                                  difference.empty() ? "a recorded result" : difference));
     }
@@ -190,7 +191,7 @@ Objections check_folder(const fs::path& directory, const RunRecords& records) {
         if (!fs::exists(path)) {
             return wrong("states/last.json is missing");
         }
-        last = read_any_state(path).state;
+        last = read_any_state(path, Dimensions::any).state;
     }
     if (Objections other = checked && last ? check_checkpoint(*checked, records, *last) : Objections()) {
         return other;

@@ -613,7 +613,7 @@ class Replay {
         if (!std::filesystem::exists(path)) {
             return true;
         }
-        const StateFile file = read_any_state(path);
+        const StateFile file = read_any_state(path, Dimensions::any);
         return expect(file.state.equilibrium == line.integer("number"), name,
                       fmt::format("equilibrium is {}, expected {}", file.state.equilibrium, line.integer("number"))) &&
                judged(check_stored(here_, file.state, records_.start), name) &&

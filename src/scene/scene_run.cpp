@@ -107,7 +107,7 @@ State start_of_scene(State state, const Scene& scene, const std::string& source)
 }
 
 State start_from_file(const Scene& scene) {
-    return start_of_scene(read_any_state(scene.start).state, scene, scene.start.string());
+    return start_of_scene(read_any_state(scene.start, Dimensions::any).state, scene, scene.start.string());
 }
 
 std::string provenance_of(const Scene& scene, const std::string& program, const std::string& command,

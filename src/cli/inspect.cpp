@@ -295,7 +295,7 @@ void print_all(const Answer& answer) {
         print_inspection(state, answer.result.value());
     } else {
         say("isostatic equilibrium    {}: {}\n", answer.refuted() ? "refuted" : "undecided",
-            answer.result.failure().message());
+            answer.result.failure().message(state.packing.dimension));
     }
     print_true_vertex(answer.truth);
     if (const auto z = coordination_of(answer)) {
@@ -320,7 +320,7 @@ Json answer_json(const Answer& answer) {
         add_inspection(object, state, answer.result.value());
     } else {
         object["verdict"] = answer.refuted() ? "refuted" : "undecided";
-        object["remark"] = answer.result.failure().message();
+        object["remark"] = answer.result.failure().message(state.packing.dimension);
     }
     if (const auto z = coordination_of(answer)) {
         add_averages(object, state, answer.truth, *z);

@@ -37,9 +37,10 @@ int prepare(const PrepareArguments& arguments) {
     const bool quiet = arguments.common.quiet || arguments.common.json;
     const auto prepared = prepare_start(scene, arguments.common.command, quiet, arguments.output + ".failed.json");
     if (!prepared.ok()) {
-        say(stderr, "isostat: {}\n", prepared.failure().message());
+        say(stderr, "isostat: {}\n", prepared.failure().message(scene.preparation.dimension));
         if (arguments.common.json) {
-            print_json(Json{{"status", to_string(prepared.failure().kind)}, {"reason", prepared.failure().message()}});
+            print_json(Json{{"status", to_string(prepared.failure().kind)},
+                            {"reason", prepared.failure().message(scene.preparation.dimension)}});
         }
         return status_of(prepared.failure().kind);
     }

@@ -166,9 +166,9 @@ std::string advice(const Scene& scene, const Failure& failure, const Packing& pa
                                           : "";
 }
 
-SceneEnding ending_of(const Failure& failure, const std::string& where) {
-    return {status_of(failure.kind), fmt::format("{}{}: {}", where, to_string(failure.kind), failure.message()),
-            failure};
+SceneEnding ending_of(const Failure& failure, const std::string& where, int dimension) {
+    return {status_of(failure.kind),
+            fmt::format("{}{}: {}", where, to_string(failure.kind), failure.message(dimension)), failure};
 }
 
 SceneEnding play_scene(const Scene& scene, State state, RunDirectory& directory, const std::string& program,
@@ -202,7 +202,8 @@ SceneEnding play_scene(const Scene& scene, State state, RunDirectory& directory,
     RunObserver& observer = certifier ? static_cast<RunObserver&>(*certifier) : both;
     const ProgrammeOutcome outcome = play(programme, state, options, counters, observer);
     if (outcome.failure) {
-        SceneEnding ending = ending_of(*outcome.failure, fmt::format("segment \"{}\": ", outcome.segment));
+        SceneEnding ending =
+            ending_of(*outcome.failure, fmt::format("segment \"{}\": ", outcome.segment), state.packing.dimension);
         ending.reason += advice(scene, *outcome.failure, state.packing);
         return ending;
     }

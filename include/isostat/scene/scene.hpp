@@ -117,7 +117,7 @@ struct SceneEnding {
     std::optional<Failure> failure;
 };
 /// The ending that a failure makes; `where` begins the reason.
-SceneEnding ending_of(const Failure& failure, const std::string& where);
+SceneEnding ending_of(const Failure& failure, const std::string& where, int dimension);
 
 /// Plays the programme of the scene from `state`, or from the checkpoint of the folder when it has one, with the
 /// certificates that the level asks for. `further` is told after the folder. Ends after the arc in which `stop`

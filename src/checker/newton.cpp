@@ -79,11 +79,11 @@ Eigen::VectorXd System::product(const std::vector<double>& q, const Eigen::Vecto
         const Row& row = structure_.rows[l];
         double sum = 0;
         if (row.quadratic) {
-            std::array<double, 2> change{};
+            PerAxis<double> change{};
             for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
                 change[row.axis[k]] += row.sign[k] * at(row.coordinate[k]);
             }
-            for (const std::size_t a : {std::size_t{0}, std::size_t{1}}) {
+            for (std::size_t a = 0; a < packing_.axes(); ++a) {
                 double difference = 0;
                 row.separate(q, a, difference);
                 sum += difference * change[a];

@@ -1,6 +1,8 @@
 // The names of contacts in records.
 #include "checker/run_records.hpp"
 
+#include <fmt/format.h>
+
 #include <charconv>
 #include <limits>
 
@@ -22,25 +24,25 @@ bool take_word(std::string_view& text, std::string_view word) {
 }
 
 /// "held x of grain 4", after the first word.
-std::optional<Contact> held_coordinate(std::string_view rest) {
+std::optional<Contact> held_coordinate(std::string_view rest, int dimension) {
     constexpr int most_grains = 1 << 29;
-    const bool x = take_word(rest, "x of grain ");
+    const int axis = rest.empty() ? -1 : rest.front() - 'x';
     int grain = -1;
-    if ((!x && !take_word(rest, "y of grain ")) || !take(rest, grain) || !rest.empty() || grain < 0 ||
-        grain > most_grains) {
+    if (axis < 0 || axis >= dimension || (rest.remove_prefix(1), !take_word(rest, " of grain ")) ||
+        !take(rest, grain) || !rest.empty() || grain < 0 || grain > most_grains) {
         return {};
     }
-    return Contact{ContactKind::held, 2 * grain + (x ? 0 : 1), 0};
+    return Contact{ContactKind::held, dimension * grain + axis, 0};
 }
 
 /// What follows "3-": another disk, or a wall.
-std::optional<Contact> contact_with(int i, std::string_view rest) {
-    for (int axis = 0; axis < 2; ++axis) {
-        if (rest == (axis == 0 ? "left" : "bottom")) {
-            return Contact{ContactKind::lower_wall, i, axis};
-        }
-        if (rest == (axis == 0 ? "right" : "top")) {
-            return Contact{ContactKind::upper_wall, i, axis};
+std::optional<Contact> contact_with(int i, std::string_view rest, int dimension) {
+    for (int axis = 0; axis < dimension; ++axis) {
+        for (const ContactKind side : {ContactKind::lower_wall, ContactKind::upper_wall}) {
+            const Contact wall{side, i, axis};
+            if (to_string(wall, dimension).ends_with(fmt::format("-{}", rest))) {
+                return wall;
+            }
         }
     }
     int j = -1;
@@ -48,28 +50,32 @@ std::optional<Contact> contact_with(int i, std::string_view rest) {
     const bool pair = take(rest, j) && j >= 0;
     const bool here = rest.empty();
     constexpr auto farthest = std::numeric_limits<std::int8_t>::max(); // what has an opposite
-    const bool there = take_word(rest, "(") && take(rest, image.m[0]) && take_word(rest, ",") &&
-                       take(rest, image.m[1]) && rest == ")" && image.m[0] >= -farthest && image.m[1] >= -farthest;
+    bool there = !here;
+    for (std::size_t a = 0; a < static_cast<std::size_t>(dimension) && there; ++a) {
+        there = take_word(rest, a == 0 ? "(" : ",") && take(rest, image.m[a]) && image.m[a] >= -farthest;
+    }
+    there = there && rest == ")";
     return pair && (here || there) ? std::optional(Contact{ContactKind::disk_disk, i, j, image}) : std::nullopt;
 }
 
 } // namespace
 
-std::optional<Contact> contact_spelt(std::string_view name) {
+std::optional<Contact> contact_spelt(std::string_view name, int dimension) {
     std::string_view rest = name;
     int i = -1;
-    const std::optional<Contact> contact = take_word(rest, "held ")                          ? held_coordinate(rest)
-                                           : take(rest, i) && i >= 0 && take_word(rest, "-") ? contact_with(i, rest)
-                                                                                             : std::nullopt;
+    const std::optional<Contact> contact = take_word(rest, "held ") ? held_coordinate(rest, dimension)
+                                           : take(rest, i) && i >= 0 && take_word(rest, "-")
+                                               ? contact_with(i, rest, dimension)
+                                               : std::nullopt;
     const bool itself =
         contact && contact->kind == ContactKind::disk_disk && contact->i == contact->j && contact->image.is_here();
     const bool turned = contact && contact->kind == ContactKind::disk_disk &&
                         !(pair_of(contact->i, contact->j, contact->image) == *contact);
-    return contact && !itself && !turned && to_string(*contact) == name ? contact : std::nullopt;
+    return contact && !itself && !turned && to_string(*contact, dimension) == name ? contact : std::nullopt;
 }
 
 std::optional<Contact> contact_named(std::string_view name, const Packing& packing) {
-    const std::optional<Contact> contact = contact_spelt(name);
+    const std::optional<Contact> contact = contact_spelt(name, packing.dimension);
     if (!contact) {
         return {};
     }
@@ -78,7 +84,7 @@ std::optional<Contact> contact_named(std::string_view name, const Packing& packi
     }
     bool there = contact->i < packing.disk_count() &&
                  (contact->kind != ContactKind::disk_disk || contact->j < packing.disk_count());
-    for (std::size_t a = 0; a < 2; ++a) {
+    for (std::size_t a = 0; a < packing.axes(); ++a) {
         there = there && (contact->image.m[a] == 0 || packing.cell.periodic[a]);
     }
     return there ? contact : std::nullopt;
@@ -90,13 +96,20 @@ bool may_be(const Contact& columns, const Contact& pair) {
 
 std::optional<Contact> contact_of_columns(int i, int j, const Packing& packing) {
     const int disks = packing.disk_count();
-    if (i < 0 || i >= disks || j < -4 || j >= disks || (j >= 0 && j < i) || (i == j && !packing.cell.any())) {
+    if (i < 0 || i >= disks || j >= disks || (j >= 0 && j < i) || (i == j && !packing.cell.any())) {
         return {};
     }
     if (j >= 0) {
         return Contact{ContactKind::disk_disk, i, j};
     }
-    return j >= -2 ? Contact{ContactKind::lower_wall, i, -1 - j} : Contact{ContactKind::upper_wall, i, -3 - j};
+    for (int axis = 0; axis < packing.dimension; ++axis) {
+        for (const ContactKind side : {ContactKind::lower_wall, ContactKind::upper_wall}) {
+            if (contact_columns({side, i, axis}).second == j) {
+                return Contact{side, i, axis};
+            }
+        }
+    }
+    return {};
 }
 
 } // namespace isostat::checker

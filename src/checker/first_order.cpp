@@ -9,8 +9,8 @@ Range component(const Problem& problem, const Velocities::Solution& v, std::size
 }
 
 /// d of two disks, of what `at` says of the coordinates.
-template <class At> std::array<Range, 2> separate(const Row& row, At at) {
-    std::array<Range, 2> d;
+template <class At> PerAxis<Range> separate(const Row& row, At at) {
+    PerAxis<Range> d;
     for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
         d[row.axis[k]] =
             d[row.axis[k]] + Range(Rational(row.sign[k])) * at(static_cast<std::size_t>(row.coordinate[k]));
@@ -40,7 +40,7 @@ struct FirstMotion {
         for (std::size_t l = 0; l < result.size(); ++l) {
             const Row& row = problem.rows[l];
             const auto coordinate = [&row](std::size_t k) { return static_cast<std::size_t>(row.coordinate[k]); };
-            for (std::size_t a = 0; row.quadratic && a < 2; ++a) {
+            for (std::size_t a = 0; row.quadratic && a < problem.layout.axes(); ++a) {
                 row.separate(at, a, difference);
                 row.separate(v, a, change);
                 result[l] -= difference * change;
@@ -126,11 +126,14 @@ Range Velocities::gap_rate(const Contact& pair, const Solution& v) const {
         const Row row(pair, e_.problem.layout);
         const auto x = separate(row, [&](std::size_t k) { return place(e_.problem, e_.vertex, k); });
         const auto change = separate(row, [&](std::size_t k) { return component(e_.problem, v, k); });
-        const Range sum = x[0] * change[0] + x[1] * change[1];
+        Range sum = x[0] * change[0];
+        for (std::size_t a = 1; a < e_.problem.layout.axes(); ++a) {
+            sum = sum + x[a] * change[a];
+        }
         const Rational distance = Rational(e_.state.packing.radius[i]) + Rational(e_.state.packing.radius[j]);
         return sum / Range(distance);
     }
-    const Range x = component(e_.problem, v, 2 * i + j);
+    const Range x = component(e_.problem, v, e_.problem.layout.of_disk(pair.i) + j);
     return pair.kind == ContactKind::lower_wall ? x : component(e_.problem, v, e_.problem.layout.of_length(j)) - x;
 }
 
@@ -140,8 +143,12 @@ Range Velocities::turning(const Contact& pair, const Solution& v) const {
         return Range(Rational(0));
     }
     const Row row(pair, e_.problem.layout);
-    const auto [x, y] = separate(row, [&](std::size_t k) { return component(e_.problem, v, k); });
-    return x * x + y * y;
+    const auto change = separate(row, [&](std::size_t k) { return component(e_.problem, v, k); });
+    Range sum = change[0] * change[0];
+    for (std::size_t a = 1; a < e_.problem.layout.axes(); ++a) {
+        sum = sum + change[a] * change[a];
+    }
+    return sum;
 }
 
 Range Velocities::bend(const Contact& pair, std::size_t opened, const Solution& v) const {
@@ -207,10 +214,18 @@ std::vector<Range> FirstOrder::forces(const std::vector<Range>& f0) const {
             add(static_cast<std::size_t>(row.coordinate[k]), Range(Rational(row.sign[k])) * g * turn[row.axis[k]]);
         }
     }
-    if (e_.state.load.kind == LoadKind::true_stress) { // the force of a wall follows the other length
-        for (std::size_t a = 0; a < 2; ++a) {
-            const std::size_t wall = e_.problem.layout.of_length(0);
-            add(wall + a, Range(-Rational(e_.state.load.stress[a])) * component(e_.problem, change_, wall + 1 - a));
+    if (e_.state.load.kind == LoadKind::true_stress) { // the force of a wall follows the other lengths
+        const Layout& layout = e_.problem.layout;
+        for (std::size_t a = 0; a < layout.axes(); ++a) {
+            const Range stress(-Rational(e_.state.load.stress[a]));
+            for (std::size_t b = 0; b < layout.axes(); ++b) {
+                if (a != b) { // the third length, in space
+                    const std::size_t c = 3 - a - b;
+                    const Range third = layout.dimension == plane ? Range(Rational(1))
+                                                                  : place(e_.problem, e_.vertex, layout.of_length(c));
+                    add(layout.of_length(a), stress * third * component(e_.problem, change_, layout.of_length(b)));
+                }
+            }
         }
     }
     std::vector<Range> f1 = contact_forces(e_.problem, *e_.solver, e_.inverse, e_.vertex, load);

@@ -14,22 +14,34 @@ namespace isostat::checker {
 
 namespace {
 
+/// Between the centres of a pair.
+double distance(const Packing& packing, const std::vector<double>& q, const Contact& c) {
+    const Layout layout = packing.layout();
+    PerAxis<double> d{};
+    for (std::size_t a = 0; a < layout.axes(); ++a) {
+        d[a] = q[layout.of_disk(c.i) + a] - q[layout.of_disk(c.j) + a];
+        if (!c.image.is_here()) {
+            Row(c, layout).separate(q, a, d[a]);
+        }
+    }
+    return layout.dimension == plane ? std::hypot(d[0], d[1]) : std::hypot(d[0], d[1], d[2]);
+}
+
 /// The gap of a pair.
 double gap_at(const Packing& packing, const std::vector<double>& q, const Contact& c) {
     const auto i = static_cast<std::size_t>(c.i);
     const auto j = static_cast<std::size_t>(c.j);
     const auto& r = packing.radius;
     if (c.kind == ContactKind::disk_disk) {
-        double dx = q[2 * i] - q[2 * j];
-        double dy = q[2 * i + 1] - q[2 * j + 1];
-        if (!c.image.is_here()) {
-            const Row row(c, packing.layout());
-            row.separate(q, 0, dx);
-            row.separate(q, 1, dy);
-        }
-        return std::hypot(dx, dy) - r[i] - r[j];
+        return distance(packing, q, c) - r[i] - r[j];
     }
-    return (c.kind == ContactKind::lower_wall ? q[2 * i + j] : q[2 * r.size() + j] - q[2 * i + j]) - r[i];
+    const double x = q[packing.axes() * i + j];
+    return (c.kind == ContactKind::lower_wall ? x : q[packing.length_at(j)] - x) - r[i];
+}
+
+/// A gap moves by at most this times the fastest coordinate for each of the two grains: above sqrt d.
+double per_coordinate(const Packing& packing) {
+    return packing.dimension == plane ? 1.5 : 1.75;
 }
 
 /// The same between all images of disks; nothing: there are too many.
@@ -41,14 +53,15 @@ std::optional<std::vector<Contact>> near_pairs_in_cell(const Packing& packing, c
     if (!images.usable() || !range) {
         return {};
     }
-    const auto margin = [reach](int spread) { return 1.5 * reach * spread; }; // of the fastest of its coordinates
+    const auto margin = [&](int spread) { return per_coordinate(packing) * reach * spread; };
     const double farthest = widest + margin(2 + images.periods(*range));
     std::vector<Placed> places = images.near_cell(*range, farthest);
     std::sort(places.begin(), places.end(), [](const Placed& a, const Placed& b) { return a.at[0] < b.at[0]; });
     std::set<Contact> pairs; // one of each
     for (std::size_t p = 0; p < places.size(); ++p) {
         for (std::size_t k = p + 1; k < places.size() && places[k].at[0] - places[p].at[0] < farthest; ++k) {
-            if ((!places[p].central && !places[k].central) || std::abs(places[k].at[1] - places[p].at[1]) >= farthest) {
+            if ((!places[p].central && !places[k].central) || std::abs(places[k].at[1] - places[p].at[1]) >= farthest ||
+                std::abs(places[k].at[2] - places[p].at[2]) >= farthest) {
                 continue;
             }
             const Contact pair = pair_between(places[p], places[k]);
@@ -73,31 +86,32 @@ std::optional<std::vector<Contact>> near_pairs(const Packing& packing, const std
         pairs = std::move(*in_cell);
     }
     const auto n = packing.radius.size();
+    const std::size_t axes = packing.axes();
     const auto fixed = [&](std::size_t i) { return !packing.fixed.empty() && packing.fixed[i] != 0; };
     std::vector<std::size_t> order(n);
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return q[2 * i] < q[2 * j]; });
-    const double widest = 2 * packing.max_radius() + 3 * reach;
+    std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return q[axes * i] < q[axes * j]; });
+    const double margin = 2 * per_coordinate(packing) * reach;
+    const double widest = 2 * packing.max_radius() + margin;
     for (std::size_t p = 0; p < n; ++p) {
         const std::size_t i = order[p];
-        for (std::size_t k = p + 1; !cell && k < n && q[2 * order[k]] - q[2 * i] < widest; ++k) {
+        for (std::size_t k = p + 1; !cell && k < n && q[axes * order[k]] - q[axes * i] < widest; ++k) {
             const std::size_t j = order[k];
-            if (std::abs(q[2 * i + 1] - q[2 * j + 1]) >= widest) {
+            if (std::abs(q[axes * i + 1] - q[axes * j + 1]) >= widest) {
                 continue;
             }
-            const double distance = std::hypot(q[2 * i] - q[2 * j], q[2 * i + 1] - q[2 * j + 1]);
-            if (distance - packing.radius[i] - packing.radius[j] < 3 * reach && !(fixed(i) && fixed(j))) {
-                pairs.push_back(
-                    {ContactKind::disk_disk, static_cast<int>(std::min(i, j)), static_cast<int>(std::max(i, j))});
+            const Contact pair = pair_of(static_cast<int>(i), static_cast<int>(j));
+            if (gap_at(packing, q, pair) < margin && !(fixed(i) && fixed(j))) {
+                pairs.push_back(pair);
             }
         }
-        for (std::size_t a = 0; a < 2 && !fixed(i); ++a) {
-            if (packing.walls.lower[a] != WallKind::absent && q[2 * i + a] - packing.radius[i] < 3 * reach) {
-                pairs.push_back({ContactKind::lower_wall, static_cast<int>(i), static_cast<int>(a)});
-            }
-            if (packing.walls.upper[a] != WallKind::absent &&
-                q[2 * n + a] - q[2 * i + a] - packing.radius[i] < 3 * reach) {
-                pairs.push_back({ContactKind::upper_wall, static_cast<int>(i), static_cast<int>(a)});
+        for (std::size_t a = 0; a < axes && !fixed(i); ++a) {
+            for (const ContactKind side : {ContactKind::lower_wall, ContactKind::upper_wall}) {
+                const auto& walls = side == ContactKind::lower_wall ? packing.walls.lower : packing.walls.upper;
+                const Contact pair{side, static_cast<int>(i), static_cast<int>(a)};
+                if (walls[a] != WallKind::absent && gap_at(packing, q, pair) < margin) {
+                    pairs.push_back(pair);
+                }
             }
         }
     }
@@ -262,7 +276,7 @@ class Walk {
             return {false,
                     {},
                     fmt::format("the power of the load turns near {}, but {} is held at {}", q_[c],
-                                to_string(motion_.closed), motion_.held_at)};
+                                name(motion_.closed), motion_.held_at)};
         }
         return {false, std::clamp(way != 0 ? (motion_.held_at - q_[c]) / way : 0, 0.0, 1.0), {}};
     }
@@ -271,8 +285,7 @@ class Walk {
     [[nodiscard]] Met closing(const std::vector<double>& next, bool first) const {
         constexpr double rounding = 0x1p-50; // of a velocity, whose largest component is 1
         if (powered_ && power_ < -1e-6 * power_size_.terms && power_ < -rounding * power_size_.load) {
-            return {
-                false, {}, fmt::format("the power of the load vanishes before {} closes", to_string(motion_.closed))};
+            return {false, {}, fmt::format("the power of the load vanishes before {} closes", name(motion_.closed))};
         }
         const double before = kept_.value(q_, motion_.closed);
         const double after = kept_.value(next, motion_.closed);
@@ -322,7 +335,7 @@ class Walk {
         };
         for (const Contact& pair : pairs_) {
             if (pair != motion_.closed && gap_at(from_.packing, next, pair) < -tolerance_ && !kept(pair)) {
-                return fmt::format("{} close before {}", to_string(pair), to_string(motion_.closed));
+                return fmt::format("{} close before {}", name(pair), name(motion_.closed));
             }
         }
         return {};
@@ -380,6 +393,8 @@ class Walk {
         }
         return moved;
     }
+
+    [[nodiscard]] std::string name(const Contact& contact) const { return to_string(contact, from_.packing.dimension); }
 
     const State& from_;
     const Motion& motion_;

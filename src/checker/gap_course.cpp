@@ -32,16 +32,16 @@ Bounds value_of(const std::vector<Bounds>& c, const Bounds& s, int derivative) {
 /// Relative position of the two grains of a pair along p(s), and how far the curve may be from it.
 struct GapCourses::Motion {
     Motion(const Tube& tube, const Moving& moving, const Contact& pair)
-        : wall(pair.kind != ContactKind::disk_disk), target(moving.state.packing.radius[at(pair.i)]) {
-        const std::size_t disks = moving.state.packing.radius.size();
+        : wall(pair.kind != ContactKind::disk_disk), target(moving.state.packing.radius[at(pair.i)]),
+          x(wall ? 1 : moving.state.packing.axes()) {
+        const Layout layout = moving.state.packing.layout();
         if (!wall) {
             target = target + moving.state.packing.radius[at(pair.j)];
         }
         const auto add = [&](const std::vector<double>& q) {
-            const Pair<Bounds> d = difference(q, pair, disks);
-            x[0].push_back(d[0]);
-            if (!wall) {
-                x[1].push_back(d[1]);
+            const Separation<Bounds> d = difference(q, pair, layout);
+            for (std::size_t a = 0; a < (wall ? 1 : d.axes); ++a) {
+                x[a].push_back(d[a]);
             }
         };
         add(tube.centre());
@@ -96,7 +96,7 @@ struct GapCourses::Motion {
 
     bool wall;
     Bounds target;
-    std::array<std::vector<Bounds>, 2> x;
+    std::vector<std::vector<Bounds>> x; ///< of each axis; of a wall the one
     double apart = 0;
     double rate_apart = 0;
 };
@@ -146,7 +146,8 @@ bool GapCourses::look(const Tube& tube, const Contact& pair, double from, double
     const auto found = last_.find(pair);
     std::optional<Course> last = found == last_.end() ? std::nullopt : std::optional(found->second);
     if (!walk(Motion(tube, moving_, pair), from, to, 0, last)) {
-        trouble_ = fmt::format("the gap of {} is not proved positive", to_string(pair));
+        trouble_ =
+            fmt::format("the gap of {} is not proved positive", to_string(pair, moving_.state.packing.dimension));
         return false;
     }
     if (last) {
@@ -170,14 +171,37 @@ double largest_entry(const std::vector<double>& x) {
 constexpr double more = 1 + 1e-12; // the roundings of a difference and of four sums
 
 /// Of the centres.
-double extent(const std::vector<double>& q, std::size_t disks) {
-    std::array<double, 2> low{q[0], q[1]};
-    std::array<double, 2> high = low;
-    for (std::size_t k = 0; k < 2 * disks; ++k) {
-        low[k % 2] = std::min(low[k % 2], q[k]);
-        high[k % 2] = std::max(high[k % 2], q[k]);
+double extent(const std::vector<double>& q, const Layout& layout) {
+    PerAxis<double> low{};
+    std::copy_n(q.begin(), layout.dimension, low.begin());
+    PerAxis<double> high = low;
+    for (std::size_t k = 0; k < layout.of_length(0); ++k) {
+        const std::size_t a = k % layout.axes();
+        low[a] = std::min(low[a], q[k]);
+        high[a] = std::max(high[a], q[k]);
     }
-    return std::hypot(high[0] - low[0], high[1] - low[1]) * more;
+    return std::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]) * more;
+}
+
+/// No singular value of the periodic part of A is below: its determinant over the product of the other two, which is
+/// at most half of the sum of all squares; of two periods the determinant over the root of that sum.
+double least_stretch(const Packing& packing, const std::vector<double>& q) {
+    double determinant = 1;
+    double squares = 0;
+    for (std::size_t b = 0; b < packing.axes(); ++b) {
+        for (std::size_t a = 0; a <= b; ++a) {
+            if (packing.cell.periodic[a] && packing.cell.periodic[b]) {
+                const double entry = q[a == b ? packing.length_at(a) : packing.tilt_at(a, b)];
+                determinant *= a == b ? entry : 1;
+                squares += entry * entry;
+            }
+        }
+    }
+    switch (packing.cell.periodic_axes()) {
+    case 1: return determinant;
+    case 2: return determinant / std::sqrt(squares);
+    default: return 2 * determinant / squares;
+    }
 }
 
 } // namespace
@@ -193,11 +217,13 @@ std::vector<double> GapCourses::ways(const Tube& tube, double h) const {
         return sum_above(sum, moving_.moves[k] ? tube.radius() : moving_.loose[k] ? moving_.rest : 0);
     };
     std::vector<double> way(disks + 1);
+    const Packing& packing = moving_.state.packing;
     for (std::size_t g = 0; g <= disks; ++g) {
-        way[g] = sum_above(way_of(2 * g), way_of(2 * g + 1));
-    }
-    if (moving_.state.packing.cell.any()) {
-        way[disks] = sum_above(way[disks], way_of(2 * disks + 2));
+        const std::size_t first = packing.axes() * g;
+        const std::size_t tilts = g == disks && packing.cell.any() ? packing.tilts() : 0;
+        for (std::size_t k = 0; k < packing.axes() + tilts; ++k) {
+            way[g] = k == 0 ? way_of(first) : sum_above(way[g], way_of(first + k));
+        }
     }
     return way;
 }
@@ -206,22 +232,29 @@ std::vector<double> GapCourses::ways(const Tube& tube, double h) const {
 std::optional<std::vector<Contact>> GapCourses::near_disks(const Tube& tube, const std::vector<double>& way) const {
     const Packing& packing = moving_.state.packing;
     const std::size_t disks = packing.radius.size();
+    const std::size_t axes = packing.axes();
     const std::vector<double>& q = tube.centre();
     const double most = *std::max_element(way.begin(), way.end());
     const double widest = 2 * (packing.max_radius() + most) * more;
     std::vector<std::size_t> order(disks);
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return q[2 * a] < q[2 * b]; });
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return q[axes * a] < q[axes * b]; });
     std::vector<Contact> pairs;
     for (std::size_t p = 0; p < disks; ++p) {
         const std::size_t i = order[p];
-        for (std::size_t k = p + 1; k < disks && q[2 * order[k]] - q[2 * i] <= widest; ++k) {
+        for (std::size_t k = p + 1; k < disks && q[axes * order[k]] - q[axes * i] <= widest; ++k) {
             const std::size_t j = order[k];
             const double near = (packing.radius[i] + packing.radius[j] + way[i] + way[j]) * more;
-            if ((moving_.moves[2 * i] || moving_.moves[2 * j]) && std::abs(q[2 * i] - q[2 * j]) <= near &&
-                std::abs(q[2 * i + 1] - q[2 * j + 1]) <= near) {
-                pairs.push_back(
-                    {ContactKind::disk_disk, static_cast<int>(std::min(i, j)), static_cast<int>(std::max(i, j))});
+            const Contact pair = pair_of(static_cast<int>(i), static_cast<int>(j));
+            if (!moving_.disk_moves(pair.i) && !moving_.disk_moves(pair.j)) {
+                continue;
+            }
+            bool apart = false;
+            for (std::size_t a = 0; a < axes; ++a) {
+                apart = apart || std::abs(q[axes * i + a] - q[axes * j + a]) > near;
+            }
+            if (!apart) {
+                pairs.push_back(pair);
             }
         }
     }
@@ -233,13 +266,9 @@ std::optional<std::vector<Contact>> GapCourses::near_images(const Tube& tube, co
     const Packing& packing = moving_.state.packing;
     const std::vector<double>& q = tube.centre();
     const std::size_t disks = packing.radius.size();
-    const std::array<double, 3> cell{q[2 * disks], q[2 * disks + 1], q[2 * disks + 2]};
-    const double stretch = packing.cell.all()         ? cell[0] * cell[1] / std::hypot(cell[0], cell[1], cell[2])
-                           : packing.cell.periodic[0] ? cell[0]
-                                                      : cell[1];
-    const double strain = way[disks] / stretch * more; // |dA| over the smallest singular value of A
+    const double strain = way[disks] / least_stretch(packing, q) * more; // |dA| over the smallest singular value of A
     const CellImages images(packing, q);
-    const double shift = strain * extent(q, disks);
+    const double shift = strain * extent(q, packing.layout());
     const auto reach = [&](std::size_t i, std::size_t j) {
         return (packing.radius[i] + packing.radius[j] + way[i] + way[j] + shift) / (1 - strain) * more;
     };
@@ -259,7 +288,7 @@ std::optional<std::vector<Contact>> GapCourses::near_images(const Tube& tube, co
             const Placed& two = places[k];
             const double near = reach(at(one.disk), at(two.disk)) + slack;
             if ((one.central || two.central) && two.at[0] - one.at[0] <= near &&
-                std::abs(two.at[1] - one.at[1]) <= near) {
+                std::abs(two.at[1] - one.at[1]) <= near && std::abs(two.at[2] - one.at[2]) <= near) {
                 if (const Contact pair = pair_between(one, two); moving_.takes_part(pair)) {
                     pairs.insert(pair);
                 }
@@ -276,14 +305,15 @@ std::vector<Contact> GapCourses::near_walls(const Tube& tube, const std::vector<
     const std::vector<double>& q = tube.centre();
     std::vector<Contact> pairs;
     for (std::size_t i = 0; i < disks; ++i) {
-        for (std::size_t a = 0; a < 2; ++a) {
+        for (std::size_t a = 0; a < packing.axes(); ++a) {
             const double near = (packing.radius[i] + way[i] + way[disks]) * more;
-            const bool moves = moving_.moves[2 * i + a];
-            if (packing.walls.lower[a] != WallKind::absent && moves && q[2 * i + a] <= near) {
+            const std::size_t x = packing.axes() * i + a;
+            const bool moves = moving_.moves[x];
+            if (packing.walls.lower[a] != WallKind::absent && moves && q[x] <= near) {
                 pairs.push_back({ContactKind::lower_wall, static_cast<int>(i), static_cast<int>(a)});
             }
-            if (packing.walls.upper[a] != WallKind::absent && (moves || moving_.moves[2 * disks + a]) &&
-                q[2 * disks + a] - q[2 * i + a] <= near) {
+            if (packing.walls.upper[a] != WallKind::absent && (moves || moving_.moves[packing.length_at(a)]) &&
+                q[packing.length_at(a)] - q[x] <= near) {
                 pairs.push_back({ContactKind::upper_wall, static_cast<int>(i), static_cast<int>(a)});
             }
         }

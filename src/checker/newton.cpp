@@ -35,14 +35,11 @@ template <class T> T System::value(const std::vector<T>& q, const Contact& c) co
     }
     if (c.kind == ContactKind::disk_disk) {
         const Row row(c, packing_.layout());
-        T dx = 0;
-        T dy = 0;
-        row.separate(q, 0, dx);
-        row.separate(q, 1, dy);
         const T sum = T(r[i]) + r[j];
-        return (dx * dx + dy * dy - sum * sum) / 2;
+        return (row.square(q, packing_.axes()) - sum * sum) / 2;
     }
-    return weight_ * ((c.kind == ContactKind::lower_wall ? q[2 * i + j] : q[2 * r.size() + j] - q[2 * i + j]) - r[i]);
+    const T& x = q[packing_.axes() * i + j];
+    return weight_ * ((c.kind == ContactKind::lower_wall ? x : T(q[packing_.length_at(j)] - x)) - r[i]);
 }
 
 void System::renew(const std::vector<double>& q) {

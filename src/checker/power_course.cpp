@@ -41,35 +41,34 @@ bool exceeds(const std::vector<Bounds>& c, const std::vector<Bounds>& slope, dou
 
 /// Rows of A(m)^T times the multipliers, added to the force.
 void add_rows(std::vector<Bounds>& force, const Moving& moving, const Tube& tube, const std::vector<double>& g) {
-    const std::size_t walls = 2 * moving.state.packing.radius.size();
+    const Layout layout = moving.state.packing.layout();
     const std::vector<double>& m = tube.centre();
     const Bounds weight(tube.weight());
     for (std::size_t l = 0; l < moving.kept.size(); ++l) {
         const Contact& c = moving.kept[l];
         const auto i = at(c.i);
         const auto j = at(c.j);
+        const std::size_t of_i = c.kind == ContactKind::held ? i : layout.of_disk(c.i);
         if (c.kind == ContactKind::held) {
             force[i] = force[i] + weight * g[l];
         } else if (c.kind == ContactKind::disk_disk) {
-            const Pair<Bounds> d = difference(m, c, moving.state.packing.radius.size());
-            for (std::size_t a = 0; a < 2; ++a) {
+            const Separation<Bounds> d = difference(m, c, layout);
+            for (std::size_t a = 0; a < d.axes; ++a) {
                 const Bounds part = d[a] * g[l];
                 if (i != j) {
-                    force[2 * i + a] = force[2 * i + a] + part;
-                    force[2 * j + a] = force[2 * j + a] - part;
+                    force[of_i + a] = force[of_i + a] + part;
+                    force[layout.of_disk(c.j) + a] = force[layout.of_disk(c.j) + a] - part;
                 }
-                if (!c.image.is_here()) {
-                    force[walls + a] = force[walls + a] - part * static_cast<double>(c.image.m[a]);
+                for (std::size_t b = a; b < d.axes && !c.image.is_here(); ++b) {
+                    Bounds& of_cell = force[a == b ? layout.of_length(a) : layout.of_tilt(a, b)];
+                    of_cell = of_cell - part * static_cast<double>(c.image.m[b]);
                 }
-            }
-            if (!c.image.is_here()) { // the tilt
-                force[walls + 2] = force[walls + 2] - d[0] * g[l] * static_cast<double>(c.image.m[1]);
             }
         } else {
             const Bounds part = weight * g[l] * (c.kind == ContactKind::lower_wall ? 1.0 : -1.0);
-            force[2 * i + j] = force[2 * i + j] + part;
+            force[of_i + j] = force[of_i + j] + part;
             if (c.kind == ContactKind::upper_wall) {
-                force[walls + j] = force[walls + j] - part;
+                force[layout.of_length(j)] = force[layout.of_length(j)] - part;
             }
         }
     }
@@ -84,22 +83,20 @@ class Bending {
 
     void add(const Contact& c, double g, std::vector<Bounds>& power) {
         const auto& a = tube_.coefficients();
-        std::vector<std::array<Bounds, 2>> d(a.size() + 1);
+        const Layout layout = moving_.state.packing.layout();
+        std::vector<Separation<Bounds>> d(a.size() + 1, Separation<Bounds>(layout.axes()));
         double way = 0;
         double rate = 0;
         for (std::size_t k = a.size(); k > 0; --k) {
-            d[k] = difference(a[k - 1], c, moving_.state.packing.radius.size());
-            const double x = d[k][0].size();
-            const double y = d[k][1].size();
-            const double size = root_above(sum_above(product_above(x, x), product_above(y, y)));
+            d[k] = difference(a[k - 1], c, layout);
+            const double size = length_above(d[k]);
             way = product_above(sum_above(way, size), h_);
             rate = sum_above(product_above(rate, h_), product_above(size, static_cast<double>(k)));
         }
         power.resize(std::max(power.size(), 2 * d.size()), Bounds(0));
         for (std::size_t i = 1; i < d.size(); ++i) {
             for (std::size_t j = 1; j < d.size(); ++j) {
-                power[i + j - 1] =
-                    power[i + j - 1] + (d[i][0] * d[j][0] + d[i][1] * d[j][1]) * (g * static_cast<double>(j));
+                power[i + j - 1] = power[i + j - 1] + product(d[i], d[j]) * (g * static_cast<double>(j));
             }
         }
         const double size = std::abs(g);
@@ -135,7 +132,7 @@ class Bending {
 
 bool power_is_positive(const Pushing& load, const Moving& moving, const Tube& tube, double from, double to) {
     const auto& a = tube.coefficients();
-    const std::size_t walls = 2 * moving.state.packing.radius.size();
+    const std::size_t walls = moving.state.packing.length_at(0);
     const double h = std::max(std::abs(from), std::abs(to));
     const double fast = sum_above(tube.speed(), tube.slope_error());
     std::vector<Bounds> force(moving.moves.size(), Bounds(0));
@@ -144,7 +141,7 @@ bool power_is_positive(const Pushing& load, const Moving& moving, const Tube& tu
     }
     std::vector<Bounds> power(1, Bounds(0));
     double open = 0;
-    for (std::size_t axis = 0; axis < 2; ++axis) {
+    for (std::size_t axis = 0; axis < load.per_length.size(); ++axis) {
         const std::size_t own = walls + axis;
         const std::size_t other = walls + 1 - axis;
         const double stress = load.per_length[axis];

@@ -12,8 +12,9 @@ namespace isostat::checker {
 /// The load while the arc is followed.
 struct Pushing {
     std::vector<Bounds> fixed; ///< per coordinate
-    /// True stresses: the force on the upper wall of an axis is besides minus this times the length of the other axis.
-    std::array<double, 2> per_length{};
+    /// True stresses in the plane: the force on the upper wall of an axis is besides minus this times the length of the
+    /// other axis.
+    std::array<double, plane> per_length{};
 };
 
 /// Whether F . q' is positive for all s in [from, to].

@@ -156,7 +156,7 @@ ExactLoad meant_load(const State& state) {
     // A stored load is that one rounded. One farther away is meant by no file: then the stored load is taken as it is.
     const Range step = step_to_limit(at, l);
     const auto& stress = state.load.stress;
-    const Rational room(record_tolerance * std::max(std::abs(stress[0]), std::abs(stress[1])));
+    const Rational room(record_tolerance * std::max({std::abs(stress[0]), std::abs(stress[1]), std::abs(stress[2])}));
     if (step.lower < -room || step.upper > room) {
         return {};
     }
@@ -192,7 +192,7 @@ Objections decide(const Place& place, Decision& decision) {
     return {};
 }
 
-Objections compare(const char* name, const Bounded& said, const Range& found, double loosest) {
+Objections compare(const std::string& name, const Bounded& said, const Range& found, double loosest) {
     const auto [value, bound] = said;
     if (!std::isfinite(value) || !(bound >= 0)) {
         return Objection{true, fmt::format("{} is {} +- {}, found {}", name, value, bound, shown(found))};
@@ -215,7 +215,7 @@ Objections compare(const char* name, const Bounded& said, const Range& found, do
                      fmt::format("{} is {} +- {}, found {}", name, value, bound, shown(found))};
 }
 
-Objections compare_if_bounded(const char* name, const Bounded& said, const Range& found, double loosest) {
+Objections compare_if_bounded(const std::string& name, const Bounded& said, const Range& found, double loosest) {
     return std::isnan(said.bound) ? Objection{false, fmt::format("{} is {}, without a bound", name, said.value), true}
                                   : compare(name, said, found, loosest);
 }

@@ -44,7 +44,7 @@ struct Bounded {
 };
 
 /// The number found lies within the bound; undecided when the bound is above `loosest`.
-Objections compare(const char* name, const Bounded& said, const Range& found, double loosest);
+Objections compare(const std::string& name, const Bounded& said, const Range& found, double loosest);
 
 /// A first-order term with its bound against what was found: the two have a number in common. A wide bound contradicts
 /// nothing and is evidence of nothing: what hangs on the term is decided by the range that was found.
@@ -54,7 +54,7 @@ Objections check_said(const std::string& what, const Bounded& said, const Range&
 double largest_force(const std::vector<Range>& forces);
 
 /// The same for a number that may be recorded without a bound (NaN): undecided then.
-Objections compare_if_bounded(const char* name, const Bounded& said, const Range& found, double loosest);
+Objections compare_if_bounded(const std::string& name, const Bounded& said, const Range& found, double loosest);
 
 /// A vertex at a load. The state stays where it is: the evidence refers to it. Forces are those at the exact load.
 struct Place {
@@ -74,6 +74,10 @@ struct Place {
 
     [[nodiscard]] bool is_held(std::size_t contact) const { return state->contacts[contact].kind == ContactKind::held; }
 
+    /// A contact as records spell it.
+    [[nodiscard]] std::string named(const Contact& contact) const {
+        return to_string(contact, state->packing.dimension);
+    }
     [[nodiscard]] double stress() const { return state->load.loaded_stress(); }
     /// The nearest pairs (K9); swept for when first asked for, by one thread.
     [[nodiscard]] const std::vector<Gap>& gaps() const;

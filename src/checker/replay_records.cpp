@@ -14,7 +14,7 @@ namespace isostat::checker {
 namespace {
 
 /// A recorded number against what was found, to `record_tolerance` of `size`.
-Objections compare(const char* name, double recorded, const Range& found, double size) {
+Objections compare(const std::string& name, double recorded, const Range& found, double size) {
     const Rational room = Rational(record_tolerance) * Rational(std::max(size, 1e-300));
     if (std::isfinite(recorded) && Rational(recorded) >= found.lower - room &&
         Rational(recorded) <= found.upper + room) {
@@ -24,26 +24,22 @@ Objections compare(const char* name, double recorded, const Range& found, double
 }
 
 /// A column with its column `_bound`.
-Objections compare(const char* name, const EquilibriumLine& line, const Range& found, double size) {
+Objections compare(const std::string& name, const EquilibriumLine& line, const Range& found, double size) {
     return compare(name, Bounded{line.at(name), line.bound(name)}, found, record_tolerance * size);
 }
 
-Objections compare(const char* name, int recorded, int found) {
+Objections compare(const std::string& name, int recorded, int found) {
     if (recorded == found) {
         return {};
     }
     return Objection{true, fmt::format("{} is {}, found {}", name, recorded, found)};
 }
 
-/// 0 without a length of reference. Axis 2: the tilt.
+/// 0 without a length of reference. Behind the axes the tilts: A_ab over the length of b.
 Range strain_of(const Place& place, int axis) {
-    const PerAxis<double>& lengths = place.state->load.reference_length;
-    if (axis == 2) { // the tilt, over the height
-        return (Range(Rational(place.state->load.reference_tilt[0])) - place.length(axis)) /
-               Range(Rational(lengths[1]));
-    }
-    const Range reference{Rational(lengths[static_cast<std::size_t>(axis)])};
-    return reference.positive() ? (reference - place.length(axis)) / reference : Range(Rational(0));
+    const Load& load = place.state->load;
+    const Range over{Rational(load.strain_length(axis))};
+    return over.positive() ? (Range(Rational(load.at_rest(axis))) - place.length(axis)) / over : Range(Rational(0));
 }
 
 /// Work of a load between two vertices.
@@ -124,7 +120,7 @@ Objections check_smallest_gap(const Place& place, const EquilibriumLine& line) {
         [&](std::size_t l) { return compare("min_gap", line, near[l].value, size); });
     return found ? *found
                  : Objection{true, fmt::format("min_gap is said to be of {}, found of {}",
-                                               pair ? to_string(*pair) : "no pair", to_string(near[0].pair))};
+                                               pair ? place.named(*pair) : "no pair", place.named(near[0].pair))};
 }
 
 Objections check_smallest_force(const Place& place, const EquilibriumLine& line) {
@@ -153,7 +149,7 @@ Objections check_smallest_force(const Place& place, const EquilibriumLine& line)
 }
 
 Objections check_interval(const Place& place, const EquilibriumLine& line, bool high) {
-    const char* name = high ? "sigma2_high" : "sigma2_low";
+    const std::string name = line.names->stress + (high ? "_high" : "_low");
     const Bounded stress{line.at(name), line.bound(name)};
     const auto opens = contact_of_columns(line.integer(high ? "opens_high_i" : "opens_low_i"),
                                           line.integer(high ? "opens_high_j" : "opens_low_j"), place.state->packing);
@@ -178,13 +174,13 @@ Objections check_interval(const Place& place, const EquilibriumLine& line, bool 
         ExactLoad unused;
         const Range& slope = place.evidence->slopes()[opened];
         if (high ? slope.positive() : slope.negative()) {
-            return Objection{true, fmt::format("the force of {} grows in this direction", to_string(*opens))};
+            return Objection{true, fmt::format("the force of {} grows in this direction", place.named(*opens))};
         }
         return place.first ? check_limit_at(place, stress, opened, unused, nullptr)
                            : check_load_end(place, stress, opened, direction);
     });
     if (!found) {
-        return Objection{true, fmt::format("{} ends the supported interval, but is no contact", to_string(*opens))};
+        return Objection{true, fmt::format("{} ends the supported interval, but is no contact", place.named(*opens))};
     }
     if (*found) {
         (*found)->text = fmt::format("{}: {}", name, (*found)->text);
@@ -193,9 +189,9 @@ Objections check_interval(const Place& place, const EquilibriumLine& line, bool 
 }
 
 /// What the record says of a pair that touches at the end; null: nothing.
-const TieRecord* said_of_gap(const EventRecord& event, const Contact& pair) {
+const TieRecord* said_of_gap(const EventRecord& event, const std::string& pair) {
     const auto tie = std::find_if(event.ties.begin(), event.ties.end(),
-                                  [&](const TieRecord& t) { return t.what == "gap" && t.against == to_string(pair); });
+                                  [&](const TieRecord& t) { return t.what == "gap" && t.against == pair; });
     return tie == event.ties.end() ? nullptr : &*tie;
 }
 
@@ -205,9 +201,8 @@ bool is_first_order_step(const EventRecord& event) {
 }
 
 /// A pair touches, and would overlap with radii R_i + eps rho_i.
-Objection touches(const Contact& pair, const char* where, const Range& first) {
-    return {first.negative(),
-            fmt::format("{} touch at {}, first-order gap in {}", to_string(pair), where, shown(first))};
+Objection touches(const std::string& pair, const char* where, const Range& first) {
+    return {first.negative(), fmt::format("{} touch at {}, first-order gap in {}", pair, where, shown(first))};
 }
 
 /// No pair overlaps. `settled`: what is to be said of pairs that touch, with their first-order gaps.
@@ -220,11 +215,11 @@ template <class Settled> Objections check_no_overlap(const Place& place, const c
             continue;
         }
         if (gap.value.negative()) {
-            return Objection{true,
-                             fmt::format("{} overlap at {}, gap in {}", to_string(gap.pair), where, shown(gap.value))};
+            return Objection{
+                true, fmt::format("{} overlap at {}, gap in {}", place.named(gap.pair), where, shown(gap.value))};
         }
         if (!gap.value.positive()) {
-            return Objection{false, fmt::format("{} may overlap at {}", to_string(gap.pair), where)};
+            return Objection{false, fmt::format("{} may overlap at {}", place.named(gap.pair), where)};
         }
     }
     return {};
@@ -259,7 +254,7 @@ Objections check_power_at_contact(const Place& to, const EventRecord& event, boo
 /// By how much Phi = sum sigma_a ln L_a falls (S5 (b), stability.md). \pre true stresses, without loads on disks
 Range fall_of_phi(const Place& from, const Place& to) {
     Range fall(Rational(0));
-    for (int a = 0; a < 2; ++a) {
+    for (int a = 0; a < to.state->packing.dimension; ++a) {
         const Range stress{Rational(to.state->load.stress[static_cast<std::size_t>(a)])};
         fall = fall + stress * logarithm(from.length(a) / to.length(a));
     }
@@ -378,30 +373,29 @@ Range potential_of(const Place& place, double& size) {
 /// Stresses, strains, lengths, potential and solid fraction.
 Objections check_measures(const Place& place, const EquilibriumLine& line) {
     const Load& load = place.state->load;
-    const bool shears = load.loaded_axis == 2;
-    const int other = shears ? 1 : 1 - load.loaded_axis;
-    const double sigma = shears ? load.shear[0] : load.stress[static_cast<std::size_t>(load.loaded_axis)];
-    const double across = load.stress[static_cast<std::size_t>(other)];
-    const double box = std::max(place.state->packing.length(0), place.state->packing.length(1));
-    const std::vector<std::tuple<const char*, Range, double>> without_bound{
-        {"sigma2", Range(Rational(sigma)), std::abs(sigma)},
+    const double sigma = load.loaded_stress();
+    const double across = load.other_stress();
+    double box = 0;
+    for (int a = 0; a < load.dimension; ++a) {
+        box = std::max(box, place.state->packing.length(a));
+    }
+    const std::vector<std::tuple<std::string, Range, double>> without_bound{
+        {line.names->stress, Range(Rational(sigma)), std::abs(sigma)},
         {"ratio", Range(Rational(sigma)) / Range(Rational(across)), std::abs(sigma / across)}};
     for (const auto& [name, found, scale] : without_bound) {
         if (Objections wrong = compare(name, line.at(name), found, scale)) {
             return wrong;
         }
     }
-    std::vector<std::tuple<const char*, Range, double>> with_bound{{"eps1", strain_of(place, other), 1},
-                                                                   {"eps2", strain_of(place, load.loaded_axis), 1},
-                                                                   {"L1", place.length(other), box},
-                                                                   {"L2", place.length(load.loaded_axis), box}};
-    if (line.has("L3") != place.state->packing.cell.tilt_moves[0]) {
-        return Objection{true, "the columns of a third length belong to cells whose tilt moves"};
+    std::vector<std::tuple<std::string, Range, double>> with_bound;
+    const RecordColumns names = record_columns(load, place.state->packing.cell.shears());
+    if (names.measures.size() != line.names->measures.size() || names.stress != line.names->stress) {
+        return Objection{true, "the columns are those of another dimension, of another load, or of tilts that move or "
+                               "do not"};
     }
-    if (line.has("L3")) {
-        const int third = shears ? 0 : 2;
-        with_bound.emplace_back("eps3", strain_of(place, third), 1);
-        with_bound.emplace_back("L3", place.length(third), box);
+    for (const auto& [strain, length, axis] : names.measures) {
+        with_bound.emplace_back(strain, strain_of(place, static_cast<int>(axis)), 1);
+        with_bound.emplace_back(length, place.length(static_cast<int>(axis)), box);
     }
     if (load.kind == LoadKind::nominal) {
         double size = 0;
@@ -423,20 +417,21 @@ Objections check_measures(const Place& place, const EquilibriumLine& line) {
 } // namespace
 
 Objections check_end(const Place& from, const Place& to, const EventRecord& event, bool rattles) {
-    if (Objections wrong = compare_if_bounded("eps2", {event.strain, event.strain_bound},
-                                              strain_of(to, to.state->load.loaded_axis), arc_strain_tolerance)) {
+    if (Objections wrong =
+            compare_if_bounded(record_columns(to.state->load, false).strain, {event.strain, event.strain_bound},
+                               strain_of(to, to.state->load.loaded_axis), arc_strain_tolerance)) {
         return wrong;
     }
     const auto settled = [&](const Contact& pair, const Range& first) -> Objections {
-        const TieRecord* said = said_of_gap(event, pair);
+        const TieRecord* said = said_of_gap(event, to.named(pair));
         const bool left = to.chooses && (first.has_zero() || (said != nullptr && said->choice == "watched"));
         if (!first.positive() && !left) {
-            return touches(pair, "the end of the arc", first);
+            return touches(to.named(pair), "the end of the arc", first);
         }
         return said != nullptr ? Objections() // else a run with more digits may have told the gap from 0
                                : Objection{false, fmt::format("{} touch at the end of the arc as far as is seen, and "
                                                               "the record does not name them",
-                                                              to_string(pair))};
+                                                              to.named(pair))};
     };
     if (Objections wrong = check_no_overlap(to, "the end of the arc", settled)) {
         return wrong;
@@ -451,7 +446,7 @@ Objections check_end(const Place& from, const Place& to, const EventRecord& even
 Objections check_start(const Place& place, const State& given) {
     const auto settled = [&](const Contact& pair, const Range& first) {
         const bool left = place.chooses && first.has_zero();
-        return first.positive() || left ? Objections() : touches(pair, "the start", first);
+        return first.positive() || left ? Objections() : touches(place.named(pair), "the start", first);
     };
     if (!place.first && contact_set(given) != contact_set(*place.state)) {
         return Objection{true, "start.json has other contacts than those with which its arcs lead to equilibrium 0"};
@@ -484,7 +479,7 @@ Objections check_equilibrium(const Place& place, const EquilibriumLine& line) {
 namespace {
 
 /// First-order terms of one list of a stored state against those found, by name.
-Objections check_terms(const char* what, const std::vector<std::pair<Contact, Enclosure>>& said,
+Objections check_terms(const Place& place, const char* what, const std::vector<std::pair<Contact, Enclosure>>& said,
                        const std::vector<Gap>& found) {
     if (said.size() != found.size()) {
         return Objection{true, fmt::format("{} of {} {}, found {}", said.size(), what, "in the state", found.size())};
@@ -492,7 +487,7 @@ Objections check_terms(const char* what, const std::vector<std::pair<Contact, En
     for (const auto& [contact, term] : said) {
         const auto at = std::find_if(found.begin(), found.end(),
                                      [&contact = contact](const Gap& one) { return one.pair == contact; });
-        const std::string name = fmt::format("the first-order {} of {}", what, to_string(contact));
+        const std::string name = fmt::format("the first-order {} of {}", what, place.named(contact));
         if (at == found.end()) {
             return Objection{true, name + ": there is no such one"};
         }
@@ -512,10 +507,10 @@ Objections check_direction(const Place& place, const RadiusPerturbation& said) {
         zero.push_back({place.state->contacts[index], place.first_force[index]});
         moves = moves || !place.evidence->slopes()[index].has_zero();
     }
-    if (Objections wrong = check_terms("gap", said.open, place.touching)) {
+    if (Objections wrong = check_terms(place, "gap", said.open, place.touching)) {
         return wrong;
     }
-    if (Objections wrong = check_terms("force", said.zero, zero)) {
+    if (Objections wrong = check_terms(place, "force", said.zero, zero)) {
         return wrong;
     }
     const bool at_limit = moves && (place.load.shift.lower != 0 || place.load.shift.upper != 0);
@@ -523,7 +518,7 @@ Objections check_direction(const Place& place, const RadiusPerturbation& said) {
         std::find_if(zero.begin(), zero.end(), [&](const Gap& one) { return one.pair == said.load_zero; });
     if ((said.load_zero.i >= 0) != at_limit || (at_limit && named == zero.end())) {
         return Objection{true, fmt::format("load_zero is {}: {} vanishes at the exact load",
-                                           said.load_zero.i < 0 ? "missing" : to_string(said.load_zero),
+                                           said.load_zero.i < 0 ? "missing" : place.named(said.load_zero),
                                            at_limit ? "another force" : "no force")};
     }
     return at_limit ? check_said("stress_rate", {said.stress_rate.value, said.stress_rate.radius}, place.load.rate)

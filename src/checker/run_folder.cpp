@@ -75,17 +75,6 @@ long made_in_segment(const RunRecords& records) {
                          [segment](const EquilibriumLine& line) { return line.integer("segment") == segment; });
 }
 
-/// The strains of a row: along the other axis, along the loaded one and of the third length, where there is one.
-std::vector<std::pair<const char*, std::size_t>> strain_columns(const Load& load, std::size_t count) {
-    const auto loaded = static_cast<std::size_t>(load.loaded_axis);
-    const auto other = static_cast<std::size_t>(load.other_axis());
-    std::vector<std::pair<const char*, std::size_t>> columns{{"eps1", other}, {"eps2", loaded}};
-    if (count > 2) {
-        columns.emplace_back("eps3", 3 - other - loaded);
-    }
-    return columns;
-}
-
 /// \pre there is a row
 Objections check_checkpoint(const CheckedRecords& checked, const RunRecords& records, const State& last) {
     const Field file(checked.checkpoint, (records.directory / "checkpoint.json").string());
@@ -93,7 +82,8 @@ Objections check_checkpoint(const CheckedRecords& checked, const RunRecords& rec
     const auto rows = static_cast<long>(records.equilibria.size());
     Repeated here("checkpoint.json");
     if (checked.state != read_text(records.directory / "states" / "last.json")) {
-        const std::string difference = state_difference(last, parse_any_state(checked.state, "checkpoint.json").state);
+        const std::string difference =
+            state_difference(last, parse_any_state(checked.state, "checkpoint.json", Dimensions::any).state);
         return wrong(fmt::format("states/last.json: {} is not that of checkpoint.json",
                                  difference.empty() ? "a recorded result" : difference));
     }
@@ -104,8 +94,9 @@ Objections check_checkpoint(const CheckedRecords& checked, const RunRecords& rec
     here.same("counters.arcs", file.at("counters").at("arcs").integer(), long{arcs});
     here.same("counters.equilibria", file.at("counters").at("equilibria").integer(), rows - 1);
     const Field strain = file.at("strain");
-    here.same("the number of strains", strain.size(), std::size_t{row.has("eps3") ? 3U : 2U});
-    for (const auto& [column, axis] : strain_columns(last.load, strain.size())) {
+    const RecordColumns names = record_columns(last.load, last.packing.cell.shears());
+    here.same("the number of strains", strain.size(), names.measures.size());
+    for (const auto& [column, length, axis] : names.measures) {
         here.same(fmt::format("strain[{}]", axis), strain.at(axis), row.at(column));
     }
     return here.answer();
@@ -145,12 +136,14 @@ Objections check_summary(const std::optional<CheckedRecords>& checked, const Run
         here.same("counters.arcs", summary.at("counters").at("arcs").integer(),
                   static_cast<long>(records.events.size()));
     }
-    for (const char* name : {"ratio", "eps1", "eps2", "solid_fraction"}) {
-        if (last) {
-            here.same(name, summary.at(name), records.equilibria.back().at(name));
-        }
-    }
     if (last) {
+        std::vector<std::string> names{"ratio", "solid_fraction"};
+        for (const RecordColumns::Measure& measure : record_columns(last->load, false).measures) {
+            names.push_back(measure.strain);
+        }
+        for (const std::string& name : names) {
+            here.same(name, summary.at(name.c_str()), records.equilibria.back().at(name));
+        }
         here.same("disks", summary.at("disks").integer(), long{last->packing.disk_count()});
     }
     if (checked && records.status == "completed") { // nothing came after the checkpoint
@@ -198,7 +191,7 @@ Objections check_folder(const fs::path& directory, const RunRecords& records) {
         if (!fs::exists(path)) {
             return wrong("states/last.json is missing");
         }
-        last = read_any_state(path).state;
+        last = read_any_state(path, Dimensions::any).state;
     }
     if (Objections other = checked && last ? check_checkpoint(*checked, records, *last) : Objections()) {
         return other;

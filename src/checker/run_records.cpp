@@ -38,14 +38,14 @@ std::string word(const Field& field, std::initializer_list<std::string_view> wor
     return field.string();
 }
 
-std::string contact_name(const Field& field) {
-    if (!contact_spelt(field.string())) {
+std::string contact_name(const Field& field, int dimension) {
+    if (!contact_spelt(field.string(), dimension)) {
         field.fail("a contact as records spell it, 3-7, 3-left or held x of grain 4");
     }
     return field.string();
 }
 
-TieRecord tie_of(const Field& entry) {
+TieRecord tie_of(const Field& entry, int dimension) {
     entry.only({"decision", "contact", "first_order", "against", "against_first_order", "choice", "log2_zero", "bits"});
     const auto term = [](const Field& pair, double& value, double& bound) {
         pair.require_size(2, "[value, bound]");
@@ -58,10 +58,10 @@ TieRecord tie_of(const Field& entry) {
     TieRecord tie;
     tie.what = word(entry.at("decision"),
                     {"force", "opening", "limit", "zero all along", "gap", "step", "second order", "end", "rest"});
-    tie.contact = contact_name(entry.at("contact"));
+    tie.contact = contact_name(entry.at("contact"), dimension);
     term(entry.at("first_order"), tie.first, tie.first_bound);
     if (entry.has("against") || entry.has("against_first_order")) {
-        tie.against = contact_name(entry.at("against"));
+        tie.against = contact_name(entry.at("against"), dimension);
         term(entry.at("against_first_order"), tie.other, tie.other_bound);
     }
     if (entry.has("choice")) {
@@ -78,13 +78,15 @@ bool claims_way(const Field& certificate) {
     return proved("verdict") && proved("power");
 }
 
-EventRecord event_of(const std::string& line, const std::string& where) {
+EventRecord event_of(const std::string& line, const std::string& where, const Load& load) {
+    const RecordColumns names = record_columns(load, false);
     const json::Json parsed = Field::parse(line, where);
     const Field field(parsed, where);
-    field.only({"step",        "equilibrium", "arc",         "kind",      "opened",     "closed",
-                "power_turn",  "held_at",     "sigma2",      "eps2",      "eps2_bound", "force",
-                "force_bound", "power",       "power_bound", "work",      "work_bound", "displacement",
-                "steps",       "margin",      "decided_by",  "perturbed", "certificate"});
+    const std::string strain_bound = names.strain + "_bound";
+    const auto [stress, strain, bound] = std::array{names.stress.c_str(), names.strain.c_str(), strain_bound.c_str()};
+    field.only({"step",       "equilibrium",  "arc",   "kind",   "opened",      "closed",    "power_turn",  "held_at",
+                stress,       strain,         bound,   "force",  "force_bound", "power",     "power_bound", "work",
+                "work_bound", "displacement", "steps", "margin", "decided_by",  "perturbed", "certificate"});
     const auto number = [&field](const char* name) {
         const Field value = field.at(name);
         return value.value().is_null() ? std::numeric_limits<double>::quiet_NaN() : value.number();
@@ -96,12 +98,12 @@ EventRecord event_of(const std::string& line, const std::string& where) {
     event.equilibrium = field.at("equilibrium").integer(0, most);
     event.arc = field.at("arc").integer(0, most);
     event.kind = word(field.at("kind"), {"limit", "tension", "rattler", "release"});
-    event.opened = contact_name(field.at("opened"));
-    event.closed = contact_name(field.at("closed"));
+    event.opened = contact_name(field.at("opened"), load.dimension);
+    event.closed = contact_name(field.at("closed"), load.dimension);
     event.power_turn = field.at("power_turn").boolean();
-    event.stress = number("sigma2");
-    event.strain = number("eps2");
-    event.strain_bound = number("eps2_bound");
+    event.stress = number(stress);
+    event.strain = number(strain);
+    event.strain_bound = number(bound);
     event.force_bound = number("force_bound");
     event.power_bound = number("power_bound");
     event.work_bound = number("work_bound");
@@ -119,7 +121,7 @@ EventRecord event_of(const std::string& line, const std::string& where) {
         event.claims_way = claims_way(field.at("certificate"));
     }
     for (std::size_t k = 0; field.has("perturbed") && k < field.at("perturbed").size(); ++k) {
-        event.ties.push_back(tie_of(field.at("perturbed").at(k)));
+        event.ties.push_back(tie_of(field.at("perturbed").at(k), load.dimension));
     }
     return event;
 }
@@ -129,7 +131,7 @@ void require_spelling(const EquilibriumLine& line, const std::string& what) {
     const int i = line.integer((what + "_i").c_str());
     const int j = line.integer((what + "_j").c_str());
     const bool none = j == no_contact && i >= no_contact;
-    if (!none && (i < 0 || j < -4 || (j >= 0 && j < i))) {
+    if (!none && (i < 0 || j < front_wall || (j >= 0 && j < i))) {
         throw Error(ErrorKind::bad_input,
                     fmt::format("{}: {}_i,{}_j is '{},{}': expected a disk and a later one or a wall, or -9,-9",
                                 line.where, what, what, i, j));
@@ -143,7 +145,7 @@ std::optional<StateFile> RunRecords::stored(int equilibrium) const {
     if (!std::filesystem::exists(path)) {
         return {};
     }
-    return read_any_state(path);
+    return read_any_state(path, Dimensions::any);
 }
 
 RunRecords read_records(const std::filesystem::path& directory, LastLine last) {
@@ -178,14 +180,15 @@ RunRecords read_records(const std::filesystem::path& directory, LastLine last) {
     records.certified_states = level == "states" || records.certified_arcs;
     records.states = directory / "states";
     if (std::filesystem::exists(directory / "start.json")) {
-        records.start = read_any_state(directory / "start.json").state;
+        records.start = read_any_state(directory / "start.json", Dimensions::any).state;
     }
     // A run that never left its start has no events: the file is empty then.
     const std::filesystem::path events = directory / "events.jsonl";
     if (!std::filesystem::exists(events) || std::filesystem::file_size(events) > 0) {
         long choices = 0;
+        const Load load = records.start ? records.start->load : Load();
         for_each_line(records_text(events, last), [&](int number, const std::string& line) {
-            records.events.push_back(event_of(line, fmt::format("{}:{}", events.string(), number)));
+            records.events.push_back(event_of(line, fmt::format("{}:{}", events.string(), number), load));
             EventRecord& event = records.events.back();
             choices += std::count_if(event.ties.begin(), event.ties.end(),
                                      [](const TieRecord& tie) { return !tie.choice.empty(); });

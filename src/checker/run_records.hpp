@@ -61,8 +61,8 @@ struct RunRecords {
 RunRecords read_records(const std::filesystem::path& directory, LastLine last = LastLine::complete);
 
 /// "12-40", "12-40(0,-1)" (an image), "3-left", "held x of grain 4" (the walls are the grain after the last disk), each
-/// in the one spelling that records have; nothing for anything else.
-std::optional<Contact> contact_spelt(std::string_view name);
+/// in the one spelling that records of a dimension have; nothing for anything else.
+std::optional<Contact> contact_spelt(std::string_view name, int dimension);
 /// The same, of a packing.
 std::optional<Contact> contact_named(std::string_view name, const Packing& packing);
 

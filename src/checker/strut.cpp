@@ -241,7 +241,7 @@ std::optional<int> strut_order(const Place& place, std::size_t a, std::size_t b)
     const State& state = *place.state;
     const Contact& first = state.contacts[a];
     const Contact& second = state.contacts[b];
-    if (first.kind == ContactKind::held || second.kind == ContactKind::held) {
+    if (first.kind == ContactKind::held || second.kind == ContactKind::held || state.packing.dimension != plane) {
         return std::nullopt;
     }
     const Bare bare(place, {});

@@ -20,8 +20,8 @@ Objections check_said(const std::string& what, const Bounded& said, const Range&
 namespace {
 
 /// One pair was chosen by name to close before another, after ways that are not told apart.
-bool chosen_step(const EventRecord& event, const Contact& chosen, const Contact& other) {
-    const TieRecord* tie = recorded_choice(event.ties, "step", to_string(chosen), to_string(other));
+bool chosen_step(const Place& place, const EventRecord& event, const Contact& chosen, const Contact& other) {
+    const TieRecord* tie = recorded_choice(event.ties, "step", place.named(chosen), place.named(other));
     return tie != nullptr && tie->choice == "names" && chosen < other;
 }
 
@@ -36,7 +36,7 @@ std::optional<std::size_t> position(const Place& place, const std::string& name)
 
 std::vector<Gap>::const_iterator touching_pair(const Place& place, const std::string& name) {
     return std::find_if(place.touching.begin(), place.touching.end(),
-                        [&name](const Gap& gap) { return to_string(gap.pair) == name; });
+                        [&](const Gap& gap) { return place.named(gap.pair) == name; });
 }
 
 /// First-order gap of a pair that touches.
@@ -177,7 +177,7 @@ struct Arc {
     /// Going back, a pair that touches at the end does not overlap; one that overlaps at first order touched all along,
     /// or only grazes here (C1 g): else it closed before. `back`: the motion back; null: the arc has no length.
     [[nodiscard]] Objections check_back(const Gap& pair, const Velocities::Solution* back) const {
-        const std::string name = to_string(pair.pair);
+        const std::string name = to.named(pair.pair);
         if (back == nullptr) {
             const bool overlapped = std::any_of(from.touching.begin(), from.touching.end(),
                                                 [](const Gap& gap) { return !gap.value.positive(); });
@@ -272,7 +272,7 @@ Objections check_step(const Place& place, const EventRecord& event, std::size_t 
     for (const Gap& gap : place.touching) {
         const Range rate = velocities.gap_rate(gap.pair, motion);
         if (rate.negative()) { // else it opens, or stays as far as is seen
-            const auto at = event.closed == to_string(gap.pair) ? ways.begin() : ways.end();
+            const auto at = event.closed == place.named(gap.pair) ? ways.begin() : ways.end();
             ways.insert(at, {gap.pair, gap.value / (Range(Rational(0)) - rate)});
         }
     }
@@ -282,18 +282,18 @@ Objections check_step(const Place& place, const EventRecord& event, std::size_t 
         if (!shortest || way.value.upper < shortest->lower) {
             shortest = way.value;
             first = way.pair;
-        } else if (!(shortest->upper < way.value.lower) && !chosen_step(event, *first, way.pair)) {
+        } else if (!(shortest->upper < way.value.lower) && !chosen_step(place, event, *first, way.pair)) {
             return Objection{false, fmt::format("{} and {} close after ways that are equal at first order",
-                                                to_string(*first), to_string(way.pair))};
+                                                place.named(*first), place.named(way.pair))};
         }
     }
     if (said != first.has_value()) {
-        return Objection{true, first ? fmt::format("{} touch and close at once at first order", to_string(*first))
+        return Objection{true, first ? fmt::format("{} touch and close at once at first order", place.named(*first))
                                      : "a step of length O(eps), but no pair that touches closes"};
     }
-    if (first && event.closed != to_string(*first)) {
-        return Objection{true,
-                         fmt::format("{} closes, but at first order {} close before", event.closed, to_string(*first))};
+    if (first && event.closed != place.named(*first)) {
+        return Objection{
+            true, fmt::format("{} closes, but at first order {} close before", event.closed, place.named(*first))};
     }
     return {};
 }

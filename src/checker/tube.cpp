@@ -13,14 +13,6 @@ namespace {
 constexpr std::size_t highest_order = 14;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-Bounds product(const Pair<Bounds>& a, const Pair<Bounds>& b) {
-    return a[0] * b[0] + a[1] * b[1];
-}
-
-double length_above(const Pair<Bounds>& a) {
-    return root_above(sum_above(product_above(a[0].size(), a[0].size()), product_above(a[1].size(), a[1].size())));
-}
-
 /// sum_k c_k h^k from `first` on, times k when `slope` (then h^(k-1)).
 double series_above(const std::vector<double>& c, std::size_t first, double h, bool slope = false) {
     double sum = 0;
@@ -63,41 +55,52 @@ double least_singular_value(const Problem& problem, const Solver& solver) {
 
 } // namespace
 
-Pair<Bounds> difference(const std::vector<double>& x, const Contact& c, std::size_t disks) {
-    const auto i = at(c.i);
-    const auto j = at(c.j);
-    Pair<Bounds> d{Bounds(0), Bounds(0)};
+double length_above(const Separation<Bounds>& d) {
+    double square = product_above(d[0].size(), d[0].size());
+    for (std::size_t a = 1; a < d.axes; ++a) {
+        square = sum_above(square, product_above(d[a].size(), d[a].size()));
+    }
+    return root_above(square);
+}
+
+Separation<Bounds> difference(const std::vector<double>& x, const Contact& c, const Layout& layout) {
+    const std::size_t i = c.kind == ContactKind::held ? 0 : layout.of_disk(c.i);
+    Separation<Bounds> d(layout.axes());
     switch (c.kind) {
     case ContactKind::disk_disk:
-        if (i != j) {
-            d = {Bounds(x[2 * i]) - Bounds(x[2 * j]), Bounds(x[2 * i + 1]) - Bounds(x[2 * j + 1])};
-        }
-        if (!c.image.is_here()) {
-            const double m = c.image.m[0];
-            const double p = c.image.m[1];
-            const std::size_t cell = 2 * disks;
-            d[0] = d[0] - Bounds(x[cell]) * m - Bounds(x[cell + 2]) * p;
-            d[1] = d[1] - Bounds(x[cell + 1]) * p;
+        for (std::size_t a = 0; a < d.axes; ++a) {
+            if (c.i != c.j) {
+                d[a] = Bounds(x[i + a]) - Bounds(x[layout.of_disk(c.j) + a]);
+            }
+            for (std::size_t b = a; b < d.axes && !c.image.is_here(); ++b) {
+                const std::size_t k = a == b ? layout.of_length(a) : layout.of_tilt(a, b);
+                d[a] = d[a] - Bounds(x[k]) * static_cast<double>(c.image.m[b]);
+            }
         }
         break;
-    case ContactKind::lower_wall: d[0] = Bounds(x[2 * i + j]); break;
-    case ContactKind::upper_wall: d[0] = Bounds(x[2 * disks + j]) - Bounds(x[2 * i + j]); break;
+    case ContactKind::lower_wall: d[0] = Bounds(x[i + at(c.j)]); break;
+    case ContactKind::upper_wall: d[0] = Bounds(x[layout.of_length(at(c.j))]) - Bounds(x[i + at(c.j)]); break;
     case ContactKind::held: break;
     }
     return d;
 }
 
+bool Moving::any_of(const std::vector<bool>& flags, int disk) const {
+    const auto first = flags.begin() + static_cast<std::ptrdiff_t>(state.packing.layout().of_disk(disk));
+    return std::find(first, first + state.packing.dimension, true) != first + state.packing.dimension;
+}
+
 bool Moving::of_cell(const std::vector<bool>& flags) const {
     const Packing& packing = state.packing;
     bool any = false;
-    for (std::size_t a = 0; a < 3 && packing.cell.any(); ++a) {
-        any = any || ((a == 2 || packing.cell.periodic[a]) && flags[packing.length_at(a)]);
+    for (std::size_t k = 0; k < packing.axes() + packing.tilts() && packing.cell.any(); ++k) {
+        any = any || ((k >= packing.axes() || packing.cell.periodic[k]) && flags[packing.length_at(k)]);
     }
     return any;
 }
 
 bool Moving::takes_part(const Contact& c) const {
-    const auto x = 2 * at(c.i) + at(c.j);
+    const auto x = state.packing.layout().of_disk(c.i) + at(c.j);
     switch (c.kind) {
     case ContactKind::disk_disk:
         return (c.i != c.j && (disk_moves(c.i) || disk_moves(c.j))) || (!c.image.is_here() && cell_moves());
@@ -110,18 +113,30 @@ bool Moving::takes_part(const Contact& c) const {
 
 double Moving::off_rest(const Contact& pair) const {
     const bool here = pair.image.is_here() || !of_cell(loose);
-    const double disks = (loose[2 * at(pair.i)] || loose[2 * at(pair.j)]) && pair.i != pair.j ? 1 : 0;
-    const double along = here ? 0 : std::abs(pair.image.m[0]) + std::abs(pair.image.m[1]);
-    const double across = here ? 0 : std::abs(pair.image.m[1]);
-    const double x = disks + along;
-    const double y = disks + across;
-    return product_above(root_above(x * x + y * y), rest);
+    double off = (any_of(loose, pair.i) || any_of(loose, pair.j)) && pair.i != pair.j ? 1 : 0;
+    double square = 0; // integers
+    for (std::size_t a = state.packing.axes(); a-- > 0;) {
+        off += here ? 0 : std::abs(pair.image.m[a]);
+        square += off * off;
+    }
+    return product_above(root_above(square), rest);
 }
 
+namespace {
+
+/// |m|^2
+double square_of(const Image& image) {
+    double square = 0;
+    for (const std::int8_t m : image.m) {
+        square += static_cast<double>(m) * m;
+    }
+    return square;
+}
+
+} // namespace
+
 double period_weight(const Contact& pair) {
-    const double m = pair.image.m[0];
-    const double p = pair.image.m[1];
-    return pair.image.is_here() ? 0 : root_above(m * m + p * p);
+    return pair.image.is_here() ? 0 : root_above(square_of(pair.image));
 }
 
 namespace {
@@ -154,9 +169,7 @@ struct Blocks {
 /// w_l^2 = 2 + |m|^2: |D_l x|^2 is at most this times the sum of the squares of its blocks; without the disks of an
 /// own image.
 double square_weight(const Contact& c) {
-    const double m = c.image.m[0];
-    const double p = c.image.m[1];
-    return (c.i == c.j ? 0 : 2) + m * m + p * p;
+    return (c.i == c.j ? 0 : 2) + square_of(c.image);
 }
 
 } // namespace
@@ -232,7 +245,8 @@ void Tube::expand() {
     longest_ = 0.2 * unit;
     std::vector<double> right(contacts + 1, 0.0);
     right[contacts] = weight_ * direction_;
-    std::vector<std::vector<Pair<double>>> differences;
+    const Layout layout = moving_.state.packing.layout();
+    std::vector<std::vector<Separation<double>>> differences;
     for (std::size_t k = 1; k <= highest_order; ++k) {
         std::vector<double> a = linear_->solve(right);
         for (const Contact& c : moving_.kept) {
@@ -248,10 +262,12 @@ void Tube::expand() {
         if (!(largest < 1e100)) {
             break;
         }
-        auto& mine = differences.emplace_back(contacts);
+        auto& mine = differences.emplace_back(contacts, Separation<double>(layout.axes()));
         for (std::size_t l = 0; l < contacts; ++l) {
-            const Pair<Bounds> d = difference(a, moving_.kept[l], disks);
-            mine[l] = {d[0].middle(), d[1].middle()};
+            const Separation<Bounds> d = difference(a, moving_.kept[l], layout);
+            for (std::size_t axis = 0; axis < d.axes; ++axis) {
+                mine[l][axis] = d[axis].middle();
+            }
         }
         a_.push_back(std::move(a));
         if (k > 1 && largest * std::pow(longest_, static_cast<double>(k)) < 0x1p-58 * unit) {
@@ -261,8 +277,7 @@ void Tube::expand() {
         for (std::size_t l = 0; l < contacts; ++l) {
             double sum = 0;
             for (std::size_t i = 0; i < k && moving_.kept[l].kind == ContactKind::disk_disk; ++i) {
-                sum += differences[i][l][0] * differences[k - 1 - i][l][0] +
-                       differences[i][l][1] * differences[k - 1 - i][l][1];
+                sum += product(differences[i][l], differences[k - 1 - i][l]);
             }
             right[l] = -0.5 * sum;
         }
@@ -272,7 +287,7 @@ void Tube::expand() {
 /// Coefficients of every F_l along p, whatever the polynomial is.
 void Tube::bound_residuals() {
     const Packing& packing = moving_.state.packing;
-    const std::size_t disks = packing.radius.size();
+    const Layout layout = packing.layout();
     const std::size_t order = a_.size();
     for (const Contact& c : moving_.kept) {
         std::vector<double>& stretch = stretch_.emplace_back(order + 1, 0.0);
@@ -280,9 +295,9 @@ void Tube::bound_residuals() {
         if (c.kind == ContactKind::held) {
             continue; // the centre has the stored value, and a_k is 0 there
         }
-        std::vector<Pair<Bounds>> d{difference(centre_, c, disks)};
+        std::vector<Separation<Bounds>> d{difference(centre_, c, layout)};
         for (std::size_t k = 1; k <= order; ++k) {
-            d.push_back(difference(a_[k - 1], c, disks));
+            d.push_back(difference(a_[k - 1], c, layout));
             stretch[k] = length_above(d[k]);
         }
         const auto i = at(c.i);
@@ -292,10 +307,10 @@ void Tube::bound_residuals() {
             for (std::size_t k = 1; k <= order; ++k) {
                 residual[k] = (d[k][0] * weight_).size();
             }
-            if (c.kind == ContactKind::upper_wall && moving_.loose[2 * disks + j]) {
+            if (c.kind == ContactKind::upper_wall && moving_.loose[layout.of_length(j)]) {
                 residual[0] = sum_above(residual[0], product_above(moving_.rest, weight_));
             }
-            if (moving_.loose[2 * i + j]) {
+            if (moving_.loose[layout.of_disk(c.i) + j]) {
                 residual[0] = sum_above(residual[0], product_above(moving_.rest, weight_));
             }
             continue;
@@ -511,10 +526,11 @@ std::vector<double> Tube::corrected(double s) const {
     std::vector<double> q = point(s, unused);
     const Packing& packing = moving_.state.packing;
     const std::size_t disks = packing.radius.size();
+    const Layout layout = packing.layout();
     for (int step = 0; step < 4; ++step) {
         std::vector<double> right;
         for (const Contact& c : moving_.kept) {
-            const Pair<Bounds> d = difference(q, c, disks);
+            const Separation<Bounds> d = difference(q, c, layout);
             const double sum = packing.radius[at(c.i < static_cast<int>(disks) ? c.i : 0)] +
                                (c.kind == ContactKind::disk_disk ? packing.radius[at(c.j)] : 0);
             right.push_back(c.kind == ContactKind::held        ? 0

@@ -22,8 +22,7 @@ struct Moving {
     std::vector<bool> loose;      ///< per coordinate: at rest, but its true place is known to `rest` only
     double rest = 0;
     [[nodiscard]] bool disk_moves(int i) const {
-        const auto x = 2 * static_cast<std::size_t>(i);
-        return moves[x] || moves[x + 1]; // a pinned disk of a channel: across it only
+        return any_of(moves, i); // a pinned disk of a channel: across it only
     }
     /// The images of a disk move with the cell.
     [[nodiscard]] bool cell_moves() const { return of_cell(moves); }
@@ -32,14 +31,34 @@ struct Moving {
     [[nodiscard]] double off_rest(const Contact& pair) const;
 
   private:
+    /// Whether one coordinate of a disk is marked.
+    [[nodiscard]] bool any_of(const std::vector<bool>& flags, int disk) const;
     [[nodiscard]] bool of_cell(const std::vector<bool>& flags) const;
 };
 
-/// Two components for a pair of disks, one for a wall.
-template <class Number> using Pair = std::array<Number, 2>;
+/// A component along each axis for a pair of disks, the first one alone for a wall.
+template <class Number> struct Separation {
+    explicit Separation(std::size_t count) : axes(count) { component.fill(Number(0)); }
+    std::size_t axes;
+    PerAxis<Number> component;
+    Number& operator[](std::size_t a) { return component[a]; }
+    const Number& operator[](std::size_t a) const { return component[a]; }
+};
+
+/// D . E
+template <class Number> Number product(const Separation<Number>& d, const Separation<Number>& e) {
+    Number sum = d[0] * e[0];
+    for (std::size_t a = 1; a < d.axes; ++a) {
+        sum = sum + d[a] * e[a];
+    }
+    return sum;
+}
+
+/// |D| from above.
+double length_above(const Separation<Bounds>& d);
 
 /// The difference D_l x of the two grains of a contact, exact but for the roundings of the differences; a held one: 0.
-Pair<Bounds> difference(const std::vector<double>& x, const Contact& c, std::size_t disks);
+Separation<Bounds> difference(const std::vector<double>& x, const Contact& c, const Layout& layout);
 
 /// |A m| <= this times the 2-norm of the cell: |m|, 0 for a contact without an image.
 double period_weight(const Contact& pair);

@@ -86,11 +86,12 @@ class Replay {
                           [this](const EventRecord& event) { return event.equilibrium == result_.equilibria; });
         const EventRecord& first = records_.events[event_];
         const auto ends_there = [&first](const EquilibriumLine& line) {
-            const auto is_at = [&](const char* name) {
+            const auto is_at = [&](const char* end) {
+                const std::string name = line.names->stress + end;
                 const double room = line.bound(name) + record_tolerance * std::abs(first.stress);
                 return std::abs(line.at(name) - first.stress) <= room;
             };
-            return is_at("sigma2_low") || is_at("sigma2_high");
+            return is_at("_low") || is_at("_high");
         };
         const auto from = std::find_if(records_.equilibria.rbegin(), records_.equilibria.rend(), ends_there);
         const int last = result_.equilibria - 1;
@@ -318,9 +319,9 @@ class Replay {
         coarsest_ = std::max(coarsest_, grid_step(packing));
         const auto off = [&](std::size_t a) {
             return packing.cell.periodic[a] &&
-                   std::fmod(packing.q[2 * static_cast<std::size_t>(packing.cell.pin) + a], coarsest_) != 0;
+                   std::fmod(packing.coordinate(DiskId(packing.cell.pin), static_cast<int>(a)), coarsest_) != 0;
         };
-        return off(0) || off(1);
+        return off(0) || off(1) || (packing.dimension > plane && off(2));
     }
 
     /// What a record says opens and closes at `here_`.
@@ -449,8 +450,8 @@ class Replay {
             return check_rule(here_, event, change.position, records_);
         }
         const double here = here_.stress();
-        const bool up = event.stress > here || (event.stress == here && before_->at("sigma2_high") == here);
-        const double bound = before_->bound(up ? "sigma2_high" : "sigma2_low");
+        const bool up = event.stress > here || (event.stress == here && before_->stress("_high") == here);
+        const double bound = before_->bound(before_->names->stress + (up ? "_high" : "_low"));
         return check_limit(here_, event, bound, change.position, change.load);
     }
 
@@ -560,7 +561,7 @@ class Replay {
     /// A row without arcs: the same vertex under another load.
     void reload(const EquilibriumLine& line) {
         State state = *here_.state;
-        state.load.loaded_stress() = line.at("sigma2");
+        state.load.loaded_stress() = line.stress();
         go_to(std::move(state), line.where, {});
     }
 
@@ -612,7 +613,7 @@ class Replay {
         if (!std::filesystem::exists(path)) {
             return true;
         }
-        const StateFile file = read_any_state(path);
+        const StateFile file = read_any_state(path, Dimensions::any);
         return expect(file.state.equilibrium == line.integer("number"), name,
                       fmt::format("equilibrium is {}, expected {}", file.state.equilibrium, line.integer("number"))) &&
                judged(check_stored(here_, file.state, records_.start), name) &&

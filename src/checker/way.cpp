@@ -25,9 +25,11 @@ std::vector<bool> moving_coordinates(const State& state, const Problem& problem,
     std::vector<bool> moves(state.packing.q.size(), false);
     const std::set<int> grains =
         witness.grains ? std::set<int>(witness.grains->begin(), witness.grains->end()) : std::set<int>();
-    const int disks = state.packing.disk_count();
-    for (std::size_t k = 0; k < moves.size(); ++k) {
-        const int grain = static_cast<int>(k / 2) < disks ? static_cast<int>(k / 2) : static_cast<int>(k) - disks;
+    const std::size_t cell = state.packing.length_at(0);
+    const std::size_t axes = state.packing.axes();
+    for (std::size_t k = 0; k < moves.size(); ++k) { // behind the disks there is a grain for each coordinate
+        const int grain =
+            k < cell ? static_cast<int>(k / axes) : state.packing.disk_count() + static_cast<int>(k - cell);
         moves[k] = problem.dof_of[k] >= 0 && (!witness.grains || grains.contains(grain));
     }
     return moves;
@@ -76,17 +78,17 @@ void Follower::let_rest() {
     Packing& packing = moving_.state.packing;
     packing.fixed.assign(packing.radius.size(), 1);
     for (std::size_t i = 0; i < packing.radius.size(); ++i) {
-        packing.fixed[i] = moving_.moves[2 * i] ? 0 : 1;
+        packing.fixed[i] = moving_.disk_moves(static_cast<int>(i)) ? 0 : 1;
     }
-    for (std::size_t a = 0; a < 2; ++a) {
+    for (std::size_t a = 0; a < packing.axes(); ++a) {
         const bool moves = moving_.moves[packing.length_at(a)];
         if (packing.walls.upper[a] == WallKind::movable && !moves) {
             packing.walls.upper[a] = WallKind::fixed;
         }
         packing.cell.period_moves[a] = packing.cell.period_moves[a] && moves;
     }
-    if (packing.cell.any()) {
-        packing.cell.tilt_moves[0] = moving_.moves[packing.tilt_at(0, 1)];
+    for (std::size_t t = 0; t < packing.tilts() && packing.cell.any(); ++t) {
+        packing.cell.tilt_moves[t] = moving_.moves[packing.length_at(packing.axes() + t)];
     }
 }
 
@@ -96,6 +98,9 @@ Objections Follower::set_up() {
     const std::vector<bool> moves = moving_coordinates(start, problem, way_.witness);
     moving_.state = start;
     moving_.moves = moves;
+    if (start.packing.dimension != plane && start.load.kind == LoadKind::true_stress && !way_.rattles) {
+        return open("the power of true stresses is followed in the plane only");
+    }
     if (way_.witness.grains && moving_.disk_moves(start.packing.cell.pin) && start.packing.cell.any()) {
         return open("the pinned disk is among the few that are said to move");
     }
@@ -131,7 +136,8 @@ Objections Follower::set_up() {
     end_off_ = product_above(rounded_up(b), coordinates);
     for (const Gap& gap : smallest_gaps(problem, start, from_.evidence->vertex)) {
         if (!way_.end_only && !gap.value.positive()) {
-            return open(fmt::format("the gap of {} is not proved positive at the start", to_string(gap.pair)));
+            return open(fmt::format("the gap of {} is not proved positive at the start",
+                                    to_string(gap.pair, start.packing.dimension)));
         }
     }
     return {};
@@ -143,18 +149,18 @@ void Follower::load() {
     const std::vector<double>& on_disks = way_.rattles ? load.infinitesimal : load.disk_force;
     pushing_.fixed.assign(moving_.moves.size(), Bounds(0));
     std::copy(on_disks.begin(), on_disks.end(), pushing_.fixed.begin());
-    const std::size_t walls = 2 * moving_.state.packing.radius.size();
-    for (std::size_t a = 0; a < 2 && !way_.rattles; ++a) {
-        const double stress = static_cast<int>(a) == load.loaded_axis ? way_.stress : load.stress[a];
-        if (load.kind == LoadKind::nominal) {
-            pushing_.fixed[walls + a] = pushing_.fixed[walls + a] - Bounds(stress) * load.reference_length[1 - a];
-        } else {
-            pushing_.per_length[a] = stress;
-        }
+    if (way_.rattles) {
+        return;
     }
-    if (from_.state->packing.cell.any() && !way_.rattles) { // on the tilt
-        pushing_.fixed[walls + 2] =
-            Bounds(0) - Bounds(load.loads_tilt() ? way_.stress : load.shear[0]) * load.reference_length[0];
+    for (const WallForce& wall : load.wall_forces(from_.state->packing)) {
+        const double stress = wall.loaded ? way_.stress : wall.stress;
+        if (load.kind == LoadKind::nominal) {
+            const Bounds pressed = Bounds(stress) * wall.length;
+            Bounds& force = pushing_.fixed[at(wall.coordinate)];
+            force = force - (from_.state->packing.dimension == plane ? pressed : pressed * wall.other);
+        } else {
+            pushing_.per_length[at(wall.axis)] = stress;
+        }
     }
 }
 
@@ -245,7 +251,8 @@ Objections Follower::arrive(const Bounds& place) {
         return open(trouble_);
     }
     if (closed().kind != ContactKind::held && !gaps_->falls(closed())) {
-        return open(fmt::format("the gap of {} is not proved to fall to 0 at the end", to_string(closed())));
+        return open(fmt::format("the gap of {} is not proved to fall to 0 at the end",
+                                to_string(closed(), moving_.state.packing.dimension)));
     }
     return {};
 }
@@ -362,7 +369,7 @@ Objections end_of(const Place& from, const Contact& closed, const Way& way, Stat
     for (const Contact& c : from.state->contacts) {
         if (c.kind == ContactKind::held && end.packing.q[at(c.i)] != from.state->packing.q[at(c.i)] &&
             std::find(end.contacts.begin(), end.contacts.end(), c) != end.contacts.end()) {
-            return open(fmt::format("{} is at another place at the end", to_string(c)));
+            return open(fmt::format("{} is at another place at the end", to_string(c, end.packing.dimension)));
         }
     }
     return {};

@@ -61,7 +61,7 @@ Result<State> prepare_start(const Scene& scene, const std::string& command, bool
     std::string tied; // what the run has to settle, as far as doubles know
     const bool settles = scene.run.at_first_order() && !scene.programme.empty();
     if (!prepared.ok() && prepared.failure().kind == FailureKind::tie && report.candidate && settles) {
-        tied = prepared.failure().message();
+        tied = prepared.failure().message(options.dimension);
         prepared = std::move(*report.candidate);
     }
     if (!quiet) {
@@ -75,8 +75,9 @@ Result<State> prepare_start(const Scene& scene, const std::string& command, bool
     }
     if (!prepared.ok()) {
         const std::string last_stage = report.stages.empty() ? "the start" : report.stages.back().name;
-        std::string message = fmt::format("preparation failed at {}: {}: {}", last_stage,
-                                          to_string(prepared.failure().kind), prepared.failure().message());
+        std::string message =
+            fmt::format("preparation failed at {}: {}: {}", last_stage, to_string(prepared.failure().kind),
+                        prepared.failure().message(options.dimension));
         if (report.last) {
             message += advice(scene, prepared.failure(), *report.last);
             write_packing(failed_path, *report.last, message);

@@ -13,10 +13,10 @@ namespace isostat::cli {
 namespace {
 
 /// Names of what a run noted.
-std::vector<std::string> names_of(const std::vector<std::pair<Contact, Enclosure>>& noted) {
+std::vector<std::string> names_of(const std::vector<std::pair<Contact, Enclosure>>& noted, int dimension) {
     std::vector<std::string> names;
     for (const auto& [contact, term] : noted) {
-        names.push_back(to_string(contact));
+        names.push_back(to_string(contact, dimension));
     }
     return names;
 }
@@ -34,18 +34,19 @@ Result<ForceFace> face_of(const State& state) {
     return force_face(state.packing, state.load, state.contacts, touching);
 }
 
-void print_ends(const ForceFace& face) {
+void print_ends(const ForceFace& face, int dimension) {
     for (std::size_t l = 0; l < face.pairs.size(); ++l) {
         if (takes_part(face, l)) {
-            say("  force {:<16} from {:.6g} to {:.6g}\n", to_string(face.pairs[l]), face.least[l], face.most[l]);
+            say("  force {:<16} from {:.6g} to {:.6g}\n", to_string(face.pairs[l], dimension), face.least[l],
+                face.most[l]);
         }
     }
     say("  (the run found that these touch; the ends are computed in double, not proved)\n");
 }
 
-Json face_json(const Result<ForceFace>& result) {
+Json face_json(const Result<ForceFace>& result, int dimension) {
     if (!result.ok()) {
-        return {{"undecided", result.failure().message()}};
+        return {{"undecided", result.failure().message(dimension)}};
     }
     const ForceFace& face = result.value();
     Json stresses = Json::array();
@@ -53,7 +54,7 @@ Json face_json(const Result<ForceFace>& result) {
         Json one;
         for (std::size_t l = 0; l < stress.size(); ++l) {
             if (stress[l] != 0) {
-                one[to_string(face.pairs[l])] = number(stress[l]);
+                one[to_string(face.pairs[l], dimension)] = number(stress[l]);
             }
         }
         stresses.push_back(std::move(one));
@@ -61,7 +62,7 @@ Json face_json(const Result<ForceFace>& result) {
     Json between = Json::array();
     for (std::size_t l = 0; l < face.pairs.size(); ++l) {
         if (takes_part(face, l)) {
-            between.push_back({to_string(face.pairs[l]), number(face.least[l]), number(face.most[l])});
+            between.push_back({to_string(face.pairs[l], dimension), number(face.least[l]), number(face.most[l])});
         }
     }
     return {{"h", face.self_stresses.size()},
@@ -78,17 +79,18 @@ void print_face(const State& state) {
     }
     if (!state.perturbation->open.empty()) {
         say("touching besides         {}: {} self-stresses, the forces above are one choice of many\n",
-            fmt::format("{}", fmt::join(names_of(state.perturbation->open), ", ")), state.perturbation->open.size());
+            fmt::format("{}", fmt::join(names_of(state.perturbation->open, state.packing.dimension), ", ")),
+            state.perturbation->open.size());
         const Result<ForceFace> face = face_of(state);
         if (face.ok()) {
-            print_ends(face.value());
+            print_ends(face.value(), state.packing.dimension);
         } else {
-            say("  {}: {}\n", to_string(face.failure().kind), face.failure().message());
+            say("  {}: {}\n", to_string(face.failure().kind), face.failure().message(state.packing.dimension));
         }
     }
     if (!state.perturbation->zero.empty()) {
         say("left at force 0          {}: an equilibrium of the finite loads, whatever infinitesimal ones do\n",
-            fmt::format("{}", fmt::join(names_of(state.perturbation->zero), ", ")));
+            fmt::format("{}", fmt::join(names_of(state.perturbation->zero, state.packing.dimension), ", ")));
     }
 }
 
@@ -97,11 +99,11 @@ void add_face(Json& object, const State& state) {
         return;
     }
     if (!state.perturbation->open.empty()) {
-        object["face"] = face_json(face_of(state));
-        object["face"]["touching"] = names_of(state.perturbation->open);
+        object["face"] = face_json(face_of(state), state.packing.dimension);
+        object["face"]["touching"] = names_of(state.perturbation->open, state.packing.dimension);
     }
     if (!state.perturbation->zero.empty()) {
-        object["left_at_zero"] = names_of(state.perturbation->zero);
+        object["left_at_zero"] = names_of(state.perturbation->zero, state.packing.dimension);
     }
 }
 

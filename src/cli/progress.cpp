@@ -50,7 +50,8 @@ void RunTable::on_segment(int number, const Segment& /*goal*/, int made, const S
     made_ = made;
     start_equilibrium_ = from.equilibrium;
     start_ratio_ = from.load.ratio();
-    loads_tilt_ = from.load.loads_tilt();
+    stress_name_ = from.load.stress_name();
+    strain_name_ = from.load.strain_name() == "shear strain" ? "strain" : from.load.strain_name();
     if (quiet_) {
         return;
     }
@@ -89,8 +90,7 @@ double RunTable::remaining(double ratio) const {
 void RunTable::on_arc(const ArcRecord& arc) {
     if (!quiet_) {
         line_.show(fmt::format("towards equilibrium {}: arc {} at {} = {:.9g}, {} = {:.6g}", arc.equilibrium, arc.arc,
-                               loads_tilt_ ? "shear" : "sigma2", arc.stress, loads_tilt_ ? "strain" : "eps2",
-                               arc.strain));
+                               stress_name_, arc.stress, strain_name_, arc.strain));
     }
 }
 

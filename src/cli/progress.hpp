@@ -31,7 +31,7 @@ class StatusLine {
 /// "1:02:03".
 std::string clock_text(double seconds);
 
-/// Prints one row per equilibrium: number, sigma2/sigma1, eps2, arcs, h, smallest margin, precision used, elapsed,
+/// Prints one row per equilibrium: number, ratio, strain, arcs, h, smallest margin, precision used, elapsed,
 /// estimated rest.
 class RunTable final : public RunObserver {
   public:
@@ -54,7 +54,7 @@ class RunTable final : public RunObserver {
     int here_ = 0; ///< equilibria made by this process
     int start_equilibrium_ = 0;
     double start_ratio_ = 1;
-    bool loads_tilt_ = false;
+    std::string stress_name_, strain_name_; ///< of what is loaded
     bool header_shown_ = false;
 };
 

@@ -165,7 +165,7 @@ int run(const RunArguments& arguments) {
         ending = play_scene(scene, start.value(), directory, program_name(), counters, stop_flag(), table);
         table.end();
     } else {
-        ending = ending_of(start.failure(), "");
+        ending = ending_of(start.failure(), "", scene.preparation.dimension);
     }
     directory.finish(ending.status, ending.reason);
     if (arguments.common.json) {

@@ -4,8 +4,6 @@
 #include "core/roundoff.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cassert>
 #include <cmath>
 
 namespace isostat {
@@ -25,28 +23,53 @@ struct Extent {
     [[nodiscard]] double middle() const { return 0.5 * (low + high); }
 };
 
-/// The strain E = dA A_0^-1 of a change dA of the cell; 0 along axes with walls. And a bound of |A_0^-1|.
+double length_of(const Packing& packing, const PerAxis<double>& x) {
+    return packing.dimension == plane ? std::hypot(x[0], x[1]) : std::hypot(x[0], x[1], x[2]);
+}
+
+/// The strain E = dA A_0^-1 of a change dA of the cell, upper triangular; 0 along axes with walls. And a bound of
+/// |A_0^-1|.
 struct Strain {
-    double xx = 0, xy = 0, yy = 0;
+    PerAxis<PerAxis<double>> e{};
     double inverse = 0;
 
-    /// `change`: dA as `Packing::q` has it.
-    Strain(const std::vector<double>& reference, const Packing& packing, const std::array<double, 3>& change) {
+    /// `moved(k)`: dA as `Packing::q` has it.
+    template <class Moved> Strain(const std::vector<double>& reference, const Packing& packing, const Moved& moved) {
+        const auto& periodic = packing.cell.periodic;
+        PerAxis<PerAxis<double>> inverted{};
+        for (std::size_t b = 0; b < packing.axes(); ++b) {
+            for (std::size_t a = 0; a <= b && periodic[b]; ++a) {
+                if (!periodic[a]) {
+                    continue;
+                }
+                double change = moved(place(packing, a, b));
+                double unit = a == b ? 1 : 0;
+                for (std::size_t c = a; c < b; ++c) {
+                    const double above = periodic[c] ? reference[place(packing, c, b)] : 0;
+                    change -= e[a][c] * above;
+                    unit -= inverted[a][c] * above;
+                }
+                e[a][b] = change / reference[place(packing, b, b)];
+                inverted[a][b] = unit / reference[place(packing, b, b)];
+            }
+        }
         const std::size_t at = packing.length_at(0);
-        const double lx = reference[at];
-        const double ly = reference[at + 1];
-        const double tilt = reference[at + 2];
-        const Cell& cell = packing.cell;
-        const double along_x = change[0] / lx;
-        xx = cell.periodic[0] ? along_x : 0;
-        yy = cell.periodic[1] ? change[1] / ly : 0;
-        xy = cell.all() ? (change[2] - along_x * tilt) / ly : 0;
-        inverse = cell.all() ? std::hypot(lx, tilt, ly) / lx / ly : cell.periodic[0] ? 1 / lx : 1 / ly;
+        inverse =
+            packing.dimension == plane && packing.cell.all()
+                ? std::hypot(reference[at], reference[at + 2], reference[at + 1]) / reference[at] / reference[at + 1]
+                : norm(inverted);
     }
-    [[nodiscard]] double norm() const { return std::hypot(xx, xy, yy); }
+    /// Frobenius norm.
+    static double norm(const PerAxis<PerAxis<double>>& m) {
+        return std::hypot(std::hypot(m[0][0], m[0][1], m[1][1]), std::hypot(m[0][2], m[1][2], m[2][2]));
+    }
+    /// Coordinate index of A_ab.
+    static std::size_t place(const Packing& packing, std::size_t a, std::size_t b) {
+        return a == b ? packing.length_at(a) : packing.tilt_at(a, b);
+    }
 };
 
-constexpr double rounding = 0x1p-46; // of a dozen operations on lengths, times strains up to 8
+constexpr double rounding = 0x1p-46; // of two dozen operations on lengths, times strains up to 4
 
 /// The left-hand side of C8 for a displacement, without its roundings: moved(k) of coordinate k.
 struct Used {
@@ -55,40 +78,50 @@ struct Used {
     double strain = 0;
 
     template <class Moved> Used(const CandidateList& list, const Packing& packing, Moved moved) {
-        assert(packing.dimension == plane); // lists of spheres are not carried along
         const std::vector<double>& from = list.reference;
-        const std::size_t disks = 2 * packing.radius.size();
-        const Strain affine(from, packing, {moved(disks), moved(disks + 1), moved(disks + 2)});
-        std::array<Extent, 2> place;
+        const std::size_t axes = packing.axes();
+        const std::size_t disks = packing.length_at(0);
+        const Strain affine(from, packing, moved);
+        PerAxis<Extent> place;
         for (std::size_t k = 0; k < disks; ++k) {
-            place[k % 2].show(from[k]);
+            place[k % axes].show(from[k]);
         }
-        std::array<Extent, 2> range;
+        PerAxis<Extent> range;
         std::vector<double> w(disks);
         double extent = 0; // of the centres, from the middle
-        for (std::size_t k = 0; k < disks; k += 2) {
-            const double x = from[k] - place[0].middle();
-            const double y = from[k + 1] - place[1].middle();
-            extent = std::max(extent, std::hypot(x, y));
-            w[k] = moved(k) - (affine.xx * x + affine.xy * y);
-            w[k + 1] = moved(k + 1) - affine.yy * y;
-            range[0].show(w[k]);
-            range[1].show(w[k + 1]);
+        for (std::size_t k = 0; k < disks; k += axes) {
+            PerAxis<double> x{};
+            for (std::size_t a = 0; a < axes; ++a) {
+                x[a] = from[k + a] - place[a].middle();
+            }
+            extent = std::max(extent, length_of(packing, x));
+            for (std::size_t a = 0; a < axes; ++a) {
+                double strained = 0;
+                for (std::size_t b = a; b < axes; ++b) {
+                    strained += affine.e[a][b] * x[b];
+                }
+                w[k + a] = moved(k + a) - strained;
+                range[a].show(w[k + a]);
+            }
         }
-        std::array<double, 2> common{};
+        PerAxis<double> common{};
         double farthest = 0;
-        for (std::size_t a = 0; a < 2; ++a) {
+        for (std::size_t a = 0; a < axes; ++a) {
             if (packing.cell.periodic[a]) {
                 common[a] = range[a].middle();
             } else { // the upper wall is a grain
                 farthest = std::max(farthest, std::abs(moved(packing.length_at(a))));
             }
         }
-        for (std::size_t k = 0; k < disks; k += 2) {
-            farthest = std::max(farthest, std::hypot(w[k] - common[0], w[k + 1] - common[1]));
+        for (std::size_t k = 0; k < disks; k += axes) {
+            PerAxis<double> off{};
+            for (std::size_t a = 0; a < axes; ++a) {
+                off[a] = w[k + a] - common[a];
+            }
+            farthest = std::max(farthest, length_of(packing, off));
         }
         const double stretched = packing.max_radius() + 0.5 * list.reach;
-        strain = affine.norm();
+        strain = Strain::norm(affine.e);
         used = (farthest + strain * stretched) * (1 + 1e-12);
         rate = (1 + (extent + stretched) * affine.inverse) * (1 + 1e-9);
     }

@@ -34,17 +34,17 @@ inline void collect_names(Words& words, const Failure& inner) {
 }
 
 /// What stands for an argument in the text.
-template <class Value> const Value& in_text(const Value& value) {
+template <class Value> const Value& in_text(const Value& value, int /*dimension*/ = 2) {
     return value;
 }
-inline std::string in_text(const Named& name) {
-    return to_string(name.contact);
+inline std::string in_text(const Named& name, int dimension = 2) {
+    return to_string(name.contact, dimension);
 }
-inline std::string in_text(const Words& words) {
-    return words.text();
+inline std::string in_text(const Words& words, int dimension = 2) {
+    return words.text(dimension);
 }
-inline std::string in_text(const Failure& failure) {
-    return failure.message();
+inline std::string in_text(const Failure& failure, int dimension = 2) {
+    return failure.message(dimension);
 }
 
 template <class... Values>
@@ -53,8 +53,8 @@ using FormatOfWords = fmt::format_string<decltype(in_text(std::declval<const std
 /// As fmt::format. Contacts that are `named`, other words and failures among the arguments are what it names. The
 /// arguments are copied; a character array must be a literal.
 template <class... Values> Words words(FormatOfWords<Values...> format, Values... values) {
-    Words made([text = fmt::string_view(format), values...]() -> std::string {
-        return fmt::format(fmt::runtime(text), in_text(values)...);
+    Words made([text = fmt::string_view(format), values...](int dimension) -> std::string {
+        return fmt::format(fmt::runtime(text), in_text(values, dimension)...);
     });
     (collect_names(made, values), ...);
     return made;

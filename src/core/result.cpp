@@ -16,7 +16,7 @@ const char* to_string(FailureKind kind) {
 
 Words::Words(std::string fixed) {
     if (!fixed.empty()) {
-        make_ = [fixed = std::move(fixed)] { return fixed; };
+        make_ = [fixed = std::move(fixed)](int) { return fixed; };
     }
 }
 
@@ -27,8 +27,8 @@ void Words::name(const Words& others) {
 
 Words& Words::operator+=(const Words& more) {
     if (!more.empty()) {
-        make_ = [first = std::move(make_), second = more.make_] {
-            return (first ? first() : std::string()) + second();
+        make_ = [first = std::move(make_), second = more.make_](int dimension) {
+            return (first ? first(dimension) : std::string()) + second(dimension);
         };
     }
     name(more);

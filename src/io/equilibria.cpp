@@ -25,28 +25,35 @@ struct Row {
     const EquilibriumRecord& record;
     double solid_fraction = 0;
     int previous = 0;
-    std::array<std::size_t, 3> axis{0, 1, 2}; ///< the one that is not loaded, the loaded one, that of the tilt
+    RecordColumns names;
     MoreColumns more;
 };
 
+/// Calls `use(measure)` for the first ones, one for each axis, or for those of tilts.
+template <class Use> void for_each_measure(const Row& row, bool tilts, const Use& use) {
+    const auto axes = static_cast<std::size_t>(row.more.dimension);
+    const auto& all = row.names.measures;
+    for (std::size_t k = tilts ? axes : 0; k < (tilts ? all.size() : axes); ++k) {
+        use(all[k]);
+    }
+}
+
 /// The last columns: bounds, and what only some rows have.
 template <class Use> void for_each_bound(const Row& row, const Use& use) {
+    using Measure = RecordColumns::Measure;
     const EquilibriumRecord& r = row.record;
-    const auto& [other, loaded, third] = row.axis;
-    use("eps1_bound", r.strain_bound[other]);
-    use("eps2_bound", r.strain_bound[loaded]);
-    use("L1_bound", r.length_bound[other]);
-    use("L2_bound", r.length_bound[loaded]);
-    use("sigma2_low_bound", r.stress_low_bound);
-    use("sigma2_high_bound", r.stress_high_bound);
+    for_each_measure(row, false, [&](const Measure& m) { use(m.strain + "_bound", r.strain_bound[m.axis]); });
+    for_each_measure(row, false, [&](const Measure& m) { use(m.length + "_bound", r.length_bound[m.axis]); });
+    use(row.names.stress + "_low_bound", r.stress_low_bound);
+    use(row.names.stress + "_high_bound", r.stress_high_bound);
     use("potential_bound", r.potential_bound);
     use("min_gap_bound", r.min_gap_bound);
-    if (row.more.tilt) {
-        use("eps3", r.strain[third]);
-        use("L3", r.length[third]);
-        use("eps3_bound", r.strain_bound[third]);
-        use("L3_bound", r.length_bound[third]);
-    }
+    for_each_measure(row, true, [&](const Measure& m) {
+        use(m.strain, r.strain[m.axis]);
+        use(m.length, r.length[m.axis]);
+        use(m.strain + "_bound", r.strain_bound[m.axis]);
+        use(m.length + "_bound", r.length_bound[m.axis]);
+    });
     if (row.more.touching) {
         use("touching", r.touching.value());
     }
@@ -56,7 +63,7 @@ template <class Use> void for_each_bound(const Row& row, const Use& use) {
 /// integer or a double.
 template <class Use> void for_each_column(const Row& row, const Use& use) {
     const EquilibriumRecord& r = row.record;
-    const auto [other, loaded] = std::pair(row.axis[0], row.axis[1]);
+    using Measure = RecordColumns::Measure;
     const auto contact = [&use](const std::string& name, const Contact& value) {
         const auto [i, j] = contact_columns(value);
         use(name + "_i", i);
@@ -65,12 +72,10 @@ template <class Use> void for_each_column(const Row& row, const Use& use) {
     use("number", r.number);
     use("previous", row.previous);
     use("segment", r.segment);
-    use("sigma2", r.stress);
+    use(row.names.stress, r.stress);
     use("ratio", r.stress / r.sigma1);
-    use("eps1", r.strain[other]);
-    use("eps2", r.strain[loaded]);
-    use("L1", r.length[other]);
-    use("L2", r.length[loaded]);
+    for_each_measure(row, false, [&](const Measure& m) { use(m.strain, r.strain[m.axis]); });
+    for_each_measure(row, false, [&](const Measure& m) { use(m.length, r.length[m.axis]); });
     use("solid_fraction", row.solid_fraction);
     use("arcs", r.arcs);
     use("rattlers", r.rattlers);
@@ -81,8 +86,8 @@ template <class Use> void for_each_column(const Row& row, const Use& use) {
     use("h", r.hyperstaticity);
     use("k", r.mechanisms);
     use("held", r.held);
-    use("sigma2_low", r.stress_low);
-    use("sigma2_high", r.stress_high);
+    use(row.names.stress + "_low", r.stress_low);
+    use(row.names.stress + "_high", r.stress_high);
     contact("opens_low", r.opens_low);
     contact("opens_high", r.opens_high);
     use("potential", r.potential);
@@ -102,12 +107,23 @@ template <class Use> void for_each_column(const Row& row, const Use& use) {
     for_each_bound(row, use);
 }
 
+} // namespace
+
+RecordColumns record_columns(const MoreColumns& more) {
+    Load load;
+    load.dimension = more.dimension;
+    load.loaded_axis = more.loaded_axis;
+    return record_columns(load, more.tilt);
+}
+
+namespace {
+
 /// The names, and whether integers are there.
 template <class Use> void for_each_name(MoreColumns more, const Use& use) {
     EquilibriumRecord any;
-    any.strain = any.strain_bound = any.length = any.length_bound = {0, 0, 0};
+    any.strain = any.strain_bound = any.length = any.length_bound = std::vector<double>(most_axes + most_tilts);
     any.touching = 0;
-    for_each_column({any, 0, 0, {0, 1, 2}, more},
+    for_each_column({any, 0, 0, record_columns(more), more},
                     [&use](const std::string& name, auto value) { use(name, std::is_integral_v<decltype(value)>); });
 }
 
@@ -136,14 +152,14 @@ class Fields {
   public:
     explicit Fields(const EquilibriumLine& line) : line_(line) {}
     /// Beyond 1e300 sums and differences of columns overflow; no run comes near.
-    [[nodiscard]] double number(const char* name) const {
+    [[nodiscard]] double number(const std::string& name) const {
         if (!(std::abs(line_.at(name)) <= 1e300)) {
             bad_field(line_.where, name, fmt::format("{}", line_.at(name)), "a finite number");
         }
         return line_.at(name);
     }
     /// An interval may be unbounded, a smallest of nothing is inf.
-    [[nodiscard]] double number_or_infinite(const char* name) const {
+    [[nodiscard]] double number_or_infinite(const std::string& name) const {
         return std::isinf(line_.at(name)) ? line_.at(name) : number(name);
     }
     [[nodiscard]] int integer(const char* name, int lowest) const {
@@ -157,22 +173,24 @@ class Fields {
     const EquilibriumLine& line_;
 };
 
-EquilibriumRow row_of(const Fields& fields) {
+EquilibriumRow row_of(const EquilibriumLine& line) {
+    const Fields fields(line);
+    const RecordColumns& names = *line.names;
     EquilibriumRow row;
     row.number = fields.integer("number", 0);
     row.previous = fields.integer("previous", -1);
     row.segment = fields.integer("segment", 0);
-    row.stress = fields.number("sigma2");
+    row.stress = fields.number(names.stress);
     row.ratio = fields.number("ratio");
-    row.strain1 = fields.number("eps1");
-    row.strain2 = fields.number("eps2");
+    row.strain1 = fields.number(names.other_strain);
+    row.strain2 = fields.number(names.strain);
     row.solid_fraction = fields.number("solid_fraction");
     row.arcs = fields.integer("arcs", 0);
     row.rattlers = fields.integer("rattlers", 0);
     row.backbone = fields.integer("backbone", 0);
     row.hyperstaticity = fields.integer("h", 0);
-    row.stress_low = fields.number_or_infinite("sigma2_low");
-    row.stress_high = fields.number_or_infinite("sigma2_high");
+    row.stress_low = fields.number_or_infinite(names.stress + "_low");
+    row.stress_high = fields.number_or_infinite(names.stress + "_high");
     row.min_force = fields.number_or_infinite("min_force");
     row.min_gap = fields.number_or_infinite("min_gap");
     row.margin = fields.number_or_infinite("margin");
@@ -219,8 +237,13 @@ std::string equilibria_header(MoreColumns more) {
 MoreColumns named_columns(std::string_view text, const std::string& source) {
     for (const bool tilt : {false, true}) {
         for (const bool touching : {false, true}) {
-            if (text.starts_with(equilibria_header({tilt, touching}))) {
-                return {tilt, touching};
+            const int places = !tilt ? most_axes : most_axes + most_tilts;
+            for (int loaded = -1; loaded < places; ++loaded) { // -1: the plane
+                const MoreColumns more =
+                    loaded < 0 ? MoreColumns{tilt, touching} : MoreColumns{tilt, touching, most_axes, loaded};
+                if (text.starts_with(equilibria_header(more))) {
+                    return more;
+                }
             }
         }
     }
@@ -230,10 +253,8 @@ MoreColumns named_columns(std::string_view text, const std::string& source) {
 }
 
 std::string equilibrium_row(const EquilibriumRecord& record, const State& state, int previous, MoreColumns more) {
-    const auto loaded = static_cast<std::size_t>(state.load.loaded_axis);
-    const auto other = static_cast<std::size_t>(state.load.other_axis());
     std::string text;
-    for_each_column({record, state.packing.solid_fraction(), previous, {other, loaded, 3 - other - loaded}, more},
+    for_each_column({record, state.packing.solid_fraction(), previous, record_columns(state.load, more.tilt), more},
                     [&text](const std::string& /*name*/, auto value) { text += fmt::format("{},", value); });
     return text + fmt::format("{:.3f}\n", record.seconds); // last: runs are compared without it
 }
@@ -254,12 +275,15 @@ std::vector<EquilibriumLine> read_equilibrium_lines(const std::filesystem::path&
     }
     const std::string source = path.string();
     TextLines text(content, source);
-    const std::vector<std::string> names = equilibria_columns(named_columns(without_byte_order_mark(content), source));
+    const MoreColumns more = named_columns(without_byte_order_mark(content), source);
+    const std::vector<std::string> names = equilibria_columns(more);
+    const auto called = std::make_shared<const RecordColumns>(record_columns(more));
     (void)text.take("names of columns");
     while (!text.at_end()) {
         const std::string_view row = text.take("a row");
         EquilibriumLine& line = lines.emplace_back();
         line.where = fmt::format("{}:{}", source, text.number());
+        line.names = called;
         std::vector<std::string_view> fields;
         for (std::size_t at = 0; at <= row.size(); at += fields.back().size() + 1) {
             fields.push_back(row.substr(at, row.find(',', at) - at));
@@ -281,7 +305,7 @@ std::vector<EquilibriumRow> read_equilibria(const std::filesystem::path& path) {
         return rows; // columns are named with the first row
     }
     for (const EquilibriumLine& line : read_equilibrium_lines(path, LastLine::may_be_cut)) {
-        rows.push_back(row_of(Fields(line)));
+        rows.push_back(row_of(line));
     }
     return rows;
 }

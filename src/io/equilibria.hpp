@@ -2,10 +2,13 @@
 /// \file
 /// equilibria.csv as text, both ways.
 
+#include "io/record_columns.hpp"
+
 #include <isostat/io/run_directory.hpp>
 
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <set>
 #include <string>
 #include <string_view>
@@ -20,6 +23,9 @@ inline constexpr int no_contact = -9;
 inline constexpr int back_wall = -5, front_wall = -6;
 /// Columns i and j of a contact: see `equilibria_columns`.
 std::pair<int, int> contact_columns(const Contact& contact);
+
+/// Of a run whose first line names those; in the plane the axes of the measures are those of a loaded axis 1.
+RecordColumns record_columns(const MoreColumns& more);
 
 /// Columns of integers, in whatever run; in all others are numbers, infinite ones among them.
 const std::set<std::string>& integer_columns();
@@ -37,12 +43,15 @@ std::string equilibrium_row(const EquilibriumRecord& record, const State& state,
 struct EquilibriumLine {
     std::string where; ///< file and line
     std::map<std::string, double> value;
-    [[nodiscard]] double at(const char* name) const { return value.at(name); }
+    std::shared_ptr<const RecordColumns> names; ///< those of the file
+    [[nodiscard]] double at(const std::string& name) const { return value.at(name); }
     /// Of the column with that name.
-    [[nodiscard]] double bound(const char* name) const { return value.at(std::string(name) + "_bound"); }
+    [[nodiscard]] double bound(const std::string& name) const { return value.at(name + "_bound"); }
+    /// The loaded stress, or with `_low` and `_high` the ends of its supported interval.
+    [[nodiscard]] double stress(const char* end = "") const { return value.at(names->stress + end); }
     /// Of a column of integers.
-    [[nodiscard]] int integer(const char* name) const { return static_cast<int>(at(name)); }
-    [[nodiscard]] bool has(const char* name) const { return value.contains(name); }
+    [[nodiscard]] int integer(const std::string& name) const { return static_cast<int>(at(name)); }
+    [[nodiscard]] bool has(const std::string& name) const { return value.contains(name); }
 };
 
 /// The last line of a file of a run that goes on, or was killed, need not be complete.

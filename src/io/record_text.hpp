@@ -3,6 +3,7 @@
 /// Records as text: a line of events.jsonl, of certificates/arcs.jsonl, counters.
 
 #include "io/json.hpp"
+#include "io/record_columns.hpp"
 
 #include <isostat/trajectory/trajectory.hpp>
 
@@ -11,7 +12,7 @@
 namespace isostat {
 
 /// One JSON object and a newline.
-std::string event_line(const ArcRecord& arc);
+std::string event_line(const ArcRecord& arc, const RecordColumns& names);
 
 /// One line of certificates/arcs.jsonl: the step, and of a certified arc `grains` (those that move; absent: all),
 /// `centres` (`held`: a coordinate, `q`) and `end`. `q` and `end` list the degrees of freedom that move, in their

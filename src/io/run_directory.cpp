@@ -143,11 +143,10 @@ void RunDirectory::read_checkpoint() {
     point.made = file.at("made").integer(0, std::numeric_limits<int>::max());
     point.segment_done = file.at("segment_done").boolean();
     point.counters = counters_from(file.at("counters"));
-    StateFile state = parse_any_state(file.at("state").value().dump(), path);
+    StateFile state = parse_any_state(file.at("state").value().dump(), path, Dimensions::any);
     point.state = state.state;
-    const Cell& cell = point.state.packing.cell;
-    const bool tilts = cell.any() && cell.tilt_moves[0];
-    file.at("strain").require_size(tilts ? 3 : 2, "a strain for each axis");
+    const bool tilts = point.state.packing.cell.shears();
+    file.at("strain").require_size(record_columns(point.state.load, tilts).measures.size(), "a strain for each axis");
     for (std::size_t a = 0; a < file.at("strain").size(); ++a) {
         last_strain_.push_back(file.at("strain").at(a).number());
     }
@@ -174,7 +173,7 @@ std::optional<State> RunDirectory::start() const {
     if (!resumed_ || !fs::exists(path)) {
         return std::nullopt;
     }
-    return read_any_state(path).state;
+    return read_any_state(path, Dimensions::any).state;
 }
 
 void RunDirectory::keep_digest(const std::string& name) {
@@ -184,11 +183,15 @@ void RunDirectory::keep_digest(const std::string& name) {
 void RunDirectory::store_start(const State& state) {
     write_state(directory_ / "start.json", state);
     keep_digest("start.json");
-    name_columns({state.packing.cell.any() && state.packing.cell.tilt_moves[0], header_.touching});
+    name_columns(columns_of(state));
+}
+
+MoreColumns RunDirectory::columns_of(const State& state) const {
+    return {state.packing.cell.shears(), header_.touching, state.packing.dimension, state.load.loaded_axis};
 }
 
 State RunDirectory::stored(int equilibrium) const {
-    return read_any_state(directory_ / state_name(equilibrium)).state;
+    return read_any_state(directory_ / state_name(equilibrium), Dimensions::any).state;
 }
 
 void RunDirectory::begin_segment(int number, const Segment& goal, int made, int from) {
@@ -199,7 +202,7 @@ void RunDirectory::begin_segment(int number, const Segment& goal, int made, int 
 }
 
 void RunDirectory::on_arc(const ArcRecord& arc) {
-    files_->events.write(event_line(arc));
+    files_->events.write(event_line(arc, record_columns(columns_)));
     if (header_.witnesses) {
         files_->witnesses.write(witness_line(arc));
     }
@@ -215,7 +218,9 @@ void RunDirectory::name_columns(MoreColumns more) {
 void RunDirectory::on_equilibrium(const EquilibriumRecord& record, const State& state,
                                   const std::vector<double>& forces) {
     const bool first = record.number == 0;
-    name_columns({record.length.size() > 2, record.touching.has_value()});
+    MoreColumns columns = columns_of(state);
+    columns.touching = record.touching.has_value();
+    name_columns(columns);
     files_->equilibria.write(equilibrium_row(record, state, first ? -1 : previous_, columns_));
     previous_ = record.number;
     made_ += first ? 0 : 1;
@@ -304,11 +309,11 @@ void RunDirectory::finish(RunStatus status, const std::string& reason) {
     object["steering"] = steering(counters_);
     object["counters"] = counters_json(counters_);
     if (!last_.packing.radius.empty()) {
-        const auto loaded = static_cast<std::size_t>(last_.load.loaded_axis);
         object["disks"] = last_.packing.disk_count();
         object["ratio"] = json::or_null(last_.load.ratio());
-        object["eps1"] = json::or_null(last_strain_[static_cast<std::size_t>(last_.load.other_axis())]);
-        object["eps2"] = json::or_null(last_strain_[loaded]);
+        for (const auto& [strain, length, axis] : record_columns(last_.load, false).measures) {
+            object[strain] = json::or_null(last_strain_[axis]);
+        }
         object["solid_fraction"] = json::or_null(last_.packing.solid_fraction());
     }
     summary_ = json::dumped(object, 2) + "\n";

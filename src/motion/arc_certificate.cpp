@@ -120,7 +120,8 @@ bool Certifier::check_input() {
         if (l != slot_ && a[l].kind == ContactKind::held) {
             const auto k = static_cast<std::size_t>(a[l].i);
             if (start_.packing.q[k] != end_.packing.q[k]) {
-                return refuse(fmt::format("{} is not at the same place at both ends", to_string(a[l])));
+                return refuse(
+                    fmt::format("{} is not at the same place at both ends", to_string(a[l], start_.packing.dimension)));
             }
         }
     }
@@ -134,7 +135,8 @@ bool Certifier::check_input() {
 bool Certifier::check_vertex(const ArcVertex& vertex, const Contact& zero, const char* name) {
     for (const Contact& contact : active_) {
         if (contact != zero && !gap_at_vertex(vertex.packing, vertex.enclosure, contact).positive()) {
-            return refuse(fmt::format("the gap of {} is not proved positive at the {}", to_string(contact), name));
+            return refuse(fmt::format("the gap of {} is not proved positive at the {}",
+                                      to_string(contact, start_.packing.dimension), name));
         }
     }
     return true;
@@ -172,7 +174,8 @@ bool Certifier::finish(const Piece& piece, double from, double to) {
             const double s = watch_.where();
             return refuse(fmt::format("the gap of {} is not proved positive in piece {} at s = {:.6g} of [{:.6g}, "
                                       "{:.6g}] (tube {:.3g})",
-                                      to_string(contact), certificate_.pieces, s, from, to, piece.radius()));
+                                      to_string(contact, start_.packing.dimension), certificate_.pieces, s, from, to,
+                                      piece.radius()));
         }
     }
     power_->look(piece, from, to);
@@ -196,7 +199,8 @@ bool Certifier::arrive(const Piece& last, double from, double joint_slack) {
         return refuse("the end is not proved to lie ahead of the start");
     }
     if (closed().kind != ContactKind::held && !watch_.falls(closed())) {
-        return refuse(fmt::format("the gap of {} is not proved to fall to 0 at the end", to_string(closed())));
+        return refuse(fmt::format("the gap of {} is not proved to fall to 0 at the end",
+                                  to_string(closed(), start_.packing.dimension)));
     }
     certificate_.turning = opened().kind != ContactKind::held && GapWatch::rate_sign(last, opened(), place->s) < 0;
     return check_vertex(end_, closed(), "end");

@@ -4,7 +4,6 @@
 #include <isostat/packing/packing.hpp>
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <cstddef>
 
@@ -13,12 +12,18 @@ namespace isostat {
 /// Whether separations of up to 3 periods are exact at multiples of `step`: no sum on the way has more than 2^53 of
 /// them. \pre there are periodic axes
 inline bool fits_grid(const Packing& packing, double step) {
-    assert(packing.dimension == plane);
     double farthest = 0;
     for (std::size_t k = 0; k < packing.length_at(0); ++k) {
         farthest = std::max(farthest, std::abs(packing.q[k]));
     }
-    const double period = std::max(packing.length(0) + std::abs(packing.lattice(0, 1)), packing.length(1));
+    double period = 0; // largest row sum of |A|
+    for (std::size_t a = 0; a < packing.axes(); ++a) {
+        double row = 0;
+        for (std::size_t b = a; b < packing.axes(); ++b) {
+            row += std::abs(packing.lattice(a, b));
+        }
+        period = std::max(period, row);
+    }
     return 2 * farthest + 3 * period <= 0x1p53 * step;
 }
 

@@ -6,9 +6,7 @@
 #include "motion/geometry.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
-#include <functional>
 
 namespace isostat {
 
@@ -32,7 +30,7 @@ double third_approach(const CurveCourse& course, const Contact& c) {
     const auto bend = separation(course.at.layout(), course.curvature, c);
     double product = 0;
     double square = 0;
-    for (std::size_t a = 0; a < plane; ++a) {
+    for (std::size_t a = 0; a < d.size(); ++a) { // in the plane the third ones are 0
         square += d[a] * d[a];
         product += t[a] * bend[a];
     }
@@ -71,20 +69,35 @@ double PowerAlong::terms(const Packing& at, const std::vector<double>& v) const 
     return sum;
 }
 
-/// DF v: true stresses act on lengths, linear in q in two dimensions. Empty when the load is dead.
+/// DF v: true stresses act on lengths, which is linear in q, and in space on products of two of them: there a
+/// difference to both sides is the derivative. Empty when the load is dead.
 std::vector<double> PowerAlong::change(const Packing& at, const std::vector<double>& v) const {
-    assert(at.dimension == plane);
     if (load_.infinitesimal || load_.load->kind == LoadKind::nominal) {
         return {};
     }
+    const bool linear = at.dimension == plane;
+    std::vector<double> change = force_at(at, v, 1);
+    const std::vector<double> before = force_at(at, v, linear ? 0 : -1);
+    std::transform(change.begin(), change.end(), before.begin(), change.begin(),
+                   [linear](double a, double b) { return linear ? a - b : 0.5 * (a - b); });
+    return change;
+}
+
+/// v.D2F(v, v): 0 where F is linear.
+double PowerAlong::bend_along(const Packing& at, const std::vector<double>& v) const {
+    if (load_.infinitesimal || load_.load->kind == LoadKind::nominal || at.dimension == plane) {
+        return 0;
+    }
+    return product(force_at(at, v, 1), v) - 2 * product(force_at(at, v, 0), v) + product(force_at(at, v, -1), v);
+}
+
+/// The load at q + s v.
+std::vector<double> PowerAlong::force_at(const Packing& at, const std::vector<double>& v, double s) const {
     Packing there = at;
     for (std::size_t k = 0; k < there.q.size(); ++k) {
-        there.q[k] += v[k];
+        there.q[k] += s * v[k];
     }
-    std::vector<double> change = load_.load->external_force(there);
-    const std::vector<double> here = load_.load->external_force(at);
-    std::transform(change.begin(), change.end(), here.begin(), change.begin(), std::minus<>());
-    return change;
+    return load_.load->external_force(there);
 }
 
 /// Passes until what one does to the power over a length s is small beside `least`, a power, or beside what the slope
@@ -129,15 +142,16 @@ double PowerAlong::slope_along(const CurveCourse& course) const {
     return (*this)(course.at, course.curvature) + product(change(course.at, course.tangent), course.tangent);
 }
 
-/// p'' = F.e + 2 c.DF t + t.DF c, e = dc/ds.
+/// p'' = F.e + 2 c.DF t + t.DF c + t.D2F(t, t), e = dc/ds.
 std::optional<double> PowerAlong::dip_of_cubic(const CurveCourse& course, Chord& chord, const Step& step) const {
     const double s = step.s;
     const double p1 = s * slope_along(course);
     const std::vector<double>& third =
         chord.velocity([&](const Contact& c) { return third_approach(course, c); }, course.fastest);
-    const double p2 = 0.5 * s * s *
-                      ((*this)(course.at, third) + 2 * product(change(course.at, course.tangent), course.curvature) +
-                       product(change(course.at, course.curvature), course.tangent));
+    const double p2 =
+        0.5 * s * s *
+        ((*this)(course.at, third) + 2 * product(change(course.at, course.tangent), course.curvature) +
+         product(change(course.at, course.curvature), course.tangent) + bend_along(course.at, course.tangent));
     const double p3 = step.end - step.start - p1 - p2;
     // What the cubic misses at x is x^3 (1 - x) times a fourth derivative / 24, taken to be as much as p3.
     constexpr int samples = 32;

@@ -37,6 +37,8 @@ class PowerAlong {
     void sharpen(CurveCourse& course, Chord& chord, double s, double least) const;
     [[nodiscard]] std::optional<double> dip_of_cubic(const CurveCourse& course, Chord& chord, const Step& step) const;
     [[nodiscard]] std::vector<double> change(const Packing& at, const std::vector<double>& v) const;
+    [[nodiscard]] double bend_along(const Packing& at, const std::vector<double>& v) const;
+    [[nodiscard]] std::vector<double> force_at(const Packing& at, const std::vector<double>& v, double s) const;
 
     PowerLoad load_;
 };

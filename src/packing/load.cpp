@@ -1,9 +1,12 @@
+#include "packing/words.hpp"
+
 #include <isostat/packing/packing.hpp>
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <random>
+#include <string>
 
 namespace isostat {
 
@@ -14,6 +17,25 @@ void Load::refer_to(const Packing& packing) {
     for (std::size_t t = 0; t < packing.tilts(); ++t) {
         reference_tilt[t] = packing.cell.any() ? packing.q[packing.length_at(packing.axes() + t)] : 0;
     }
+}
+
+std::string Load::stress_name() const {
+    if (dimension == plane) {
+        return loads_tilt() ? "shear" : "sigma2";
+    }
+    return loads_tilt() ? std::string("shear_") + tilt_names[loaded_tilt()] : "sigma" + std::to_string(loaded_axis + 1);
+}
+
+std::string Load::ratio_name() const {
+    const bool first = dimension == plane && !loads_tilt(); // there the loaded axis is the second one by name
+    return stress_name() + "/sigma" + std::to_string(first ? 1 : other_axis() + 1);
+}
+
+std::string Load::strain_name() const {
+    if (dimension == plane) {
+        return loads_tilt() ? "shear strain" : "eps2";
+    }
+    return loads_tilt() ? std::string("eps_") + tilt_names[loaded_tilt()] : "eps" + std::to_string(loaded_axis + 1);
 }
 
 std::vector<WallForce> Load::wall_forces(const Packing& packing) const {

@@ -125,7 +125,7 @@ class Run {
         if (const Result<State> start = start_in(directory, watcher); start.ok()) {
             ending = play_scene(scene_, start.value(), directory, program, counters, stop_, watcher);
         } else {
-            ending = ending_of(start.failure(), "");
+            ending = ending_of(start.failure(), "", scene_.preparation.dimension);
         }
         directory.finish(ending.status, ending.reason);
         return ending;

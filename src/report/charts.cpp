@@ -159,7 +159,7 @@ void add_distribution(std::vector<Chart>& charts, const Distribution& of, const 
     std::string right;
     int index = 0;
     const std::array<std::pair<const char*, const std::vector<double>*>, 2> kinds{
-        {{words.rising, &increments.loading}, {words.falling, &increments.unloading}}};
+        {{words.rising.c_str(), &increments.loading}, {words.falling.c_str(), &increments.unloading}}};
     for (std::size_t k = 0; k < kinds.size(); ++k) {
         const std::vector<double>& values = *kinds[k].second;
         if (values.size() < fewest) {

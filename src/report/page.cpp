@@ -277,7 +277,7 @@ Page run_page(const std::filesystem::path& directory, const std::function<void(s
     Json data = header_json(directory);
     std::optional<Frames> frames;
     const std::optional<StateFile> first = records.stored(0);
-    data["words"] = words_json(load_words(first && first->state.load.loads_tilt()));
+    data["words"] = words_json(load_words(first ? first->state.load : Load()));
     data["arcs"] = records.events.size();
     if (first) {
         const Packing& packing = first->state.packing;

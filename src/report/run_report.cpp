@@ -54,7 +54,7 @@ class Writer {
             state.packing.dimension != plane
                 ? fmt::format("{} spheres", state.packing.disk_count())
                 : fmt::format("equilibrium {}, {} disks, {} = {:.6g}", state.equilibrium, state.packing.disk_count(),
-                              load_words(state.load.loads_tilt()).ratio_sign, state.load.ratio());
+                              load_words(state.load).ratio_sign, state.load.ratio());
         if (options_.pictures) {
             count_work(Work::pictures);
             const auto draw = state.packing.dimension == plane ? force_picture : sphere_picture;
@@ -212,7 +212,8 @@ ReportResult report_run(const fs::path& directory, const fs::path& output, const
         writer.note(note);
     }
     const std::vector<fs::path> states = stored_states(directory, content);
-    const LoadWords& words = load_words(!states.empty() && read_any_state(states.front()).state.load.loads_tilt());
+    const Load load = states.empty() ? Load() : read_any_state(states.front(), Dimensions::any).state.load;
+    const LoadWords words = load_words(load);
     if (options.pictures || options.vtk) {
         if (options.pictures) {
             for (const Chart& chart : make_charts(rows, names, words, options.pdf)) {
@@ -224,7 +225,9 @@ ReportResult report_run(const fs::path& directory, const fs::path& output, const
         }
         writer.vtk_series();
     }
-    if (options.html) {
+    if (options.html && load.dimension != plane) {
+        writer.note("trajectory.html: left out: the page of a run draws disks");
+    } else if (options.html) {
         const Page page = run_page(directory, options.progress);
         for (const std::string& left_out : page.left_out) {
             writer.note(fmt::format("trajectory.html: left out: {}", left_out));

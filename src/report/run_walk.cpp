@@ -81,7 +81,7 @@ class Walk {
             return false;
         }
         const EquilibriumLine& last = records_.equilibria.back();
-        return event.stress == last.at("sigma2_low") || event.stress == last.at("sigma2_high");
+        return event.stress == last.stress("_low") || event.stress == last.stress("_high");
     }
 
     /// Goes through the arcs of one rearrangement; `line`: the equilibrium that it leads to. False: stop.
@@ -126,7 +126,7 @@ class Walk {
 
     void arrive(const EquilibriumLine& line) {
         here_->equilibrium = line.integer("number");
-        here_->load.loaded_stress() = line.at("sigma2");
+        here_->load.loaded_stress() = line.stress();
         if (branches_.contains(here_->equilibrium)) {
             kept_[here_->equilibrium] = *here_;
         }

@@ -6,6 +6,7 @@
 #include "scene/section.hpp"
 
 #include <isostat/core/error.hpp>
+#include <isostat/io/state_file.hpp>
 #include <isostat/scene/scene.hpp>
 
 #include <fmt/format.h>
@@ -55,20 +56,37 @@ void read_start(Section& section, const std::string& file, Scene& scene, const s
     section.record("file", toml_text(file));
 }
 
-/// Exactly one way to say where the disks come from.
+/// A list of radii is of either; the other sources say it themselves.
+int read_dimension(Section& section, const std::string& source) {
+    const bool list = source == "radii" || source == "radii_file";
+    if (section.integer("dimension")) {
+        if (list) {
+            return static_cast<int>(section.integer("dimension", plane, plane, most_axes));
+        }
+        section.refuse("dimension", fmt::format("'dimension' in [packing] goes with 'radii' or 'radii_file' and has no "
+                                                "meaning with '{}'",
+                                                source));
+    }
+    return source == "spheres" ? 3 : plane;
+}
+
+/// Exactly one way to say where the disks or spheres come from.
 void read_packing(Section& section, Scene& scene, const std::filesystem::path& folder) {
     const auto file = section.string("file");
     const auto disks = section.integer("disks");
+    const auto spheres = section.integer("spheres");
     const auto radii = section.numbers("radii");
     const auto radii_file = section.string("radii_file");
-    const std::array<std::pair<const char*, bool>, 4> sources{{{"file", file.has_value()},
+    const std::array<std::pair<const char*, bool>, 5> sources{{{"file", file.has_value()},
                                                                {"disks", disks.has_value()},
+                                                               {"spheres", spheres.has_value()},
                                                                {"radii", radii.has_value()},
                                                                {"radii_file", radii_file.has_value()}}};
     const auto chosen = std::find_if(sources.begin(), sources.end(), [](const auto& s) { return s.second; });
     if (chosen == sources.end()) {
-        section.refuse("",
-                       "[packing] does not say where the disks come from: expected file, disks, radii or radii_file");
+        section.refuse(
+            "", "[packing] does not say where the grains come from: expected file, disks, radii or radii_file, or "
+                "spheres");
     }
     for (auto other = chosen + 1; other != sources.end(); ++other) {
         if (other->second) {
@@ -77,16 +95,17 @@ void read_packing(Section& section, Scene& scene, const std::filesystem::path& f
                                        chosen->first, other->first));
         }
     }
-    if (!disks) {
+    if (!disks && !spheres) {
         refuse_law(section, chosen->first);
     }
     PreparationOptions& options = scene.preparation;
+    options.dimension = read_dimension(section, chosen->first);
     if (file) {
         read_start(section, *file, scene, folder);
         return;
     }
-    if (disks) {
-        options.disks = static_cast<int>(section.integer("disks", 0, 1, 10'000'000));
+    if (disks || spheres) {
+        options.disks = static_cast<int>(section.integer(chosen->first, 0, 1, 10'000'000));
         options.diameters = read_law(section);
     } else if (radii) {
         read_radii_list(section, *radii, options);
@@ -109,18 +128,20 @@ void read_cell(Section& section, Scene& scene) {
         section.refuse("", "[cell] is of a preparation: a packing read from a file has its own");
     }
     constexpr std::array kinds{PreparedCell::rectangular, PreparedCell::tilted, PreparedCell::isotropic};
-    options.cell = kinds[static_cast<std::size_t>(section.word("kind", 0, {"rectangular", "tilted", "isotropic"}))];
+    const bool in_plane = options.dimension == plane;
+    options.cell = kinds[section.word(
+        "kind", 0, {in_plane ? "rectangular" : "orthorhombic", in_plane ? "tilted" : "triclinic", "isotropic"})];
     const std::size_t count = options.radii.empty() ? static_cast<std::size_t>(options.disks) : options.radii.size();
     if (count > static_cast<std::size_t>(options.large_above)) {
-        section.refuse(
-            "", fmt::format("[cell] and {} disks: expected at most {} in a periodic cell", count, options.large_above));
+        section.refuse("", fmt::format("[cell] and {} {}: expected at most {} in a periodic cell", count,
+                                       in_plane ? "disks" : "spheres", options.large_above));
     }
 }
 
 void read_preparation(Section& section, Scene& scene) {
     PreparationOptions& options = scene.preparation;
     options.loose_fraction =
-        section.number("loose_fraction", options.loose_fraction, 0.05, 0.8, "a solid fraction from 0.05 to 0.8");
+        section.number("loose_fraction", options.start_fraction(), 0.05, 0.8, "a solid fraction from 0.05 to 0.8");
     options.softness = section.number("softness", options.softness, 1e-9, 1e-3, "a number from 1e-9 to 1e-3");
     options.relaxation = section.number("relaxation", options.relaxation, 1e-12, 1, "a number from 1e-12 to 1");
     options.max_steps = section.integer("max_steps", options.max_steps, 1, 1'000'000'000);
@@ -134,15 +155,38 @@ void read_loaded(Section& section, Scene& scene) {
     if (!section.string("loaded")) { // without it the state of a file says what is loaded
         return;
     }
-    scene.loads_tilt = section.word("loaded", 0, {"y", "tilt"}) == 1;
+    const std::vector<std::string> words{"y", "tilt", "x", "z", "xy", "xz", "yz"};
+    scene.loaded = words[section.word("loaded", 0, words)];
     if (!scene.start.empty()) {
-        return; // the state of the file tells whether it has a tilt
+        return; // the state of the file tells its dimension and whether it has a tilt
     }
-    if (*scene.loads_tilt && scene.preparation.cell != PreparedCell::tilted) {
+    if (scene.loaded != "y" && scene.loaded != "tilt") {
+        section.refuse("loaded", fmt::format("'loaded' in [load] is \"{}\", which is of spheres read from a file: "
+                                             "expected \"y\" or \"tilt\"",
+                                             scene.loaded));
+    }
+    scene.preparation.loads_tilt = scene.loaded == "tilt";
+    if (scene.preparation.loads_tilt && scene.preparation.cell != PreparedCell::tilted) {
         section.refuse("loaded",
                        "'loaded' in [load] is \"tilt\" and no tilt moves: expected kind = \"tilted\" in [cell]");
     }
-    scene.preparation.loads_tilt = *scene.loads_tilt;
+}
+
+/// What a programme will find loaded: its dimension and axis tell what the ratios are called.
+Load load_at_start(const Scene& scene) {
+    Load load;
+    if (scene.start.empty()) {
+        load.loaded_axis = scene.preparation.loads_tilt ? plane : 1;
+        return load;
+    }
+    try {
+        State state = read_any_state(scene.start, Dimensions::any).state;
+        choose_loaded(state, scene, scene.start.string());
+        return state.load;
+    } catch (const Error&) { // whoever reads the start says what is wrong
+        load.loaded_axis = scene.loaded == "tilt" ? plane : 1;
+        return load;
+    }
 }
 
 void read_load(Section& section, Scene& scene) {
@@ -186,9 +230,10 @@ void read_load(Section& section, Scene& scene) {
     }
 }
 
-ProgrammeStep read_step(Section& section, bool of_shear) {
+ProgrammeStep read_step(Section& section, const Load& load) {
     ProgrammeStep step;
-    step.of_shear = of_shear;
+    step.of_shear = load.loads_tilt();
+    step.ratio = load.ratio_name();
     step.line = section.line_of("");
     if (!section.has("do")) {
         section.refuse("", "a [[programme]] segment has no 'do': expected \"up\", \"down\" or \"to\"");
@@ -198,11 +243,11 @@ ProgrammeStep read_step(Section& section, bool of_shear) {
         step.equilibria = static_cast<int>(section.integer("equilibria", 0, 1, 1'000'000'000));
     }
     if (const auto to = section.number("to")) {
-        step.to = of_shear ? section.number("to", 0, -largest_number, largest_number, "a ratio shear/sigma2")
-                           : section.number("to", 0, 0, largest_number,
-                                            "a ratio sigma2/sigma1 that is not negative (one of the shear has either "
-                                            "sign: loaded = \"tilt\" in "
-                                            "[load])");
+        step.to = step.of_shear ? section.number("to", 0, -largest_number, largest_number, "a ratio " + step.ratio)
+                                : section.number("to", 0, 0, largest_number,
+                                                 "a ratio " + step.ratio +
+                                                     " that is not negative (one of the shear has either sign: loaded "
+                                                     "= \"tilt\" in [load])");
     }
     if (const auto from = section.integer("from")) {
         step.from = static_cast<int>(section.integer("from", 0, 0, 1'000'000'000));
@@ -304,9 +349,12 @@ void read_programme(const toml::table& document, Scene& scene) {
                 fmt::format("{}:{}: 'programme' is not a list of tables: expected [[programme]] for each segment",
                             source, node->source().begin.line));
         }
+        const bool ratios = std::any_of(steps->begin(), steps->end(),
+                                        [](const toml::node& step) { return step.as_table()->contains("to"); });
+        const Load load = ratios ? load_at_start(scene) : Load();
         for (const toml::node& step : *steps) {
             Section one(step.as_table(), "[programme]", source, scene.settings);
-            scene.programme.push_back(read_step(one, scene.loads_tilt.value_or(false)));
+            scene.programme.push_back(read_step(one, load));
         }
     }
     if (scene.preparation.cell == PreparedCell::isotropic && !scene.programme.empty()) {
@@ -331,7 +379,8 @@ Scene parse_scene(const std::string& text, const std::string& source, const std:
     };
     if (table_of(document, "packing", source) == nullptr) {
         throw Error(ErrorKind::bad_input,
-                    fmt::format("{}: has no [packing]: expected one with file, disks, radii or radii_file", source));
+                    fmt::format("{}: has no [packing]: expected one with file, disks, radii or radii_file, or spheres",
+                                source));
     }
     Section packing = section("packing");
     read_packing(packing, scene, folder);

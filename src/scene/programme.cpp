@@ -29,10 +29,6 @@ double lowest(const ProgrammeStep& step) {
     return step.of_shear ? -infinity : 0;
 }
 
-const char* ratio_name(const ProgrammeStep& step) {
-    return step.of_shear ? "shear/sigma2" : "sigma2/sigma1";
-}
-
 /// Ratios at which the run can be, and whether both ends are reached for sure.
 struct Range {
     double low = 0;
@@ -89,8 +85,7 @@ Range after(const Scene& scene, const ProgrammeStep& step, const Range& start) {
         if (behind) {
             refuse(scene, step,
                    fmt::format("{} to a ratio {} of {}, but the ratio at its start is {}: expected a {} one",
-                               word(step.action), ratio_name(step), *step.to, range_text(start),
-                               up ? "larger" : "smaller"));
+                               word(step.action), step.ratio, *step.to, range_text(start), up ? "larger" : "smaller"));
         }
         if (!step.equilibria) {
             return {*step.to, *step.to};
@@ -114,7 +109,7 @@ std::string describe(const ProgrammeStep& step) {
                             step.equilibria             ? " or to"
                             : step.action == Action::to ? ""
                                                         : ": to",
-                            ratio_name(step), *step.to);
+                            step.ratio, *step.to);
     }
     return text;
 }

@@ -49,31 +49,51 @@ class Both final : public RunObserver {
 
 } // namespace
 
+void choose_loaded(State& state, const Scene& scene, const std::string& source) {
+    const auto bad = [&](const char* what, const char* expected) {
+        throw Error(ErrorKind::bad_input, fmt::format("{}: {}, and 'loaded' in [load] of {} is \"{}\": expected {}",
+                                                      source, what, scene.file, scene.loaded, expected));
+    };
+    const Packing& packing = state.packing;
+    const bool in_plane = packing.dimension == plane;
+    const std::vector<std::string> words = in_plane ? std::vector<std::string>{"", "y", "tilt"}
+                                                    : std::vector<std::string>{"x", "y", "z", "xy", "xz", "yz"};
+    if (scene.loaded.empty()) {
+        return;
+    }
+    const auto axis = static_cast<std::size_t>(std::find(words.begin(), words.end(), scene.loaded) - words.begin());
+    if (axis == words.size()) {
+        bad(in_plane ? "disks" : "spheres", in_plane ? "\"y\" or \"tilt\"" : "an axis, x to z, or a tilt, xy to yz");
+    }
+    if (axis >= packing.axes() && !(packing.cell.any() && packing.cell.tilt_moves[axis - packing.axes()])) {
+        bad(in_plane ? "no tilt moves" : "that tilt does not move",
+            in_plane ? "\"y\", or a cell whose tilt moves" : "an axis, or a tilt that moves");
+    }
+    state.load.loaded_axis = static_cast<int>(axis);
+}
+
 State start_of_scene(State state, const Scene& scene, const std::string& source) {
     if (scene.load_kind) {
         state.load.kind = *scene.load_kind;
     }
-    if (scene.loads_tilt) {
-        const Cell& cell = state.packing.cell;
-        if (*scene.loads_tilt && !(cell.any() && cell.tilt_moves[0])) {
-            throw Error(ErrorKind::bad_input,
-                        fmt::format("{}: no tilt moves, and 'loaded' in [load] of {} is \"tilt\": "
-                                    "expected \"y\", or a cell whose tilt moves",
-                                    source, scene.file));
-        }
-        state.load.loaded_axis = *scene.loads_tilt ? 2 : 1;
-    }
+    choose_loaded(state, scene, source);
     if (scene.infinitesimal_seed) {
-        state.load.infinitesimal = generic_infinitesimal(state.packing.radius, *scene.infinitesimal_seed);
+        state.load.infinitesimal =
+            generic_infinitesimal(state.packing.radius, *scene.infinitesimal_seed, state.packing.dimension);
         balance(state.load.infinitesimal, state.packing.cell);
     }
     state.equilibrium = 0;
     state.perturbation.reset(); // a run has its own
-    for (std::size_t a = 0; a < 2; ++a) {
+    for (std::size_t a = 0; a < state.packing.axes(); ++a) {
         if (!(state.load.stress[a] > 0)) {
             throw Error(ErrorKind::bad_input, fmt::format("{}: load.stress[{}] is {}: expected a positive stress",
                                                           source, a, state.load.stress[a]));
         }
+    }
+    if (state.packing.dimension != plane && scene.run.certify == CertifyLevel::arcs) {
+        throw Error(ErrorKind::bad_input, fmt::format("{}: spheres, and certify in [run] of {} is \"arcs\": expected "
+                                                      "\"decisions\" or \"states\", arcs are enclosed in the plane",
+                                                      source, scene.file));
     }
     require_followed(state, source);
     check_start(state, source, scene.run.at_first_order());
@@ -87,7 +107,7 @@ State start_of_scene(State state, const Scene& scene, const std::string& source)
 }
 
 State start_from_file(const Scene& scene) {
-    return start_of_scene(read_any_state(scene.start).state, scene, scene.start.string());
+    return start_of_scene(read_any_state(scene.start, Dimensions::any).state, scene, scene.start.string());
 }
 
 std::string provenance_of(const Scene& scene, const std::string& program, const std::string& command,
@@ -146,9 +166,9 @@ std::string advice(const Scene& scene, const Failure& failure, const Packing& pa
                                           : "";
 }
 
-SceneEnding ending_of(const Failure& failure, const std::string& where) {
-    return {status_of(failure.kind), fmt::format("{}{}: {}", where, to_string(failure.kind), failure.message()),
-            failure};
+SceneEnding ending_of(const Failure& failure, const std::string& where, int dimension) {
+    return {status_of(failure.kind),
+            fmt::format("{}{}: {}", where, to_string(failure.kind), failure.message(dimension)), failure};
 }
 
 SceneEnding play_scene(const Scene& scene, State state, RunDirectory& directory, const std::string& program,
@@ -182,7 +202,8 @@ SceneEnding play_scene(const Scene& scene, State state, RunDirectory& directory,
     RunObserver& observer = certifier ? static_cast<RunObserver&>(*certifier) : both;
     const ProgrammeOutcome outcome = play(programme, state, options, counters, observer);
     if (outcome.failure) {
-        SceneEnding ending = ending_of(*outcome.failure, fmt::format("segment \"{}\": ", outcome.segment));
+        SceneEnding ending =
+            ending_of(*outcome.failure, fmt::format("segment \"{}\": ", outcome.segment), state.packing.dimension);
         ending.reason += advice(scene, *outcome.failure, state.packing);
         return ending;
     }

@@ -24,7 +24,7 @@ class Stage {
             find_zero_holds();
         }
         if (zero_.fresh) {
-            turn_.emplace(statics_, zero_);
+            ask_struts();
         }
     }
     Stage(const Stage&) = delete;
@@ -42,6 +42,12 @@ class Stage {
     }
 
   private:
+    /// Struts are of the plane (S4).
+    void ask_struts() {
+        if (statics_.structure().dofs().layout().dimension == plane) {
+            turn_.emplace(statics_, zero_);
+        }
+    }
     [[nodiscard]] Named name_of(ContactId l) const { return name(statics_, l); }
     [[nodiscard]] Enclosure value(ContactId l) const {
         return finite_ ? statics_.force(l, sigma_) : statics_.infinitesimal(l);
@@ -214,7 +220,7 @@ Result<OpeningDecision> Stage::nothing_opens() {
 
 Result<OpeningDecision> Stage::open() {
     if (!turn_ && !zero_.others.empty()) {
-        turn_.emplace(statics_, zero_);
+        ask_struts();
     }
     choice_.turn = turn_ ? &*turn_ : nullptr;
     const auto picked = pick(statics_, std::move(negative_), choice_);

@@ -52,7 +52,7 @@ Enclosure work(const Vertex& start, const Place& from, const Place& to, const Lo
     }
     for (const WallForce& wall : infinitesimal ? std::vector<WallForce>() : load.wall_forces(start.packing)) {
         const auto k = static_cast<std::size_t>(wall.coordinate);
-        sum.add(-dd_real::mul(wall.stress, wall.length), to[k] - from[k]);
+        sum.add(-dd_real::mul(wall.stress, wall.length) * wall.other, to[k] - from[k]);
         ++terms;
     }
     const double radius =
@@ -123,7 +123,7 @@ PreciseInterval decrease_between(const PreciseVertex& from, const PreciseVertex&
         const PreciseInterval a = from[k];
         const PreciseInterval b = to[k];
         if (load.kind == LoadKind::nominal) {
-            sum = sum + exactly(wall.stress) * exactly(wall.length) * (a - b);
+            sum = sum + exactly(wall.stress) * exactly(wall.length) * exactly(wall.other) * (a - b);
         } else {
             sum = sum + exactly(wall.stress) * (logarithm(a) - logarithm(b));
         }

@@ -135,7 +135,7 @@ void judge_forces(MechanismInspection& inspection, Vertex& vertex, const State& 
             at_rest = at_rest && std::abs(f.value) <= f.radius + uncertain;
             if (std::abs(f.value) > f.radius + uncertain && inspection.remark.empty()) {
                 inspection.remark = fmt::format("not an equilibrium: the mechanism moves, force {:.6g} on the {}",
-                                                f.value, to_string(inspection.contacts[l]));
+                                                f.value, to_string(inspection.contacts[l], state.packing.dimension));
             }
         }
     }
@@ -179,11 +179,11 @@ Result<MechanismInspection> inspect_mechanism(const State& state, const Counting
     KeptCandidates kept;
     auto gaps = vertex.check_gaps(candidates, kept);
     if (!gaps.ok()) {
-        inspection.remark = gaps.failure().message();
+        inspection.remark = gaps.failure().message(state.packing.dimension);
     } else if (gaps.value().negative) {
-        inspection.remark = fmt::format("{} overlap", to_string(*gaps.value().negative));
+        inspection.remark = fmt::format("{} overlap", to_string(*gaps.value().negative, state.packing.dimension));
     } else if (const auto pair = fixed_overlap(state.packing)) {
-        inspection.remark = fmt::format("{} overlap, and cannot move", to_string(*pair));
+        inspection.remark = fmt::format("{} overlap, and cannot move", to_string(*pair, state.packing.dimension));
     }
     inspection.forces = finite_forces(vertex, state.load);
     for (std::size_t l = 0; l < inspection.contacts.size(); ++l) {

@@ -230,14 +230,13 @@ std::optional<Failure> Rearrangement::decide(ArcProof& proof) {
 std::optional<Failure> Rearrangement::flows(const ArcProof& proof) const {
     const Packing& now = proof.vertex->packing;
     for (std::size_t k = now.length_at(now.axes()); k < now.q.size(); ++k) {
-        const double shear =
-            (now.q[k] - tilts_at_start_[k - now.length_at(now.axes())]) / now.length(now.dimension - 1);
+        const std::size_t tilt = k - now.length_at(now.axes());
+        const double shear = (now.q[k] - tilts_at_start_[tilt]) / now.length(Cell::axes_of_tilt(tilt)[1]);
         if (std::abs(shear) > options().max_strain) {
             return failed(FailureKind::flows,
                           "a shear of {:.6g} after {} arcs at a constant load, sigma = {:.17g}: the tilt went from "
                           "{:.6g} to {:.6g} without an equilibrium (cap max_strain = {:.6g})",
-                          std::abs(shear), arcs_, at_.stress(), tilts_at_start_[k - now.length_at(now.axes())],
-                          now.q[k], options().max_strain);
+                          std::abs(shear), arcs_, at_.stress(), tilts_at_start_[tilt], now.q[k], options().max_strain);
         }
     }
     return std::nullopt;

@@ -113,7 +113,7 @@ void record_potential(EquilibriumRecord& record, const TrueCoordinates& q, const
         }
     }
     for (const WallForce& wall : load.wall_forces(q.vertex.packing)) {
-        add(-dd_real::mul(wall.stress, wall.length), static_cast<std::size_t>(wall.coordinate));
+        add(-dd_real::mul(wall.stress, wall.length) * wall.other, static_cast<std::size_t>(wall.coordinate));
     }
     const Enclosure potential = shown(sum, error * rounded_up);
     record.potential = potential.value;
@@ -212,8 +212,8 @@ Result<Description> describe(Vertex& vertex, const Load& load) {
     record.sigma1 = load.other_stress();
     description.vertex = at_true_vertex(vertex);
     const TrueCoordinates q{vertex, description.vertex};
-    const Cell& cell = vertex.packing.cell;
-    for (std::size_t a = 0; a < vertex.packing.axes() + (cell.any() && cell.tilt_moves[0] ? 1 : 0); ++a) {
+    const std::size_t tilts = vertex.packing.cell.shears() ? vertex.packing.tilts() : 0;
+    for (std::size_t a = 0; a < vertex.packing.axes() + tilts; ++a) {
         const Enclosure length = length_of(q, a);
         const Enclosure strain = strain_of(q, load, a);
         record.length.push_back(length.value);

@@ -14,9 +14,10 @@ using roundoff::u;
 constexpr double slack = 1 + 1e-9; ///< rounding of the norms and of the last operations
 
 /// Upper bound of |G_-' - G_-|_2 over the kept rows, exact matrices: |B|_2^2 <= max (B^T B 1)_j for B = |difference|
-/// entry by entry, and the entries of both carry 5u. Nothing when the patterns differ.
+/// entry by entry, and the entries of both carry 5u, in space 5.51u. Nothing when the patterns differ.
 std::optional<double> change_of_kept(const sparse::Matrix<double>& before, const sparse::Matrix<double>& after,
-                                     int slot) {
+                                     int slot, int dimension) {
+    const double of_entries = (dimension == plane ? 11 : 12) * u;
     std::vector<double> difference(after.row.size(), 0.0);
     std::vector<double> row_sum(static_cast<std::size_t>(after.rows), 0.0);
     for (int j = 0; j < after.cols; ++j) {
@@ -34,7 +35,7 @@ std::optional<double> change_of_kept(const sparse::Matrix<double>& before, const
                 return std::nullopt;
             }
             difference[e] = std::abs(after.value[e] - before.value[old]) +
-                            11 * u * std::max(std::abs(after.value[e]), std::abs(before.value[old]));
+                            of_entries * std::max(std::abs(after.value[e]), std::abs(before.value[old]));
             row_sum[static_cast<std::size_t>(after.row[e])] += difference[e];
         }
     }
@@ -143,7 +144,7 @@ std::optional<ProvedExchange> carry_bound(const IsostaticStructure& before, cons
         return std::nullopt;
     }
     const sparse::Matrix<double>& h = after.matrix();
-    const auto change = change_of_kept(before.matrix(), h, after.slot());
+    const auto change = change_of_kept(before.matrix(), h, after.slot(), before.dofs().layout().dimension);
     const double started_with = bound.carried_from > 0 ? bound.carried_from : bound.sigma_min;
     if (!change || !(bound.sigma_min - *change > worth * started_with)) {
         return std::nullopt;

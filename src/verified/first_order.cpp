@@ -28,12 +28,14 @@ double length_of(const std::vector<double>& x) {
     return norm_above(size);
 }
 
-/// Of a row times a vector: 4 terms, with an image 7, their sum, 5u per entry, and one for three periods.
-double rounding(const Contact& contact) {
-    return (contact.image.is_here() ? 12 : 16) * u;
+/// Of a row times a vector: 4 terms, with an image 7, in space 6 and 12, their sum, 5u (5.51u) per entry, and one for
+/// three periods.
+double rounding(int dimension, const Contact& contact) {
+    const bool here = contact.image.is_here();
+    return (dimension == plane ? (here ? 12 : 16) : (here ? 14 : 22)) * u;
 }
 
-/// Rounding of a relative velocity where periods are added: seven operations or less on each of two components. Without
+/// Rounding of a relative velocity where periods are added: seven operations or less on each component. Without
 /// an image a component is one difference, and nothing of its size is lost.
 double lost_to_periods(const Layout& layout, const std::vector<double>& v, const Contact& pair) {
     double size = 0;
@@ -194,9 +196,12 @@ std::vector<Contact> moving_alike(const Packing& packing, const IsostaticStructu
 
 /// Whether contacts that stay closed when `opened` opens make one body of the two grains of a pair. Any body may be
 /// tried: the grains whose contacts carry the force of the pair, and all contacts among them; the grains that move
-/// alike.
+/// alike. Of spheres nothing is said.
 bool rests(const Packing& packing, const IsostaticStructure& structure, const Factorisation& factorisation,
            ContactId opened, const std::vector<double>& v, const Contact& pair) {
+    if (packing.dimension != plane) {
+        return false;
+    }
     const std::vector<Contact> carrying = carriers(packing, structure, factorisation, opened, pair);
     const auto as_one = [&](const std::vector<Contact>& among) {
         return moves_as_one(structure.dofs(), packing.disk_count(), among, pair);
@@ -246,7 +251,7 @@ FirstOrder::Velocity FirstOrder::velocity(const std::vector<double>& approach, d
             dot += term;
             terms += std::abs(term);
         }
-        residual[l] = std::abs(dot) + rounding(structure_->contacts()[l]) * terms;
+        residual[l] = std::abs(dot) + rounding(packing_->dimension, structure_->contacts()[l]) * terms;
     }
     Velocity result;
     result.v.assign(packing_->q.size(), 0.0);
@@ -282,7 +287,7 @@ Enclosure FirstOrder::gap_rate(const Contact& contact, const Velocity& velocity)
         turned = (std::sqrt(square) + lost_to_periods(packing_->layout(), velocity.v, contact)) * 2 * weight * away_ /
                  (0.99 * target(*packing_, contact));
     }
-    return {sum, (weight * velocity.error + turned + rounding(contact) * terms) * raise};
+    return {sum, (weight * velocity.error + turned + rounding(packing_->dimension, contact) * terms) * raise};
 }
 
 Enclosure FirstOrder::gap(const Contact& contact) const {
@@ -313,6 +318,9 @@ std::vector<double> FirstOrder::shares(const Contact& contact) const {
 }
 
 bool FirstOrder::moves_as_linkage(ContactId opened, const Contact& contact) const {
+    if (packing_->dimension != plane) {
+        return false;
+    }
     const std::vector<Contact> carrying = carriers(*packing_, *structure_, *factorisation_, opened, contact);
     return !carrying.empty() &&
            (isostat::moves_as_linkage(*packing_, carrying, contact) ||
@@ -356,18 +364,34 @@ FirstOrder::LoadChange FirstOrder::load_change(const std::vector<Enclosure>& f0,
             on.error[k] += std::abs(sign) * (unknown + 2 * u * std::abs(push)) + 2 * u * std::abs(on.value[k]);
         });
     }
-    if (load.kind == LoadKind::true_stress) { // the force on a wall follows the other length
-        assert(packing_->dimension == 2);     // the product of the other lengths has one factor
+    if (load.kind == LoadKind::true_stress) { // the force on a wall follows the other lengths
         for (std::size_t a = 0; a < packing_->axes(); ++a) {
-            const std::size_t wall = packing_->length_at(a);
-            const std::size_t other = packing_->length_at(1 - a);
-            const double stress = load.stress[a];
-            on.value[wall] -= stress * v[other];
-            on.error[wall] += std::abs(stress) * (change_.error + 4 * u * std::abs(v[other])) +
-                              stress_error * (std::abs(v[other]) + change_.error);
+            add_stress_change(a, load.stress[a], stress_error, on);
         }
     }
     return on;
+}
+
+/// -stress (L_b' L_c + L_b L_c'); in the plane the other length alone.
+void FirstOrder::add_stress_change(std::size_t axis, double stress, double stress_error, LoadChange& on) const {
+    const bool in_plane = packing_->dimension == plane;
+    double sum = 0;
+    double size = 0;
+    double open = 0; // error of the sum, but for its rounding
+    for (std::size_t b = 0; b < packing_->axes(); ++b) {
+        if (b == axis) {
+            continue;
+        }
+        const double rate = change_.v[packing_->length_at(b)];
+        const double across = in_plane ? 1 : packing_->q[packing_->length_at(3 - axis - b)];
+        const double away = in_plane ? 0 : away_;
+        sum += rate * across;
+        size += std::abs(rate) * across;
+        open += change_.error * (across + away) + std::abs(rate) * away;
+    }
+    const std::size_t wall = packing_->length_at(axis);
+    on.value[wall] -= stress * sum;
+    on.error[wall] += std::abs(stress) * (open + 4 * u * size) + stress_error * (size + open);
 }
 
 std::vector<Enclosure> FirstOrder::forces(const std::vector<Enclosure>& f0,

@@ -53,6 +53,7 @@ class FirstOrder {
         std::vector<double> value; ///< on coordinates
         std::vector<double> error; ///< bound, component by component
     };
+    void add_stress_change(std::size_t axis, double stress, double stress_error, LoadChange& on) const;
     [[nodiscard]] LoadChange load_change(const std::vector<Enclosure>& f0, const Load& load, double stress_error) const;
 
     const Packing* packing_;

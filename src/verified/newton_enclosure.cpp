@@ -46,6 +46,7 @@ struct Constraints {
     double worst = 0;          ///< largest |gap| / D of disks, from above
     double largest = 0;        ///< largest |gap|, as computed; in the unit of the packing
     double lipschitz = 0;      ///< of the derivative of F, scaled (V4 (a))
+    double rows = 0;           ///< relative rounding of a row times a vector
 };
 
 /// F of one contact, and the bound of its error.
@@ -85,6 +86,8 @@ PerAxis<Pair> distance_of(const Separation& separation, const Contact& contact, 
 Constraints constraints(const Packing& packing, const std::vector<Contact>& contacts, double scale) {
     const std::size_t n = contacts.size();
     Constraints result{std::vector<double>(n), std::vector<double>(n)};
+    // 5u (5.51u) of the entries, products and sums: of seven terms at most, in space of twelve.
+    result.rows = (packing.dimension == plane ? 16 : 22) * u;
     std::vector<int> count(packing.radius.size(), 0);
     const auto at = [scale, q = packing.q.data()](std::size_t k) { return scale * q[k]; };
     const auto minus = [](double a, double b) { return exact_sum(a, -b); };
@@ -157,8 +160,8 @@ struct Rest {
                 size += std::abs(term);
             }
             r[l] = at.f[l] - approach;
-            // 5u of the entries, products and sums, seven terms at most; the row of DF is that of G times d / D.
-            bound[l] = std::abs(r[l]) * (1 + 2 * u) + at.error[l] + (16 * u + 1.01 * at.worst) * size;
+            // The row of DF is that of G times d / D.
+            bound[l] = std::abs(r[l]) * (1 + 2 * u) + at.error[l] + (at.rows + 1.01 * at.worst) * size;
         }
     }
 };

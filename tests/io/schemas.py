@@ -155,7 +155,7 @@ def main():
         programme = '\n[[programme]]\ndo = "up"\nequilibria = 2\n'
         box = "[packing]\ndisks = 40\ndiameters = [1.0, 2.0]\nseed = 3\n"
         seen = check_run(box + '[run]\ncertify = "arcs"\n' + programme, folder, "box")
-        for name, way in (("cells/tilted-100", "up"), ("turns/three-disks", "down")):
+        for name, way in (("cells/tilted-100", "up"), ("turns/three-disks", "down"), ("spheres/box-30", "up")):
             seen |= check_run(f'[packing]\nfile = "{project}/examples/{name}.json"\n' + programme.replace("up", way), folder, pathlib.Path(name).stem)
         for file in ("equal-pair", "two-forces", "two-gaps"):
             for name, cap in (("first", "max_choices = 0\n"), ("choose", "")):

@@ -36,21 +36,22 @@ class Words {
     Words() = default;                                      ///< none
     Words(std::string fixed);                               // NOLINT(google-explicit-constructor)
     Words(const char* fixed) : Words(std::string(fixed)) {} // NOLINT(google-explicit-constructor)
-    /// `make` must own all that it needs.
-    explicit Words(std::function<std::string()> make) : make_(std::move(make)) {}
+    /// `make` is given the dimension; it must own all that it needs.
+    explicit Words(std::function<std::string(int)> make) : make_(std::move(make)) {}
 
     std::vector<Contact> contacts; ///< in the order in which they are named
     std::vector<int> disks;        ///< disks that are named by themselves
 
     [[nodiscard]] bool empty() const { return make_ == nullptr; }
-    [[nodiscard]] std::string text() const { return make_ ? make_() : std::string(); }
+    /// `dimension`: of the grains, which the names of contacts depend on.
+    [[nodiscard]] std::string text(int dimension = 2) const { return make_ ? make_(dimension) : std::string(); }
     /// What these name is named too.
     void name(const Words& others);
     /// One after the other.
     Words& operator+=(const Words& more);
 
   private:
-    std::function<std::string()> make_;
+    std::function<std::string(int)> make_;
 };
 
 /// The reason: words with the numbers that were measured, and the contacts or disks concerned.
@@ -58,7 +59,7 @@ struct Failure {
     FailureKind kind;
     Words words;
 
-    [[nodiscard]] std::string message() const { return words.text(); }
+    [[nodiscard]] std::string message(int dimension = 2) const { return words.text(dimension); }
     [[nodiscard]] const std::vector<Contact>& contacts() const { return words.contacts; }
     [[nodiscard]] const std::vector<int>& disks() const { return words.disks; }
 };

@@ -45,10 +45,12 @@ enum class RunStatus { completed, failed, undecided, interrupted };
 /// The word used in files and messages.
 const char* to_string(RunStatus status);
 
-/// What the rows of some runs have besides.
+/// What the rows of some runs have besides, and what their columns are called.
 struct MoreColumns {
-    bool tilt = false;     ///< of a cell whose tilt moves: its third length, `eps3` to `L3_bound`
+    bool tilt = false;     ///< of a cell whose tilts move: `eps3` to `L3_bound`; in space of each tilt, `eps_xy`, `xy`
     bool touching = false; ///< where ties are settled at first order: pairs that touch without being contacts
+    int dimension = 2;
+    int loaded_axis = 1; ///< in space what is loaded gives columns their names: `sigma3`, `shear_xy`
 };
 
 /// How a folder is taken for output.
@@ -145,6 +147,8 @@ class RunDirectory final : public RunObserver {
     std::optional<Point> pending_; ///< none: checkpoint.json is up to date
     std::optional<std::chrono::steady_clock::time_point> last_checkpoint_;
     MoreColumns columns_; ///< of equilibria.csv
+    /// Of a run that starts from that state.
+    [[nodiscard]] MoreColumns columns_of(const State& state) const;
     Segment goal_;
     int segment_ = 0;
     int made_ = 0;
@@ -157,16 +161,19 @@ class RunDirectory final : public RunObserver {
 };
 
 /// Names of the columns of equilibria.csv, in order. Contacts are two columns, i and j: disks from 0; j = -1 left, -2
-/// bottom, -3 right, -4 top wall; -9 none. `decided_by`: 0 combinatorial, 1 double, 2 double-double, 3 mpfr, 4 exact.
-/// `proved`: 1 or 0; `certified`: 1 its certificate proves everything, 0 it does not, -1 none was asked for. An
-/// unbounded interval ends at inf or -inf. `x_bound`: of the error of `x` at the true vertex, rounding included.
-/// `previous` is the equilibrium that this one follows on its path (-1: the start).
+/// bottom, -3 right, -4 top, -5 back, -6 front wall; -9 none. `decided_by`: 0 combinatorial, 1 double, 2 double-double,
+/// 3 mpfr, 4 exact. `proved`: 1 or 0; `certified`: 1 its certificate proves everything, 0 it does not, -1 none was
+/// asked for. An unbounded interval ends at inf or -inf. `x_bound`: of the error of `x` at the true vertex, rounding
+/// included. `previous` is the equilibrium that this one follows on its path (-1: the start). In the plane `sigma2`,
+/// `eps2`, `L2` are those of what is loaded and `eps1`, `L1` those of the other axis; in space names go by axis:
+/// `record_columns`.
 std::vector<std::string> equilibria_columns(MoreColumns more = {});
 
 /// One equilibrium as equilibria.csv gives it back.
 struct EquilibriumRow {
     int number = 0, previous = -1, segment = 0;
-    double stress = 0, ratio = 0, strain1 = 0, strain2 = 0, solid_fraction = 0;
+    double stress = 0, ratio = 0, solid_fraction = 0;
+    double strain1 = 0, strain2 = 0; ///< of the other axis, and of what is loaded
     int arcs = 0, rattlers = 0, backbone = 0, hyperstaticity = 0;
     double stress_low = 0, stress_high = 0, min_force = 0, min_gap = 0, margin = 0;
     bool proved = false;

@@ -1,8 +1,7 @@
 #pragma once
 /// \file
-/// The grains and where they are: disks (dimension 2) or spheres (3, of states: `certify`, `verify`, `inspect_cell`;
-/// runs take disks), flat walls normal to the axes, and axes that repeat; and the load: F_ext = F_fixed + sigma_loaded
-/// * F_unit, plus infinitesimal loads eps*g.
+/// The grains and where they are: disks (dimension 2) or spheres (3), flat walls normal to the axes, and axes that
+/// repeat; and the load: F_ext = F_fixed + sigma_loaded * F_unit, plus infinitesimal loads eps*g.
 
 #include <isostat/core/contact.hpp>
 #include <isostat/core/machine.hpp>
@@ -55,6 +54,14 @@ struct Cell {
     }
     /// Place of the tilt A_ab, a < b, among the tilts.
     static constexpr std::size_t tilt(std::size_t a, std::size_t b) { return a + b * (b - 1) / 2; }
+    /// a and b of a tilt A_ab.
+    static constexpr std::array<int, 2> axes_of_tilt(std::size_t tilt) {
+        return {tilt == 2 ? 1 : 0, tilt == 0 ? 1 : 2};
+    }
+    /// Some tilt is a degree of freedom.
+    [[nodiscard]] bool shears() const {
+        return any() && std::find(tilt_moves.begin(), tilt_moves.end(), true) != tilt_moves.end();
+    }
     friend bool operator==(const Cell&, const Cell&) = default;
 };
 
@@ -225,24 +232,30 @@ struct Load {
     }
     /// \pre `loads_tilt()`
     [[nodiscard]] std::size_t loaded_tilt() const { return static_cast<std::size_t>(loaded_axis - dimension); }
-    /// The axis whose stress the ratio of a programme is taken over: of a shear, the last one, whose force is F_2:
-    /// both act over the same reference length, and their ratio is that of the stresses.
-    [[nodiscard]] int other_axis() const { return loads_tilt() || loaded_axis == 0 ? dimension - 1 : 0; }
+    /// The axis whose stress the ratio of a programme is taken over. Of a shear on A_ab that is b: both stresses act
+    /// over the same reference area, and their ratio is that of the forces.
+    [[nodiscard]] int other_axis() const {
+        return loads_tilt() ? Cell::axes_of_tilt(loaded_tilt())[1] : loaded_axis == 0 ? dimension - 1 : 0;
+    }
     [[nodiscard]] double other_stress() const { return stress[static_cast<std::size_t>(other_axis())]; }
     [[nodiscard]] double ratio() const { return loaded_stress() / other_stress(); }
-    /// "sigma2/sigma1", "shear/sigma2": for messages and tables.
-    [[nodiscard]] const char* ratio_name() const { return loads_tilt() ? "shear/sigma2" : "sigma2/sigma1"; }
-    /// "eps2", "shear strain": the strain that belongs to it.
-    [[nodiscard]] const char* strain_name() const { return loads_tilt() ? "shear strain" : "eps2"; }
+    /// What the programme changes: in the plane "sigma2" or "shear", whichever axis that is; in space by axis,
+    /// "sigma3", "shear_xy". And the ratio, "sigma2/sigma1", and the strain that belongs to it, "eps2": for messages
+    /// and tables.
+    [[nodiscard]] std::string stress_name() const;
+    [[nodiscard]] std::string ratio_name() const;
+    [[nodiscard]] std::string strain_name() const;
     /// Stresses are nominal, and strains count, from where box or cell are now.
     void refer_to(const Packing& packing);
-    /// Strain of an axis, or of the tilt (axis `dimension`): (`at_rest` - coordinate) / `strain_length`. That of the
-    /// tilt is what A_xy fell by over the reference height: it grows as a positive shear stress does work.
+    /// Strain of an axis, or of a tilt (axes from `dimension` on): (`at_rest` - coordinate) / `strain_length`. That of
+    /// A_ab is what it fell by over the reference length of b: it grows as a positive shear stress does work.
     [[nodiscard]] double at_rest(int axis) const {
-        return axis >= dimension ? reference_tilt[0] : reference_length[static_cast<std::size_t>(axis)];
+        return axis >= dimension ? reference_tilt[static_cast<std::size_t>(axis - dimension)]
+                                 : reference_length[static_cast<std::size_t>(axis)];
     }
     [[nodiscard]] double strain_length(int axis) const {
-        return reference_length[static_cast<std::size_t>(axis >= dimension ? dimension - 1 : axis)];
+        return reference_length[static_cast<std::size_t>(
+            axis >= dimension ? Cell::axes_of_tilt(static_cast<std::size_t>(axis - dimension))[1] : axis)];
     }
 
     /// What presses on the walls and on the coordinates of the cell that can move. With `disk_force` this is the load,

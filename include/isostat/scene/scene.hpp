@@ -30,8 +30,8 @@ struct Scene {
 
     std::filesystem::path start; ///< [packing] file: a state or vertex text to start from; empty: prepare
     PreparationOptions
-        preparation; ///< [packing], [preparation] and sigma1, kind of [load]; unused when `start` is given
-    std::optional<bool> loads_tilt;    ///< [load] loaded, when given: overrides that of a start file
+        preparation;    ///< [packing], [preparation] and sigma1, kind of [load]; unused when `start` is given
+    std::string loaded; ///< [load] loaded, when given: overrides that of a start file
     std::optional<LoadKind> load_kind; ///< [load] kind, when given: overrides that of a start file
     std::optional<std::uint64_t>
         infinitesimal_seed; ///< [load] infinitesimal_seed: new infinitesimal loads for a start file
@@ -88,6 +88,10 @@ std::vector<PlanEntry> make_plan(const Scene& scene);
 /// precision; parts below 1e-9 left out). `hyperstatic_allowed`: then that is no reason to refuse (ties = "choose").
 void check_start(const State& state, const std::string& source, bool hyperstatic_allowed = false);
 
+/// What [load] loaded names becomes the loaded axis; without it the state says. Throws `Error(bad_input)` where the
+/// packing has no such axis or the tilt does not move.
+void choose_loaded(State& state, const Scene& scene, const std::string& source);
+
 /// The start of a scene that reads one: overrides of [load], checks in the words of a user (`check_start`,
 /// `check_programme`), and then the grid (`snap_to_grid`; the provenance says in `moved_to_grid` by how much it moved a
 /// coordinate, when it did). `source` starts messages. Throws `Error(bad_input)`.
@@ -113,7 +117,7 @@ struct SceneEnding {
     std::optional<Failure> failure;
 };
 /// The ending that a failure makes; `where` begins the reason.
-SceneEnding ending_of(const Failure& failure, const std::string& where);
+SceneEnding ending_of(const Failure& failure, const std::string& where, int dimension);
 
 /// Plays the programme of the scene from `state`, or from the checkpoint of the folder when it has one, with the
 /// certificates that the level asks for. `further` is told after the folder. Ends after the arc in which `stop`

@@ -120,12 +120,13 @@ enum class Action { up, down, to };
 /// One segment as a scene names it ([[programme]] entry): its goal is a ratio, not a stress.
 struct ProgrammeStep {
     Action action = Action::up;
-    std::optional<int> equilibria; ///< `equilibria`: stop after this many new ones
-    std::optional<double> to;      ///< `to`: stop at this ratio sigma_2 / sigma_1, inside a supported interval
-    std::optional<int> from;       ///< `from`: start from this equilibrium of the run instead of the last one
-    bool of_shear = false;         ///< the tilt is loaded: `to` is a ratio shear / sigma_2, of either sign
-    std::string name;              ///< `name`, or made from the rest
-    int line = 0;                  ///< in the scene file
+    std::optional<int> equilibria;       ///< `equilibria`: stop after this many new ones
+    std::optional<double> to;            ///< `to`: stop at this ratio sigma_2 / sigma_1, inside a supported interval
+    std::optional<int> from;             ///< `from`: start from this equilibrium of the run instead of the last one
+    bool of_shear = false;               ///< a tilt is loaded: `to` is a ratio shear / sigma_2, of either sign
+    std::string ratio = "sigma2/sigma1"; ///< what `to` is: `Load::ratio_name`
+    std::string name;                    ///< `name`, or made from the rest
+    int line = 0;                        ///< in the scene file
 };
 
 /// The programme's segment for a state under `load`: direction and stress of the goal.

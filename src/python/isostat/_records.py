@@ -16,9 +16,8 @@ import numpy as np
 from ._core import State, _integer_columns, forces_at
 from ._words import BadInput, Verdict
 
-_walls = {"left": -1, "bottom": -2, "right": -3, "top": -4}
-_numbers = """sigma2 eps2 eps2_bound force force_bound power power_bound work work_bound displacement margin
-    held_at""".split()
+_walls = {"left": -1, "bottom": -2, "right": -3, "top": -4, "back": -5, "front": -6}
+_numbers = """force force_bound power power_bound work work_bound displacement margin held_at""".split()
 
 
 def _complete_lines(path: Path) -> list[str]:
@@ -54,19 +53,23 @@ def _parsed(text: str, where: str) -> dict:
         raise BadInput(f"{where}: {error}") from None
 
 
-def contact_of_name(name: str) -> tuple[int, int, int, int]:
-    """(i, j, m_x, m_y) of ``"3-7"``, ``"3-8(1,0)"``, ``"3-left"``, ``"held x of grain 3"``.
+def contact_of_name(name: str, dimension: int = 2) -> tuple[int, ...]:
+    """(i, j, m_x, m_y) of ``"3-7"``, ``"3-8(1,0)"``, ``"3-left"``, ``"held x of grain 3"``; of spheres m_z too.
 
-    Walls are j = -1 to -4, held coordinates -9; the second disk is moved by m_x and m_y periods.
+    Walls are j = -1 to -4 (-6), held coordinates -9; the second disk is moved by m_x and m_y periods.
     """
-    if match := re.fullmatch(r"(0|[1-9]\d*)-(0|[1-9]\d*)(?:\((-?\d+),(-?\d+)\))?", name, re.ASCII):
-        i, j, mx, my = (int(number or 0) for number in match.groups())
-        if i < j or (i == j and (mx or my)):
-            return i, j, mx, my
-    if match := re.fullmatch(r"(0|[1-9]\d*)-(left|bottom|right|top)", name, re.ASCII):
-        return int(match[1]), _walls[match[2]], 0, 0
-    if match := re.fullmatch(r"held ([xy]) of grain (0|[1-9]\d*)", name, re.ASCII):  # walls: after the last disk
-        return 2 * int(match[2]) + "xy".index(match[1]), -9, 0, 0
+    here = (0,) * dimension
+    if match := re.fullmatch(r"(0|[1-9]\d*)-(0|[1-9]\d*)(?:\((-?\d+(?:,-?\d+)*)\))?", name, re.ASCII):
+        i, j = int(match[1]), int(match[2])
+        image = tuple(int(number) for number in match[3].split(",")) if match[3] else here
+        if len(image) == dimension and (i < j or (i == j and any(image))):
+            return i, j, *image
+    walls = "|".join(list(_walls)[: 2 * dimension])
+    if match := re.fullmatch(rf"(0|[1-9]\d*)-({walls})", name, re.ASCII):
+        return int(match[1]), _walls[match[2]], *here
+    axes = "xyz"[:dimension]
+    if match := re.fullmatch(rf"held ([{axes}]) of grain (0|[1-9]\d*)", name, re.ASCII):  # walls: after the last disk
+        return dimension * int(match[2]) + axes.index(match[1]), -9, *here
     raise BadInput(
         f"events.jsonl: contact '{name}': expected two disks i < j, as 3-7 or 3-8(1,0), a disk and a wall, or a held coordinate"
     )
@@ -178,27 +181,36 @@ class Records:
     def events(self) -> np.ndarray:
         """(arcs,) structured array of events.jsonl; what is not known is NaN.
 
-        ``opened``, ``closed``: (2,) int, walls -1 to -4, held coordinates -9; ``opened_image``, ``closed_image``: (2,)
-        int, periods of the cell by which the second disk is moved, 0 in a box. ``decided_by``: word.
+        ``opened``, ``closed``: (2,) int, walls -1 to -4 (-6), held coordinates -9; ``opened_image``, ``closed_image``:
+        (2,) int, of spheres (3,), periods of the cell by which the second disk is moved, 0 in a box. ``decided_by``:
+        word. ``sigma2``, ``eps2``, ``eps2_bound``: of spheres by axis, ``sigma3`` and so on.
         """
+        dimension = self._first.positions.shape[1] if self.event_records else 2
+        strain = "eps" + self._stress.removeprefix("sigma").removeprefix("shear")
+        numbers = [self._stress, strain, strain + "_bound", *_numbers]
         kinds = np.dtype(
             [("step", int), ("equilibrium", int), ("arc", int), ("kind", "U8")]
-            + [("opened", int, 2), ("closed", int, 2), ("opened_image", int, 2), ("closed_image", int, 2)]
+            + [("opened", int, 2), ("closed", int, 2), ("opened_image", int, dimension), ("closed_image", int, dimension)]
             + [("power_turn", bool), ("steps", int)]
             + [("decided_by", "U13")]
-            + [(name, float) for name in _numbers]
+            + [(name, float) for name in numbers]
         )
         events = np.empty(len(self.event_records), dtype=kinds)
         for row, record in zip(events, self.event_records):
             for name in ("step", "equilibrium", "arc", "kind", "power_turn", "steps", "decided_by"):
                 row[name] = record[name]
             for name in ("opened", "closed"):
-                contact = contact_of_name(record[name])
+                contact = contact_of_name(record[name], dimension)
                 row[name], row[name + "_image"] = contact[:2], contact[2:]
-            for name in _numbers:
+            for name in numbers:
                 value = record.get(name)
                 row[name] = np.nan if value is None else value
         return events
+
+    @property
+    def _stress(self) -> str:
+        """The column of the loaded stress, behind number, previous and segment."""
+        return (self.equilibria.dtype.names or [""] * 3 + ["sigma2"])[3]
 
     @functools.cached_property
     def _stored(self) -> list[State]:
@@ -220,7 +232,9 @@ class Records:
 
     @property
     def cell(self) -> np.ndarray:
-        """(m, 2) lengths (Lx, Ly) of the box at every equilibrium."""
+        """(m, 2) lengths (Lx, Ly) of the box at every equilibrium, of spheres (m, 3)."""
+        if self._first.positions.shape[1] == 3:
+            return np.column_stack([self.equilibria[name] for name in ("L1", "L2", "L3")])
         # L1 is along the axis that is not loaded.
         columns = {0: ("L2", "L1"), 1: ("L1", "L2"), 2: ("L3", "L1")}[self._first.loaded_axis]  # 2: the tilt
         return np.column_stack([self.equilibria[name] for name in columns])
@@ -242,12 +256,12 @@ class Records:
         asks any state. Raises KeyError when no stored equilibrium holds it (``states_every = 1`` stores all).
         """
         rows = self.equilibria
-        holds = (rows["sigma2_low"] <= sigma2) & (sigma2 <= rows["sigma2_high"])
+        holds = (rows[self._stress + "_low"] <= sigma2) & (sigma2 <= rows[self._stress + "_high"])
         for number in rows["number"][holds]:
             if int(number) in self.states:
                 state = self.states[int(number)]
                 stress = [float(value) for value in state.stress]
-                if state.loaded_axis == 2:
+                if state.loaded_axis == len(stress):
                     return state.with_stress(stress, sigma2), forces_at(state, sigma2)
                 stress[state.loaded_axis] = sigma2
                 return state.with_stress(stress), forces_at(state, sigma2)

@@ -6,6 +6,7 @@
 #include "cli/terminal.hpp"
 #include "io/files.hpp"
 #include "io/vertex_text.hpp"
+#include "packing/words.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/crafted/exact_packing.hpp>
@@ -36,6 +37,7 @@ struct Original {
     std::vector<Contact> contacts;
     int hyperstaticity = 0;
     int mechanisms = 0;
+    Counting with_radii;
     Verdict exact = Verdict::undecided;
     std::string title;
 };
@@ -54,13 +56,16 @@ Original read_original(const std::string& file) {
         out.contacts = inspection.value().contacts;
         out.hyperstaticity = inspection.value().hyperstaticity;
         out.mechanisms = inspection.value().mechanisms;
+        out.with_radii = inspection.value().with_radii;
         out.exact = inspection.value().rank_exact;
         out.title = "exact contacts of the crafted packing";
     } else if (format == "state" || format == "vertex") {
-        State state = format == "state" ? parse_any_state(text, file).state : parse_vertex_text(text, file);
+        State state =
+            format == "state" ? parse_any_state(text, file, Dimensions::any).state : parse_vertex_text(text, file);
         const Counting counting = count_contacts(state.packing, state.contacts);
         out.hyperstaticity = counting.hyperstaticity;
         out.mechanisms = counting.mechanisms;
+        out.with_radii = crafted::count_with_radii(crafted::exact_copy(state.packing), state.contacts);
         out.exact = counting.rank_exact;
         out.packing = std::move(state.packing);
         out.contacts = std::move(state.contacts);
@@ -90,18 +95,18 @@ template <class Get> std::array<double, 3> spread(const Genericity& result, Get 
     return {values.front(), values[values.size() / 2], values.back()};
 }
 
-std::string list_text(const std::vector<Contact>& list, const std::vector<Contact>& original) {
+std::string list_text(const std::vector<Contact>& list, const std::vector<Contact>& original, int dimension) {
     std::string missing, added;
     int lost = 0, gained = 0;
     constexpr int most = 8;
     for (const Contact& c : original) {
         if (!std::binary_search(list.begin(), list.end(), c) && ++lost <= most) {
-            missing += " " + to_string(c);
+            missing += " " + to_string(c, dimension);
         }
     }
     for (const Contact& c : list) {
         if (!std::binary_search(original.begin(), original.end(), c) && ++gained <= most) {
-            added += " " + to_string(c);
+            added += " " + to_string(c, dimension);
         }
     }
     return fmt::format("without{}{}, with{}{}", lost == 0 ? " nothing less" : missing,
@@ -131,7 +136,7 @@ Json sample_json(const GenericitySample& sample) {
     return out;
 }
 
-Json result_json(const Genericity& result, double size, std::size_t longest) {
+Json result_json(const Genericity& result, double size, std::size_t longest, int dimension) {
     Json out;
     out["size"] = size;
     out["proved_isostatic"] = result.proved;
@@ -143,7 +148,8 @@ Json result_json(const Genericity& result, double size, std::size_t longest) {
     out["distinct_networks"] = result.lists.size();
     Json lists = Json::array();
     for (std::size_t k = 0; k < result.lists.size() && k < longest; ++k) {
-        lists.push_back({{"samples", result.lists[k].samples}, {"contacts", contact_names(result.lists[k].contacts)}});
+        lists.push_back(
+            {{"samples", result.lists[k].samples}, {"contacts", contact_names(result.lists[k].contacts, dimension)}});
     }
     out["networks"] = std::move(lists);
     Json samples = Json::array();
@@ -189,8 +195,10 @@ void print_row(const Genericity& result, double size) {
 
 void print_head(const GenericityArguments& a, const Original& original) {
     const char* bound = original.exact == Verdict::proved ? "=" : "<=";
-    say("{}: {} disks, N = {} ({}), h {} {}, k {} {}\n", a.file, original.packing.disk_count(),
-        original.contacts.size(), original.title, bound, original.hyperstaticity, bound, original.mechanisms);
+    say("{}: {} {}s, N = {} ({}), h {} {}, k {} {}, rank with radii {} {}\n", a.file, original.packing.disk_count(),
+        grain_word(original.packing.dimension), original.contacts.size(), original.title, bound,
+        original.hyperstaticity, bound, original.mechanisms,
+        original.with_radii.rank_exact == Verdict::proved ? "=" : ">=", original.with_radii.rank);
     say("radius times 1 + size u, u uniform in [-1, 1){}{}; {} samples, seeds {} to {}\n\n",
         a.keep_equal ? ", the same u for equal radii" : "", a.tilt ? "; tilt plus size u times the first period" : "",
         a.samples, a.seed, a.seed + static_cast<std::uint64_t>(a.samples) - 1);
@@ -205,7 +213,7 @@ void print_lists(const GenericityArguments& a, const Original& original, const G
                             result.lists[k].samples > std::max(1, a.samples / 20);
          ++k) {
         say("size {:.0e}: {} samples {}\n", size, result.lists[k].samples,
-            list_text(result.lists[k].contacts, original.contacts));
+            list_text(result.lists[k].contacts, original.contacts, original.packing.dimension));
     }
 }
 
@@ -239,7 +247,9 @@ Json report(const GenericityArguments& a, const Original& original, Json results
     out["original"] = {{"N", original.contacts.size()},
                        {"h", original.hyperstaticity},
                        {"k", original.mechanisms},
-                       {"rank_exact", to_string(original.exact)}};
+                       {"rank_exact", to_string(original.exact)},
+                       {"rank_with_radii", original.with_radii.rank},
+                       {"rank_with_radii_exact", to_string(original.with_radii.rank_exact)}};
     out["sizes"] = std::move(results);
     return out;
 }
@@ -272,7 +282,7 @@ int genericity(const GenericityArguments& a) {
         if (text) {
             print_row(result, size);
         } else {
-            results.push_back(result_json(result, size, static_cast<std::size_t>(a.lists)));
+            results.push_back(result_json(result, size, static_cast<std::size_t>(a.lists), original.packing.dimension));
         }
     }
     if (!a.csv.empty()) {

@@ -194,12 +194,18 @@ Result<Imported> from_crafted(const ImportArguments& a, const std::string& text)
     state.load.refer_to(state.packing);
     out.load_of_file = file.packing.load.has_value();
     if (file.packing.load) {
-        for (std::size_t b = 0; b < 2; ++b) {
-            const double length = state.load.reference_length[1 - b];
-            state.load.stress[b] = length > 0 ? file.packing.load->wall[b].to_double() / length : 0;
-        }
-        if (file.packing.cell.any()) {
-            state.load.shear[0] = file.packing.load->tilt.to_double() / state.load.reference_length[0];
+        const auto per_area = [&](const exact::Number& force, std::size_t axis) {
+            double area = 1; // the lengths of the other axes
+            for (std::size_t b = 0; b < state.packing.axes(); ++b) {
+                area *= b == axis ? 1 : state.load.reference_length[b];
+            }
+            return area > 0 ? force.to_double() / area : 0;
+        };
+        for (std::size_t b = 0; b < state.packing.axes(); ++b) {
+            state.load.stress[b] = per_area(file.packing.load->wall[b], b);
+            for (std::size_t c = 0; c < b && file.packing.cell.any(); ++c) {
+                state.load.shear[Cell::tilt(c, b)] = per_area(file.packing.load->tilt[Cell::tilt(c, b)], b);
+            }
         }
         for (const exact::Number& force : file.packing.load->disk) {
             state.load.disk_force.push_back(force.to_double());

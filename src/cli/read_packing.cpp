@@ -148,6 +148,7 @@ ReadPacking read_any_packing(const std::string& file, const ForeignArguments& ar
     if (format == "packing") {
         const crafted::PackingFile crafted = crafted::parse_packing(text, file);
         ReadPacking out{crafted::approximate(crafted.packing), format, {}, {}, 0};
+        require_plane_unless(arguments.spheres, out.packing, file);
         out.rounding = rounding_of(out.packing);
         out.notes.emplace_back("exact numbers rounded to the nearest doubles: inspect decides contacts exactly");
         return out;

@@ -30,15 +30,20 @@ class Encloser {
   public:
     Encloser(const ExactPacking& packing, const Inspection& inspection) : inspection_(inspection) {
         stored_ = approximate(packing);
-        // Conversion moves each coordinate by at most half a grid step; two of them are counted for each difference.
-        const double moved = 2 * std::sqrt(2.0) * 2 * grid_step(stored_);
+        // Conversion moves each coordinate by at most half a grid step.
+        const double moved = grid_step(stored_);
         for (const Contact& contact : inspection.contacts) {
             double distance = std::numeric_limits<double>::infinity();
             if (contact.kind == ContactKind::disk_disk) {
                 distance = touching_distance(stored_.radius, contact);
             }
-            // |a / |a| - b / |b|| <= 2 |a - b| / |a|, for both disks of the contact.
-            column_error_.push_back(2 * std::sqrt(2.0) * moved / distance * upwards);
+            double steps = 0, square = 0;
+            Separation(contact, stored_.layout()).for_each_coordinate([&](std::size_t, std::size_t, int multiple) {
+                steps += std::abs(multiple);
+                square += multiple * multiple;
+            });
+            // |a / |a| - b / |b|| <= 2 |a - b| / |a|, times the multiples in the column.
+            column_error_.push_back(2 * std::sqrt(square) * steps * moved / distance * upwards);
         }
     }
 

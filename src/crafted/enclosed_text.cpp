@@ -48,7 +48,8 @@ std::string enclosed_text(const ExactPacking& packing, const Inspection& inspect
             out += components.size() > longest ? fmt::format(" and {} more\n", components.size() - longest) : "\n";
         }
     };
-    print("self-stress", bases.self_stresses, contact_names(inspection.contacts), bases.free_contacts.size());
+    print("self-stress", bases.self_stresses, contact_names(inspection.contacts, packing.dimension()),
+          bases.free_contacts.size());
     print("motion", bases.motions, dof_names(approximate(packing)), bases.free_dofs.size());
     return out;
 }
@@ -68,9 +69,10 @@ std::string enclosed_json(const ExactPacking& packing, const Inspection& inspect
         }
         return out;
     };
-    const Json object{{"verdict", to_string(bases.verdict)},
-                      {"self_stresses", list(bases.self_stresses, contact_names(inspection.contacts))},
-                      {"motions", list(bases.motions, dof_names(approximate(packing)))}};
+    const Json object{
+        {"verdict", to_string(bases.verdict)},
+        {"self_stresses", list(bases.self_stresses, contact_names(inspection.contacts, packing.dimension()))},
+        {"motions", list(bases.motions, dof_names(approximate(packing)))}};
     return object.dump();
 }
 

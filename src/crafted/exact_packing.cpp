@@ -1,8 +1,12 @@
 #include "contact/near_pairs.hpp"
 #include "contact/separation.hpp"
 #include "contact/words.hpp"
+#include "packing/words.hpp"
+#include "rigidity/strained_matrix.hpp"
 
 #include <isostat/crafted/exact_packing.hpp>
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -15,10 +19,14 @@ namespace {
 
 Words describe(const ExactPacking& packing, int i) {
     const auto& c = packing.centre[static_cast<std::size_t>(i)];
-    Words disk = words("disk {} (x = {}, y = {}, r = {})", i, c[0].text(), c[1].text(),
-                       packing.radius[static_cast<std::size_t>(i)].text());
-    disk.disks.push_back(i);
-    return disk;
+    std::string at;
+    for (std::size_t a = 0; a < packing.axes(); ++a) {
+        at += fmt::format("{} = {}, ", axis_names[a], c[a].text());
+    }
+    Words grain = words("{} {} ({}r = {})", grain_word(packing.dimension()), i, at,
+                        packing.radius[static_cast<std::size_t>(i)].text());
+    grain.disks.push_back(i);
+    return grain;
 }
 
 /// The contacts found so far, each with its gap decided.
@@ -41,17 +49,20 @@ struct Touching {
     }
 
     std::optional<Failure> take_pair(const Contact& pair) {
-        const auto [dx, dy, none] =
-            Separation(pair, packing.layout())
-                .of_disks([&](std::size_t k) -> const Number& { return packing.coordinate(k); }, std::minus<>());
         const Number reach = touching_distance(packing.radius, pair);
-        return take(pair, dx * dx + dy * dy - reach * reach);
+        Number excess = -(reach * reach);
+        for (const Number& d : exact_separation(packing, pair)) {
+            excess += d * d;
+        }
+        return take(pair, excess);
     }
 
     [[nodiscard]] Failure overlap(const Contact& contact, const Number& excess) const {
         const Words first = describe(packing, contact.i);
+        Words name = words("{}", to_string(contact, packing.dimension()));
+        name.contacts.push_back(contact);
         if (contact.kind != ContactKind::disk_disk) {
-            return failed(FailureKind::overlap, "{} overlaps the wall of contact {}: gap = {}", first, named(contact),
+            return failed(FailureKind::overlap, "{} overlaps the wall of contact {}: gap = {}", first, name,
                           excess.text());
         }
         const Words second = describe(packing, contact.j);
@@ -60,8 +71,8 @@ struct Touching {
                           excess.text());
         }
         return failed(FailureKind::overlap,
-                      "{} and an image of {} overlap, pair {}: distance^2 - (sum of radii)^2 = {}", first, second,
-                      named(contact), excess.text());
+                      "{} and an image of {} overlap, pair {}: distance^2 - (sum of radii)^2 = {}", first, second, name,
+                      excess.text());
     }
 
     const ExactPacking& packing;
@@ -72,7 +83,7 @@ struct Touching {
 std::optional<Failure> take_walls(Touching& touching) {
     const ExactPacking& packing = touching.packing;
     for (std::size_t i = 0; i < packing.radius.size(); ++i) {
-        for (std::size_t a = 0; a < 2; ++a) {
+        for (std::size_t a = 0; a < packing.axes(); ++a) {
             const Number& c = packing.centre[i][a];
             for (const bool lower : {true, false}) {
                 if ((lower ? packing.walls.lower[a] : packing.walls.upper[a]) == WallKind::absent) {
@@ -117,37 +128,43 @@ std::vector<Contact> nearest_pairs(const Packing& rounded) {
 
 } // namespace
 
+PerAxis<Number> exact_separation(const ExactPacking& packing, const Contact& pair) {
+    return Separation(pair, packing.layout())
+        .of_disks([&](std::size_t k) -> const Number& { return packing.coordinate(k); }, std::minus<>());
+}
+
 ExactPacking exact_copy(const Packing& packing) {
     ExactPacking out;
     for (int i = 0; i < packing.disk_count(); ++i) {
         out.radius.push_back(Number::from_double(packing.radius[static_cast<std::size_t>(i)]));
-        out.centre.push_back({Number::from_double(packing.coordinate(DiskId(i), 0)),
-                              Number::from_double(packing.coordinate(DiskId(i), 1))});
+        auto& centre = out.centre.emplace_back();
+        for (int a = 0; a < packing.dimension; ++a) {
+            centre[static_cast<std::size_t>(a)] = Number::from_double(packing.coordinate(DiskId(i), a));
+        }
     }
     out.fixed = packing.fixed;
     out.walls = packing.walls;
-    out.length = {Number::from_double(packing.length(0)), Number::from_double(packing.length(1))};
     out.cell = packing.cell;
-    if (packing.cell.any()) {
-        out.tilt = Number::from_double(packing.lattice(0, 1));
+    out.cell.dimension = packing.dimension;
+    for (std::size_t k = packing.length_at(0); k < packing.q.size(); ++k) {
+        const std::size_t behind = k - packing.length_at(0);
+        (behind < packing.axes() ? out.length[behind] : out.tilt[behind - packing.axes()]) =
+            Number::from_double(packing.q[k]);
     }
     return out;
 }
 
 Packing approximate(const ExactPacking& packing) {
     Packing out;
+    out.dimension = packing.dimension();
     out.walls = packing.walls;
     out.fixed = packing.fixed;
-    for (std::size_t i = 0; i < packing.radius.size(); ++i) {
-        out.radius.push_back(packing.radius[i].to_double());
-        out.q.push_back(packing.centre[i][0].to_double());
-        out.q.push_back(packing.centre[i][1].to_double());
-    }
-    out.q.push_back(packing.length[0].to_double());
-    out.q.push_back(packing.length[1].to_double());
     out.cell = packing.cell;
-    if (packing.cell.any()) {
-        out.q.push_back(packing.tilt.to_double());
+    for (const Number& r : packing.radius) {
+        out.radius.push_back(r.to_double());
+    }
+    for (std::size_t k = 0; k < out.coordinate_count(); ++k) {
+        out.q.push_back(packing.coordinate(k).to_double());
     }
     return out;
 }
@@ -176,8 +193,7 @@ exact::NumberMatrix exact_contact_matrix(const ExactPacking& packing, const DofM
         PerAxis<Number> normal;
         if (contact.kind == ContactKind::disk_disk) {
             const Number scale = touching_distance(packing.radius, contact).inverse();
-            normal = separation.of_disks([&](std::size_t k) -> const Number& { return packing.coordinate(k); },
-                                         std::minus<>());
+            normal = exact_separation(packing, contact);
             for (Number& component : normal) {
                 component *= scale;
             }
@@ -192,6 +208,19 @@ exact::NumberMatrix exact_contact_matrix(const ExactPacking& packing, const DofM
     return out;
 }
 
+Counting count_with_radii(const ExactPacking& packing, const std::vector<Contact>& contacts) {
+    exact::NumberMatrix out = exact_contact_matrix(packing, DofMap(approximate(packing)), contacts);
+    for (std::size_t l = 0; l < contacts.size(); ++l) {
+        const Contact& c = contacts[l];
+        out.column[l].emplace_back(out.rows + c.i, Number(c.kind == ContactKind::disk_disk && c.i == c.j ? 2 : 1));
+        if (c.kind == ContactKind::disk_disk && c.i != c.j) {
+            out.column[l].emplace_back(out.rows + c.j, Number(1));
+        }
+    }
+    out.rows += packing.disk_count();
+    return count_matrix(out);
+}
+
 std::vector<Number> external_force(const ExactPacking& packing, const DofMap& dofs) {
     std::vector<Number> out(static_cast<std::size_t>(dofs.dof_count()));
     const auto add = [&](std::size_t coordinate, const Number& value) {
@@ -203,11 +232,12 @@ std::vector<Number> external_force(const ExactPacking& packing, const DofMap& do
     for (std::size_t k = 0; k < packing.load->disk.size(); ++k) {
         add(k, packing.load->disk[k]);
     }
-    for (std::size_t a = 0; a < 2; ++a) {
-        add(2 * packing.radius.size() + a, -packing.load->wall[a]);
-    }
-    if (packing.cell.any()) {
-        add(2 * packing.radius.size() + 2, -packing.load->tilt);
+    const Layout layout = packing.layout();
+    for (std::size_t a = 0; a < packing.axes(); ++a) {
+        add(layout.of_length(a), -packing.load->wall[a]);
+        for (std::size_t b = 0; b < a && packing.cell.any(); ++b) {
+            add(layout.of_tilt(b, a), -packing.load->tilt[Cell::tilt(b, a)]);
+        }
     }
     return out;
 }

@@ -19,9 +19,23 @@ namespace isostat::crafted {
 
 namespace {
 
+/// The most by which tilts that move by L_a shorten a vector of the lattice of length 1: the norm of D A^-1.
+double shear(const Packing& packing) {
+    double square = 0;
+    for (std::size_t b = 1; b < packing.axes(); ++b) {
+        for (std::size_t a = 0; a < b; ++a) {
+            const bool over = b == 2 && a == 0; // through y
+            const double lean = over ? std::abs(packing.lattice(1, 2)) / packing.lattice(1, 1) : 0;
+            const double entry = packing.lattice(a, a) / packing.lattice(b, b) * (1 + lean);
+            square += entry * entry;
+        }
+    }
+    return std::sqrt(square);
+}
+
 void check(const Packing& packing, const GenericityOptions& options) {
     bool gives_way = std::count(packing.fixed.begin(), packing.fixed.end(), 1) == 0;
-    for (std::size_t a = 0; a < 2; ++a) {
+    for (std::size_t a = 0; a < packing.axes(); ++a) {
         const bool box = packing.walls.lower[a] == WallKind::fixed && packing.walls.upper[a] == WallKind::movable;
         gives_way =
             gives_way && (packing.cell.periodic[a] ? packing.cell.period_moves[a] || packing.cell.keeps_shape : box);
@@ -32,7 +46,7 @@ void check(const Packing& packing, const GenericityOptions& options) {
                     "or a period that moves, and no fixed disk");
     }
     if (options.tilt && !packing.cell.all()) {
-        throw Error(ErrorKind::bad_input, "genericity: the tilt is to be perturbed: expected two periods");
+        throw Error(ErrorKind::bad_input, "genericity: the tilt is to be perturbed: expected a period along each axis");
     }
     const auto require = [](bool holds, const char* field, const std::string& found, const char* wanted) {
         if (!holds) {
@@ -44,8 +58,11 @@ void check(const Packing& packing, const GenericityOptions& options) {
     require(options.size >= 0 && options.size < 0.5, "size", std::to_string(options.size),
             "a number from 0 to below 0.5");
     if (options.tilt) {
-        const double shear = options.size * packing.lattice(0, 0) / packing.lattice(1, 1);
-        require(shear < 0.5, "shear of the cell, size times L_x / L_y,", std::to_string(shear), "a number below 0.5");
+        const double sheared = options.size * shear(packing);
+        require(sheared < 0.5,
+                packing.dimension == plane ? "shear of the cell, size times L_x / L_y,"
+                                           : "size times the shear of the cell",
+                std::to_string(sheared), "a number below 0.5");
     }
     require(options.stress > 0 && std::isfinite(options.stress), "stress", std::to_string(options.stress),
             "a positive number");
@@ -66,12 +83,15 @@ void perturb(Packing& packing, const GenericityOptions& options, std::uint64_t s
         r *= factor;
     }
     if (options.tilt) {
-        packing.q[packing.tilt_at(0, 1)] += change() * packing.lattice(0, 0);
+        for (std::size_t b = 1; b < packing.axes(); ++b) {
+            for (std::size_t a = 0; a < b; ++a) {
+                packing.q[packing.tilt_at(a, b)] += change() * packing.lattice(a, a);
+            }
+        }
     }
     if (packing.cell.any()) {
-        // Everything farther apart, so that no disk overlaps its own image: a period vector (p along y) became shorter
-        // by p size L_x at most, and p L_y is not longer than it.
-        const double shorter = options.tilt ? options.size * packing.lattice(0, 0) / packing.lattice(1, 1) : 0;
+        // Everything farther apart, so that no disk overlaps its own image.
+        const double shorter = options.tilt ? options.size * shear(packing) : 0;
         for (double& x : packing.q) {
             x *= (1 + options.size) / (1 - shorter);
         }
@@ -155,8 +175,8 @@ std::map<std::string, int> Genericity::rungs() const {
 Genericity genericity(const Packing& given, const std::vector<Contact>& original, const GenericityOptions& options) {
     require_floating_point();
     Packing packing = given;
-    const auto& moves = packing.cell.period_moves;
-    if (packing.cell.all() && !moves[0] && !moves[1] && !packing.cell.tilt_moves[0]) {
+    const auto moves = [](const auto& flags) { return std::find(flags.begin(), flags.end(), true) != flags.end(); };
+    if (packing.cell.all() && !moves(packing.cell.period_moves) && !moves(packing.cell.tilt_moves)) {
         packing.cell.keep_shape(); // other radii need another size
     }
     check(packing, options);

@@ -40,7 +40,7 @@ struct GenericitySample {
     /// no bound. Others: no vertex was found.
     std::optional<Failure> failure;
     std::vector<Contact> contacts; ///< N = N_f of them, rank proved, every other gap proved positive: h = k = 0
-    std::vector<Contact> carrying; ///< those that carry a force of the applied stress: N_f - 2 rattlers of them
+    std::vector<Contact> carrying; ///< those that carry a force of the applied stress: N_f - d rattlers of them
     int rattlers = 0;
     double min_force = 0;   ///< proved lower bound of the smallest backbone force
     double min_gap = 0;     ///< proved lower bound of the smallest gap of a pair that is not a contact

@@ -1,59 +1,107 @@
 #include "crafted/hold.hpp"
 
 #include "contact/separation.hpp"
-#include "crafted/carrying.hpp"
+#include "crafted/able.hpp"
 
-#include <functional>
+#include <utility>
 
 namespace isostat::crafted {
 
 namespace {
 
-struct ExactNormal {
-    Number x, y;
+/// A contact of a grain and the direction to it.
+struct Arm {
+    std::size_t contact;
+    PerAxis<Number> normal;
 };
 
-int cross_sign(const ExactNormal& a, const ExactNormal& b) {
-    return (a.x * b.y - a.y * b.x).sign();
+struct ExactSigns {
+    template <std::size_t Count, class Expression>
+    [[nodiscard]] int of(const std::array<Arm, Count>& arms, Expression expression) const {
+        std::array<PerAxis<Number>, Count> in;
+        std::transform(arms.begin(), arms.end(), in.begin(), [](const Arm& arm) { return arm.normal; });
+        return expression(in).sign();
+    }
+};
+
+/// 0 is a combination of the directions with positive factors: it is in the interior of their convex hull where they
+/// span the space.
+bool span_all(const std::vector<Arm>& arms, int dimension) {
+    exact::NumberMatrix matrix;
+    matrix.rows = dimension;
+    for (const Arm& arm : arms) {
+        auto& column = matrix.column.emplace_back();
+        for (int a = 0; a < dimension; ++a) {
+            const Number& component = arm.normal[static_cast<std::size_t>(a)];
+            if (!component.is_zero()) {
+                column.emplace_back(a, component);
+            }
+        }
+    }
+    const exact::Kernel kernel = exact::kernel(matrix);
+    return kernel.rank == dimension;
 }
-int dot_sign(const ExactNormal& a, const ExactNormal& b) {
-    return (a.x * b.x + a.y * b.y).sign();
+
+/// Clears `carrying` of contacts that can carry no force until nothing changes, and sets `hold` of the grains whose
+/// hold is not `fixed` or `loaded`.
+void exclude_contacts(const std::vector<std::vector<Arm>>& arms, Inspection& inspection, int dimension) {
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (std::size_t i = 0; i < arms.size(); ++i) {
+            DiskHold& hold = inspection.hold[i];
+            if (hold == DiskHold::fixed || hold == DiskHold::loaded) {
+                continue;
+            }
+            std::vector<Arm> left = arms[i];
+            std::erase_if(left, [&](const Arm& arm) { return inspection.carrying[arm.contact] == 0; });
+            const std::vector<Arm> stay = able(left, ExactSigns{});
+            for (const Arm& arm : left) {
+                inspection.carrying[arm.contact] = 0;
+            }
+            for (const Arm& arm : stay) {
+                inspection.carrying[arm.contact] = 1;
+            }
+            changed = changed || stay.size() < left.size();
+            hold = stay.empty() ? DiskHold::rattler : (span_all(stay, dimension) ? DiskHold::held : DiskHold::bridge);
+        }
+    }
 }
 
 } // namespace
 
 void judge_holds(Inspection& inspection, const ExactPacking& packing) {
     const auto n = packing.radius.size();
-    std::vector<Arms<ExactNormal>> arms(n);
+    std::vector<std::vector<Arm>> arms(n);
     inspection.carrying.assign(inspection.contacts.size(), 1);
-    inspection.hold.assign(n, DiskHold::held);
     for (std::size_t l = 0; l < inspection.contacts.size(); ++l) {
         const Contact& contact = inspection.contacts[l];
         const auto i = static_cast<std::size_t>(contact.i);
         const auto j = static_cast<std::size_t>(contact.j);
         if (contact.kind == ContactKind::disk_disk) {
-            const auto [x, y, none] =
-                Separation(contact, packing.layout())
-                    .of_disks([&](std::size_t k) -> const Number& { return packing.coordinate(k); }, std::minus<>());
-            arms[i].push_back({l, {x, y}});
-            arms[j].push_back({l, {-x, -y}});
+            const PerAxis<Number> r = exact_separation(packing, contact);
+            arms[i].push_back({l, r});
+            arms[j].push_back({l, {-r[0], -r[1], -r[2]}});
             continue;
         }
         const int side = contact.kind == ContactKind::lower_wall ? -1 : 1;
-        arms[i].push_back({l, {Number(j == 0 ? side : 0), Number(j == 1 ? side : 0)}});
+        arms[i].push_back({l, {}});
+        arms[i].back().normal[j] = Number(side);
         // A movable wall under no force carries none: all its normals point the same way.
         if (side > 0 && packing.walls.upper[j] == WallKind::movable && packing.load &&
             packing.load->wall[j].is_zero()) {
             inspection.carrying[l] = 0;
         }
     }
-    for (std::size_t i = 0; i < n; ++i) {
-        const bool loaded = packing.load && !packing.load->disk.empty() &&
-                            !(packing.load->disk[2 * i].is_zero() && packing.load->disk[2 * i + 1].is_zero());
-        inspection.hold[i] =
-            packing.is_fixed(static_cast<int>(i)) ? DiskHold::fixed : (loaded ? DiskHold::loaded : DiskHold::held);
+    inspection.hold.assign(n, DiskHold::held);
+    for (std::size_t k = 0; packing.load && k < packing.load->disk.size(); ++k) {
+        if (!packing.load->disk[k].is_zero()) {
+            inspection.hold[k / packing.axes()] = DiskHold::loaded;
+        }
     }
-    exclude_contacts(arms, inspection.carrying, inspection.hold);
+    for (std::size_t i = 0; i < n; ++i) {
+        inspection.hold[i] = packing.is_fixed(static_cast<int>(i)) ? DiskHold::fixed : inspection.hold[i];
+    }
+    exclude_contacts(arms, inspection, packing.dimension());
 }
 
 } // namespace isostat::crafted

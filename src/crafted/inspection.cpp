@@ -1,6 +1,7 @@
 #include "contact/contact_set.hpp"
 #include "crafted/hold.hpp"
 #include "crafted/jamming.hpp"
+#include "crafted/load_range.hpp"
 #include "crafted/rigid_motions.hpp"
 #include "crafted/second_order.hpp"
 #include "rigidity/strained_matrix.hpp"
@@ -27,14 +28,18 @@ exact::NumberMatrix generic_matrix(const ExactPacking& packing, const DofMap& do
         return Number(static_cast<long long>((z ^ (z >> 31)) >> 3)); // 61 bits
     };
     for (std::size_t i = 0; i < random.radius.size(); ++i) {
-        random.centre[i] = {next(), next()};
+        for (std::size_t a = 0; a < packing.axes(); ++a) {
+            random.centre[i][a] = next();
+        }
         random.radius[i] = Number(1) / Number(2);
     }
-    for (std::size_t a = 0; a < 2 && packing.cell.any(); ++a) {
-        random.length[a] = packing.cell.periodic[a] ? next() : random.length[a];
-    }
-    if (packing.cell.all()) {
-        random.tilt = next();
+    for (std::size_t b = 0; b < packing.axes(); ++b) {
+        random.length[b] = packing.cell.periodic[b] ? next() : random.length[b];
+        for (std::size_t a = 0; a < b; ++a) {
+            if (packing.cell.periodic[a] && packing.cell.periodic[b]) {
+                random.tilt[Cell::tilt(a, b)] = next();
+            }
+        }
     }
     return exact_contact_matrix(random, dofs, contacts);
 }
@@ -63,13 +68,16 @@ class Inspector {
         out_.contacts = std::move(contacts);
         matrix_ = exact_contact_matrix(packing_, dofs_, out_.contacts);
         out_.dof_count = dofs_.dof_count();
-        out_.rigid_motions = rigid_motions(approximate(packing_), packing_.disk_count());
+        out_.rigid_motions = rigid_motions(
+            approximate(packing_), [](int) { return true; }, [&](std::size_t k) { return packing_.coordinate(k); });
+        out_.with_radii = count_with_radii(packing_, out_.contacts);
     }
 
     Inspection run() {
         count();
         judge_holds(out_, packing_);
         judge_self_stresses();
+        judge_ranges();
         judge_load();
         if (out_.bases_exact == Verdict::proved) {
             out_.second_order = second_order_test(out_, packing_, dofs_);
@@ -94,18 +102,50 @@ class Inspector {
         return column;
     }
 
-    void count() {
-        exact::NumberMatrix augmented = matrix_;
+    /// The contacts, the load, and a unit of it on each length and tilt that moves.
+    [[nodiscard]] exact::NumberMatrix with_loads() const {
+        exact::NumberMatrix out = matrix_;
         if (packing_.load) {
-            augmented.column.push_back(load_column());
+            out.column.push_back(load_column());
+            for (int d = 0; d < out_.dof_count; ++d) {
+                if (static_cast<std::size_t>(dofs_.coordinate_of(d)) >= packing_.layout().of_length(0)) {
+                    out.column.push_back({{d, Number(1)}});
+                }
+            }
         }
+        return out;
+    }
+
+    /// Sorts the kernel of that matrix: self-stresses, forces that balance the load, and a unit of it.
+    void take_basis(const exact::Kernel& kernel, const exact::NumberMatrix& augmented) {
+        const std::size_t n = contact_count();
+        for (std::size_t k = 0; k < kernel.basis.size(); ++k) {
+            const auto& vector = kernel.basis[k];
+            const auto free = static_cast<std::size_t>(kernel.free[k]);
+            std::vector<Number> forces(vector.begin(), vector.begin() + static_cast<std::ptrdiff_t>(n));
+            if (free < n) {
+                out_.self_stresses.push_back(std::move(forces));
+            } else if (free == n) {
+                balanced_ = true;
+                out_.forces = std::move(forces); // the vector whose free column is the load
+            } else if (vector[n].is_zero() && std::all_of(vector.begin() + static_cast<std::ptrdiff_t>(n),
+                                                          vector.begin() + static_cast<std::ptrdiff_t>(free),
+                                                          [](const Number& x) { return x.is_zero(); })) {
+                units_.emplace_back(augmented.column[free].front().first, std::move(forces));
+            }
+        }
+    }
+
+    void count() {
+        const exact::NumberMatrix augmented = with_loads();
         const int n = static_cast<int>(contact_count());
         const exact::Kernel stresses = exact::kernel(augmented, limits_.kernel);
         const exact::Kernel motions = exact::kernel(exact::transposed(matrix_), limits_.kernel);
         const bool load_is_pivot =
             packing_.load && std::binary_search(stresses.pivots.begin(), stresses.pivots.end(), n);
         const bool dense = stresses.exact == Verdict::proved;
-        out_.rank = std::max(dense ? stresses.rank - (load_is_pivot ? 1 : 0) : 0, motions.rank);
+        const auto of_contacts = std::lower_bound(stresses.pivots.begin(), stresses.pivots.end(), n);
+        out_.rank = std::max(dense ? static_cast<int>(of_contacts - stresses.pivots.begin()) : 0, motions.rank);
         const int most = std::min(n, out_.dof_count - out_.rigid_motions);
         const bool exact = dense || motions.exact == Verdict::proved || out_.rank == most;
         out_.rank_exact = exact ? Verdict::proved : Verdict::undecided;
@@ -114,15 +154,7 @@ class Inspector {
         if (dense && motions.exact == Verdict::proved) {
             out_.bases_exact = Verdict::proved;
             out_.motions = motions.basis;
-            for (const auto& vector : stresses.basis) {
-                std::vector<Number> forces(vector.begin(), vector.begin() + n);
-                if (packing_.load && !vector.back().is_zero()) {
-                    balanced_ = true;
-                    out_.forces = std::move(forces); // the vector whose free column is the load
-                } else {
-                    out_.self_stresses.push_back(std::move(forces));
-                }
-            }
+            take_basis(stresses, augmented);
             out_.support =
                 !packing_.load ? Support::no_load : (load_is_pivot ? Support::unbalanced : Support::undecided);
         } else if (packing_.load) {
@@ -146,6 +178,25 @@ class Inspector {
         } else if (out_.bases_exact == Verdict::proved && affordable(out_.self_stresses.size(), contact_count())) {
             out_.one_sign = exact::one_sign(out_.self_stresses, static_cast<int>(contact_count()));
             out_.one_sign_decided = true;
+        }
+    }
+
+    /// The range of every force on a length or a tilt whose change is balanced.
+    void judge_ranges() {
+        if (!balanced_ || !affordable(out_.self_stresses.size() + 2, contact_count())) {
+            return;
+        }
+        const std::vector<Number> load = external_force(packing_, dofs_);
+        for (const auto& [dof, change] : units_) {
+            if (auto range = load_range(out_.forces, change, out_.self_stresses)) {
+                range->dof = dof;
+                for (std::optional<Number>* end : {&range->least, &range->most}) {
+                    if (*end) {
+                        **end -= load[static_cast<std::size_t>(dof)];
+                    }
+                }
+                out_.ranges.push_back(std::move(*range));
+            }
         }
     }
 
@@ -254,6 +305,7 @@ class Inspector {
     DofMap dofs_;
     exact::NumberMatrix matrix_;
     Inspection out_;
+    std::vector<std::pair<int, std::vector<Number>>> units_; // forces that balance an inward unit at this dof
     bool balanced_ = false; // some forces balance the load, and `forces` holds them (without contacts it is empty)
 };
 

@@ -40,10 +40,13 @@ void add_cell(const Inspection& inspection, Json& out) {
 } // namespace
 
 std::string to_json(const Inspection& inspection, const ExactPacking& packing) {
-    const std::vector<std::string> contacts = contact_names(inspection.contacts);
+    const std::vector<std::string> contacts = contact_names(inspection.contacts, packing.dimension());
     const std::vector<std::string> coordinates = dof_names(approximate(packing));
     Json out;
     out["format"] = "isostat-inspection 1";
+    if (packing.dimension() != plane) {
+        out["dimension"] = packing.dimension();
+    }
     out["disks"] = packing.disk_count();
     out["N_f"] = inspection.dof_count;
     out["N"] = inspection.contacts.size();
@@ -55,6 +58,8 @@ std::string to_json(const Inspection& inspection, const ExactPacking& packing) {
     out["verdict"] = inspection.verdict();
     out["generic_rank"] = inspection.generic_rank;
     out["special"] = to_string(inspection.special_position);
+    out["rank_with_radii"] = inspection.with_radii.rank;
+    out["rank_with_radii_exact"] = to_string(inspection.with_radii.rank_exact);
     add_cell(inspection, out);
     out["contacts"] = contacts;
     out["hold"] = Json::array();
@@ -73,6 +78,22 @@ std::string to_json(const Inspection& inspection, const ExactPacking& packing) {
     out["forces_unique"] = inspection.forces_unique;
     out["without_force"] = inspection.without_force;
     out["forces"] = entries(inspection.forces, contacts);
+    out["ranges"] = Json::array();
+    for (const LoadRange& range : inspection.ranges) {
+        const auto end = [](const std::optional<Number>& force) { return force ? Json(force->text()) : Json(nullptr); };
+        Json entry{{"on", coordinates[static_cast<std::size_t>(range.dof)]},
+                   {"least", end(range.least)},
+                   {"most", end(range.most)},
+                   {"zero_at_least", Json::array()},
+                   {"zero_at_most", Json::array()}};
+        for (const int l : range.zero_at_least) {
+            entry["zero_at_least"].push_back(contacts[static_cast<std::size_t>(l)]);
+        }
+        for (const int l : range.zero_at_most) {
+            entry["zero_at_most"].push_back(contacts[static_cast<std::size_t>(l)]);
+        }
+        out["ranges"].push_back(std::move(entry));
+    }
     out["structural_zeros"] = Json::array();
     for (std::size_t l = 0; l < inspection.structural_zero.size(); ++l) {
         if (inspection.structural_zero[l] != 0) {

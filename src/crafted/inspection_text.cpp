@@ -1,5 +1,6 @@
 #include "contact/names.hpp"
 #include "core/words.hpp"
+#include "packing/words.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/crafted/exact_packing.hpp>
@@ -82,7 +83,7 @@ class InspectionTable {
   public:
     InspectionTable(const Inspection& inspection, const ExactPacking& packing)
         : inspection_(inspection), packing_(packing), exact_(inspection.rank_exact == Verdict::proved),
-          contact_names_(contact_names(inspection.contacts)) {
+          contact_names_(contact_names(inspection.contacts, packing.dimension())) {
         counts();
         grains();
         forces();
@@ -92,13 +93,14 @@ class InspectionTable {
 
   private:
     void line(const std::string& key, const std::string& value) { out_ += fmt::format("{:<22} {}\n", key, value); }
+    [[nodiscard]] std::string grain() const { return grain_word(packing_.dimension()); }
     static std::string list(const std::vector<std::string>& names, const char* none) {
         return names.empty() ? none : joined(names, [](const std::string& name) { return name; });
     }
 
     void counts() {
         const char* most = exact_ ? "" : "<= ";
-        line("disks", std::to_string(packing_.disk_count()));
+        line(grain() + "s", std::to_string(packing_.disk_count()));
         line("degrees of freedom N_f", std::to_string(inspection_.dof_count));
         line("contacts N", fmt::format("{} (gaps decided exactly)", inspection_.contacts.size()));
         line("contact list", list(contact_names_, "none"));
@@ -109,6 +111,9 @@ class InspectionTable {
                                          inspection_.rigid_motions, most, inspection_.internal_mechanisms()));
         line("verdict", inspection_.verdict());
         line("generic rank", fmt::format("{} (same contact graph, random coordinates)", inspection_.generic_rank));
+        line("rank with radii",
+             fmt::format("{}{} (the radii move too)", inspection_.with_radii.rank_exact == Verdict::proved ? "" : ">= ",
+                         inspection_.with_radii.rank));
         line("special position", std::string(to_string(inspection_.special_position)));
         for (std::size_t k = 0; inspection_.strains && k < strains.size(); ++k) {
             const Counting& c = (*inspection_.strains)[k];
@@ -117,7 +122,7 @@ class InspectionTable {
                                                     c.contact_count, bound, c.hyperstaticity, bound, c.mechanisms));
         }
         if (inspection_.jamming) {
-            const std::string of = fmt::format(" ({} disks that are no rattlers)", inspection_.jamming->disks);
+            const std::string of = fmt::format(" ({} {}s that are no rattlers)", inspection_.jamming->disks, grain());
             line("jammed collectively", std::string(to_string(inspection_.jamming->collective)) + of);
             line("jammed strictly", std::string(to_string(inspection_.jamming->strict)) + of);
         }
@@ -128,7 +133,7 @@ class InspectionTable {
         line("bridges", number_list(disks_with(inspection_, DiskHold::bridge)));
         if (inspection_.forces_unique &&
             (inspection_.support == Support::positive || inspection_.support == Support::with_zeros)) {
-            line("disks without force", number_list(inspection_.without_force));
+            line(grain() + "s without force", number_list(inspection_.without_force));
         }
     }
 
@@ -148,6 +153,9 @@ class InspectionTable {
             line(inspection_.forces_unique ? "forces" : "forces, one choice",
                  vector_text(inspection_.forces, contact_names_));
         }
+        for (const LoadRange& range : inspection_.ranges) {
+            line("supported", range_text(range));
+        }
         std::vector<std::string> structural, special;
         for (std::size_t l = 0; l < inspection_.structural_zero.size(); ++l) {
             if (inspection_.forces[l].is_zero()) {
@@ -162,6 +170,20 @@ class InspectionTable {
         }
         line("second order (bars)", to_string(inspection_.second_order));
         line("stable", packing_.load ? std::string(to_string(inspection_.stable)) : "no load");
+    }
+
+    /// "force on top wall from 2/5 (opens 0-bottom) to 2 (opens 1-left)".
+    [[nodiscard]] std::string range_text(const LoadRange& range) const {
+        const auto end = [&](const std::optional<Number>& force, const std::vector<int>& zero, const char* none) {
+            if (!force) {
+                return std::string(none);
+            }
+            const std::string at = joined(zero, [&](int l) { return contact_names_[static_cast<std::size_t>(l)]; });
+            return zero.empty() ? force->text() : fmt::format("{} (no force in {})", force->text(), at);
+        };
+        return fmt::format(
+            "force on {} from {} to {}", dof_names(approximate(packing_))[static_cast<std::size_t>(range.dof)],
+            end(range.least, range.zero_at_least, "-infinity"), end(range.most, range.zero_at_most, "infinity"));
     }
 
     void bases() {
@@ -188,8 +210,9 @@ class InspectionTable {
 /// What a file expects against what was found.
 class Comparison {
   public:
-    Comparison(const Inspection& inspection, const std::string& source)
-        : inspection_(inspection), source_(source), words_(words(inspection)) {}
+    Comparison(const Inspection& inspection, const ExactPacking& packing, const std::string& source)
+        : inspection_(inspection), names_(contact_names(inspection.contacts, packing.dimension())),
+          dofs_(dof_names(approximate(packing))), source_(source), words_(words(inspection)) {}
 
     void check(const ExpectedEntry& entry) {
         if (const auto word = words_.find(entry.key); word != words_.end()) {
@@ -200,14 +223,20 @@ class Comparison {
             for (const auto& row : entry.values) {
                 check_force(entry, row);
             }
+        } else if (entry.key == "ranges") {
+            for (const auto& row : entry.values) {
+                check_range(entry, row);
+            }
         } else if (entry.key == "strains") {
             for (const auto& row : entry.values) {
                 check_strain(entry, row);
             }
         } else {
-            bad(entry, "a known key: N_f, N, rank, h, k, rigid_motions, generic_rank, special, verdict, contacts, "
-                       "forces, strains, rattlers, bridges, without_force, structural_zeros, "
-                       "jammed_collectively, jammed_strictly, one_sign, support, second_order or stable");
+            bad(entry,
+                "a known key: N_f, N, rank, h, k, rigid_motions, generic_rank, special, verdict, contacts, "
+                "forces, strains, rattlers, bridges, without_force, structural_zeros, "
+                "jammed_collectively, jammed_strictly, one_sign, support, second_order, stable, rank_with_radii or "
+                "ranges");
         }
     }
     [[nodiscard]] std::vector<std::string> mismatches() && { return std::move(out_); }
@@ -229,6 +258,9 @@ class Comparison {
             {"k", count(inspection.mechanisms)},
             {"rigid_motions", std::to_string(inspection.rigid_motions)},
             {"generic_rank", std::to_string(inspection.generic_rank)},
+            {"rank_with_radii", inspection.with_radii.rank_exact == Verdict::proved
+                                    ? std::to_string(inspection.with_radii.rank)
+                                    : "undecided"},
             {"special", std::string(to_string(inspection.special_position))},
             {"verdict", inspection.verdict()},
             {"one_sign", inspection.one_sign_decided ? to_string(inspection.one_sign.kind) : "undecided"},
@@ -268,7 +300,7 @@ class Comparison {
         const auto contacts = [&](const auto& listed) {
             for (std::size_t l = 0; l < inspection_.contacts.size(); ++l) {
                 if (listed(l)) {
-                    found.push_back(to_string(inspection_.contacts[l]));
+                    found.push_back(names_[l]);
                 }
             }
         };
@@ -307,7 +339,7 @@ class Comparison {
             return Number::parse(text);
         } catch (const Error& error) {
             throw Error(ErrorKind::bad_input,
-                        fmt::format("{}:{}: expected.forces: {}", source_, entry.line, error.what()));
+                        fmt::format("{}:{}: expected.{}: {}", source_, entry.line, entry.key, error.what()));
         }
     }
 
@@ -319,13 +351,31 @@ class Comparison {
         std::string found = inspection_.forces_unique ? "no such contact" : "forces that are not unique";
         bool holds = false;
         for (std::size_t l = 0; l < inspection_.contacts.size() && inspection_.forces_unique; ++l) {
-            if (to_string(inspection_.contacts[l]) == row[0]) {
+            if (names_[l] == row[0]) {
                 found = inspection_.forces[l].text();
                 holds = inspection_.forces[l] == wanted;
             }
         }
         if (!holds) {
             mismatch(entry, row[0] + " = " + wanted.text(), found);
+        }
+    }
+
+    void check_range(const ExpectedEntry& entry, const std::vector<std::string>& row) {
+        if (row.size() != 3) {
+            bad(entry, "rows [wall, period or tilt, least force, largest force]");
+        }
+        std::string found = "no range";
+        for (const LoadRange& range : inspection_.ranges) {
+            if (dofs_[static_cast<std::size_t>(range.dof)] == row[0]) {
+                found = fmt::format("{} to {}", range.least ? range.least->text() : "none",
+                                    range.most ? range.most->text() : "none");
+            }
+        }
+        const auto text = [&](const std::string& end) { return end == "none" ? end : number(entry, end).text(); };
+        const std::string wanted = fmt::format("{} to {}", text(row[1]), text(row[2]));
+        if (wanted != found) {
+            mismatch(entry, fmt::format("{}: {}", row[0], wanted), found);
         }
     }
 
@@ -349,6 +399,7 @@ class Comparison {
     }
 
     const Inspection& inspection_;
+    std::vector<std::string> names_, dofs_;
     const std::string& source_;
     std::map<std::string, std::string> words_;
     std::vector<std::string> out_;
@@ -362,7 +413,7 @@ std::string to_text(const Inspection& inspection, const ExactPacking& packing) {
 
 std::vector<std::string> check_expected(const Inspection& inspection, const PackingFile& file,
                                         const std::string& source) {
-    Comparison comparison(inspection, source);
+    Comparison comparison(inspection, file.packing, source);
     for (const ExpectedEntry& entry : file.expected) {
         comparison.check(entry);
     }

@@ -50,7 +50,13 @@ Jamming judge_jamming(const ExactPacking& packing, const std::vector<DiskHold>& 
     out.collective = fixed.dof_count == 0
                          ? Verdict::proved
                          : jammed(fixed, fixed.one_sign_decided, fixed.one_sign.kind == exact::OneSign::strict);
-    rest.load = ExactLoad{{rest.length[1], rest.length[0]}}; // a pressure of 1: minus the derivative of the volume
+    rest.load.emplace(); // a pressure of 1: minus the derivative of the volume
+    for (std::size_t a = 0; a < rest.axes(); ++a) {
+        rest.load->wall[a] = 1;
+        for (std::size_t b = 0; b < rest.axes(); ++b) {
+            rest.load->wall[a] *= b == a ? Number(1) : rest.length[b];
+        }
+    }
     const Inspection strained = inspected(true);
     out.strict = jammed(strained, strained.support != Support::undecided, strained.support == Support::positive);
     return out;

@@ -11,7 +11,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <initializer_list>
 #include <sstream>
 #include <string_view>
 
@@ -57,7 +56,11 @@ class Reader {
         : source_(text), name_(name), root_(parse_toml(text, name)) {}
 
     PackingFile read() {
-        allow(root_, "", {"format", "title", "source", "note", "disks", "disk", "box", "cell", "load", "expected"});
+        const bool space = root_.contains("spheres") || root_.contains("sphere");
+        out_.packing.cell.dimension = space ? 3 : 2;
+        allow(root_, "",
+              {"format", "title", "source", "note", space ? "spheres" : "disks", grain_word(space ? 3 : 2), "box",
+               "cell", "load", "expected"});
         const std::string format = string(required(root_, "format"), "format");
         if (format != "isostat-packing 1") {
             fail(*root_.get("format"), "format", "\"" + format + "\"", "\"isostat-packing 1\"");
@@ -68,7 +71,7 @@ class Reader {
                 out_.title = std::string_view(key) == "title" ? value : out_.title;
             }
         }
-        disks();
+        grains();
         cell();
         box();
         load();
@@ -89,7 +92,7 @@ class Reader {
         return out.str();
     }
 
-    void allow(const toml::table& table, const std::string& where, std::initializer_list<std::string_view> keys) const {
+    void allow(const toml::table& table, const std::string& where, const std::vector<std::string_view>& keys) const {
         for (const auto& [key, node] : table) {
             if (std::find(keys.begin(), keys.end(), key.str()) == keys.end()) {
                 throw Error(ErrorKind::bad_input,
@@ -167,43 +170,87 @@ class Reader {
         const auto n = static_cast<std::int64_t>(out_.packing.radius.size());
         if (!node.is_integer() || node.as_integer()->get() < 0 || node.as_integer()->get() >= n) {
             fail(node, key, node.is_integer() ? std::to_string(node.as_integer()->get()) : type_name(node),
-                 "the number of a disk, 0 to " + std::to_string(n - 1));
+                 fmt::format("the number of a {}, 0 to {}", grain(), n - 1));
         }
         return static_cast<int>(node.as_integer()->get());
     }
 
-    void add_disk(Number x, Number y, Number r, bool fixed) {
-        out_.packing.centre.push_back({std::move(x), std::move(y)});
+    /// Which axis, or which tilt, a word of `cell.moves` names; -1: none.
+    template <class Names>
+    [[nodiscard]] static int place(const Names& names, std::size_t count, std::string_view word) {
+        const auto end = names.begin() + static_cast<std::ptrdiff_t>(count);
+        const auto found = std::find(names.begin(), end, word);
+        return found == end ? -1 : static_cast<int>(found - names.begin());
+    }
+
+    void add(PerAxis<Number> centre, Number r, bool fixed) {
+        out_.packing.centre.push_back(std::move(centre));
         out_.packing.radius.push_back(std::move(r));
         out_.packing.fixed.push_back(fixed ? 1 : 0);
     }
 
-    void disks() {
-        if (const toml::node* node = root_.get("disks")) {
-            for (const toml::node& entry : array(*node, "disks")) {
-                const toml::array& row = array(entry, "disks", 3);
-                add_disk(number(row[0], "disks: x"), number(row[1], "disks: y"), positive(row[2], "disks: r"), false);
+    /// The centres and radii: the short form, then the long one.
+    void grains() {
+        const std::string one = grain(), all = one + "s";
+        const std::size_t d = out_.packing.axes();
+        if (const toml::node* node = root_.get(all)) {
+            for (const toml::node& entry : array(*node, all)) {
+                const toml::array& row = array(entry, all, d + 1);
+                PerAxis<Number> centre;
+                for (std::size_t a = 0; a < d; ++a) {
+                    centre[a] = number(row[a], fmt::format("{}: {}", all, axis_names[a]));
+                }
+                add(std::move(centre), positive(row[d], all + ": r"), false);
             }
         }
-        if (const toml::node* node = root_.get("disk")) {
-            for (const toml::node& entry : array(*node, "disk")) {
-                const toml::table& row = table(entry, "disk");
-                allow(row, "disk.", {"x", "y", "r", "fixed"});
+        if (const toml::node* node = root_.get(one)) {
+            for (const toml::node& entry : array(*node, one)) {
+                const toml::table& row = table(entry, one);
+                std::vector<std::string_view> keys(axis_names.begin(), axis_names.begin() + static_cast<long>(d));
+                keys.insert(keys.end(), {"r", "fixed"});
+                allow(row, one + ".", keys);
+                PerAxis<Number> centre;
+                for (std::size_t a = 0; a < d; ++a) {
+                    centre[a] = number(required(row, axis_names[a], one + "."), one + "." + axis_names[a]);
+                }
                 const toml::node* fixed = row.get("fixed");
-                add_disk(number(required(row, "x", "disk."), "disk.x"), number(required(row, "y", "disk."), "disk.y"),
-                         positive(required(row, "r", "disk."), "disk.r"),
-                         fixed != nullptr && boolean(*fixed, "disk.fixed"));
+                add(std::move(centre), positive(required(row, "r", one + "."), one + ".r"),
+                    fixed != nullptr && boolean(*fixed, one + ".fixed"));
             }
         }
         if (out_.packing.radius.empty()) {
-            throw Error(ErrorKind::bad_input, name_ + ":1: no disk, expected \"disks\" or [[disk]]");
+            throw Error(ErrorKind::bad_input,
+                        name_ + ":1: no disk, expected \"disks\" or [[disk]], of spheres \"spheres\" or [[sphere]]");
         }
+    }
+    [[nodiscard]] std::string grain() const { return grain_word(out_.packing.dimension()); }
+
+    /// What stands at the tilts: one number in the plane, in space those of xy, xz, yz. Where a tilt is no coordinate
+    /// that `may` be another one, 0 is `expected`.
+    template <class May>
+    [[nodiscard]] PerTilt<Number> tilts(const toml::node& node, const std::string& key, May may,
+                                        const char* expected) const {
+        const std::size_t count = out_.packing.layout().tilts();
+        PerTilt<Number> out;
+        for (std::size_t t = 0; t < count; ++t) {
+            const toml::node& entry = count == 1 ? node : array(node, key, count)[t];
+            out[t] = number(entry, key);
+            if (!out[t].is_zero() && !may(t)) {
+                fail(entry, key, out[t].text(), expected);
+            }
+        }
+        return out;
+    }
+    /// Both axes of a tilt repeat.
+    [[nodiscard]] bool leans(std::size_t tilt) const {
+        const auto& periodic = out_.packing.cell.periodic;
+        return periodic[tilt == 2 ? 1 : 0] && periodic[tilt == 0 ? 1 : 2];
     }
 
     [[nodiscard]] WallKind wall(const toml::node& node, const std::string& key, std::size_t axis, bool may_move) const {
         const std::string kind = string(node, key);
         if (kind != "absent" && out_.packing.cell.periodic[axis]) {
-            fail(node, key, "\"" + kind + "\"", fmt::format("\"absent\": {} repeats (cell.period)", "xy"[axis]));
+            fail(node, key, "\"" + kind + "\"", fmt::format("\"absent\": {} repeats (cell.period)", axis_names[axis]));
         }
         if (const auto known = value_of<WallKind>(kind, wall_kind_words);
             known && (may_move || *known != WallKind::movable)) {
@@ -222,21 +269,19 @@ class Reader {
         const toml::table& cell = table(*node, "cell");
         allow(cell, "cell.", {"period", "tilt", "moves", "pin"});
         ExactPacking& packing = out_.packing;
-        const toml::array& period = array(required(cell, "period", "cell."), "cell.period", 2);
-        for (std::size_t a = 0; a < 2; ++a) {
+        const toml::array& period = array(required(cell, "period", "cell."), "cell.period", packing.axes());
+        for (std::size_t a = 0; a < packing.axes(); ++a) {
             packing.cell.periodic[a] = !(period[a].is_string() && period[a].as_string()->get() == "none");
             if (packing.cell.periodic[a]) {
                 packing.length[a] = positive(period[a], "cell.period");
             }
         }
         if (!packing.cell.any()) {
-            fail(period, "cell.period", "[\"none\", \"none\"]", "one period at least: a box has no [cell]");
+            fail(period, "cell.period", "\"none\" along every axis", "one period at least: a box has no [cell]");
         }
         if (const toml::node* tilt = cell.get("tilt")) {
-            packing.tilt = number(*tilt, "cell.tilt");
-            if (!packing.tilt.is_zero() && !packing.cell.all()) {
-                fail(*tilt, "cell.tilt", packing.tilt.text(), "0, as one axis does not repeat");
-            }
+            packing.tilt = tilts(
+                *tilt, "cell.tilt", [&](std::size_t t) { return leans(t); }, "0, as one axis does not repeat");
         }
         for (const toml::node& moved : array(required(cell, "moves", "cell."), "cell.moves")) {
             moves(moved);
@@ -245,9 +290,8 @@ class Reader {
             packing.cell.pin = index(*pin, "cell.pin");
         }
         if (std::find(packing.fixed.begin(), packing.fixed.end(), 1) != packing.fixed.end()) {
-            fail(*node, "disk.fixed", "true",
-                 "no fixed disk where an axis repeats: the pinned one says where the "
-                 "origin is");
+            fail(*node, grain() + ".fixed", "true",
+                 fmt::format("no fixed {} where an axis repeats: the pinned one says where the origin is", grain()));
         }
         fits(period);
     }
@@ -255,12 +299,16 @@ class Reader {
     void moves(const toml::node& moved) {
         Cell& cell = out_.packing.cell;
         const std::string word = string(moved, "cell.moves");
-        const int axis = word == "x" ? 0 : (word == "y" ? 1 : 2);
-        bool& flag = axis < 2 ? cell.period_moves[static_cast<std::size_t>(axis)] : cell.tilt_moves[0];
-        const bool there = axis < 2 ? cell.periodic[static_cast<std::size_t>(axis)] : word == "xy" && cell.all();
-        if (!there || flag) {
+        const int axis = place(axis_names, out_.packing.axes(), word);
+        const int tilt = place(tilt_names, out_.packing.layout().tilts(), word);
+        const auto at = static_cast<std::size_t>(std::max({axis, tilt, 0}));
+        bool& flag = axis >= 0 ? cell.period_moves[at] : cell.tilt_moves[at];
+        if (axis >= 0 ? !cell.periodic[at] || flag : tilt < 0 || !leans(at) || flag) {
             fail(moved, "cell.moves", "\"" + word + "\"",
-                 "\"x\", \"y\" of an axis that repeats, or \"xy\" where both do, each once");
+                 out_.packing.dimension() == plane
+                     ? "\"x\", \"y\" of an axis that repeats, or \"xy\" where both do, each once"
+                     : "\"x\", \"y\", \"z\" of an axis that repeats, or \"xy\", \"xz\", \"yz\" where both do, each "
+                       "once");
         }
         flag = true;
     }
@@ -270,14 +318,18 @@ class Reader {
         const ExactPacking& packing = out_.packing;
         for (std::size_t i = 0; i < packing.radius.size(); ++i) {
             const Number diameter = packing.radius[i] + packing.radius[i];
-            for (std::size_t a = 0; a < 2; ++a) {
+            for (std::size_t a = 0; a < packing.axes(); ++a) {
                 const Number& length = packing.length[a];
-                const Number lean = a == 1 ? packing.tilt : Number(0);
-                if (packing.cell.periodic[a] && (length * length + lean * lean - diameter * diameter).sign() < 0) {
+                Number excess = length * length - diameter * diameter;
+                for (std::size_t b = 0; b < a; ++b) {
+                    const Number& lean = packing.tilt[Cell::tilt(b, a)];
+                    excess += lean * lean;
+                }
+                if (packing.cell.periodic[a] && excess.sign() < 0) {
                     fail(period[a], "cell.period", length.text(),
-                         fmt::format("a period vector at least as long as the diameter {} of disk {}, which overlaps "
+                         fmt::format("a period vector at least as long as the diameter {} of {} {}, which overlaps "
                                      "its own image",
-                                     diameter.text(), i));
+                                     diameter.text(), grain(), i));
                 }
             }
         }
@@ -295,7 +347,8 @@ class Reader {
         }
         const toml::table& box = table(*node, "box");
         allow(box, "box.", {"length", "lower", "upper"});
-        for (std::size_t a = 0; a < 2; ++a) {
+        const std::size_t d = out_.packing.axes();
+        for (std::size_t a = 0; a < d; ++a) {
             const bool repeats = out_.packing.cell.periodic[a];
             out_.packing.walls.lower[a] = repeats ? WallKind::absent : WallKind::fixed;
             out_.packing.walls.upper[a] = repeats ? WallKind::absent : WallKind::movable;
@@ -304,18 +357,19 @@ class Reader {
             if (const toml::node* given = box.get(side)) {
                 const bool up = side == std::string_view("upper");
                 const std::string key = std::string("box.") + side;
-                const toml::array& kinds = array(*given, key, 2);
-                for (std::size_t a = 0; a < 2; ++a) {
+                const toml::array& kinds = array(*given, key, d);
+                for (std::size_t a = 0; a < d; ++a) {
                     (up ? out_.packing.walls.upper : out_.packing.walls.lower)[a] = wall(kinds[a], key, a, up);
                 }
             }
         }
         const auto& upper = out_.packing.walls.upper;
-        if (upper[0] == WallKind::absent && upper[1] == WallKind::absent && box.get("length") == nullptr) {
+        const bool none = std::all_of(upper.begin(), upper.end(), [](WallKind w) { return w == WallKind::absent; });
+        if (none && box.get("length") == nullptr) {
             return;
         }
-        const toml::array& length = array(required(box, "length", "box."), "box.length", 2);
-        for (std::size_t a = 0; a < 2; ++a) {
+        const toml::array& length = array(required(box, "length", "box."), "box.length", d);
+        for (std::size_t a = 0; a < d; ++a) {
             if (upper[a] != WallKind::absent) {
                 out_.packing.length[a] = positive(length[a], "box.length");
             } else if (!length[a].is_string() || length[a].as_string()->get() != "none") {
@@ -330,11 +384,12 @@ class Reader {
             return;
         }
         const toml::table& load = table(*node, "load");
-        allow(load, "load.", {"wall", "tilt", "disk"});
+        allow(load, "load.", {"wall", "tilt", grain_word(out_.packing.dimension())});
+        const std::size_t d = out_.packing.axes();
         ExactLoad out;
         if (const toml::node* walls = load.get("wall")) {
-            const toml::array& forces = array(*walls, "load.wall", 2);
-            for (std::size_t a = 0; a < 2; ++a) {
+            const toml::array& forces = array(*walls, "load.wall", d);
+            for (std::size_t a = 0; a < d; ++a) {
                 out.wall[a] = number(forces[a], "load.wall");
                 if (!out.wall[a].is_zero() && out_.packing.walls.upper[a] != WallKind::movable &&
                     !out_.packing.cell.period_moves[a]) {
@@ -345,32 +400,34 @@ class Reader {
             }
         }
         if (const toml::node* tilt = load.get("tilt")) {
-            out.tilt = number(*tilt, "load.tilt");
-            if (!out.tilt.is_zero() && !out_.packing.cell.tilt_moves[0]) {
-                fail(*tilt, "load.tilt", out.tilt.text(), "0: no tilt of a cell moves");
-            }
+            out.tilt = tilts(
+                *tilt, "load.tilt", [&](std::size_t k) { return out_.packing.cell.tilt_moves[k]; },
+                d == 2 ? "0: no tilt of a cell moves" : "0: this tilt of a cell does not move");
         }
-        if (const toml::node* disks = load.get("disk")) {
-            out.disk = disk_forces(*disks);
+        if (const toml::node* disks = load.get(grain())) {
+            out.disk = grain_forces(*disks);
         }
         out_.packing.load = std::move(out);
     }
 
-    [[nodiscard]] std::vector<Number> disk_forces(const toml::node& node) const {
-        std::vector<Number> out(2 * out_.packing.radius.size());
-        for (const toml::node& entry : array(node, "load.disk")) {
-            const toml::array& row = array(entry, "load.disk", 3);
-            const int disk = index(row[0], "load.disk");
-            if (out_.packing.is_fixed(disk)) {
-                fail(row[0], "load.disk", std::to_string(disk), "a disk that is not fixed");
+    [[nodiscard]] std::vector<Number> grain_forces(const toml::node& node) const {
+        const std::size_t d = out_.packing.axes();
+        const std::string key = "load." + grain();
+        std::vector<Number> out(d * out_.packing.radius.size());
+        for (const toml::node& entry : array(node, key)) {
+            const toml::array& row = array(entry, key, d + 1);
+            const int i = index(row[0], key);
+            if (out_.packing.is_fixed(i)) {
+                fail(row[0], key, std::to_string(i), fmt::format("a {} that is not fixed", grain()));
             }
-            out[2 * static_cast<std::size_t>(disk)] += number(row[1], "load.disk");
-            out[2 * static_cast<std::size_t>(disk) + 1] += number(row[2], "load.disk");
+            for (std::size_t a = 0; a < d; ++a) {
+                out[out_.packing.layout().of_disk(i) + a] += number(row[a + 1], key);
+            }
         }
         if (const auto rest = unbalanced<Number>(out, out_.packing.cell)) {
-            fail(
-                node, "load.disk", "forces that sum to " + rest->second.text(),
-                fmt::format("0 along {}, which repeats: the pinned disk would bear the rest", axis_names[rest->first]));
+            fail(node, key, "forces that sum to " + rest->second.text(),
+                 fmt::format("0 along {}, which repeats: the pinned {} would bear the rest", axis_names[rest->first],
+                             grain()));
         }
         return out;
     }

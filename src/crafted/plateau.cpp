@@ -261,7 +261,9 @@ class Sequence {
         const auto pinned = static_cast<int>(packing_.cell.periodic_axes());
         out.dof_count = packing_.dimension * free_[k] + moving_ + cell_coordinates() - (free_[k] > 0 ? pinned : 0);
         out.contact_count = carrying_[k];
-        out.rigid_motions = std::min(out.dof_count, rigid_motions(packing_, packing_.disk_count() - rattlers_[k]));
+        out.rigid_motions =
+            std::min(out.dof_count,
+                     turning_or_sliding([&](int i) { return peeling_.disk_from[static_cast<std::size_t>(i)] <= m; }));
         return out;
     }
 
@@ -269,8 +271,13 @@ class Sequence {
         PlateauCounts out;
         out.dof_count = all_dofs_;
         out.contact_count = m;
-        out.rigid_motions = std::min(out.dof_count, rigid_motions(packing_, packing_.disk_count()));
+        out.rigid_motions = std::min(out.dof_count, turning_or_sliding([](int) { return true; }));
         return out;
+    }
+
+    [[nodiscard]] int turning_or_sliding(const std::function<bool(int)>& takes_part) const {
+        return rigid_motions(packing_, takes_part,
+                             [this](std::size_t k) { return exact::Number::from_double(packing_.q[k]); });
     }
 
     /// N - N_f, rigid motions apart.

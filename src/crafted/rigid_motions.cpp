@@ -1,53 +1,101 @@
 #include "crafted/rigid_motions.hpp"
 
 #include <algorithm>
+#include <array>
+#include <vector>
 
 namespace isostat::crafted {
 
 namespace {
 
-/// Planes that the grains can turn in: those of two axes without walls.
-int turns(const Walls& walls, int disks, std::size_t axes) {
-    const auto open = [&walls](std::size_t a) {
-        return walls.lower[a] == WallKind::absent && walls.upper[a] == WallKind::absent;
-    };
-    int planes = 0;
-    for (std::size_t b = 1; b < axes && disks > 1; ++b) {
-        for (std::size_t a = 0; a < b; ++a) {
-            planes += open(a) && open(b) ? 1 : 0;
+using exact::Number;
+using Row = std::array<Number, most_axes + most_tilts>; ///< translations, then turns in the planes of two axes
+
+/// The rows added so far: how many of them are independent.
+class Span {
+  public:
+    void add(Row row) {
+        for (const auto& [pivot, known] : rows_) {
+            const Number factor = row[pivot];
+            for (std::size_t k = 0; k < row.size() && !factor.is_zero(); ++k) {
+                row[k] -= factor * known[k];
+            }
+        }
+        const auto entry = std::find_if(row.begin(), row.end(), [](const Number& x) { return !x.is_zero(); });
+        if (entry != row.end()) {
+            const Number scale = entry->inverse();
+            const auto pivot = static_cast<std::size_t>(entry - row.begin());
+            for (Number& x : row) {
+                x *= scale;
+            }
+            rows_.emplace_back(pivot, std::move(row));
         }
     }
-    return planes == 3 && disks == 2 ? 2 : planes; // nothing moves as two spheres turn about their line
-}
+    [[nodiscard]] int rank() const { return static_cast<int>(rows_.size()); }
 
-bool is_held(const Walls& walls, std::size_t a) { // a movable wall goes along
-    return walls.lower[a] == WallKind::fixed || walls.upper[a] == WallKind::fixed;
-}
+  private:
+    std::vector<std::pair<std::size_t, Row>> rows_;
+};
+
+/// What walls and periods leave to a common motion. A movable wall goes along with a translation, not with a turn.
+class Freedom {
+  public:
+    explicit Freedom(const Packing& packing) : axes_(packing.axes()) {
+        for (std::size_t a = 0; a < axes_; ++a) {
+            const WallKind lower = packing.walls.lower[a], upper = packing.walls.upper[a];
+            moves_[a] = lower != WallKind::fixed && upper != WallKind::fixed && !packing.cell.periodic[a];
+            open_[a] = moves_[a] && lower == WallKind::absent && upper == WallKind::absent;
+        }
+    }
+    [[nodiscard]] int count() const {
+        const auto open = std::count(open_.begin(), open_.end(), true);
+        return static_cast<int>(std::count(moves_.begin(), moves_.end(), true) + open * (open - 1) / 2);
+    }
+    /// How a point moves along each axis.
+    [[nodiscard]] PerAxis<Row> of(const PerAxis<Number>& x) const {
+        PerAxis<Row> out;
+        for (std::size_t b = 0; b < axes_; ++b) {
+            out[b][b] = Number(moves_[b] ? 1 : 0);
+            for (std::size_t a = 0; a < b && open_[b]; ++a) {
+                if (open_[a]) {
+                    out[a][most_axes + Cell::tilt(a, b)] = -x[b];
+                    out[b][most_axes + Cell::tilt(a, b)] = x[a];
+                }
+            }
+        }
+        return out;
+    }
+
+  private:
+    std::size_t axes_;
+    PerAxis<bool> moves_{}, open_{};
+};
 
 } // namespace
 
-int rigid_motions(const Walls& walls, const std::vector<unsigned char>& fixed, int disks, int dimension) {
-    const auto axes = static_cast<std::size_t>(dimension);
-    const auto held = std::count(fixed.begin(), fixed.end(), 1);
-    if (held > 0) {
-        return held == 1 ? turns(walls, disks, axes) : 0; // about the fixed centre
-    }
-    int out = turns(walls, disks, axes);
-    for (std::size_t a = 0; a < axes; ++a) {
-        out += is_held(walls, a) ? 0 : 1;
-    }
-    return out;
-}
-
-int rigid_motions(const Packing& packing, int disks) {
-    if (!packing.cell.any()) {
-        return rigid_motions(packing.walls, packing.fixed, disks, packing.dimension);
-    }
-    int out = 0;
-    for (std::size_t a = 0; a < packing.axes(); ++a) {
-        out += is_held(packing.walls, a) || packing.cell.periodic[a] ? 0 : 1;
-    }
-    return out;
+int rigid_motions(const Packing& packing, const std::function<bool(int)>& takes_part,
+                  const std::function<Number(std::size_t)>& at) {
+    const Freedom freedom(packing);
+    Span span;
+    const auto add = [&](int i) {
+        PerAxis<Number> x;
+        for (std::size_t a = 0; a < packing.axes(); ++a) {
+            x[a] = at(packing.layout().of_disk(i) + a);
+        }
+        for (Row& row : freedom.of(x)) {
+            span.add(std::move(row));
+        }
+    };
+    const auto add_all = [&](bool fixed) {
+        for (int i = 0; i < packing.disk_count() && span.rank() < freedom.count(); ++i) {
+            if (packing.is_fixed(DiskId(i)) == fixed && (fixed || takes_part(i))) {
+                add(i);
+            }
+        }
+        return span.rank();
+    };
+    const int taken = add_all(true); // what fixed grains take away
+    return add_all(false) - taken;
 }
 
 } // namespace isostat::crafted

@@ -1,15 +1,18 @@
 #pragma once
 // Common rigid motions of a packing.
 
+#include <isostat/exact/number.hpp>
 #include <isostat/packing/packing.hpp>
 
-#include <vector>
+#include <functional>
 
 namespace isostat::crafted {
 
-/// Dimension of the common rigid motions that neither a fixed disk nor a wall takes away; `disks` of them take part.
-int rigid_motions(const Walls& walls, const std::vector<unsigned char>& fixed, int disks, int dimension = 2);
-/// The same where axes may be periodic: along them a disk is pinned, and nothing turns.
-int rigid_motions(const Packing& packing, int disks);
+/// Dimension of the common rigid motions of the grains that take part: those that neither a fixed grain nor a wall
+/// takes away and that move some grain. Of spheres without walls 6, of collinear ones 5, of one 3. Along periodic axes
+/// a grain is pinned. `at`: what stands at a coordinate, exactly. Where walls and periods leave nothing, `at` is not
+/// asked. Cost O(1), unless the grains are on one line.
+int rigid_motions(const Packing& packing, const std::function<bool(int)>& takes_part,
+                  const std::function<exact::Number(std::size_t)>& at);
 
 } // namespace isostat::crafted

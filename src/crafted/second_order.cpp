@@ -1,6 +1,7 @@
 #include "crafted/second_order.hpp"
 
 #include "contact/separation.hpp"
+#include "crafted/able.hpp"
 
 #include <functional>
 
@@ -76,9 +77,9 @@ std::vector<std::vector<Number>> stress_form(const ExactPacking& packing, const 
         const Number weight = forces[l] / touching_distance(packing.radius, contact);
         for (std::size_t a = 0; a < k; ++a) {
             for (std::size_t b = 0; b < k; ++b) {
-                const Number dot = relative[a][0] * relative[b][0] + relative[a][1] * relative[b][1];
-                if (!dot.is_zero()) {
-                    out[a][b] += weight * dot;
+                const Number product = dot(relative[a], relative[b]);
+                if (!product.is_zero()) {
+                    out[a][b] += weight * product;
                 }
             }
         }

@@ -50,6 +50,7 @@ class Tableau {
         }
     }
 
+    /// Towards the least cost, from a point that is feasible for it.
     void solve() {
         for (;;) {
             std::size_t enter = 0;
@@ -71,9 +72,32 @@ class Tableau {
                     }
                 }
             }
-            assert(leave < line_.size() && "the first phase is bounded below by 0");
+            assert(leave < line_.size() && "the cost is bounded below");
             pivot(leave, enter);
         }
+    }
+
+    /// The second phase. Artificials that are left at 0 go out, or their rows are 0 and stay so.
+    void solve_for(const Row& cost) {
+        for (std::size_t i = 0; i < line_.size(); ++i) {
+            std::size_t enter = 0;
+            while (basis_[i] >= cols_ && enter < cols_ && line_[i][enter].is_zero()) {
+                ++enter;
+            }
+            if (basis_[i] >= cols_ && enter < cols_) {
+                pivot(i, enter);
+            }
+        }
+        cost_ = cost;
+        cost_.resize(cols_ + line_.size() + 1);
+        for (std::size_t i = 0; i < line_.size(); ++i) {
+            const Number factor = basis_[i] < cols_ ? cost[basis_[i]] : Number(0);
+            for (std::size_t k = 0; k < cost_.size() && !factor.is_zero(); ++k) {
+                cost_[k] -= factor * line_[i][k];
+            }
+        }
+        artificial_ = 0;
+        solve();
     }
 
     [[nodiscard]] bool feasible() const { return cost_.back().is_zero(); }
@@ -89,7 +113,7 @@ class Tableau {
     [[nodiscard]] Row multipliers() const {
         Row u(line_.size());
         for (std::size_t i = 0; i < u.size(); ++i) {
-            u[i] = Number(1) - cost_[cols_ + i];
+            u[i] = artificial_ - cost_[cols_ + i];
             u[i] = flipped_[i] ? -u[i] : u[i];
         }
         return u;
@@ -125,6 +149,7 @@ class Tableau {
     std::vector<std::size_t> basis_;
     std::vector<Row> line_;
     Row cost_;
+    Number artificial_ = 1; ///< cost of an artificial
 };
 
 void require(bool holds) {
@@ -166,6 +191,25 @@ Feasibility feasible_point(const std::vector<Row>& rows, const Row& b, int cols)
         require(dot(out.farkas, b).sign() > 0);
     }
     return out;
+}
+
+std::optional<Number> least(const std::vector<Row>& rows, const Row& b, const Row& cost) {
+    Tableau tableau(rows, b, static_cast<int>(cost.size()));
+    tableau.solve();
+    if (!tableau.feasible()) {
+        return std::nullopt;
+    }
+    tableau.solve_for(cost);
+    const Row z = tableau.solution(), u = tableau.multipliers(), below = combine(rows, u, cost.size());
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        require(dot(rows[i], z) == b[i]);
+    }
+    for (std::size_t k = 0; k < z.size(); ++k) {
+        require(z[k].sign() >= 0 && (cost[k] - below[k]).sign() >= 0);
+    }
+    Number value = dot(cost, z);
+    require(value == dot(u, b));
+    return value;
 }
 
 OneSignAnswer one_sign(const std::vector<Row>& vectors, int size) {

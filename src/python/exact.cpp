@@ -158,6 +158,10 @@ py::list exact_columns(const Crafted& crafted) {
     return columns;
 }
 
+py::tuple per_axis(const ExactPacking& packing, const PerAxis<Number>& numbers) {
+    return py::tuple(to_python(std::vector<Number>(numbers.begin(), numbers.begin() + packing.dimension())));
+}
+
 void bind_crafted(py::module_& module) {
     py::class_<Crafted>(
         module, "ExactPacking",
@@ -168,7 +172,6 @@ void bind_crafted(py::module_& module) {
         .def_static(
             "of_state",
             [](const PyState& state) {
-                require_plane(state.state.packing, "State", "an exact packing");
                 return Crafted{crafted::exact_copy(state.state.packing), state.state.contacts, ""};
             },
             py::arg("state"), "The stored doubles of a State as exact numbers, with its contacts.")
@@ -179,19 +182,16 @@ void bind_crafted(py::module_& module) {
             [](const Crafted& self) {
                 py::list rows;
                 for (const auto& centre : self.packing.centre) {
-                    rows.append(py::make_tuple(to_python(centre[0]), to_python(centre[1])));
+                    rows.append(per_axis(self.packing, centre));
                 }
                 return rows;
             },
-            "Rows (x, y), exact; length.")
+            "Rows (x, y), of spheres (x, y, z), exact; length.")
         .def_property_readonly(
             "radii", [](const Crafted& self) { return to_python(self.packing.radius); }, "Exact radii; length.")
         .def_property_readonly(
-            "length",
-            [](const Crafted& self) {
-                return py::make_tuple(to_python(self.packing.length[0]), to_python(self.packing.length[1]));
-            },
-            "(Lx, Ly), exact; 0 where there is no wall.")
+            "length", [](const Crafted& self) { return per_axis(self.packing, self.packing.length); },
+            "(Lx, Ly), of spheres (Lx, Ly, Lz), exact; 0 where there is no wall.")
         .def_property_readonly(
             "packing", [](const Crafted& self) { return approximate(self.packing); },
             "The nearest doubles, as a Packing: for pictures.")

@@ -3,11 +3,12 @@
 
 #include "support/test.hpp"
 
-/// Paths of all of them, sorted.
-inline std::vector<std::string> packing_files() {
+/// Paths of those of disks, or of spheres, sorted.
+inline std::vector<std::string> packing_files(bool spheres = false) {
     std::vector<std::string> paths;
     for (const auto& entry : std::filesystem::directory_iterator(std::string(ISOSTAT_EXAMPLES) + "/packings")) {
-        if (entry.path().extension() == ".toml") {
+        const bool of_spheres = entry.path().filename().string().starts_with("spheres_");
+        if (entry.path().extension() == ".toml" && of_spheres == spheres) {
             paths.push_back(entry.path().string());
         }
     }

@@ -44,7 +44,7 @@ std::vector<Contact> by_force(const ExactPacking& packing, int most) {
                 for (int p = y ? -most : 0; p <= (y ? most : 0); ++p) {
                     const isostat::Image image{{static_cast<std::int8_t>(m), static_cast<std::int8_t>(p), 0}};
                     const Number dx = packing.centre[b][0] - packing.centre[a][0] + Number(m) * packing.length[0] +
-                                      Number(p) * packing.tilt;
+                                      Number(p) * packing.tilt[0];
                     const Number dy = packing.centre[b][1] - packing.centre[a][1] + Number(p) * packing.length[1];
                     const Number d = packing.radius[a] + packing.radius[b];
                     if ((i != j || image > isostat::Image{}) && (dx * dx + dy * dy - d * d).is_zero()) {
@@ -76,7 +76,7 @@ bool same(const StrainCounts& a, const StrainCounts& b) {
 
 /// The disk at another of its images.
 void move(ExactPacking& packing, std::size_t disk, int m, int p) {
-    packing.centre[disk][0] += Number(m) * packing.length[0] + Number(p) * packing.tilt;
+    packing.centre[disk][0] += Number(m) * packing.length[0] + Number(p) * packing.tilt[0];
     packing.centre[disk][1] += Number(p) * packing.length[1];
 }
 
@@ -135,8 +135,8 @@ BOOST_AUTO_TEST_CASE(another_basis_of_the_lattice_gives_the_same_forces) {
     for (const char* name : {"cell_two_disks_tilted.toml", "cell_one_disk_tilted.toml", "cell_two_disks_tie.toml"}) {
         const ExactPacking packing = example(name);
         ExactPacking other = packing;
-        other.tilt += packing.length[0];
-        other.load->wall[0] -= packing.load->tilt;
+        other.tilt[0] += packing.length[0];
+        other.load->wall[0] -= packing.load->tilt[0];
         const Inspection before = inspected(packing), after = inspected(other);
         BOOST_TEST((after.contacts != before.contacts));
         BOOST_TEST((sorted(after.forces) == sorted(before.forces)));
@@ -166,11 +166,11 @@ BOOST_AUTO_TEST_CASE(two_disks_of_a_centred_rectangle_bear_a_shear_whatever_thei
 
 BOOST_AUTO_TEST_CASE(a_force_vanishes_at_the_load_that_the_closed_form_says) {
     ExactPacking packing = example("cell_one_disk_tilted.toml");
-    packing.load->tilt = n("1"); // F2 / sqrt(3)
+    packing.load->tilt[0] = n("1"); // F2 / sqrt(3)
     BOOST_TEST((inspected(packing).support == Support::with_zeros));
-    packing.load->tilt = n("1 + 1e-40");
+    packing.load->tilt[0] = n("1 + 1e-40");
     BOOST_TEST((inspected(packing).stable == Verdict::refuted));
-    packing.load->tilt = n("-1 + 1e-40"); // the other contact
+    packing.load->tilt[0] = n("-1 + 1e-40"); // the other contact
     BOOST_TEST((inspected(packing).support == Support::positive));
 }
 
@@ -185,7 +185,7 @@ BOOST_AUTO_TEST_CASE(an_overlap_with_an_image_is_named_however_small) {
         BOOST_TEST(exact_contacts(packing).value().size() == 4U);
         // A disk and its own image one period away, askew.
         packing = example("cell_one_disk_tilted.toml");
-        packing.tilt = n(std::string("1 - ") + depth);
+        packing.tilt[0] = n(std::string("1 - ") + depth);
         const auto own = exact_contacts(packing);
         BOOST_REQUIRE(!own.ok());
         BOOST_TEST(own.failure().message().find("pair 0-0(0,1)") != std::string::npos);

@@ -35,7 +35,7 @@ Inspection inspected(const ExactPacking& packing) {
 }
 
 void add(ExactPacking& packing, const Vector& centre, const Number& radius, bool fixed) {
-    packing.centre.push_back(centre);
+    packing.centre.push_back({centre[0], centre[1], {}});
     packing.radius.push_back(radius);
     packing.fixed.push_back(fixed ? 1 : 0);
 }

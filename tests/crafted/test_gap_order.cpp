@@ -1,11 +1,11 @@
 // Exact order of gaps, and rattlers of all initial parts of a contact list at once, against slow twins.
 
+#include "carrying_by_angles.hpp"
 #include "support/scale.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/exact/number.hpp>
 
-#include <crafted/carrying.hpp>
 #include <crafted/gap_order.hpp>
 #include <crafted/peeling.hpp>
 #include <mpfr.h>

@@ -280,7 +280,7 @@ BOOST_AUTO_TEST_CASE(relabelling_scaling_and_turning_leave_the_counts_alone) {
             }
         }
         other.length = {scale * packing.length[0], scale * packing.length[1]};
-        other.tilt = scale * packing.tilt;
+        other.tilt[0] = scale * packing.tilt[0];
         const crafted::Inspection after = inspected_alone(other);
         BOOST_TEST_CONTEXT(path) {
             BOOST_TEST(after.dof_count == before.dof_count);

@@ -9,8 +9,11 @@ BOOST_AUTO_TEST_SUITE(crafted_packings)
 
 BOOST_AUTO_TEST_CASE(every_example_packing_has_the_answers_it_carries) {
     using namespace isostat::crafted;
-    const std::vector<std::string> paths = packing_files();
+    std::vector<std::string> paths = packing_files();
     BOOST_TEST(paths.size() >= 25u);
+    const std::vector<std::string> spheres = packing_files(true);
+    BOOST_TEST(spheres.size() >= 8u);
+    paths.insert(paths.end(), spheres.begin(), spheres.end());
     for (const std::string& path : paths) {
         BOOST_TEST_INFO_SCOPE(path);
         const PackingFile file = read_packing(path);

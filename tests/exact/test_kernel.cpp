@@ -209,6 +209,41 @@ BOOST_AUTO_TEST_CASE(inequalities_have_a_certificate_for_either_answer) {
     BOOST_TEST(no > 100);
 }
 
+BOOST_AUTO_TEST_CASE(the_least_cost_is_that_of_the_best_vertex) {
+    std::mt19937_64 random(7);
+    int found = 0, none = 0;
+    for (int k = 0; k < 500; ++k) {
+        // One row, costs >= 0: the least is at one column. A second row that repeats it changes nothing.
+        const std::size_t cols = 1 + random() % 5;
+        std::vector<Number> row(cols), cost(cols);
+        const Number b = random_number(random, 2);
+        std::optional<Number> wanted;
+        if (b.is_zero()) {
+            wanted = Number(0);
+        }
+        for (std::size_t c = 0; c < cols; ++c) {
+            row[c] = random_number(random, 2);
+            cost[c] = random_number(random, 2);
+            cost[c] = cost[c].sign() < 0 ? -cost[c] : cost[c];
+            if (row[c].sign() * b.sign() > 0) {
+                const Number there = cost[c] * b / row[c];
+                wanted = !wanted || (there - *wanted).sign() < 0 ? there : wanted;
+            }
+        }
+        const std::vector<Number> twice{b, b + b};
+        std::vector<Number> doubled = row;
+        for (Number& x : doubled) {
+            x += x;
+        }
+        const auto once = least({row}, {b}, cost), again = least({row, doubled}, twice, cost);
+        BOOST_TEST((once.has_value() == wanted.has_value() && again.has_value() == wanted.has_value()));
+        BOOST_TEST((!wanted || (*once == *wanted && *again == *wanted)));
+        (wanted ? found : none) += 1;
+    }
+    BOOST_TEST(found > 100);
+    BOOST_TEST(none > 50);
+}
+
 BOOST_AUTO_TEST_CASE(one_sign_of_a_span) {
     const auto v = [](std::vector<int> entries) { return std::vector<Number>(entries.begin(), entries.end()); };
     BOOST_TEST((one_sign({v({1, 2, 3})}, 3).kind == OneSign::strict));

@@ -22,28 +22,31 @@ using exact::Number;
 /// Dead external forces, exact.
 struct ExactLoad {
     /// Inward force on the upper wall of each axis, or on its period (0 unless it moves).
-    std::array<Number, 2> wall{};
-    std::vector<Number> disk{}; ///< empty, or 2 n components
-    Number tilt{};              ///< as `wall`, on the tilt: positive, it makes the tilt smaller (`Load::shear`)
+    PerAxis<Number> wall{};
+    std::vector<Number> disk{}; ///< empty, or d n components
+    PerTilt<Number> tilt{};     ///< as `wall`, on the tilts: positive, it makes the tilt smaller (`Load::shear`)
 };
 
-/// Disks, walls, cell and coordinates as in `Packing`, with exact numbers. Lengths in the user's unit.
+/// Disks or spheres, walls, cell and coordinates as in `Packing`, with exact numbers. Lengths in the user's unit. The
+/// dimension is that of the cell.
 struct ExactPacking {
     std::vector<Number> radius;
-    std::vector<std::array<Number, 2>> centre;
+    std::vector<PerAxis<Number>> centre;
     std::vector<unsigned char> fixed; ///< empty, or n flags
     Walls walls = Walls::none();
     Cell cell;
-    std::array<Number, 2> length{}; ///< positions of the upper walls that exist, and periods
-    Number tilt;                    ///< A_xy of a cell
+    PerAxis<Number> length{}; ///< positions of the upper walls that exist, and periods
+    PerTilt<Number> tilt{};   ///< A_xy, A_xz, A_yz of a cell
     std::optional<ExactLoad> load;
 
     [[nodiscard]] int disk_count() const { return static_cast<int>(radius.size()); }
-    [[nodiscard]] Layout layout() const { return {plane, disk_count()}; }
+    [[nodiscard]] int dimension() const { return cell.dimension; }
+    [[nodiscard]] std::size_t axes() const { return layout().axes(); }
+    [[nodiscard]] Layout layout() const { return {cell.dimension, disk_count()}; }
     /// What stands at a coordinate index of `Packing`.
     [[nodiscard]] const Number& coordinate(std::size_t k) const {
-        const std::size_t lengths = 2 * centre.size();
-        return k < lengths ? centre[k / 2][k % 2] : (k < lengths + 2 ? length[k - lengths] : tilt);
+        const std::size_t d = axes(), lengths = d * centre.size();
+        return k < lengths ? centre[k / d][k % d] : k < lengths + d ? length[k - lengths] : tilt[k - lengths - d];
     }
     [[nodiscard]] bool is_fixed(int disk) const { return !fixed.empty() && fixed[static_cast<std::size_t>(disk)] != 0; }
 };
@@ -62,11 +65,17 @@ Packing approximate(const ExactPacking& packing);
 /// finds in the rounded packing; throws `Error(bad_input)` where it does. Cost: O(n) pairs for a compact packing.
 Result<std::vector<Contact>> exact_contacts(const ExactPacking& packing);
 
+/// r = x_j - x_i + A m. \pre two disks
+PerAxis<Number> exact_separation(const ExactPacking& packing, const Contact& pair);
+
 /// The contact matrix H in the field, rows = degrees of freedom, unit normals: at a contact the distance of the centres
 /// is R_i + R_j, so the normal needs no root. H f = F_ext as in `contact_matrix`. \pre contacts come from
 /// `exact_contacts`
 exact::NumberMatrix exact_contact_matrix(const ExactPacking& packing, const DofMap& dofs,
                                          const std::vector<Contact>& contacts);
+
+/// Counts of the same with the radii as coordinates that move: a row more for each grain, with 1 (of its own image 2).
+Counting count_with_radii(const ExactPacking& packing, const std::vector<Contact>& contacts);
 
 /// External force on the degrees of freedom. \pre packing.load
 std::vector<Number> external_force(const ExactPacking& packing, const DofMap& dofs);
@@ -109,7 +118,10 @@ struct ExpectedEntry {
 ///
 ///     [expected]                                   # optional: see `check_expected`
 ///
-/// A TOML float is read from its source text, so `0.1` is one tenth; strings take the form of `Number::parse`.
+/// Spheres: `spheres` with rows x, y, z, r and [[sphere]] with a z in place of `disks` and [[disk]]; then everything
+/// per axis has three entries, `tilt` three in the order xy, xz, yz, `moves` those names, and [load] `sphere` in place
+/// of `disk`. A TOML float is read from its source text, so `0.1` is one tenth; strings take the form of
+/// `Number::parse`.
 struct PackingFile {
     std::string title;
     ExactPacking packing;
@@ -124,11 +136,11 @@ PackingFile parse_packing(const std::string& text, const std::string& source);
 /// The same from a file. Throws `Error(bad_input)` when it cannot be read.
 PackingFile read_packing(const std::string& path);
 
-/// Where a disk stands, by the positions of its contact normals alone (no counting of contacts): contacts that can
+/// Where a grain stands, by the positions of its contact normals alone (no counting of contacts): contacts that can
 /// carry no force are removed until nothing changes. Disks that carry an external force are not judged (`loaded`).
 /// - `held`: 0 is in the interior of the convex hull of the normals that are left;
-/// - `bridge`: only two opposite normals are left: it can carry a force along one line and is free to first order
-/// across it;
+/// - `bridge`: 0 is inside the hull of the normals that are left, which do not span the space: two opposite normals, in
+/// space also some in a plane. It can carry forces along them and is free to first order across;
 /// - `rattler`: no contact is left: no force >= 0 can be in equilibrium on it; - `fixed`, `loaded`.
 enum class DiskHold { held, bridge, rattler, fixed, loaded };
 
@@ -161,6 +173,13 @@ struct Jamming {
     Verdict strict = Verdict::undecided;
 };
 
+/// Inward forces on one wall, period or tilt, everything else of the load unchanged, that some forces >= 0 balance.
+struct LoadRange {
+    int dof = 0;                                      ///< of the wall, period or tilt
+    std::optional<Number> least, most;                ///< nothing: no end
+    std::vector<int> zero_at_least{}, zero_at_most{}; ///< contacts whose force vanishes there, where it is unique
+};
+
 struct InspectionLimits {
     exact::KernelLimits kernel{};
     long long programme_cells = 20000; ///< (rows + 1) * columns beyond which no system of inequalities is solved
@@ -174,7 +193,10 @@ struct Inspection {
     Verdict rank_exact = Verdict::undecided;
     int hyperstaticity = 0; ///< h = N - rank: exact or an upper bound, as `rank`
     int mechanisms = 0;     ///< k = N_f - rank, common rigid motions included
-    int rigid_motions = 0;  ///< of the whole packing: 3 for a free cluster, 0 in a box
+    int rigid_motions = 0;  ///< of the whole packing: of a free cluster 3, of spheres 6; 0 in a box
+    /// Counts with the radii as coordinates that move: N_f + n and so on. Where its rank is N, a small change of the
+    /// radii can change every gap by itself; of spheres it may be lower, as T7 (a) is a theorem of the plane.
+    Counting with_radii;
     int generic_rank =
         0; ///< for the same contact graph with random coordinates: a proved lower bound of the generic rank
     /// The actual rank is below the generic one. `proved`; `refuted` when the actual rank is as high as the counts
@@ -197,6 +219,7 @@ struct Inspection {
     bool one_sign_decided = false;
     exact::OneSignAnswer one_sign; ///< self-stresses of one sign
 
+    std::vector<LoadRange> ranges; ///< of the lengths and tilts that move, where a change of their force is balanced
     Support support = Support::no_load;
     bool forces_unique = false; ///< h = 0 and the load is balanced
     std::vector<Number> forces; ///< one equilibrium (the only one when unique); may have both signs
@@ -244,8 +267,9 @@ std::string to_json(const Inspection& inspection, const ExactPacking& packing);
 /// Compares with `[expected]`; one message per entry that does not hold, empty = all hold. Keys: N_f, N, rank, h, k,
 /// rigid_motions, generic_rank, special, verdict, contacts = ["0-1", "0-left", ..], forces = [["0-1", "1/2"], ..] (any
 /// subset; they must be unique), strains = [["isotropic", N_f, N, h, k], ..], rattlers = [3], bridges, without_force,
-/// jammed_collectively, jammed_strictly, one_sign, support, second_order, stable.
-/// Throws `Error(bad_input)` with file and line for an unknown key.
+/// jammed_collectively, jammed_strictly, one_sign, support, second_order, stable, rank_with_radii, ranges = [["top
+/// wall", least, most], ..] (any subset; "none": no end). Throws `Error(bad_input)` with file and line for an unknown
+/// key.
 std::vector<std::string> check_expected(const Inspection& inspection, const PackingFile& file,
                                         const std::string& source);
 

@@ -8,6 +8,7 @@
 #include <compare>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -144,6 +145,11 @@ struct Feasibility {
 /// dense, in exact arithmetic. Cost: pivots * rows * (rows + cols) exact operations; for some ten rows and a hundred
 /// columns.
 Feasibility feasible_point(const std::vector<std::vector<Number>>& rows, const std::vector<Number>& b, int cols);
+
+/// The least cost z of the z >= 0 with A z = b; nothing where there is no such z. Checked by a solution of the dual.
+/// \pre the cost has a lower bound there. Cost: as `feasible_point`.
+std::optional<Number> least(const std::vector<std::vector<Number>>& rows, const std::vector<Number>& b,
+                            const std::vector<Number>& cost);
 
 /// Signs of the combinations of a few vectors.
 enum class OneSign {

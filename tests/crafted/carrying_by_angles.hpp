@@ -1,6 +1,6 @@
 #pragma once
-// Which contacts can carry a force >= 0, from the normals around each disk. `Vector` has cross_sign(a, b) and
-// dot_sign(a, b), both decided.
+// Slow twin of the peeling of disks, by angles: which contacts can carry a force >= 0, from the normals around each
+// disk. `Vector` has cross_sign(a, b) and dot_sign(a, b), both decided.
 
 #include <isostat/crafted/exact_packing.hpp>
 

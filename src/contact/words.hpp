@@ -16,9 +16,10 @@ namespace isostat {
 /// A contact within words.
 struct Named {
     Contact contact;
+    int dimension = plane;
 };
-inline Named named(const Contact& contact) {
-    return {contact};
+inline Named named(const Contact& contact, int dimension = plane) {
+    return {contact, dimension};
 }
 
 /// What words name is found among their arguments.
@@ -38,7 +39,7 @@ template <class Value> const Value& in_text(const Value& value) {
     return value;
 }
 inline std::string in_text(const Named& name) {
-    return to_string(name.contact);
+    return to_string(name.contact, name.dimension);
 }
 inline std::string in_text(const Words& words) {
     return words.text();

@@ -6,6 +6,7 @@ namespace isostat {
 
 RecordColumns record_columns(const Load& load, bool tilts) {
     RecordColumns columns;
+    columns.dimension = load.dimension;
     const auto loaded = static_cast<std::size_t>(load.loaded_axis);
     const auto other = static_cast<std::size_t>(load.other_axis());
     const Layout layout{load.dimension, 0};

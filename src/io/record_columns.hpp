@@ -18,6 +18,7 @@ struct RecordColumns {
         std::string strain, length;
         std::size_t axis; ///< as `Load::loaded_axis`: tilts follow the axes
     };
+    int dimension = 2;
     std::string stress;
     std::string strain, other_strain; ///< of what is loaded, and of `Load::other_axis`
     std::vector<Measure> measures;    ///< one for each axis, and of cells whose tilts move one for each tilt

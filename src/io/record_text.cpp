@@ -18,14 +18,14 @@ namespace {
 using json::Json;
 
 /// "log2_zero": bound of what vanishes in the base, null: exactly; without "bits" no difference was to be found.
-Json tie_json(const TieDecision& tie) {
+Json tie_json(const TieDecision& tie, int dimension) {
     const auto term = [](const Enclosure& e) { return Json::array({json::or_null(e.value), json::or_null(e.radius)}); };
     Json object;
     object["decision"] = tie.what;
-    object["contact"] = to_string(tie.chosen);
+    object["contact"] = to_string(tie.chosen, dimension);
     object["first_order"] = term(tie.first);
     if (tie.against.i >= 0) {
-        object["against"] = to_string(tie.against);
+        object["against"] = to_string(tie.against, dimension);
         object["against_first_order"] = term(tie.other);
     }
     if (tie.choice != TieChoice::none) {
@@ -132,8 +132,8 @@ std::string event_line(const ArcRecord& arc, const RecordColumns& names) {
     line["equilibrium"] = arc.equilibrium;
     line["arc"] = arc.arc;
     line["kind"] = to_string(arc.kind);
-    line["opened"] = to_string(arc.opened);
-    line["closed"] = to_string(arc.closed);
+    line["opened"] = to_string(arc.opened, names.dimension);
+    line["closed"] = to_string(arc.closed, names.dimension);
     line["power_turn"] = arc.power_turn;
     if (arc.power_turn) {
         line["held_at"] = arc.held_at;
@@ -156,7 +156,7 @@ std::string event_line(const ArcRecord& arc, const RecordColumns& names) {
     if (!arc.perturbed.empty()) {
         line["perturbed"] = Json::array();
         for (const TieDecision& tie : arc.perturbed) {
-            line["perturbed"].push_back(tie_json(tie));
+            line["perturbed"].push_back(tie_json(tie, names.dimension));
         }
     }
     if (arc.certificate) {

@@ -152,7 +152,8 @@ Follower::Ending Follower::step() {
     if (there.closing != nothing) {
         const Contact closed = options_.closes.value_or(there.closing);
         if (closed != there.closing && !converge_to(there.point.at, closed)) {
-            return failed(FailureKind::not_converged, "the event at contact {} was not reached", named(closed));
+            return failed(FailureKind::not_converged, "the event at contact {} was not reached",
+                          named(closed, start_.dimension));
         }
         return Ending(finish(std::move(there.point), ArcEnd::contact, closed, there.power));
     }
@@ -239,7 +240,8 @@ Follower::Attempt Follower::shorten_before(const GapEvent& event, double longest
         if (moved_ && std::abs(quick_gap(here_.at, event.contact)) <= noise_) {
             return Attempt(Reached{{here_.at, here_.tangent}, 0, event.contact});
         }
-        return failed(FailureKind::not_converged, "the event at contact {} was not reached", named(event.contact));
+        return failed(FailureKind::not_converged, "the event at contact {} was not reached",
+                      named(event.contact, start_.dimension));
     }
     if (pace_.renewed) {
         pace_.shrink = std::min(pace_.shrink, event.s / step_limit_) * 0.25;
@@ -371,7 +373,7 @@ std::optional<Failure> Follower::go_on(Reached there) {
         constexpr double seen = 1e-10; // of a radius: far above the rounding of a length
         if (quick_gap(here_.at, pair) < -seen * here_.at.min_radius()) {
             return failed(FailureKind::undecided, "{} touch and were taken not to close, but overlap on the way",
-                          named(pair));
+                          named(pair, start_.dimension));
         }
     }
     pace_.for_dip = infinity;

@@ -44,9 +44,9 @@ std::string self_stresses(const State& state) {
             }
         }
         factorisation.solve_forces(force);
-        text += fmt::format("{}{{{}", text.empty() ? "" : ", ", to_string(state.contacts[l]));
+        text += fmt::format("{}{{{}", text.empty() ? "" : ", ", to_string(state.contacts[l], state.packing.dimension));
         for (std::size_t c = 0; c < kept.size(); ++c) {
-            text += std::abs(force[c]) > 1e-9 ? " " + to_string(kept[c]) : "";
+            text += std::abs(force[c]) > 1e-9 ? " " + to_string(kept[c], state.packing.dimension) : "";
         }
         text += "}";
     }
@@ -62,7 +62,8 @@ void check_start(const State& state, const std::string& source, bool hyperstatic
     validate(state.packing, source);
     require_pressed_sides(state.packing, state.load, true, source);
     if (const auto pair = fixed_overlap(state.packing)) {
-        bad(fmt::format("{} overlap, and cannot move: expected every gap >= 0", to_string(*pair)));
+        bad(fmt::format("{} overlap, and cannot move: expected every gap >= 0",
+                        to_string(*pair, state.packing.dimension)));
     }
     // Far above the rounding of a vertex (1e-15) and far below any gap that matters to a user's eye.
     const double visible = 1e-6 * state.packing.min_radius();
@@ -70,12 +71,13 @@ void check_start(const State& state, const std::string& source, bool hyperstatic
     if (admissible.verdict == Verdict::refuted) {
         bad(fmt::format("grains overlap: the gap of {} is {:.6g}: expected every gap >= 0 (isostat snap makes the "
                         "equilibrium next to soft grains)",
-                        to_string(admissible.worst), admissible.worst_gap));
+                        to_string(admissible.worst, state.packing.dimension), admissible.worst_gap));
     }
     for (const Contact& contact : state.contacts) {
         const double opening = gap(state.packing, contact);
         if (std::abs(opening) > visible) {
-            bad(fmt::format("the gap of the listed contact {} is {:.6g}: expected 0", to_string(contact), opening));
+            bad(fmt::format("the gap of the listed contact {} is {:.6g}: expected 0",
+                            to_string(contact, state.packing.dimension), opening));
         }
     }
     const Counting count = count_contacts(state.packing, state.contacts);

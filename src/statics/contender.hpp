@@ -23,7 +23,7 @@ struct Contender {
 };
 
 inline Named name(const Statics& statics, ContactId l) {
-    return named(statics.structure().contacts()[l.index()]);
+    return named(statics.structure().contacts()[l.index()], statics.structure().dofs().layout().dimension);
 }
 
 inline bool is_held(const Statics& statics, ContactId l) {

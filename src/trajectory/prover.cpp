@@ -211,8 +211,9 @@ ArcProof Prover::prove(const Vertex& from, ArcProposal arc, const Opening& openi
 /// The vertex at the end, and no gap closed before.
 std::optional<Failure> Prover::reach(ArcProof& proof, const Vertex& from, ArcProposal& arc, const LimitLoad& at) {
     const auto at_end = [&](const Failure& failure) {
-        return located(failure, words("at the end of the arc that opens {} and closes {}", named(proof.record.opened),
-                                      named(proof.record.closed)));
+        return located(failure, words("at the end of the arc that opens {} and closes {}",
+                                      named(proof.record.opened, from.packing.dimension),
+                                      named(proof.record.closed, from.packing.dimension)));
     };
     if (holds_elsewhere(from, arc)) {
         return at_end(Failure{FailureKind::undecided, "coordinates are held, and the grid became coarser: where they "
@@ -245,7 +246,7 @@ std::optional<Failure> Prover::reach(ArcProof& proof, const Vertex& from, ArcPro
         return at_end(failed(FailureKind::undecided,
                              "{} overlap: they touch where it begins, and neither the rate nor the second derivative "
                              "of their gap is told from 0 there",
-                             named(*proof.closed_before)));
+                             named(*proof.closed_before, from.packing.dimension)));
     }
     if (proof.closed_before) {
         return std::nullopt;
@@ -275,8 +276,10 @@ Result<std::shared_ptr<Vertex>> Prover::exchange(const Vertex& from, const ListE
         return *failure;
     }
     if (proof.closed_before) {
-        return failed(FailureKind::undecided, "where {} gives way to {}: {} overlap", named(arc.record.opened),
-                      named(arc.record.closed), named(*proof.closed_before));
+        return failed(FailureKind::undecided, "where {} gives way to {}: {} overlap",
+                      named(arc.record.opened, from.packing.dimension),
+                      named(arc.record.closed, from.packing.dimension),
+                      named(*proof.closed_before, from.packing.dimension));
     }
     return proof.vertex;
 }
@@ -321,12 +324,14 @@ std::optional<Failure> Prover::descend(ArcProof& proof, const Vertex& from, cons
     if (decrease.negative()) {
         return failed(FailureKind::undecided,
                       "the potential rises by {:.6g}, known to {:.3g}, along the arc that opens {} and closes {}",
-                      -decrease.value, decrease.radius, named(proof.record.opened), named(proof.record.closed));
+                      -decrease.value, decrease.radius, named(proof.record.opened, from.packing.dimension),
+                      named(proof.record.closed, from.packing.dimension));
     }
     return failed(FailureKind::undecided,
                   "the potential is not proved to decrease along the arc that opens {} and closes {}: by "
                   "{:.6g}, known to {:.3g}",
-                  named(proof.record.opened), named(proof.record.closed), decrease.value, decrease.radius);
+                  named(proof.record.opened, from.packing.dimension),
+                  named(proof.record.closed, from.packing.dimension), decrease.value, decrease.radius);
 }
 
 /// F.t = f_c (G t)_c at the event, and the new gap closes: the power is positive there iff the new force is.
@@ -350,7 +355,7 @@ std::optional<Failure> Prover::power(ArcProof& proof, const Opening& opening, do
                 return failed(FailureKind::undecided,
                               "the new force in {} vanishes, and its first-order term is {:.6g} +- "
                               "{:.3g}: the power of the load is not proved positive at the end of the arc",
-                              named(record.closed), f.value, f.radius);
+                              named(record.closed, proof.vertex->packing.dimension), f.value, f.radius);
             }
             record.perturbed.push_back({"force",
                                         record.closed,
@@ -381,7 +386,8 @@ std::optional<Failure> Prover::power(ArcProof& proof, const Opening& opening, do
         return failed(FailureKind::undecided,
                       "the power of the load along the arc that opens {} and closes {} is not proved "
                       "positive at its end: force {:.3g} in the new contact, proved to {:.3g}",
-                      named(record.opened), named(record.closed), f.value, f.radius);
+                      named(record.opened, proof.vertex->packing.dimension),
+                      named(record.closed, proof.vertex->packing.dimension), f.value, f.radius);
     }
     proof.count({DecisionKind::power, f.margin(), to.statics.rung()});
     return std::nullopt;

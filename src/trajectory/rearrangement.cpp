@@ -150,7 +150,7 @@ Result<Departure> Rearrangement::depart() {
         const BentPair& bent = *departure.value().overlaps;
         if (here_.settled.size() >= most_exchanges) {
             return failed(FailureKind::undecided, "{} lists were exchanged where pairs touch, and {} would overlap",
-                          here_.settled.size(), named(bent.pair));
+                          here_.settled.size(), named(bent.pair, here_.vertex->packing.dimension));
         }
         const auto exchange = give_way(*here_.vertex, here_.opening, bent, at_.stress());
         if (!exchange.ok()) {
@@ -316,7 +316,7 @@ std::optional<Failure> Rearrangement::set_aside(const ArcRecord& record) {
         return failed(FailureKind::undecided,
                       "{}: every force is positive, and the multiplier of {} is 0 as far as the power "
                       "turn is located: whether and where it moves is not decided",
-                      where(arcs_ + 1), named(record.opened));
+                      where(arcs_ + 1), named(record.opened, here_.vertex->packing.dimension));
     }
     here_.opening = *again.value().opening;
     here_.kind =
@@ -355,7 +355,8 @@ std::optional<Failure> Rearrangement::judge(const EndProof& end) const {
         return located(not_proved(*end.failure), at_equilibrium());
     }
     if (end.gaps.negative) {
-        return failed(FailureKind::overlap, "{}: {} overlap", at_equilibrium(), named(*end.gaps.negative));
+        return failed(FailureKind::overlap, "{}: {} overlap", at_equilibrium(),
+                      named(*end.gaps.negative, here_.vertex->packing.dimension));
     }
     const Result<OpeningDecision>& decision = *end.decision;
     if (decision.ok() && !decision.value().opening) {

@@ -300,7 +300,7 @@ std::optional<Failure> check_equilibrium(const EquilibriumRecord& record, const 
     const Admissibility admissible = certify_admissible(vertex.packing, allowance, &candidates);
     if (admissible.verdict != Verdict::proved) {
         return failed(FailureKind::overlap, "equilibrium at sigma = {:.17g}: {} overlap, gap {:.6g}",
-                      load.loaded_stress(), named(admissible.worst), admissible.worst_gap);
+                      load.loaded_stress(), named(admissible.worst, vertex.packing.dimension), admissible.worst_gap);
     }
     const Packing& packing = vertex.packing;
     const bool plain = load.disk_force.empty() && packing.fixed.empty();

@@ -29,7 +29,8 @@ std::optional<Failure> Recorder::record(ArcProof& proof, int arc, double stress)
         return failed(FailureKind::undecided,
                       "the arc that opens {} and closes {} rests on choice {} of the run (cap "
                       "max_choices = {})",
-                      named(record.opened), named(record.closed), choices, options.max_choices);
+                      named(record.opened, proof.vertex->packing.dimension),
+                      named(record.closed, proof.vertex->packing.dimension), choices, options.max_choices);
     }
     counters.tally.choices = choices;
     record.step = ++counters.steps;

@@ -64,7 +64,7 @@ Result<SegmentStart> start_segment(State& state, Prover& prover, const TieSettli
     }
     SegmentStart& begun = start.value();
     if (begun.gaps.negative) {
-        return failed(FailureKind::overlap, "{} overlap", named(*begun.gaps.negative));
+        return failed(FailureKind::overlap, "{} overlap", named(*begun.gaps.negative, state.packing.dimension));
     }
     if (auto failure = ties.resume(*begun.vertex, begun.gaps.zero)) {
         return *failure;

@@ -39,7 +39,7 @@ std::optional<Failure> is_not_exact(const Packing& packing, const std::vector<Co
         return failed(FailureKind::undecided,
                       "a run takes contacts with images up to {} periods away, and {} is farther: write the state with "
                       "its disks put into the cell",
-                      farthest_contact, named(*far));
+                      farthest_contact, named(*far, packing.dimension));
     }
     if (!is_on_grid(packing)) {
         return failed(FailureKind::undecided, "a part of the cell that does not move is not on the grid of the "
@@ -168,7 +168,7 @@ std::optional<Failure> too_far(const Packing& packing, const std::vector<Contact
     }
     return failed(FailureKind::undecided,
                   "{} may touch, more than {} periods away: write the state with its disks put into the cell",
-                  named(*far), farthest_image);
+                  named(*far, packing.dimension), farthest_image);
 }
 
 } // namespace
@@ -245,7 +245,7 @@ std::optional<Failure> Vertex::settle_gaps(const std::vector<Contact>& doubtful,
             gaps.zero.emplace_back(contact, order);
             continue;
         }
-        names += words("{}{} ({})", names.empty() ? "" : ", ", named(contact),
+        names += words("{}{} ({})", names.empty() ? "" : ", ", named(contact, packing.dimension),
                        order.decided ? Words("exactly 0") : words("0 to {} bits", order.bits));
     }
     if (!names.empty()) {

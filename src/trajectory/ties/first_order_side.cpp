@@ -101,7 +101,7 @@ std::optional<Failure> FirstOrderSide::settle_load(Vertex& vertex, const LimitLo
             return failed(FailureKind::undecided,
                           "the force in {} is so small, {:.3g}, that the limit load must be known better "
                           "than it is stored",
-                          named(contacts[id.index()]), f.value);
+                          named(contacts[id.index()], vertex.packing.dimension), f.value);
         }
     }
     return std::nullopt;
@@ -115,7 +115,7 @@ std::optional<Failure> FirstOrderSide::resume(Vertex& vertex, const ZeroGaps& to
         const ContactId l(static_cast<std::size_t>(at - contacts.begin()));
         if (!vertex.statics.slope(l).decided()) {
             return failed(FailureKind::undecided, "the load at which the force in {} vanishes is not known",
-                          named(stored.load_zero));
+                          named(stored.load_zero, vertex.packing.dimension));
         }
         LimitLoad meant = zero_load(vertex.statics, l, state_.load);
         meant.stress_rate = stored.stress_rate;

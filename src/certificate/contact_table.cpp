@@ -10,9 +10,6 @@
 
 namespace isostat {
 
-namespace {
-
-/// From the first grain to the second one.
 PerAxis<double> outward(const State& state, const Contact& contact) {
     if (contact.kind == ContactKind::disk_disk) {
         return direction(separation(state.packing.layout(), state.packing.q, contact));
@@ -21,6 +18,8 @@ PerAxis<double> outward(const State& state, const Contact& contact) {
     normal[static_cast<std::size_t>(contact.j)] = contact.kind == ContactKind::lower_wall ? -1 : 1;
     return normal;
 }
+
+namespace {
 
 std::string header(std::size_t axes) {
     std::string text = "contact,i,j";

@@ -8,6 +8,9 @@
 
 namespace isostat {
 
+/// The unit normal from the first grain to the second one, or to the wall.
+PerAxis<double> outward(const State& state, const Contact& contact);
+
 /// CSV, one row per contact in the order of the state: `contact` (its name), `i`, `j` (of a wall its name), the image
 /// `mx`, `my`, `mz` of j, the point on the surface of i `x`, `y`, `z`, the unit normal from i to j `nx`, `ny`, `nz`,
 /// the gap of the stored coordinates `gap`, the finite force `force` with proved ends `force_low`, `force_high` (empty

@@ -1,3 +1,4 @@
+#include "certificate/averages.hpp"
 #include "certificate/contact_table.hpp"
 #include "certificate/smallest_singular_values.hpp"
 #include "cli/cell_text.hpp"
@@ -190,6 +191,53 @@ void add_inspection(Json& object, const State& state, const Inspection& inspecti
     object["remark"] = inspection.remark;
 }
 
+Json tensor_json(const ForceAverages::Tensor& tensor, std::size_t axes) {
+    Json out = Json::array();
+    for (std::size_t a = 0; a < axes; ++a) {
+        out.push_back(numbers(std::span(tensor[a]).first(axes)));
+    }
+    return out;
+}
+
+std::string tensor_text(const ForceAverages::Tensor& tensor, std::size_t axes) {
+    std::string text;
+    for (std::size_t a = 0; a < axes; ++a) {
+        for (std::size_t b = 0; b < axes; ++b) {
+            text += fmt::format("{}{:.6g}", b > 0 ? " " : a > 0 ? "; " : "", tensor[a][b]);
+        }
+    }
+    return text;
+}
+
+/// The finite forces are known.
+bool has_forces(const State& state, const Certification& truth) {
+    return !state.contacts.empty() && truth.finite.size() == state.contacts.size();
+}
+
+void print_averages(const State& state, const Certification& truth, const Coordination& z) {
+    const ForceAverages mean = force_averages(state, truth);
+    const std::size_t axes = state.packing.axes();
+    say("coordination number      {:.6g}, {:.6g} of the force-carrying contacts without rattlers\n", z.all, z.carrying);
+    say("stress of the contacts   {} (sum of f n n l over the volume), pressure {:.6g}\n",
+        tensor_text(mean.stress, axes), mean.pressure);
+    say("fabric                   {} (mean of n n over force-carrying pairs)\n", tensor_text(mean.fabric, axes));
+}
+
+void add_averages(Json& object, const State& state, const Certification& truth, const Coordination& z) {
+    const ForceAverages mean = force_averages(state, truth);
+    const std::size_t axes = state.packing.axes();
+    object["coordination"] = number(z.all);
+    object["coordination_without_rattlers"] = number(z.carrying);
+    object["contact_stress"] = tensor_json(mean.stress, axes);
+    object["pressure"] = number(mean.pressure);
+    object["fabric"] = tensor_json(mean.fabric, axes);
+    object["mean_force"] = number(mean.mean_force);
+    object["force_distribution"] = Json::array();
+    for (const auto& [centre, density] : force_distribution(truth)) {
+        object["force_distribution"].push_back({number(centre), number(density)});
+    }
+}
+
 /// The smallest ones, of a structure that is proved regular.
 std::vector<double> singular_values_of(const InspectArguments& arguments, const State& state) {
     constexpr int of_spheres = 10;
@@ -231,6 +279,15 @@ struct Answer {
     [[nodiscard]] bool refuted() const { return !result.ok() && result.failure().kind == FailureKind::not_isostatic; }
 };
 
+/// Nothing: the forces, or the rattlers, are not known.
+std::optional<Coordination> coordination_of(const Answer& answer) {
+    const State& state = answer.file.state;
+    return answer.result.ok() && has_forces(state, answer.truth)
+               ? std::optional(
+                     coordination(state, answer.truth, static_cast<int>(answer.result.value().rattlers.size())))
+               : std::nullopt;
+}
+
 void print_all(const Answer& answer) {
     const State& state = answer.file.state;
     print_counting(state, answer.truth.counting);
@@ -241,6 +298,9 @@ void print_all(const Answer& answer) {
             answer.result.failure().message());
     }
     print_true_vertex(answer.truth);
+    if (const auto z = coordination_of(answer)) {
+        print_averages(state, answer.truth, *z);
+    }
     if (!answer.singular.empty()) {
         say("smallest singular values {} (of the stored coordinates, computed)\n",
             fmt::format("{:.4g}", fmt::join(answer.singular, ", ")));
@@ -261,6 +321,9 @@ Json answer_json(const Answer& answer) {
     } else {
         object["verdict"] = answer.refuted() ? "refuted" : "undecided";
         object["remark"] = answer.result.failure().message();
+    }
+    if (const auto z = coordination_of(answer)) {
+        add_averages(object, state, answer.truth, *z);
     }
     add_untold(object, answer.untold, answer.truth.verdict);
     object["true_configuration"] = true_vertex_json(answer.truth);

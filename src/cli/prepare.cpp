@@ -29,7 +29,7 @@ int prepare(const PrepareArguments& arguments) {
     if (!scene.start.empty()) {
         throw Error(ErrorKind::bad_input,
                     fmt::format("{}: file in [packing] is {}: there is nothing to prepare, expected disks, radii or "
-                                "radii_file",
+                                "radii_file, or spheres",
                                 arguments.scene, scene.start.string()));
     }
     check_writable(arguments);
@@ -51,12 +51,15 @@ int prepare(const PrepareArguments& arguments) {
         object["state"] = arguments.output;
         object["disks"] = state.packing.disk_count();
         object["contacts"] = state.contacts.size();
-        object["length"] = {state.packing.length(0), state.packing.length(1)};
+        for (int a = 0; a < state.packing.dimension; ++a) {
+            object["length"].push_back(state.packing.length(a));
+        }
         object["solid_fraction"] = number(state.packing.solid_fraction());
         print_json(object);
     } else if (!quiet) {
-        say("{}: {} disks, {} contacts, solid fraction {:.6f}\n", arguments.output, state.packing.disk_count(),
-            state.contacts.size(), state.packing.solid_fraction());
+        say("{}: {} {}, {} contacts, solid fraction {:.6f}\n", arguments.output, state.packing.disk_count(),
+            state.packing.dimension == plane ? "disks" : "spheres", state.contacts.size(),
+            state.packing.solid_fraction());
     }
     return done;
 }

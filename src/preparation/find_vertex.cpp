@@ -75,7 +75,6 @@ void require_sensible(const Packing& start, const PreparationOptions& options) {
         checked.length(a) = start.length(a) > 0 ? std::max(start.length(a), 2 * start.max_radius()) : start.length(a);
     }
     validate(checked, "start of the linear programmes");
-    require_plane(checked, "start of the linear programmes", "preparation");
     const auto is_fixed = [](unsigned char flag) { return flag != 0; };
     const Cell& cell = start.cell;
     bool gives_way = std::none_of(start.fixed.begin(), start.fixed.end(), is_fixed);
@@ -111,6 +110,8 @@ class VertexSearch {
           packing_(scale_.to_internal(start)), stage_("linear programmes", options) {
         report_.infinitesimal_seed = derived_seed(options.seed, Stream::infinitesimal);
         load_.kind = options.load;
+        load_.dimension = start.dimension;
+        load_.loaded_axis = start.dimension - 1;
         std::fill_n(load_.stress.begin(), packing_.dimension, options.stress);
         load_.stress[start.axes() - 1] *= options.ratio;
         if (packing_.cell.any()) {
@@ -181,7 +182,7 @@ class VertexSearch {
   private:
     /// In a cell they sum to zero: the pinned disk bears those of the others.
     [[nodiscard]] std::vector<double> infinitesimal_loads(const std::vector<double>& radius) const {
-        std::vector<double> g = generic_infinitesimal(radius, report_.infinitesimal_seed);
+        std::vector<double> g = generic_infinitesimal(radius, report_.infinitesimal_seed, packing_.dimension);
         balance(g, packing_.cell);
         return g;
     }

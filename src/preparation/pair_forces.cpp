@@ -1,5 +1,7 @@
 #include "preparation/pair_forces.hpp"
 
+#include <isostat/core/contact.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,37 +21,38 @@ namespace {
 
 constexpr std::size_t block = 256;
 
-} // namespace
-
-ISOSTAT_FOR_EACH_UNIT
-void pair_forces(const PairStretch& pairs, const double* q, const double* length, double* overlap, double* push,
-                 double* virial) {
-    std::array<double, block> dx;
-    std::array<double, block> dy;
+/// The same for any number of axes, which is a constant: the loops over them are unrolled.
+template <std::size_t Axes>
+[[gnu::always_inline]] inline void forces_along(const PairStretch& pairs, const double* q, const double* length,
+                                                double* overlap, double* push, double* virial) {
+    std::array<std::array<double, block>, Axes> d;
     std::array<double, block> square;
     std::array<double, block> distance;
     std::array<double, block> depth;
     std::array<double, block> scale;
-    const double lx = length[0];
-    const double ly = length[1];
     for (std::size_t from = 0; from < pairs.count; from += block) {
         const std::size_t count = std::min(block, pairs.count - from);
         const int* const first = pairs.first + from;
         const int* const second = pairs.second + from;
         const double* const range = pairs.range + from;
         double* const f = overlap + from;
-        double* const p = push + 2 * from;
-        double* const v = virial + 2 * from;
+        double* const p = push + Axes * from;
+        double* const v = virial + Axes * from;
         for (std::size_t k = 0; k < count; ++k) {
-            const double* const a = q + 2 * static_cast<std::size_t>(first[k]);
-            const double* const b = q + 2 * static_cast<std::size_t>(second[k]);
-            dx[k] = b[0] - a[0];
-            dy[k] = b[1] - a[1];
+            const double* const a = q + Axes * static_cast<std::size_t>(first[k]);
+            const double* const b = q + Axes * static_cast<std::size_t>(second[k]);
+            for (std::size_t axis = 0; axis < Axes; ++axis) {
+                d[axis][k] = b[axis] - a[axis];
+            }
         }
         // Loops that are short enough for the compiler to keep free of branches.
         for (std::size_t k = 0; k < count; ++k) {
-            square[k] = dx[k] * dx[k] + dy[k] * dy[k];
-            distance[k] = std::sqrt(square[k]);
+            double sum = d[0][k] * d[0][k];
+            for (std::size_t axis = 1; axis < Axes; ++axis) {
+                sum += d[axis][k] * d[axis][k];
+            }
+            square[k] = sum;
+            distance[k] = std::sqrt(sum);
         }
         for (std::size_t k = 0; k < count; ++k) {
             depth[k] = range[k] - distance[k];
@@ -62,13 +65,24 @@ void pair_forces(const PairStretch& pairs, const double* q, const double* length
             scale[k] = touching ? scale[k] : 0.0;
         }
         for (std::size_t k = 0; k < count; ++k) {
-            const double px = scale[k] * dx[k];
-            const double py = scale[k] * dy[k];
-            p[2 * k] = px;
-            p[2 * k + 1] = py;
-            v[2 * k] = px * dx[k] / lx;
-            v[2 * k + 1] = py * dy[k] / ly;
+            for (std::size_t axis = 0; axis < Axes; ++axis) {
+                const double along = scale[k] * d[axis][k];
+                p[Axes * k + axis] = along;
+                v[Axes * k + axis] = along * d[axis][k] / length[axis];
+            }
         }
+    }
+}
+
+} // namespace
+
+ISOSTAT_FOR_EACH_UNIT
+void pair_forces(int dimension, const PairStretch& pairs, const double* q, const double* length, double* overlap,
+                 double* push, double* virial) {
+    if (dimension == plane) {
+        forces_along<2>(pairs, q, length, overlap, push, virial);
+    } else {
+        forces_along<3>(pairs, q, length, overlap, push, virial);
     }
 }
 

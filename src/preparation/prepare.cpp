@@ -47,8 +47,9 @@ constexpr long most_newton_steps = 500;
 /// Strain rate of the compression per sqrt(mass / stiffness) : slow against the time that forces need to spread over a
 /// diameter.
 constexpr double compression_rate = 1e-4;
-/// Least period of the loose cell, in largest radii: of the dense one more than four diameters are left.
+/// Least period of the loose cell, in largest radii: of the dense one more than four diameters are left, in space two.
 constexpr double narrowest_cell = 12;
+constexpr double narrowest_cell_in_space = 5;
 /// Overlap left by the random start, in diameters.
 constexpr double start_overlap = 1e-2;
 
@@ -62,28 +63,40 @@ void require_positive(const char* field, double value) {
     }
 }
 
+/// Lengths of the loose box: all the same but the last, which is `aspect` times as long; none below `narrowest`.
+PerAxis<double> loose_lengths(const std::vector<double>& radius, const PreparationOptions& options, double narrowest) {
+    const bool in_plane = options.dimension == plane;
+    double grains = 0;
+    for (const double r : radius) {
+        grains += in_plane ? std::numbers::pi * r * r : 4 * std::numbers::pi / 3 * r * r * r;
+    }
+    const double size = grains / (options.start_fraction() * options.aspect);
+    const double side = std::max(narrowest, in_plane ? std::sqrt(size) : std::cbrt(size));
+    PerAxis<double> length{};
+    std::fill_n(length.begin(), options.dimension - 1, side);
+    length[static_cast<std::size_t>(options.dimension) - 1] = std::max(narrowest, side * options.aspect);
+    return length;
+}
+
 /// Random positions in a box of the wanted solid fraction and aspect, never narrower than the largest disk.
 Packing scatter(std::vector<double> radius, // NOLINT(performance-unnecessary-value-param): it is moved
                 const PreparationOptions& options, std::uint64_t seed) {
-    const double fraction = options.loose_fraction;
-    const double aspect = options.aspect;
     const bool periodic = options.cell != PreparedCell::none;
     Packing packing;
+    packing.dimension = options.dimension;
+    packing.cell.dimension = options.dimension;
+    packing.walls = Walls::box(options.dimension);
     packing.radius = std::move(radius);
-    double area = 0;
-    for (const double r : packing.radius) {
-        area += std::numbers::pi * r * r;
-    }
-    const double narrowest = (periodic ? narrowest_cell : 2.2) * packing.max_radius();
-    const double lx = std::max(narrowest, std::sqrt(area / (fraction * aspect)));
-    const std::array<double, plane> length{lx, std::max(narrowest, lx * aspect)};
+    const double cell = options.dimension == plane ? narrowest_cell : narrowest_cell_in_space;
+    const PerAxis<double> length =
+        loose_lengths(packing.radius, options, (periodic ? cell : 2.2) * packing.max_radius());
     Uniform uniform(seed);
     for (const double r : packing.radius) {
         for (std::size_t a = 0; a < packing.axes(); ++a) {
             packing.q.push_back(periodic ? uniform() * length[a] : r + uniform() * (length[a] - 2 * r));
         }
     }
-    packing.q.insert(packing.q.end(), length.begin(), length.end());
+    packing.q.insert(packing.q.end(), length.begin(), length.begin() + options.dimension);
     if (periodic) {
         packing.walls = Walls::none();
         packing.cell.repeat();
@@ -99,12 +112,15 @@ Packing scatter(std::vector<double> radius, // NOLINT(performance-unnecessary-va
 void check(const PreparationOptions& options) {
     require_positive("stress", options.stress);
     require_positive("aspect", options.aspect);
-    require_positive("loose fraction", options.loose_fraction);
+    require_positive("loose fraction", options.start_fraction());
+    if (options.dimension < plane || options.dimension > static_cast<int>(most_axes)) {
+        bad(fmt::format("dimension is {}: expected 2 or 3", options.dimension));
+    }
     require_positive("softness", options.softness);
     require_positive("relaxation", options.relaxation);
     require_positive("weight of the infinitesimal loads", options.infinitesimal_weight);
-    if (options.loose_fraction > 0.8 || options.softness > first_pressure) {
-        bad(fmt::format("loose fraction {} and softness {}: expected at most 0.8 and {}", options.loose_fraction,
+    if (options.start_fraction() > 0.8 || options.softness > first_pressure) {
+        bad(fmt::format("loose fraction {} and softness {}: expected at most 0.8 and {}", options.start_fraction(),
                         options.softness, first_pressure));
     }
     for (std::size_t i = 0; i < options.radii.size(); ++i) {

@@ -16,8 +16,6 @@ namespace isostat::preparation {
 namespace {
 
 constexpr double tolerance = 1e-9;
-/// Walls collect the displacements of all the disks in front of them.
-constexpr double wall_trust = 10;
 /// Complementarity products at the end of the interior-point method: multipliers of rattlers are of order 1e-5 in the
 /// scale of the objective, gaps that matter 1e-6.
 constexpr double interior_tolerance = 1e-14;
@@ -49,13 +47,20 @@ void ContactProgramme::collect(const Packing& packing, Rows& rows) const {
     // Two disks approach by at most 2 sqrt(packing.dimension) trust: a pair farther apart cannot overlap after the
     // step.
     const double reach = 2 * std::sqrt(static_cast<double>(packing.dimension)) * trust_ * (1 + 1e-9);
-    // A wall moves farther than a disk: look as far as both together can go. Across a corner of a cell two periods
-    // move, one of them with the tilt.
+    // A wall moves farther than a disk: look as far as both together can go. Across a corner of a cell all periods
+    // move, with the tilts along their axes.
     const bool tilted = packing.cell.any() && (packing.cell.tilt_moves[0] || packing.cell.keeps_shape);
-    const double lengths = !packing.cell.any() ? 1 : tilted ? std::sqrt(5.0) : std::sqrt(2.0);
-    const double wall_reach = (lengths * wall_trust + 1) * trust_ * (1 + 1e-9);
+    double squares = packing.cell.any() ? 0 : 1;
+    for (int a = 0; a < packing.dimension && packing.cell.any(); ++a) {
+        squares += tilted ? (a + 1) * (a + 1) : 1;
+    }
+    const double wall_reach = (std::sqrt(squares) * wall_trust(packing) + 1) * trust_ * (1 + 1e-9);
     for (const Contact& contact : near_contacts(packing, reach, wall_reach)) {
-        rows.add(packing, contact);
+        // In space most images within that reach cannot come near. In the plane they stay: the path of the simplex
+        // method, and with it the bits, depend on the list.
+        if (packing.dimension == plane || rows.can_close(packing, contact, trust_)) {
+            rows.add(packing, contact);
+        }
     }
 }
 
@@ -80,7 +85,7 @@ BoxedProgramme ContactProgramme::boxed(const Packing& packing, const Rows& rows,
             continue;
         }
         const int a = static_cast<int>(k - disks);
-        programme.bound[c] *= wall_trust;
+        programme.bound[c] *= wall_trust(packing);
         if (a >= packing.dimension) {
             continue; // a tilt, which bears no stress
         }

@@ -6,20 +6,21 @@
 
 #include <isostat/core/error.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <numeric>
+#include <type_traits>
 #include <utility>
 
 namespace isostat::preparation {
 
 namespace {
 
-constexpr auto axes = static_cast<std::size_t>(plane);
-
 /// Longest stable step of the central scheme is 2/omega; six contacts of stiffness 1 on a disk of mass 1 give omega^2
-/// <= 12 in a dense packing.
+/// <= 12 in a dense packing, twelve on a sphere 24.
 constexpr double largest_step = 0.4;
 constexpr long report_interval = 500;
 /// Disks per block of a sum. Smaller packings are one block, in the order of the disks.
@@ -43,22 +44,42 @@ constexpr double pressure_share = 1e-2;
 /// x and y in one register.
 using Plane [[gnu::vector_size(16)]] = double;
 
-Plane load(const double* xy) {
-    Plane result;
-    std::memcpy(&result, xy, sizeof result);
+/// x, y and z, which no register fits.
+struct Space {
+    PerAxis<double> along;
+    [[nodiscard]] double operator[](std::size_t a) const { return along[a]; }
+    Space& operator+=(const Space& other) {
+        for (std::size_t a = 0; a < most_axes; ++a) {
+            along[a] += other.along[a];
+        }
+        return *this;
+    }
+    Space& operator-=(const Space& other) {
+        for (std::size_t a = 0; a < most_axes; ++a) {
+            along[a] -= other.along[a];
+        }
+        return *this;
+    }
+};
+
+template <std::size_t Axes> using Vector = std::conditional_t<Axes == 2, Plane, Space>;
+
+template <class V> V load(const double* from) {
+    V result;
+    std::memcpy(&result, from, sizeof result);
     return result;
 }
 
-void store(double* xy, const Plane& value) {
-    std::memcpy(xy, &value, sizeof value);
+template <class V> void store(double* to, const V& value) {
+    std::memcpy(to, &value, sizeof value);
 }
 
 } // namespace
 
 SoftDynamics::SoftDynamics(Packing& packing, bool in_patches, const std::atomic<bool>* stop,
                            std::function<void(double)> progress)
-    : packing_(packing), n_(packing.radius.size()), velocity_(axes * (n_ + 1), 0.0), force_(axes * (n_ + 1), 0.0),
-      stop_(stop), progress_(std::move(progress)) {
+    : packing_(packing), axes_(packing.axes()), n_(packing.radius.size()), velocity_(axes_ * (n_ + 1), 0.0),
+      force_(axes_ * (n_ + 1), 0.0), stop_(stop), progress_(std::move(progress)) {
     double sum = 0;
     for (const double r : packing.radius) {
         sum += 2 * r;
@@ -78,8 +99,8 @@ void SoftDynamics::renumber(bool in_patches) {
         const double width = patch_width * mean_diameter_;
         std::vector<PerAxis<double>> square(n_);
         for (std::size_t i = 0; i < n_; ++i) {
-            for (std::size_t a = 0; a < axes; ++a) {
-                square[i][axes - 1 - a] = std::floor(packing_.q[axes * i + a] / width);
+            for (std::size_t a = 0; a < axes_; ++a) {
+                square[i][axes_ - 1 - a] = std::floor(packing_.q[axes_ * i + a] / width);
             }
         }
         std::stable_sort(order_.begin(), order_.end(), [&](int i, int j) {
@@ -88,23 +109,23 @@ void SoftDynamics::renumber(bool in_patches) {
         for (std::size_t k = 0; k < n_; ++k) {
             if (k == 0 ||
                 square[static_cast<std::size_t>(order_[k])] != square[static_cast<std::size_t>(order_[k - 1])]) {
-                patches_.push_back({axes * k, axes * k});
+                patches_.push_back({axes_ * k, axes_ * k});
             }
-            patches_.back().last += axes;
+            patches_.back().last += axes_;
         }
-        patches_.push_back({axes * n_, axes * (n_ + 1)});
+        patches_.push_back({axes_ * n_, axes_ * (n_ + 1)});
     }
-    q_.resize(axes * (n_ + 1));
+    q_.resize(axes_ * (n_ + 1));
     radius_.resize(n_);
     for (std::size_t k = 0; k < n_; ++k) {
         const auto i = static_cast<std::size_t>(order_[k]);
         radius_[k] = packing_.radius[i];
-        for (std::size_t a = 0; a < axes; ++a) {
-            q_[axes * k + a] = packing_.q[axes * i + a];
+        for (std::size_t a = 0; a < axes_; ++a) {
+            q_[axes_ * k + a] = packing_.q[axes_ * i + a];
         }
     }
-    for (std::size_t a = 0; a < axes; ++a) {
-        q_[axes * n_ + a] = packing_.q[axes * n_ + a];
+    for (std::size_t a = 0; a < axes_; ++a) {
+        q_[axes_ * n_ + a] = packing_.q[axes_ * n_ + a];
     }
 }
 
@@ -112,36 +133,44 @@ void SoftDynamics::renumber(bool in_patches) {
 void SoftDynamics::place_images() {
     const double margin = 2 * max_radius_ + skin_;
     images_.clear();
-    q_.resize(axes * (n_ + 1));
-    const double* const length = q_.data() + axes * n_;
-    if (!(std::min(length[0], length[1]) >= 2 * margin)) {
+    q_.resize(axes_ * (n_ + 1));
+    const double* const length = q_.data() + axes_ * n_;
+    // A pair may touch through several images; a sphere and its own are a diameter apart.
+    if (!(*std::min_element(length, length + axes_) >= (axes_ == 2 ? 2 : 1) * margin)) {
         throw Error(ErrorKind::bad_input,
-                    "preparation: a periodic cell became narrower than four disks: expected more disks");
+                    fmt::format("preparation: a periodic cell became narrower than {}: expected more",
+                                axes_ == 2 ? "four disks" : "its largest spheres"));
+    }
+    int neighbours = 1; // 3 of each axis, the cell itself among them
+    for (std::size_t a = 0; a < axes_; ++a) {
+        neighbours *= 3;
     }
     for (std::size_t i = 0; i < n_; ++i) {
-        for (std::size_t a = 0; a < axes; ++a) {
-            q_[axes * i + a] -= length[a] * std::floor(q_[axes * i + a] / length[a]);
+        for (std::size_t a = 0; a < axes_; ++a) {
+            q_[axes_ * i + a] -= length[a] * std::floor(q_[axes_ * i + a] / length[a]);
         }
-        for (int m = -1; m <= 1; ++m) {
-            for (int p = -1; p <= 1; ++p) {
-                const double x = q_[axes * i] + m * length[0];
-                const double y = q_[axes * i + 1] + p * length[1];
-                if ((m != 0 || p != 0) && x > -margin && x < length[0] + margin && y > -margin &&
-                    y < length[1] + margin) {
-                    images_.push_back({i, {m, p}});
-                }
+        for (int cell = 0; cell < neighbours; ++cell) {
+            GhostImage image{i, {}};
+            bool near = 2 * cell != neighbours - 1; // the one in the middle is no image
+            for (std::size_t a = axes_, rest = static_cast<std::size_t>(cell); a-- > 0; rest /= 3) {
+                image.periods[a] = static_cast<int>(rest % 3) - 1;
+                const double x = q_[axes_ * i + a] + image.periods[a] * length[a];
+                near = near && x > -margin && x < length[a] + margin;
+            }
+            if (near) {
+                images_.push_back(image);
             }
         }
     }
-    q_.resize(axes * (n_ + 1 + images_.size()));
+    q_.resize(axes_ * (n_ + 1 + images_.size()));
     follow_images();
 }
 
 void SoftDynamics::follow_images() {
-    double* image = q_.data() + axes * (n_ + 1);
+    double* image = q_.data() + axes_ * (n_ + 1);
     for (const GhostImage& g : images_) {
-        for (std::size_t a = 0; a < axes; ++a) {
-            *image++ = q_[axes * g.disk + a] + g.periods[a] * q_[axes * n_ + a];
+        for (std::size_t a = 0; a < axes_; ++a) {
+            *image++ = q_[axes_ * g.disk + a] + g.periods[a] * q_[axes_ * n_ + a];
         }
     }
 }
@@ -149,14 +178,14 @@ void SoftDynamics::follow_images() {
 /// Each pair once: of two images the one behind the disk of lower number.
 void SoftDynamics::find_pairs_in_cell() {
     place_images();
-    std::vector<double> x(q_.begin(), q_.begin() + static_cast<std::ptrdiff_t>(axes * n_));
-    x.insert(x.end(), q_.begin() + static_cast<std::ptrdiff_t>(axes * (n_ + 1)), q_.end());
+    std::vector<double> x(q_.begin(), q_.begin() + static_cast<std::ptrdiff_t>(axes_ * n_));
+    x.insert(x.end(), q_.begin() + static_cast<std::ptrdiff_t>(axes_ * (n_ + 1)), q_.end());
     std::vector<double> radius = radius_;
     for (const GhostImage& g : images_) {
         radius.push_back(radius_[g.disk]);
     }
     PairList all;
-    find_pairs(plane, x, radius, skin_, all);
+    find_pairs(packing_.dimension, x, radius, skin_, all);
     pairs_.start.assign(1, 0);
     pairs_.partner.clear();
     pair_second_.clear();
@@ -174,8 +203,8 @@ void SoftDynamics::find_pairs_in_cell() {
 }
 
 void SoftDynamics::publish_lengths() {
-    for (std::size_t a = 0; a < axes; ++a) {
-        packing_.q[axes * n_ + a] = q_[axes * n_ + a];
+    for (std::size_t a = 0; a < axes_; ++a) {
+        packing_.q[axes_ * n_ + a] = q_[axes_ * n_ + a];
     }
 }
 
@@ -183,8 +212,8 @@ SoftMeasures SoftDynamics::finish(SoftMeasures result) {
     publish_lengths();
     for (std::size_t k = 0; k < n_; ++k) {
         const auto i = static_cast<std::size_t>(order_[k]);
-        for (std::size_t a = 0; a < axes; ++a) {
-            packing_.q[axes * i + a] = q_[axes * k + a];
+        for (std::size_t a = 0; a < axes_; ++a) {
+            packing_.q[axes_ * i + a] = q_[axes_ * k + a];
         }
     }
     result.interrupted = stopped();
@@ -197,7 +226,7 @@ void SoftDynamics::refresh_pairs() {
     if (repeats) {
         find_pairs_in_cell();
     } else {
-        find_pairs(plane, q_, radius_, skin_, pairs_);
+        find_pairs(packing_.dimension, q_, radius_, skin_, pairs_);
     }
     allowance_ = skin_;
     age_ = 0;
@@ -205,13 +234,13 @@ void SoftDynamics::refresh_pairs() {
     pair_first_.resize(count);
     pair_range_.resize(count);
     overlap_of_.resize(count);
-    push_.resize(axes * count);
-    virial_.resize(axes * count);
+    push_.resize(axes_ * count);
+    virial_.resize(axes_ * count);
     pair_target_.resize(count);
     pairs_across_.clear();
     const Pieces blocks{n_, block};
-    from_above_.resize(axes * n_);
-    from_below_.resize(axes * (n_ + blocks.count()));
+    from_above_.resize(axes_ * n_);
+    from_below_.resize(axes_ * (n_ + blocks.count()));
     for (std::size_t i = 0; i < n_; ++i) {
         const std::size_t piece = i / block;
         for (auto k = static_cast<std::size_t>(pairs_.start[i]); k < static_cast<std::size_t>(pairs_.start[i + 1]);
@@ -229,9 +258,9 @@ void SoftDynamics::refresh_pairs() {
     wall_disks_.clear();
     for (std::size_t i = 0; i < n_ && !repeats; ++i) {
         bool near = false;
-        for (std::size_t a = 0; a < axes; ++a) {
-            const double x = q_[axes * i + a];
-            near = near || x - radius_[i] < skin_ || q_[axes * n_ + a] - x - radius_[i] < skin_;
+        for (std::size_t a = 0; a < axes_; ++a) {
+            const double x = q_[axes_ * i + a];
+            near = near || x - radius_[i] < skin_ || q_[axes_ * n_ + a] - x - radius_[i] < skin_;
         }
         if (near) {
             wall_disks_.push_back({.disk = i});
@@ -241,20 +270,21 @@ void SoftDynamics::refresh_pairs() {
 
 void SoftDynamics::wall_forces() {
     for (WallDisk& w : wall_disks_) {
-        for (std::size_t a = 0; a < axes; ++a) {
-            const double x = q_[axes * w.disk + a];
-            const double length = q_[axes * n_ + a];
+        for (std::size_t a = 0; a < axes_; ++a) {
+            const double x = q_[axes_ * w.disk + a];
+            const double length = q_[axes_ * n_ + a];
             const double below = std::max(0.0, radius_[w.disk] - x);
             const double above = std::max(0.0, radius_[w.disk] - (length - x));
             w.overlap[2 * a] = below;
             w.overlap[2 * a + 1] = above;
             w.force[a] = below - above;
-            w.virial[2 * a] = below * x / length;
-            w.virial[2 * a + 1] = above * (1 - x / length);
+            w.lower_virial[a] = below * x / length;
+            w.upper_virial[a] = above * (1 - x / length);
         }
     }
 }
 
+template <std::size_t Axes>
 PerAxis<double> SoftDynamics::spread(std::size_t first, std::size_t last, std::size_t piece) {
     // One pass over the pairs without a branch: loops over the few partners of each disk are mispredicted at every end.
     const double* const push = push_.data();
@@ -263,36 +293,43 @@ PerAxis<double> SoftDynamics::spread(std::size_t first, std::size_t last, std::s
     const int* const source = pair_first_.data();
     double* const from_below = from_below_.data();
     double* const from_above = from_above_.data();
-    std::fill(from_below + axes * first, from_below + axes * last, 0.0);
-    std::fill(from_above + axes * first, from_above + axes * last, 0.0);
-    store(from_below + axes * (n_ + piece), Plane{});
+    std::fill(from_below + Axes * first, from_below + Axes * last, 0.0);
+    std::fill(from_above + Axes * first, from_above + Axes * last, 0.0);
+    using V = Vector<Axes>;
+    store(from_below + Axes * (n_ + piece), V{});
     auto wall = std::lower_bound(wall_disks_.begin(), wall_disks_.end(), first,
                                  [](const WallDisk& w, std::size_t i) { return w.disk < i; });
-    Plane virial{};
+    V virial{};
     auto k = static_cast<std::size_t>(pairs_.start[first]);
     const auto pairs_until = [&](std::size_t end) {
         for (; k < end; ++k) {
-            const Plane p = load(push + axes * k);
-            double* const own = from_above + axes * static_cast<std::size_t>(source[k]);
-            double* const other = from_below + axes * static_cast<std::size_t>(target[k]);
-            store(own, load(own) - p);
-            store(other, load(other) + p);
-            virial += load(share + axes * k);
+            const V p = load<V>(push + Axes * k);
+            double* const own = from_above + Axes * static_cast<std::size_t>(source[k]);
+            double* const other = from_below + Axes * static_cast<std::size_t>(target[k]);
+            V above = load<V>(own);
+            above -= p;
+            store(own, above);
+            V below = load<V>(other);
+            below += p;
+            store(other, below);
+            virial += load<V>(share + Axes * k);
         }
     };
     for (; wall != wall_disks_.end() && wall->disk < last; ++wall) {
         pairs_until(static_cast<std::size_t>(pairs_.start[wall->disk]));
-        store(from_above + axes * wall->disk, Plane{wall->force[0], wall->force[1]});
-        virial += Plane{wall->virial[0], wall->virial[2]};
-        virial += Plane{wall->virial[1], wall->virial[3]};
+        store(from_above + Axes * wall->disk, load<V>(wall->force.data()));
+        virial += load<V>(wall->lower_virial.data());
+        virial += load<V>(wall->upper_virial.data());
     }
     pairs_until(static_cast<std::size_t>(pairs_.start[last]));
-    return {virial[0], virial[1]};
+    PerAxis<double> result{};
+    store(result.data(), virial);
+    return result;
 }
 
 SoftDynamics::Sums SoftDynamics::add_up(std::size_t first, std::size_t last) {
     Sums sums;
-    for (std::size_t k = axes * first; k < axes * last; ++k) {
+    for (std::size_t k = axes_ * first; k < axes_ * last; ++k) {
         const double f = from_below_[k] + from_above_[k];
         const double w = velocity_[k];
         force_[k] = f;
@@ -310,19 +347,23 @@ void SoftDynamics::compute_forces(double pressure) {
         const std::vector<int>& second = packing_.cell.any() ? pair_second_ : pairs_.partner;
         const PairStretch stretch{stretches.last(piece) - from, pair_first_.data() + from, second.data() + from,
                                   pair_range_.data() + from};
-        pair_forces(stretch, q_.data(), q_.data() + axes * n_, overlap_of_.data() + from, push_.data() + axes * from,
-                    virial_.data() + axes * from);
+        pair_forces(packing_.dimension, stretch, q_.data(), q_.data() + axes_ * n_, overlap_of_.data() + from,
+                    push_.data() + axes_ * from, virial_.data() + axes_ * from);
     });
     wall_forces();
     const Pieces blocks{n_, block};
     std::vector<PerAxis<double>> virials(blocks.count());
     parallel_pieces(blocks.count(), [&](std::size_t piece) {
-        virials[piece] = spread(blocks.first(piece), blocks.last(piece), piece);
+        const std::size_t first = blocks.first(piece);
+        const std::size_t last = blocks.last(piece);
+        virials[piece] = axes_ == 2 ? spread<2>(first, last, piece) : spread<3>(first, last, piece);
     });
     for (const int k : pairs_across_) {
         const auto p = static_cast<std::size_t>(k);
-        double* const other = from_below_.data() + axes * static_cast<std::size_t>(pairs_.partner[p]);
-        store(other, load(other) + load(push_.data() + axes * p));
+        double* const other = from_below_.data() + axes_ * static_cast<std::size_t>(pairs_.partner[p]);
+        for (std::size_t a = 0; a < axes_; ++a) {
+            other[a] += push_[axes_ * p + a];
+        }
     }
     std::vector<Sums> sums(blocks.count());
     parallel_pieces(blocks.count(),
@@ -330,37 +371,40 @@ void SoftDynamics::compute_forces(double pressure) {
     sums_ = sums.front();
     PerAxis<double> virial = virials.front();
     for (std::size_t b = 1; b < sums.size(); ++b) {
-        for (std::size_t a = 0; a < axes; ++a) {
+        for (std::size_t a = 0; a < axes_; ++a) {
             virial[a] += virials[b][a];
         }
         sums_.power += sums[b].power;
         sums_.vv += sums[b].vv;
         sums_.ff += sums[b].ff;
     }
-    for (std::size_t a = 0; a < axes; ++a) {
+    for (std::size_t a = 0; a < axes_; ++a) {
         double area = 1;
-        for (std::size_t b = 0; b < axes; ++b) {
-            area *= b == a ? 1.0 : q_[axes * n_ + b];
+        for (std::size_t b = 0; b < axes_; ++b) {
+            area *= b == a ? 1.0 : q_[axes_ * n_ + b];
         }
-        force_[axes * n_ + a] = virial[a] - pressure * area;
+        force_[axes_ * n_ + a] = virial[a] - pressure * area;
     }
     if (packing_.cell.keeps_shape) { // the part of it that leaves the ratio of the periods
-        const double* const length = q_.data() + axes * n_;
-        double* const on_cell = force_.data() + axes * n_;
-        const double share =
-            (on_cell[0] * length[0] + on_cell[1] * length[1]) / (length[0] * length[0] + length[1] * length[1]);
-        on_cell[0] = share * length[0];
-        on_cell[1] = share * length[1];
+        const double* const length = q_.data() + axes_ * n_;
+        double* const on_cell = force_.data() + axes_ * n_;
+        const double share = std::inner_product(on_cell, on_cell + axes_, length, 0.0) /
+                             std::inner_product(length, length + axes_, length, 0.0);
+        for (std::size_t a = 0; a < axes_; ++a) {
+            on_cell[a] = share * length[a];
+        }
     }
 }
 
 double SoftDynamics::out_of_balance(std::size_t axis, double pressure) const {
-    const double* const length = q_.data() + axes * n_;
-    const double* const force = force_.data() + axes * n_;
-    if (packing_.cell.keeps_shape) {
-        return (force[0] * length[0] + force[1] * length[1]) / (2 * pressure * length[0] * length[1]);
+    const double* const length = q_.data() + axes_ * n_;
+    const double* const force = force_.data() + axes_ * n_;
+    const bool size_only = packing_.cell.keeps_shape;
+    double face = size_only ? static_cast<double>(axes_) * pressure : pressure;
+    for (std::size_t b = 0; b < axes_; ++b) {
+        face *= b == axis && !size_only ? 1.0 : length[b];
     }
-    return force[axis] / (pressure * length[1 - axis]);
+    return (size_only ? std::inner_product(force, force + axes_, length, 0.0) : force[axis]) / face;
 }
 
 void SoftDynamics::count_contacts() {
@@ -380,13 +424,14 @@ void SoftDynamics::count_contacts() {
     }
 }
 
+template <std::size_t Axes>
 void SoftDynamics::move(std::size_t first, std::size_t last, double dt, const PerAxis<double>& stretch,
                         double& fastest) {
     for (std::size_t i = first; i < last; ++i) {
         double square = 0;
-        for (std::size_t a = 0; a < axes; ++a) {
-            const double w = velocity_[axes * i + a];
-            q_[axes * i + a] = q_[axes * i + a] * stretch[a] + dt * w;
+        for (std::size_t a = 0; a < Axes; ++a) {
+            const double w = velocity_[Axes * i + a];
+            q_[Axes * i + a] = q_[Axes * i + a] * stretch[a] + dt * w;
             square += w * w;
         }
         fastest = fastest < square ? square : fastest;
@@ -396,15 +441,18 @@ void SoftDynamics::move(std::size_t first, std::size_t last, double dt, const Pe
 void SoftDynamics::advance(double dt, bool walls) {
     PerAxis<double> stretch{};
     double shrink = 0;
-    for (std::size_t a = 0; a < axes; ++a) {
-        stretch[a] = walls ? 1 + dt * velocity_[axes * n_ + a] / q_[axes * n_ + a] : 1.0;
-        q_[axes * n_ + a] *= stretch[a];
+    for (std::size_t a = 0; a < axes_; ++a) {
+        stretch[a] = walls ? 1 + dt * velocity_[axes_ * n_ + a] / q_[axes_ * n_ + a] : 1.0;
+        q_[axes_ * n_ + a] *= stretch[a];
         shrink = std::max(shrink, 1 - stretch[a]);
     }
     const Pieces blocks{n_, block};
     std::vector<double> fastest(blocks.count(), 0.0);
     parallel_pieces(blocks.count(), [&](std::size_t piece) {
-        move(blocks.first(piece), blocks.last(piece), dt, stretch, fastest[piece]);
+        const std::size_t first = blocks.first(piece);
+        const std::size_t last = blocks.last(piece);
+        axes_ == 2 ? move<2>(first, last, dt, stretch, fastest[piece])
+                   : move<3>(first, last, dt, stretch, fastest[piece]);
     });
     follow_images();
     // Two disks that are not listed approach by at most twice the largest peculiar displacement plus the homogeneous
@@ -426,13 +474,13 @@ SoftMeasures SoftDynamics::measure(double pressure) {
     count_contacts();
     SoftMeasures result;
     double largest = 0;
-    for (std::size_t k = 0; k < axes * n_; ++k) {
+    for (std::size_t k = 0; k < axes_ * n_; ++k) {
         const double f = std::abs(force_[k]);
         largest = largest < f ? f : largest;
     }
     const double unit = pressure > 0 ? pressure * mean_diameter_ : mean_diameter_;
     result.residual = largest / unit;
-    for (std::size_t a = 0; a < axes && pressure > 0; ++a) {
+    for (std::size_t a = 0; a < axes_ && pressure > 0; ++a) {
         result.pressure_error = std::max(result.pressure_error, std::abs(out_of_balance(a, pressure)));
     }
     result.overlap = overlap_ / mean_diameter_;
@@ -474,14 +522,14 @@ SoftMeasures SoftDynamics::compress(double pressure, double rate, long max_steps
     bool reached = false;
     for (; step < max_steps && !stopped(); ++step) {
         compute_forces(pressure);
-        for (std::size_t k = 0; k < axes * n_; ++k) {
+        for (std::size_t k = 0; k < axes_ * n_; ++k) {
             velocity_[k] = (velocity_[k] + dt * force_[k]) * keep;
         }
         double error = 0;
-        for (std::size_t a = 0; a < axes; ++a) {
-            const double length = q_[axes * n_ + a];
+        for (std::size_t a = 0; a < axes_; ++a) {
+            const double length = q_[axes_ * n_ + a];
             const double excess = out_of_balance(a, pressure);
-            velocity_[axes * n_ + a] = rate * length * std::clamp(excess, -1.0, 1.0);
+            velocity_[axes_ * n_ + a] = rate * length * std::clamp(excess, -1.0, 1.0);
             error = std::max(error, std::abs(excess));
         }
         reached = error < 0.1;
@@ -535,9 +583,9 @@ SoftMeasures SoftDynamics::relax(double pressure, double tolerance, long max_ste
     constexpr double shrink = 0.5;
     double dt = 0.1; // in units of sqrt(mass / stiffness)
     long step = 0;
-    const std::size_t disks = axes * n_;
+    const std::size_t disks = axes_ * n_;
     std::fill(velocity_.begin(), velocity_.end(), 0.0);
-    Patch whole{0, disks + axes, alpha_start, 0};
+    Patch whole{0, disks + axes_, alpha_start, 0};
     for (Patch& patch : patches_) {
         patch.alpha = alpha_start;
         patch.downhill = 0;
@@ -561,12 +609,12 @@ SoftMeasures SoftDynamics::relax(double pressure, double tolerance, long max_ste
                     std::clamp(std::log(worst / first_residual) / std::log(tolerance / first_residual), 0.0, 1.0));
             }
         }
-        for (std::size_t a = 0; a < axes; ++a) {
+        for (std::size_t a = 0; a < axes_; ++a) {
             force_[disks + a] /= wall_mass_; // from here on: accelerations
         }
         if (patches_.empty()) {
             Sums sums = sums_;
-            for (std::size_t k = disks; k < disks + axes; ++k) {
+            for (std::size_t k = disks; k < disks + axes_; ++k) {
                 sums.power += wall_mass_ * force_[k] * velocity_[k];
                 sums.vv += wall_mass_ * velocity_[k] * velocity_[k];
                 sums.ff += wall_mass_ * force_[k] * force_[k];

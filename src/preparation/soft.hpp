@@ -75,16 +75,17 @@ class SoftDynamics {
     struct WallDisk {
         std::size_t disk = 0;
         PerAxis<double> force{};
-        std::array<double, 2 * most_axes> virial{}; ///< lower and upper wall of each axis
-        std::array<double, 2 * most_axes> overlap{};
+        PerAxis<double> lower_virial{}, upper_virial{};
+        std::array<double, 2 * most_axes> overlap{}; ///< lower and upper wall of each axis
     };
 
     void compute_forces(double pressure);
     void wall_forces();
     /// Sums of the pairs whose first disk is in [first, last): forces on disks, virials returned.
-    PerAxis<double> spread(std::size_t first, std::size_t last, std::size_t piece);
+    template <std::size_t Axes> PerAxis<double> spread(std::size_t first, std::size_t last, std::size_t piece);
     Sums add_up(std::size_t first, std::size_t last);
     void advance(double dt, bool walls);
+    template <std::size_t Axes>
     void move(std::size_t first, std::size_t last, double dt, const PerAxis<double>& stretch, double& fastest);
     void refresh_pairs();
     void place_images();
@@ -102,14 +103,14 @@ class SoftDynamics {
     [[nodiscard]] bool stopped() const { return stop_ != nullptr && stop_->load(std::memory_order_relaxed); }
 
     Packing& packing_;
-    std::size_t n_;
+    std::size_t axes_, n_;
     std::vector<Patch> patches_; ///< of disks, then one of the walls; empty: everything in one
     std::vector<int> order_;     ///< disk of the packing in each place here
     std::vector<double> q_, radius_;
     double max_radius_ = 0;
     double mean_diameter_ = 0;
     double wall_mass_ = 0;
-    std::vector<double> velocity_; ///< 2 n peculiar velocities, then the walls'
+    std::vector<double> velocity_; ///< d n peculiar velocities, then the walls'
     std::vector<double> force_;    ///< the same layout
     Sums sums_;                    ///< of the disks
     PairList pairs_;

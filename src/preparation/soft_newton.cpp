@@ -12,9 +12,8 @@ namespace isostat::preparation {
 namespace {
 
 /// Pairs are listed up to this gap, in the internal unit, and the list renewed when something has moved by a third of
-/// it: two disks approach by less than 2 sqrt(2) of that.
+/// it, in space a quarter: two grains approach by less than 2 sqrt(d) of that.
 constexpr double reach = 0.1;
-constexpr double list_holds = reach / 3;
 /// Longest step of a disk, mean diameters: beyond it the normals are others.
 constexpr double longest_step = 0.1;
 /// The search ends where the slope is below this share of the first one.
@@ -59,8 +58,9 @@ void SoftNewton::collect() {
 }
 
 bool SoftNewton::left_the_list() const {
+    const double holds = reach / (packing_.dimension + 1);
     for (std::size_t k = 0; k < anchor_.size(); ++k) {
-        if (std::abs(packing_.q[k] - anchor_[k]) > list_holds) {
+        if (std::abs(packing_.q[k] - anchor_[k]) > holds) {
             return true;
         }
     }

@@ -29,14 +29,16 @@ template <class Work> std::shared_ptr<PyState> stoppable(PreparationOptions opti
     return std::make_shared<PyState>(PyState{value_or_raise(std::move(result)), {}});
 }
 
-std::shared_ptr<PyState> prepare_disks(int disks, std::uint64_t seed, std::pair<double, double> diameters,
-                                       double jitter, const std::optional<std::vector<double>>& radii) {
+std::shared_ptr<PyState> prepare_disks(int disks, int dimension, std::uint64_t seed,
+                                       std::pair<double, double> diameters, double jitter,
+                                       const std::optional<std::vector<double>>& radii) {
     finite(diameters.first + diameters.second, "diameters");
     for (const double radius : radii.value_or(std::vector<double>())) {
         finite(radius, "radii");
     }
     PreparationOptions options;
     options.disks = disks;
+    options.dimension = dimension;
     options.seed = seed;
     options.diameters.smallest = diameters.first;
     options.diameters.largest = diameters.second;
@@ -45,11 +47,17 @@ std::shared_ptr<PyState> prepare_disks(int disks, std::uint64_t seed, std::pair<
     return stoppable(options, [](const PreparationOptions& o, PreparationReport& r) { return prepare(o, r); });
 }
 
-std::shared_ptr<PyState> vertex_near(const Packing& packing, std::array<double, 2> stress, std::uint64_t seed) {
-    require_plane(packing, "Packing", "find_vertex");
+std::shared_ptr<PyState> vertex_near(const Packing& packing, const std::optional<std::vector<double>>& given,
+                                     std::uint64_t seed) {
+    const std::vector<double> stress = given.value_or(std::vector<double>(packing.axes(), 1.0));
+    if (stress.size() != packing.axes() || stress.front() != stress[packing.axes() - 2]) {
+        throw Error(ErrorKind::bad_input, packing.dimension == plane
+                                              ? "stress: expected two numbers"
+                                              : "stress: expected three numbers, the first two of them equal");
+    }
     PreparationOptions options;
-    options.stress = finite(stress[0], "stress");
-    options.ratio = finite(stress[1] / stress[0], "ratio of the stresses");
+    options.stress = finite(stress.front(), "stress");
+    options.ratio = finite(stress.back() / stress.front(), "ratio of the stresses");
     options.seed = seed;
     return stoppable(
         options, [&packing](const PreparationOptions& o, PreparationReport& r) { return find_vertex(packing, o, r); });
@@ -135,13 +143,16 @@ void bind_plateau(py::module_& module) {
 } // namespace
 
 void bind_preparation(py::module_& module) {
-    module.def("prepare", &prepare_disks, py::arg("disks"), py::kw_only(), py::arg("seed") = 1,
-               py::arg("diameters") = std::pair(1.0, 2.0), py::arg("jitter") = 0.0, py::arg("radii") = py::none(),
-               "State: random disks to an equilibrium under sigma_1 = sigma_2 = 1. `diameters`: bounds of a uniform "
+    module.def("prepare", &prepare_disks, py::arg("disks"), py::kw_only(), py::arg("dimension") = 2,
+               py::arg("seed") = 1, py::arg("diameters") = std::pair(1.0, 2.0), py::arg("jitter") = 0.0,
+               py::arg("radii") = py::none(),
+               "State: random disks (`dimension` 3: spheres) to an equilibrium under stresses of 1. `diameters`: "
+               "bounds of a uniform "
                "law; `radii`: a list instead. Seconds for a thousand disks; Ctrl-C ends it. Raises a Failure.");
-    module.def("find_vertex", &vertex_near, py::arg("packing"), py::kw_only(),
-               py::arg("stress") = std::array<double, 2>{1, 1}, py::arg("seed") = 1,
-               "State: the equilibrium downhill from a nearly jammed Packing in a box with two movable walls, proved. "
+    module.def("find_vertex", &vertex_near, py::arg("packing"), py::kw_only(), py::arg("stress") = py::none(),
+               py::arg("seed") = 1,
+               "State: the equilibrium downhill from a nearly jammed Packing in a box with a movable wall along each "
+               "axis, proved. `stress`: of each axis, by default 1; of spheres the first two are equal. "
                "Raises Tie, Undecided, NotConverged, ... Ctrl-C ends it.");
     module.def("read_packing", &read_any, py::arg("path"), py::kw_only(), py::arg("walls") = "box",
                py::arg("box") = py::none(), py::arg("radius") = "", py::arg("diameter") = "",

@@ -56,20 +56,37 @@ void read_start(Section& section, const std::string& file, Scene& scene, const s
     section.record("file", toml_text(file));
 }
 
-/// Exactly one way to say where the disks come from.
+/// A list of radii is of either; the other sources say it themselves.
+int read_dimension(Section& section, const std::string& source) {
+    const bool list = source == "radii" || source == "radii_file";
+    if (section.integer("dimension")) {
+        if (list) {
+            return static_cast<int>(section.integer("dimension", plane, plane, most_axes));
+        }
+        section.refuse("dimension", fmt::format("'dimension' in [packing] goes with 'radii' or 'radii_file' and has no "
+                                                "meaning with '{}'",
+                                                source));
+    }
+    return source == "spheres" ? 3 : plane;
+}
+
+/// Exactly one way to say where the disks or spheres come from.
 void read_packing(Section& section, Scene& scene, const std::filesystem::path& folder) {
     const auto file = section.string("file");
     const auto disks = section.integer("disks");
+    const auto spheres = section.integer("spheres");
     const auto radii = section.numbers("radii");
     const auto radii_file = section.string("radii_file");
-    const std::array<std::pair<const char*, bool>, 4> sources{{{"file", file.has_value()},
+    const std::array<std::pair<const char*, bool>, 5> sources{{{"file", file.has_value()},
                                                                {"disks", disks.has_value()},
+                                                               {"spheres", spheres.has_value()},
                                                                {"radii", radii.has_value()},
                                                                {"radii_file", radii_file.has_value()}}};
     const auto chosen = std::find_if(sources.begin(), sources.end(), [](const auto& s) { return s.second; });
     if (chosen == sources.end()) {
-        section.refuse("",
-                       "[packing] does not say where the disks come from: expected file, disks, radii or radii_file");
+        section.refuse(
+            "", "[packing] does not say where the grains come from: expected file, disks, radii or radii_file, or "
+                "spheres");
     }
     for (auto other = chosen + 1; other != sources.end(); ++other) {
         if (other->second) {
@@ -78,16 +95,17 @@ void read_packing(Section& section, Scene& scene, const std::filesystem::path& f
                                        chosen->first, other->first));
         }
     }
-    if (!disks) {
+    if (!disks && !spheres) {
         refuse_law(section, chosen->first);
     }
     PreparationOptions& options = scene.preparation;
+    options.dimension = read_dimension(section, chosen->first);
     if (file) {
         read_start(section, *file, scene, folder);
         return;
     }
-    if (disks) {
-        options.disks = static_cast<int>(section.integer("disks", 0, 1, 10'000'000));
+    if (disks || spheres) {
+        options.disks = static_cast<int>(section.integer(chosen->first, 0, 1, 10'000'000));
         options.diameters = read_law(section);
     } else if (radii) {
         read_radii_list(section, *radii, options);
@@ -110,18 +128,20 @@ void read_cell(Section& section, Scene& scene) {
         section.refuse("", "[cell] is of a preparation: a packing read from a file has its own");
     }
     constexpr std::array kinds{PreparedCell::rectangular, PreparedCell::tilted, PreparedCell::isotropic};
-    options.cell = kinds[static_cast<std::size_t>(section.word("kind", 0, {"rectangular", "tilted", "isotropic"}))];
+    const bool in_plane = options.dimension == plane;
+    options.cell = kinds[section.word(
+        "kind", 0, {in_plane ? "rectangular" : "orthorhombic", in_plane ? "tilted" : "triclinic", "isotropic"})];
     const std::size_t count = options.radii.empty() ? static_cast<std::size_t>(options.disks) : options.radii.size();
     if (count > static_cast<std::size_t>(options.large_above)) {
-        section.refuse(
-            "", fmt::format("[cell] and {} disks: expected at most {} in a periodic cell", count, options.large_above));
+        section.refuse("", fmt::format("[cell] and {} {}: expected at most {} in a periodic cell", count,
+                                       in_plane ? "disks" : "spheres", options.large_above));
     }
 }
 
 void read_preparation(Section& section, Scene& scene) {
     PreparationOptions& options = scene.preparation;
     options.loose_fraction =
-        section.number("loose_fraction", options.loose_fraction, 0.05, 0.8, "a solid fraction from 0.05 to 0.8");
+        section.number("loose_fraction", options.start_fraction(), 0.05, 0.8, "a solid fraction from 0.05 to 0.8");
     options.softness = section.number("softness", options.softness, 1e-9, 1e-3, "a number from 1e-9 to 1e-3");
     options.relaxation = section.number("relaxation", options.relaxation, 1e-12, 1, "a number from 1e-12 to 1");
     options.max_steps = section.integer("max_steps", options.max_steps, 1, 1'000'000'000);
@@ -359,7 +379,8 @@ Scene parse_scene(const std::string& text, const std::string& source, const std:
     };
     if (table_of(document, "packing", source) == nullptr) {
         throw Error(ErrorKind::bad_input,
-                    fmt::format("{}: has no [packing]: expected one with file, disks, radii or radii_file", source));
+                    fmt::format("{}: has no [packing]: expected one with file, disks, radii or radii_file, or spheres",
+                                source));
     }
     Section packing = section("packing");
     read_packing(packing, scene, folder);

@@ -47,7 +47,7 @@ bool all_equal(const PreparationOptions& options) {
 void add_stages(Plan& plan, const Scene& scene) {
     const bool prepares = scene.start.empty();
     const std::string given = fmt::format("the packing is read from {}", scene.start.string());
-    plan.add("stage", "read the start", !prepares, prepares ? "the packing is prepared from random disks" : given);
+    plan.add("stage", "read the start", !prepares, prepares ? "the packing is prepared from random grains" : given);
     const double jitter = scene.preparation.jitter;
     plan.add("stage", "jitter of the radii", prepares && jitter > 0,
              !prepares ? given
@@ -58,7 +58,7 @@ void add_stages(Plan& plan, const Scene& scene) {
                                "[packing] makes them different",
                                all_equal(scene.preparation) ? "1e-4" : "1e-9")
                  : "jitter = 0; no radii are equal");
-    std::string soft = "random disks to a relaxed soft packing";
+    std::string soft = "random grains to a relaxed soft packing";
     if (const int above = scene.preparation.newton_above; prepares_more(scene, above)) {
         soft += fmt::format(", with Newton steps at the end (more than {} disks)", above);
     }
@@ -94,9 +94,9 @@ void add_solvers(Plan& plan, const Scene& scene) {
                                      scene.preparation.newton_above)
                        : "the linear programmes of the preparation");
     plan.add("solver", "infinitesimal loads", true,
-             scene.infinitesimal_seed ? "rattlers rest on two contacts each; made from infinitesimal_seed"
-             : prepares               ? "rattlers rest on two contacts each; made from the seed of the packing"
-                                      : "rattlers rest on two contacts each; those of the start file");
+             scene.infinitesimal_seed ? "rattlers rest on a contact for each axis; made from infinitesimal_seed"
+             : prepares               ? "rattlers rest on a contact for each axis; made from the seed of the packing"
+                                      : "rattlers rest on a contact for each axis; those of the start file");
     plan.add("solver", "descent of W", runs && nominal,
              !runs     ? "no trajectory"
              : nominal ? "wall forces are constant: W is proved to be smaller at the end of every arc"

@@ -118,8 +118,10 @@ void refuse_law(Section& section, const std::string& source) {
         }
     }
     if (!found.empty()) {
-        section.refuse(found.front(), fmt::format("'{}' in [packing] goes with 'disks' and has no meaning with '{}'",
-                                                  found.front(), source));
+        section.refuse(found.front(),
+                       fmt::format("'{}' in [packing] goes with 'disks' or 'spheres' and has no meaning with "
+                                   "'{}'",
+                                   found.front(), source));
     }
 }
 

@@ -56,7 +56,7 @@ std::string with_seed(const std::string& marked, std::uint64_t seed, const std::
     if (!scene.start.empty()) {
         throw Error(ErrorKind::bad_input,
                     fmt::format("{}: file in [packing] is {}: a packing that is read has no seed and all samples would "
-                                "be the same: expected disks, radii or radii_file",
+                                "be the same: expected disks, radii or radii_file, or spheres",
                                 source, scene.start.string()));
     }
     if (seed > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max())) {

@@ -12,7 +12,7 @@ inline std::vector<Contact> all_pairs(const Packing& packing, int far = 4) {
     std::vector<Contact> pairs;
     const auto& walls = packing.walls;
     for (int i = 0; i < packing.disk_count(); ++i) {
-        for (int a = 0; a < 2; ++a) {
+        for (int a = 0; a < packing.dimension; ++a) {
             if (walls.lower[static_cast<std::size_t>(a)] != WallKind::absent) {
                 pairs.push_back({ContactKind::lower_wall, i, a});
             }
@@ -23,12 +23,16 @@ inline std::vector<Contact> all_pairs(const Packing& packing, int far = 4) {
         const auto& periodic = packing.cell.periodic;
         const int along = periodic[0] ? far : 0;
         const int across = periodic[1] ? far : 0;
+        const int up = periodic[2] ? far : 0;
         for (int j = i; j < packing.disk_count(); ++j) {
             for (int m = -along; m <= along; ++m) {
                 for (int p = -across; p <= across; ++p) {
-                    const Image image{{static_cast<std::int8_t>(m), static_cast<std::int8_t>(p), 0}};
-                    if (i < j || image > Image{}) {
-                        pairs.push_back({ContactKind::disk_disk, i, j, image});
+                    for (int q = -up; q <= up; ++q) {
+                        const Image image{
+                            {static_cast<std::int8_t>(m), static_cast<std::int8_t>(p), static_cast<std::int8_t>(q)}};
+                        if (i < j || image > Image{}) {
+                            pairs.push_back({ContactKind::disk_disk, i, j, image});
+                        }
                     }
                 }
             }

@@ -44,9 +44,19 @@ class Spheres(Folder):
         self.assertIs(proof.verdict, isostat.Verdict.PROVED)
         self.assertIs(isostat.verify(proof).verdict, isostat.Verdict.PROVED)
 
+    def test_spheres_are_prepared_and_found_again(self):
+        state = isostat.prepare(12, dimension=3)
+        self.assertEqual(len(state.contacts), 39)
+        self.assertIs(isostat.certify(state).verdict, isostat.Verdict.PROVED)
+        again = isostat.find_vertex(state.packing, stress=(2, 2, 2))
+        self.assertEqual(list(again.stress), [2, 2, 2])
+        for wrong in ((1, 1), (1, 2, 1)):
+            with self.assertRaisesRegex(isostat.BadInput, "three numbers"):
+                isostat.find_vertex(state.packing, stress=wrong)
+
     def test_what_takes_disks_only_says_so(self):
         state = isostat.State.read(cell)
-        for call in (isostat.plot.packing, isostat.ExactPacking.of_state, lambda s: isostat.find_vertex(s.packing)):
+        for call in (isostat.plot.packing, isostat.ExactPacking.of_state):
             with self.assertRaisesRegex(isostat.BadInput, "spheres"):
                 call(state)
 

@@ -143,6 +143,34 @@ vtk = true
     }
 }
 
+BOOST_AUTO_TEST_CASE(spheres_take_the_place_of_disks) {
+    const std::string spheres = "[packing]\nspheres = 10\n";
+    const Scene scene = parse_scene_text(spheres);
+    BOOST_TEST(scene.preparation.dimension == 3);
+    BOOST_TEST(scene.preparation.disks == 10);
+    BOOST_TEST(value_of(scene, "packing", "spheres") == "10");
+    BOOST_TEST(value_of(scene, "preparation", "loose_fraction") == "0.4");
+    BOOST_TEST(parse_scene_text(head).preparation.dimension == 2);
+    BOOST_TEST(value_of(parse_scene_text(head), "preparation", "loose_fraction") == "0.6");
+    BOOST_TEST(
+        (parse_scene_text(spheres + "law = \"bidisperse\"\n").preparation.diameters.kind == RadiiLaw::bidisperse));
+    BOOST_TEST(parse_scene_text("[packing]\nradii = [1, 2]\n").preparation.dimension == 2);
+    BOOST_TEST(parse_scene_text("[packing]\nradii = [1, 2]\ndimension = 3\n").preparation.dimension == 3);
+    refuses_scene("[packing]\nradii = [1, 2]\ndimension = 4\n", {"s.toml:3:", "dimension", "4"});
+    refuses_scene(spheres + "dimension = 3\n", {"s.toml:3:", "dimension", "radii", "spheres"});
+    refuses_scene(spheres + "disks = 3\n", {"s.toml:2:", "'disks' and 'spheres'"});
+    refuses_scene("[packing]\nradii = [1]\nlaw = \"equal\"\n",
+                  {"s.toml:3:", "'law'", "'disks' or 'spheres'", "'radii'"});
+    const auto kind = [&](const char* word) {
+        return parse_scene_text(spheres + "[cell]\nkind = \"" + word + "\"\n").preparation.cell;
+    };
+    BOOST_TEST((kind("orthorhombic") == PreparedCell::rectangular));
+    BOOST_TEST((kind("triclinic") == PreparedCell::tilted));
+    BOOST_TEST((kind("isotropic") == PreparedCell::isotropic));
+    refuses_scene(spheres + "[cell]\nkind = \"tilted\"\n", {"s.toml:4:", "tilted", "triclinic"});
+    refuses_scene("[packing]\nspheres = 8193\n[cell]\n", {"s.toml:3:", "8193 spheres", "at most 8192"});
+}
+
 BOOST_AUTO_TEST_CASE(a_table_of_the_cell_takes_the_walls_away) {
     BOOST_TEST((parse(head).preparation.cell == PreparedCell::none));
     BOOST_TEST((parse(head + "[cell]\n").preparation.cell == PreparedCell::rectangular));

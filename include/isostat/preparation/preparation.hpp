@@ -59,35 +59,39 @@ struct PreparationProgress {
     std::string text;
 };
 
-/// What holds the disks together: two fixed and two movable walls; a rectangular cell whose two periods move; such a
-/// cell whose tilt moves too, without a shear stress on it; a rectangle that keeps its shape (`aspect`), under a
-/// pressure on its size. The soft disks are compressed in a rectangle in any case, and the tilt is set free with the
-/// linear programmes.
+/// What holds the disks or spheres together: a fixed and a movable wall along each axis; a rectangular (orthorhombic)
+/// cell whose periods move; such a cell whose tilts move too, without shear stresses on them (triclinic); a rectangle
+/// that keeps its shape (`aspect`), under a pressure on its size. Soft grains are compressed in a rectangle in any
+/// case, and the tilts are set free with the linear programmes.
 enum class PreparedCell { none, rectangular, tilted, isotropic };
 
 /// What to prepare. The defaults of the last group suit sizes 1 ... 10^5; they change the way and the cost, never the
 /// validity.
 struct PreparationOptions {
-    int disks = 0;             ///< n >= 1; ignored when `radii` is given
+    int dimension = 2;         ///< 3: spheres
+    int disks = 0;             ///< n >= 1, disks or spheres; ignored when `radii` is given
     DiameterLaw diameters;     ///< ignored when `radii` is given
     std::vector<double> radii; ///< a given list, in the order of the disks
     double jitter = 0;         ///< `with_jitter`, of drawn radii and of a list
     std::uint64_t seed = 1;    ///< of radii, jitter, positions and infinitesimal loads (derived streams)
     double stress = 1;         ///< sigma_1 > 0
     double ratio = 1;          ///< sigma_2 / sigma_1 > 0 of `find_vertex`; `prepare` takes 1 only
-    double aspect = 1;         ///< Ly / Lx of the loose box; the final box is free
+    double aspect = 1;         ///< Ly / Lx, in space Lz / Lx = Lz / Ly, of the loose box; the final box is free
     LoadKind load = LoadKind::nominal;
-    /// A cell instead of walls: at most `large_above` disks, and enough for periods of four diameters.
+    /// A cell instead of walls: at most `large_above` disks, and enough for periods of four diameters, in space one.
     PreparedCell cell = PreparedCell::none;
     bool loads_tilt = false; ///< tilted cells: the programme will change the shear stress, not sigma_2
 
     const std::atomic<bool>* stop = nullptr;                       ///< set by Ctrl-C
     std::function<void(const PreparationProgress&)> progress = {}; ///< called now and then; not copied, not kept
 
-    double loose_fraction = 0.6; ///< solid fraction of the random start
-    double softness = 1e-5;      ///< pressure / contact stiffness at the end of the dynamics: overlap in diameters
-    double relaxation = 1e-4;    ///< unbalanced force / (pressure x diameter) at the end of the dynamics
-    long max_steps = 200000;     ///< of each stage of the dynamics; the next stage starts from what was reached
+    double loose_fraction = 0; ///< solid fraction of the random start; 0: 0.6 of disks, 0.4 of spheres
+    [[nodiscard]] double start_fraction() const {
+        return loose_fraction != 0 ? loose_fraction : dimension == plane ? 0.6 : 0.4;
+    }
+    double softness = 1e-5;   ///< pressure / contact stiffness at the end of the dynamics: overlap in diameters
+    double relaxation = 1e-4; ///< unbalanced force / (pressure x diameter) at the end of the dynamics
+    long max_steps = 200000;  ///< of each stage of the dynamics; the next stage starts from what was reached
     double infinitesimal_weight = 1e-7; ///< eps of the linear programmes: weight of g against the mean contact force
     int max_programmes = 200;
     /// Above this number of disks: the dynamics presses harder first (1e-2 of the stiffness), in patches, with fewer
@@ -148,14 +152,14 @@ Result<State> prepare(const PreparationOptions& options, PreparationReport& repo
 /// The vertex downhill from a packing that is nearly jammed in the box with two fixed and two movable walls, or with
 /// periods that move instead of them along one axis (a channel) or both (small overlaps are allowed). In a cell the
 /// disk with the most overlaps or contacts is pinned, and N_f = 2n + 1 in a channel, 2n with two periods, 2n + 1 with a
-/// tilt that moves; no shear stress is on it. A tilt that does not move changes only where overlaps need a dilation of
-/// everything.
+/// tilt that moves (spheres: 3n with three periods, 3n + 3 with three tilts); no shear stress is on it. A tilt that
+/// does not move changes only where overlaps need a dilation of everything.
 ///
 /// Sequential linear programming: minimise F1 dLx + F2 dLy - eps g.dx, with F1 = sigma_1 Ly, F2 = sigma_2 Lx of the
-/// current box, subject to h_l + n_l.(dx_j - dx_i) >= 0 for *all* pairs that a step within the trust bounds can bring
-/// into contact. Since |d + dx| >= n.(d + dx), a step never makes an overlap. The contacts are the rows with a
-/// multiplier in the basis (Clp, warm starts); once no trust bound is in the basis there are exactly N_f = 2n + 2 of
-/// them, and Newton solves gaps = 0.
+/// current box (in space three forces, on areas), subject to h_l + n_l.(dx_j - dx_i) >= 0 for *all* pairs that a step
+/// within the trust bounds can bring into contact. Since |d + dx| >= n.(d + dx), a step never makes an overlap. The
+/// contacts are the rows with a multiplier in the basis (Clp, warm starts); once no trust bound is in the basis there
+/// are exactly N_f = 2n + 2 of them (3n + 3 of spheres), and Newton solves gaps = 0.
 ///
 /// The multipliers of Clp say nothing below its tolerances, 1e-9: when Newton or the proofs fail at a converged basis,
 /// exchanges of one contact at a time at the true vertex (gaps and forces in double-double) go on from there, so that

@@ -339,12 +339,13 @@ def sqrt(rational: Rational) -> Exact: ...
 def prepare(
     disks: int,
     *,
+    dimension: int = ...,
     seed: int = ...,
     diameters: tuple[float, float] = ...,
     jitter: float = ...,
     radii: Optional[Sequence[float]] = ...,
 ) -> State: ...
-def find_vertex(packing: Packing, *, stress: Sequence[float] = ..., seed: int = ...) -> State: ...
+def find_vertex(packing: Packing, *, stress: Optional[Sequence[float]] = ..., seed: int = ...) -> State: ...
 def read_packing(
     path: Path,
     *,

@@ -1,0 +1,98 @@
+#include "certificate/averages.hpp"
+
+#include "certificate/contact_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace isostat {
+
+namespace {
+
+double mean_of_ends(const Interval& force) {
+    return 0.5 * force.lower + 0.5 * force.upper;
+}
+
+/// Held coordinates carry no force between grains.
+bool carries(const State& state, const Certification& truth, std::size_t l) {
+    return truth.structural_zero[l] == 0 && state.contacts[l].kind != ContactKind::held;
+}
+
+} // namespace
+
+Coordination coordination(const State& state, const Certification& truth, int rattlers) {
+    Coordination ends;
+    for (std::size_t l = 0; l < state.contacts.size(); ++l) {
+        const ContactKind kind = state.contacts[l].kind;
+        const int of_contact = kind == ContactKind::disk_disk ? 2 : kind == ContactKind::held ? 0 : 1;
+        ends.all += of_contact;
+        ends.carrying += carries(state, truth, l) ? of_contact : 0;
+    }
+    const int grains = state.packing.disk_count();
+    return {ends.all / std::max(1, grains), ends.carrying / std::max(1, grains - rattlers)};
+}
+
+ForceAverages force_averages(const State& state, const Certification& truth) {
+    ForceAverages sum;
+    const Packing& packing = state.packing;
+    double volume = 1;
+    for (int a = 0; a < packing.dimension; ++a) {
+        volume *= packing.length(a);
+    }
+    int contacts = 0;
+    int pairs = 0;
+    for (std::size_t l = 0; l < state.contacts.size(); ++l) {
+        if (!carries(state, truth, l)) {
+            continue;
+        }
+        const Contact& contact = state.contacts[l];
+        const bool pair = contact.kind == ContactKind::disk_disk;
+        const double force = mean_of_ends(truth.finite[l]);
+        const double length = packing.radius[static_cast<std::size_t>(contact.i)] +
+                              (pair ? packing.radius[static_cast<std::size_t>(contact.j)] : 0);
+        const PerAxis<double> n = outward(state, contact);
+        for (std::size_t a = 0; a < packing.axes(); ++a) {
+            for (std::size_t b = 0; b < packing.axes(); ++b) {
+                sum.stress[a][b] += force * n[a] * n[b] * length / volume;
+                sum.fabric[a][b] += pair ? n[a] * n[b] : 0;
+            }
+            sum.pressure += force * n[a] * n[a] * length / volume / packing.dimension;
+        }
+        sum.mean_force += force;
+        ++contacts;
+        pairs += pair ? 1 : 0;
+    }
+    for (PerAxis<double>& row : sum.fabric) {
+        std::transform(row.begin(), row.end(), row.begin(), [pairs](double x) { return x / std::max(1, pairs); });
+    }
+    sum.mean_force /= std::max(1, contacts);
+    return sum;
+}
+
+std::vector<std::pair<double, double>> force_distribution(const Certification& truth) {
+    constexpr double width = 0.25;
+    std::vector<double> forces;
+    double sum = 0;
+    for (std::size_t l = 0; l < truth.finite.size(); ++l) {
+        if (truth.structural_zero[l] == 0) {
+            forces.push_back(mean_of_ends(truth.finite[l]));
+            sum += forces.back();
+        }
+    }
+    const double mean = sum / static_cast<double>(std::max<std::size_t>(1, forces.size()));
+    if (!(mean > 0)) {
+        return {};
+    }
+    const double largest = *std::max_element(forces.begin(), forces.end()) / mean;
+    std::vector<std::pair<double, double>> bins(static_cast<std::size_t>(largest / width) + 1);
+    for (std::size_t k = 0; k < bins.size(); ++k) {
+        bins[k].first = (static_cast<double>(k) + 0.5) * width;
+    }
+    for (const double force : forces) { // a negative force, of no equilibrium, is in the first bin
+        const auto k = static_cast<std::size_t>(std::max(0.0, force / mean / width));
+        bins[std::min(k, bins.size() - 1)].second += 1 / (width * static_cast<double>(forces.size()));
+    }
+    return bins;
+}
+
+} // namespace isostat

@@ -3,6 +3,7 @@
 #include "cli/matches.hpp"
 #include "cli/program.hpp"
 #include "compare/report.hpp"
+#include "io/equilibria.hpp"
 #include "io/record_text.hpp"
 
 #include <isostat/io/run_directory.hpp>

@@ -125,11 +125,35 @@ BOOST_AUTO_TEST_CASE(a_picture_shows_every_sphere_its_forces_and_three_cuts) {
     }
 }
 
+BOOST_AUTO_TEST_CASE(a_run_of_spheres_names_what_it_loads_by_axis) {
+    const scratch::Folder folder;
+    (void)state_file(folder, "box_uniform_30_1");
+    const auto scene = [&](const std::string& load, const std::string& programme) {
+        scratch::write(folder / "s.toml", "[packing]\nfile = \"box_uniform_30_1.json\"\n" + load +
+                                              "[run]\ncertify = \"states\"\nmax_strain = 1e6\n[[programme]]\n" +
+                                              programme);
+    };
+    scene("", "do = \"up\"\nequilibria = 2\n");
+    const std::string out = folder.at("out");
+    expect(run({"run", folder.at("s.toml"), "-o", out}), 0, {"sigma3/sigma1", "eps3", "35 arcs"});
+    BOOST_TEST(scratch::read(folder / "out/equilibria.csv")
+                   .starts_with("# number,previous,segment,sigma3,ratio,eps1,eps2,eps3,L1,L2,L3,solid_fraction,"));
+    expect(run({"verify", folder.at("out/certificates/eq_000002.json")}), 0, {"proved"});
+    expect(run({"report", out, "--html"}), 0, {"sigma3/sigma1", "left out"});
+    for (const auto& [load, words] :
+         {std::pair{"tilt", "an axis, x to z, or a tilt, xy to yz"}, {"xy", "that tilt does not move"}}) {
+        scene(fmt::format("[load]\nloaded = \"{}\"\n", load), "do = \"up\"\nequilibria = 2\n");
+        expect(run({"run", folder.at("s.toml"), "-o", folder.at("not")}), 65, {words, load});
+    }
+    scene("[load]\nloaded = \"x\"\n", "do = \"to\"\nto = -1\n");
+    expect(run({"run", folder.at("s.toml"), "-o", folder.at("not")}), 65, {"sigma1/sigma3", "not negative"});
+}
+
 BOOST_AUTO_TEST_CASE(what_takes_disks_only_says_so_in_one_sentence) {
     const scratch::Folder folder;
     const std::string state = state_file(folder, "box_uniform_30_1");
-    scratch::write(folder / "s.toml",
-                   "[packing]\nfile = \"box_uniform_30_1.json\"\n[[programme]]\ndo = \"up\"\nequilibria = 1\n");
+    scratch::write(folder / "s.toml", "[packing]\nfile = \"box_uniform_30_1.json\"\n[run]\ncertify = \"arcs\"\n"
+                                      "[[programme]]\ndo = \"up\"\nequilibria = 1\n");
     for (const std::vector<std::string>& command :
          {std::vector<std::string>{"run", folder.at("s.toml"), "-o", folder.at("out")},
           {"genericity", state},

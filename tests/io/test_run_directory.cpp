@@ -135,6 +135,24 @@ BOOST_AUTO_TEST_CASE(every_row_has_the_columns_that_the_first_line_names_whateve
     }
 }
 
+BOOST_AUTO_TEST_CASE(columns_of_spheres_go_by_axis) {
+    constexpr std::array stress{"sigma1", "sigma2", "sigma3", "shear_xy", "shear_xz", "shear_yz"};
+    constexpr std::array strain{"eps1", "eps2", "eps3", "eps_xy", "eps_xz", "eps_yz"};
+    for (int loaded = 0; loaded < 6; ++loaded) {
+        const MoreColumns more{true, loaded % 2 == 0, 3, loaded};
+        const MoreColumns named = named_columns(equilibria_header(more), "table");
+        BOOST_TEST((named.tilt && named.touching == more.touching && named.dimension == 3));
+        BOOST_TEST(named.loaded_axis == loaded);
+        const RecordColumns columns = record_columns(more);
+        BOOST_TEST(columns.stress == stress[static_cast<std::size_t>(loaded)]);
+        BOOST_TEST(columns.strain == strain[static_cast<std::size_t>(loaded)]);
+        BOOST_TEST(columns.measures.size() == 6U);
+        for (const std::string& name : equilibria_columns(more)) {
+            BOOST_TEST(name.find(loaded == 1 ? "sigma3" : "sigma2") == std::string::npos, name);
+        }
+    }
+}
+
 BOOST_AUTO_TEST_CASE(every_row_of_equilibria_has_a_number_for_every_column) {
     const scratch::Folder folder;
     play(folder / "run", RunDirectory::Mode::fresh, -1, true);

@@ -1,0 +1,109 @@
+// Runs of spheres: closed forms, and the sequences of an independent program.
+#include "support/crafted.hpp"
+#include "support/spheres.hpp"
+
+using namespace isostat;
+using crafted::Played;
+using test::Json;
+
+namespace {
+
+State start_of(const std::string& name, const PerAxis<double>& stress) {
+    State state = test::state_of_spheres(test::read_spheres(name));
+    state.load.stress = stress;
+    state.load.infinitesimal = generic_infinitesimal(state.packing.radius, 7, 3);
+    snap_to_grid(state.packing);
+    return state;
+}
+
+Contact floor_of(int sphere) {
+    return {ContactKind::lower_wall, sphere, 2};
+}
+
+void check_arc(const Played& played, const Contact& opened, const Contact& closed, double stress) {
+    BOOST_TEST_REQUIRE(played.outcome.completed, played.why());
+    BOOST_TEST_REQUIRE(played.records.arcs.size() == 1U);
+    const ArcRecord& arc = played.records.arcs.front();
+    BOOST_TEST((arc.opened == opened), to_string(arc.opened) << " opened");
+    BOOST_TEST((arc.closed == closed), to_string(arc.closed) << " closed");
+    BOOST_TEST(arc.stress == stress, boost::test_tools::tolerance(1e-12));
+}
+
+void check_lengths(const Packing& packing, const PerAxis<double>& lengths) {
+    for (int a = 0; a < 3; ++a) {
+        BOOST_TEST(packing.length(a) == lengths[static_cast<std::size_t>(a)], boost::test_tools::tolerance(1e-12));
+    }
+}
+
+/// `["held", coordinate]` besides what contacts of states are.
+Contact contact_or_held(const Json& c) {
+    return c[0] == "held" ? Contact{ContactKind::held, c[1], 0} : test::contact_of(c);
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(trajectory)
+
+BOOST_AUTO_TEST_CASE(two_spheres_go_round_a_loop) {
+    const double dx = std::sqrt(7.0); // radii 1 and 2
+    const State start = start_of("closed_two", {1, 1.5, 1});
+    const Played down = crafted::play(start, -1, 1);
+    check_arc(down, floor_of(1), crafted::left(1), 1 / dx);
+    check_lengths(down.state.packing, {4, 4, 3 + dx});
+    const Played up = crafted::play(down.state, +1, 1);
+    check_arc(up, crafted::left(1), floor_of(1), dx);
+    check_lengths(up.state.packing, {3 + dx, 4, 4});
+    const EquilibriumRecord& there = down.records.equilibria.back();
+    BOOST_TEST(there.strain[2] == 1 - (3 + dx), boost::test_tools::tolerance(1e-12)); // lengths of reference are 1
+    BOOST_TEST(there.potential == 4 + 6 + (3 + dx) / dx, boost::test_tools::tolerance(1e-12));
+}
+
+BOOST_AUTO_TEST_CASE(a_sphere_of_a_tetrahedron_leaves_with_its_four_contacts) {
+    const Played start = crafted::play(start_of("closed_tetra", {1, 1, 1}), +1, {}, 1.5);
+    BOOST_TEST_REQUIRE(start.outcome.completed, start.why());
+    const EquilibriumRecord& record = start.records.equilibria.front();
+    BOOST_TEST(record.stress_high == 2.0, boost::test_tools::tolerance(1e-12));
+    BOOST_TEST(record.stress_low == 0.4, boost::test_tools::tolerance(1e-12));
+    BOOST_TEST((record.opens_low == floor_of(0)), to_string(record.opens_low));
+    const std::vector<Contact> four{
+        {ContactKind::upper_wall, 1, 0}, {ContactKind::upper_wall, 1, 1}, floor_of(1), crafted::pair(0, 1)};
+    BOOST_TEST((std::find(four.begin(), four.end(), record.opens_high) != four.end()), to_string(record.opens_high));
+}
+
+BOOST_AUTO_TEST_CASE(sequences_of_an_independent_program_are_followed) {
+    for (const Json& sequence : test::read_spheres("sequences")) {
+        const std::string name = sequence["start"];
+        BOOST_TEST_INFO_SCOPE(name << ", " << sequence["load"]);
+        State state = test::state_of_spheres(test::read_spheres(name));
+        Load& load = state.load;
+        const int count = static_cast<int>(sequence["equilibria"].size());
+        double unit = load.stress[2];
+        if (sequence["load"] == "true") {
+            load.kind = LoadKind::true_stress;
+            load.stress = {1, 1, 1};
+            load.refer_to(state.packing);
+            unit = 1;
+        } else if (sequence["load"] == "shear") {
+            load.loaded_axis = 3;
+            unit = std::stod(sequence["unit_force"].get<std::string>());
+        }
+        snap_to_grid(state.packing);
+        const Played played = crafted::play(state, sequence["load"] == "down" ? -1 : +1, count);
+        BOOST_TEST_REQUIRE(played.outcome.completed, played.why());
+        std::size_t next = 0;
+        for (const Json& equilibrium : sequence["equilibria"]) {
+            const double ratio = std::stod(equilibrium["ratio"].get<std::string>());
+            for (const Json& arc : equilibrium["arcs"]) {
+                BOOST_TEST_REQUIRE(next < played.records.arcs.size());
+                const ArcRecord& found = played.records.arcs[next++];
+                BOOST_TEST((found.opened == contact_or_held(arc[0])), arc << ": " << to_string(found.opened));
+                BOOST_TEST((found.closed == contact_or_held(arc[1])), arc << ": " << to_string(found.closed));
+                BOOST_TEST(found.stress / unit == ratio, boost::test_tools::tolerance(1e-9));
+            }
+        }
+        BOOST_TEST(next == played.records.arcs.size());
+        BOOST_TEST(played.records.equilibria.size() == static_cast<std::size_t>(count) + 1);
+    }
+}
+
+BOOST_AUTO_TEST_SUITE_END()

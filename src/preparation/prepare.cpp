@@ -139,7 +139,7 @@ void check(const PreparationOptions& options) {
     if (options.cell == PreparedCell::tilted && options.load != LoadKind::nominal) {
         bad("true stresses where the tilt moves have no potential: expected nominal ones");
     }
-    if (options.loads_tilt && options.cell != PreparedCell::tilted) {
+    if (options.loaded_axis.value_or(0) >= options.dimension && options.cell != PreparedCell::tilted) {
         bad("the shear stress is to be changed and no tilt moves: expected a tilted cell");
     }
     if (!(options.jitter >= 0 && options.jitter < 1)) {
@@ -250,8 +250,8 @@ Result<State> prepare(const PreparationOptions& options, PreparationReport& repo
         return failed(FailureKind::interrupted, "stopped during {} after {} steps", stage.name, stage.iterations);
     }
     auto state = find_vertex(scale.to_user(packing, radius), options, report);
-    if (state.ok() && options.loads_tilt) {
-        state.value().load.loaded_axis = packing.dimension;
+    if (state.ok() && options.loaded_axis) {
+        state.value().load.loaded_axis = *options.loaded_axis;
     }
     return state;
 }

@@ -425,17 +425,20 @@ void SoftDynamics::count_contacts() {
 }
 
 template <std::size_t Axes>
-void SoftDynamics::move(std::size_t first, std::size_t last, double dt, const PerAxis<double>& stretch,
-                        double& fastest) {
+double SoftDynamics::move(std::size_t first, std::size_t last, double dt, PerAxis<double> stretch) {
+    double* const q = q_.data();
+    const double* const velocity = velocity_.data();
+    double fastest = 0;
     for (std::size_t i = first; i < last; ++i) {
         double square = 0;
         for (std::size_t a = 0; a < Axes; ++a) {
-            const double w = velocity_[Axes * i + a];
-            q_[Axes * i + a] = q_[Axes * i + a] * stretch[a] + dt * w;
+            const double w = velocity[Axes * i + a];
+            q[Axes * i + a] = q[Axes * i + a] * stretch[a] + dt * w;
             square += w * w;
         }
         fastest = fastest < square ? square : fastest;
     }
+    return fastest;
 }
 
 void SoftDynamics::advance(double dt, bool walls) {
@@ -451,8 +454,7 @@ void SoftDynamics::advance(double dt, bool walls) {
     parallel_pieces(blocks.count(), [&](std::size_t piece) {
         const std::size_t first = blocks.first(piece);
         const std::size_t last = blocks.last(piece);
-        axes_ == 2 ? move<2>(first, last, dt, stretch, fastest[piece])
-                   : move<3>(first, last, dt, stretch, fastest[piece]);
+        fastest[piece] = axes_ == 2 ? move<2>(first, last, dt, stretch) : move<3>(first, last, dt, stretch);
     });
     follow_images();
     // Two disks that are not listed approach by at most twice the largest peculiar displacement plus the homogeneous

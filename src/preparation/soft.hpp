@@ -85,8 +85,8 @@ class SoftDynamics {
     template <std::size_t Axes> PerAxis<double> spread(std::size_t first, std::size_t last, std::size_t piece);
     Sums add_up(std::size_t first, std::size_t last);
     void advance(double dt, bool walls);
-    template <std::size_t Axes>
-    void move(std::size_t first, std::size_t last, double dt, const PerAxis<double>& stretch, double& fastest);
+    /// The largest square of a velocity.
+    template <std::size_t Axes> double move(std::size_t first, std::size_t last, double dt, PerAxis<double> stretch);
     void refresh_pairs();
     void place_images();
     void follow_images();

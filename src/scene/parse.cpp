@@ -155,20 +155,25 @@ void read_loaded(Section& section, Scene& scene) {
     if (!section.string("loaded")) { // without it the state of a file says what is loaded
         return;
     }
-    const std::vector<std::string> words{"y", "tilt", "x", "z", "xy", "xz", "yz"};
-    scene.loaded = words[section.word("loaded", 0, words)];
-    if (!scene.start.empty()) {
-        return; // the state of the file tells its dimension and whether it has a tilt
+    PreparationOptions& options = scene.preparation;
+    const bool prepares = scene.start.empty(); // the state of a file tells its dimension and whether it has a tilt
+    const bool in_plane = options.dimension == plane;
+    std::vector<std::string> words{"x", "y", "z", "xy", "xz", "yz"};
+    if (prepares && in_plane) {
+        words = {"y", "tilt"};
+    } else if (!prepares) {
+        words.emplace_back("tilt");
     }
-    if (scene.loaded != "y" && scene.loaded != "tilt") {
-        section.refuse("loaded", fmt::format("'loaded' in [load] is \"{}\", which is of spheres read from a file: "
-                                             "expected \"y\" or \"tilt\"",
-                                             scene.loaded));
+    const std::size_t place = section.word("loaded", 0, words);
+    scene.loaded = words[place];
+    if (!prepares) {
+        return;
     }
-    scene.preparation.loads_tilt = scene.loaded == "tilt";
-    if (scene.preparation.loads_tilt && scene.preparation.cell != PreparedCell::tilted) {
-        section.refuse("loaded",
-                       "'loaded' in [load] is \"tilt\" and no tilt moves: expected kind = \"tilted\" in [cell]");
+    options.loaded_axis = static_cast<int>(place) + (in_plane ? 1 : 0);
+    if (*options.loaded_axis >= options.dimension && options.cell != PreparedCell::tilted) {
+        section.refuse("loaded", fmt::format("'loaded' in [load] is \"{}\" and no tilt moves: expected kind = \"{}\" "
+                                             "in [cell]",
+                                             scene.loaded, in_plane ? "tilted" : "triclinic"));
     }
 }
 
@@ -176,7 +181,8 @@ void read_loaded(Section& section, Scene& scene) {
 Load load_at_start(const Scene& scene) {
     Load load;
     if (scene.start.empty()) {
-        load.loaded_axis = scene.preparation.loads_tilt ? plane : 1;
+        load.dimension = scene.preparation.dimension;
+        load.loaded_axis = scene.preparation.loaded_axis.value_or(load.dimension - 1);
         return load;
     }
     try {
@@ -216,7 +222,7 @@ void read_load(Section& section, Scene& scene) {
         if (scene.preparation.cell == PreparedCell::tilted && scene.preparation.load != LoadKind::nominal) {
             section.refuse("kind",
                            "'kind' in [load] is \"true\" and the tilt of the [cell] moves: expected \"nominal\" "
-                           "(true stresses have no potential there), or kind = \"rectangular\" in [cell]");
+                           "(true stresses have no potential there), or another kind in [cell]");
         }
         scene.preparation.stress = section.number("sigma1", 1, 1e-100, 1e100, "a positive stress from 1e-100 to 1e100");
     }
@@ -409,8 +415,11 @@ Scene parse_scene(const std::string& text, const std::string& source, const std:
     Section output = section("output");
     read_output(output, scene);
     output.finish();
-    const double prepared = scene.preparation.loads_tilt ? 0 : 1; // isotropic
-    check_programme(scene, scene.start.empty() ? std::optional<double>(prepared) : std::nullopt);
+    std::optional<double> ratio;
+    if (scene.start.empty()) {
+        ratio = load_at_start(scene).loads_tilt() ? 0 : 1; // isotropic
+    }
+    check_programme(scene, ratio);
     return scene;
 }
 

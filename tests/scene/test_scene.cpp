@@ -168,6 +168,12 @@ BOOST_AUTO_TEST_CASE(spheres_take_the_place_of_disks) {
     BOOST_TEST((kind("triclinic") == PreparedCell::tilted));
     BOOST_TEST((kind("isotropic") == PreparedCell::isotropic));
     refuses_scene(spheres + "[cell]\nkind = \"tilted\"\n", {"s.toml:4:", "tilted", "triclinic"});
+    const Scene sheared = parse_scene_text(spheres + "[cell]\nkind = \"triclinic\"\n[load]\nloaded = \"xz\"\n");
+    BOOST_TEST(sheared.preparation.loaded_axis.value() == 4);
+    BOOST_TEST(parse_scene_text(spheres + "[load]\nloaded = \"x\"\n").preparation.loaded_axis.value() == 0);
+    refuses_scene(spheres + "[load]\nloaded = \"xz\"\n", {"s.toml:4:", "no tilt moves", "triclinic"});
+    refuses_scene(spheres + "[load]\nloaded = \"tilt\"\n", {"s.toml:4:", "loaded", "xz"});
+    refuses_scene(head + "[load]\nloaded = \"z\"\n", {"s.toml:4:", "loaded", "tilt"});
     refuses_scene("[packing]\nspheres = 8193\n[cell]\n", {"s.toml:3:", "8193 spheres", "at most 8192"});
 }
 

@@ -80,7 +80,9 @@ struct PreparationOptions {
     LoadKind load = LoadKind::nominal;
     /// A cell instead of walls: at most `large_above` disks, and enough for periods of four diameters, in space one.
     PreparedCell cell = PreparedCell::none;
-    bool loads_tilt = false; ///< tilted cells: the programme will change the shear stress, not sigma_2
+    /// What the programme will change, as `Load::loaded_axis`: by default the stress of the last axis; of tilted cells
+    /// also a shear stress.
+    std::optional<int> loaded_axis = {};
 
     const std::atomic<bool>* stop = nullptr;                       ///< set by Ctrl-C
     std::function<void(const PreparationProgress&)> progress = {}; ///< called now and then; not copied, not kept

@@ -45,7 +45,7 @@ inline std::vector<std::pair<std::string, std::optional<Json>>> others(const Jso
     }
     if (value.is_string()) {
         const auto text = value.get<std::string>();
-        if (!isostat::checker::contact_spelt(text)) {
+        if (!isostat::checker::contact_spelt(text, isostat::plane)) {
             return {{"other", text + "x"}};
         }
         std::string spelt = text; // 1-2 as 2-1, 1-left as 01-left

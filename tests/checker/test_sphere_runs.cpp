@@ -1,0 +1,83 @@
+// Runs of spheres re-checked from their records; what is altered in them must not be proved.
+#include "support/played.hpp"
+#include "support/scratch.hpp"
+#include "support/spheres.hpp"
+
+#include <isostat/checker/verify.hpp>
+
+using namespace isostat;
+using json::Json;
+
+namespace {
+
+struct SphereRun {
+    const char* name;
+    int equilibria;
+};
+
+/// Boxes, slabs and two kinds of cell; walls along z open and close, and images of three numbers.
+constexpr std::array sphere_runs{SphereRun{"box_uniform_30_1", 2}, SphereRun{"slab_uniform_30_1", 6},
+                                 SphereRun{"ortho_uniform_30_1", 3}, SphereRun{"tri_uniform_30_1", 6}};
+
+void play_spheres(const SphereRun& run, const std::filesystem::path& folder) {
+    State start = test::state_of_spheres(test::read_spheres(run.name));
+    snap_to_grid(start.packing);
+    const SegmentOutcome outcome = played::into(folder, start, {towards(run.equilibria)}, {.max_strain = 1e9});
+    BOOST_REQUIRE_MESSAGE(outcome.completed, (outcome.failure ? outcome.failure->message(3) : ""));
+}
+
+/// Each alters one record of an arc.
+const std::vector<std::pair<std::string, std::function<void(Json&)>>> sphere_alterations{
+    {"stress", [](Json& arc) { arc["sigma3"] = arc["sigma3"].get<double>() * (1 + 1e-6); }},
+    {"strain", [](Json& arc) { arc["eps3"] = arc["eps3"].get<double>() * (1 + 1e-6); }},
+    {"power", [](Json& arc) { arc["power"] = arc["power"].get<double>() * 1.001; }},
+    {"work", [](Json& arc) { arc["work"] = arc["work"].get<double>() * 1.001; }},
+    {"closed", [](Json& arc) { arc["closed"] = arc["closed"] == "0-back" ? "0-front" : "0-back"; }},
+    {"opened", [](Json& arc) { arc["opened"] = arc["opened"] == "0-back" ? "0-front" : "0-back"; }},
+};
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(checker_of_sphere_runs)
+
+BOOST_AUTO_TEST_CASE(every_equilibrium_and_both_ends_of_every_arc_are_proved) {
+    for (const SphereRun& run : sphere_runs) {
+        BOOST_TEST_CONTEXT(run.name) {
+            const scratch::Folder folder;
+            play_spheres(run, folder.path() / "run");
+            const RunVerification found = verify_run(folder.path() / "run");
+            BOOST_TEST((found.verdict == Verdict::proved), found.wrong);
+            BOOST_TEST(found.undecided.empty(), (found.undecided.empty() ? "" : found.undecided.front()));
+            BOOST_TEST(found.equilibria_proved == run.equilibria + 1);
+            BOOST_TEST(found.arcs_proved == found.arcs);
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(an_altered_arc_of_spheres_is_not_proved) {
+    const scratch::Folder scratch_folder;
+    const std::filesystem::path folder = scratch_folder.path() / "run";
+    play_spheres(sphere_runs[1], folder);
+    const std::string events = scratch::read(folder / "events.jsonl");
+    std::vector<Json> arcs;
+    for (std::size_t begin = 0; begin < events.size(); begin = events.find('\n', begin) + 1) {
+        arcs.push_back(Json::parse(events.substr(begin, events.find('\n', begin) - begin)));
+    }
+    for (const auto& [what, alter] : sphere_alterations) {
+        const std::size_t altered = arcs.size() / 2;
+        std::string text;
+        for (std::size_t k = 0; k < arcs.size(); ++k) {
+            Json arc = arcs[k];
+            if (k == altered) {
+                alter(arc);
+            }
+            text += json::dumped(arc) + "\n";
+        }
+        scratch::write(folder / "events.jsonl", text);
+        forger::seal(folder);
+        const RunVerification found = verify_run(folder);
+        BOOST_TEST((found.verdict == Verdict::refuted), what << ": " << found.wrong);
+    }
+}
+
+BOOST_AUTO_TEST_SUITE_END()

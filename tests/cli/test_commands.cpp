@@ -127,8 +127,8 @@ BOOST_AUTO_TEST_CASE(prepare_makes_a_state_with_its_history_and_the_same_bits_ag
 
 BOOST_AUTO_TEST_CASE(plan_prints_a_scene_that_gives_the_same_plan) {
     const scratch::Folder folder;
-    for (const char* name :
-         {"biaxial-400.toml", "biaxial-1936.toml", "biaxial-4900.toml", "periodic-1936.toml", "shear-400.toml", "spheres-100.toml"}) {
+    for (const char* name : {"biaxial-400.toml", "biaxial-1936.toml", "biaxial-4900.toml", "periodic-1936.toml",
+                             "shear-400.toml", "spheres-100.toml"}) {
         const auto plan =
             says(run({"plan", std::string(ISOSTAT_EXAMPLES) + "/" + name}), 0, {"max_arcs = 20000", "# default"});
         scratch::write(folder / "again.toml", plan.out);

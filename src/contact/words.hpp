@@ -53,7 +53,7 @@ using FormatOfWords = fmt::format_string<decltype(in_text(std::declval<const std
 /// As fmt::format. Contacts that are `named`, other words and failures among the arguments are what it names. The
 /// arguments are copied; a character array must be a literal.
 template <class... Values> Words words(FormatOfWords<Values...> format, Values... values) {
-    Words made([text = fmt::string_view(format), values...](int dimension) -> std::string {
+    Words made([text = fmt::string_view(format), values...]([[maybe_unused]] int dimension) -> std::string {
         return fmt::format(fmt::runtime(text), in_text(values, dimension)...);
     });
     (collect_names(made, values), ...);

@@ -186,7 +186,8 @@ RunRecords read_records(const std::filesystem::path& directory, LastLine last) {
     const std::filesystem::path events = directory / "events.jsonl";
     if (!std::filesystem::exists(events) || std::filesystem::file_size(events) > 0) {
         long choices = 0;
-        const Load load = records.start ? records.start->load : Load();
+        const std::optional<StateFile> first = records.start ? std::nullopt : records.stored(0);
+        const Load load = records.start ? records.start->load : first ? first->state.load : Load();
         for_each_line(records_text(events, last), [&](int number, const std::string& line) {
             records.events.push_back(event_of(line, fmt::format("{}:{}", events.string(), number), load));
             EventRecord& event = records.events.back();

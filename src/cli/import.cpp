@@ -189,9 +189,7 @@ Result<Imported> from_crafted(const ImportArguments& a, const std::string& text)
     State& state = out.state;
     state.packing = crafted::approximate(file.packing);
     state.contacts = exact.contacts;
-    state.load.stress = parse_stress(a.stress);
-    state.load.kind = value_of<LoadKind>(a.load, load_kind_words).value_or(LoadKind::nominal);
-    state.load.refer_to(state.packing);
+    state.load = load_of(a, state.packing);
     out.load_of_file = file.packing.load.has_value();
     if (file.packing.load) {
         const auto per_area = [&](const exact::Number& force, std::size_t axis) {

@@ -179,7 +179,7 @@ isostat::crafted::ExactLoad exact_load(const State& state) {
     isostat::crafted::ExactLoad load;
     for (const WallForce& wall : state.load.wall_forces(state.packing)) {
         const auto axis = static_cast<std::size_t>(wall.coordinate) - state.packing.length_at(0);
-        (axis < 2 ? load.wall[axis] : load.tilt) =
+        (axis < 2 ? load.wall[axis] : load.tilt[0]) =
             exact::Number::from_double(wall.stress) * exact::Number::from_double(wall.length);
     }
     for (const double f : state.load.disk_force) {

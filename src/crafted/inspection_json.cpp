@@ -37,6 +37,27 @@ void add_cell(const Inspection& inspection, Json& out) {
     }
 }
 
+Json ranges_json(const Inspection& inspection, const std::vector<std::string>& contacts,
+                 const std::vector<std::string>& coordinates) {
+    Json out = Json::array();
+    for (const LoadRange& range : inspection.ranges) {
+        const auto end = [](const std::optional<Number>& force) { return force ? Json(force->text()) : Json(nullptr); };
+        Json entry{{"on", coordinates[static_cast<std::size_t>(range.dof)]},
+                   {"least", end(range.least)},
+                   {"most", end(range.most)},
+                   {"zero_at_least", Json::array()},
+                   {"zero_at_most", Json::array()}};
+        for (const int l : range.zero_at_least) {
+            entry["zero_at_least"].push_back(contacts[static_cast<std::size_t>(l)]);
+        }
+        for (const int l : range.zero_at_most) {
+            entry["zero_at_most"].push_back(contacts[static_cast<std::size_t>(l)]);
+        }
+        out.push_back(std::move(entry));
+    }
+    return out;
+}
+
 } // namespace
 
 std::string to_json(const Inspection& inspection, const ExactPacking& packing) {
@@ -78,22 +99,7 @@ std::string to_json(const Inspection& inspection, const ExactPacking& packing) {
     out["forces_unique"] = inspection.forces_unique;
     out["without_force"] = inspection.without_force;
     out["forces"] = entries(inspection.forces, contacts);
-    out["ranges"] = Json::array();
-    for (const LoadRange& range : inspection.ranges) {
-        const auto end = [](const std::optional<Number>& force) { return force ? Json(force->text()) : Json(nullptr); };
-        Json entry{{"on", coordinates[static_cast<std::size_t>(range.dof)]},
-                   {"least", end(range.least)},
-                   {"most", end(range.most)},
-                   {"zero_at_least", Json::array()},
-                   {"zero_at_most", Json::array()}};
-        for (const int l : range.zero_at_least) {
-            entry["zero_at_least"].push_back(contacts[static_cast<std::size_t>(l)]);
-        }
-        for (const int l : range.zero_at_most) {
-            entry["zero_at_most"].push_back(contacts[static_cast<std::size_t>(l)]);
-        }
-        out["ranges"].push_back(std::move(entry));
-    }
+    out["ranges"] = ranges_json(inspection, contacts, coordinates);
     out["structural_zeros"] = Json::array();
     for (std::size_t l = 0; l < inspection.structural_zero.size(); ++l) {
         if (inspection.structural_zero[l] != 0) {

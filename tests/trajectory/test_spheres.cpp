@@ -3,12 +3,12 @@
 #include "support/spheres.hpp"
 
 using namespace isostat;
-using crafted::Played;
+using ::crafted::Played;
 using test::Json;
 
 namespace {
 
-State start_of(const std::string& name, const PerAxis<double>& stress) {
+State start_of_spheres(const std::string& name, const PerAxis<double>& stress) {
     State state = test::state_of_spheres(test::read_spheres(name));
     state.load.stress = stress;
     state.load.infinitesimal = generic_infinitesimal(state.packing.radius, 7, 3);
@@ -20,7 +20,7 @@ Contact floor_of(int sphere) {
     return {ContactKind::lower_wall, sphere, 2};
 }
 
-void check_arc(const Played& played, const Contact& opened, const Contact& closed, double stress) {
+void check_sphere_arc(const Played& played, const Contact& opened, const Contact& closed, double stress) {
     BOOST_TEST_REQUIRE(played.outcome.completed, played.why());
     BOOST_TEST_REQUIRE(played.records.arcs.size() == 1U);
     const ArcRecord& arc = played.records.arcs.front();
@@ -29,7 +29,7 @@ void check_arc(const Played& played, const Contact& opened, const Contact& close
     BOOST_TEST(arc.stress == stress, boost::test_tools::tolerance(1e-12));
 }
 
-void check_lengths(const Packing& packing, const PerAxis<double>& lengths) {
+void check_sphere_lengths(const Packing& packing, const PerAxis<double>& lengths) {
     for (int a = 0; a < 3; ++a) {
         BOOST_TEST(packing.length(a) == lengths[static_cast<std::size_t>(a)], boost::test_tools::tolerance(1e-12));
     }
@@ -46,20 +46,20 @@ BOOST_AUTO_TEST_SUITE(trajectory)
 
 BOOST_AUTO_TEST_CASE(two_spheres_go_round_a_loop) {
     const double dx = std::sqrt(7.0); // radii 1 and 2
-    const State start = start_of("closed_two", {1, 1.5, 1});
-    const Played down = crafted::play(start, -1, 1);
-    check_arc(down, floor_of(1), crafted::left(1), 1 / dx);
-    check_lengths(down.state.packing, {4, 4, 3 + dx});
-    const Played up = crafted::play(down.state, +1, 1);
-    check_arc(up, crafted::left(1), floor_of(1), dx);
-    check_lengths(up.state.packing, {3 + dx, 4, 4});
+    const State start = start_of_spheres("closed_two", {1, 1.5, 1});
+    const Played down = ::crafted::play(start, -1, 1);
+    check_sphere_arc(down, floor_of(1), ::crafted::left(1), 1 / dx);
+    check_sphere_lengths(down.state.packing, {4, 4, 3 + dx});
+    const Played up = ::crafted::play(down.state, +1, 1);
+    check_sphere_arc(up, ::crafted::left(1), floor_of(1), dx);
+    check_sphere_lengths(up.state.packing, {3 + dx, 4, 4});
     const EquilibriumRecord& there = down.records.equilibria.back();
     BOOST_TEST(there.strain[2] == 1 - (3 + dx), boost::test_tools::tolerance(1e-12)); // lengths of reference are 1
     BOOST_TEST(there.potential == 4 + 6 + (3 + dx) / dx, boost::test_tools::tolerance(1e-12));
 }
 
 BOOST_AUTO_TEST_CASE(a_sphere_of_a_tetrahedron_leaves_with_its_four_contacts) {
-    const Played start = crafted::play(start_of("closed_tetra", {1, 1, 1}), +1, {}, 1.5);
+    const Played start = ::crafted::play(start_of_spheres("closed_tetra", {1, 1, 1}), +1, {}, 1.5);
     BOOST_TEST_REQUIRE(start.outcome.completed, start.why());
     const EquilibriumRecord& record = start.records.equilibria.front();
     BOOST_TEST(record.stress_high == 2.0, boost::test_tools::tolerance(1e-12));
@@ -88,7 +88,7 @@ BOOST_AUTO_TEST_CASE(sequences_of_an_independent_program_are_followed) {
             unit = std::stod(sequence["unit_force"].get<std::string>());
         }
         snap_to_grid(state.packing);
-        const Played played = crafted::play(state, sequence["load"] == "down" ? -1 : +1, count);
+        const Played played = ::crafted::play(state, sequence["load"] == "down" ? -1 : +1, count);
         BOOST_TEST_REQUIRE(played.outcome.completed, played.why());
         std::size_t next = 0;
         for (const Json& equilibrium : sequence["equilibria"]) {

@@ -595,7 +595,7 @@ Objections check_stored_forces(const Place& place, const std::vector<double>& fo
     }
     const double size = 100 * largest_force(e.forces);
     for (std::size_t l = 0; l < forces.size(); ++l) {
-        if (Objections wrong = compare(("the stored force of " + e.name(l)).c_str(), forces[l], e.forces[l], size)) {
+        if (Objections wrong = compare("the stored force of " + e.name(l), forces[l], e.forces[l], size)) {
             return wrong;
         }
     }

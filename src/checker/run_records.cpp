@@ -128,8 +128,8 @@ EventRecord event_of(const std::string& line, const std::string& where, const Lo
 
 /// The two columns of a contact have its one spelling, or that of none.
 void require_spelling(const EquilibriumLine& line, const std::string& what) {
-    const int i = line.integer((what + "_i").c_str());
-    const int j = line.integer((what + "_j").c_str());
+    const int i = line.integer(what + "_i");
+    const int j = line.integer(what + "_j");
     const bool none = j == no_contact && i >= no_contact;
     if (!none && (i < 0 || j < front_wall || (j >= 0 && j < i))) {
         throw Error(ErrorKind::bad_input,

@@ -69,12 +69,12 @@ ForceAverages force_averages(const State& state, const Certification& truth) {
     return sum;
 }
 
-std::vector<std::pair<double, double>> force_distribution(const Certification& truth) {
+std::vector<std::pair<double, double>> force_distribution(const State& state, const Certification& truth) {
     constexpr double width = 0.25;
     std::vector<double> forces;
     double sum = 0;
     for (std::size_t l = 0; l < truth.finite.size(); ++l) {
-        if (truth.structural_zero[l] == 0) {
+        if (carries(state, truth, l)) {
             forces.push_back(mean_of_ends(truth.finite[l]));
             sum += forces.back();
         }

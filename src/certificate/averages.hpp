@@ -33,6 +33,6 @@ ForceAverages force_averages(const State& state, const Certification& truth);
 
 /// P(f / <f>) over the force-carrying contacts, walls too: centres of bins of 1/4 up to the largest force, densities
 /// that integrate to 1. Empty without forces. \pre as above
-std::vector<std::pair<double, double>> force_distribution(const Certification& truth);
+std::vector<std::pair<double, double>> force_distribution(const State& state, const Certification& truth);
 
 } // namespace isostat

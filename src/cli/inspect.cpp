@@ -233,7 +233,7 @@ void add_averages(Json& object, const State& state, const Certification& truth, 
     object["fabric"] = tensor_json(mean.fabric, axes);
     object["mean_force"] = number(mean.mean_force);
     object["force_distribution"] = Json::array();
-    for (const auto& [centre, density] : force_distribution(truth)) {
+    for (const auto& [centre, density] : force_distribution(state, truth)) {
         object["force_distribution"].push_back({number(centre), number(density)});
     }
 }

@@ -38,7 +38,7 @@ void check_averages(const State& state, const std::string& name) {
     BOOST_TEST(std::abs(trace - 1) < 1e-12, name); // unit normals
     double share = 0;
     double first_moment = 0; // the bins are a quarter wide
-    for (const auto& [centre, density] : isostat::force_distribution(truth)) {
+    for (const auto& [centre, density] : isostat::force_distribution(state, truth)) {
         share += 0.25 * density;
         first_moment += 0.25 * density * centre;
     }

@@ -16,7 +16,7 @@ namespace {
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr int further = 3; ///< equilibria after the last load: frames may be early
 
-double& loaded(State& state) {
+double loaded(const State& state) {
     return state.load.loaded_stress();
 }
 
@@ -161,7 +161,7 @@ Result<std::vector<Contact>> list_after(State state, double sigma, bool jump, co
     Segment segment;
     segment.equilibria = 0;
     if (jump) {
-        loaded(state) = sigma;
+        state.load.set_loaded_stress(sigma);
     } else if (sigma != loaded(state)) {
         segment.equilibria.reset();
         segment.direction = sigma > loaded(state) ? 1 : -1;

@@ -274,12 +274,21 @@ void bind_state_class(py::module_& module) {
                     throw Error(ErrorKind::bad_input, fmt::format("stress has {} numbers: expected {}", stress.size(),
                                                                   changed.packing.axes()));
                 }
+                changed.load.path.reset();
                 std::copy(stress.begin(), stress.end(), changed.load.stress.begin());
                 changed.load.shear[0] = shear.value_or(changed.load.shear[0]);
                 return parse_any_state(state_text(changed), "State", Dimensions::any);
             },
             py::arg("stress"), py::arg("shear") = py::none(),
-            "The same state under other stresses, one per axis, and another shear stress on a tilt xy that moves.");
+            "The same state under other stresses, one per axis, and another shear stress on a tilt xy that moves.")
+        .def(
+            "with_loaded_stress",
+            [](const PyState& self, double stress) {
+                State changed = self.state;
+                changed.load.set_loaded_stress(stress);
+                return parse_any_state(state_text(changed), "State", Dimensions::any);
+            },
+            py::arg("stress"), "The same state where what the programme changes has this value.");
 }
 
 } // namespace

@@ -66,9 +66,11 @@ void print_counting(const State& state, const Counting& c) {
         : periodic                       ? "nominal (constant forces on the periods)"
                                          : "nominal (constant wall forces)");
     if (state.load.path) {
-        say("loaded                   t = {}: sigma = ({}) + t ({})\n", state.load.path->t,
-            fmt::join(of_path(state, state.load.path->at), ", "),
-            fmt::join(of_path(state, state.load.path->rate), ", "));
+        const auto list = [&](const StressRates& all) {
+            return fmt::format("{}", fmt::join(of_path(state, all), ", "));
+        };
+        say("loaded                   t = {}: sigma = ({}) + t ({})\n", state.load.path->t, list(state.load.path->at),
+            list(state.load.path->rate));
     }
     say("degrees of freedom N_f   {}\n", c.dof_count);
     say("contacts N               {}\n", c.contact_count);

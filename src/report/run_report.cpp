@@ -191,6 +191,19 @@ std::vector<std::pair<int, std::string>> sphere_pictures(const std::vector<fs::p
     return pictures;
 }
 
+/// A stress on an axis changes, not those on tilts alone.
+bool changes_lengths(const Load& load) {
+    return load.rate_of(0) != 0 || load.rate_of(1) != 0 || load.rate_of(2) != 0;
+}
+
+std::string page_of_disks(const fs::path& directory, const ReportOptions& options, Writer& writer) {
+    Page page = run_page(directory, options.progress);
+    for (const std::string& left_out : page.left_out) {
+        writer.note(fmt::format("trajectory.html: left out: {}", left_out));
+    }
+    return std::move(page.html);
+}
+
 /// Figures go into the run that they are of, or where only a report is.
 void make_output(const fs::path& directory, const fs::path& output) {
     if (fs::weakly_canonical(output) == fs::weakly_canonical(directory / "figures")) {
@@ -227,8 +240,7 @@ ReportResult report_run(const fs::path& directory, const fs::path& output, const
     const std::vector<fs::path> states = stored_states(directory, content);
     const State first = states.empty() ? State() : read_any_state(states.front(), Dimensions::any).state;
     const Load& load = first.load;
-    const int disks = first.packing.disk_count();
-    const bool triaxial = load.dimension != plane && !load.loads_tilt() && !rows.empty();
+    const bool triaxial = load.dimension != plane && !rows.empty() && changes_lengths(load);
     const LoadWords words = load_words(load);
     if (options.pictures || options.vtk) {
         if (options.pictures) {
@@ -244,18 +256,14 @@ ReportResult report_run(const fs::path& directory, const fs::path& output, const
         }
         writer.vtk_series();
     }
-    if (options.html && triaxial) {
-        const std::string title = fmt::format("{} spheres: {}", disks, header.at("status").string());
-        writer.write("trajectory.html",
-                     triaxial_page(triaxial_points(rows, load), rows, names, words, title, sphere_pictures(states)));
-    } else if (options.html && load.dimension != plane) {
-        writer.note("trajectory.html: left out: the page of spheres is of a triaxial test, and a tilt is loaded");
+    if (options.html && load.dimension != plane && !triaxial) {
+        writer.note("trajectory.html: left out: the page of spheres is of a triaxial test, and tilts are loaded");
     } else if (options.html) {
-        const Page page = run_page(directory, options.progress);
-        for (const std::string& left_out : page.left_out) {
-            writer.note(fmt::format("trajectory.html: left out: {}", left_out));
-        }
-        writer.write("trajectory.html", page.html);
+        const std::string title =
+            fmt::format("{} spheres: {}", first.packing.disk_count(), header.at("status").string());
+        writer.write("trajectory.html", triaxial ? triaxial_page(triaxial_points(rows, load), rows, names, words, title,
+                                                                 sphere_pictures(states))
+                                                 : page_of_disks(directory, options, writer));
     }
     std::string text = run_tables(rows, names, header.at("status").string(), words);
     const fs::path summary = directory / "summary.json"; // of runs that ended

@@ -74,7 +74,7 @@ struct Worse {
         std::vector<double> x(state.contacts.size(), 0.0);
         for (const WallForce& wall : state.load.wall_forces(state.packing)) {
             if (wall.rate != 0) {
-                x[static_cast<std::size_t>(subject->wall_row)] = -wall.length;
+                x[static_cast<std::size_t>(subject->changing_rows.front())] = -wall.length;
             }
         }
         centre->factorisation.solve_forces(x);

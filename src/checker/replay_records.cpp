@@ -249,6 +249,10 @@ Objections check_power_at_contact(const Place& to, const EventRecord& event, boo
         return Objection{power.negative(),
                          fmt::format("the power is in {}: expected > 0 at the end of every arc", shown(power))};
     }
+    if (rattles && !to.first && !contains(to.zeros, l) && !to.evidence->forces[l].positive()) {
+        return Objection{to.evidence->forces[l].negative(),
+                         fmt::format("the power of the finite load is in {}", shown(to.evidence->forces[l]))};
+    }
     return compare_if_bounded("power", {event.power, event.power_bound}, power,
                               force_tolerance * largest_force(forces));
 }

@@ -153,11 +153,8 @@ BOOST_AUTO_TEST_CASE(a_run_of_spheres_names_what_it_loads_by_axis) {
 BOOST_AUTO_TEST_CASE(what_takes_disks_only_says_so_in_one_sentence) {
     const scratch::Folder folder;
     const std::string state = state_file(folder, "box_uniform_30_1");
-    scratch::write(folder / "s.toml", "[packing]\nfile = \"box_uniform_30_1.json\"\n[run]\ncertify = \"arcs\"\n"
-                                      "[[programme]]\ndo = \"up\"\nequilibria = 1\n");
     for (const std::vector<std::string>& command :
-         {std::vector<std::string>{"run", folder.at("s.toml"), "-o", folder.at("out")},
-          {"snap", state, "-o", folder.at("t.json")}}) {
+         {std::vector<std::string>{"snap", state, "-o", folder.at("t.json")}}) {
         const Outcome outcome = run(command);
         BOOST_TEST(outcome.status == 65, command[0] << ": " << outcome.err);
         BOOST_TEST(contains(outcome.err, "spheres"), command[0] << ": " << outcome.err);

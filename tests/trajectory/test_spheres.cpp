@@ -106,4 +106,34 @@ BOOST_AUTO_TEST_CASE(sequences_of_an_independent_program_are_followed) {
     }
 }
 
+/// A triclinic cell is loaded along an axis, and sheared in each of its three planes.
+BOOST_AUTO_TEST_CASE(every_arc_of_spheres_is_certified_with_its_power_and_none_is_changed) {
+    struct Loaded {
+        const char* name;
+        int axis, equilibria;
+    };
+    for (const auto& [name, axis, equilibria] :
+         {Loaded{"box_uniform_30_1", 2, 1}, Loaded{"slab_uniform_30_1", 2, 3}, Loaded{"ortho_uniform_30_1", 0, 1},
+          Loaded{"tri_uniform_30_1", 2, 2}, Loaded{"tri_uniform_30_1", 3, 2}, Loaded{"tri_uniform_30_1", 4, 2},
+          Loaded{"tri_uniform_30_1", 5, 2}}) {
+        BOOST_TEST_INFO_SCOPE(name << " along " << axis);
+        State state = test::state_of_spheres(test::read_spheres(name));
+        state.load.loaded_axis = axis;
+        snap_to_grid(state.packing);
+        const RunOptions options{.max_strain = 1e9, .certify = CertifyLevel::arcs};
+        const Played plain = ::crafted::play(state, +1, equilibria, {}, {.max_strain = 1e9});
+        const Played proved = ::crafted::play(state, +1, equilibria, {}, options);
+        BOOST_TEST_REQUIRE(proved.outcome.completed, proved.why());
+        BOOST_TEST((plain.state.packing.q == proved.state.packing.q));
+        BOOST_TEST_REQUIRE(plain.records.arcs.size() == proved.records.arcs.size());
+        for (std::size_t k = 0; k < proved.records.arcs.size(); ++k) {
+            const ArcRecord& arc = proved.records.arcs[k];
+            BOOST_TEST((arc.opened == plain.records.arcs[k].opened && arc.closed == plain.records.arcs[k].closed));
+            BOOST_TEST_REQUIRE(arc.certificate.has_value());
+            BOOST_TEST((arc.certificate->verdict == Verdict::proved), arc.step << ": " << arc.certificate->reason);
+            BOOST_TEST((arc.certificate->power == Verdict::proved), arc.step << ": " << arc.certificate->power_reason);
+        }
+    }
+}
+
 BOOST_AUTO_TEST_SUITE_END()

@@ -4,7 +4,6 @@
 #include "motion/curve_piece.hpp"
 #include "oracle/random.hpp"
 #include "oracle/truth.hpp"
-#include "support/scale.hpp"
 #include "support/test.hpp"
 
 using namespace isostat;
@@ -82,8 +81,8 @@ double error_of_sum(int dimension, int terms) {
         PerAxis<double> x{};
         PerAxis<double> y{};
         for (std::size_t a = 0; a < axes; ++a) {
-            x[a] = k == 0 && a == 0 ? 1 + 0x1p-30 : 1 + 0x1p-20;
-            y[a] = k == 0 && a == 0 ? 1 + 0x1p-31 : k == 0 || a == 0 ? roundoff::u : roundoff::u * 0x1p-20;
+            x[a] = k == 0 && a == 0 ? 1 + 3 * 0x1p-28 : 1 + 0x1p-20;
+            y[a] = k == 0 && a == 0 ? x[a] : k == 0 || a == 0 ? roundoff::u : roundoff::u * 0x1p-20;
             exact += Exact(x[a]) * Exact(y[a]);
         }
         sum.add(x, y);
@@ -99,19 +98,20 @@ BOOST_AUTO_TEST_CASE(rows_of_spheres_through_images_lose_more_than_those_of_disk
     double disks = 0;
     double spheres = 0;
     oracle::Random random(3);
-    for (int trial = 0; trial < testing::scaled(300); ++trial) {
+    for (int trial = 0; trial < 300; ++trial) {
         disks = std::max(disks, error_of_row(2, random));
         spheres = std::max(spheres, error_of_row(3, random));
     }
     BOOST_TEST_MESSAGE("products with a row: " << disks << " u of disks, " << spheres << " u of spheres");
-    BOOST_TEST((disks > 0.5 * row_units(2) && disks <= row_units(2)));
-    BOOST_TEST((spheres > 0.5 * row_units(3) && spheres <= row_units(3)));
+    BOOST_TEST((disks > 7 && disks <= 11));
+    BOOST_TEST((spheres > 11 && spheres <= 16.5)); // more than disks can lose
+    BOOST_TEST((row_units(2) > 11 && row_units(3) > 16.5));
 }
 
 BOOST_AUTO_TEST_CASE(entries_of_a_row_sum_to_less_than_four_and_four_for_each_period) {
     oracle::Random random(5);
     double largest_share = 0;
-    for (int trial = 0; trial < testing::scaled(1000); ++trial) {
+    for (int trial = 0; trial < 300; ++trial) {
         const RowOfImage at(3, trial % 3, random);
         const CurvePiece piece(*at.curve, *at.centre, 1);
         const GapGradient row = gap_gradient(at.packing, at.pair);
@@ -121,7 +121,7 @@ BOOST_AUTO_TEST_CASE(entries_of_a_row_sum_to_less_than_four_and_four_for_each_pe
         }
         largest_share = std::max(largest_share, sum / (4 * piece.row_terms()));
     }
-    BOOST_TEST((largest_share > std::sqrt(3.0) / 2 - 1e-3 && largest_share <= 1)); // 2 sqrt 3 of 4
+    BOOST_TEST((largest_share > 0.8 && largest_share <= 1)); // at most 2 sqrt 3 of 4 without a period
 }
 
 BOOST_AUTO_TEST_CASE(coefficients_of_equations_lose_one_rounding_more_for_each_axis) {

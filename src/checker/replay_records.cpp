@@ -423,9 +423,9 @@ Objections check_measures(const Place& place, const EquilibriumLine& line) {
 } // namespace
 
 Objections check_end(const Place& from, const Place& to, const EventRecord& event, bool rattles) {
-    if (Objections wrong =
-            compare_if_bounded(record_columns(to.state->load, false).strain, {event.strain, event.strain_bound},
-                               strain_of(to, to.state->load.loaded_axis), arc_strain_tolerance)) {
+    if (Objections wrong = compare_if_bounded(record_columns(to.state->load, to.state->load.loads_tilt()).strain,
+                                              {event.strain, event.strain_bound},
+                                              strain_of(to, to.state->load.loaded_axis), arc_strain_tolerance)) {
         return wrong;
     }
     const auto settled = [&](const Contact& pair, const Range& first) -> Objections {

@@ -98,9 +98,6 @@ Objections Follower::set_up() {
     const std::vector<bool> moves = moving_coordinates(start, problem, way_.witness);
     moving_.state = start;
     moving_.moves = moves;
-    if (start.packing.dimension != plane && start.load.kind == LoadKind::true_stress && !way_.rattles) {
-        return open("the power of true stresses is followed in the plane only");
-    }
     if (way_.witness.grains && moving_.disk_moves(start.packing.cell.pin) && start.packing.cell.any()) {
         return open("the pinned disk is among the few that are said to move");
     }
@@ -159,7 +156,7 @@ void Follower::load() {
             Bounds& force = pushing_.fixed[at(wall.coordinate)];
             force = force - (from_.state->packing.dimension == plane ? pressed : pressed * wall.other);
         } else {
-            pushing_.per_length[at(wall.axis)] = stress;
+            pushing_.pressure[at(wall.axis)] = stress;
         }
     }
 }

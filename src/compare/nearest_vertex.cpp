@@ -1,5 +1,6 @@
 #include "compare/nearest_vertex.hpp"
 
+#include "compare/backbone.hpp"
 #include "compare/soft_list.hpp"
 #include "preparation/neighbours.hpp"
 #include "verified/to_vertex.hpp"
@@ -141,7 +142,7 @@ NearestVertex vertex_as_listed(const SoftState& soft, const std::string& words, 
 Moves moves_to(const State& state, const Certification& truth, const std::vector<double>& from) {
     const Packing& packing = state.packing;
     const double radius = truth.claims.vertex ? truth.claims.vertex->radius : HUGE_VAL;
-    constexpr double up = 1 + 0x1p-49; // of a difference, a sum and a hypotenuse, each rounded
+    constexpr double up = 1 + 0x1p-49; // of a difference and a sum, each rounded
     const auto way = [&](std::size_t k) { return (std::abs(packing.q[k] - from[k]) + radius) * up; };
     Moves moves;
     const std::size_t n = packing.radius.size();
@@ -151,8 +152,7 @@ Moves moves_to(const State& state, const Certification& truth, const std::vector
     }
     const std::size_t d = packing.axes();
     for (std::size_t i = 0; i < n; ++i) {
-        const double in_plane = std::hypot(way(d * i), way(d * i + 1)) * up;
-        moves.disk.push_back(d == 2 ? in_plane : std::hypot(in_plane, way(d * i + 2)) * up);
+        moves.disk.push_back(distance_above(d, [&](std::size_t a) { return way(d * i + a); }));
         double& largest = moves.rattler[i] != 0 ? moves.rattlers : moves.backbone;
         largest = std::max(largest, moves.disk[i]);
     }

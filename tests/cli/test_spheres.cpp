@@ -157,11 +157,12 @@ BOOST_AUTO_TEST_CASE(what_takes_disks_only_says_so_in_one_sentence) {
                                       "[[programme]]\ndo = \"up\"\nequilibria = 1\n");
     for (const std::vector<std::string>& command :
          {std::vector<std::string>{"run", folder.at("s.toml"), "-o", folder.at("out")},
-          {"snap", state, "-o", folder.at("t.json")}}) {
+          {"import", state, "-o", folder.at("t.json")}}) {
         const Outcome outcome = run(command);
         BOOST_TEST(outcome.status == 65, command[0] << ": " << outcome.err);
         BOOST_TEST(contains(outcome.err, "spheres"), command[0] << ": " << outcome.err);
     }
+    says(run({"snap", state, "-o", folder.at("t.json")}), 0, {"h = 0, k = 0, 6 rattlers", "snap      vertex"});
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -1,5 +1,5 @@
 // The claim about the supported interval of the loaded stress.
-#include "checker/evidence.hpp"
+#include "checker/edge.hpp"
 
 #include <fmt/format.h>
 
@@ -83,7 +83,7 @@ struct End {
                 any_load[j] = evidence.unit_load[j];
             }
         }
-        if (unclear.size() == 1 || vary_together(evidence.problem, unclear, any_load)) {
+        if (vanish_with(evidence, any_load, unclear, opens)) {
             return Verdict::proved;
         }
         text += fmt::format(", {} other forces not proved >= 0 there", unclear.size() - 1);

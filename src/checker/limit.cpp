@@ -3,6 +3,7 @@
 
 #include "checker/bounds.hpp"
 #include "checker/choice.hpp"
+#include "checker/edge.hpp"
 #include "checker/index.hpp"
 #include "checker/structural_zeros.hpp"
 
@@ -112,7 +113,7 @@ bool Limit::is_class(const std::vector<int>& together) const {
     for (std::size_t j = 0; j < loaded.size(); ++j) {
         loaded[j] = Range(abs(loaded[j].lower) + abs(e.unit_load[j].lower));
     }
-    return vary_together(e.problem, all, loaded);
+    return vanish_with(e, loaded, all, opened);
 }
 
 bool Limit::chosen_against(std::size_t l) const {

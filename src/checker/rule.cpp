@@ -1,5 +1,6 @@
 // What the rule opens, and what it holds.
 #include "checker/choice.hpp"
+#include "checker/edge.hpp"
 #include "checker/index.hpp"
 #include "checker/replay.hpp"
 #include "checker/strut.hpp"
@@ -101,6 +102,10 @@ Objections check_order(const Place& place, const std::string& kind, std::size_t 
     } else if (kind != "rattler" && same_at_turn(place, opened, other)) {
         // Finite forces tell only where the turn was rounded to.
         sign = strut_order(place, other, opened).value_or(0);
+    } else if (kind != "rattler" && equal_in_edge(e, e.finite_load, place.zeros, other, opened)) {
+        const Range excess = e.infinitesimal()[other] - e.infinitesimal()[opened]; // S6
+        sign = excess.negative() ? -1 : excess.positive() ? 1 : 0;
+        at_first_order = false;
     }
     if (most || by_name ? sign < 0 : rule == "least_negative" && sign > 0) {
         if (turns_back_at_once(place, other, kind != "rattler")) {

@@ -3,6 +3,7 @@
 #include "core/work.hpp"
 #include "linear/solve_schedule.hpp"
 #include "linear/two.hpp"
+#include "sparse/fill_order.hpp"
 
 #include <klu.h>
 
@@ -137,7 +138,7 @@ struct ApproximateInverse::Base {
     double operations = 0;                      ///< that made the factors
     explicit Base(const sparse::Matrix<double>& m) : matrix(m) {
         klu_defaults(&common);
-        common.ordering = sparse::fill_reducing_order(matrix.rows);
+        sparse::choose_order(common, matrix.rows, matrix.entries());
         // Unit columns need no scaling, and without it nothing depends on the size of the numbers.
         common.scale = 0;
         // A regular matrix may still underflow to a zero pivot: keep going, the residual bounds of the users will tell.

@@ -1,5 +1,7 @@
 #include "sparse/pattern.hpp"
 
+#include "sparse/fill_order.hpp"
+
 #include <btf.h>
 #include <klu.h>
 
@@ -20,7 +22,7 @@ Ordering::Ordering(int n, std::span<const int> start, std::span<const int> row) 
     }
     klu_common common;
     klu_defaults(&common);
-    common.ordering = fill_reducing_order(n);
+    choose_order(common, n, static_cast<int>(row.size()));
     // KLU's interface is not const-correct; the pattern is only read.
     klu_symbolic* symbolic =
         klu_analyze(n, const_cast<int*>(start.data()), // NOLINT(cppcoreguidelines-pro-type-const-cast)

@@ -18,15 +18,8 @@ template <class Value> struct Matrix {
     [[nodiscard]] int entries() const { return start.empty() ? 0 : start.back(); }
 };
 
-/// KLU's number for the fill-reducing order of a matrix of that size: AMD on the pattern of A + A^T, which fills least
-/// for some thousands of contacts, and COLAMD where that loses (at 40 000, 1.7 million entries of L + U against 1.2
-/// million, and twice the time; at 10 000, 205 000 against 235 000).
-[[nodiscard]] constexpr int fill_reducing_order(int rows) {
-    return rows > 20000 ? 1 : 0;
-}
-
 /// Symbolic analysis of a square pattern: block upper triangular form with a zero-free diagonal, fill-reducing
-/// order inside the blocks (KLU: BTF + `fill_reducing_order`). No number is looked at, so it may precede the rank
+/// order inside the blocks (KLU: BTF + `choose_order`). No number is looked at, so it may precede the rank
 /// check.
 class Ordering {
   public:

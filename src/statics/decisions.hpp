@@ -23,8 +23,8 @@ struct Opening {
     int direction = +1;         ///< rate of the gap; -1 only for a held coordinate that is pushed downwards
     double margin = 0;          ///< smallest |difference| / bound over the comparisons made
     Rung rung = Rung::none;
-    bool perturbed = false;      ///< a first-order comparison was needed
-    bool straight_strut = false; ///< another end of the same straight strut had the same force (statement S4)
+    bool perturbed = false;    ///< a first-order comparison was needed
+    bool equal_forces = false; ///< another contact bore the same force: of a straight strut (S4), or in an edge (S6)
 };
 
 /// The state of a vertex at a load: nothing to open (equilibrium), or the contact to open.

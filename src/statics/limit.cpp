@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace isostat {
 
@@ -59,6 +60,7 @@ class LimitContest final : public Contest {
     [[nodiscard]] double slope_size() const;
     /// The force at the limit, wherever within its error that is.
     [[nodiscard]] Enclosure at_limit(ContactId l) const;
+    void add_to_class(ContactId l);
     Result<Comparison> with_a_rate_of_order_eps(ContactId l, const Order& rate);
     Result<Comparison> at_first_order(ContactId l, ContactId first, const Order& order);
 
@@ -176,13 +178,24 @@ Result<std::optional<std::size_t>> LimitContest::stand(std::size_t best) {
         slope.decided() ? (std::abs(there.value) + there.radius) / (std::abs(slope.value) - slope.radius) * (1 + 8 * u)
                         : infinity;
     limit_.margin = rate.margin;
-    limit_.tie_class = statics_.vanish_with(first);
-    limit_.tie_class.insert(limit_.tie_class.begin(), first);
+    limit_.tie_class.clear();
     in_class_.assign(contacts_.size(), 0);
-    for (const ContactId l : limit_.tie_class) {
-        in_class_[l.index()] = 1;
+    add_to_class(first);
+    for (const EqualForce& equal : equal_in_edge(statics_, first)) {
+        add_to_class(equal.contact);
     }
     return std::optional(best);
+}
+
+/// A contact whose force vanishes there, and what vanishes with it by counting.
+void LimitContest::add_to_class(ContactId l) {
+    std::vector<ContactId> members = statics_.vanish_with(l);
+    members.insert(members.begin(), l);
+    for (const ContactId member : members) {
+        if (std::exchange(in_class_[member.index()], 1) == 0) {
+            limit_.tie_class.push_back(member);
+        }
+    }
 }
 
 Enclosure LimitContest::at_limit(ContactId l) const {

@@ -22,24 +22,27 @@ class OpeningContest final : public Contest {
         }
     }
     [[nodiscard]] std::size_t size() const override { return contenders_.size(); }
-    /// Another end of the strut of the last one that stood is among the contenders.
-    [[nodiscard]] bool strut() const { return strut_; }
+    /// A contact that bears the same force as the last one that stood is among the contenders.
+    [[nodiscard]] bool equal_met() const { return equal_met_; }
 
     Result<std::optional<std::size_t>> stand(std::size_t best) override {
-        strut_ = false;
-        const bool by_force = least_ || choice_.rule == OpeningRule::most_negative;
-        mates_ = choice_.turn != nullptr && by_force ? choice_.turn->mates(contenders_[best].contact)
-                                                     : std::vector<StrutMate>();
+        equal_met_ = false;
+        const ContactId of = contenders_[best].contact;
+        equal_ = equal_in_edge(statics_, of);
+        if (choice_.turn != nullptr) {
+            const std::vector<EqualForce> ends = choice_.turn->mates(of);
+            equal_.insert(equal_.end(), ends.begin(), ends.end());
+        }
         return std::optional(best);
     }
 
     Result<Comparison> compare(std::size_t rival, std::size_t best) override {
         const Contender& one = contenders_[best];
         const Contender& other = contenders_[rival];
-        const auto mate =
-            std::find_if(mates_.begin(), mates_.end(), [&](const StrutMate& m) { return m.contact == other.contact; });
-        if (mate != mates_.end()) {
-            return by_strut(*mate, other);
+        const auto equal =
+            std::find_if(equal_.begin(), equal_.end(), [&](const EqualForce& e) { return e.contact == other.contact; });
+        if (equal != equal_.end()) {
+            return by_loads(equal->excess, other);
         }
         const Order order = by_enclosure_or_ladder(other, one);
         if (choice_.perturbed != nullptr && needs_first_order(order, choice_.perturbed->size())) {
@@ -51,16 +54,17 @@ class OpeningContest final : public Contest {
     }
 
   private:
-    /// The two ends of a strut that a power turn leaves straight carry one force (S4): the infinitesimal loads order
-    /// them, not the digits to which the turn was located.
-    Comparison by_strut(const StrutMate& mate, const Contender& other) {
-        strut_ = true;
-        const Enclosure& excess = mate.excess;
+    /// The two ends of a strut that a power turn leaves straight (S4), and two walls of an edge (S6), bear one force:
+    /// the infinitesimal loads order them, not the digits to which the turn or the vertex was located.
+    Comparison by_loads(const Enclosure& excess, const Contender& other) {
+        equal_met_ = true;
         Order order{excess.decided(), excess.positive() == least_ ? -1 : 1, excess.margin(), Rung::combinatorial};
         return by_order(order, [&] {
-            return words("; {} (f = {:.17g}): the two ends of a straight strut, which the infinitesimal loads do not "
-                         "order: {:.3g}, known to {:.3g}",
-                         name(statics_, mate.contact), other.force.value, excess.value, excess.radius);
+            return words("; {} (f = {:.17g}): {} bear one force, which the infinitesimal loads do not order: {:.3g}, "
+                         "known to {:.3g}",
+                         name(statics_, other.contact), other.force.value,
+                         choice_.turn != nullptr ? "the two ends of a straight strut" : "two walls of an edge",
+                         excess.value, excess.radius);
         });
     }
 
@@ -101,8 +105,8 @@ class OpeningContest final : public Contest {
     std::vector<Contender>& contenders_;
     const Choice& choice_;
     bool least_;
-    bool strut_ = false;
-    std::vector<StrutMate> mates_; ///< of the one that stands
+    bool equal_met_ = false;
+    std::vector<EqualForce> equal_; ///< to the one that stands
 };
 
 /// Of rules that compare no numbers: the place, among `count` contacts sorted by their names, of the one that opens.
@@ -180,7 +184,7 @@ Result<Opening> pick(Statics& statics, std::vector<Contender> contenders, const 
                     +1,
                     std::min(minimum.margin, best.margin),
                     std::max(minimum.rung, statics.rung())};
-    opening.straight_strut = contest.strut();
+    opening.equal_forces = contest.equal_met();
     opening.perturbed = !minimum.settled.empty();
     if (choice.perturbed != nullptr) {
         std::vector<TieDecision>& log = choice.perturbed->log;

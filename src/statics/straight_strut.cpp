@@ -354,9 +354,9 @@ bool Turn::carries_nothing(ContactId contact) const {
     return parts_->bare.gone[contact.index()] != 0 || parts_->alone[contact.index()] != 0;
 }
 
-std::vector<StrutMate> Turn::mates(ContactId of) const {
+std::vector<EqualForce> Turn::mates(ContactId of) const {
     const ContactGraph& graph = parts_->graph;
-    std::vector<StrutMate> mates;
+    std::vector<EqualForce> mates;
     if (graph.leads[of.index()] == 0 || carries_nothing(of)) {
         return mates;
     }

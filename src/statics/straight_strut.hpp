@@ -3,17 +3,12 @@
 // (statement S4, proofs/stability.md).
 
 #include "statics/decisions.hpp"
+#include "statics/edge.hpp"
 
 #include <memory>
 #include <vector>
 
 namespace isostat {
-
-/// A contact whose force equals that of another one at the turn, whatever the other forces are.
-struct StrutMate {
-    ContactId contact;
-    Enclosure excess; ///< of its force over that of the other one, per unit of the infinitesimal loads
-};
 
 /// A vertex where coordinates are held without a finite force. Uses the graph of the contacts and their normals, no
 /// forces but for the infinitesimal ones of `zero.others`. Cost: two depth-first searches, O(N), and as much again for
@@ -37,7 +32,7 @@ class Turn {
     /// disks. Empty when there is none. `excess` is S4 (b); its radius counts how far the stored strut is from
     /// straight, and is infinite when one of `zero.others` that is no structural zero holds a disk of the strut at a
     /// fresh turn.
-    [[nodiscard]] std::vector<StrutMate> mates(ContactId of) const;
+    [[nodiscard]] std::vector<EqualForce> mates(ContactId of) const;
 
   private:
     struct Parts;

@@ -204,7 +204,7 @@ std::optional<Failure> Rearrangement::record(Proofs& proofs) {
 std::optional<Failure> Rearrangement::decide(ArcProof& proof) {
     const ArcRecord& record = proof.record;
     const OpeningDecision& decision = proof.next->value();
-    recorder_.counters.tally.structural_ties += decision.opening && decision.opening->straight_strut ? 1 : 0;
+    recorder_.counters.tally.structural_ties += decision.opening && decision.opening->equal_forces ? 1 : 0;
     if (std::abs(record.strain) > options().max_strain) {
         return failed(FailureKind::cap_reached,
                       "|{}| = {:.6g} at sigma = {:.17g}: the sample fails "

@@ -293,47 +293,13 @@ std::optional<Failure> record_smallest_gap(EquilibriumRecord& record, const Vert
     return std::nullopt;
 }
 
-namespace {
-
-/// In space a sphere that bears force may press on no wall that it touches: three contacts along the wall hold it
-/// there, with spheres as large as itself. The load does not reach its coordinate along the normal.
-int idle_walls(const Vertex& vertex) {
-    if (vertex.packing.dimension == plane) {
-        return 0;
-    }
-    std::vector<unsigned char> idle(vertex.packing.radius.size(), 0);
-    for (const int sphere : rattlers(vertex)) {
-        idle[static_cast<std::size_t>(sphere)] = 1;
-    }
-    int count = 0;
-    for (int l = 0; l < vertex.structure.size(); ++l) {
-        const Contact& c = vertex.structure.contacts()[static_cast<std::size_t>(l)];
-        const bool wall = c.kind == ContactKind::lower_wall || c.kind == ContactKind::upper_wall;
-        count += wall && idle[static_cast<std::size_t>(c.i)] == 0 && vertex.statics.is_structural_zero(ContactId(l));
-    }
-    return count;
-}
-
-} // namespace
-
-std::optional<Failure> check_equilibrium(const EquilibriumRecord& record, const Vertex& vertex, const Load& load,
-                                         const CandidateList& candidates) {
+std::optional<Failure> check_no_overlap(const Vertex& vertex, const Load& load, const CandidateList& candidates) {
     // No two grains overlap by more than the uncertainty of the stored configuration, all pairs included.
     const double allowance = 4 * vertex.enclosure.distance();
     const Admissibility admissible = certify_admissible(vertex.packing, allowance, &candidates);
     if (admissible.verdict != Verdict::proved) {
         return failed(FailureKind::overlap, "equilibrium at sigma = {:.17g}: {} overlap, gap {:.6g}",
                       load.loaded_stress(), named(admissible.worst), admissible.worst_gap);
-    }
-    const Packing& packing = vertex.packing;
-    const bool plain = load.disk_force.empty() && packing.fixed.empty();
-    const bool walled =
-        packing.cell.any() || packing.walls == Walls::box(packing.dimension); // nothing is free as a whole
-    const int expected = vertex.structure.dofs().dof_count() - packing.dimension * record.rattlers - idle_walls(vertex);
-    if (plain && walled && record.held == 0 && record.backbone != expected) {
-        return failed(FailureKind::undecided,
-                      "backbone of {} contacts with {} rattlers: expected N_f - {} rattlers = {}", record.backbone,
-                      record.rattlers, packing.dimension, expected);
     }
     return std::nullopt;
 }

@@ -30,10 +30,8 @@ std::optional<Failure> record_smallest_gap(EquilibriumRecord& record, const Vert
                                            const CandidateList& candidates);
 
 /// What holds of every equilibrium, looked at once more: no two grains overlap by more than the uncertainty of the
-/// stored configuration, all pairs included; the contacts that carry force are as many as the degrees of freedom of the
-/// grains that do. Failure: `overlap`, `undecided`.
-std::optional<Failure> check_equilibrium(const EquilibriumRecord& record, const Vertex& vertex, const Load& load,
-                                         const CandidateList& candidates);
+/// stored configuration, all pairs included. Failure: `overlap`.
+std::optional<Failure> check_no_overlap(const Vertex& vertex, const Load& load, const CandidateList& candidates);
 
 /// eps_2 at the end of an arc, with its bound.
 void record_strain(ArcRecord& record, const Vertex& end, const Load& load);

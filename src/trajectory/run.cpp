@@ -276,7 +276,7 @@ std::optional<Failure> Run::report(int arcs, std::optional<Result<Description>> 
     if (auto failure = record_smallest_gap(record, *vertex_, described.value().vertex, prover_.candidates())) {
         return located(*failure, fmt::format("equilibrium at sigma = {:.17g}", sigma()));
     }
-    if (auto failure = check_equilibrium(record, *vertex_, state_.load, prover_.candidates())) {
+    if (auto failure = check_no_overlap(*vertex_, state_.load, prover_.candidates())) {
         return failure;
     }
     recorder_.count({DecisionKind::equilibrium, record.margin, record.decided_by});

@@ -2,6 +2,7 @@
 
 #include "core/roundoff.hpp"
 #include "core/wide.hpp"
+#include "sparse/fill_order.hpp"
 
 #include <amd.h>
 
@@ -19,8 +20,27 @@ namespace {
 using roundoff::gamma;
 using roundoff::u;
 
+/// Nested dissection of the blocks that share a contact.
+std::vector<int> dissected(const sparse::Matrix<double>& h, std::size_t blocks) {
+    std::vector<int> start{0};
+    std::vector<int> row;
+    for (std::size_t l = 0; l < static_cast<std::size_t>(h.cols); ++l) {
+        for (int e = h.start[l]; e < h.start[l + 1]; ++e) { // rows are sorted
+            const int block = h.row[static_cast<std::size_t>(e)] / 2;
+            if (static_cast<int>(row.size()) == start.back() || row.back() != block) {
+                row.push_back(block);
+            }
+        }
+        start.push_back(static_cast<int>(row.size()));
+    }
+    return sparse::dissection_of_products(static_cast<int>(blocks), start, row);
+}
+
 /// Blocks that share a contact, as AMD wants them: columns of a symmetric pattern, both halves, with repetitions.
 std::vector<int> little_fill(const sparse::Matrix<double>& h, std::size_t blocks) {
+    if (sparse::worth_dissection(h.rows, h.entries())) {
+        return dissected(h, blocks);
+    }
     std::vector<int> start(blocks + 1, 0);
     std::vector<int> row;
     const auto for_each_pair = [&](auto use) {

@@ -219,7 +219,7 @@ BOOST_AUTO_TEST_CASE(what_is_exported_comes_back_as_the_same_vertex) {
         expect(run({"export", from, "-o", file}), 0);
         const Outcome outcome = run({"import", file, "--box", box, "-o", back, "--json"});
         expect(outcome, 0);
-        BOOST_TEST(json::parse(outcome.out).at("moved").at("backbone").get<double>() < 1e-11);
+        BOOST_TEST(nlohmann::json::parse(outcome.out).at("moved").at("backbone").get<double>() < 1e-11);
         expect(run({"inspect", file}), 65, {"isostat import"});
     }
     expect(run({"export", from, "-o", folder.at("a.pdf")}), 64, {".data", ".vtk"});

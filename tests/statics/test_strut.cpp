@@ -182,7 +182,7 @@ BOOST_AUTO_TEST_CASE(the_end_of_a_straight_strut_that_its_own_load_pulls_at_open
         BOOST_TEST_REQUIRE(decision.value().opening.has_value());
         // Pressed to the right it stays at the right wall.
         BOOST_TEST((v.contact(decision.value().opening->contact) == (g > 0 ? left(0) : right(0))), "g = " << g);
-        BOOST_TEST(decision.value().opening->straight_strut);
+        BOOST_TEST(decision.value().opening->equal_forces);
         BOOST_TEST(decision.value().opening->margin > 1);
         BOOST_TEST((v.statics.rung() == Rung::double_bound));
         // The rule that opens the weakest traction has the opposite order.
@@ -245,7 +245,7 @@ BOOST_AUTO_TEST_CASE(a_grain_without_force_that_joins_a_strut_to_the_rest_only_p
                 const auto decision = decide_opening(v.statics, v.sigma(), OpeningRule::most_negative, fresh, 0);
                 BOOST_TEST_REQUIRE(decision.ok(), why(decision));
                 BOOST_TEST((v.contact(decision.value().opening->contact) == (load.to_the_right ? left(0) : right(0))));
-                BOOST_TEST(decision.value().opening->straight_strut);
+                BOOST_TEST(decision.value().opening->equal_forces);
             }
             // Held earlier, without a finite force: that hold takes what is added along it.
             state.load.infinitesimal[2] += 0.7;
@@ -293,7 +293,7 @@ BOOST_AUTO_TEST_CASE(the_load_on_a_long_strut_is_bounded_with_the_rounding_of_it
     }
     const auto mates = Turn(v.statics, zero).mates(find(state, left(0)));
     const auto end = std::find_if(mates.begin(), mates.end(),
-                                  [&](const StrutMate& mate) { return v.contact(mate.contact) == right(disks - 1); });
+                                  [&](const EqualForce& mate) { return v.contact(mate.contact) == right(disks - 1); });
     BOOST_TEST_REQUIRE((end != mates.end()));
     BOOST_TEST(std::abs(end->excess.value - sum) > 2e-13); // what was lost
     BOOST_TEST(std::abs(end->excess.value - sum) <= end->excess.radius);
@@ -328,7 +328,7 @@ BOOST_AUTO_TEST_CASE(the_contacts_of_a_strut_are_those_of_the_definition) {
                            "seed " << seed << " hold " << l << " contact " << of);
                 nothing += slow.nothing[of];
                 std::vector<ContactId> fast;
-                for (const StrutMate& mate : turn.mates(ContactId(of))) {
+                for (const EqualForce& mate : turn.mates(ContactId(of))) {
                     fast.push_back(mate.contact);
                 }
                 const auto expected = slow.mates(ContactId(of));

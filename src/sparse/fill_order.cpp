@@ -1,0 +1,98 @@
+#include "sparse/fill_order.hpp"
+
+#include <cholmod.h>
+#include <klu.h>
+
+#include <array>
+#include <mutex>
+#include <new>
+
+namespace isostat::sparse {
+
+namespace {
+
+/// What CHOLMOD allocates, given back at the end.
+class Cholmod {
+  public:
+    Cholmod() { cholmod_start(&common_); }
+    Cholmod(const Cholmod&) = delete;
+    Cholmod& operator=(const Cholmod&) = delete;
+    ~Cholmod() {
+        cholmod_free_sparse(&transposed_, &common_);
+        cholmod_free_sparse(&sum_, &common_);
+        cholmod_free_sparse(&half_, &common_);
+        cholmod_finish(&common_);
+    }
+
+    /// Of A A^T where `stype` of the matrix is 0, else of the symmetric matrix of which it is one half. False: memory
+    /// is short.
+    bool dissect(cholmod_sparse& matrix, int* order) {
+        static std::mutex one_at_a_time; // METIS seeds and draws the numbers of `rand`
+        const std::scoped_lock lock(one_at_a_time);
+        return cholmod_metis(&matrix, nullptr, 0, 1, order, &common_) != 0;
+    }
+    /// One half of the pattern of A + A^T; null: memory is short.
+    cholmod_sparse* symmetric(cholmod_sparse& matrix) {
+        std::array<double, 2> one{1, 0};
+        transposed_ = cholmod_transpose(&matrix, 0, &common_);
+        if (transposed_ != nullptr) {
+            sum_ = cholmod_add(&matrix, transposed_, one.data(), one.data(), 0, 1, &common_);
+        }
+        if (sum_ != nullptr) {
+            sum_->stype = 1; // both halves are there, and the lower one is not looked at
+            half_ = cholmod_copy(sum_, 1, 0, &common_);
+        }
+        return half_;
+    }
+
+  private:
+    cholmod_common common_{};
+    cholmod_sparse* transposed_ = nullptr;
+    cholmod_sparse* sum_ = nullptr;
+    cholmod_sparse* half_ = nullptr;
+};
+
+cholmod_sparse pattern(int rows, int columns, int* start, int* row) {
+    cholmod_sparse matrix{};
+    matrix.nrow = static_cast<std::size_t>(rows);
+    matrix.ncol = static_cast<std::size_t>(columns);
+    matrix.nzmax = static_cast<std::size_t>(start[columns]);
+    matrix.p = start;
+    matrix.i = row;
+    matrix.itype = CHOLMOD_INT;
+    matrix.xtype = CHOLMOD_PATTERN;
+    matrix.packed = 1;
+    return matrix;
+}
+
+/// As KLU asks for an order; 0: memory is short.
+int dissection(int n, int* start, int* row, int* order, klu_common* /*common*/) {
+    cholmod_sparse matrix = pattern(n, n, start, row);
+    Cholmod cholmod;
+    cholmod_sparse* half = cholmod.symmetric(matrix);
+    return half != nullptr && cholmod.dissect(*half, order) ? 1 : 0;
+}
+
+} // namespace
+
+void choose_order(klu_common& common, int rows, int entries) {
+    constexpr int amd = 0;
+    constexpr int colamd = 1;
+    constexpr int by_function = 3;
+    common.ordering = worth_dissection(rows, entries) ? by_function : rows > 20000 ? colamd : amd;
+    common.user_order = dissection;
+}
+
+std::vector<int> dissection_of_products(int rows, std::span<const int> start, std::span<const int> row) {
+    // CHOLMOD's interface is not const-correct; the pattern is only read.
+    cholmod_sparse matrix = pattern(rows, static_cast<int>(start.size()) - 1,
+                                    const_cast<int*>(start.data()), // NOLINT(cppcoreguidelines-pro-type-const-cast)
+                                    const_cast<int*>(row.data()));  // NOLINT(cppcoreguidelines-pro-type-const-cast)
+    std::vector<int> order(static_cast<std::size_t>(rows));
+    if (Cholmod cholmod; !cholmod.dissect(matrix, order.data())) {
+        throw std::bad_alloc();
+    }
+    return order;
+}
+
+} // namespace isostat::sparse

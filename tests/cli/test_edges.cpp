@@ -1,0 +1,46 @@
+// Two walls of an edge bear one force at every vertex (S6): the infinitesimal loads order them, in the run and in the
+// checker.
+#include "cli/program.hpp"
+#include "support/forger.hpp"
+
+#include <nlohmann/json.hpp>
+
+using namespace program;
+
+namespace {
+
+struct EdgeRun {
+    int seed;
+    std::string opened, other; ///< two walls with one force
+};
+
+/// Eight spheres in a box; edges of lower walls, of upper walls, and of one of each.
+const std::array edge_runs{EdgeRun{17, "1-right", "1-top"}, EdgeRun{31, "7-bottom", "7-left"},
+                           EdgeRun{35, "0-left", "0-top"}};
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(cli)
+
+BOOST_AUTO_TEST_CASE(two_walls_of_an_edge_bear_one_force_and_the_infinitesimal_loads_order_them) {
+    for (const EdgeRun& edge : edge_runs) {
+        BOOST_TEST_INFO_SCOPE("seed " << edge.seed);
+        const scratch::Folder folder;
+        scratch::write(folder / "scene.toml",
+                       "[packing]\nspheres = 8\ndiameters = [1.0, 2.0]\nseed = " + std::to_string(edge.seed) +
+                           "\n[[programme]]\ndo = \"up\"\nequilibria = 6\n[output]\npictures = false\n");
+        const std::string out = folder.at("run");
+        (void)run({"run", folder.at("scene.toml"), "-o", out, "-q"});
+        expect(run({"verify", out}), 0);
+        std::string events = scratch::read(folder / "run/events.jsonl");
+        const auto opens = [](const std::string& name) { return "\"opened\":\"" + name + "\""; };
+        const std::size_t at = events.find(opens(edge.opened));
+        BOOST_REQUIRE(at != std::string::npos);
+        events.replace(at, opens(edge.opened).size(), opens(edge.other));
+        scratch::write(folder / "run/events.jsonl", events);
+        forger::seal(out);
+        says(run({"verify", out}), 1, {"takes " + edge.opened});
+    }
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -147,7 +147,7 @@ class Diagnosis {
     /// The common equilibrium at the load of the frame before.
     [[nodiscard]] State at(const PathEquilibrium& e) const {
         State state = e.state;
-        state.load.loaded_stress() = before_->result.stress;
+        state.load.stress[static_cast<std::size_t>(state.load.loaded_axis)] = before_->result.stress;
         return state;
     }
 

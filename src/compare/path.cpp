@@ -16,8 +16,9 @@ namespace {
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr int further = 3; ///< equilibria after the last load: frames may be early
 
+/// Of frames it is that of the last axis.
 double& loaded(State& state) {
-    return state.load.loaded_stress();
+    return state.load.stress[static_cast<std::size_t>(state.load.loaded_axis)];
 }
 
 /// Keeps the equilibria with their lists; those that only another load made are the same one.

@@ -158,7 +158,7 @@ class FrameTable {
         load.reference_length = manifest_.reference_length;
         load.stress = manifest_.stress;
         const std::string name = stress_column(last()), force = force_column(last());
-        double& loaded = load.loaded_stress();
+        double& loaded = load.stress[last()];
         if (const int at = find(name); at >= 0) {
             loaded = line.number(static_cast<std::size_t>(at), name);
         } else {
@@ -239,6 +239,7 @@ class Disks {
         const std::size_t id = dump_.column(rows, "id"), size = dump_.column(rows, manifest_.size);
         const std::vector<std::size_t> centre = columns_of(rows, {"x", "y", "z"}), speeds = speeds_of(rows);
         const std::map<long, const TextLine*> by_id = selected(rows, id);
+        require_a_plane(rows, by_id, size);
         const double f = manifest_.length_factor;
         if (manifest_.periodic && !sides.stated) {
             sides = sides_of(rows.header);
@@ -279,15 +280,7 @@ class Disks {
         if (manifest_.periodic) {
             std::copy_n(sides.tilt.begin(), frame.packing.tilts(), std::back_inserter(frame.packing.q));
         }
-        if (frame.ids.size() < ids_.size()) {
-            throw Error(ErrorKind::bad_input,
-                        fmt::format("{0}: no {1} {2}: expected the {1}s of the first frame",
-                                    dump_.where(rows.header.line), grain(), ids_[frame.ids.size()]));
-        }
-        if (std::any_of(frame.velocity.begin(), frame.velocity.end(), [](double v) { return std::isnan(v); })) {
-            frame.velocity.clear();
-        }
-        validate(frame.packing, dump_.where(rows.header.line));
+        check_all(frame, dump_.where(rows.header.line));
         frame.rounding = f * rounding_of_gaps(places.rounding(), sides.digits.rounding(),
                                               sizes.rounding() * (manifest_.diameters ? 0.5 : 1),
                                               {frame.packing.dimension, sides.tilt != PerTilt<double>{}});
@@ -326,6 +319,34 @@ class Disks {
                                                           dump_.where(rows.header.line), grain()));
         }
         return by_id;
+    }
+    /// Of disks z is the same, or differs by so little that no gap would be another double.
+    void require_a_plane(const FileFrame& rows, const std::map<long, const TextLine*>& by_id, std::size_t size) const {
+        const int z = foreign::find_column(rows.header.names, "z");
+        for (const auto& [number, row] : by_id) {
+            if (z < 0 || manifest_.series.dimension != plane) {
+                return;
+            }
+            const auto at = static_cast<std::size_t>(z);
+            const double first = by_id.begin()->second->number(at, "z");
+            if (!(std::abs(row->number(at, "z") - first) <= 0x1p-28 * row->number(size, manifest_.size))) {
+                row->fail(row->field(at), "z",
+                          fmt::format("{}, as of the first disk (three lengths in "
+                                      "reference_length make a series of spheres)",
+                                      first));
+            }
+        }
+    }
+    /// All grains of the first frame are there; velocities are known of all or of none.
+    void check_all(Frame& frame, const std::string& place) const {
+        if (frame.ids.size() < ids_.size()) {
+            throw Error(ErrorKind::bad_input, fmt::format("{0}: no {1} {2}: expected the {1}s of the first frame",
+                                                          place, grain(), ids_[frame.ids.size()]));
+        }
+        if (std::any_of(frame.velocity.begin(), frame.velocity.end(), [](double v) { return std::isnan(v); })) {
+            frame.velocity.clear();
+        }
+        validate(frame.packing, place);
     }
     /// The frame, for what the next one is compared with.
     void keep(Frame& frame) {

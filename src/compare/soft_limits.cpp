@@ -53,7 +53,7 @@ std::string soft_limits(const fs::path& run, const fs::path& output, double stif
             ++left_out;
             continue;
         }
-        const State state = read_any_state(file).state;
+        const State state = read_any_state(file, Dimensions::any).state;
         const Walls box = Walls::box(state.packing.dimension);
         if (!state.packing.cell.any() && !(state.packing.walls == box)) {
             throw Error(ErrorKind::bad_input, file.string() +

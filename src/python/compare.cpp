@@ -5,6 +5,7 @@
 #include "convert.hpp"
 
 #include <isostat/compare/compare.hpp>
+#include <isostat/core/error.hpp>
 
 #include <atomic>
 

@@ -144,8 +144,8 @@ BOOST_AUTO_TEST_CASE(rattlers_come_to_rest_and_the_state_is_an_equilibrium_with_
     BOOST_TEST((compare::carrying(state.value(), truth) == sample.list));
 }
 
-BOOST_AUTO_TEST_CASE(frames_of_a_periodic_cell_snap_to_their_vertex) {
-    for (const char* name : {"rect_16", "tilt_16"}) {
+BOOST_AUTO_TEST_CASE(frames_of_a_periodic_cell_or_a_channel_snap_to_their_vertex) {
+    for (const char* name : {"rect_16", "tilt_16", "channel_16"}) {
         for (const double stiffness : {1e5, 1e7}) {
             BOOST_TEST_INFO_SCOPE(name << ", stiffness " << stiffness);
             const Sample sample = of_cell(name);

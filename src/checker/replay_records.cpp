@@ -236,14 +236,16 @@ Objections check_power_at_turn(const Place& to, const EventRecord& event) {
 }
 
 /// The recorded power is that of the load where the arc ends at a new contact, and positive: F . v = f_c for the motion
-/// v on which the gap of the new contact c closes at the rate 1 and no other changes.
+/// v on which the gap of the new contact c closes at the rate 1 and no other changes. By counting it may be 0 at this
+/// very place: the grain that closes the gap is level with others there.
 Objections check_power_at_contact(const Place& to, const EventRecord& event, bool rattles) {
     const auto& contacts = to.state->contacts;
     const auto slot = std::find(contacts.begin(), contacts.end(), *contact_named(event.closed, to.state->packing));
     const auto l = static_cast<std::size_t>(slot - contacts.begin());
     const std::vector<Range>& forces = rattles ? to.evidence->infinitesimal() : to.evidence->forces;
-    const Range& power = forces[l];
-    if (!power.positive() && !(to.first && power.has_zero())) {
+    const bool zero = !rattles && contains(to.zeros, l);
+    const Range power = zero ? Range(Rational(0)) : forces[l];
+    if (!zero && !power.positive() && !(to.first && power.has_zero())) {
         return Objection{power.negative(),
                          fmt::format("the power is in {}: expected > 0 at the end of every arc", shown(power))};
     }

@@ -178,6 +178,9 @@ namespace {
 
 std::vector<bool> without_force(const Place& place, const std::vector<int>& loose) {
     const State& state = *place.state;
+    if (state.packing.dimension != plane) {
+        return std::vector<bool>(state.contacts.size(), false); // S4 is of the plane
+    }
     const Bare bare(place, loose);
     std::vector<bool> nothing = bare.left_out;
     for (std::size_t l = 0; l < nothing.size(); ++l) {

@@ -15,7 +15,7 @@ bool same_at_turn(const Place& place, std::size_t a, std::size_t b);
 
 /// Contacts whose force is 0 at the power turn itself (S4 (c)), whatever the forces say at the place to which it was
 /// rounded: one that alone joins movable disks without load to the rest, and the two, not in one line, that hold such
-/// a disk when others of these are left out. \pre a coordinate is held just now.
+/// a disk when others of these are left out. None in space. \pre a coordinate is held just now.
 std::vector<bool> without_force(const Place& place);
 
 /// Whether contact `a` may have lost against `b` because of coordinates held earlier: `a` is one, or the multipliers of

@@ -225,7 +225,7 @@ BOOST_AUTO_TEST_CASE(forged_certificates_of_spheres_do_not_verify) {
         {"another length of reference", "forces", [](Certificate& c) { c.state.load.reference_length[2] = 1.001; }},
         {"true stresses", "", [](Certificate& c) { c.state.load.kind = LoadKind::true_stress; }},
         {"another loaded axis", "load_interval", [](Certificate& c) { c.state.load.loaded_axis = 1; }}};
-    for (const char* name : {"box_bidisperse_30_1", "slab_uniform_30_1", "ortho_uniform_30_1", "tri_uniform_30_1"}) {
+    for (const char* name : {"box_bidisperse_30_1", "tri_uniform_30_1"}) {
         const Certificate original = of_spheres(state_of_spheres(read_spheres(name)));
         BOOST_TEST((verify(original).verdict == Verdict::proved));
         for (const Forgery& forgery : forgeries) {

@@ -22,6 +22,23 @@ const std::array edge_runs{EdgeRun{17, "1-right", "1-top"}, EdgeRun{31, "7-botto
 
 BOOST_AUTO_TEST_SUITE(cli)
 
+// A sphere that comes level with its neighbours of the same size at the wall that it meets.
+BOOST_AUTO_TEST_CASE(an_arc_may_end_where_its_power_is_0_by_counting) {
+    const scratch::Folder folder;
+    scratch::write(folder / "scene.toml", "[packing]\nspheres = 45\nlaw = \"bidisperse\"\nseed = 2\n[[programme]]\n"
+                                          "do = \"up\"\nequilibria = 1\n[output]\npictures = false\n");
+    const std::string out = folder.at("run");
+    (void)run({"run", folder.at("scene.toml"), "-o", out, "-q"}); // ends as a tie of equal radii
+    expect(run({"verify", out}), 0);
+    std::string events = scratch::read(folder / "run/events.jsonl");
+    const std::string zero = "\"power\":0.0,";
+    const std::size_t at = events.find(zero);
+    BOOST_REQUIRE(at != std::string::npos);
+    scratch::write(folder / "run/events.jsonl", events.replace(at, zero.size(), "\"power\":1e-9,"));
+    forger::seal(out);
+    expect(run({"verify", out}), 1);
+}
+
 BOOST_AUTO_TEST_CASE(two_walls_of_an_edge_bear_one_force_and_the_infinitesimal_loads_order_them) {
     for (const EdgeRun& edge : edge_runs) {
         BOOST_TEST_INFO_SCOPE("seed " << edge.seed);

@@ -50,7 +50,7 @@ inline bool add_rattler(State& state, Random& random) {
             contacts.push_back(isostat::pair_of(count, static_cast<int>(i),
                                                 {{static_cast<std::int8_t>(m), static_cast<std::int8_t>(k), 0}}));
         }
-        if (contacts[0] == contacts[1] || gap(pair, 0, pair.at[1][0], pair.at[1][1], pair.radius[1]) > 2 * r) {
+        if (contacts[0] == contacts[1] || gap(pair, 0, pair.at[1], pair.radius[1]) > 2 * r) {
             continue;
         }
         const auto place = resting_place(pair, 0, 1, r, random.integer(2) == 0 ? -1 : 1);

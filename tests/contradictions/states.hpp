@@ -48,8 +48,8 @@ inline std::optional<State> pile(const PileOptions& options, Random& random) {
     return state;
 }
 
-inline PileOptions small(Random& random, double same = 0) {
-    PileOptions options{.disks = 1 + random.integer(5), .same = same};
+inline PileOptions small(Random& random, double same = 0, int dimension = 2) {
+    PileOptions options{.disks = 1 + random.integer(dimension == 2 ? 5 : 4), .dimension = dimension, .same = same};
     return options;
 }
 
@@ -106,8 +106,8 @@ inline std::optional<State> product(Random& random) {
 }
 
 /// Coordinates that differ by less than 1e-9 become equal as stored; radii of a wall row differ by a little.
-inline std::optional<State> equal_as_stored(Random& random) {
-    PileOptions options = small(random, 0.8);
+inline std::optional<State> equal_as_stored(Random& random, int dimension = 2) {
+    PileOptions options = small(random, 0.8, dimension);
     options.disks = 2 + random.integer(3);
     auto state = load(pile(options, random), random, random.integer(3));
     if (!state) {
@@ -119,9 +119,9 @@ inline std::optional<State> equal_as_stored(Random& random) {
             x += std::ldexp(random.real(-1, 1), -30 - random.integer(20));
         }
     }
-    const std::size_t disks = state->packing.radius.size();
-    for (std::size_t i = 0; i < 2 * disks; ++i) {
-        for (std::size_t j = i % 2; j < i; j += 2) {
+    const auto axes = static_cast<std::size_t>(dimension);
+    for (std::size_t i = 0; i < axes * state->packing.radius.size(); ++i) {
+        for (std::size_t j = i % axes; j < i; j += axes) {
             if (std::abs(q[i] - q[j]) < 1e-3 && random.integer(4) != 0) {
                 q[i] = std::abs(q[i] - q[j]) < 1e-9 ? q[j] : q[i];
             }
@@ -188,9 +188,36 @@ inline std::optional<State> strut(Random& random) {
     return load(state, random, random.integer(2));
 }
 
+/// A sphere on three fixed ones whose normals are 1e-1 to 1e-9 from one plane, loaded across that plane.
+inline std::optional<State> nearly_coplanar(Random& random) {
+    State state;
+    const double height = std::pow(10.0, -random.real(1, 9)) * (random.integer(2) == 0 ? 1 : -1);
+    const double r = random.real(0.5, 1);
+    state.packing.dimension = state.packing.cell.dimension = 3;
+    state.packing.walls = isostat::Walls::none();
+    for (int k = 0; k < 3; ++k) {
+        const double other = random.real(0.5, 0.8);
+        const double angle = 2.0944 * k + random.real(-0.4, 0.4);
+        const double flat = std::sqrt((r + other) * (r + other) - height * height);
+        state.packing.radius.push_back(other);
+        state.packing.fixed.push_back(1);
+        state.contacts.push_back({ContactKind::disk_disk, k, 3});
+        state.packing.q.insert(state.packing.q.end(), {flat * std::cos(angle), flat * std::sin(angle), 0});
+    }
+    state.packing.radius.push_back(r);
+    state.packing.fixed.push_back(0);
+    state.packing.q.insert(state.packing.q.end(), {0, 0, height, 0, 0, 0});
+    state.load.infinitesimal.assign(12, 0);
+    infinitesimal_loads(state, random);
+    state.load.stress = state.load.reference_length = {1, 1, 1};
+    state.load.dimension = 3;
+    state.load.loaded_axis = 2;
+    return polish(state) ? load(state, random, random.integer(2)) : std::nullopt;
+}
+
 /// The loaded stress at an end of the supported interval, or a few ulps beside it.
-inline std::optional<State> at_the_end(Random& random) {
-    auto state = load(pile(small(random, 0.2), random), random, 0);
+inline std::optional<State> at_the_end(Random& random, int dimension = 2) {
+    auto state = load(pile(small(random, 0.2, dimension), random), random, 0);
     if (!state) {
         return {};
     }
@@ -205,8 +232,8 @@ inline std::optional<State> at_the_end(Random& random) {
 }
 
 /// One more fixed disk that a disk of the pile nearly touches, or overlaps by as little.
-inline std::optional<State> nearly_touching(Random& random) {
-    PileOptions options = small(random, 0.2);
+inline std::optional<State> nearly_touching(Random& random, int dimension = 2) {
+    PileOptions options = small(random, 0.2, dimension);
     options.fixed = 1;
     auto state = load(pile(options, random), random, 0);
     if (!state) {
@@ -220,23 +247,29 @@ inline std::optional<State> nearly_touching(Random& random) {
     const double gap = random.integer(3) == 0 ? std::ldexp(few(random), -52)
                                               : std::ldexp(random.real(-1, 1), -20 - random.integer(34));
     const double d = packing.radius[i] + r + gap;
-    const std::array<double, 2> at{packing.q[2 * i] + d * std::cos(angle), packing.q[2 * i + 1] + d * std::sin(angle)};
-    packing.q.insert(packing.q.begin() + static_cast<std::ptrdiff_t>(2 * n), at.begin(), at.end());
+    const double height = dimension == 2 ? 0 : random.real(-1, 1); // of the direction
+    const double flat = std::sqrt(1 - height * height);
+    const std::array<double, 3> normal{flat * std::cos(angle), flat * std::sin(angle), height};
+    const auto axes = static_cast<std::size_t>(dimension);
+    for (std::size_t a = 0; a < axes; ++a) {
+        packing.q.insert(packing.q.begin() + static_cast<std::ptrdiff_t>(axes * n + a),
+                         packing.q[axes * i + a] + d * normal[a]);
+    }
     packing.radius.push_back(r);
     packing.fixed.push_back(1);
-    state->load.disk_force.insert(state->load.disk_force.end(), {0, 0});
-    state->load.infinitesimal.insert(state->load.infinitesimal.end(), {0, 0});
+    state->load.disk_force.resize(axes * (n + 1), 0);
+    state->load.infinitesimal.resize(axes * (n + 1), 0);
     return state;
 }
 
 /// Disks without finite load: the infinitesimal loads decide, some of which are 0 or act along a contact.
-inline std::optional<State> infinitesimal_decides(Random& random) {
-    PileOptions options = small(random, 0.6);
+inline std::optional<State> infinitesimal_decides(Random& random, int dimension = 2) {
+    PileOptions options = small(random, 0.6, dimension);
     auto state = pile(options, random);
     if (!state) {
         return {};
     }
-    for (std::size_t a = 0; a < 2; ++a) {
+    for (std::size_t a = 0; a < static_cast<std::size_t>(dimension); ++a) {
         state->load.stress[a] = random.integer(3) == 0 ? 0.0 : random.real(0.1, 2);
     }
     for (double& g : state->load.infinitesimal) {
@@ -254,11 +287,11 @@ inline std::optional<State> moved_by_ulps(std::optional<State> state, Random& ra
     return state;
 }
 
-inline std::optional<State> true_stresses(Random& random) {
-    auto state = pile(small(random, 0.3), random);
+inline std::optional<State> true_stresses(Random& random, int dimension = 2) {
+    auto state = pile(small(random, 0.3, dimension), random);
     if (state) {
         state->load.kind = isostat::LoadKind::true_stress;
-        for (std::size_t a = 0; a < 2; ++a) {
+        for (std::size_t a = 0; a < static_cast<std::size_t>(dimension); ++a) {
             state->load.stress[a] = random.real(-0.1, 2);
             state->load.reference_length[a] = random.real(0.5, 3);
         }
@@ -266,7 +299,7 @@ inline std::optional<State> true_stresses(Random& random) {
             const Truth truth(*state);
             const End& end = random.integer(2) == 0 ? truth.low : truth.high;
             if (truth.known && !end.unbounded && abs(end.stress) > 1e-30) {
-                state->load.stress[1] = ulps(static_cast<double>(end.stress), few(random));
+                state->load.loaded_stress() = ulps(static_cast<double>(end.stress), few(random));
             }
         }
     }
@@ -274,8 +307,8 @@ inline std::optional<State> true_stresses(Random& random) {
 }
 
 /// A coordinate held in place of one contact; its multiplier is 0, hardly different from 0, or anything.
-inline std::optional<State> held_coordinate(Random& random) {
-    auto state = pile(small(random, 0.2), random);
+inline std::optional<State> held_coordinate(Random& random, int dimension = 2) {
+    auto state = pile(small(random, 0.2, dimension), random);
     if (!state) {
         return {};
     }
@@ -346,24 +379,36 @@ inline std::vector<StateClass> state_classes() {
     return {
         {"forces of 0 +- k ulp", [](Random& r) { return load(pile(small(r), r), r, 1 + r.integer(2)); }},
         {"loads whose product rounds", product},
-        {"coordinates equal as stored", equal_as_stored},
+        {"coordinates equal as stored", [](Random& r) { return equal_as_stored(r); }},
         {"radii that differ in the last bit", [](Random& r) { return load(pile(small(r, 0.9), r), r, r.integer(2)); }},
         {"fixed disks", [](Random& r) { return with_fixed(r, false); }},
         {"fixed disks that touch or overlap", [](Random& r) { return with_fixed(r, true); }},
         {"straight struts", strut},
         {"moved by ulps", [](Random& r) { return moved_by_ulps(load(pile(small(r, 0.5), r), r, r.integer(2)), r); }},
-        {"at the end of the interval", at_the_end},
-        {"gaps at the threshold", nearly_touching},
-        {"infinitesimal loads decide", infinitesimal_decides},
-        {"true stresses", true_stresses},
+        {"at the end of the interval", [](Random& r) { return at_the_end(r); }},
+        {"gaps at the threshold", [](Random& r) { return nearly_touching(r); }},
+        {"infinitesimal loads decide", [](Random& r) { return infinitesimal_decides(r); }},
+        {"true stresses", [](Random& r) { return true_stresses(r); }},
         {"exact numbers", exact_lattice},
-        {"held coordinates", held_coordinate, false},
+        {"held coordinates", [](Random& r) { return held_coordinate(r); }, false},
         {"rectangular cells", [](Random& r) { return cell_at_threshold(CellKind::rectangular, r); }},
         {"tilted cells", [](Random& r) { return cell_at_threshold(CellKind::tilted, r); }},
         {"channels", [](Random& r) { return cell_at_threshold(CellKind::channel, r); }},
         {"exact numbers in cells", [](Random& r) { return exact_cell(r); }},
         {"a length that does not move", in_cell_of_fixed_length},
         {"exact numbers, a length that does not move", [](Random& r) { return exact_cell(r, true); }},
+        {"spheres: forces of 0 +- k ulp", [](Random& r) { return load(pile(small(r, 0, 3), r), r, 1 + r.integer(2)); }},
+        {"spheres: coordinates equal as stored", [](Random& r) { return equal_as_stored(r, 3); }},
+        {"spheres: radii that differ in the last bit",
+         [](Random& r) { return load(pile(small(r, 0.9, 3), r), r, r.integer(2)); }},
+        {"spheres: moved by ulps",
+         [](Random& r) { return moved_by_ulps(load(pile(small(r, 0.5, 3), r), r, r.integer(2)), r); }},
+        {"spheres: at the end of the interval", [](Random& r) { return at_the_end(r, 3); }},
+        {"spheres: gaps at the threshold", [](Random& r) { return nearly_touching(r, 3); }},
+        {"spheres: normals nearly in one plane", nearly_coplanar},
+        {"spheres: infinitesimal loads decide", [](Random& r) { return infinitesimal_decides(r, 3); }},
+        {"spheres: true stresses", [](Random& r) { return true_stresses(r, 3); }},
+        {"spheres: held coordinates", [](Random& r) { return held_coordinate(r, 3); }, false},
     };
 }
 

@@ -150,8 +150,10 @@ void check_inspection(const Inspection& inspection, const State& state, const Tr
 
 /// A short run: what it says of its start, and what it opens there.
 Verdict run_from(const State& state, const Truth& truth, Count& tally, Objections& wrong) {
-    if (!(state.load.stress[0] > 0 && state.load.stress[1] > 0)) {
-        return Verdict::undecided;
+    for (std::size_t a = 0; a < static_cast<std::size_t>(state.packing.dimension); ++a) {
+        if (!(state.load.stress[a] > 0)) {
+            return Verdict::undecided;
+        }
     }
     try {
         check_start(state, "state");
@@ -179,8 +181,10 @@ isostat::crafted::ExactLoad exact_load(const State& state) {
     isostat::crafted::ExactLoad load;
     for (const WallForce& wall : state.load.wall_forces(state.packing)) {
         const auto axis = static_cast<std::size_t>(wall.coordinate) - state.packing.length_at(0);
-        (axis < 2 ? load.wall[axis] : load.tilt[0]) =
-            exact::Number::from_double(wall.stress) * exact::Number::from_double(wall.length);
+        const auto axes = static_cast<std::size_t>(state.packing.dimension);
+        (axis < axes ? load.wall[axis] : load.tilt[axis - axes]) = exact::Number::from_double(wall.stress) *
+                                                                   exact::Number::from_double(wall.length) *
+                                                                   exact::Number::from_double(wall.other);
     }
     for (const double f : state.load.disk_force) {
         load.disk.push_back(exact::Number::from_double(f));

@@ -157,18 +157,27 @@ template <class Real> class TruthIn {
     [[nodiscard]] Real gap(const Contact& c) const;
     /// H, one column per contact.
     [[nodiscard]] SquareMatrix<Real> contact_matrix() const;
-    /// From disk i to disk j, or to the image of it that the contact names.
-    [[nodiscard]] std::array<Real, 2> between(const Contact& c) const;
+    /// From disk i to disk j, or to the image of it that the contact names; 0 along axes that are not there.
+    [[nodiscard]] std::array<Real, most_axes> between(const Contact& c) const;
 
   private:
     [[nodiscard]] const Real& at(int coordinate) const { return q[static_cast<std::size_t>(coordinate)]; }
     [[nodiscard]] Real radius(int i) const { return Real(state_->packing.radius[static_cast<std::size_t>(i)]); }
+    [[nodiscard]] std::size_t axes() const { return static_cast<std::size_t>(state_->packing.dimension); }
+    [[nodiscard]] std::size_t of_disk(int i) const { return axes() * static_cast<std::size_t>(i); }
+    /// The lengths, then the tilts xy, xz, yz.
     [[nodiscard]] std::size_t wall(int axis) const {
-        return 2 * state_->packing.radius.size() + static_cast<std::size_t>(axis);
+        return axes() * state_->packing.radius.size() + static_cast<std::size_t>(axis);
+    }
+    [[nodiscard]] std::size_t tilt(std::size_t a, std::size_t b) const {
+        return wall(static_cast<int>(axes())) + a + b * (b - 1) / 2;
+    }
+    [[nodiscard]] static Real norm(const std::array<Real, most_axes>& r) {
+        return sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
     }
     [[nodiscard]] bool moves(std::size_t coordinate) const;
     [[nodiscard]] bool can_move(const Contact& pair) const;
-    /// Images of all pairs that can be the nearest, those that overlap among them.
+    /// Images of all pairs that can be the nearest, those that overlap among them. Of disks.
     [[nodiscard]] std::vector<Contact> near_images() const;
     void find_dofs();
     bool newton();
@@ -193,28 +202,28 @@ template <class Real> template <class Visit> void TruthIn<Real>::gradient(const 
     const auto j = static_cast<std::size_t>(c.j);
     switch (c.kind) {
     case ContactKind::disk_disk: {
-        const auto [dx, dy] = between(c);
-        const Real d = sqrt(dx * dx + dy * dy);
-        if (c.i != c.j) {
-            put(2 * i, -dx / d);
-            put(2 * i + 1, -dy / d);
-            put(2 * j, dx / d);
-            put(2 * j + 1, dy / d);
-        }
-        if (c.image.m[0] != 0) {
-            put(wall(0), c.image.m[0] * dx / d);
-        }
-        if (c.image.m[1] != 0) {
-            put(wall(1), c.image.m[1] * dy / d);
-            if (state_->packing.cell.any()) {
-                put(wall(2), c.image.m[1] * dx / d);
+        const auto r = between(c);
+        const Real d = norm(r);
+        for (std::size_t a = 0; a < axes(); ++a) {
+            const Real n = r[a] / d;
+            if (c.i != c.j) {
+                put(of_disk(c.i) + a, -n);
+                put(of_disk(c.j) + a, n);
+            }
+            if (c.image.m[a] != 0) {
+                put(wall(static_cast<int>(a)), c.image.m[a] * n);
+            }
+            for (std::size_t b = a + 1; b < axes(); ++b) {
+                if (c.image.m[b] != 0) {
+                    put(tilt(a, b), c.image.m[b] * n);
+                }
             }
         }
         break;
     }
-    case ContactKind::lower_wall: put(2 * i + j, Real(1)); break;
+    case ContactKind::lower_wall: put(of_disk(c.i) + j, Real(1)); break;
     case ContactKind::upper_wall:
-        put(2 * i + j, Real(-1));
+        put(of_disk(c.i) + j, Real(-1));
         put(wall(c.j), Real(1));
         break;
     case ContactKind::held: put(i, Real(1)); break;
@@ -225,45 +234,57 @@ template <class Real> Real TruthIn<Real>::gap(const Contact& c) const {
     const auto i = static_cast<std::size_t>(c.i);
     switch (c.kind) {
     case ContactKind::disk_disk: {
-        const auto [dx, dy] = between(c);
-        return sqrt(dx * dx + dy * dy) - (radius(c.i) + radius(c.j));
+        return norm(between(c)) - (radius(c.i) + radius(c.j));
     }
-    case ContactKind::lower_wall: return q[2 * i + static_cast<std::size_t>(c.j)] - radius(c.i);
-    case ContactKind::upper_wall: return q[wall(c.j)] - q[2 * i + static_cast<std::size_t>(c.j)] - radius(c.i);
+    case ContactKind::lower_wall: return q[of_disk(c.i) + static_cast<std::size_t>(c.j)] - radius(c.i);
+    case ContactKind::upper_wall: return q[wall(c.j)] - q[of_disk(c.i) + static_cast<std::size_t>(c.j)] - radius(c.i);
     case ContactKind::held: break;
     }
     return q[i] - Real(state_->packing.q[i]);
 }
 
-template <class Real> std::array<Real, 2> TruthIn<Real>::between(const Contact& c) const {
-    const auto i = static_cast<std::size_t>(c.i);
-    const auto j = static_cast<std::size_t>(c.j);
-    std::array<Real, 2> r{q[2 * j] - q[2 * i], q[2 * j + 1] - q[2 * i + 1]};
-    if (!c.image.is_here()) {
-        r[0] += c.image.m[0] * q[wall(0)] + c.image.m[1] * q[wall(2)];
-        r[1] += c.image.m[1] * q[wall(1)];
+template <class Real> std::array<Real, most_axes> TruthIn<Real>::between(const Contact& c) const {
+    std::array<Real, most_axes> r{0, 0, 0};
+    for (std::size_t a = 0; a < axes(); ++a) {
+        r[a] = q[of_disk(c.j) + a] - q[of_disk(c.i) + a];
+        if (c.image.m[a] != 0) {
+            r[a] += c.image.m[a] * q[wall(static_cast<int>(a))];
+        }
+        for (std::size_t b = a + 1; b < axes(); ++b) {
+            if (c.image.m[b] != 0) {
+                r[a] += c.image.m[b] * q[tilt(a, b)];
+            }
+        }
     }
     return r;
 }
 
 template <class Real> bool TruthIn<Real>::moves(std::size_t coordinate) const {
     const auto& p = state_->packing;
-    const std::size_t disk = coordinate / 2;
+    const std::size_t disk = coordinate / axes();
     if (disk < p.radius.size()) {
-        const bool pinned = p.cell.periodic[coordinate % 2] && static_cast<int>(disk) == p.cell.pin;
+        const bool pinned = p.cell.periodic[coordinate % axes()] && static_cast<int>(disk) == p.cell.pin;
         return !pinned && (p.fixed.empty() || p.fixed[disk] == 0);
     }
-    if (coordinate == wall(2)) {
-        return p.cell.tilt_moves[0];
-    }
-    return p.walls.upper[coordinate % 2] == WallKind::movable || p.cell.period_moves[coordinate % 2];
+    const std::size_t number = coordinate - wall(0);
+    return number < axes() ? p.walls.upper[number] == WallKind::movable || p.cell.period_moves[number]
+                           : p.cell.tilt_moves[number - axes()];
 }
 
 /// A disk and its own image move with the cell alone.
 template <class Real> bool TruthIn<Real>::can_move(const Contact& pair) const {
     const auto& p = state_->packing;
     if (pair.i == pair.j) {
-        return (pair.image.m[0] != 0 && moves(wall(0))) || (pair.image.m[1] != 0 && (moves(wall(1)) || moves(wall(2))));
+        for (std::size_t b = 0; b < axes(); ++b) {
+            bool period = moves(wall(static_cast<int>(b)));
+            for (std::size_t a = 0; a < b; ++a) {
+                period = period || moves(tilt(a, b));
+            }
+            if (pair.image.m[b] != 0 && period) {
+                return true;
+            }
+        }
+        return false;
     }
     const auto free = [&p](int i) { return p.fixed.empty() || p.fixed[static_cast<std::size_t>(i)] == 0; };
     return free(pair.i) || free(pair.j);
@@ -337,13 +358,23 @@ template <class Real> void TruthIn<Real>::find_forces() {
     for (std::size_t k = 0; k < load.infinitesimal.size(); ++k) {
         add(small, k, Real(load.infinitesimal[k]));
     }
-    if (state_->packing.cell.any()) {
-        add(finite, wall(2), -Real(load.shear[0]) * Real(load.reference_length[0]));
+    // The size of a wall, or of the sides that a tilt shears: all lengths but one.
+    const auto without = [&](std::size_t axis, bool now) {
+        Real size = 1;
+        for (std::size_t a = 0; a < axes(); ++a) {
+            size *= a == axis ? Real(1) : now ? q[wall(static_cast<int>(a))] : Real(load.reference_length[a]);
+        }
+        return size;
+    };
+    for (std::size_t b = 1; b < axes() && state_->packing.cell.any(); ++b) {
+        for (std::size_t a = 0; a < b; ++a) {
+            add(finite, tilt(a, b), -Real(load.shear[a + b * (b - 1) / 2]) * without(b, false));
+        }
     }
-    for (int a = 0; a < 2; ++a) {
-        const auto other = static_cast<std::size_t>(1 - a);
-        const Real length = load.kind == LoadKind::nominal ? Real(load.reference_length[other]) : q[wall(1 - a)];
-        add(finite, wall(a), -Real(load.stress[static_cast<std::size_t>(a)]) * length);
+    for (int a = 0; a < static_cast<int>(axes()); ++a) {
+        const auto axis = static_cast<std::size_t>(a);
+        const Real length = without(axis, load.kind != LoadKind::nominal);
+        add(finite, wall(a), -Real(load.stress[axis]) * length);
         if (a == load.loaded_axis) {
             add(unit, wall(a), -length);
         }
@@ -424,7 +455,7 @@ template <class Real> void TruthIn<Real>::find_other_pairs() {
         for (int j = i + 1; j < p.disk_count() && !p.cell.any(); ++j) {
             add({ContactKind::disk_disk, i, j}, can_move({ContactKind::disk_disk, i, j}));
         }
-        for (int a = 0; a < 2; ++a) {
+        for (int a = 0; a < p.dimension; ++a) {
             const auto axis = static_cast<std::size_t>(a);
             if (p.walls.lower[axis] != WallKind::absent) {
                 add({ContactKind::lower_wall, i, a}, free(i));

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace isostat::compare {
@@ -18,8 +19,14 @@ Packing of_disks(const Packing& packing, const std::vector<int>& disks);
 State backbone_of(const State& state, const std::vector<Contact>& carrying);
 
 /// The contacts that can carry a force by the positions of the normals, in their order: soft rattlers touch now and
-/// then, and hard ones rest on as many contacts as there are axes. Held coordinates are left out.
+/// then, and hard ones rest on as many contacts as there are axes. Held coordinates are left out. A contact of two
+/// grains that carry others stays: it holds what the load does not reach, as a sphere among three of its size on a
+/// wall.
 std::vector<Contact> able_to_carry(const Packing& packing, std::vector<Contact> contacts);
+
+/// Infinitesimal loads under which every contact of a grain that carries nothing else has a positive force, where the
+/// list determines it: the grain rests where it is. In a cell they sum to 0.
+std::vector<double> resting_loads(const Packing& packing, const std::vector<Contact>& contacts, std::uint64_t seed);
 
 /// Upper bound of a distance. `along`: bounds of its components.
 template <class Along> double distance_above(std::size_t axes, const Along& along) {

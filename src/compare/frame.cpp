@@ -146,6 +146,7 @@ JudgedFrame judge(const Series& series, const Frame& frame, const Reading& readi
     }
     r.status = FrameStatus::same;
     add_vertex(snapped, frame, r);
+    out.list = carrying(snapped);
     if (complete) {
         auto state = with_resting_rattlers(snapped, 1);
         if (state.ok()) {

@@ -14,7 +14,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 namespace isostat::compare {
 
@@ -121,20 +120,7 @@ NearestVertex vertex_as_listed(const SoftState& soft, const std::string& words, 
                                failure ? "; as they stand in the file: " : "", failure ? failure->message() : "");
     state.load = soft.load;
     state.load.refer_to(state.packing);
-    state.load.infinitesimal.assign(state.packing.length_at(0), 0);
-    std::mt19937_64 random(seed);
-    const double unit = state.packing.min_radius() * state.packing.min_radius();
-    for (const Contact& contact : state.contacts) {
-        const double force = unit * (1 + static_cast<double>(random() >> 11U) * 0x1p-53);
-        const GapGradient gradient = gap_gradient(state.packing, contact);
-        for (std::size_t k = 0; k < static_cast<std::size_t>(gradient.count); ++k) {
-            if (const auto at = static_cast<std::size_t>(gradient.coordinate[k]);
-                at < state.load.infinitesimal.size()) {
-                state.load.infinitesimal[at] -= force * gradient.value[k];
-            }
-        }
-    }
-    balance(state.load.infinitesimal, state.packing.cell);
+    state.load.infinitesimal = resting_loads(state.packing, state.contacts, seed);
     out.truth = certify(state);
     return out;
 }

@@ -16,6 +16,32 @@ namespace isostat::compare {
 
 namespace {
 
+/// With the numbers of the whole packing.
+Contact in_packing(const Snap& snap, Contact c) {
+    c.i = snap.disks[static_cast<std::size_t>(c.i)];
+    c.j = c.kind == ContactKind::disk_disk ? snap.disks[static_cast<std::size_t>(c.j)] : c.j;
+    return c;
+}
+
+/// Grains of the list with a contact that carries nothing are pressed to all of theirs.
+void press(const Snap& snap, State& state) {
+    const std::vector<unsigned char>& zero = snap.truth.structural_zero;
+    const std::size_t d = state.packing.axes();
+    const std::vector<double> resting = resting_loads(state.packing, state.contacts, 1);
+    for (std::size_t l = 0; l < zero.size(); ++l) {
+        const Contact c = in_packing(snap, snap.backbone.contacts[l]);
+        for (const int i : {c.i, c.kind == ContactKind::disk_disk ? c.j : c.i}) {
+            const std::size_t at = d * static_cast<std::size_t>(i);
+            if (zero[l] != 0) {
+                std::copy_n(&resting[at], d, &state.load.infinitesimal[at]);
+            }
+        }
+    }
+    if (std::find(zero.begin(), zero.end(), 1) != zero.end()) {
+        balance(state.load.infinitesimal, state.packing.cell);
+    }
+}
+
 Failure other_list(const std::vector<Contact>& list, const std::vector<Contact>& found, int dimension) {
     return {FailureKind::undecided,
             fmt::format("other contacts carry a force when the rattlers rest: without{}; with{}",
@@ -42,6 +68,18 @@ void set_stresses(const SoftState& soft, PreparationOptions& options) {
 
 } // namespace
 
+std::vector<Contact> carrying(const Snap& snap) {
+    const std::vector<unsigned char>& zero = snap.truth.structural_zero;
+    std::vector<Contact> out;
+    for (std::size_t l = 0; l < snap.backbone.contacts.size(); ++l) {
+        if (l >= zero.size() || zero[l] == 0) {
+            out.push_back(in_packing(snap, snap.backbone.contacts[l]));
+        }
+    }
+    std::sort(out.begin(), out.end());
+    return out;
+}
+
 Result<State> with_resting_rattlers(const Snap& snap, std::uint64_t seed) {
     std::vector<double> infinitesimal = generic_infinitesimal(snap.packing.radius, seed, snap.packing.dimension);
     balance(infinitesimal, snap.packing.cell);
@@ -55,13 +93,12 @@ Result<State> with_resting_rattlers(const Snap& snap, std::vector<double> infini
     state.load = snap.backbone.load;
     state.load.infinitesimal = std::move(infinitesimal);
     std::vector<Contact> list;
-    for (Contact c : snap.backbone.contacts) {
-        c.i = snap.disks[static_cast<std::size_t>(c.i)];
-        c.j = c.kind == ContactKind::disk_disk ? snap.disks[static_cast<std::size_t>(c.j)] : c.j;
-        list.push_back(c);
+    for (const Contact& c : snap.backbone.contacts) {
+        list.push_back(in_packing(snap, c));
     }
     std::sort(list.begin(), list.end());
     state.contacts = list;
+    press(snap, state);
     for (const int i : snap.rattlers) {
         for (int a = 0; a < state.packing.dimension; ++a) {
             state.contacts.push_back({ContactKind::held, state.packing.dimension * i + a, 0});
@@ -82,6 +119,7 @@ Result<State> with_resting_rattlers(const Snap& snap, std::vector<double> infini
     state.packing.cell.keeps_shape = keeps_shape;
     state.equilibrium = 0;
     const std::vector<Contact> found = carrying(state);
+    list = carrying(snap);
     if (found != list) {
         return other_list(list, found, state.packing.dimension);
     }

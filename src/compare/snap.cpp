@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <random>
 #include <vector>
 
 namespace isostat::compare {
@@ -46,6 +47,9 @@ void take_backbone(const SoftState& soft, Snap& out) {
     // Where several forces vanish together for structural reasons, the end of the interval needs them.
     out.backbone.load.infinitesimal = generic_infinitesimal(packing.radius, 1, packing.dimension);
     balance(out.backbone.load.infinitesimal, packing.cell);
+    if (packing.dimension != plane) { // a sphere may bear forces in a plane alone, and rest on a wall beside
+        out.backbone.load.infinitesimal = resting_loads(packing, out.backbone.contacts, 1);
+    }
 }
 
 /// In names of the whole packing.
@@ -158,13 +162,34 @@ State backbone_of(const State& state, const std::vector<Contact>& carrying) {
 
 std::vector<Contact> able_to_carry(const Packing& packing, std::vector<Contact> contacts) {
     std::erase_if(contacts, [](const Contact& c) { return c.kind == ContactKind::held; });
-    const std::vector<int> from = crafted::peel(packing, contacts).contact_from;
+    const crafted::Peeling peeling = crafted::peel(packing, contacts);
+    const int all = static_cast<int>(contacts.size());
+    const auto loaded = [&](int i) { return peeling.disk_from[static_cast<std::size_t>(i)] <= all; };
     std::vector<Contact> out;
     for (std::size_t l = 0; l < contacts.size(); ++l) {
-        if (from[l] <= static_cast<int>(contacts.size())) {
-            out.push_back(contacts[l]);
+        const Contact& c = contacts[l];
+        const bool holds = loaded(c.i) && (c.kind != ContactKind::disk_disk || loaded(c.j));
+        if (peeling.contact_from[l] <= all || holds) {
+            out.push_back(c);
         }
     }
+    return out;
+}
+
+std::vector<double> resting_loads(const Packing& packing, const std::vector<Contact>& contacts, std::uint64_t seed) {
+    std::vector<double> out(packing.length_at(0), 0);
+    std::mt19937_64 random(seed);
+    const double unit = packing.min_radius() * packing.min_radius();
+    for (const Contact& contact : contacts) {
+        const double force = unit * (1 + static_cast<double>(random() >> 11U) * 0x1p-53);
+        const GapGradient gradient = gap_gradient(packing, contact);
+        for (std::size_t k = 0; k < static_cast<std::size_t>(gradient.count); ++k) {
+            if (const auto at = static_cast<std::size_t>(gradient.coordinate[k]); at < out.size()) {
+                out[at] -= force * gradient.value[k];
+            }
+        }
+    }
+    balance(out, packing.cell);
     return out;
 }
 

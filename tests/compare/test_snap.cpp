@@ -97,6 +97,26 @@ BOOST_AUTO_TEST_CASE(soft_spheres_snap_to_their_vertex_in_walls_slabs_and_cells)
     }
 }
 
+BOOST_AUTO_TEST_CASE(a_sphere_among_its_like_on_a_wall_is_held_by_a_contact_without_force) {
+    const State hard = test::on_its_lengths(test::state_of_spheres(test::read_spheres("box_bidisperse_100_1")));
+    for (const double swollen : {1.0, 1 + 1e-7}) {
+        SoftState soft{hard.packing, compare::able_to_carry(hard.packing, hard.contacts), hard.load};
+        for (double& radius : soft.packing.radius) {
+            radius *= swollen;
+        }
+        BOOST_TEST(soft.contacts.size() == 261U);
+        BOOST_TEST(std::count(soft.contacts.begin(), soft.contacts.end(), Contact(ContactKind::lower_wall, 12, 2)) ==
+                   1);
+        const Snap found = compare::snap(soft);
+        BOOST_TEST_REQUIRE((found.outcome == SnapOutcome::vertex), found.reason);
+        BOOST_TEST(found.rattlers.size() == 14U);
+        BOOST_TEST(compare::carrying(found).size() == 260U);
+        const auto state = compare::with_resting_rattlers(found, 3);
+        BOOST_TEST_REQUIRE(state.ok(), (state.ok() ? "" : state.failure().message(3)));
+        BOOST_TEST((certify(state.value()).verdict == Verdict::proved));
+    }
+}
+
 BOOST_AUTO_TEST_CASE(soft_grains_are_proved_near_the_vertex_that_they_came_from) {
     const Sample sample;
     for (const double stiffness : {1e5, 1e7}) {

@@ -285,9 +285,7 @@ int most_touched_of(const std::vector<Contact>& contacts, int disks) {
 
 void Problem::find_pinned(const State& state) {
     const Cell& cell = state.packing.cell;
-    const bool holds = std::any_of(state.contacts.begin(), state.contacts.end(),
-                                   [this](const Contact& c) { return c.kind == ContactKind::held && of_disk(c.i); });
-    for (std::size_t a = 0; a < layout.axes() && !holds; ++a) {
+    for (std::size_t a = 0; a < layout.axes(); ++a) {
         if (!cell.periodic[a]) {
             continue;
         }
@@ -296,7 +294,9 @@ void Problem::find_pinned(const State& state) {
         for (std::size_t l = 0; l < rows.size(); ++l) {
             const Contact& c = state.contacts[l];
             const bool on = c.i == cell.pin || (c.kind == ContactKind::disk_disk && c.j == cell.pin);
-            if (on && c.kind == ContactKind::disk_disk && c.i != c.j) {
+            const bool holds =
+                c.kind == ContactKind::held && of_disk(c.i) && static_cast<std::size_t>(c.i) % layout.axes() == a;
+            if (holds || (on && c.kind == ContactKind::disk_disk && c.i != c.j)) {
                 along.acting.push_back(static_cast<int>(l));
             }
         }

@@ -101,8 +101,8 @@ class Problem : public Structure {
     /// The same without those whose entry is 0 at every true vertex: two disks that walls, holds or being fixed keep at
     /// one coordinate (proofs/definition.md).
     std::vector<std::vector<int>> acting_on;
-    /// In a cell: the same per coordinate of the pinned disk along a periodic axis. Not where coordinates of disks are
-    /// held: the pinned disk bears what holds them.
+    /// In a cell: the same per coordinate of the pinned disk along a periodic axis. Coordinates of disks are held
+    /// relative to that disk, which bears what holds them.
     struct Pinned {
         std::size_t axis;
         std::vector<int> acting;

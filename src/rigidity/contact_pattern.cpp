@@ -61,14 +61,11 @@ bool is_displaced(const Contact& contact, int axis) {
     return std::any_of(contact.image.m.begin() + axis, contact.image.m.end(), [](std::int8_t m) { return m != 0; });
 }
 
-/// The disk with the most contacts, the first of them. Where coordinates of disks are held: -1.
-int most_held(int disks, int dim, const std::vector<Contact>& contacts) {
+/// The disk with the most contacts, the first of them.
+int most_held(int disks, const std::vector<Contact>& contacts) {
     std::vector<int> count(static_cast<std::size_t>(disks), 0);
     for (const Contact& c : contacts) {
         if (c.kind == ContactKind::held) {
-            if (c.i < dim * disks) {
-                return -1;
-            }
             continue;
         }
         ++count[static_cast<std::size_t>(c.i)];
@@ -88,9 +85,16 @@ class Repinned {
         for (int i = 0; i < packing.disk_count() && packing.cell.any() && was_ < 0; ++i) {
             was_ = is_pinned(i) ? i : -1;
         }
-        is_ = was_ < 0 ? -1 : most_held(packing.disk_count(), packing.dimension, contacts);
+        is_ = was_ < 0 ? -1 : most_held(packing.disk_count(), contacts);
     }
     [[nodiscard]] bool changes() const { return is_ >= 0 && is_ != was_; }
+    /// Of the disk that was pinned along the axis of a held coordinate, which is held relative to that disk; -1: no
+    /// row.
+    [[nodiscard]] int row_against(const Contact& held) const {
+        const std::size_t axis = static_cast<std::size_t>(held.i) % packing_.axes();
+        const bool of_disk = held.i < packing_.dimension * packing_.disk_count();
+        return changes() && of_disk && packing_.cell.periodic[axis] ? row(packing_.layout().of_disk(was_) + axis) : -1;
+    }
     /// -1: no row.
     [[nodiscard]] int row(std::size_t coordinate) const {
         const int disk = static_cast<int>(coordinate) / packing_.dimension;
@@ -153,6 +157,9 @@ ContactPattern::ContactPattern(const Packing& packing, const DofMap& dofs, const
                 parts.row.push_back(mu);
             }
         });
+        if (const int mu = contact.kind == ContactKind::held ? pinned.row_against(contact) : -1; mu >= 0) {
+            parts.row.push_back(mu);
+        }
         parts.start.push_back(static_cast<int>(parts.row.size()));
     }
     if (pinned.changes() || parts.row.size() < matrix.row.size()) {

@@ -46,6 +46,10 @@ Read from_state(const SnapArguments& a) {
 }
 
 Read from_foreign(const SnapArguments& a) {
+    if (!a.reference_length.empty()) { // numbers are looked at before the file
+        (void)parse_lengths(a.reference_length, "--reference-length",
+                            parse_list(a.reference_length).size() == 3 ? 3 : 2);
+    }
     ForeignArguments foreign = a.foreign;
     foreign.walls_unless_periodic = foreign.walls.empty();
     foreign.cells = foreign.spheres = true;

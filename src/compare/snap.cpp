@@ -178,6 +178,9 @@ std::vector<Contact> able_to_carry(const Packing& packing, std::vector<Contact> 
 
 std::vector<double> resting_loads(const Packing& packing, const std::vector<Contact>& contacts, std::uint64_t seed) {
     std::vector<double> out(packing.length_at(0), 0);
+    if (contacts.empty()) {
+        return out;
+    }
     std::mt19937_64 random(seed);
     const double unit = packing.min_radius() * packing.min_radius();
     for (const Contact& contact : contacts) {

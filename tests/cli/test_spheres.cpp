@@ -154,11 +154,12 @@ BOOST_AUTO_TEST_CASE(what_takes_disks_only_says_so_in_one_sentence) {
     const scratch::Folder folder;
     const std::string state = state_file(folder, "box_uniform_30_1");
     for (const std::vector<std::string>& command :
-         {std::vector<std::string>{"snap", state, "-o", folder.at("t.json")}}) {
+         {std::vector<std::string>{"import", state, "-o", folder.at("t.json")}}) {
         const Outcome outcome = run(command);
         BOOST_TEST(outcome.status == 65, command[0] << ": " << outcome.err);
         BOOST_TEST(contains(outcome.err, "spheres"), command[0] << ": " << outcome.err);
     }
+    says(run({"snap", state, "-o", folder.at("t.json")}), 0, {"h = 0, k = 0, 6 rattlers", "snap      vertex"});
 }
 
 BOOST_AUTO_TEST_SUITE_END()

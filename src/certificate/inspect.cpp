@@ -152,7 +152,7 @@ Result<Inspection> inspect_vertex(const State& state) {
 }
 
 Result<std::vector<Interval>> forces_at(State state, double sigma) {
-    state.load.loaded_stress() = sigma;
+    state.load.set_loaded_stress(sigma);
     Certification truth = certify(state);
     if (!truth.claims.vertex) {
         return Failure{truth.claims.counting ? FailureKind::undecided : FailureKind::not_isostatic,

@@ -36,6 +36,7 @@ State strained(State state, const std::vector<Contact>& own) {
 std::vector<std::vector<Interval>> pressed(State state, double radius) {
     constexpr double rounded = 0x1p-48; // nine operations, each to 2^-53
     const double x = state.packing.length(0);
+    state.load.path.reset();
     std::vector<std::vector<Interval>> corners;
     for (unsigned corner = 0; corner < 1U << (state.packing.axes() - 1); ++corner) {
         for (std::size_t a = 1; a < state.packing.axes(); ++a) {

@@ -18,8 +18,8 @@ class Subject {
     const State& state;
     const DofMap& dofs;
     ContactPattern pattern;
-    std::vector<int> loaded_rows;          ///< that carry a finite load other than the loaded wall's
-    int wall_row = -1;                     ///< of the loaded wall; -1: it cannot move
+    std::vector<int> loaded_rows;          ///< that carry a finite load whatever the loaded stress is
+    std::vector<int> changing_rows;        ///< that the loaded stress presses on
     std::vector<unsigned char> zero;       ///< per contact: the finite force is a structural zero
     std::vector<unsigned char> zero_slope; ///< per contact: the slope is one
 

@@ -67,9 +67,9 @@ template <class T> class TrueVertexAt final : public TrueVertex {
         return most;
     }
     /// |F* - F| over the radius: what true stresses, or the loaded one alone at 1, change as their lengths do (V6).
-    [[nodiscard]] double load_turn(bool loaded_wall_only) const;
+    [[nodiscard]] double load_turn(bool by_the_loaded_stress) const;
     Solution solve(const std::vector<T>& load, double load_error) const;
-    std::vector<T> external_force(bool loaded_wall_only) const;
+    std::vector<T> external_force(bool by_the_loaded_stress) const;
     const Solution& present();
     const Solution& unit_load();
     const Solution& infinitesimal_solution();
@@ -146,11 +146,11 @@ template <class T> auto TrueVertexAt<T>::solve(const std::vector<T>& load, doubl
     return {std::move(solved.value), above(solved.bound)};
 }
 
-template <class T> std::vector<T> TrueVertexAt<T>::external_force(bool loaded_wall_only) const {
+template <class T> std::vector<T> TrueVertexAt<T>::external_force(bool by_the_loaded_stress) const {
     const Load& load = subject_.state.load;
     const DofMap& dofs = subject_.dofs;
     std::vector<T> force(static_cast<std::size_t>(dofs.dof_count()), number(0));
-    if (!loaded_wall_only) {
+    if (!by_the_loaded_stress) {
         for (std::size_t k = 0; k < load.disk_force.size(); ++k) {
             if (dofs.dof_of(k) >= 0) {
                 force[static_cast<std::size_t>(dofs.dof_of(k))] = number(load.disk_force[k]);
@@ -158,13 +158,18 @@ template <class T> std::vector<T> TrueVertexAt<T>::external_force(bool loaded_wa
         }
     }
     for (const WallForce& wall : load.wall_forces(centre_.packing)) {
-        if (loaded_wall_only && !wall.loaded) {
+        if (by_the_loaded_stress && wall.rate == 0) {
             continue;
         }
-        const double stress = loaded_wall_only ? 1.0 : wall.stress;
+        const auto pressed = [&](double stress) {
+            return wall.length_at < 0 ? arithmetic().product(stress, wall.length)
+                                      : number(stress) * now(wall.length, wall.length_at);
+        };
         const auto dof = static_cast<std::size_t>(dofs.dof_of(static_cast<std::size_t>(wall.coordinate)));
-        force[dof] = wall.length_at < 0 ? -arithmetic().product(stress, wall.length)
-                                        : -(number(stress) * now(wall.length, wall.length_at));
+        force[dof] = -pressed(by_the_loaded_stress ? wall.rate : wall.stress);
+        for (const double rest : wall.rest) {
+            force[dof] = by_the_loaded_stress || rest == 0 ? force[dof] : force[dof] - pressed(rest);
+        }
         if (subject_.state.packing.dimension > plane) {
             force[dof] = force[dof] * now(wall.other, wall.other_at);
         }
@@ -172,13 +177,13 @@ template <class T> std::vector<T> TrueVertexAt<T>::external_force(bool loaded_wa
     return force;
 }
 
-template <class T> double TrueVertexAt<T>::load_turn(bool loaded_wall_only) const {
+template <class T> double TrueVertexAt<T>::load_turn(bool by_the_loaded_stress) const {
     double sum = 0;
     for (const WallForce& wall : subject_.state.load.wall_forces(centre_.packing)) {
-        if (wall.length_at < 0 || (loaded_wall_only && !wall.loaded)) {
+        if (wall.length_at < 0 || (by_the_loaded_stress && wall.rate == 0)) {
             continue; // dead
         }
-        const double stress = loaded_wall_only ? 1.0 : wall.stress;
+        const double stress = by_the_loaded_stress ? wall.rate : wall.stress * (wall.rest[0] == 0 ? 1 : 1 + 2 * u);
         const double weight =
             wall.other_at < 0
                 ? wall.other

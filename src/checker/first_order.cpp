@@ -217,7 +217,7 @@ std::vector<Range> FirstOrder::forces(const std::vector<Range>& f0) const {
     if (e_.state.load.kind == LoadKind::true_stress) { // the force of a wall follows the other lengths
         const Layout& layout = e_.problem.layout;
         for (std::size_t a = 0; a < layout.axes(); ++a) {
-            const Range stress(-Rational(e_.state.load.stress[a]));
+            const Range stress(-stress_of(e_.state.load, a));
             for (std::size_t b = 0; b < layout.axes(); ++b) {
                 if (a != b) { // the third length, in space
                     const std::size_t c = 3 - a - b;

@@ -43,14 +43,17 @@ Forces disk_loads(const Problem& problem, const std::vector<double>& per_coordin
 
 } // namespace
 
+Rational stress_of(const Load& load, std::size_t place) {
+    return load.path ? Rational(load.path->at[place]) + Rational(load.path->rate[place]) * Rational(load.path->t)
+                     : Rational(load.stress_of(place));
+}
+
 Forces finite_load(const Problem& problem, const State& state, const TrueVertex& vertex) {
     Forces load = disk_loads(problem, state.load.disk_force);
     const std::size_t walls = problem.layout.of_length(0);
-    const std::size_t axes = problem.layout.axes();
     for (std::size_t place = 0; walls + place < problem.dof_of.size(); ++place) {
         if (const int dof = problem.dof_of[walls + place]; dof >= 0) {
-            const double stress = place < axes ? state.load.stress[place] : state.load.shear[place - axes];
-            load[at(dof)] = Range(Rational(stress)) * force_per_stress(problem, state, vertex, place);
+            load[at(dof)] = Range(stress_of(state.load, place)) * force_per_stress(problem, state, vertex, place);
         }
     }
     return load;
@@ -58,9 +61,12 @@ Forces finite_load(const Problem& problem, const State& state, const TrueVertex&
 
 Forces unit_load(const Problem& problem, const State& state, const TrueVertex& vertex) {
     Forces load(static_cast<std::size_t>(problem.dofs()), Range(Rational(0)));
-    const std::size_t place = at(state.load.loaded_axis); // tilts follow the lengths
-    if (const int dof = problem.dof_of[problem.layout.of_length(place)]; dof >= 0) {
-        load[at(dof)] = force_per_stress(problem, state, vertex, place);
+    const std::size_t walls = problem.layout.of_length(0);
+    for (std::size_t place = 0; walls + place < problem.dof_of.size(); ++place) { // tilts follow the lengths
+        const int dof = problem.dof_of[walls + place];
+        if (const double rate = state.load.rate_of(place); dof >= 0 && rate != 0) {
+            load[at(dof)] = Range(Rational(rate)) * force_per_stress(problem, state, vertex, place);
+        }
     }
     return load;
 }

@@ -11,6 +11,9 @@ namespace isostat::checker {
 /// External forces per degree of freedom at the true vertex.
 using Forces = std::vector<Range>;
 
+/// A stress of axis or tilt, in the real numbers: of a path `at` + t `rate`.
+Rational stress_of(const Load& load, std::size_t place);
+
 /// The finite load of a state, its derivative with respect to the loaded stress, and the infinitesimal load.
 Forces finite_load(const Problem& problem, const State& state, const TrueVertex& vertex);
 Forces unit_load(const Problem& problem, const State& state, const TrueVertex& vertex);

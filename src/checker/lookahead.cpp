@@ -71,7 +71,7 @@ Lookahead::Arc Lookahead::arc_of(const Start& from, std::size_t event, const Ope
     const EventRecord& record = records_.events[event];
     Arc arc{event, opening, follow(from.at, record, opening, slowly), from.at.state, {}};
     Load& load = arc.end.load;
-    load.loaded_stress() = record.stress;
+    load.set_loaded_stress(record.stress);
     if (!arc.followed.end) {
         return arc;
     }

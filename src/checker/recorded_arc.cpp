@@ -108,7 +108,7 @@ Followed follow(const ArcStart& from, const EventRecord& event, const Opening& o
     motion.solver = from.solver;
     motion.touching = from.touching;
     Load load = from.state.load;
-    load.loaded_stress() = event.stress;
+    load.set_loaded_stress(event.stress);
     motion.power_load = [&, at = from.state.packing](const std::vector<double>& q) mutable {
         at.q = q;
         return load_at(load, at, opening.rattles);

@@ -261,8 +261,8 @@ Objections check_power_at_contact(const Place& to, const EventRecord& event, boo
 Range fall_of_phi(const Place& from, const Place& to) {
     Range fall(Rational(0));
     for (int a = 0; a < to.state->packing.dimension; ++a) {
-        const Range stress{Rational(to.state->load.stress[static_cast<std::size_t>(a)])};
-        fall = fall + stress * logarithm(from.length(a) / to.length(a));
+        fall = fall +
+               Range(stress_of(to.state->load, static_cast<std::size_t>(a))) * logarithm(from.length(a) / to.length(a));
     }
     return fall;
 }
@@ -385,9 +385,13 @@ Objections check_measures(const Place& place, const EquilibriumLine& line) {
     for (int a = 0; a < load.dimension; ++a) {
         box = std::max(box, place.state->packing.length(a));
     }
-    const std::vector<std::tuple<std::string, Range, double>> without_bound{
+    std::vector<std::tuple<std::string, Range, double>> without_bound{
         {line.names->stress, Range(Rational(sigma)), std::abs(sigma)},
         {"ratio", Range(Rational(sigma)) / Range(Rational(across)), std::abs(sigma / across)}};
+    if (load.path) {
+        without_bound.emplace_back("p", Range(Rational(load.mean_stress())), std::abs(across));
+        without_bound.emplace_back("q", Range(Rational(load.deviator())), std::abs(across));
+    }
     for (const auto& [name, found, scale] : without_bound) {
         if (Objections wrong = compare(name, line.at(name), found, scale)) {
             return wrong;
@@ -577,9 +581,9 @@ Objections check_stored(const Place& place, const State& stored, const std::opti
     }
     const Load& a = stored.load;
     const Load& b = place.state->load;
-    if (a.stress != b.stress || a.shear != b.shear || a.kind != b.kind || a.reference_length != b.reference_length ||
-        a.reference_tilt != b.reference_tilt || a.loaded_axis != b.loaded_axis || a.disk_force != b.disk_force ||
-        a.infinitesimal != b.infinitesimal) {
+    if (a.stress != b.stress || a.shear != b.shear || a.path != b.path || a.kind != b.kind ||
+        a.reference_length != b.reference_length || a.reference_tilt != b.reference_tilt ||
+        a.loaded_axis != b.loaded_axis || a.disk_force != b.disk_force || a.infinitesimal != b.infinitesimal) {
         return Objection{true, "the stored state has another load"};
     }
     if (stored.perturbation.has_value() != place.state->perturbation.has_value() ||

@@ -29,6 +29,7 @@ std::string state_difference(const State& a, const State& b) {
         {"a reference length", a.load.reference_length == b.load.reference_length},
         {"a reference tilt", a.load.reference_tilt == b.load.reference_tilt},
         {"the loaded axis", a.load.loaded_axis == b.load.loaded_axis},
+        {"the path of the stresses", a.load.path == b.load.path},
         {"a force on a disk", a.load.disk_force == b.load.disk_force},
         {"an infinitesimal load", a.load.infinitesimal == b.load.infinitesimal},
         {"the direction of the radii", same(a.perturbation, b.perturbation)}};

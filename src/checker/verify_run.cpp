@@ -431,7 +431,7 @@ class Replay {
             State state = *here_.state;
             std::replace(state.contacts.begin(), state.contacts.end(), *contact_named(tie.against, state.packing),
                          *contact_named(tie.contact, state.packing));
-            state.load.loaded_stress() = event.stress;
+            state.load.set_loaded_stress(event.stress);
             Place next;
             next.chooses = records_.chooses;
             if (!judged(make_place(std::move(state), next, change.load), event.where)) {
@@ -497,7 +497,7 @@ class Replay {
     Objections stay(Place& next, const EventRecord& event, const Change& change) {
         State state = *here_.state;
         state.contacts[change.position] = change.closed;
-        state.load.loaded_stress() = event.stress;
+        state.load.set_loaded_stress(event.stress);
         return make_place(std::move(state), next, change.load, fresh(event, change));
     }
 
@@ -564,7 +564,7 @@ class Replay {
     /// A row without arcs: the same vertex under another load.
     void reload(const EquilibriumLine& line) {
         State state = *here_.state;
-        state.load.loaded_stress() = line.stress();
+        state.load.set_loaded_stress(line.stress());
         go_to(std::move(state), line.where, {});
     }
 

@@ -95,6 +95,13 @@ void Follower::let_rest() {
 Objections Follower::set_up() {
     const State& start = *from_.state;
     const Problem& problem = from_.evidence->problem;
+    Load load = start.load;
+    load.set_loaded_stress(way_.stress);
+    for (const WallForce& wall : load.wall_forces(start.packing)) {
+        if (!way_.rattles && load.kind == LoadKind::true_stress && (wall.rest[0] != 0 || wall.rest[1] != 0)) {
+            return open("true stresses that change together are no doubles"); // their power has one factor more
+        }
+    }
     const std::vector<bool> moves = moving_coordinates(start, problem, way_.witness);
     moving_.state = start;
     moving_.moves = moves;
@@ -142,7 +149,8 @@ Objections Follower::set_up() {
 
 /// The load of the record: bounds of the exact products.
 void Follower::load() {
-    const Load& load = from_.state->load;
+    Load load = from_.state->load;
+    load.set_loaded_stress(way_.stress);
     const std::vector<double>& on_disks = way_.rattles ? load.infinitesimal : load.disk_force;
     pushing_.fixed.assign(moving_.moves.size(), Bounds(0));
     std::copy(on_disks.begin(), on_disks.end(), pushing_.fixed.begin());
@@ -150,13 +158,12 @@ void Follower::load() {
         return;
     }
     for (const WallForce& wall : load.wall_forces(from_.state->packing)) {
-        const double stress = wall.loaded ? way_.stress : wall.stress;
         if (load.kind == LoadKind::nominal) {
-            const Bounds pressed = Bounds(stress) * wall.length;
+            const Bounds pressed = (Bounds(wall.stress) + wall.rest[0] + wall.rest[1]) * wall.length;
             Bounds& force = pushing_.fixed[at(wall.coordinate)];
             force = force - (from_.state->packing.dimension == plane ? pressed : pressed * wall.other);
         } else {
-            pushing_.pressure[at(wall.axis)] = stress;
+            pushing_.pressure[at(wall.axis)] = wall.stress;
         }
     }
 }
@@ -346,7 +353,7 @@ Objections end_of(const Place& from, const Contact& closed, const Way& way, Stat
     const std::vector<bool> moves = moving_coordinates(*from.state, from.evidence->problem, way.witness);
     end = *from.state;
     end.contacts[way.opened] = closed;
-    end.load.loaded_stress() = way.stress;
+    end.load.set_loaded_stress(way.stress);
     std::size_t next = 0;
     const auto count = static_cast<std::size_t>(std::count(moves.begin(), moves.end(), true));
     for (const Witness::Centre& centre : way.witness.centres) {

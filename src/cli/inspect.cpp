@@ -36,6 +36,12 @@ std::span<const double> stresses_of(const State& state) {
     return std::span(state.load.stress).first(state.packing.axes());
 }
 
+/// Of the axes, and of the tilts where they move.
+std::span<const double> of_path(const State& state, const StressRates& all) {
+    const Packing& packing = state.packing;
+    return std::span(all).first(packing.axes() + (packing.cell.shears() ? packing.tilts() : 0));
+}
+
 Json numbers(std::span<const double> values) {
     Json out = Json::array();
     for (const double value : values) {
@@ -59,6 +65,13 @@ void print_counting(const State& state, const Counting& c) {
                                                        axis_names[state.packing.axes() - 1])
         : periodic                       ? "nominal (constant forces on the periods)"
                                          : "nominal (constant wall forces)");
+    if (state.load.path) {
+        const auto list = [&](const StressRates& all) {
+            return fmt::format("{}", fmt::join(of_path(state, all), ", "));
+        };
+        say("loaded                   t = {}: sigma = ({}) + t ({})\n", state.load.path->t, list(state.load.path->at),
+            list(state.load.path->rate));
+    }
     say("degrees of freedom N_f   {}\n", c.dof_count);
     say("contacts N               {}\n", c.contact_count);
     say("rank, stored coordinates {} ({})\n", c.rank, c.rank_exact == Verdict::proved ? "exact" : "proved lower bound");
@@ -141,6 +154,11 @@ Json counting_json(const std::string& file, const State& state, const Counting& 
     object["solid_fraction"] = number(state.packing.solid_fraction());
     object["stress"] = numbers(stresses_of(state));
     object["load"] = word_of(state.load.kind, load_kind_words);
+    if (const auto& path = state.load.path) {
+        object["path"] = {{"t", number(path->t)},
+                          {"stress", numbers(of_path(state, path->at))},
+                          {"direction", numbers(of_path(state, path->rate))}};
+    }
     object["N_f"] = c.dof_count;
     object["N"] = c.contact_count;
     object["rank"] = c.rank;
@@ -373,7 +391,7 @@ int inspect(const InspectArguments& arguments) {
     }
     StateFile file = read_any_state(arguments.file, Dimensions::any);
     if (arguments.at) {
-        file.state.load.loaded_stress() = *arguments.at;
+        file.state.load.set_loaded_stress(*arguments.at);
         file.forces.clear(); // of another load
     }
     const Answer answer = answer_of(arguments, file);

@@ -17,8 +17,8 @@ constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr int further = 3; ///< equilibria after the last load: frames may be early
 
 /// Of frames it is that of the last axis.
-double& loaded(State& state) {
-    return state.load.stress[static_cast<std::size_t>(state.load.loaded_axis)];
+double loaded(const State& state) {
+    return state.load.loaded_stress();
 }
 
 /// Keeps the equilibria with their lists; those that only another load made are the same one.
@@ -162,7 +162,7 @@ Result<std::vector<Contact>> list_after(State state, double sigma, bool jump, co
     Segment segment;
     segment.equilibria = 0;
     if (jump) {
-        loaded(state) = sigma;
+        state.load.set_loaded_stress(sigma);
     } else if (sigma != loaded(state)) {
         segment.equilibria.reset();
         segment.direction = sigma > loaded(state) ? 1 : -1;

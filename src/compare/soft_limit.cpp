@@ -33,7 +33,7 @@ class SoftGrains {
             return false;
         }
         factors_.emplace(structure.value());
-        load_.loaded_stress() = sigma;
+        load_.set_loaded_stress(sigma);
         forces = on_dofs(load_.external_force(packing), dofs_);
         slopes = on_dofs(load_.unit_force(packing), dofs_);
         factors_->solve_forces(forces);

@@ -74,6 +74,10 @@ template <class Use> void for_each_column(const Row& row, const Use& use) {
     use("segment", r.segment);
     use(row.names.stress, r.stress);
     use("ratio", r.stress / r.sigma1);
+    if (row.names.of_path) {
+        use("p", r.mean_stress);
+        use("q", r.deviator);
+    }
     for_each_measure(row, false, [&](const Measure& m) { use(m.strain, r.strain[m.axis]); });
     for_each_measure(row, false, [&](const Measure& m) { use(m.length, r.length[m.axis]); });
     use("solid_fraction", row.solid_fraction);
@@ -113,6 +117,9 @@ RecordColumns record_columns(const MoreColumns& more) {
     Load load;
     load.dimension = more.dimension;
     load.loaded_axis = more.loaded_axis;
+    if (more.path) {
+        load.path.emplace();
+    }
     return record_columns(load, more.tilt);
 }
 
@@ -184,6 +191,9 @@ EquilibriumRow row_of(const EquilibriumLine& line) {
     row.ratio = fields.number("ratio");
     row.strain1 = fields.number(names.other_strain);
     row.strain2 = fields.number(names.strain);
+    for (std::size_t a = 0; names.dimension != plane && a < most_axes; ++a) {
+        row.length.push_back(fields.number(names.measures[a].length));
+    }
     row.solid_fraction = fields.number("solid_fraction");
     row.arcs = fields.integer("arcs", 0);
     row.rattlers = fields.integer("rattlers", 0);
@@ -238,9 +248,11 @@ MoreColumns named_columns(std::string_view text, const std::string& source) {
     for (const bool tilt : {false, true}) {
         for (const bool touching : {false, true}) {
             const int places = !tilt ? most_axes : most_axes + most_tilts;
-            for (int loaded = -1; loaded < places; ++loaded) { // -1: the plane
-                const MoreColumns more =
-                    loaded < 0 ? MoreColumns{tilt, touching} : MoreColumns{tilt, touching, most_axes, loaded};
+            for (int loaded = -1; loaded <= places; ++loaded) { // -1: the plane; the last: a path
+                const MoreColumns more = loaded < 0 ? MoreColumns{tilt, touching}
+                                         : loaded == places
+                                             ? MoreColumns{tilt, touching, most_axes, most_axes - 1, true}
+                                             : MoreColumns{tilt, touching, most_axes, loaded};
                 if (text.starts_with(equilibria_header(more))) {
                     return more;
                 }

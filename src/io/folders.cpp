@@ -62,7 +62,7 @@ std::vector<std::string> chart_names(const std::string& chart) {
 
 std::vector<std::string> report_names() {
     std::vector<std::string> names{"report.txt", "trajectory.html", "soft_limits.csv", "forces.vtk.series"};
-    for (const char* chart : {"staircase", "cycles", "stress_increments", "strain_increments"}) {
+    for (const char* chart : {"staircase", "triaxial", "cycles", "stress_increments", "strain_increments"}) {
         names = joined(names, chart_names(chart));
     }
     for (const char* state : {"forces_eq_######", "forces_last"}) {

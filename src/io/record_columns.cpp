@@ -11,6 +11,7 @@ RecordColumns record_columns(const Load& load, bool tilts) {
     const auto other = static_cast<std::size_t>(load.other_axis());
     const Layout layout{load.dimension, 0};
     const bool by_role = load.dimension == plane;
+    columns.of_path = load.path.has_value();
     columns.stress = by_role ? "sigma2" : load.stress_name();
     for (std::size_t k = 0; k < layout.axes() + (tilts ? layout.tilts() : 0); ++k) {
         const std::size_t axis = !by_role ? k : k == 0 ? other : k == 1 ? loaded : 3 - other - loaded;

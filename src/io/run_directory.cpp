@@ -187,7 +187,8 @@ void RunDirectory::store_start(const State& state) {
 }
 
 MoreColumns RunDirectory::columns_of(const State& state) const {
-    return {state.packing.cell.shears(), header_.touching, state.packing.dimension, state.load.loaded_axis};
+    return {state.packing.cell.shears(), header_.touching, state.packing.dimension, state.load.loaded_axis,
+            state.load.path.has_value()};
 }
 
 State RunDirectory::stored(int equilibrium) const {

@@ -204,6 +204,39 @@ void read_tilts(const Field& field, const Packing& packing, Load& load) {
     }
 }
 
+/// "path": stresses that change together; "stress" and "shear" are what they are at t.
+void read_path(const Field& field, const Packing& packing, Load& load) {
+    const Field path = field.at("path");
+    path.only({"stress", "direction", "t"});
+    std::vector<double> rates;
+    for (std::size_t k = 0; k < path.at("direction").size(); ++k) {
+        rates.push_back(path.at("direction").at(k).number());
+    }
+    if (const std::string fault = fault_of_path(packing, rates); !fault.empty()) {
+        throw Error(ErrorKind::bad_input,
+                    fmt::format("{}: a direction in the space of stresses, {}", path.at("direction").where(), fault));
+    }
+    const Field stress = path.at("stress");
+    stress.require_size(rates.size(), "as many numbers as direction has");
+    const Load said = load;
+    StressPath& along = load.path.emplace();
+    for (std::size_t k = 0; k < rates.size(); ++k) {
+        along.rate[k] = rates[k];
+        along.at[k] = stress.at(k).number();
+    }
+    load.set_loaded_stress(path.at("t").number());
+    if (!(load.other_stress() > 0)) {
+        stress.fail("a mean stress above 0");
+    }
+    const bool differs = (field.has("stress") && said.stress != load.stress) ||
+                         (field.has("shear") && said.shear != load.shear) || load.loaded_axis != packing.dimension - 1;
+    if (differs) {
+        field.fail(
+            "stress and shear that are path.stress + t path.direction, to the nearest double, and the last axis as "
+            "loaded_axis");
+    }
+}
+
 Load load_of(const Field& document, const Packing& packing) {
     Load load;
     std::fill_n(load.stress.begin(), packing.dimension, 1);
@@ -212,7 +245,7 @@ Load load_of(const Field& document, const Packing& packing) {
     load.refer_to(packing);
     if (document.has("load")) {
         const Field field = document.at("load");
-        field.only({"kind", "stress", "loaded_axis", "reference_length", "reference_tilt", "shear"});
+        field.only({"kind", "stress", "loaded_axis", "path", "reference_length", "reference_tilt", "shear"});
         if (field.has("kind")) {
             load.kind = field.at("kind").word<LoadKind>(load_kind_words);
             const auto& tilts = packing.cell.tilt_moves;
@@ -249,6 +282,9 @@ Load load_of(const Field& document, const Packing& packing) {
                                                                    : ", or a tilt that moves, from 3 on"));
             }
             load.loaded_axis = static_cast<int>(axis);
+        }
+        if (field.has("path")) {
+            read_path(field, packing, load);
         }
     }
     load.disk_force = vectors(document, "disk_force", packing.layout());

@@ -92,6 +92,13 @@ std::string load_text(const State& state) {
     object["kind"] = word_of(load.kind, load_kind_words);
     object["stress"] = numbers(std::span(load.stress).first(axes), "load.stress");
     object["loaded_axis"] = load.loaded_axis;
+    if (load.path) {
+        const std::size_t places = state.packing.cell.shears() ? axes + tilts : axes;
+        Json& path = object["path"];
+        path["stress"] = numbers(std::span(load.path->at).first(places), "load.path.stress");
+        path["direction"] = numbers(std::span(load.path->rate).first(places), "load.path.direction");
+        path["t"] = finite(load.path->t, "load.path.t");
+    }
     object["reference_length"] = numbers(std::span(load.reference_length).first(axes), "load.reference_length");
     if (state.packing.cell.any()) {
         object["shear"] = numbers(std::span(load.shear).first(tilts), "load.shear");

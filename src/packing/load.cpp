@@ -2,6 +2,8 @@
 
 #include <isostat/packing/packing.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -9,6 +11,15 @@
 #include <string>
 
 namespace isostat {
+
+namespace {
+
+/// Of axis or tilt, as a load counts them.
+std::size_t place_of(const Packing& packing, const WallForce& wall) {
+    return static_cast<std::size_t>(wall.coordinate) - packing.length_at(0);
+}
+
+} // namespace
 
 void Load::refer_to(const Packing& packing) {
     for (std::size_t a = 0; a < packing.axes(); ++a) {
@@ -19,7 +30,80 @@ void Load::refer_to(const Packing& packing) {
     }
 }
 
+void Load::set_loaded_stress(double value) {
+    if (!path) {
+        (loads_tilt() ? shear[loaded_tilt()] : stress[static_cast<std::size_t>(loaded_axis)]) = value;
+        return;
+    }
+    path->t = value;
+    const auto axes = static_cast<std::size_t>(dimension);
+    for (std::size_t place = 0; place < axes + Layout{dimension}.tilts(); ++place) {
+        (place < axes ? stress[place] : shear[place - axes]) = exact_stress(place).nearest;
+    }
+}
+
+void Load::follow(const StressRates& rate) {
+    path.reset();
+    const auto changing = std::find_if(rate.begin(), rate.end(), [](double r) { return r != 0; });
+    assert(changing != rate.end());
+    if (*changing == 1 && std::count(rate.begin(), rate.end(), 0.0) + 1 == static_cast<long>(rate.size())) {
+        loaded_axis = static_cast<int>(changing - rate.begin());
+        return;
+    }
+    loaded_axis = dimension - 1;
+    StressPath along{{}, rate, 0};
+    for (std::size_t place = 0; place < static_cast<std::size_t>(dimension) + Layout{dimension}.tilts(); ++place) {
+        along.at[place] = stress_of(place);
+    }
+    path = along;
+}
+
+/// Exact sum of a product and a number (Boldo and Muller, Exact and approximated error of the FMA): no part underflows.
+ExactStress Load::exact_stress(std::size_t place) const {
+    if (!path) {
+        return {stress_of(place), {}};
+    }
+    const auto two_sum = [](double a, double b) {
+        const double sum = a + b;
+        const double part = sum - a;
+        return std::array{sum, (a - (sum - part)) + (b - part)};
+    };
+    const double at = path->at[place];
+    const double rate = path->rate[place];
+    const double nearest = std::fma(rate, path->t, at);
+    const double high = rate * path->t;
+    const auto [inner, low] = two_sum(at, std::fma(rate, path->t, -high));
+    const auto [outer, rest] = two_sum(high, inner);
+    const auto lacking = two_sum((outer - nearest) + rest, low);
+    return {nearest, {lacking[0], lacking[1]}};
+}
+
+double Load::mean_stress() const {
+    double sum = 0;
+    for (std::size_t a = 0; a < static_cast<std::size_t>(dimension); ++a) {
+        sum += stress[a];
+    }
+    return sum / dimension;
+}
+
+double Load::deviator() const {
+    const double axial = stress[static_cast<std::size_t>(dimension) - 1];
+    return axial - (dimension * mean_stress() - axial) / (dimension - 1);
+}
+
+double Load::other_stress() const {
+    if (path) {
+        Load start = *this;
+        start.set_loaded_stress(0);
+        return start.mean_stress();
+    }
+    return stress[static_cast<std::size_t>(other_axis())];
+}
+
 std::string Load::stress_name() const {
+    if (path) {
+        return "t";
+    }
     if (dimension == plane) {
         return loads_tilt() ? "shear" : "sigma2";
     }
@@ -27,6 +111,9 @@ std::string Load::stress_name() const {
 }
 
 std::string Load::ratio_name() const {
+    if (path) {
+        return "t/p0";
+    }
     const bool first = dimension == plane && !loads_tilt(); // there the loaded axis is the second one by name
     return stress_name() + "/sigma" + std::to_string(first ? 1 : other_axis() + 1);
 }
@@ -45,12 +132,14 @@ std::vector<WallForce> Load::wall_forces(const Packing& packing) const {
     const std::size_t walls = packing.length_at(0);
     const bool follows = kind == LoadKind::true_stress;
     // The stress presses on the lengths of all axes but one.
-    const auto add = [&](std::size_t place, std::size_t axis, double pressure, std::size_t but) {
+    const auto add = [&](std::size_t place, std::size_t axis, std::size_t but) {
+        const ExactStress pressure = exact_stress(place);
         WallForce force;
         force.coordinate = static_cast<int>(walls + place);
         force.axis = static_cast<int>(axis);
-        force.stress = pressure;
-        force.loaded = static_cast<int>(place) == loaded_axis;
+        force.stress = pressure.nearest;
+        force.rest = pressure.rest;
+        force.rate = rate_of(place);
         const auto times = [&](std::size_t along, double& length, int& at) {
             length = follows ? packing.q[walls + along] : reference_length[along];
             at = follows ? static_cast<int>(walls + along) : -1;
@@ -63,14 +152,14 @@ std::vector<WallForce> Load::wall_forces(const Packing& packing) const {
     };
     for (std::size_t a = 0; a < packing.axes(); ++a) {
         if (packing.cell.periodic[a] ? packing.cell.period_moves[a] : packing.walls.upper[a] == WallKind::movable) {
-            add(a, a, stress[a], a);
+            add(a, a, a);
         }
     }
     assert(!loads_tilt() || (packing.cell.any() && packing.cell.tilt_moves[loaded_tilt()]));
     for (std::size_t b = 1; b < packing.axes() && packing.cell.any(); ++b) {
         for (std::size_t a = 0; a < b; ++a) {
             if (const std::size_t t = Cell::tilt(a, b); packing.cell.tilt_moves[t]) {
-                add(packing.axes() + t, a, shear[t], b);
+                add(packing.axes() + t, a, b);
             }
         }
     }
@@ -85,20 +174,22 @@ std::vector<int> Load::loaded_rows(const Packing& packing, const DofMap& dofs) c
         }
     }
     for (const WallForce& wall : wall_forces(packing)) {
-        if (!wall.loaded && wall.stress != 0 && wall.length * wall.other != 0) {
+        const bool pressed = path ? path->at[place_of(packing, wall)] != 0 : wall.rate == 0 && wall.stress != 0;
+        if (pressed && wall.length * wall.other != 0) {
             rows.push_back(dofs.dof_of(static_cast<std::size_t>(wall.coordinate)));
         }
     }
     return rows;
 }
 
-int Load::loaded_wall_row(const Packing& packing, const DofMap& dofs) const {
+std::vector<int> Load::changing_rows(const Packing& packing, const DofMap& dofs) const {
+    std::vector<int> rows;
     for (const WallForce& wall : wall_forces(packing)) {
-        if (wall.loaded && wall.length * wall.other != 0) {
-            return dofs.dof_of(static_cast<std::size_t>(wall.coordinate));
+        if (wall.rate != 0 && wall.length * wall.other != 0) {
+            rows.push_back(dofs.dof_of(static_cast<std::size_t>(wall.coordinate)));
         }
     }
-    return -1;
+    return rows;
 }
 
 std::vector<double> Load::external_force(const Packing& packing) const {
@@ -110,8 +201,8 @@ std::vector<double> Load::external_force(const Packing& packing) const {
 std::vector<double> Load::unit_force(const Packing& packing) const {
     std::vector<double> force(packing.q.size(), 0.0);
     for (const WallForce& wall : wall_forces(packing)) {
-        if (wall.loaded) {
-            force[static_cast<std::size_t>(wall.coordinate)] = -(wall.length * wall.other);
+        if (wall.rate != 0) {
+            force[static_cast<std::size_t>(wall.coordinate)] = -(wall.rate * wall.length * wall.other);
         }
     }
     return force;
@@ -121,11 +212,43 @@ std::vector<double> Load::fixed_force(const Packing& packing) const {
     std::vector<double> force(packing.q.size(), 0.0);
     std::copy(disk_force.begin(), disk_force.end(), force.begin());
     for (const WallForce& wall : wall_forces(packing)) {
-        if (!wall.loaded) {
-            force[static_cast<std::size_t>(wall.coordinate)] = -(wall.stress * wall.length * wall.other);
+        const double fixed = path ? path->at[place_of(packing, wall)] : wall.rate == 0 ? wall.stress : 0;
+        if (fixed != 0) {
+            force[static_cast<std::size_t>(wall.coordinate)] = -(fixed * wall.length * wall.other);
         }
     }
     return force;
+}
+
+std::string fault_of_path(const Packing& packing, std::span<const double> rate) {
+    constexpr double largest_rate = 1e6;
+    if (packing.dimension == plane) {
+        return "disks: expected spheres, or loaded = \"y\" or \"tilt\"";
+    }
+    if (rate.size() != packing.axes() && rate.size() != packing.axes() + packing.tilts()) {
+        return fmt::format("{} numbers: expected three, of the axes, or six, of the axes and of the tilts xy, xz, yz",
+                           rate.size());
+    }
+    const DofMap dofs(packing);
+    bool any = false;
+    for (std::size_t place = 0; place < rate.size(); ++place) {
+        const double size = std::abs(rate[place]);
+        if (size == 0) {
+            continue;
+        }
+        any = true;
+        if (!(size >= 1 / largest_rate && size <= largest_rate)) {
+            return fmt::format("{}: expected 0, or magnitudes from {} to {}", rate[place], 1 / largest_rate,
+                               largest_rate);
+        }
+        const std::size_t at = packing.length_at(0) + place;
+        if (at >= packing.coordinate_count() || dofs.dof_of(at) < 0) {
+            return fmt::format("{} for {}, which does not move: expected 0", rate[place],
+                               place < packing.axes() ? fmt::format("the length along {}", axis_names[place])
+                                                      : fmt::format("the tilt {}", tilt_names[place - packing.axes()]));
+        }
+    }
+    return any ? "" : "all numbers are 0: expected one that is not";
 }
 
 double potential(const Packing& packing, const Load& load) {

@@ -253,6 +253,9 @@ Result<State> prepare(const PreparationOptions& options, PreparationReport& repo
     if (state.ok() && options.loaded_axis) {
         state.value().load.loaded_axis = *options.loaded_axis;
     }
+    if (state.ok() && options.path) {
+        state.value().load.follow(*options.path);
+    }
     return state;
 }
 

@@ -240,7 +240,15 @@ void bind_load(StateClass& state) {
                 const std::vector<double> force = on_dofs(s.load.external_force(s.packing), DofMap(s.packing));
                 return py::array_t<double>(static_cast<py::ssize_t>(force.size()), force.data());
             },
-            "(N_f,) external force on each degree of freedom, stress x length, rounded to nearest.");
+            "(N_f,) external force on each degree of freedom, stress x length, rounded to nearest.")
+        .def(
+            "with_loaded_stress",
+            [](const PyState& self, double stress) {
+                State changed = self.state;
+                changed.load.set_loaded_stress(stress);
+                return parse_any_state(state_text(changed), "State", Dimensions::any);
+            },
+            py::arg("stress"), "The same state where what the programme changes has this value.");
 }
 
 void bind_state_class(py::module_& module) {
@@ -288,6 +296,7 @@ void bind_state_class(py::module_& module) {
                     throw Error(ErrorKind::bad_input, fmt::format("stress has {} numbers: expected {}", stress.size(),
                                                                   changed.packing.axes()));
                 }
+                changed.load.path.reset();
                 std::copy(stress.begin(), stress.end(), changed.load.stress.begin());
                 changed.load.shear[0] = shear.value_or(changed.load.shear[0]);
                 return parse_any_state(state_text(changed), "State", Dimensions::any);

@@ -10,6 +10,7 @@
 #include "report/page.hpp"
 #include "report/picture.hpp"
 #include "report/tables.hpp"
+#include "report/triaxial.hpp"
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/core/error.hpp>
@@ -178,6 +179,31 @@ std::vector<fs::path> stored_states(const fs::path& directory, const FolderConte
     return states;
 }
 
+/// Number and picture of each stored state of spheres, with the forces that it has.
+std::vector<std::pair<int, std::string>> sphere_pictures(const std::vector<fs::path>& states) {
+    std::vector<std::pair<int, std::string>> pictures;
+    for (const fs::path& path : states) {
+        const StateFile file = read_any_state(path, Dimensions::any);
+        if (pictures.empty() || pictures.back().first != file.state.equilibrium) { // the last one is stored twice
+            pictures.emplace_back(file.state.equilibrium, sphere_picture(file.state, file.forces, ""));
+        }
+    }
+    return pictures;
+}
+
+/// A stress on an axis changes, not those on tilts alone.
+bool changes_lengths(const Load& load) {
+    return load.rate_of(0) != 0 || load.rate_of(1) != 0 || load.rate_of(2) != 0;
+}
+
+std::string page_of_disks(const fs::path& directory, const ReportOptions& options, Writer& writer) {
+    Page page = run_page(directory, options.progress);
+    for (const std::string& left_out : page.left_out) {
+        writer.note(fmt::format("trajectory.html: left out: {}", left_out));
+    }
+    return std::move(page.html);
+}
+
 /// Figures go into the run that they are of, or where only a report is.
 void make_output(const fs::path& directory, const fs::path& output) {
     if (fs::weakly_canonical(output) == fs::weakly_canonical(directory / "figures")) {
@@ -212,12 +238,17 @@ ReportResult report_run(const fs::path& directory, const fs::path& output, const
         writer.note(note);
     }
     const std::vector<fs::path> states = stored_states(directory, content);
-    const Load load = states.empty() ? Load() : read_any_state(states.front(), Dimensions::any).state.load;
+    const State first = states.empty() ? State() : read_any_state(states.front(), Dimensions::any).state;
+    const Load& load = first.load;
+    const bool triaxial = load.dimension != plane && !rows.empty() && changes_lengths(load);
     const LoadWords words = load_words(load);
     if (options.pictures || options.vtk) {
         if (options.pictures) {
             for (const Chart& chart : make_charts(rows, names, words, options.pdf)) {
                 writer.chart(chart);
+            }
+            if (triaxial) {
+                writer.chart(triaxial_chart(triaxial_points(rows, load), names, options.pdf));
             }
         }
         for (const fs::path& path : states) {
@@ -225,14 +256,14 @@ ReportResult report_run(const fs::path& directory, const fs::path& output, const
         }
         writer.vtk_series();
     }
-    if (options.html && load.dimension != plane) {
-        writer.note("trajectory.html: left out: the page of a run draws disks");
+    if (options.html && load.dimension != plane && !triaxial) {
+        writer.note("trajectory.html: left out: the page of spheres is of a triaxial test, and tilts are loaded");
     } else if (options.html) {
-        const Page page = run_page(directory, options.progress);
-        for (const std::string& left_out : page.left_out) {
-            writer.note(fmt::format("trajectory.html: left out: {}", left_out));
-        }
-        writer.write("trajectory.html", page.html);
+        const std::string title =
+            fmt::format("{} spheres: {}", first.packing.disk_count(), header.at("status").string());
+        writer.write("trajectory.html", triaxial ? triaxial_page(triaxial_points(rows, load), rows, names, words, title,
+                                                                 sphere_pictures(states))
+                                                 : page_of_disks(directory, options, writer));
     }
     std::string text = run_tables(rows, names, header.at("status").string(), words);
     const fs::path summary = directory / "summary.json"; // of runs that ended

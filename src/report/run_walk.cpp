@@ -126,7 +126,7 @@ class Walk {
 
     void arrive(const EquilibriumLine& line) {
         here_->equilibrium = line.integer("number");
-        here_->load.loaded_stress() = line.stress();
+        here_->load.set_loaded_stress(line.stress());
         if (branches_.contains(here_->equilibrium)) {
             kept_[here_->equilibrium] = *here_;
         }
@@ -144,7 +144,7 @@ class Walk {
         if (!solver_) {
             solver_ = std::make_shared<Solver>(Structure(here_->packing, here_->contacts), here_->packing.q);
         }
-        here_->load.loaded_stress() = event.stress;
+        here_->load.set_loaded_stress(event.stress);
         const ArcStart start{*here_, solver_};
         const std::optional<Opening> opening = opening_of(start, event);
         if (!opening) {

@@ -12,6 +12,20 @@ LoadWords load_words(const Load& load) {
     if (load.dimension == plane) {
         return load.loads_tilt() ? shear_words : biaxial_words;
     }
+    if (load.path) {
+        return {"t/p0",
+                load.strain_name(),
+                "t rises",
+                "t falls",
+                "way in stress space t/p_0",
+                "axial strain ε_3",
+                "increment of Δt/p_0",
+                "strain increment Δε_3",
+                "t/p₀",
+                "ε₃",
+                "ε₁",
+                "t"};
+    }
     constexpr std::array numbers{"₁", "₂", "₃"};
     const auto other = static_cast<std::size_t>(load.other_axis());
     const bool shear = load.loads_tilt();

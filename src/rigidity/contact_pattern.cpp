@@ -187,9 +187,9 @@ std::vector<unsigned char> ContactPattern::carrying(std::span<const int> rows,
     return sparse::structural_nonzeros(pattern.start, pattern.row, pattern.matched, rows, std::move(reached));
 }
 
-std::vector<unsigned char> ContactPattern::carrying_without(ContactId opens, int row_of_load,
+std::vector<unsigned char> ContactPattern::carrying_without(ContactId opens, std::span<const int> rows,
                                                             std::span<const int> other_rows) const {
-    const View pattern = for_load(other_rows); // `row_of_load` is of a wall, or of the cell
+    const View pattern = for_load(other_rows); // `rows` are of walls, or of the cell
     const std::span<const int> all_start = pattern.start;
     const std::span<const int> all_row = pattern.row;
     const std::size_t size = pattern.matched.size();
@@ -197,7 +197,7 @@ std::vector<unsigned char> ContactPattern::carrying_without(ContactId opens, int
     std::vector<int> replaced_row;
     for (std::size_t l = 0; l < size; ++l) {
         if (l == opens.index()) {
-            replaced_row.push_back(row_of_load);
+            replaced_row.insert(replaced_row.end(), rows.begin(), rows.end());
         } else {
             replaced_row.insert(replaced_row.end(), all_row.begin() + all_start[l], all_row.begin() + all_start[l + 1]);
         }

@@ -36,9 +36,9 @@ class ContactPattern {
     /// `reached`: the answer for a load on some of these rows, none of a disk, where it is known.
     [[nodiscard]] std::vector<unsigned char> carrying(std::span<const int> rows,
                                                       std::vector<unsigned char> reached = {}) const;
-    /// The same for what is left of the forces where the force of `opens` has been brought to 0 by a load on `row`: 0
+    /// The same for what is left of the forces where the force of `opens` has been brought to 0 by a load on `rows`: 0
     /// means that the two vanish together (D3). All 1 when `opens` does not depend on that load.
-    [[nodiscard]] std::vector<unsigned char> carrying_without(ContactId opens, int row,
+    [[nodiscard]] std::vector<unsigned char> carrying_without(ContactId opens, std::span<const int> rows,
                                                               std::span<const int> other_rows) const;
 
   private:

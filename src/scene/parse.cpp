@@ -150,6 +150,48 @@ void read_preparation(Section& section, Scene& scene) {
     options.max_programmes = static_cast<int>(section.integer("max_programmes", options.max_programmes, 1, 100'000));
 }
 
+/// Several stresses at once, as a triaxial test has them.
+struct Protocol {
+    const char* word;
+    std::vector<double> path;
+};
+const std::array protocols{Protocol{"compression", {0, 0, 1}}, Protocol{"extension", {0, 0, -1}},
+                           Protocol{"constant_mean", {-1, -1, 2}}};
+
+/// [load] direction, or a protocol. What is prepared moves in all its lengths.
+void read_path(Section& section, Scene& scene) {
+    PreparationOptions& options = scene.preparation;
+    const bool prepares = scene.start.empty();
+    std::string key = "loaded";
+    if (const auto numbers = section.numbers("direction")) {
+        key = "direction";
+        if (!scene.loaded.empty()) {
+            section.refuse(key, "'loaded' and 'direction' in [load] exclude each other: expected one of them");
+        }
+        scene.path = *numbers;
+        section.record(key, fmt::format("[{}]", fmt::join(*numbers, ", ")));
+    } else if (scene.path.empty()) {
+        return;
+    }
+    Packing any;
+    any.dimension = prepares ? options.dimension : static_cast<int>(most_axes);
+    any.radius = {1};
+    any.walls = Walls::box(any.dimension);
+    if (!prepares || options.cell != PreparedCell::none) {
+        any.cell.dimension = any.dimension;
+        any.walls = Walls::none();
+        any.cell.repeat();
+        any.cell.move(true, !prepares || options.cell == PreparedCell::tilted);
+    }
+    any.q.assign(any.coordinate_count(), 1);
+    if (const std::string fault = fault_of_path(any, scene.path); !fault.empty()) {
+        section.refuse(key, fmt::format("'{}' in [load] is a direction in the space of stresses, {}", key, fault));
+    }
+    if (prepares) {
+        std::copy(scene.path.begin(), scene.path.end(), options.path.emplace().begin());
+    }
+}
+
 /// What the programme changes.
 void read_loaded(Section& section, Scene& scene) {
     if (!section.string("loaded")) { // without it the state of a file says what is loaded
@@ -161,12 +203,22 @@ void read_loaded(Section& section, Scene& scene) {
     std::vector<std::string> words{"x", "y", "z", "xy", "xz", "yz"};
     if (prepares && in_plane) {
         words = {"y", "tilt"};
-    } else if (!prepares) {
+    } else {
+        for (const Protocol& protocol : protocols) {
+            words.emplace_back(protocol.word);
+        }
+    }
+    if (!prepares) {
         words.emplace_back("tilt");
     }
     const std::size_t place = section.word("loaded", 0, words);
     scene.loaded = words[place];
-    if (!prepares) {
+    for (const Protocol& protocol : protocols) {
+        if (scene.loaded == protocol.word) {
+            scene.path = protocol.path;
+        }
+    }
+    if (!prepares || !scene.path.empty()) {
         return;
     }
     options.loaded_axis = static_cast<int>(place) + (in_plane ? 1 : 0);
@@ -183,6 +235,9 @@ Load load_at_start(const Scene& scene) {
     if (scene.start.empty()) {
         load.dimension = scene.preparation.dimension;
         load.loaded_axis = scene.preparation.loaded_axis.value_or(load.dimension - 1);
+        if (scene.preparation.path) {
+            load.follow(*scene.preparation.path);
+        }
         return load;
     }
     try {
@@ -227,6 +282,7 @@ void read_load(Section& section, Scene& scene) {
         scene.preparation.stress = section.number("sigma1", 1, 1e-100, 1e100, "a positive stress from 1e-100 to 1e100");
     }
     read_loaded(section, scene);
+    read_path(section, scene);
     if (infinitesimal) {
         if (*infinitesimal < 0) {
             section.fail("infinitesimal_seed", "a seed that is not negative");
@@ -238,7 +294,7 @@ void read_load(Section& section, Scene& scene) {
 
 ProgrammeStep read_step(Section& section, const Load& load) {
     ProgrammeStep step;
-    step.of_shear = load.loads_tilt();
+    step.from_zero = load.loads_tilt() || load.path;
     step.ratio = load.ratio_name();
     step.line = section.line_of("");
     if (!section.has("do")) {
@@ -249,11 +305,11 @@ ProgrammeStep read_step(Section& section, const Load& load) {
         step.equilibria = static_cast<int>(section.integer("equilibria", 0, 1, 1'000'000'000));
     }
     if (const auto to = section.number("to")) {
-        step.to = step.of_shear ? section.number("to", 0, -largest_number, largest_number, "a ratio " + step.ratio)
-                                : section.number("to", 0, 0, largest_number,
-                                                 "a ratio " + step.ratio +
-                                                     " that is not negative (one of the shear has either sign: loaded "
-                                                     "= \"tilt\" in [load])");
+        step.to = step.from_zero ? section.number("to", 0, -largest_number, largest_number, "a ratio " + step.ratio)
+                                 : section.number("to", 0, 0, largest_number,
+                                                  "a ratio " + step.ratio +
+                                                      " that is not negative (one of the shear has either sign: loaded "
+                                                      "= \"tilt\" in [load])");
     }
     if (const auto from = section.integer("from")) {
         step.from = static_cast<int>(section.integer("from", 0, 0, 1'000'000'000));
@@ -412,12 +468,19 @@ Scene parse_scene(const std::string& text, const std::string& source, const std:
     Section run = section("run");
     read_run(run, scene);
     run.finish();
+    if (scene.run.certify == CertifyLevel::arcs && load_at_start(scene).path) {
+        throw Error(ErrorKind::bad_input,
+                    fmt::format("{}: certify = \"arcs\" in [run] and several stresses that change together: expected "
+                                "\"decisions\" or \"states\", arcs are enclosed under loads with one",
+                                source));
+    }
     Section output = section("output");
     read_output(output, scene);
     output.finish();
     std::optional<double> ratio;
     if (scene.start.empty()) {
-        ratio = load_at_start(scene).loads_tilt() ? 0 : 1; // isotropic
+        const Load load = load_at_start(scene);
+        ratio = load.loads_tilt() || load.path ? 0 : 1; // isotropic
     }
     check_programme(scene, ratio);
     return scene;

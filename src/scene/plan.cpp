@@ -69,6 +69,14 @@ void add_stages(Plan& plan, const Scene& scene) {
     }
     plan.add("stage", "sequential linear programmes", prepares, prepares ? rigid : given);
     plan.add("stage", "Newton on the contacts", prepares, prepares ? "all gaps of the vertex to rounding" : given);
+    const std::vector<double>& path = scene.path;
+    plan.add("stage", "path in stress space", !path.empty(),
+             path.empty()
+                 ? "one stress changes, the others stay"
+                 : fmt::format("t goes up or down, and {} change by {} each time that it changes by 1",
+                               path.size() == most_axes ? "sigma1, sigma2, sigma3"
+                                                        : "sigma1, sigma2, sigma3, shear_xy, shear_xz, shear_yz",
+                               fmt::join(path, ", ")));
     plan.add("stage", "trajectory", !scene.programme.empty(),
              scene.programme.empty() ? "the scene has no [[programme]]"
                                      : fmt::format("{} segments", scene.programme.size()));

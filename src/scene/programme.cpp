@@ -24,9 +24,9 @@ const char* word(Action action) {
     return "to";
 }
 
-/// Of a stress ratio; a shear has either sign.
+/// Of a stress ratio; a shear, and the way along a path, have either sign.
 double lowest(const ProgrammeStep& step) {
-    return step.of_shear ? -infinity : 0;
+    return step.from_zero ? -infinity : 0;
 }
 
 /// Ratios at which the run can be, and whether both ends are reached for sure.

@@ -58,9 +58,22 @@ void choose_loaded(State& state, const Scene& scene, const std::string& source) 
     const bool in_plane = packing.dimension == plane;
     const std::vector<std::string> words = in_plane ? std::vector<std::string>{"", "y", "tilt"}
                                                     : std::vector<std::string>{"x", "y", "z", "xy", "xz", "yz"};
+    if (!scene.path.empty()) {
+        if (const std::string fault = fault_of_path(packing, scene.path); !fault.empty()) {
+            throw Error(ErrorKind::bad_input,
+                        fmt::format("{}: [load] of {} names a direction in the space of stresses, "
+                                    "{}",
+                                    source, scene.file, fault));
+        }
+        StressRates rate{};
+        std::copy(scene.path.begin(), scene.path.end(), rate.begin());
+        state.load.follow(rate);
+        return;
+    }
     if (scene.loaded.empty()) {
         return;
     }
+    state.load.path.reset();
     const auto axis = static_cast<std::size_t>(std::find(words.begin(), words.end(), scene.loaded) - words.begin());
     if (axis == words.size()) {
         bad(in_plane ? "disks" : "spheres", in_plane ? "\"y\" or \"tilt\"" : "an axis, x to z, or a tilt, xy to yz");

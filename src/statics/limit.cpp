@@ -102,9 +102,10 @@ bool LimitContest::carried_by_others(const Enclosure& slope) const {
         }
     }
     const DofMap& dofs = statics_.structure().dofs();
-    const int row = statics_.loaded_wall_row();
-    return row >= 0 &&
-           carries_alone(dofs, carrying, dofs.coordinate_of(row) - dofs.layout().dimension * dofs.disk_count());
+    const std::vector<int>& rows = statics_.changing_rows();
+    return rows.size() == 1 &&
+           carries_alone(dofs, carrying,
+                         dofs.coordinate_of(rows.front()) - dofs.layout().dimension * dofs.disk_count());
 }
 
 Failure LimitContest::open_rate(ContactId l, const Order& order) const {

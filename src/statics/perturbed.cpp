@@ -43,7 +43,7 @@ std::vector<Enclosure> PerturbedStatics::terms(double sigma, double sigma_error)
         }
     }
     Load load = load_;
-    load.loaded_stress() = sigma;
+    load.set_loaded_stress(sigma);
     return first_->forces(f0, zero, load, sigma_error);
 }
 

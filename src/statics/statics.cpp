@@ -44,19 +44,22 @@ Statics::Statics(const Packing& packing, const Load& load, const IsostaticStruct
     const double rate = follows ? rate_of_areas(packing) : 0;
     LoadTerms now{{}, rate * stress * (1 + 4 * u)};
     LoadTerms per_unit{{}, rate};
+    double fastest = 1; // of the stresses, as the loaded one changes by 1
     for (const WallForce& wall : load.wall_forces(packing)) {
         const int row = dofs.dof_of(static_cast<std::size_t>(wall.coordinate));
-        now.products.push_back({row, wall.stress, wall.length, wall.other});
-        if (wall.loaded && packing.dimension > plane) { // in the plane the double is the length itself
-            per_unit.products.push_back({row, 1, wall.length, wall.other});
+        now.products.push_back({row, wall.stress, wall.length, wall.other, wall.rest});
+        if (wall.rate != 0 && packing.dimension > plane) { // in the plane the double is the length itself
+            per_unit.products.push_back({row, wall.rate, wall.length, wall.other});
+            fastest = std::max(fastest, std::abs(wall.rate));
         }
     }
     ladder_.add(on_dofs(load.external_force(packing), dofs), std::move(now),
                 hints.forces.empty() && hints.near != nullptr ? hints.near->guess(sigma_) : std::move(hints.forces));
+    per_unit.rate *= fastest;
     ladder_.add(on_dofs(load.unit_force(packing), dofs), std::move(per_unit), known(unit));
     ladder_.add(on_dofs(load.infinitesimal, dofs), {}, known(infinitesimal_part));
     loaded_rows_ = load.loaded_rows(packing, dofs);
-    loaded_wall_row_ = load.loaded_wall_row(packing, dofs);
+    changing_rows_ = load.changing_rows(packing, dofs);
     find_backbone();
 }
 
@@ -78,11 +81,9 @@ std::vector<double> Statics::guess(double sigma) const {
 
 void Statics::find_backbone() {
     std::vector<int> loaded = loaded_rows_;
-    if (loaded_wall_row_ >= 0) {
-        loaded.push_back(loaded_wall_row_); // also when its stress is 0 now
-    }
-    sloped_ = loaded_wall_row_ < 0 ? std::vector<unsigned char>(static_cast<std::size_t>(structure_->size()), 0)
-                                   : pattern_.carrying({&loaded_wall_row_, 1});
+    loaded.insert(loaded.end(), changing_rows_.begin(), changing_rows_.end()); // also when their stress is 0 now
+    sloped_ = changing_rows_.empty() ? std::vector<unsigned char>(static_cast<std::size_t>(structure_->size()), 0)
+                                     : pattern_.carrying(changing_rows_);
     backbone_ = pattern_.carrying(loaded, sloped_);
 }
 
@@ -92,7 +93,7 @@ void Statics::perturb_radii() {
 }
 
 std::vector<ContactId> Statics::vanish_with(ContactId opens) const {
-    const std::vector<unsigned char> others = pattern_.carrying_without(opens, loaded_wall_row_, loaded_rows_);
+    const std::vector<unsigned char> others = pattern_.carrying_without(opens, changing_rows_, loaded_rows_);
     std::vector<ContactId> members;
     for (std::size_t l = 0; l < others.size(); ++l) {
         if (l != opens.index() && others[l] == 0 && backbone_[l] != 0) {

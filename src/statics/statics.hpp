@@ -95,9 +95,9 @@ class Statics {
     [[nodiscard]] const IsostaticStructure& structure() const { return *structure_; }
     [[nodiscard]] const Factorisation& factorisation() const { return *factorisation_; }
     [[nodiscard]] const InverseBound& inverse() const { return *inverse_; }
-    /// Rows that carry a finite load other than the loaded wall's, and the loaded wall's row (-1: it cannot move).
+    /// Rows that carry a finite load whatever the loaded stress is, and those that this presses on.
     [[nodiscard]] const std::vector<int>& loaded_rows() const { return loaded_rows_; }
-    [[nodiscard]] int loaded_wall_row() const { return loaded_wall_row_; }
+    [[nodiscard]] const std::vector<int>& changing_rows() const { return changing_rows_; }
     /// Finite external force on the degrees of freedom at sigma, and the infinitesimal one.
     [[nodiscard]] std::vector<double> external_force(double sigma) const;
     [[nodiscard]] const std::vector<double>& infinitesimal_force() const { return ladder_.force(infinitesimal_part); }
@@ -114,12 +114,12 @@ class Statics {
     double sigma_;       ///< sigma_0
     ForceLadder ladder_; ///< right-hand sides: at sigma_0, unit, infinitesimal
     std::vector<int> loaded_rows_;
-    int loaded_wall_row_ = -1;
+    std::vector<int> changing_rows_;
     std::vector<unsigned char> backbone_;
     ContactPattern pattern_;
     std::shared_ptr<const LoadShift> shift_;
     double shift_bound_ = 0;
-    std::vector<unsigned char> sloped_; ///< what a stress on the loaded wall can reach
+    std::vector<unsigned char> sloped_; ///< what the loaded stress can reach
 };
 
 } // namespace isostat

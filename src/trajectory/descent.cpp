@@ -52,7 +52,7 @@ Enclosure work(const Vertex& start, const Place& from, const Place& to, const Lo
     }
     for (const WallForce& wall : infinitesimal ? std::vector<WallForce>() : load.wall_forces(start.packing)) {
         const auto k = static_cast<std::size_t>(wall.coordinate);
-        sum.add(-dd_real::mul(wall.stress, wall.length) * wall.other, to[k] - from[k]);
+        sum.add(-stress_times(wall, wall.length) * wall.other, to[k] - from[k]);
         ++terms;
     }
     const double radius =
@@ -90,7 +90,8 @@ Enclosure decrease_of_phi(const Vertex& start, const Place& from, const Place& t
             continue;
         }
         double error = 0;
-        const dd_real term = load.stress[a] * log_of_ratio(to[k], from[k], error);
+        const ExactStress stress = load.exact_stress(a);
+        const dd_real term = dd_real::add(stress.nearest, stress.rest[0]) * log_of_ratio(to[k], from[k], error);
         value += term;
         size += std::abs(term.x[0]);
         // |ln x - ln y| <= |x - y| / min(x, y); nothing is known of a length that may be 0.
@@ -122,10 +123,11 @@ PreciseInterval decrease_between(const PreciseVertex& from, const PreciseVertex&
         const auto k = static_cast<std::size_t>(wall.coordinate);
         const PreciseInterval a = from[k];
         const PreciseInterval b = to[k];
+        const PreciseInterval stress = exactly(wall.stress) + exactly(wall.rest[0]) + exactly(wall.rest[1]);
         if (load.kind == LoadKind::nominal) {
-            sum = sum + exactly(wall.stress) * exactly(wall.length) * exactly(wall.other) * (a - b);
+            sum = sum + stress * exactly(wall.length) * exactly(wall.other) * (a - b);
         } else {
-            sum = sum + exactly(wall.stress) * (logarithm(a) - logarithm(b));
+            sum = sum + stress * (logarithm(a) - logarithm(b));
         }
     }
     return sum;

@@ -3,6 +3,8 @@
 
 #include "trajectory/vertex.hpp"
 
+#include <qd/dd_real.h>
+
 #include <limits>
 
 namespace isostat {
@@ -21,6 +23,11 @@ Enclosure potential_decrease(const Vertex& from, const Vertex& to, const Load& l
 
 /// The work of dead loads between the two true vertices, whatever moved. Cost: O(n).
 Enclosure work_between(const Vertex& from, const Vertex& to, const Load& load);
+
+/// The exact stress times one of its lengths, to two roundings of double-double.
+inline dd_real stress_times(const WallForce& wall, double length) {
+    return wall.rest[0] == 0 ? dd_real::mul(wall.stress, length) : dd_real::add(wall.stress, wall.rest[0]) * length;
+}
 
 /// F(from) . (to - from) as records show it, in double: of dead loads the decrease of W. `size`: of the terms. No
 /// bound.

@@ -113,7 +113,7 @@ void record_potential(EquilibriumRecord& record, const TrueCoordinates& q, const
         }
     }
     for (const WallForce& wall : load.wall_forces(q.vertex.packing)) {
-        add(-dd_real::mul(wall.stress, wall.length) * wall.other, static_cast<std::size_t>(wall.coordinate));
+        add(-stress_times(wall, wall.length) * wall.other, static_cast<std::size_t>(wall.coordinate));
     }
     const Enclosure potential = shown(sum, error * rounded_up);
     record.potential = potential.value;
@@ -210,6 +210,8 @@ Result<Description> describe(Vertex& vertex, const Load& load) {
     const double sigma = load.loaded_stress();
     record.stress = sigma;
     record.sigma1 = load.other_stress();
+    record.mean_stress = load.mean_stress();
+    record.deviator = load.deviator();
     description.vertex = at_true_vertex(vertex);
     const TrueCoordinates q{vertex, description.vertex};
     const std::size_t tilts = vertex.packing.cell.shears() ? vertex.packing.tilts() : 0;

@@ -228,7 +228,7 @@ Result<bool> Run::reach_stress(const LoadLimit& limit) {
     if (!(ahead > 0)) {
         return false;
     }
-    state_.load.loaded_stress() = *segment_.to_stress;
+    state_.load.set_loaded_stress(*segment_.to_stress);
     if (ties_->settles()) {
         if (auto failure = reload()) {
             return *failure;

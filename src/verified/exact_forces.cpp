@@ -87,7 +87,7 @@ std::vector<mpq_class> ExactForces::solve(const std::vector<double>& force,
     std::vector<mpq_class> values(force.begin(), force.end());
     for (const ExactProduct& product : products) {
         values[static_cast<std::size_t>(product.row)] =
-            -(mpq_class(product.a) * mpq_class(product.b) * mpq_class(product.c));
+            -((mpq_class(product.a) + product.rest[0] + product.rest[1]) * product.b * product.c);
     }
     std::vector<mpz_class> b;
     const long shift = common_integers(values, b);

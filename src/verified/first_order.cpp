@@ -366,7 +366,9 @@ FirstOrder::LoadChange FirstOrder::load_change(const std::vector<Enclosure>& f0,
     }
     if (load.kind == LoadKind::true_stress) { // the force on a wall follows the other lengths
         for (std::size_t a = 0; a < packing_->axes(); ++a) {
-            add_stress_change(a, load.stress[a], stress_error, on);
+            const double off =
+                load.path ? stress_error * std::abs(load.rate_of(a)) + 2 * u * std::abs(load.stress[a]) : stress_error;
+            add_stress_change(a, load.stress[a], off, on);
         }
     }
     return on;

@@ -6,6 +6,7 @@
 
 #include <isostat/core/verdict.hpp>
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -39,6 +40,7 @@ struct ExactProduct {
     double a = 0;
     double b = 0;
     double c = 1;
+    std::array<double, 2> rest{}; ///< a + rest[0] + rest[1] is meant
 };
 
 } // namespace isostat

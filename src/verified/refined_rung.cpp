@@ -84,7 +84,10 @@ template <class T> std::vector<T> RefinedRung<T>::load(const RightHandSide& part
         force.push_back(a.number(f));
     }
     for (const ExactProduct& product : part.terms.products) {
-        force[static_cast<std::size_t>(product.row)] = -a.product(product.a, product.b, product.c);
+        T& sum = force[static_cast<std::size_t>(product.row)] = -a.product(product.a, product.b, product.c);
+        for (const double rest : product.rest) {
+            sum = rest == 0 ? sum : sum - a.product(rest, product.b, product.c);
+        }
     }
     return force;
 }

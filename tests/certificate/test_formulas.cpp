@@ -73,7 +73,7 @@ struct Worse {
     [[nodiscard]] std::vector<double> slopes() const {
         std::vector<double> x(state.contacts.size(), 0.0);
         for (const WallForce& wall : state.load.wall_forces(state.packing)) {
-            if (wall.loaded) {
+            if (wall.rate != 0) {
                 x[static_cast<std::size_t>(subject->wall_row)] = -wall.length;
             }
         }

@@ -60,6 +60,34 @@ BOOST_AUTO_TEST_CASE(every_equilibrium_and_both_ends_of_every_arc_are_proved) {
     }
 }
 
+BOOST_AUTO_TEST_CASE(paths_in_the_space_of_stresses_are_proved_and_others_refuted) {
+    for (const LoadKind kind : {LoadKind::nominal, LoadKind::true_stress}) {
+        const scratch::Folder scratch_folder;
+        const std::filesystem::path folder = scratch_folder.path() / "run";
+        State start = test::state_of_spheres(test::read_spheres("box_uniform_30_1"));
+        if (kind == LoadKind::true_stress) {
+            start.load.kind = kind;
+            start.load.stress = {1, 1, 1};
+            start.load.refer_to(start.packing);
+        }
+        start.load.follow({-1, -1, 2});
+        snap_to_grid(start.packing);
+        const SegmentOutcome outcome = played::into(folder, start, {towards(2)}, {.max_strain = 1e9});
+        BOOST_TEST_REQUIRE(outcome.completed, (outcome.failure ? outcome.failure->message(3) : ""));
+        (void)played::proved(folder);
+        const std::string rows = scratch::read(folder / "equilibria.csv");
+        BOOST_TEST((rows.find("segment,t,ratio,p,q,eps1,eps2,eps3,") != std::string::npos), rows.substr(0, 100));
+        // Another path through the same first state has other slopes.
+        const std::filesystem::path first = folder / "states/eq_000000.json";
+        std::string text = scratch::read(first);
+        const std::string direction = "[-1.0,-1.0,2.0]";
+        BOOST_TEST_REQUIRE(text.find(direction) != std::string::npos);
+        scratch::write(first, text.replace(text.find(direction), direction.size(), "[-1.0,-1.0,2.25]"));
+        forger::seal(folder);
+        BOOST_TEST((verify_run(folder).verdict == Verdict::refuted));
+    }
+}
+
 BOOST_AUTO_TEST_CASE(an_altered_arc_of_spheres_is_not_proved) {
     const scratch::Folder scratch_folder;
     const std::filesystem::path folder = scratch_folder.path() / "run";

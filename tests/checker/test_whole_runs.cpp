@@ -135,7 +135,7 @@ BOOST_AUTO_TEST_CASE(a_run_from_a_state_stored_at_a_limit_is_replayed_at_the_loa
     const ExactLoad meant = meant_load(reached);
     BOOST_TEST((meant.shift.lower != 0 && meant.shift.upper != 0));
     State elsewhere = reached;
-    elsewhere.load.loaded_stress() *= 1 + 1e-6;
+    elsewhere.load.set_loaded_stress(elsewhere.load.loaded_stress() * (1 + 1e-6));
     const ExactLoad stored = meant_load(elsewhere);
     BOOST_TEST((stored.shift.lower == 0 && stored.shift.upper == 0));
     write_state(folder / "second/states/eq_000000.json", elsewhere, {});

@@ -140,7 +140,10 @@ BOOST_AUTO_TEST_CASE(a_run_of_spheres_names_what_it_loads_by_axis) {
                    .starts_with("# number,previous,segment,sigma3,ratio,eps1,eps2,eps3,L1,L2,L3,solid_fraction,"));
     says(run({"verify", folder.at("out/certificates/eq_000002.json")}), 0, {"proved"});
     says(run({"verify", out}), 0, {"ends of 35 of 35 proved, ways of 35", "3 of 3 proved"});
-    says(run({"report", out, "--html"}), 0, {"sigma3/sigma1"});
+    says(run({"report", out, "--html"}), 0, {"sigma3/sigma1", "triaxial.dat", "trajectory.html"});
+    const std::string page = scratch::read(std::filesystem::path(out) / "figures/trajectory.html");
+    BOOST_TEST((page.find("volumetric strain") != std::string::npos));
+    BOOST_TEST((page.find("data:image/svg+xml,") != std::string::npos));
     for (const auto& [load, words] :
          {std::pair{"tilt", "an axis, x to z, or a tilt, xy to yz"}, {"xy", "that tilt does not move"}}) {
         scene(fmt::format("[load]\nloaded = \"{}\"\n", load), "do = \"up\"\nequilibria = 2\n");

@@ -226,8 +226,7 @@ inline std::optional<State> at_the_end(Random& random, int dimension = 2) {
     if (!truth.known || end.unbounded || abs(end.stress) < 1e-30) { // the truth has 200 digits, not 300
         return {};
     }
-    auto& stress = state->load.loaded_stress();
-    stress = ulps(static_cast<double>(end.stress), few(random));
+    state->load.set_loaded_stress(ulps(static_cast<double>(end.stress), few(random)));
     return state;
 }
 
@@ -299,7 +298,7 @@ inline std::optional<State> true_stresses(Random& random, int dimension = 2) {
             const Truth truth(*state);
             const End& end = random.integer(2) == 0 ? truth.low : truth.high;
             if (truth.known && !end.unbounded && abs(end.stress) > 1e-30) {
-                state->load.loaded_stress() = ulps(static_cast<double>(end.stress), few(random));
+                state->load.set_loaded_stress(ulps(static_cast<double>(end.stress), few(random)));
             }
         }
     }

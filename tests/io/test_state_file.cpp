@@ -36,6 +36,7 @@ void check_same(const State& a, const State& b) {
                {b.load.reference_length.begin(), b.load.reference_length.end()});
     BOOST_TEST((a.load.kind == b.load.kind));
     BOOST_TEST(a.load.loaded_axis == b.load.loaded_axis);
+    BOOST_TEST((a.load.path == b.load.path));
     BOOST_TEST((a.packing.walls == b.packing.walls));
     BOOST_TEST((a.packing.fixed == b.packing.fixed));
     BOOST_TEST((a.contacts == b.contacts));
@@ -176,6 +177,45 @@ BOOST_AUTO_TEST_CASE(a_state_cut_short_anywhere_is_refused) {
 BOOST_AUTO_TEST_CASE(an_empty_list_of_fixed_disks_is_none) {
     const std::string none = replaced(two_disk_text(), "\"contacts\"", "\"fixed\": [], \"contacts\"");
     BOOST_TEST(parse_state(none, "s").state.packing.fixed.empty());
+}
+
+BOOST_AUTO_TEST_CASE(a_path_of_stresses_comes_back_and_contradictions_are_refused) {
+    State state;
+    Packing& p = state.packing;
+    p.dimension = p.cell.dimension = state.load.dimension = 3;
+    p.walls = Walls::box(3);
+    p.radius = {1};
+    p.q = {1, 1, 1, 2, 2, 2};
+    for (int axis = 0; axis < 3; ++axis) {
+        state.contacts.push_back({ContactKind::lower_wall, 0, axis});
+        state.contacts.push_back({ContactKind::upper_wall, 0, axis});
+    }
+    state.load.stress = {1.1, 1.3, 1.2};
+    state.load.refer_to(p);
+    state.load.follow({-1, 0, 1.0 / 3});
+    state.load.set_loaded_stress(0.1);
+    state.provenance = "{}";
+    const std::string text = state_text(state);
+    const auto read = [](const std::string& changed) {
+        return parse_any_state(changed, "crafted.json", Dimensions::any).state;
+    };
+    check_same(state, read(text));
+    check_same(state, read(replaced(text, "\"loaded_axis\":2,", "")));
+    for (const auto& [from, to, word] : {std::array{"\"t\":0.1", "\"t\":0.2", "path.stress + t path.direction"},
+                                         {"\"loaded_axis\":2", "\"loaded_axis\":1", "the last axis"},
+                                         {"\"direction\":[-1.0,0.0,", "\"direction\":[-1.0,1e-9,", "1e-09: expected 0"},
+                                         {"\"direction\":[-1.0,0.0,", "\"direction\":[", "1 numbers: expected three"},
+                                         {"\"stress\":[1.1,", "\"stress\":[-9.0,", "mean stress above 0"},
+                                         {"\"t\":0.1", "\"s\":0.1", "unknown field 's'"}}) {
+        std::string changed = text;
+        const std::size_t path = changed.find("\"path\"");
+        const std::size_t at = changed.find(from, std::string(from).find("stress") == 1 ? path : 0);
+        changed.replace(at, std::string(from).size(), to);
+        BOOST_CHECK_EXCEPTION((void)read(changed), Error, [&](const Error& error) {
+            BOOST_TEST_MESSAGE(error.what());
+            return std::string(error.what()).find(word) != std::string::npos;
+        });
+    }
 }
 
 BOOST_AUTO_TEST_CASE(a_state_of_spheres_is_refused_in_words) {

@@ -3,6 +3,11 @@
 
 #include <isostat/packing/packing.hpp>
 
+#include <gmpxx.h>
+
+#include <limits>
+#include <random>
+
 using namespace isostat;
 using namespace isostat::oracle;
 
@@ -63,6 +68,75 @@ BOOST_AUTO_TEST_CASE(force_is_affine_in_the_loaded_stress) {
             BOOST_TEST(total[5] == 6);
         }
     }
+}
+
+BOOST_AUTO_TEST_CASE(stresses_on_a_path_are_those_of_the_real_numbers) {
+    std::mt19937_64 random(5);
+    const auto number = [&random](int most) {
+        return std::ldexp(static_cast<double>(static_cast<std::int64_t>(random())),
+                          static_cast<int>(random() % static_cast<unsigned>(2 * most)) - most - 63);
+    };
+    Load load;
+    load.dimension = 3;
+    for (int trial = 0; trial < 2000; ++trial) {
+        load.path.reset();
+        load.stress = {number(60), number(1), 1};
+        load.follow({number(20), number(1), 2});
+        BOOST_TEST_REQUIRE(load.path.has_value());
+        load.set_loaded_stress(number(40));
+        for (std::size_t a = 0; a < 3; ++a) {
+            const ExactStress found = load.exact_stress(a);
+            const mpq_class exact =
+                mpq_class(load.path->at[a]) + mpq_class(load.path->rate[a]) * mpq_class(load.path->t);
+            BOOST_TEST((mpq_class(found.nearest) + found.rest[0] + found.rest[1] == exact));
+            BOOST_TEST(std::abs(found.rest[0]) <= 0x1p-53 * std::abs(found.nearest));
+            BOOST_TEST(load.stress[a] == found.nearest);
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_path_loads_several_walls_and_one_of_them_alone_is_a_loaded_axis) {
+    Packing packing;
+    packing.dimension = 3;
+    packing.walls = Walls::box(3);
+    packing.radius = {1};
+    packing.q = {1, 1, 1, 2, 3, 5};
+    Load load;
+    load.dimension = 3;
+    load.stress = {1, 1.5, 2};
+    load.refer_to(packing);
+    load.follow({-1, 0, 2});
+    load.set_loaded_stress(0.25);
+    const std::vector<double> force = load.external_force(packing);
+    BOOST_TEST(std::vector<double>(force.begin() + 3, force.end()) == (std::vector<double>{-0.75 * 15, -15, -15}));
+    const std::vector<double> unit = load.unit_force(packing);
+    BOOST_TEST(std::vector<double>(unit.begin() + 3, unit.end()) == (std::vector<double>{15, 0, -12}));
+    const DofMap dofs(packing);
+    BOOST_TEST(load.changing_rows(packing, dofs) == (std::vector<int>{3, 5}));
+    BOOST_TEST(load.loaded_rows(packing, dofs) == (std::vector<int>{3, 4, 5}));
+    BOOST_TEST(load.stress_name() == "t");
+    BOOST_TEST(load.ratio() == 0.25 / 1.5);
+    BOOST_TEST(load.mean_stress() == 4.75 / 3);
+    BOOST_TEST(load.deviator() == 2.5 - 2.25 / 2);
+    load.follow({0, 1, 0});
+    BOOST_TEST(!load.path);
+    BOOST_TEST(load.loaded_axis == 1);
+    BOOST_TEST(load.stress[0] == 0.75);
+    const auto fault = [&](std::vector<double> rate) { return fault_of_path(packing, rate); };
+    BOOST_TEST(fault({-1, -1, 2}) == "");
+    BOOST_TEST(fault({0, 0, -1e-6}) == "");
+    for (const auto& [rate, word] : {std::pair<std::vector<double>, const char*>{{0, 0, 0}, "all numbers are 0"},
+                                     {{1, 0}, "2 numbers"},
+                                     {{1, 0, 0, 0}, "4 numbers"},
+                                     {{1, 1e-7, 0}, "1e-07"},
+                                     {{1, std::numeric_limits<double>::infinity(), 0}, "inf"},
+                                     {{1, 0, 0, 1, 0, 0}, "the tilt xy, which does not move"}}) {
+        BOOST_TEST((fault(rate).find(word) != std::string::npos), fault(rate));
+    }
+    packing.walls.upper[1] = WallKind::fixed;
+    BOOST_TEST(fault({0, 1, 0}) == "1 for the length along y, which does not move: expected 0");
+    BOOST_TEST(fault_of_path(boxed(), std::vector<double>{1, 1}) ==
+               "disks: expected spheres, or loaded = \"y\" or \"tilt\"");
 }
 
 BOOST_AUTO_TEST_CASE(walls_that_cannot_move_carry_no_load) {

@@ -1,5 +1,8 @@
 #include "report/statistics.hpp"
+#include "report/triaxial.hpp"
 #include "support/test.hpp"
+
+#include <cmath>
 
 using namespace isostat;
 
@@ -25,6 +28,35 @@ const std::vector<EquilibriumRow> rows{row(0, -1, 0, 1.0, 0.0, 0),    row(1, 0, 
 } // namespace
 
 BOOST_AUTO_TEST_SUITE(report)
+
+BOOST_AUTO_TEST_CASE(a_triaxial_test_has_logarithmic_strains_and_q_over_p) {
+    Load load;
+    load.dimension = 3;
+    load.stress = {1, 1, 1};
+    load.reference_length = {2, 2, 4};
+    const auto of = [&](int number, double stress, std::vector<double> length) {
+        EquilibriumRow r = row(number, number - 1, 0, 0, 0, 1);
+        r.stress = stress;
+        r.length = std::move(length);
+        return r;
+    };
+    const std::vector<EquilibriumRow> two{of(0, 0, {2, 2, 4}), of(1, 0.25, {3, 2, 2})};
+    load.follow({-1, -1, 2});
+    std::vector<TriaxialPoint> points = triaxial_points(two, load);
+    BOOST_TEST(points[1].p == 1);
+    BOOST_TEST(points[1].q == 0.75);
+    BOOST_TEST(points[1].axial == std::log(2.0));
+    BOOST_TEST(points[1].volumetric == std::log(4.0 / 3), boost::test_tools::tolerance(1e-15));
+    load.follow({1, 0, 0}); // one axis: its stress is what the rows have
+    points = triaxial_points(two, load);
+    BOOST_TEST(points[1].q == 1 - (0.25 + 1) / 2);
+    const Chart chart = triaxial_chart(points, {"up"}, false);
+    BOOST_TEST((chart.data.find("# up\n# number axial_strain volumetric_strain p q q/p sin_phi\n0 0 0 ") == 0),
+               chart.data);
+    const std::string page = triaxial_page(points, two, {"<up>"}, load_words(load), "a & b", {});
+    BOOST_TEST((page.find("<title>&lt;up&gt;</title>") != std::string::npos));
+    BOOST_TEST((page.find("a &amp; b") != std::string::npos));
+}
 
 BOOST_AUTO_TEST_CASE(stress_increments_are_between_two_rearrangements_of_one_segment) {
     const Increments increments = stress_increments(rows);

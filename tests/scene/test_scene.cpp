@@ -174,6 +174,22 @@ BOOST_AUTO_TEST_CASE(spheres_take_the_place_of_disks) {
     refuses_scene(spheres + "[load]\nloaded = \"xz\"\n", {"s.toml:4:", "no tilt moves", "triclinic"});
     refuses_scene(spheres + "[load]\nloaded = \"tilt\"\n", {"s.toml:4:", "loaded", "xz"});
     refuses_scene(head + "[load]\nloaded = \"z\"\n", {"s.toml:4:", "loaded", "tilt"});
+    const auto path_of = [&](const std::string& load) {
+        return parse_scene_text(spheres + "[load]\n" + load + "\n").preparation.path;
+    };
+    BOOST_TEST((path_of("loaded = \"constant_mean\"") == StressRates{-1, -1, 2}));
+    BOOST_TEST((path_of("loaded = \"extension\"") == StressRates{0, 0, -1}));
+    BOOST_TEST((path_of("direction = [1, 1.5, 0]") == StressRates{1, 1.5, 0}));
+    for (const auto& [load, word] : {std::pair{"direction = [0, 0, 0]", "all numbers are 0"},
+                                     {"direction = [1, 2]", "2 numbers"},
+                                     {"direction = [1, 2, nan]", "finite"},
+                                     {"direction = [1, 2, 0, 1, 0, 0]", "the tilt xy, which does not move"},
+                                     {"loaded = \"z\"\ndirection = [1, 0, 0]", "exclude each other"}}) {
+        refuses_scene(spheres + "[load]\n" + load + "\n", {"s.toml:", "direction", word});
+    }
+    refuses_scene(spheres + "[load]\nloaded = \"constant_mean\"\n[run]\ncertify = \"arcs\"\n",
+                  {"certify", "arcs", "several stresses", "states"});
+    refuses_scene(head + "[load]\ndirection = [1, -1]\n", {"s.toml:4:", "disks: expected spheres"});
     refuses_scene("[packing]\nspheres = 8193\n[cell]\n", {"s.toml:3:", "8193 spheres", "at most 8192"});
 }
 

@@ -2,6 +2,8 @@
 #include "support/crafted.hpp"
 #include "support/spheres.hpp"
 
+#include <Eigen/Dense>
+
 using namespace isostat;
 using ::crafted::Played;
 using test::Json;
@@ -48,6 +50,63 @@ Contact contact_or_held(const Json& c) {
     return c[0] == "held" ? Contact{ContactKind::held, c[1], 0} : test::contact_of(c);
 }
 
+struct DenseInterval {
+    double low = -HUGE_VAL, high = HUGE_VAL;
+};
+
+/// Where all forces are >= 0, from unit normals and LU with rows exchanged. \pre reference lengths of 1, on a path
+DenseInterval dense_interval(const State& state) {
+    const Packing& p = state.packing;
+    const DofMap dofs(p);
+    const Eigen::Index n = dofs.dof_count();
+    Eigen::MatrixXd h = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(state.contacts.size()));
+    for (std::size_t l = 0; l < state.contacts.size(); ++l) {
+        const Contact& c = state.contacts[l];
+        const auto add = [&](std::size_t coordinate, double value) {
+            if (const int dof = dofs.dof_of(coordinate); dof >= 0) {
+                h(dof, static_cast<Eigen::Index>(l)) += value;
+            }
+        };
+        const auto wall = static_cast<std::size_t>(c.j);
+        const std::size_t i = 3 * static_cast<std::size_t>(c.i);
+        if (c.kind != ContactKind::disk_disk) {
+            const double sign = c.kind == ContactKind::lower_wall ? 1 : -1;
+            add(i + wall, sign);
+            add(p.length_at(wall), sign < 0 ? 1 : 0);
+            continue;
+        }
+        Eigen::Vector3d r;
+        for (std::size_t a = 0; a < 3; ++a) {
+            r[static_cast<Eigen::Index>(a)] = p.q[3 * wall + a] - p.q[i + a] + c.image.m[a] * p.q[p.length_at(a)];
+        }
+        r.normalize();
+        for (std::size_t a = 0; a < 3; ++a) {
+            const double component = r[static_cast<Eigen::Index>(a)];
+            add(i + a, -component);
+            add(3 * wall + a, component);
+            add(p.length_at(a), c.image.m[a] * component);
+        }
+    }
+    Eigen::VectorXd fixed = Eigen::VectorXd::Zero(n);
+    Eigen::VectorXd rate = Eigen::VectorXd::Zero(n);
+    for (std::size_t a = 0; a < 3; ++a) {
+        fixed[dofs.dof_of(p.length_at(a))] = state.load.path->at[a]; // h f + F = 0, F = -stress
+        rate[dofs.dof_of(p.length_at(a))] = state.load.path->rate[a];
+    }
+    const Eigen::PartialPivLU<Eigen::MatrixXd> lu(h);
+    const Eigen::VectorXd f = lu.solve(fixed);
+    const Eigen::VectorXd slope = lu.solve(rate);
+    DenseInterval found;
+    for (Eigen::Index l = 0; l < n; ++l) {
+        if (std::abs(slope[l]) > 1e-9 * slope.cwiseAbs().maxCoeff()) {
+            const double zero = -f[l] / slope[l];
+            (slope[l] > 0 ? found.low : found.high) =
+                slope[l] > 0 ? std::max(found.low, zero) : std::min(found.high, zero);
+        }
+    }
+    return found;
+}
+
 } // namespace
 
 BOOST_AUTO_TEST_SUITE(trajectory)
@@ -78,6 +137,39 @@ BOOST_AUTO_TEST_CASE(three_spheres_go_round_a_loop) {
     const Played up = one_proved_arc(down.state, +1);
     check_sphere_arc(up, ::crafted::left(2), floor_of(2), expected["way_back"]["F_3"].get<double>());
     check_sphere_lengths(up.state.packing, {start.packing.length(0), start.packing.length(1), start.packing.length(2)});
+}
+
+// F_1 = 1 - t, F_2 = 1.5 - t, F_3 = 1 + 2 t: the floor of the small sphere opens at F_3 / F_1 = tau, t < 0.
+BOOST_AUTO_TEST_CASE(two_spheres_go_round_a_loop_at_constant_mean_stress) {
+    const double tau = 1 / std::sqrt(7.0);
+    State start = start_of_spheres("closed_two", {1, 1.5, 1});
+    start.load.follow({-1, -1, 2});
+    const Played down = ::crafted::play(start, -1, 1);
+    check_sphere_arc(down, floor_of(1), ::crafted::left(1), (tau - 1) / (tau + 2));
+    check_sphere_lengths(down.state.packing, {4, 4, 3 + std::sqrt(7.0)});
+    const Played up = ::crafted::play(down.state, +1, 1);
+    check_sphere_arc(up, ::crafted::left(1), floor_of(1), (1 / tau - 1) / (1 / tau + 2));
+    BOOST_TEST(up.records.equilibria.back().mean_stress == 3.5 / 3, boost::test_tools::tolerance(1e-12));
+    start.load.follow({0, 0, -1}); // extension: t rises as sigma3 falls
+    check_sphere_arc(::crafted::play(start, +1, 1), floor_of(1), ::crafted::left(1), 1 - tau);
+}
+
+// The forces of every equilibrium by a dense solution that knows nothing of the program: they are affine in t.
+BOOST_AUTO_TEST_CASE(intervals_at_constant_mean_stress_are_those_of_a_dense_solution) {
+    for (const char* name : {"box_uniform_30_1", "ortho_uniform_30_1"}) {
+        State state = test::state_of_spheres(test::read_spheres(name));
+        state.load.follow({-1, -1, 2});
+        snap_to_grid(state.packing);
+        const Played played = ::crafted::play(state, +1, 2);
+        BOOST_TEST_REQUIRE(played.outcome.completed, played.why());
+        for (std::size_t k : {std::size_t{0}, played.records.states.size() - 1}) {
+            const EquilibriumRecord& record = played.records.equilibria[k];
+            const DenseInterval dense = dense_interval(played.records.states[k]);
+            BOOST_TEST(record.stress_low == dense.low, boost::test_tools::tolerance(1e-8));
+            BOOST_TEST(record.stress_high == dense.high, boost::test_tools::tolerance(1e-8));
+        }
+        BOOST_TEST(played.records.equilibria.back().stress > 0);
+    }
 }
 
 BOOST_AUTO_TEST_CASE(a_sphere_of_a_tetrahedron_leaves_with_its_four_contacts) {

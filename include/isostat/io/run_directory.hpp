@@ -51,6 +51,7 @@ struct MoreColumns {
     bool touching = false; ///< where ties are settled at first order: pairs that touch without being contacts
     int dimension = 2;
     int loaded_axis = 1; ///< in space what is loaded gives columns their names: `sigma3`, `shear_xy`
+    bool path = false;   ///< a path in the space of stresses: `t`, with `p` and `q`
 };
 
 /// How a folder is taken for output.
@@ -174,6 +175,7 @@ struct EquilibriumRow {
     int number = 0, previous = -1, segment = 0;
     double stress = 0, ratio = 0, solid_fraction = 0;
     double strain1 = 0, strain2 = 0; ///< of the other axis, and of what is loaded
+    std::vector<double> length;      ///< of spheres, by axis
     int arcs = 0, rattlers = 0, backbone = 0, hyperstaticity = 0;
     double stress_low = 0, stress_high = 0, min_force = 0, min_gap = 0, margin = 0;
     bool proved = false;

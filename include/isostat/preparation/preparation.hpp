@@ -83,6 +83,7 @@ struct PreparationOptions {
     /// What the programme will change, as `Load::loaded_axis`: by default the stress of the last axis; of tilted cells
     /// also a shear stress.
     std::optional<int> loaded_axis = {};
+    std::optional<StressRates> path = {}; ///< or several stresses, as `Load::follow`
 
     const std::atomic<bool>* stop = nullptr;                       ///< set by Ctrl-C
     std::function<void(const PreparationProgress&)> progress = {}; ///< called now and then; not copied, not kept

@@ -30,8 +30,9 @@ struct Scene {
 
     std::filesystem::path start; ///< [packing] file: a state or vertex text to start from; empty: prepare
     PreparationOptions
-        preparation;    ///< [packing], [preparation] and sigma1, kind of [load]; unused when `start` is given
-    std::string loaded; ///< [load] loaded, when given: overrides that of a start file
+        preparation;          ///< [packing], [preparation] and sigma1, kind of [load]; unused when `start` is given
+    std::string loaded;       ///< [load] loaded, when given: overrides that of a start file
+    std::vector<double> path; ///< [load] direction, or what `loaded` means by it: rates of the stresses
     std::optional<LoadKind> load_kind; ///< [load] kind, when given: overrides that of a start file
     std::optional<std::uint64_t>
         infinitesimal_seed; ///< [load] infinitesimal_seed: new infinitesimal loads for a start file
@@ -88,8 +89,8 @@ std::vector<PlanEntry> make_plan(const Scene& scene);
 /// precision; parts below 1e-9 left out). `hyperstatic_allowed`: then that is no reason to refuse (ties = "choose").
 void check_start(const State& state, const std::string& source, bool hyperstatic_allowed = false);
 
-/// What [load] loaded names becomes the loaded axis; without it the state says. Throws `Error(bad_input)` where the
-/// packing has no such axis or the tilt does not move.
+/// What [load] loaded or direction names is loaded; without them the state says. Throws `Error(bad_input)` where the
+/// packing has no such axis or what should be loaded does not move.
 void choose_loaded(State& state, const Scene& scene, const std::string& source);
 
 /// The start of a scene that reads one: overrides of [load], checks in the words of a user (`check_start`,

@@ -71,6 +71,7 @@ struct EquilibriumRecord {
     Contact opens_low; ///< contact whose force vanishes at stress_low (i = -1: none, the interval is unbounded)
     Contact opens_high;
     double sigma1 = 0;
+    double mean_stress = 0, deviator = 0; ///< p and q, as `Load` has them
     /// Of the true vertex, with bounds of the errors, rounding included.
     std::vector<double> strain; ///< (L_a^0 - L_a) / L_a^0, one per axis: positive in compression
     std::vector<double> strain_bound;

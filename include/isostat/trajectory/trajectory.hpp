@@ -114,7 +114,7 @@ struct MechanismInspection {
 Result<MechanismInspection> inspect_mechanism(const State& state, const Counting& counting);
 
 /// What a segment of the programme does to the stress ratio sigma_2 / sigma_1 (shear / sigma_2 where the tilt is
-/// loaded).
+/// loaded, t / p_0 on a path).
 enum class Action { up, down, to };
 
 /// One segment as a scene names it ([[programme]] entry): its goal is a ratio, not a stress.
@@ -123,7 +123,7 @@ struct ProgrammeStep {
     std::optional<int> equilibria;       ///< `equilibria`: stop after this many new ones
     std::optional<double> to;            ///< `to`: stop at this ratio sigma_2 / sigma_1, inside a supported interval
     std::optional<int> from;             ///< `from`: start from this equilibrium of the run instead of the last one
-    bool of_shear = false;               ///< a tilt is loaded: `to` is a ratio shear / sigma_2, of either sign
+    bool from_zero = false;              ///< a tilt is loaded, or a path: `to` has either sign
     std::string ratio = "sigma2/sigma1"; ///< what `to` is: `Load::ratio_name`
     std::string name;                    ///< `name`, or made from the rest
     int line = 0;                        ///< in the scene file

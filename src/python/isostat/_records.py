@@ -183,10 +183,12 @@ class Records:
 
         ``opened``, ``closed``: (2,) int, walls -1 to -4 (-6), held coordinates -9; ``opened_image``, ``closed_image``:
         (2,) int, of spheres (3,), periods of the cell by which the second disk is moved, 0 in a box. ``decided_by``:
-        word. ``sigma2``, ``eps2``, ``eps2_bound``: of spheres by axis, ``sigma3`` and so on.
+        word. ``sigma2``, ``eps2``, ``eps2_bound``: of spheres by axis, ``sigma3`` and so on; on a path
+        of stresses ``t``, ``eps3``.
         """
         dimension = self._first.positions.shape[1] if self.event_records else 2
-        strain = "eps" + self._stress.removeprefix("sigma").removeprefix("shear")
+        axis = "3" if self._stress == "t" else self._stress.removeprefix("sigma").removeprefix("shear")
+        strain = "eps" + axis
         numbers = [self._stress, strain, strain + "_bound", *_numbers]
         kinds = np.dtype(
             [("step", int), ("equilibrium", int), ("arc", int), ("kind", "U8")]
@@ -240,6 +242,25 @@ class Records:
         return np.column_stack([self.equilibria[name] for name in columns])
 
     @property
+    def triaxial(self) -> np.ndarray:
+        """(m,) structured array of a run of spheres, z axial: ``number``, ``axial`` and ``volumetric`` (logarithmic
+        strains since the lengths of reference, positive in compression), ``p`` (mean stress), ``q`` (axial stress less
+        the mean of the others).
+        """
+        first, rows = self._first, self.equilibria
+        if len(first.length) != 3 or first.loaded_axis >= 3:
+            raise BadInput(f"{self.path}: no triaxial test: expected spheres whose walls or periods are loaded")
+        strain = np.log(np.asarray(first.reference_length) / self.cell)
+        stress = np.tile(first.stress, (len(rows), 1))
+        stress[:, first.loaded_axis] = rows[self._stress]
+        on_path = self._stress == "t"
+        test = np.empty(len(rows), [("number", int)] + [(n, float) for n in ("axial", "volumetric", "p", "q")])
+        test["number"], test["axial"], test["volumetric"] = rows["number"], strain[:, 2], strain.sum(axis=1)
+        test["p"] = rows["p"] if on_path else stress.mean(axis=1)
+        test["q"] = rows["q"] if on_path else stress[:, 2] - stress[:, :2].mean(axis=1)
+        return test
+
+    @property
     def contacts(self) -> list[np.ndarray]:
         """Contacts (N, 2) of each stored state; walls -1 to -4, held coordinates -9."""
         return [state.contacts for state in self._stored]
@@ -260,11 +281,7 @@ class Records:
         for number in rows["number"][holds]:
             if int(number) in self.states:
                 state = self.states[int(number)]
-                stress = [float(value) for value in state.stress]
-                if state.loaded_axis == len(stress):
-                    return state.with_stress(stress, sigma2), forces_at(state, sigma2)
-                stress[state.loaded_axis] = sigma2
-                return state.with_stress(stress), forces_at(state, sigma2)
+                return state.with_loaded_stress(float(sigma2)), forces_at(state, sigma2)
         raise KeyError(sigma2)
 
     def certified(self) -> dict[int, Verdict]:

@@ -218,8 +218,38 @@ def comparison(compared, ax: Optional[Axes] = None) -> Axes:
     return ax
 
 
+def _curve(run: Records) -> tuple[np.ndarray, np.ndarray, dict[str, str]]:
+    """Strain and ratio of every row, and what they are called; of spheres whose walls are loaded q/p."""
+    rows, loaded = run.equilibria, run._first.loaded_axis
+    if len(run._first.length) == 2:
+        shear = loaded == 2
+        return rows["eps2"], rows["ratio"], {
+            "strain": "shear strain $\\gamma$" if shear else "axial strain $\\varepsilon_2$",
+            "ratio": "stress ratio " + ("$\\tau/\\sigma_2$" if shear else "$\\sigma_2/\\sigma_1$"),
+            "strain step": "$|\\Delta\\gamma|$" if shear else "$|\\Delta\\varepsilon_2|$",
+            "ratio step": "$|\\Delta\\tau|/\\sigma_2$" if shear else "$|\\Delta\\sigma_2|/\\sigma_1$",
+        }
+    if loaded >= 3:
+        tilt = ("xy", "xz", "yz")[loaded - 3]
+        return rows["eps_" + tilt], rows["ratio"], {
+            "strain": f"shear strain {tilt}",
+            "ratio": f"stress ratio, shear {tilt}",
+            "strain step": "$|\\Delta\\gamma|$",
+            "ratio step": "$|\\Delta\\tau|/\\sigma$",
+        }
+    test = run.triaxial
+    return test["axial"], test["q"] / test["p"], {
+        "strain": "axial strain $\\ln(L_{3,0}/L_3)$",
+        "ratio": "$q/p$",
+        "strain step": "$|\\Delta\\varepsilon_3|$",
+        "ratio step": "$|\\Delta(q/p)|$",
+    }
+
+
 def staircase(run: Records, ax: Optional[Axes] = None) -> Axes:
     """Stress ratio against strain, axial or of shear: one structure carries a growing load, then a rearrangement.
+
+    Of spheres whose walls or periods are loaded q/p against the axial strain (`Records.triaxial`).
 
     Parameters
     ----------
@@ -232,22 +262,22 @@ def staircase(run: Records, ax: Optional[Axes] = None) -> Axes:
     matplotlib axes
     """
     ax = _axes(ax)
-    rows = {int(row["number"]): row for row in run.equilibria}
+    strains, ratios, names = _curve(run)
+    rows = {int(number): k for k, number in enumerate(run.equilibria["number"])}
     styles = ("-", "--", "-.", ":")
     for segment in np.unique(run.equilibria["segment"]):
         strain, ratio = [], []
-        for row in run.equilibria[run.equilibria["segment"] == segment]:
-            before = rows.get(int(row["previous"]))
+        for k in np.flatnonzero(run.equilibria["segment"] == segment):
+            before = rows.get(int(run.equilibria["previous"][k]))
             if before is not None:
                 # Up (down) at the strain of the equilibrium before, then along at constant stress.
-                strain += [before["eps2"], before["eps2"], row["eps2"]]
-                ratio += [before["ratio"], row["ratio"], row["ratio"]]
+                strain += [strains[before], strains[before], strains[k]]
+                ratio += [ratios[before], ratios[k], ratios[k]]
         ax.plot(
             strain, ratio, styles[segment % len(styles)], label=f"segment {segment}", linewidth=1.2
         )
-    shear = run._first.loaded_axis == 2
-    ax.set_xlabel("shear strain $\\gamma$" if shear else "axial strain $\\varepsilon_2$")
-    ax.set_ylabel("stress ratio " + ("$\\tau/\\sigma_2$" if shear else "$\\sigma_2/\\sigma_1$"))
+    ax.set_xlabel(names["strain"])
+    ax.set_ylabel(names["ratio"])
     if len(ax.get_lines()) > 1:
         ax.legend(frameon=False)
     return ax
@@ -273,12 +303,8 @@ def increments(run: Records, quantity: str = "strain", ax: Optional[Axes] = None
     ax.step(values, 1 - np.arange(len(values)) / max(len(values), 1), where="pre", linewidth=1.2)
     ax.set_xscale("log")
     ax.set_yscale("log")
-    shear = run._first.loaded_axis == 2
-    symbols = {
-        "strain": "$|\\Delta\\gamma|$" if shear else "$|\\Delta\\varepsilon_2|$",
-        "stress": "$|\\Delta\\tau|/\\sigma_2$" if shear else "$|\\Delta\\sigma_2|/\\sigma_1$",
-    }
-    ax.set_xlabel(f"{quantity} increment {symbols[quantity]}")
+    names = _curve(run)[2]
+    ax.set_xlabel(f"{quantity} increment {names['strain step' if quantity == 'strain' else 'ratio step']}")
     ax.set_ylabel("share at least as large")
     return ax
 
@@ -288,15 +314,16 @@ def increment_values(run: Records, quantity: str = "strain") -> np.ndarray:
 
     A stress that was reached inside a supported interval (``arcs`` = 0) is no rearrangement.
     """
-    rows = {int(row["number"]): row for row in run.equilibria}
-    column = {"strain": "eps2", "stress": "ratio"}[quantity]
+    column = _curve(run)[{"strain": 0, "stress": 1}[quantity]]
+    places = {int(number): k for k, number in enumerate(run.equilibria["number"])}
     values = []
-    for row in run.equilibria:
-        before = rows.get(int(row["previous"]))
-        if before is None or row["arcs"] == 0:
+    for k, row in enumerate(run.equilibria):
+        place = places.get(int(row["previous"]))
+        if place is None or row["arcs"] == 0:
             continue
+        before = run.equilibria[place]
         same = before["segment"] == row["segment"] and before["previous"] >= 0
         if quantity == "strain" or (same and before["arcs"] > 0):
-            values.append(abs(row[column] - before[column]))
+            values.append(abs(column[k] - column[place]))
     found = np.array(values)
     return found[found > 0]

@@ -21,7 +21,7 @@ struct LimitLoad {
     Enclosure stress_rate{0, 0}; ///< first-order term of the stress
 
     [[nodiscard]] double stress() const { return load.loaded_stress(); }
-    void set_stress(double stress) { load.loaded_stress() = stress; }
+    void set_stress(double stress) { load.set_loaded_stress(stress); }
 };
 
 /// A tie ends the run, and there is nothing to do about it: `FirstOrderSide` settles ties.

@@ -168,11 +168,12 @@ class LinearLoading {
             return {};
         }
         run_.equilibria.back().stress_high = limit.value().stress;
-        stress() = limit.value().stress;
+        load_.set_loaded_stress(limit.value().stress);
         if (frozen_) {
             // To first order the new contact carries nothing at the limit itself: rounding would decide whether the
             // arc is taken back.
-            stress() += std::max(4 * limit.value().stress_error, frozen_excess * std::abs(limit.value().stress));
+            load_.set_loaded_stress(
+                stress() + std::max(4 * limit.value().stress_error, frozen_excess * std::abs(limit.value().stress)));
         }
         arcs_ = 0;
         Opening opening;
@@ -214,7 +215,7 @@ class LinearLoading {
         run_.coordinates.push_back(at_.grains.q);
     }
 
-    double& stress() { return load_.loaded_stress(); }
+    [[nodiscard]] double stress() const { return load_.loaded_stress(); }
 
     LinearTrajectory run_;
     Approximation at_;

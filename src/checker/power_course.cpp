@@ -2,6 +2,8 @@
 
 #include "checker/index.hpp"
 
+#include <utility>
+
 namespace isostat::checker {
 
 namespace {
@@ -128,10 +130,78 @@ class Bending {
     double ways_ = 0, rates_ = 0, largest_ = 0, at_rest_ = 0;
 };
 
+/// What true stress acts on along the tube: the product of the lengths of all axes but one, as a polynomial, and how
+/// far that of the curve may be from it.
+class Face {
+  public:
+    Face(const Moving& moving, const Tube& tube, std::size_t axis, double h) : tube_(tube) {
+        const Packing& packing = moving.state.packing;
+        own_ = packing.length_at(axis);
+        for (std::size_t b = 0; b < packing.axes(); ++b) {
+            if (b == axis) {
+                continue;
+            }
+            std::vector<Bounds> length{tube.centre()[packing.length_at(b)]};
+            for (const auto& a : tube.coefficients()) {
+                length.emplace_back(a[packing.length_at(b)]);
+            }
+            const double size = largest(length, h);
+            const double off = sum_above(tube.radius(), moving.rest);
+            apart_ = sum_above(product_above(apart_, sum_above(size, off)), product_above(size_, off));
+            size_ = product_above(size_, size);
+            area_ = product(area_, length);
+        }
+        centre_ = std::exchange(area_[0], Bounds(0));
+        gain_ = sum_above(largest(area_, h), apart_);
+    }
+    [[nodiscard]] const Bounds& at_centre() const { return centre_; }
+    /// Minus the stress times what the face has gained since the centre, times the rate of the own length: added to the
+    /// power; how much that leaves open. `fast`: |q'|
+    double add(double stress, double fast, std::vector<Bounds>& power) const {
+        std::vector<Bounds> rate;
+        for (const auto& a : tube_.coefficients()) {
+            rate.push_back(Bounds(a[own_]) * -stress * static_cast<double>(rate.size() + 1));
+        }
+        const std::vector<Bounds> part = product(area_, rate);
+        power.resize(std::max(power.size(), part.size()), Bounds(0));
+        for (std::size_t k = 0; k < part.size(); ++k) {
+            power[k] = power[k] + part[k];
+        }
+        return product_above(std::abs(stress),
+                             sum_above(product_above(gain_, tube_.slope_error()), product_above(apart_, fast)));
+    }
+
+  private:
+    /// |c(s)| for |s| <= h.
+    static double largest(const std::vector<Bounds>& c, double h) {
+        double sum = 0;
+        for (std::size_t k = c.size(); k-- > 0;) {
+            sum = sum_above(product_above(sum, h), c[k].size());
+        }
+        return sum;
+    }
+    static std::vector<Bounds> product(const std::vector<Bounds>& x, const std::vector<Bounds>& y) {
+        std::vector<Bounds> result(x.size() + y.size() - 1, Bounds(0));
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            for (std::size_t j = 0; j < y.size(); ++j) {
+                result[i + j] = result[i + j] + x[i] * y[j];
+            }
+        }
+        return result;
+    }
+
+    const Tube& tube_;
+    std::size_t own_ = 0;
+    std::vector<Bounds> area_{Bounds(1)}; ///< less its value at the centre
+    Bounds centre_;
+    double size_ = 1;  ///< of the product of the polynomials
+    double apart_ = 0; ///< of the product of the true lengths from it
+    double gain_ = 0;  ///< of the true area since the centre
+};
+
 } // namespace
 
 bool power_is_positive(const Pushing& load, const Moving& moving, const Tube& tube, double from, double to) {
-    const auto& a = tube.coefficients();
     const std::size_t walls = moving.state.packing.length_at(0);
     const double h = std::max(std::abs(from), std::abs(to));
     const double fast = sum_above(tube.speed(), tube.slope_error());
@@ -141,27 +211,12 @@ bool power_is_positive(const Pushing& load, const Moving& moving, const Tube& tu
     }
     std::vector<Bounds> power(1, Bounds(0));
     double open = 0;
-    for (std::size_t axis = 0; axis < load.per_length.size(); ++axis) {
-        const std::size_t own = walls + axis;
-        const std::size_t other = walls + 1 - axis;
-        const double stress = load.per_length[axis];
-        if (stress == 0 || !moving.moves[own]) {
-            continue;
+    for (std::size_t axis = 0; axis < moving.state.packing.axes(); ++axis) {
+        if (load.pressure[axis] != 0 && moving.moves[walls + axis]) {
+            const Face face(moving, tube, axis, h);
+            force[walls + axis] = force[walls + axis] - face.at_centre() * load.pressure[axis];
+            open = sum_above(open, face.add(load.pressure[axis], fast, power));
         }
-        force[own] = force[own] - Bounds(stress) * tube.centre()[other];
-        // What the length of the other axis gains, times the rate of this one.
-        power.resize(std::max(power.size(), 2 * a.size() + 2), Bounds(0));
-        double gain = moving.rest;
-        for (std::size_t i = 1; i <= a.size(); ++i) {
-            for (std::size_t j = 1; j <= a.size(); ++j) {
-                power[i + j - 1] =
-                    power[i + j - 1] - Bounds(a[i - 1][other]) * a[j - 1][own] * stress * static_cast<double>(j);
-            }
-        }
-        gain = sum_above(gain, product_above(h, fast));
-        open = sum_above(open, product_above(std::abs(stress),
-                                             sum_above(product_above(gain, tube.slope_error()),
-                                                       product_above(sum_above(tube.radius(), moving.rest), fast))));
     }
     std::vector<double> middle;
     for (const Bounds& f : force) {

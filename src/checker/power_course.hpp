@@ -4,7 +4,6 @@
 
 #include "checker/tube.hpp"
 
-#include <array>
 #include <vector>
 
 namespace isostat::checker {
@@ -12,9 +11,8 @@ namespace isostat::checker {
 /// The load while the arc is followed.
 struct Pushing {
     std::vector<Bounds> fixed; ///< per coordinate
-    /// True stresses in the plane: the force on the upper wall of an axis is besides minus this times the length of the
-    /// other axis.
-    std::array<double, plane> per_length{};
+    /// True stresses: the force on the upper wall of an axis is besides minus this times the lengths of the others.
+    PerAxis<double> pressure{};
 };
 
 /// Whether F . q' is positive for all s in [from, to].

@@ -97,6 +97,10 @@ ExactLoad meant_load(const State& state);
 /// The same vertex with more digits; the old one stays where none is proved. What `make_place` says of it.
 Objections sharpen(Place& place, int digits);
 
+/// All grains of a contact, which is no held coordinate, bear finite forces in other contacts: the load does work when
+/// it opens, though not at first order.
+bool grains_bear_force(const Place& place, std::size_t contact);
+
 /// Which contact the rule opens at a vertex.
 struct Decision {
     std::string kind;            ///< "tension", "rattler", or empty: an equilibrium

@@ -249,6 +249,10 @@ Objections check_power_at_contact(const Place& to, const EventRecord& event, boo
         return Objection{power.negative(),
                          fmt::format("the power is in {}: expected > 0 at the end of every arc", shown(power))};
     }
+    if (rattles && !to.first && !contains(to.zeros, l) && !to.evidence->forces[l].positive()) {
+        return Objection{to.evidence->forces[l].negative(),
+                         fmt::format("the power of the finite load is in {}", shown(to.evidence->forces[l]))};
+    }
     return compare_if_bounded("power", {event.power, event.power_bound}, power,
                               force_tolerance * largest_force(forces));
 }
@@ -423,9 +427,9 @@ Objections check_measures(const Place& place, const EquilibriumLine& line) {
 } // namespace
 
 Objections check_end(const Place& from, const Place& to, const EventRecord& event, bool rattles) {
-    if (Objections wrong =
-            compare_if_bounded(record_columns(to.state->load, false).strain, {event.strain, event.strain_bound},
-                               strain_of(to, to.state->load.loaded_axis), arc_strain_tolerance)) {
+    if (Objections wrong = compare_if_bounded(record_columns(to.state->load, to.state->load.loads_tilt()).strain,
+                                              {event.strain, event.strain_bound},
+                                              strain_of(to, to.state->load.loaded_axis), arc_strain_tolerance)) {
         return wrong;
     }
     const auto settled = [&](const Contact& pair, const Range& first) -> Objections {

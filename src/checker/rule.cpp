@@ -9,6 +9,23 @@
 
 namespace isostat::checker {
 
+bool grains_bear_force(const Place& place, std::size_t contact) {
+    const std::vector<Contact>& contacts = place.state->contacts;
+    const auto bears = [&](int grain) {
+        for (std::size_t l = 0; l < contacts.size(); ++l) {
+            const Contact& c = contacts[l];
+            const bool touches = c.i == grain || (c.kind == ContactKind::disk_disk && c.j == grain);
+            if (l != contact && c.kind != ContactKind::held && touches && !contains(place.zeros, l)) {
+                return true;
+            }
+        }
+        return false;
+    };
+    const Contact& opened = contacts[contact];
+    return opened.kind != ContactKind::held && bears(opened.i) &&
+           (opened.kind != ContactKind::disk_disk || bears(opened.j));
+}
+
 Objections check_turn(const Place& place, const EventRecord& event, bool rattles) {
     const Evidence& e = *place.evidence;
     const auto held = static_cast<std::size_t>(place.fresh);
@@ -19,6 +36,10 @@ Objections check_turn(const Place& place, const EventRecord& event, bool rattles
                          fmt::format("the power of the load does not vanish where {} is held: its multiplier is in "
                                      "{}",
                                      event.closed, shown(forces[held]))};
+    }
+    if (const Range& load = e.forces[held]; rattles && !place.first && (load.lower > room || load.upper < -room)) {
+        return Objection{true, fmt::format("the finite load has a power where {} is held: its multiplier is in {}",
+                                           event.closed, shown(load))};
     }
     const Velocities velocities(e);
     const Velocities::Solution motion = velocities.opening(held, 1);

@@ -79,7 +79,7 @@ bool claims_way(const Field& certificate) {
 }
 
 EventRecord event_of(const std::string& line, const std::string& where, const Load& load) {
-    const RecordColumns names = record_columns(load, false);
+    const RecordColumns names = record_columns(load, load.loads_tilt());
     const json::Json parsed = Field::parse(line, where);
     const Field field(parsed, where);
     const std::string strain_bound = names.strain + "_bound";

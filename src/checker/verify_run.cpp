@@ -328,9 +328,10 @@ class Replay {
     struct Change {
         std::size_t position; ///< of what opens among the contacts
         Contact closed;
-        bool rattles = false; ///< it opens under the infinitesimal loads
-        int direction = +1;   ///< -1: a held coordinate that falls
-        ExactLoad load{};     ///< at which it opens
+        bool rattles = false;   ///< it opens under the infinitesimal loads, and only rattlers move
+        int direction = +1;     ///< -1: a held coordinate that falls
+        ExactLoad load{};       ///< at which it opens
+        bool from_zero = false; ///< the power of the load grows from 0
 
         [[nodiscard]] Opening opening() const { return {position, direction, rattles}; }
     };
@@ -462,6 +463,9 @@ class Replay {
         change.rattles = event.kind == "rattler" || (held && evidence.forces[change.position].has_zero());
         const Range& multiplier = (change.rattles ? evidence.infinitesimal() : evidence.forces)[change.position];
         change.direction = held && multiplier.positive() ? -1 : +1;
+        const bool bears = change.rattles && grains_bear_force(here_, change.position);
+        change.rattles = change.rattles && !bears;
+        change.from_zero = event.kind == "limit" || bears;
     }
 
     /// Among the contacts at the end: what a power turn holds, or -1.
@@ -474,8 +478,7 @@ class Replay {
         const std::optional<Witness> witness = witnesses_.of(event.step);
         Objections missing = Objection{false, "the way is not proved: there is no witness"};
         if (witness) {
-            const Way way{change.position,       change.direction, change.rattles,
-                          event.kind == "limit", event.stress,     *witness};
+            const Way way{change.position, change.direction, change.rattles, change.from_zero, event.stress, *witness};
             State state = *here_.state;
             missing = end_of(here_, change.closed, way, state);
             missing = missing ? missing : make_place(state, next, change.load, fresh(event, change));
@@ -528,7 +531,7 @@ class Replay {
     /// The same, at a vertex that is proved to be where the arc ends if it ends with what the record says.
     Objections arrive_certainly(Place& next, const EventRecord& event, const Change& change) {
         const Witness none{};
-        const Way way{change.position, change.direction, change.rattles, event.kind == "limit", event.stress, none};
+        const Way way{change.position, change.direction, change.rattles, change.from_zero, event.stress, none};
         Objections missing;
         for (const bool slowly : {false, true}) {
             Objections open = arrive(next, event, change, slowly);

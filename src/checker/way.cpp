@@ -95,12 +95,16 @@ void Follower::let_rest() {
 Objections Follower::set_up() {
     const State& start = *from_.state;
     const Problem& problem = from_.evidence->problem;
+    Load load = start.load;
+    load.set_loaded_stress(way_.stress);
+    for (const WallForce& wall : load.wall_forces(start.packing)) {
+        if (!way_.rattles && load.kind == LoadKind::true_stress && (wall.rest[0] != 0 || wall.rest[1] != 0)) {
+            return open("true stresses that change together are no doubles"); // their power has one factor more
+        }
+    }
     const std::vector<bool> moves = moving_coordinates(start, problem, way_.witness);
     moving_.state = start;
     moving_.moves = moves;
-    if (start.packing.dimension != plane && start.load.kind == LoadKind::true_stress && !way_.rattles) {
-        return open("the power of true stresses is followed in the plane only");
-    }
     if (way_.witness.grains && moving_.disk_moves(start.packing.cell.pin) && start.packing.cell.any()) {
         return open("the pinned disk is among the few that are said to move");
     }
@@ -159,7 +163,7 @@ void Follower::load() {
             Bounds& force = pushing_.fixed[at(wall.coordinate)];
             force = force - (from_.state->packing.dimension == plane ? pressed : pressed * wall.other);
         } else {
-            pushing_.per_length[at(wall.axis)] = wall.stress;
+            pushing_.pressure[at(wall.axis)] = wall.stress;
         }
     }
 }

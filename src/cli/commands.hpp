@@ -134,8 +134,9 @@ struct SnapArguments {
     ForeignArguments foreign;
     std::string contacts, contact_columns; ///< of a dump of style local; none: the pairs that overlap
     std::string stress, load, cell;        ///< cell: as of `ImportArguments`
-    std::string reference_length;          ///< "L1,L2"; empty: the lengths of the frame
-    double stiffness = 0;                  ///< > 0: force = stiffness x overlap where the file says none
+    std::string reference_length;          ///< "L1,L2", of spheres L3 too; empty: the lengths of the frame
+    double stiffness = 0;                  ///< > 0: forces of the law where the file says none
+    std::string law;                       ///< "hertz"; else linear
     std::uint64_t seed = 1;
     bool exchange = false;
 };

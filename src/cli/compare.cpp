@@ -30,16 +30,21 @@ State start_of(const std::string& reference) {
     if (std::filesystem::is_directory(path)) {
         (void)content_of(path, run_folder);
     }
-    return read_any_state(std::filesystem::is_directory(path) ? path / state_name(0) : path).state;
+    return read_any_state(std::filesystem::is_directory(path) ? path / state_name(0) : path, Dimensions::any).state;
 }
 
 std::string shown(double x) {
     return std::isfinite(x) ? fmt::format("{:.1e}", x) : "-";
 }
 
+std::string loaded_name(const compare::Comparison& comparison) {
+    return fmt::format("sigma{}", comparison.dimension);
+}
+
 void print_frames(const compare::Comparison& comparison) {
-    say("{:>5} {:>9} {:>10} {:>5} {:>5} {:>3} {:>3} {:>8} {:>8} {:>8} {:>8} {:>8} {:>6}  {}\n", "frame", "sigma2",
-        "unbalanced", "N", "N_f", "h", "k", "rattlers", "distance", "law", "rest", "stiff", "exact", "status");
+    say("{:>5} {:>9} {:>10} {:>5} {:>5} {:>3} {:>3} {:>8} {:>8} {:>8} {:>8} {:>8} {:>6}  {}\n", "frame",
+        loaded_name(comparison), "unbalanced", "N", "N_f", "h", "k", "rattlers", "distance", "law", "rest", "stiff",
+        "exact", "status");
     for (const compare::FrameResult& f : comparison.frames) {
         const std::string place = f.expected < 0          ? "-"
                                   : f.found == f.expected ? fmt::format("{}", f.expected)
@@ -48,7 +53,7 @@ void print_frames(const compare::Comparison& comparison) {
         const std::string local = f.local.empty() ? "" : fmt::format("; from the frame before: {}", f.local);
         const std::string arc = f.nearest_arc.empty() ? "" : "; " + f.nearest_arc;
         say("{:>5} {:>9.6g} {:>10} {:>5} {:>5} {:>3} {:>3} {:>8} {:>8} {:>8} {:>8} {:>8} {:>6}  {}{}{}{}{}\n", f.frame,
-            f.sigma2, shown(f.unbalanced), f.counting.contact_count, f.counting.dof_count, f.counting.hyperstaticity,
+            f.stress, shown(f.unbalanced), f.counting.contact_count, f.counting.dof_count, f.counting.hyperstaticity,
             f.counting.mechanisms, f.rattlers, shown(f.distance), shown(f.law), shown(f.rest), shown(f.stiffness),
             place, to_string(f.status), f.reason.empty() ? "" : ": ", f.reason, local, arc);
     }
@@ -79,16 +84,17 @@ void print_loads(const compare::Comparison& comparison, const compare::Departure
     const auto load = [&](int number) {
         const auto at = std::find_if(comparison.frames.begin(), comparison.frames.end(),
                                      [&](const compare::FrameResult& f) { return f.frame == number; });
-        return at == comparison.frames.end() ? comparison.frames.front().sigma2 : at->sigma2;
+        return at == comparison.frames.end() ? comparison.frames.front().stress : at->stress;
     };
     const double from = load(departure.from), to = load(departure.to);
     std::string limits;
     for (const compare::PathEquilibrium& e : comparison.path) {
-        limits += e.arcs > 0 && std::min(from, to) <= e.sigma2 && e.sigma2 <= std::max(from, to)
-                      ? fmt::format(" {:.7g}", e.sigma2)
+        limits += e.arcs > 0 && std::min(from, to) <= e.stress && e.stress <= std::max(from, to)
+                      ? fmt::format(" {:.7g}", e.stress)
                       : "";
     }
-    say("  sigma2 {:.7g} -> {:.7g}; limits of the exact run between:{}\n", from, to, limits.empty() ? " none" : limits);
+    say("  {} {:.7g} -> {:.7g}; limits of the exact run between:{}\n", loaded_name(comparison), from, to,
+        limits.empty() ? " none" : limits);
 }
 
 void print_ends(const compare::Comparison& comparison, double stiffness) {
@@ -97,7 +103,7 @@ void print_ends(const compare::Comparison& comparison, double stiffness) {
             "K for 1e-3", "opens");
         for (const compare::PathEquilibrium& e : comparison.path) {
             say("{:>5} {:>10.6f} {:>10.6f} {:>12.6f} {:>11}  {}\n", e.number, e.low, e.high, e.soft_limit,
-                shown(e.stiffness_needed), e.opens.i < 0 ? "-" : to_string(e.opens));
+                shown(e.stiffness_needed), e.opens.i < 0 ? "-" : to_string(e.opens, comparison.dimension));
         }
     }
     if (!comparison.path_end.empty()) {
@@ -121,7 +127,8 @@ void print_ends(const compare::Comparison& comparison, double stiffness) {
         say("FIRST DEPARTURE: frames {} -> {}: {}: {}\n", d->from < 0 ? "-" : std::to_string(d->from), d->to, d->reason,
             d->words);
         print_loads(comparison, *d);
-        say("  opened{}; closed{}\n", compare::names_of(d->opened), compare::names_of(d->closed));
+        say("  opened{}; closed{}\n", compare::names_of(d->opened, comparison.dimension),
+            compare::names_of(d->closed, comparison.dimension));
     }
 }
 

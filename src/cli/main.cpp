@@ -377,7 +377,7 @@ Examples: isostat import disks.dump --box 0:15.46,0:14.88 -o start.json
             "snap", "a frame of soft grains -> the vertex of rigid grains with the same contacts, with proof",
             R"(The list: pairs with a force in a LAMMPS dump of style local or a table, or those that overlap, or the contacts of a state. Newton's method
 ends at the vertex where they all touch; certify proves it there, with its distance from the file. Rattlers must have room and
-rest on infinitesimal loads in the state.
+rest on infinitesimal loads in the state. Disks and spheres, in walls, in periods, or in both.
 Exit status 0: written and proved; 1: the list has no such vertex (hyperstatic, moving, refuted: printed); 2: undecided.
 Example: isostat snap disks.dump --frame 3 --box 0:15.46,0:14.88 --contacts pairs.dump --contact-columns 'c_1[1],c_1[2],c_2[2]' --stress 1,1.2 -o state.json)");
         needed(command, "file", a.file, "packing, or state", "FILE");
@@ -387,16 +387,23 @@ Example: isostat snap disks.dump --frame 3 --box 0:15.46,0:14.88 --contacts pair
         option(command, "--contact-columns", a.contact_columns, "columns of that dump: two ids and the force",
                "I,J,FORCE")
             ->needs(contacts);
-        option(command, "--stress", a.stress, "sigma_1 and sigma_2 (default 1,1, or those of a state)", "S1,S2");
+        option(command, "--stress", a.stress,
+               "sigma_1 and sigma_2, of spheres sigma_3 too (default: ones, or those of a state)", "S1,S2");
         option(command, "--load", a.load, "nominal: dead wall forces; true: stress x present length",
                CLI::IsMember({"nominal", "true"}));
         option(command, "--reference-length", a.reference_length,
                "lengths that nominal stresses press on (default: those of the frame; a series has those of its first "
-               "frame)",
+               "frame); of spheres L3 too",
                "L1,L2");
-        option(command, "--stiffness", a.stiffness,
-               "force / overlap: forces that the file does not say are compared with the exact ones too",
-               ranges::number(ranges::smallest, ranges::largest), "K");
+        CLI::Option* stiffness =
+            option(command, "--stiffness", a.stiffness,
+                   "force / overlap: forces that the file does not say are compared with the exact ones too",
+                   ranges::number(ranges::smallest, ranges::largest), "K");
+        option(
+            command, "--law", a.law,
+            "linear (default), or hertz: stiffness x overlap^(3/2) x sqrt(R_i R_j / (R_i + R_j)), at a wall sqrt(R_i)",
+            CLI::IsMember({"linear", "hertz"}))
+            ->needs(stiffness);
         command.add_flag("--exchange", a.exchange,
                          "where the list has no vertex: the one downhill, which need not be the only one near");
         option(command, "--seed", a.seed, "of the infinitesimal loads (default 1)",

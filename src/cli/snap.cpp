@@ -37,7 +37,7 @@ Read from_state(const SnapArguments& a) {
         throw Error(ErrorKind::usage, a.file + " is a state, which says its contacts and its load: expected none of "
                                                "--contacts, --stress, --load, --reference-length");
     }
-    const StateFile file = read_any_state(a.file);
+    const StateFile file = read_any_state(a.file, Dimensions::any);
     Read out;
     static_cast<compare::SoftForces&>(out) = compare::soft_grains(file, a.file);
     out.rounding = compare::imported_rounding(file.state);
@@ -46,17 +46,18 @@ Read from_state(const SnapArguments& a) {
 }
 
 Read from_foreign(const SnapArguments& a) {
-    std::array<double, 2> reference{};
-    if (!a.reference_length.empty()) {
-        reference = parse_pair(a.reference_length, "--reference-length", "L1,L2");
+    if (!a.reference_length.empty()) { // numbers are looked at before the file
+        (void)parse_lengths(a.reference_length, "--reference-length",
+                            parse_list(a.reference_length).size() == 3 ? 3 : 2);
     }
     ForeignArguments foreign = a.foreign;
     foreign.walls_unless_periodic = foreign.walls.empty();
-    foreign.cells = true;
+    foreign.cells = foreign.spheres = true;
     foreign.walls = foreign.walls.empty() ? "box" : foreign.walls;
     if (foreign.walls != "box") {
         throw Error(ErrorKind::usage,
-                    fmt::format("--walls is '{}': expected box, two fixed and two movable walls", foreign.walls));
+                    fmt::format("--walls is '{}': expected box, a fixed lower and a movable upper wall along each axis",
+                                foreign.walls));
     }
     ReadPacking file = read_any_packing(a.file, foreign);
     take_cell({a.file, a.cell}, file.packing);
@@ -72,10 +73,13 @@ Read from_foreign(const SnapArguments& a) {
     out.soft.packing = file.packing;
     out.soft.contacts = std::move(list.contacts);
     out.soft.load.kind = value_of<LoadKind>(a.load, load_kind_words).value_or(LoadKind::nominal);
-    out.soft.load.stress = parse_stress(a.stress);
+    const int dimension = file.packing.dimension;
+    out.soft.load.dimension = dimension;
+    out.soft.load.loaded_axis = dimension - 1;
+    out.soft.load.stress = parse_stress(a.stress, dimension);
     out.soft.load.refer_to(file.packing);
     if (!a.reference_length.empty()) {
-        std::copy(reference.begin(), reference.end(), out.soft.load.reference_length.begin());
+        out.soft.load.reference_length = parse_lengths(a.reference_length, "--reference-length", dimension);
     }
     return out;
 }
@@ -102,7 +106,9 @@ Json json_of(const SnapArguments& a, const Read& read, const compare::Snap& snap
         out["forces"] = {{"mean", number(mean)},
                          {"rest", number(split.rest)},
                          {"stiffness", number(split.stiffness)},
-                         {"contact", std::isfinite(split.rest) ? Json(to_string(split.worst)) : Json()}};
+                         {"contact", std::isfinite(split.rest)
+                                         ? Json(to_string(split.worst, read.soft.packing.dimension))
+                                         : Json()}};
     }
     return out;
 }
@@ -112,16 +118,17 @@ std::optional<State> state_of(const SnapArguments& a, const Read& read, const co
     if (snap.outcome == compare::SnapOutcome::vertex) {
         auto state = compare::with_resting_rattlers(snap, a.seed);
         report["unique"] = true;
-        report["reason"] = state.ok() ? "" : state.failure().message();
+        report["reason"] = state.ok() ? "" : state.failure().message(read.soft.packing.dimension);
         return state.ok() ? std::optional(std::move(state.value())) : std::nullopt;
     }
     if (!a.exchange) {
         return std::nullopt;
     }
+    const int dimension = read.soft.packing.dimension;
     auto found = compare::exchange(read.soft, a.seed);
     if (!found.ok() || found.value().truth.verdict != Verdict::proved) {
-        report["reason"] =
-            snap.reason + "; downhill: " + (found.ok() ? "the vertex is not proved" : found.failure().message());
+        report["reason"] = snap.reason + "; downhill: " +
+                           (found.ok() ? "the vertex is not proved" : found.failure().message(dimension));
         return std::nullopt;
     }
     compare::Exchanged& e = found.value();
@@ -129,8 +136,8 @@ std::optional<State> state_of(const SnapArguments& a, const Read& read, const co
     report["distance"] = number(e.distance);
     report["reason"] =
         fmt::format("{}; the vertex downhill is proved, not that it is the only one near: without{}; with{}",
-                    snap.reason, compare::names_of(compare::without(read.soft.contacts, e.contacts)),
-                    compare::names_of(compare::without(e.contacts, read.soft.contacts)));
+                    snap.reason, compare::names_of(compare::without(read.soft.contacts, e.contacts), dimension),
+                    compare::names_of(compare::without(e.contacts, read.soft.contacts), dimension));
     return std::move(e.state);
 }
 
@@ -144,7 +151,7 @@ void print(const SnapArguments& a, const Read& read, const compare::Snap& snap, 
     say("snap      {}{}{}\n", to_string(snap.outcome), report["reason"].get<std::string>().empty() ? "" : ": ",
         report["reason"].get<std::string>());
     if (!report["distance"].is_null()) {
-        say("distance  of a disk with a force from its true place at most {}\n",
+        say("distance  of a {} with a force from its true place at most {}\n", grain_word(read.soft.packing.dimension),
             rounded_up(report["distance"].get<double>(), 3));
     }
     if (const auto forces = report.find("forces"); forces != report.end() && !(*forces)["rest"].is_null()) {
@@ -169,7 +176,7 @@ int snap(const SnapArguments& a) {
     const std::string format = a.foreign.format.empty() ? recognise_format(text) : a.foreign.format;
     Read read = format == "state" || format == "vertex" ? from_state(a) : from_foreign(a);
     if (a.stiffness > 0) {
-        compare::add_law(read, a.stiffness);
+        compare::add_law(read, {a.law == "hertz" ? compare::ForceLaw::hertz : compare::ForceLaw::linear, a.stiffness});
     }
     const compare::Snap snap = compare::snap(read.soft);
     Json report = json_of(a, read, snap);

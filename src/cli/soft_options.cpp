@@ -38,9 +38,8 @@ PerAxis<double> parse_stress(const std::string& text, int dimension) {
                : positive(text, static_cast<std::size_t>(dimension), "--stress", dimension == 2 ? "S1,S2" : "S1,S2,S3");
 }
 
-std::array<double, 2> parse_pair(const std::string& text, const char* option, const char* names) {
-    const PerAxis<double> pair = positive(text, 2, option, names);
-    return {pair[0], pair[1]};
+PerAxis<double> parse_lengths(const std::string& text, const char* option, int dimension) {
+    return positive(text, static_cast<std::size_t>(dimension), option, dimension == 2 ? "L1,L2" : "L1,L2,L3");
 }
 
 void take_cell(const CellStatement& statement, Packing& packing) {

@@ -5,13 +5,12 @@
 #include "cli/read_packing.hpp"
 #include "compare/soft_list.hpp"
 
-#include <array>
 #include <string>
 
 namespace isostat::cli {
 
-/// Two positive numbers, as in "S1,S2"; `names` is that. Throws `Error(usage)`.
-std::array<double, 2> parse_pair(const std::string& text, const char* option, const char* names);
+/// A positive length of each axis, "L1,L2". Throws `Error(usage)`.
+PerAxis<double> parse_lengths(const std::string& text, const char* option, int dimension);
 /// Of --stress, as many as there are axes; ones for an empty text.
 PerAxis<double> parse_stress(const std::string& text, int dimension = 2);
 

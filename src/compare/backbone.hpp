@@ -4,6 +4,9 @@
 
 #include <isostat/contact/state.hpp>
 
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace isostat::compare {
@@ -16,8 +19,20 @@ Packing of_disks(const Packing& packing, const std::vector<int>& disks);
 State backbone_of(const State& state, const std::vector<Contact>& carrying);
 
 /// The contacts that can carry a force by the positions of the normals, in their order: soft rattlers touch now and
-/// then, and hard ones rest on two contacts. Held coordinates are left out. Of spheres nothing else is: normals in
-/// space are not looked at.
+/// then, and hard ones rest on as many contacts as there are axes. Held coordinates are left out. A contact of two
+/// grains that carry others stays: it holds what the load does not reach, as a sphere among three of its size on a
+/// wall.
 std::vector<Contact> able_to_carry(const Packing& packing, std::vector<Contact> contacts);
+
+/// Infinitesimal loads under which every contact of a grain that carries nothing else has a positive force, where the
+/// list determines it: the grain rests where it is. In a cell they sum to 0.
+std::vector<double> resting_loads(const Packing& packing, const std::vector<Contact>& contacts, std::uint64_t seed);
+
+/// Upper bound of a distance. `along`: bounds of its components.
+template <class Along> double distance_above(std::size_t axes, const Along& along) {
+    constexpr double up = 1 + 0x1p-49; // of a sum and a hypotenuse, each rounded
+    const double in_plane = std::hypot(along(0), along(1)) * up;
+    return axes == 2 ? in_plane : std::hypot(in_plane, along(2)) * up;
+}
 
 } // namespace isostat::compare

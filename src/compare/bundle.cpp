@@ -8,6 +8,7 @@
 #include <array>
 #include <map>
 #include <optional>
+#include <span>
 
 namespace isostat::compare {
 
@@ -15,31 +16,51 @@ namespace {
 
 /// Of a rearrangement of a member: some rules take ten times as many as others, and a member that ends says so.
 constexpr long most_arcs = 2000;
-constexpr std::array rests{"down", "up", "left", "right"};
+
+/// Where rattlers rest: towards the lower or the upper side of an axis. In the plane the last four.
+struct Rest {
+    const char* name;
+    std::size_t axis;
+    bool lower;
+};
+constexpr std::array<Rest, 6> all_rests{{{"back", 2, true},
+                                         {"front", 2, false},
+                                         {"down", 1, true},
+                                         {"up", 1, false},
+                                         {"left", 0, true},
+                                         {"right", 0, false}}};
+std::span<const Rest> rests_in(int dimension) {
+    return std::span(all_rests).last(2 * static_cast<std::size_t>(dimension));
+}
+
 /// Not `least_negative`: it mostly ends in a tie, after arcs that take thousands of digits.
 constexpr std::array rules{OpeningRule::most_negative, OpeningRule::least_index};
 
-/// The loads of `generic_infinitesimal` point down: turned until they point where the rattlers shall rest.
-std::vector<double> infinitesimal_towards(std::size_t rest, const Packing& packing) {
-    constexpr std::array<std::size_t, 4> quarters{0, 2, 3, 1}; // anticlockwise, of down, up, left, right
-    std::vector<double> g = generic_infinitesimal(packing.radius, 1);
-    for (std::size_t i = 0; i + 1 < g.size(); i += 2) {
-        for (std::size_t k = 0; k < quarters[rest]; ++k) {
-            const double x = g[i];
-            g[i] = -g[i + 1];
-            g[i + 1] = x;
+/// The loads of `generic_infinitesimal` point to the lower side of the last axis: turned until they point where the
+/// rattlers shall rest.
+std::vector<double> infinitesimal_towards(const Rest& rest, const Packing& packing) {
+    const std::size_t d = packing.axes(), last = d - 1;
+    std::vector<double> g = generic_infinitesimal(packing.radius, 1, packing.dimension);
+    for (std::size_t i = 0; i < g.size(); i += d) {
+        if (rest.axis != last) {
+            const double along = g[i + rest.axis];
+            g[i + rest.axis] = g[i + last];
+            g[i + last] = -along;
+        }
+        for (std::size_t a = 0; a < d && !rest.lower; ++a) {
+            g[i + a] = -g[i + a];
         }
     }
     balance(g, packing.cell);
     return g;
 }
 
-BundleMember member(int number) {
+BundleMember member(int number, std::span<const Rest> rests) {
     BundleMember out;
     const auto round = static_cast<std::size_t>(number) / rests.size();
     out.rule = round < rules.size() ? rules[round] : OpeningRule::random;
     out.seed = round < rules.size() ? 0 : round - rules.size() + 1;
-    out.rest = rests[static_cast<std::size_t>(number) % rests.size()];
+    out.rest = rests[static_cast<std::size_t>(number) % rests.size()].name;
     return out;
 }
 
@@ -105,23 +126,24 @@ Bundle make_bundle(const State& start, const Path& path, const std::vector<doubl
     paths.front() = path;
     const Snap vertex =
         snap({start.packing, carrying(start, certify(start)), start.load}); // rattlers leave what they touch
-    std::array<std::optional<Result<State>>, rests.size()> at_rest;         // of all rules
+    const std::span<const Rest> rests = rests_in(start.packing.dimension);
+    std::vector<std::optional<Result<State>>> at_rest(rests.size()); // of all rules
     parallel_pieces(std::min(rests.size(), paths.size()), [&](std::size_t rest) {
         if (rest == 0 && paths.size() <= rests.size()) {
             return; // the exact run alone
         }
         at_rest[rest] = vertex.outcome == SnapOutcome::vertex
-                            ? with_resting_rattlers(vertex, infinitesimal_towards(rest, vertex.packing))
+                            ? with_resting_rattlers(vertex, infinitesimal_towards(rests[rest], vertex.packing))
                             : Failure{FailureKind::undecided, vertex.reason};
     });
     parallel_pieces(paths.size(), [&](std::size_t k) {
         if (k == 0) {
             return;
         }
-        const BundleMember m = member(static_cast<int>(k));
+        const BundleMember m = member(static_cast<int>(k), rests);
         const Result<State>& resting = *at_rest[k % rests.size()];
         if (!resting.ok()) {
-            paths[k].end = resting.failure().message();
+            paths[k].end = resting.failure().message(start.packing.dimension);
             paths[k].at_load.assign(loads.size(), -1);
             return;
         }
@@ -133,7 +155,7 @@ Bundle make_bundle(const State& start, const Path& path, const std::vector<doubl
     });
     Tree tree(out);
     for (std::size_t k = 0; k < paths.size(); ++k) {
-        BundleMember m = member(static_cast<int>(k));
+        BundleMember m = member(static_cast<int>(k), rests);
         if (k == 0) {
             m.rule = options.rule;
             m.rest = "start";

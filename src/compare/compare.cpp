@@ -5,6 +5,7 @@
 #include "compare/path.hpp"
 #include "core/parallel.hpp"
 #include "core/words.hpp"
+#include "packing/words.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/core/machine.hpp>
@@ -80,7 +81,7 @@ void add_others(JudgedFrame& judged, const Path& path, const Bundle& bundle) {
     for (std::size_t k = 0; k < path.equilibria.size() && bundle.nodes.empty(); ++k) {
         known.push_back(&path.equilibria[k]);
     }
-    const auto numbers = [&](bool here) { return numbers_of(known, judged.downhill, judged.result.sigma2, here); };
+    const auto numbers = [&](bool here) { return numbers_of(known, judged.downhill, judged.result.stress, here); };
     judged.result.reason += fmt::format("; {} with its list:{}; others that support this load:{}",
                                         bundle.nodes.empty() ? "equilibria of the exact run" : "nodes of the bundle",
                                         numbers(true), numbers(false));
@@ -170,11 +171,20 @@ const char* to_string(FrameStatus status) {
 Comparison compare(SeriesReader& reader, const CompareOptions& options) {
     const Series& series = reader.series();
     Comparison out;
+    out.dimension = series.dimension;
     RunOptions run;
     run.rule = options.rule;
     run.stop = options.stop;
     std::optional<State> start = options.start;
     if (start) {
+        if (start->packing.dimension != series.dimension || start->load.loaded_axis != series.dimension - 1) {
+            throw Error(
+                ErrorKind::bad_input,
+                fmt::format("the start of the exact run (--reference) loads {} of {}s: expected sigma{} of {}s, "
+                            "as the frames do",
+                            start->load.stress_name(), grain_word(start->packing.dimension), series.dimension,
+                            grain_word(series.dimension)));
+        }
         (void)snap_to_grid(start->packing); // bounds of a cell hold there
         reader.begin_after(start->packing);
     }
@@ -182,13 +192,13 @@ Comparison compare(SeriesReader& reader, const CompareOptions& options) {
     Path path;
     std::vector<double> loads;
     for (const JudgedFrame& frame : judged) {
-        loads.push_back(frame.result.sigma2);
+        loads.push_back(frame.result.stress);
     }
     if (start) {
         NearestArcs arcs(judged);
         path = follow_beyond(*start, loads, run, series.linear_stiffness(), options.nearest_arc ? &arcs : nullptr);
         if (options.nearest_arc) {
-            arcs.tell(judged);
+            arcs.tell(judged, series.dimension);
         }
     } else {
         path.at_load.assign(loads.size(), -1);

@@ -32,7 +32,7 @@ double weight(const Packing& packing, const Contact& c, int power, bool hertz) {
 /// coordinate beyond the disks does that moves.
 Eigen::MatrixXd equations(const Frame& frame, const std::map<Contact, double>& beyond, int power, bool hertz) {
     const Packing& packing = frame.packing;
-    const std::size_t disks = 2 * packing.radius.size();
+    const std::size_t disks = packing.length_at(0);
     Eigen::MatrixXd a =
         Eigen::MatrixXd::Zero(static_cast<int>(beyond.size()), 1 + static_cast<int>(packing.q.size() - disks));
     int row = 0;

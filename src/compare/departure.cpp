@@ -86,7 +86,7 @@ class Diagnosis {
                is("tie",
                   fmt::format("in equilibrium {} the gaps of{} are {:.3g} at most, less than the way of the grains "
                               "to a rigid vertex, {:.3g}: which contact closes is not told at this stiffness",
-                              e.number, names_of(r.extra), widest, r.distance));
+                              e.number, names_of(r.extra, series_.dimension), widest, r.distance));
     }
 
     /// The equilibrium that both have before; null: there is none.
@@ -96,7 +96,7 @@ class Diagnosis {
                    : &path_.equilibria[static_cast<std::size_t>(before_->result.expected)];
     }
     [[nodiscard]] int direction() const {
-        return before_ == nullptr || after_->result.sigma2 >= before_->result.sigma2 ? 1 : -1;
+        return before_ == nullptr || after_->result.stress >= before_->result.stress ? 1 : -1;
     }
 
     /// The limit of the structure lies on one side of the frame's load for rigid grains and on the other for soft ones.
@@ -118,12 +118,13 @@ class Diagnosis {
         if (!soft) {
             return false;
         }
-        const double load = after_->result.sigma2;
+        const double load = after_->result.stress;
         const bool soft_left = direction() * (load - soft->stress) > 0, exact_left = direction() * (load - exact) > 0;
         const std::string words = fmt::format(
             "equilibrium {} ends at {:.7g}, with stiffness {:.3g} at {:.7g} (predicted); {} needs a stiffness "
             "of {:.2g} for 1e-3",
-            e->number, exact, series_.linear_stiffness(), soft->stress, to_string(e->opens), e->stiffness_needed);
+            e->number, exact, series_.linear_stiffness(), soft->stress, to_string(e->opens, series_.dimension),
+            e->stiffness_needed);
         return soft_left != exact_left && is("stiffness", words);
     }
 
@@ -135,7 +136,7 @@ class Diagnosis {
         }
         RunOptions run;
         run.rule = options_.rule;
-        const auto list = list_after(at(*e), after_->result.sigma2, true, run);
+        const auto list = list_after(at(*e), after_->result.stress, true, run);
         return list.ok() && list.value() == after_->list &&
                is("step",
                   fmt::format("{} limits of the exact run in one step of the load; the run that jumps ends where "
@@ -146,7 +147,7 @@ class Diagnosis {
     /// The common equilibrium at the load of the frame before.
     [[nodiscard]] State at(const PathEquilibrium& e) const {
         State state = e.state;
-        state.load.stress[1] = before_->result.sigma2;
+        state.load.stress[static_cast<std::size_t>(state.load.loaded_axis)] = before_->result.stress;
         return state;
     }
 

@@ -11,7 +11,8 @@ namespace isostat::compare {
 
 /// Over the mean force; NaN: not known.
 struct ForceSplit {
-    /// Largest |f_file - f(H(q_soft))|, the exact solve at the soft place: grains that are not at rest, other loads.
+    /// Largest |f_file - f(H(q_soft))|, the exact solve at the soft place: grains that are not at rest, other loads. In
+    /// an isotropic cell the latter are taken times the factor that makes the mean forces equal.
     double rest = std::numeric_limits<double>::quiet_NaN();
     /// Largest |f(H(q_soft)) - f(H(q*))|: what the overlaps change.
     double stiffness = std::numeric_limits<double>::quiet_NaN();

@@ -15,11 +15,20 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
+PerAxis<double> strains_of(const Packing& packing, const Load& load) {
+    PerAxis<double> out{};
+    for (std::size_t a = 0; a < packing.axes(); ++a) {
+        const double length = load.reference_length[a];
+        out[a] = (length - packing.length(static_cast<int>(a))) / length;
+    }
+    return out;
+}
+
 FrameResult begin(const Frame& frame, const Reading& reading) {
     FrameResult out;
     out.frame = frame.number;
     out.timestep = frame.timestep;
-    out.sigma2 = frame.load.stress[1];
+    out.stress = frame.load.loaded_stress();
     out.unbalanced = reading.unbalanced;
     out.listed = reading.listed;
     out.overlapping = reading.overlapping;
@@ -29,13 +38,8 @@ FrameResult begin(const Frame& frame, const Reading& reading) {
     out.ratio = reading.ratio;
     out.snapped = "none";
     out.distance = out.walls = out.rest = out.stiffness = out.downhill = out.self_stress = nan;
-    out.true_eps1 = out.true_eps2 = nan;
-    const auto strain = [&](int a) {
-        const double length = frame.load.reference_length[static_cast<std::size_t>(a)];
-        return (length - frame.packing.length(a)) / length;
-    };
-    out.eps1 = strain(0);
-    out.eps2 = strain(1);
+    out.strain = strains_of(frame.packing, frame.load);
+    out.true_strain = {nan, nan, nan};
     return out;
 }
 
@@ -43,12 +47,7 @@ void add_vertex(const Snap& snap, const Frame& frame, FrameResult& out) {
     out.snapped = "newton";
     out.distance = snap.distance;
     out.walls = snap.walls;
-    const auto strain = [&](int a) {
-        const double length = frame.load.reference_length[static_cast<std::size_t>(a)];
-        return (length - snap.backbone.packing.length(a)) / length;
-    };
-    out.true_eps1 = strain(0);
-    out.true_eps2 = strain(1);
+    out.true_strain = strains_of(snap.backbone.packing, frame.load);
 }
 
 /// The errors of forces on a list with h > 0, and against the vertex downhill.
@@ -71,11 +70,12 @@ void try_exchange(const SoftState& soft, const Reading& reading, const Snap& sna
     FrameResult& r = out.result;
     r.status = snapped.outcome == SnapOutcome::refuted ? FrameStatus::refuted : FrameStatus::undecided;
     r.reason = snapped.reason;
+    const int d = soft.packing.dimension;
     auto found = exchange(soft, 1);
     const bool proved = found.ok() && found.value().truth.verdict == Verdict::proved;
     split(soft, reading, snapped, proved ? &found.value() : nullptr, r);
     if (!found.ok()) {
-        r.reason += "; no vertex downhill: " + found.failure().message();
+        r.reason += "; no vertex downhill: " + found.failure().message(d);
         return;
     }
     Exchanged& e = found.value();
@@ -90,7 +90,7 @@ void try_exchange(const SoftState& soft, const Reading& reading, const Snap& sna
     } else {
         r.status = FrameStatus::soft;
         r.reason += fmt::format("; the vertex downhill is proved, not that it is the only one near: without{}; with{}",
-                                names_of(without(out.list, e.contacts)), names_of(without(e.contacts, out.list)));
+                                names_of(without(out.list, e.contacts), d), names_of(without(e.contacts, out.list), d));
     }
     out.downhill = std::move(e.contacts);
     out.state = std::move(e.state);
@@ -146,12 +146,13 @@ JudgedFrame judge(const Series& series, const Frame& frame, const Reading& readi
     }
     r.status = FrameStatus::same;
     add_vertex(snapped, frame, r);
+    out.list = carrying(snapped);
     if (complete) {
         auto state = with_resting_rattlers(snapped, 1);
         if (state.ok()) {
             out.state = std::move(state.value());
         } else {
-            r.reason = state.failure().message();
+            r.reason = state.failure().message(frame.packing.dimension);
         }
     }
     return out;

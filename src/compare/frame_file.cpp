@@ -126,7 +126,9 @@ void FrameFile::read_xyz(TextLines& lines, foreign::FrameHeader& header) const {
     header = foreign::read_xyz_header(comment, rows);
     for (std::string& name : header.names) {
         name = name == "pos.0" ? "x" : name == "pos.1" ? "y" : name == "pos.2" ? "z" : name;
-        name = name == "velo.0" || name == "vel.0" ? "vx" : name == "velo.1" || name == "vel.1" ? "vy" : name;
+        for (const auto& [number, speed] : {std::pair(".0", "vx"), std::pair(".1", "vy"), std::pair(".2", "vz")}) {
+            name = name == std::string("velo") + number || name == std::string("vel") + number ? speed : name;
+        }
     }
     header.timestep = foreign::xyz_timestep(comment, source_).value_or(frames_);
 }

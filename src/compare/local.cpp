@@ -15,8 +15,10 @@ std::string outcome(const JudgedFrame& before, const JudgedFrame& after, const R
     if (!before.state || r.status == FrameStatus::file || r.status == FrameStatus::moving) {
         return {};
     }
-    const auto list = list_after(*before.state, r.sigma2, false, options);
-    return !list.ok() ? "undecided: " + list.failure().message() : list.value() == after.list ? "same" : "other";
+    const auto list = list_after(*before.state, r.stress, false, options);
+    return !list.ok()                   ? "undecided: " + list.failure().message(before.state->packing.dimension)
+           : list.value() == after.list ? "same"
+                                        : "other";
 }
 
 } // namespace

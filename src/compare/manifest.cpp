@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace isostat::compare {
 
 namespace {
@@ -66,8 +68,8 @@ void read_columns(Section& section, const std::string& source, Manifest& out) {
     out.diameters = diameter.has_value();
     if (const toml::table* walls = section.table("wall_force")) {
         Section columns(walls, "columns.wall_force", source, settings);
-        for (std::size_t w = 0; w < wall_names.size(); ++w) {
-            out.wall_force[w] = required(columns, wall_names[w], "the column of the force of this wall on a disk");
+        for (const std::string& name : out.wall_names()) {
+            out.wall_force.push_back(required(columns, name, "the column of the force of this wall on a grain"));
         }
         columns.finish();
         out.series.wall_forces = true;
@@ -86,22 +88,42 @@ void read_law(Section& section, Manifest& out) {
 
 void read_load(Section& section, Manifest& out) {
     out.load = section.word("kind", 0, {"nominal", "true"}) == 0 ? LoadKind::nominal : LoadKind::true_stress;
-    out.sigma1 = positive(section, "sigma1", std::nullopt);
     const auto lengths = section.numbers("reference_length");
     if (!lengths) {
-        section.refuse("reference_length", "no reference_length: expected [L1, L2]");
+        section.refuse("reference_length", "no reference_length: expected [L1, L2], of spheres [L1, L2, L3]");
     }
-    if (lengths->size() != 2 || !((*lengths)[0] > 0) || !((*lengths)[1] > 0)) {
-        section.fail("reference_length", "two positive numbers");
+    const bool positive_all = std::all_of(lengths->begin(), lengths->end(), [](double length) { return length > 0; });
+    if ((lengths->size() != 2 && lengths->size() != 3) || !positive_all) {
+        section.fail("reference_length", "two positive numbers, of spheres three");
     }
-    out.reference_length = {(*lengths)[0], (*lengths)[1]};
+    std::copy(lengths->begin(), lengths->end(), out.reference_length.begin());
+    out.series.dimension = static_cast<int>(lengths->size());
+    for (std::size_t a = 0; a + 1 < out.axes(); ++a) {
+        out.stress[a] = positive(section, fmt::format("sigma{}", a + 1), std::nullopt);
+    }
     section.finish();
 }
 
 } // namespace
 
-Contact with_wall(int disk, std::size_t wall) {
-    return {wall < 2 ? ContactKind::lower_wall : ContactKind::upper_wall, disk, static_cast<int>(wall % 2)};
+std::vector<std::string> Manifest::wall_names() const {
+    std::vector<std::string> out;
+    for (std::size_t w = 0; w < 2 * axes(); ++w) {
+        out.push_back(to_string(with_wall(0, w), series.dimension).substr(2));
+    }
+    return out;
+}
+
+Contact Manifest::with_wall(int grain, std::size_t wall) const {
+    return {wall < axes() ? ContactKind::lower_wall : ContactKind::upper_wall, grain, static_cast<int>(wall % axes())};
+}
+
+double Manifest::reference_area(std::size_t axis) const {
+    double out = 1;
+    for (std::size_t b = 0; b < axes(); ++b) {
+        out *= b == axis ? 1 : reference_length[b];
+    }
+    return out;
 }
 
 Manifest read_manifest(const std::filesystem::path& path) {
@@ -120,6 +142,8 @@ Manifest read_manifest(const std::filesystem::path& path) {
     const auto section = [&](const char* name) { return Section(top.table(name), name, source, settings); };
     Section files = section("files");
     read_files(files, path.parent_path(), out);
+    Section load = section("load");
+    read_load(load, out); // says whether there are disks or spheres
     Section columns = section("columns");
     read_columns(columns, source, out);
     Section cell = section("cell");
@@ -130,8 +154,6 @@ Manifest read_manifest(const std::filesystem::path& path) {
     }
     Section law = section("law");
     read_law(law, out);
-    Section load = section("load");
-    read_load(load, out);
     if (out.tilted && out.load == LoadKind::true_stress) {
         load.refuse("kind", "true stresses and a tilt that moves: expected \"nominal\", or kind = \"rectangular\" in "
                             "[cell] (they have no potential)");

@@ -4,9 +4,8 @@
 
 #include <isostat/compare/compare.hpp>
 
-#include <array>
-#include <optional>
 #include <string>
+#include <vector>
 
 namespace isostat::compare {
 
@@ -14,21 +13,25 @@ struct Manifest {
     Series series;                       ///< without frames
     std::string disks, contacts, frames; ///< paths; `contacts` may be empty
     std::string contact_i, contact_j, contact_force;
-    std::array<std::string, 4> wall_force;   ///< left, bottom, right, top: columns of `disks`, or all empty
+    std::vector<std::string> wall_force;     ///< as `wall_names`: columns of `disks`, or none
     std::string size;                        ///< column of the sizes
     bool diameters = false;                  ///< they are diameters
     std::string select_column, select_value; ///< disks with this value; empty: all
     double length_factor = 1, force_factor = 1;
     LoadKind load = LoadKind::nominal;
-    double sigma1 = 0;
-    std::array<double, 2> reference_length{};
+    PerAxis<double> stress{}; ///< but that of the last axis, which the frames have
+    PerAxis<double> reference_length{};
     bool periodic = false; ///< frames of a periodic cell: the bounds of the dump are its periods
-    bool tilted = false;   ///< its tilt moves, under no shear stress
-};
+    bool tilted = false;   ///< its tilts move, under no shear stress
 
-/// Names of the walls in the order of `Manifest::wall_force`, and the contact of a disk with each.
-inline constexpr std::array<const char*, 4> wall_names{"left", "bottom", "right", "top"};
-Contact with_wall(int disk, std::size_t wall);
+    [[nodiscard]] std::size_t axes() const { return static_cast<std::size_t>(series.dimension); }
+    /// Of the walls: the lower ones, axis by axis, then the upper ones.
+    [[nodiscard]] std::vector<std::string> wall_names() const;
+    /// The contact of a grain with wall `wall` of these.
+    [[nodiscard]] Contact with_wall(int grain, std::size_t wall) const;
+    /// The reference lengths of the other axes, multiplied: a nominal stress presses on that.
+    [[nodiscard]] double reference_area(std::size_t axis) const;
+};
 
 Manifest read_manifest(const std::filesystem::path& path);
 

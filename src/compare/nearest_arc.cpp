@@ -34,15 +34,15 @@ void NearestArcs::add(const ArcRecord& arc, int equilibrium) {
     }
 }
 
-void NearestArcs::tell(std::vector<JudgedFrame>& frames) const {
+void NearestArcs::tell(std::vector<JudgedFrame>& frames, int dimension) const {
     for (const Found& found : frames_) {
         const bool same = found.lacking.empty() && found.beside.empty();
         frames[found.frame].result.nearest_arc =
-            found.equilibrium < 0
-                ? "the exact run has no arc"
-                : fmt::format("arc {} on the way to equilibrium {}, {}", found.arc, found.equilibrium,
-                              same ? "the same contacts"
-                                   : "without" + names_of(found.lacking) + ", with" + names_of(found.beside));
+            found.equilibrium < 0 ? "the exact run has no arc"
+                                  : fmt::format("arc {} on the way to equilibrium {}, {}", found.arc, found.equilibrium,
+                                                same ? "the same contacts"
+                                                     : "without" + names_of(found.lacking, dimension) + ", with" +
+                                                           names_of(found.beside, dimension));
     }
 }
 

@@ -20,7 +20,7 @@ class NearestArcs {
     /// \p equilibrium: of the path, which its rearrangement leads to.
     void add(const ArcRecord& arc, int equilibrium);
     /// Sets `nearest_arc` of these frames.
-    void tell(std::vector<JudgedFrame>& frames) const;
+    void tell(std::vector<JudgedFrame>& frames, int dimension) const;
 
   private:
     struct Found {

@@ -1,5 +1,6 @@
 #include "compare/nearest_vertex.hpp"
 
+#include "compare/backbone.hpp"
 #include "compare/soft_list.hpp"
 #include "preparation/neighbours.hpp"
 #include "verified/to_vertex.hpp"
@@ -13,7 +14,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 namespace isostat::compare {
 
@@ -120,20 +120,7 @@ NearestVertex vertex_as_listed(const SoftState& soft, const std::string& words, 
                                failure ? "; as they stand in the file: " : "", failure ? failure->message() : "");
     state.load = soft.load;
     state.load.refer_to(state.packing);
-    state.load.infinitesimal.assign(state.packing.length_at(0), 0);
-    std::mt19937_64 random(seed);
-    const double unit = state.packing.min_radius() * state.packing.min_radius();
-    for (const Contact& contact : state.contacts) {
-        const double force = unit * (1 + static_cast<double>(random() >> 11U) * 0x1p-53);
-        const GapGradient gradient = gap_gradient(state.packing, contact);
-        for (std::size_t k = 0; k < static_cast<std::size_t>(gradient.count); ++k) {
-            if (const auto at = static_cast<std::size_t>(gradient.coordinate[k]);
-                at < state.load.infinitesimal.size()) {
-                state.load.infinitesimal[at] -= force * gradient.value[k];
-            }
-        }
-    }
-    balance(state.load.infinitesimal, state.packing.cell);
+    state.load.infinitesimal = resting_loads(state.packing, state.contacts, seed);
     out.truth = certify(state);
     return out;
 }
@@ -141,7 +128,7 @@ NearestVertex vertex_as_listed(const SoftState& soft, const std::string& words, 
 Moves moves_to(const State& state, const Certification& truth, const std::vector<double>& from) {
     const Packing& packing = state.packing;
     const double radius = truth.claims.vertex ? truth.claims.vertex->radius : HUGE_VAL;
-    constexpr double up = 1 + 0x1p-49; // of a difference, a sum and a hypotenuse, each rounded
+    constexpr double up = 1 + 0x1p-49; // of a difference and a sum, each rounded
     const auto way = [&](std::size_t k) { return (std::abs(packing.q[k] - from[k]) + radius) * up; };
     Moves moves;
     const std::size_t n = packing.radius.size();
@@ -151,8 +138,7 @@ Moves moves_to(const State& state, const Certification& truth, const std::vector
     }
     const std::size_t d = packing.axes();
     for (std::size_t i = 0; i < n; ++i) {
-        const double in_plane = std::hypot(way(d * i), way(d * i + 1)) * up;
-        moves.disk.push_back(d == 2 ? in_plane : std::hypot(in_plane, way(d * i + 2)) * up);
+        moves.disk.push_back(distance_above(d, [&](std::size_t a) { return way(d * i + a); }));
         double& largest = moves.rattler[i] != 0 ? moves.rattlers : moves.backbone;
         largest = std::max(largest, moves.disk[i]);
     }

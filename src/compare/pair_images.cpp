@@ -1,6 +1,6 @@
 #include "compare/pair_images.hpp"
 
-#include "contact/candidates.hpp"
+#include "compare/soft_list.hpp"
 
 #include <algorithm>
 
@@ -10,8 +10,7 @@ PairImages::PairImages(const Packing& packing) {
     if (!packing.cell.any()) {
         return;
     }
-    constexpr double reach = 0.5; // of the smallest radius
-    for (const Contact& c : find_candidates(packing, reach).contacts) {
+    for (const Contact& c : near_contacts(packing)) {
         if (c.kind == ContactKind::disk_disk) {
             images_[{c.i, c.j}].by_gap.emplace_back(gap(packing, c), c);
         }

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Pairs of disks by number, as other programs list them, and the images that they mean.
+/// Pairs of grains by number, as other programs list them, and the images that they mean.
 
 #include <isostat/contact/state.hpp>
 #include <isostat/packing/packing.hpp>
@@ -15,7 +15,7 @@ class PairImages {
   public:
     /// Grains of the packing overlap or are near. \pre the packing outlives it
     explicit PairImages(const Packing& packing);
-    /// What the next row of these two disks means: the deepest overlap of their images that no row before meant; the
+    /// What the next row of these two grains means: the deepest overlap of their images that no row before meant; the
     /// nearest images when all were meant, so that a row too many is one that comes twice. In a box the pair.
     Contact next(int i, int j);
 

@@ -16,6 +16,7 @@ namespace {
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr int further = 3; ///< equilibria after the last load: frames may be early
 
+/// Of frames it is that of the last axis.
 double loaded(const State& state) {
     return state.load.loaded_stress();
 }
@@ -39,8 +40,8 @@ class Collector final : public RunObserver {
         }
         PathEquilibrium e;
         e.number = static_cast<int>(out_.size());
-        e.sigma2 = record.stress;
-        e.eps2 = record.strain[1];
+        e.stress = record.stress;
+        e.strain = record.strain[static_cast<std::size_t>(state.load.loaded_axis)];
         e.low = record.stress_low;
         e.high = record.stress_high;
         e.arcs = record.arcs;
@@ -89,7 +90,7 @@ class Follower {
         Segment start;
         start.equilibria = 0;
         if (const auto failure = advance(start)) {
-            path.end = failure->message();
+            path.end = failure->message(state_.packing.dimension);
         }
         for (const double load : loads) {
             if (path.end.empty() && load != loaded(state_)) {
@@ -100,7 +101,7 @@ class Follower {
                 Segment segment;
                 segment.to_stress = load;
                 if (const auto failure = advance(segment)) {
-                    path.end = failure->message();
+                    path.end = failure->message(state_.packing.dimension);
                 }
             }
             path.at_load.push_back(path.end.empty() ? static_cast<int>(path.equilibria.size()) - 1 : -1);

@@ -5,13 +5,16 @@
 #include "io/digits.hpp"
 #include "io/files.hpp"
 #include "io/numbers.hpp"
+#include "packing/words.hpp"
 
 #include <isostat/core/error.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <optional>
@@ -23,21 +26,28 @@ namespace {
 using foreign::Boundary;
 using foreign::FrameHeader;
 
-/// Which wall a field of a file of contacts means: its name, or -1 left, -2 bottom, -3 right, -4 top.
-std::optional<std::size_t> wall_of(std::string_view field) {
-    for (std::size_t w = 0; w < wall_names.size(); ++w) {
-        if (field == wall_names[w] || field == fmt::format("-{}", w + 1)) {
+/// Which wall a field of a file of contacts means: its name, or -1 left, -2 bottom, -3 right, -4 top, of spheres -5
+/// back, -6 front.
+std::optional<std::size_t> wall_of(std::string_view field, const Manifest& manifest) {
+    const std::vector<std::string> names = manifest.wall_names();
+    const std::size_t d = manifest.axes();
+    for (std::size_t w = 0; w < names.size(); ++w) {
+        const std::size_t axis = w % d, upper = w / d;
+        const std::size_t number = axis < 2 ? 1 + axis + 2 * upper : 5 + upper;
+        if (field == names[w] || field == fmt::format("-{}", number)) {
             return w;
         }
     }
     return std::nullopt;
 }
 
-/// Where the walls of a frame are, or the sides of its cell; none: the file of disks says so.
+/// Where the walls of a frame are, or the sides of its cell.
 struct Sides {
-    std::optional<std::array<double, 4>> at; ///< left, bottom, right, top
-    double tilt = 0;                         ///< of a cell: the way along x from its lower to its upper side
+    bool stated = false; ///< else the file of disks says so
+    PerAxis<double> low{}, high{};
+    PerTilt<double> tilt{}; ///< of a cell
     Digits digits;
+    [[nodiscard]] double length(std::size_t axis) const { return high[axis] - low[axis]; }
 };
 
 /// The table of frames.
@@ -52,19 +62,24 @@ class FrameTable {
         where_ = names.place();
         foreign::refuse_twice(names_, where_);
         (void)required("timestep");
-        sides_ = !manifest.periodic || find("tilt") >= 0; // the bounds of a dump are not the walls
-        for (const char* name : wall_names) {
+        sides_ = !manifest.periodic; // the bounds of a dump are not the walls
+        for (std::size_t t = 0; t < tilts(); ++t) {
+            sides_ = sides_ || find(tilt_column(t)) >= 0;
+        }
+        const std::vector<std::string> walls = manifest.wall_names();
+        for (const std::string& name : walls) {
             sides_ = sides_ || find(name) >= 0;
         }
-        for (const char* name : wall_names) {
+        for (const std::string& name : walls) {
             if (sides_) {
                 (void)required(name);
             }
         }
-        if (find("sigma2") < 0 && (manifest.load == LoadKind::true_stress || find("force_top") < 0)) {
+        if (find(stress_column(last())) < 0 &&
+            (manifest.load == LoadKind::true_stress || find(force_column(last())) < 0)) {
             throw Error(ErrorKind::bad_input,
-                        fmt::format("{}: no column 'sigma2'{}: expected it", where_,
-                                    manifest.load == LoadKind::nominal ? " nor 'force_top'" : ""));
+                        fmt::format("{}: no column '{}'{}: expected it", where_, stress_column(last()),
+                                    manifest.load == LoadKind::nominal ? " nor '" + force_column(last()) + "'" : ""));
         }
     }
 
@@ -93,27 +108,44 @@ class FrameTable {
 
   private:
     [[nodiscard]] int find(const std::string& name) const { return foreign::find_column(names_, name); }
+    /// The axis whose stress the frames have.
+    [[nodiscard]] std::size_t last() const { return manifest_.axes() - 1; }
+    [[nodiscard]] std::size_t tilts() const { return Layout{manifest_.series.dimension}.tilts(); }
+    [[nodiscard]] static std::string stress_column(std::size_t axis) { return fmt::format("sigma{}", axis + 1); }
+    [[nodiscard]] std::string force_column(std::size_t axis) const {
+        return "force_" + manifest_.wall_names()[manifest_.axes() + axis];
+    }
+    [[nodiscard]] std::string tilt_column(std::size_t tilt) const {
+        return manifest_.series.dimension == plane ? "tilt" : fmt::format("tilt_{}", tilt_names[tilt]);
+    }
     [[nodiscard]] std::size_t required(const std::string& name) const {
         const int at = find(name);
         if (at < 0) {
             throw Error(ErrorKind::bad_input,
-                        fmt::format("{}: no column '{}': expected timestep, the positions of the walls left, bottom, "
-                                    "right, top (the bounds of a dump are not taken for them), and sigma2 or force_top",
-                                    where_, name));
+                        fmt::format("{}: no column '{}': expected timestep, the positions of the walls {} (the bounds "
+                                    "of a dump are not taken for them), and {} or {}",
+                                    where_, name, fmt::join(manifest_.wall_names(), ", "), stress_column(last()),
+                                    force_column(last())));
         }
         return static_cast<std::size_t>(at);
     }
 
     [[nodiscard]] Sides sides_of(const TextLine& line) const {
-        Sides sides{std::array<double, 4>{}, 0, {}};
-        for (std::size_t w = 0; w < 4; ++w) {
-            const std::size_t column = required(wall_names[w]);
-            (*sides.at)[w] = line.number(column, wall_names[w]) * manifest_.length_factor;
+        Sides sides;
+        sides.stated = true;
+        const std::vector<std::string> walls = manifest_.wall_names();
+        const auto read = [&](std::size_t column, const std::string& name) {
             sides.digits.see(line.field(column));
+            return line.number(column, name) * manifest_.length_factor;
+        };
+        for (std::size_t w = 0; w < walls.size(); ++w) {
+            PerAxis<double>& side = w < manifest_.axes() ? sides.low : sides.high;
+            side[w % manifest_.axes()] = read(required(walls[w]), walls[w]);
         }
-        if (const int tilt = find("tilt"); tilt >= 0 && manifest_.periodic) {
-            sides.tilt = line.number(static_cast<std::size_t>(tilt), "tilt") * manifest_.length_factor;
-            sides.digits.see(line.field(static_cast<std::size_t>(tilt)));
+        for (std::size_t t = 0; t < tilts() && manifest_.periodic; ++t) {
+            if (const int tilt = find(tilt_column(t)); tilt >= 0) {
+                sides.tilt[t] = read(static_cast<std::size_t>(tilt), tilt_column(t));
+            }
         }
         return sides;
     }
@@ -121,41 +153,60 @@ class FrameTable {
     [[nodiscard]] Load load_of(const TextLine& line) const {
         Load load;
         load.kind = manifest_.load;
-        std::copy(manifest_.reference_length.begin(), manifest_.reference_length.end(), load.reference_length.begin());
-        load.stress = {manifest_.sigma1, 0};
-        const double per_force = manifest_.force_factor / manifest_.reference_length[0];
-        if (const int at = find("sigma2"); at >= 0) {
-            load.stress[1] = line.number(static_cast<std::size_t>(at), "sigma2");
+        load.dimension = manifest_.series.dimension;
+        load.loaded_axis = load.dimension - 1;
+        load.reference_length = manifest_.reference_length;
+        load.stress = manifest_.stress;
+        const std::string name = stress_column(last()), force = force_column(last());
+        double& loaded = load.stress[last()];
+        if (const int at = find(name); at >= 0) {
+            loaded = line.number(static_cast<std::size_t>(at), name);
         } else {
-            load.stress[1] = line.number(required("force_top"), "force_top") * per_force;
+            const double per_force = manifest_.force_factor / manifest_.reference_area(last());
+            loaded = line.number(required(force), force) * per_force;
         }
-        if (!(load.stress[1] > 0 && std::isfinite(load.stress[1]))) {
-            line.fail(fmt::format("{}", load.stress[1]), "sigma2", "a positive number");
+        if (!(loaded > 0 && std::isfinite(loaded))) {
+            line.fail(fmt::format("{}", loaded), name, "a positive number");
         }
-        for (const std::size_t axis : {std::size_t{0}, std::size_t{1}}) {
+        for (std::size_t axis = 0; axis < manifest_.axes(); ++axis) {
+            check_stress(line, axis, load);
             check_force(line, axis, load);
         }
         return load;
     }
 
+    /// The stresses that the frames do not change are those of the manifest, to the digits that a file has.
+    void check_stress(const TextLine& line, std::size_t axis, const Load& load) const {
+        const std::string name = stress_column(axis);
+        const int at = find(name);
+        if (at < 0 || axis == last()) {
+            return;
+        }
+        const auto column = static_cast<std::size_t>(at);
+        const double expected = load.stress[axis];
+        if (!(std::abs(line.number(column, name) - expected) <= known * expected + rounding(line, column))) {
+            line.fail(line.field(column), name,
+                      fmt::format("{}, the one of the manifest: frames differ in {}", expected, stress_column(last())));
+        }
+    }
+
     /// A force on a wall must be that of the load, to the digits that a file has.
     void check_force(const TextLine& line, std::size_t axis, const Load& load) const {
-        constexpr double known = 1e-9;
-        const std::string name = axis == 0 ? "force_right" : "force_top";
+        const std::string name = force_column(axis);
         const int at = find(name);
         if (at < 0 || load.kind == LoadKind::true_stress) {
             return;
         }
         const auto column = static_cast<std::size_t>(at);
-        const double expected = load.stress[axis] * load.reference_length[1 - axis];
+        const double area = manifest_.reference_area(axis), expected = load.stress[axis] * area;
         double digits = rounding(line, column) * manifest_.force_factor;
-        if (const int stress = find("sigma2"); stress >= 0 && axis == 1) {
-            digits += rounding(line, static_cast<std::size_t>(stress)) * load.reference_length[0];
+        if (const int stress = find(stress_column(axis)); stress >= 0 && axis == last()) {
+            digits += rounding(line, static_cast<std::size_t>(stress)) * area;
         }
         if (!(std::abs(line.number(column, name) * manifest_.force_factor - expected) <= known * expected + digits)) {
             line.fail(line.field(column), fmt::format("{} (column {})", name, at + 1),
-                      fmt::format("{}, the stress {} times the reference length {}", expected / manifest_.force_factor,
-                                  load.stress[axis], load.reference_length[1 - axis]));
+                      fmt::format("{}, the stress {} times the reference {} {}", expected / manifest_.force_factor,
+                                  load.stress[axis], load.dimension == plane ? "length" : "area", area));
         }
     }
 
@@ -165,6 +216,7 @@ class FrameTable {
         return digits.rounding();
     }
 
+    static constexpr double known = 1e-9; ///< of a force or a stress that is stated twice
     const Manifest& manifest_;
     std::string text_;
     TextLines lines_;
@@ -181,21 +233,20 @@ class Disks {
     explicit Disks(const Manifest& manifest) : manifest_(manifest), dump_(manifest.disks, "ATOMS") {}
 
     void read(Frame& frame, Sides sides) {
+        begin(frame.packing);
         const FileFrame rows = dump_.at(frame.timestep);
         check_boundaries(rows, sides);
         const std::size_t id = dump_.column(rows, "id"), size = dump_.column(rows, manifest_.size);
-        const std::size_t x = dump_.column(rows, "x"), y = dump_.column(rows, "y");
+        const std::vector<std::size_t> centre = columns_of(rows, {"x", "y", "z"}), speeds = speeds_of(rows);
         const std::map<long, const TextLine*> by_id = selected(rows, id);
+        require_a_plane(rows, by_id, size);
         const double f = manifest_.length_factor;
-        if (manifest_.periodic) {
-            make_periodic(frame.packing);
-            sides = sides.at ? sides : sides_of(rows.header);
+        if (manifest_.periodic && !sides.stated) {
+            sides = sides_of(rows.header);
         }
-        const std::array<double, 4> walls = sides.at.value();
         if (!last_.radius.empty() && manifest_.periodic) {
-            sides.tilt = unflipped(frame, sides.tilt, walls[2] - walls[0]);
+            unflip(frame, sides);
         }
-        const std::vector<std::size_t> speeds = speeds_of(rows);
         Digits places, sizes;
         for (const auto& [number, row] : by_id) {
             const auto disk = frame.ids.size();
@@ -210,35 +261,29 @@ class Disks {
                 row->fail(row->field(size), manifest_.size, "a positive number");
             }
             if (disk < first_.radius.size() && frame.packing.radius[disk] != first_.radius[disk]) {
-                row->fail(row->field(size), manifest_.size, "the one that this disk has in the first frame");
+                row->fail(row->field(size), manifest_.size,
+                          fmt::format("the one that this {} has in the first frame", grain()));
             }
-            frame.packing.q.push_back(row->number(x, "x") * f - walls[0]);
-            frame.packing.q.push_back(row->number(y, "y") * f - walls[1]);
             sizes.see(row->field(size));
-            for (const std::size_t column : {x, y}) {
-                places.see(row->field(column));
+            for (std::size_t a = 0; a < centre.size(); ++a) {
+                frame.packing.q.push_back(row->number(centre[a], axis_names[a]) * f - sides.low[a]);
+                places.see(row->field(centre[a]));
             }
             for (const std::size_t column : speeds) {
                 frame.velocity.push_back(finite_number(row->field(column)).value_or(NAN) * f);
             }
             add_walls(frame, *row, rows, static_cast<int>(disk));
         }
-        frame.packing.q.insert(frame.packing.q.end(), {walls[2] - walls[0], walls[3] - walls[1]});
+        for (std::size_t a = 0; a < manifest_.axes(); ++a) {
+            frame.packing.q.push_back(sides.length(a));
+        }
         if (manifest_.periodic) {
-            frame.packing.q.push_back(sides.tilt);
+            std::copy_n(sides.tilt.begin(), frame.packing.tilts(), std::back_inserter(frame.packing.q));
         }
-        if (frame.ids.size() < ids_.size()) {
-            throw Error(ErrorKind::bad_input, fmt::format("{}: no disk {}: expected the disks of the first frame",
-                                                          dump_.where(rows.header.line), ids_[frame.ids.size()]));
-        }
-        if (std::any_of(frame.velocity.begin(), frame.velocity.end(), [](double v) { return std::isnan(v); })) {
-            frame.velocity.clear();
-        }
-        validate(frame.packing, dump_.where(rows.header.line));
-        require_plane(frame.packing, dump_.where(rows.header.line), "compare");
+        check_all(frame, dump_.where(rows.header.line));
         frame.rounding = f * rounding_of_gaps(places.rounding(), sides.digits.rounding(),
                                               sizes.rounding() * (manifest_.diameters ? 0.5 : 1),
-                                              {2, manifest_.periodic && sides.tilt != 0});
+                                              {frame.packing.dimension, sides.tilt != PerTilt<double>{}});
         keep(frame);
     }
 
@@ -249,6 +294,15 @@ class Disks {
     }
 
   private:
+    [[nodiscard]] const char* grain() const { return grain_word(manifest_.series.dimension); }
+    /// The columns of a vector.
+    [[nodiscard]] std::vector<std::size_t> columns_of(const FileFrame& rows, const PerAxis<const char*>& names) const {
+        std::vector<std::size_t> out;
+        for (std::size_t a = 0; a < manifest_.axes(); ++a) {
+            out.push_back(dump_.column(rows, names[a]));
+        }
+        return out;
+    }
     /// The rows of the disks, by the number in column `id`.
     [[nodiscard]] std::map<long, const TextLine*> selected(const FileFrame& rows, std::size_t id) const {
         std::map<long, const TextLine*> by_id;
@@ -256,15 +310,43 @@ class Disks {
             if (manifest_.select_column.empty() ||
                 row.field(dump_.column(rows, manifest_.select_column)) == manifest_.select_value) {
                 if (!by_id.emplace(row.integer(id, "id", 0, 1L << 62), &row).second) {
-                    row.fail(row.field(id), "id", "every disk once");
+                    row.fail(row.field(id), "id", fmt::format("every {} once", grain()));
                 }
             }
         }
         if (by_id.empty()) {
-            throw Error(ErrorKind::bad_input,
-                        fmt::format("{}: no disks are selected: expected at least one", dump_.where(rows.header.line)));
+            throw Error(ErrorKind::bad_input, fmt::format("{}: no {}s are selected: expected at least one",
+                                                          dump_.where(rows.header.line), grain()));
         }
         return by_id;
+    }
+    /// Of disks z is the same, or differs by so little that no gap would be another double.
+    void require_a_plane(const FileFrame& rows, const std::map<long, const TextLine*>& by_id, std::size_t size) const {
+        const int z = foreign::find_column(rows.header.names, "z");
+        for (const auto& [number, row] : by_id) {
+            if (z < 0 || manifest_.series.dimension != plane) {
+                return;
+            }
+            const auto at = static_cast<std::size_t>(z);
+            const double first = by_id.begin()->second->number(at, "z");
+            if (!(std::abs(row->number(at, "z") - first) <= 0x1p-28 * row->number(size, manifest_.size))) {
+                row->fail(row->field(at), "z",
+                          fmt::format("{}, as of the first disk (three lengths in "
+                                      "reference_length make a series of spheres)",
+                                      first));
+            }
+        }
+    }
+    /// All grains of the first frame are there; velocities are known of all or of none.
+    void check_all(Frame& frame, const std::string& place) const {
+        if (frame.ids.size() < ids_.size()) {
+            throw Error(ErrorKind::bad_input, fmt::format("{0}: no {1} {2}: expected the {1}s of the first frame",
+                                                          place, grain(), ids_[frame.ids.size()]));
+        }
+        if (std::any_of(frame.velocity.begin(), frame.velocity.end(), [](double v) { return std::isnan(v); })) {
+            frame.velocity.clear();
+        }
+        validate(frame.packing, place);
     }
     /// The frame, for what the next one is compared with.
     void keep(Frame& frame) {
@@ -277,88 +359,128 @@ class Disks {
         }
         last_ = frame.packing;
     }
-    /// The columns vx and vy, or none.
-    [[nodiscard]] static std::vector<std::size_t> speeds_of(const FileFrame& rows) {
-        std::vector<std::size_t> out;
-        for (const char* name : {"vx", "vy"}) {
-            const auto& names = rows.header.names;
-            if (const auto at = std::find(names.begin(), names.end(), name); at != names.end()) {
-                out.push_back(static_cast<std::size_t>(at - names.begin()));
-            }
-        }
-        return out.size() == 2 ? out : std::vector<std::size_t>();
+    /// The columns vx, vy (and vz), or none.
+    [[nodiscard]] std::vector<std::size_t> speeds_of(const FileFrame& rows) const {
+        constexpr PerAxis<const char*> speeds{"vx", "vy", "vz"};
+        const bool all =
+            std::all_of(speeds.begin(), speeds.begin() + manifest_.series.dimension,
+                        [&](const char* name) { return foreign::find_column(rows.header.names, name) >= 0; });
+        return all ? columns_of(rows, speeds) : std::vector<std::size_t>();
     }
-    void make_periodic(Packing& packing) const {
-        packing.walls = Walls::none();
-        packing.cell.repeat();
-        packing.cell.move(true, manifest_.tilted);
+    /// Of the dimension, in walls or a cell.
+    void begin(Packing& packing) const {
+        packing.dimension = packing.cell.dimension = manifest_.series.dimension;
+        packing.walls = manifest_.periodic ? Walls::none() : Walls::box(packing.dimension);
+        if (manifest_.periodic) {
+            packing.cell.repeat();
+            packing.cell.move(true, manifest_.tilted);
+        }
     }
     /// The bounds of a dump are the cell.
     [[nodiscard]] Sides sides_of(const FrameHeader& header) const {
-        const double f = manifest_.length_factor;
-        const auto& [x, y, z] = header.box.value();
-        Digits digits = header.sides[0];
-        digits.see(header.sides[1]);
-        return {std::array{x[0] * f, y[0] * f, x[1] * f, y[1] * f}, header.tilt[0] * f, digits};
+        Sides sides;
+        for (std::size_t a = 0; a < manifest_.axes(); ++a) {
+            sides.low[a] = header.box.value()[a][0] * manifest_.length_factor;
+            sides.high[a] = header.box.value()[a][1] * manifest_.length_factor;
+            sides.digits.see(header.sides[a]);
+        }
+        for (std::size_t t = 0; t < Layout{manifest_.series.dimension}.tilts(); ++t) {
+            sides.tilt[t] = header.tilt[t] * manifest_.length_factor;
+        }
+        return sides;
     }
 
-    /// Walls, or both axes periodic: as the manifest says. A cell is stated once.
+    /// Walls, or every axis periodic: as the manifest says. A cell is stated once.
     void check_boundaries(const FileFrame& rows, const Sides& sides) const {
         const FrameHeader& header = rows.header;
-        if (!header.not_plane.empty()) {
+        if (!header.not_plane.empty() && manifest_.series.dimension == plane) {
             throw Error(ErrorKind::bad_input, header.not_plane);
         }
-        if (manifest_.periodic && sides.at && header.box) {
+        if (header.vectors && !foreign::are_upper(*header.vectors, manifest_.axes())) {
             throw Error(ErrorKind::bad_input,
-                        fmt::format("{}: bounds of the cell here, and columns left, bottom, right, top in {}: expected "
-                                    "one of them",
-                                    dump_.where(header.line), manifest_.frames));
+                        fmt::format("{}: Lattice: expected the first vector along x and the second in the plane of x "
+                                    "and y, in a series",
+                                    dump_.where(header.line)));
         }
-        for (const std::size_t axis : {std::size_t{0}, std::size_t{1}}) {
+        const std::string walls = fmt::format("{}", fmt::join(manifest_.wall_names(), ", "));
+        if (manifest_.periodic && sides.stated && header.box) {
+            throw Error(ErrorKind::bad_input,
+                        fmt::format("{}: bounds of the cell here, and columns {} in {}: expected one of them",
+                                    dump_.where(header.line), walls, manifest_.frames));
+        }
+        for (std::size_t axis = 0; axis < manifest_.axes(); ++axis) {
             const Boundary boundary = header.boundary[axis];
-            const bool periodic = boundary == Boundary::periodic || (sides.at && boundary == Boundary::unknown);
-            if (manifest_.periodic ? !periodic || !(sides.at || header.box) : boundary == Boundary::periodic) {
+            const bool periodic = boundary == Boundary::periodic || (sides.stated && boundary == Boundary::unknown);
+            if (manifest_.periodic ? !periodic || !(sides.stated || header.box) : boundary == Boundary::periodic) {
                 throw Error(
                     ErrorKind::bad_input,
                     fmt::format(
                         "{}: the box is {}periodic along {}: expected {}", dump_.where(header.line),
-                        manifest_.periodic ? "not " : "", axis == 0 ? 'x' : 'y',
+                        manifest_.periodic ? "not " : "", axis_names[axis],
                         manifest_.periodic
-                            ? "periodic boundaries with bounds (a dump with pp, XYZ with Lattice, columns left, "
-                              "bottom, "
-                              "right, top of the frames), the manifest has a [cell]"
+                            ? fmt::format("periodic boundaries with bounds (a dump with pp, XYZ with Lattice, columns "
+                                          "{} of the frames), the manifest has a [cell]",
+                                          walls)
                             : "walls, or a [cell] in the manifest (in XYZ pbc=\"F F F\" says that there are walls)"));
             }
         }
     }
 
-    /// Other programs flip a box that is sheared far, by whole periods: the tilt next to the one before.
-    double unflipped(Frame& frame, double tilt, double period) {
-        const double periods = std::round((last_.lattice(0, 1) - tilt) / period);
-        const double out = tilt + periods * period;
-        if (periods != flipped_) {
-            frame.note =
-                fmt::format("box flipped by {} along x: the tilt {} of the file is {} here, the same lattice",
-                            std::abs(periods - flipped_) == 1 ? "one period"
-                                                              : fmt::format("{} periods", std::abs(periods - flipped_)),
-                            tilt, out);
-            flipped_ = periods;
+    /// Other programs flip a box that is sheared far, by whole periods: each tilt next to the one before. The periods
+    /// along z are turned back first, as those along y change their tilt along x.
+    void unflip(Frame& frame, Sides& sides) {
+        const Cell& cell = frame.packing.cell;
+        const PerTilt<double> in_file = sides.tilt;
+        PerTilt<double> periods{};
+        for (const std::size_t tilt : {Cell::tilt(1, 2), Cell::tilt(0, 1), Cell::tilt(0, 2)}) {
+            if (tilt >= frame.packing.tilts()) {
+                continue;
+            }
+            const auto [along, of] = cell.axes_of_tilt(tilt);
+            const auto a = static_cast<std::size_t>(along), b = static_cast<std::size_t>(of);
+            periods[tilt] = std::round((last_.lattice(a, b) - sides.tilt[tilt]) / sides.length(a));
+            sides.tilt[tilt] += periods[tilt] * sides.length(a);
+            if (a == 1) {
+                sides.tilt[Cell::tilt(0, 2)] += periods[tilt] * sides.tilt[Cell::tilt(0, 1)];
+            }
         }
-        return out;
+        for (std::size_t t = 0; t < frame.packing.tilts(); ++t) {
+            const double flips = std::abs(periods[t] - flipped_[t]);
+            if (flips != 0) {
+                frame.note += fmt::format(
+                    "{}box flipped by {} along {}: the tilt {} of the file is {} here, the same "
+                    "lattice",
+                    frame.note.empty() ? "" : "; ", flips == 1 ? "one period" : fmt::format("{} periods", flips),
+                    axis_names[static_cast<std::size_t>(cell.axes_of_tilt(t)[0])], in_file[t], sides.tilt[t]);
+            }
+        }
+        flipped_ = periods;
     }
 
-    /// Other programs wrap disks that leave the cell. Each is put where it has moved least since the frame before,
-    /// relative to the first disk: contacts keep their images.
+    /// Other programs wrap grains that leave the cell. Each is put where it has moved least since the frame before,
+    /// relative to the first one: contacts keep their images.
     void unwrap(Packing& packing) const {
-        const auto fractions = [](const Packing& p, std::size_t i) {
-            const double y = (p.q[2 * i + 1] - p.q[1]) / p.length(1);
-            return std::array{(p.q[2 * i] - p.q[0] - y * p.lattice(0, 1)) / p.length(0), y};
+        const std::size_t d = packing.axes();
+        const auto fractions = [d](const Packing& p, std::size_t i) {
+            PerAxis<double> out{};
+            for (std::size_t a = d; a-- > 0;) {
+                double way = p.q[d * i + a] - p.q[a];
+                for (std::size_t b = d - 1; b > a; --b) {
+                    way -= out[b] * p.lattice(a, b);
+                }
+                out[a] = way / p.length(static_cast<int>(a));
+            }
+            return out;
         };
         for (std::size_t i = 1; i < packing.radius.size(); ++i) {
-            const auto now = fractions(packing, i), before = fractions(last_, i);
-            const double mx = std::round(before[0] - now[0]), my = std::round(before[1] - now[1]);
-            packing.q[2 * i] += mx * packing.length(0) + my * packing.lattice(0, 1);
-            packing.q[2 * i + 1] += my * packing.length(1);
+            const PerAxis<double> now = fractions(packing, i), before = fractions(last_, i);
+            for (std::size_t a = 0; a < d; ++a) {
+                double way = 0;
+                for (std::size_t b = a; b < d; ++b) {
+                    way += std::round(before[b] - now[b]) * packing.lattice(a, b);
+                }
+                packing.q[d * i + a] += way;
+            }
         }
     }
 
@@ -367,11 +489,12 @@ class Disks {
         if (!manifest_.series.wall_forces) {
             return;
         }
-        for (std::size_t w = 0; w < wall_names.size(); ++w) {
+        for (std::size_t w = 0; w < manifest_.wall_force.size(); ++w) {
             const std::string& name = manifest_.wall_force[w];
             const double force = row.number(dump_.column(rows, name), name) * manifest_.force_factor;
             if (force != 0) {
-                frame.contacts.push_back({with_wall(disk, w), w < 2 ? force : -force, dump_.where(row.number())});
+                frame.contacts.push_back(
+                    {manifest_.with_wall(disk, w), w < manifest_.axes() ? force : -force, dump_.where(row.number())});
             }
         }
     }
@@ -380,7 +503,7 @@ class Disks {
     FrameFile dump_;
     std::vector<long> ids_;
     Packing first_, last_;
-    double flipped_ = 0; ///< periods between the tilt of the file and that of the frames
+    PerTilt<double> flipped_{}; ///< periods between the tilts of the file and those of the frames
 };
 
 /// Rows of the file of contacts. A contact that comes twice stays twice: `compare` names it.
@@ -388,7 +511,9 @@ void read_contacts(const Manifest& manifest, FrameFile& dump, Frame& frame) {
     const FileFrame rows = dump.at(frame.timestep);
     const std::size_t first = dump.column(rows, manifest.contact_i), second = dump.column(rows, manifest.contact_j),
                       force = dump.column(rows, manifest.contact_force);
-    const char* expected = manifest.periodic ? "the id of a disk" : "the id of a disk, or left, bottom, right, top";
+    const std::string grain = fmt::format("the id of a {}", grain_word(manifest.series.dimension));
+    const std::string expected =
+        manifest.periodic ? grain : fmt::format("{}, or {}", grain, fmt::join(manifest.wall_names(), ", "));
     const auto disk = [&](const TextLine& row, std::size_t at, const std::string& name) {
         if (row.field(at).find_first_not_of("0123456789") != std::string_view::npos) {
             row.fail(row.field(at), name, expected);
@@ -403,14 +528,15 @@ void read_contacts(const Manifest& manifest, FrameFile& dump, Frame& frame) {
     PairImages images(frame.packing);
     for (const TextLine& row : rows.rows) {
         FileContact contact;
-        const auto one = wall_of(row.field(first)), other = wall_of(row.field(second));
+        const auto one = wall_of(row.field(first), manifest), other = wall_of(row.field(second), manifest);
         if (one.has_value() != other.has_value() && !manifest.periodic) {
-            contact.contact = one ? with_wall(disk(row, second, manifest.contact_j), *one)
-                                  : with_wall(disk(row, first, manifest.contact_i), *other);
+            contact.contact = one ? manifest.with_wall(disk(row, second, manifest.contact_j), *one)
+                                  : manifest.with_wall(disk(row, first, manifest.contact_i), *other);
         } else {
             const int i = disk(row, first, manifest.contact_i), j = disk(row, second, manifest.contact_j);
             if (i == j) {
-                row.fail(row.field(second), manifest.contact_j, "another disk than the first");
+                row.fail(row.field(second), manifest.contact_j,
+                         fmt::format("another {} than the first", grain_word(manifest.series.dimension)));
             }
             contact.contact = images.next(i, j);
         }

@@ -2,13 +2,13 @@
 
 #include "compare/backbone.hpp"
 #include "compare/dashpot.hpp"
-#include "contact/candidates.hpp"
-#include "contact/separation.hpp"
+#include "compare/soft_list.hpp"
+#include "compare/soft_state.hpp"
+#include "packing/words.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -31,12 +31,16 @@ constexpr double disk_alone = 1e-3;
 
 class Reader {
   public:
-    Reader(const Series& series, const Frame& frame) : series_(series), frame_(frame) {
+    Reader(const Series& series, const Frame& frame)
+        : series_(series), frame_(frame), law_{series.law, series.stiffness} {
         walls_listed_ = series.wall_forces || std::any_of(frame.contacts.begin(), frame.contacts.end(),
                                                           [](const FileContact& c) { return is_wall(c.contact); });
-        rounding_ = std::max(frame.rounding, 0x1p-48 * std::max({frame.packing.length(0), frame.packing.length(1),
-                                                                 frame.packing.max_radius()}));
-        for (const Contact& c : find_candidates(frame.packing, 0.5).contacts) {
+        double largest = frame.packing.max_radius();
+        for (int a = 0; a < frame.packing.dimension; ++a) {
+            largest = std::max(largest, frame.packing.length(a));
+        }
+        rounding_ = std::max(frame.rounding, 0x1p-48 * largest);
+        for (const Contact& c : near_contacts(frame.packing)) {
             if (gap(frame.packing, c) < 0) {
                 overlaps_.push_back(c);
             }
@@ -74,10 +78,13 @@ class Reader {
     [[nodiscard]] std::string name(const Contact& c) const {
         const auto id = [&](int i) { return frame_.ids[static_cast<std::size_t>(i)]; };
         if (c.kind == ContactKind::disk_disk) {
-            return fmt::format("disks {} and {}", id(c.i), id(c.j));
+            return fmt::format("{}s {} and {}", grain(), id(c.i), id(c.j));
         }
-        const std::string wall = to_string(Contact{c.kind, 0, c.j}).substr(2);
-        return fmt::format("disk {} and the {} wall", id(c.i), wall);
+        return fmt::format("{} {} and the {} wall", grain(), id(c.i), wall_name(c));
+    }
+    [[nodiscard]] const char* grain() const { return grain_word(frame_.packing.dimension); }
+    [[nodiscard]] std::string wall_name(const Contact& c) const {
+        return to_string(Contact{c.kind, 0, c.j}, frame_.packing.dimension).substr(2);
     }
     [[nodiscard]] std::string at(const Contact& c) const {
         const auto row = row_.find(c);
@@ -194,31 +201,16 @@ class Reader {
     }
 
     /// By the law.
-    [[nodiscard]] double expected(const Contact& c) const {
-        const double overlap = std::max(0.0, -gap(frame_.packing, c));
-        return series_.stiffness * overlap * (series_.law == ForceLaw::hertz ? std::sqrt(overlap * radius(c)) : 1);
-    }
-    /// What the rounding of an overlap does to that.
-    [[nodiscard]] double unknown(const Contact& c) const {
-        const double overlap = std::max(0.0, -gap(frame_.packing, c)) + rounding_;
-        const double steeper = series_.law == ForceLaw::hertz ? 1.5 * std::sqrt(overlap * radius(c)) : 1;
-        return series_.stiffness * rounding_ * steeper;
-    }
-    /// R_i R_j / (R_i + R_j), of a disk at a wall R_i.
-    [[nodiscard]] double radius(const Contact& c) const {
-        const std::vector<double>& all = frame_.packing.radius;
-        const double one = all[static_cast<std::size_t>(c.i)];
-        const double other = is_wall(c) ? 0 : all[static_cast<std::size_t>(c.j)];
-        return is_wall(c) ? one : one * other / (one + other);
-    }
+    [[nodiscard]] double expected(const Contact& c) const { return law_.force(frame_.packing, c); }
+    [[nodiscard]] double unknown(const Contact& c) const { return law_.rounding(frame_.packing, c, rounding_); }
 
-    /// The largest forces that are left on a disk, and on the right and the top wall.
+    /// The largest forces that are left on a disk, and on the upper walls.
     struct Left {
         double disks = 0;
         std::vector<double> disk; ///< each
-        std::array<double, 2> walls{};
-        double tilt = 0; ///< of a cell whose tilt moves
-        [[nodiscard]] double largest() const { return std::max({disks, walls[0], walls[1], tilt}); }
+        PerAxis<double> walls{};
+        double tilt = 0; ///< of a cell whose tilts move
+        [[nodiscard]] double largest() const { return std::max({disks, walls[0], walls[1], walls[2], tilt}); }
     };
     [[nodiscard]] Left left_by(const std::map<Contact, double>& forces) const {
         std::vector<double> left = frame_.load.external_force(frame_.packing);
@@ -229,13 +221,19 @@ class Reader {
                 left[static_cast<std::size_t>(g.coordinate[e])] += force * g.value[e];
             }
         }
-        const std::size_t n = frame_.packing.radius.size();
-        Left out{0, {}, {std::abs(left[2 * n]), std::abs(left[2 * n + 1])}, 0};
-        if (const Cell& cell = frame_.packing.cell; cell.any() && cell.tilt_moves[0]) {
-            out.tilt = std::abs(left[frame_.packing.tilt_at(0, 1)]);
+        const Packing& packing = frame_.packing;
+        const std::size_t d = packing.axes();
+        Left out;
+        for (std::size_t a = 0; a < d; ++a) {
+            out.walls[a] = std::abs(left[packing.length_at(a)]);
         }
-        for (std::size_t i = 0; i < n; ++i) {
-            out.disk.push_back(std::hypot(left[2 * i], left[2 * i + 1]));
+        for (std::size_t t = 0; packing.cell.any() && t < packing.tilts(); ++t) {
+            const double off = std::abs(left[packing.length_at(d + t)]);
+            out.tilt = packing.cell.tilt_moves[t] ? std::max(out.tilt, off) : out.tilt;
+        }
+        for (std::size_t i = 0; i < packing.radius.size(); ++i) {
+            const double in_plane = std::hypot(left[d * i], left[d * i + 1]);
+            out.disk.push_back(d == 2 ? in_plane : std::hypot(in_plane, left[d * i + 2]));
             out.disks = std::max(out.disks, out.disk.back());
         }
         return out;
@@ -247,7 +245,8 @@ class Reader {
         double most = 0;
         for (const auto& [c, force] : force_) {
             if (beyond_.count(c) == 0) {
-                const int other = is_wall(c) ? -1 - c.j - (c.kind == ContactKind::upper_wall ? 2 : 0) : c.j;
+                const int other =
+                    is_wall(c) ? -1 - c.j - (c.kind == ContactKind::upper_wall ? frame_.packing.dimension : 0) : c.j;
                 for (const int grain : {c.i, other}) {
                     most = std::max(most, at[grain] += unknown(c));
                 }
@@ -259,13 +258,15 @@ class Reader {
     /// A wall that moves takes disks along. Where they all balance and it does not, the load is that of another frame,
     /// or the wall drifts slowly along a mechanism.
     void check_load(const Left& left, double blur) {
-        for (const std::size_t axis : {std::size_t{0}, std::size_t{1}}) {
+        for (std::size_t axis = 0; axis < frame_.packing.axes(); ++axis) {
             if (left.walls[axis] > series_.rest * out_.mean + blur && left.disks < wall_alone * left.walls[axis]) {
-                const char* wall = frame_.packing.cell.any() ? (axis == 0 ? "period along x" : "period along y")
-                                                             : (axis == 0 ? "right wall" : "top wall");
+                const std::string wall =
+                    frame_.packing.cell.any()
+                        ? fmt::format("period along {}", axis_names[axis])
+                        : wall_name({ContactKind::upper_wall, 0, static_cast<int>(axis)}) + " wall";
                 out_.other_load = fmt::format("{}: the forces on the {} and its load differ by {:.6g}, those on every "
-                                              "disk balance to {:.2g} (the load of another frame?)",
-                                              frame_.row, wall, left.walls[axis], left.disks);
+                                              "{} balance to {:.2g} (the load of another frame?)",
+                                              frame_.row, wall, left.walls[axis], grain(), left.disks);
                 return;
             }
         }
@@ -284,9 +285,9 @@ class Reader {
             }
         }
         if (off <= 2 && left.disks > series_.rest * out_.mean) {
-            out_.few = fmt::format("; all disks but {} balance to {:.2g}: is a contact of theirs missing, or its force "
+            out_.few = fmt::format("; all {}s but {} balance to {:.2g}: is a contact of theirs missing, or its force "
                                    "wrong?",
-                                   names, others);
+                                   grain(), names, others);
         }
     }
 
@@ -329,6 +330,7 @@ class Reader {
 
     const Series& series_;
     const Frame& frame_;
+    ContactLaw law_;
     Reading out_;
     bool walls_listed_ = false;         ///< else they are those that a disk overlaps
     double rounding_ = 0;               ///< of an overlap, as a length

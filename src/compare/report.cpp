@@ -25,103 +25,110 @@ using json::or_null;
 
 /// One column: its name and its value.
 template <class Row> struct Column {
-    const char* name;
+    std::string name;
     std::function<Json(const Row&)> value;
 };
 
-Json names(const std::vector<Contact>& contacts) {
+Json names(const std::vector<Contact>& contacts, int dimension) {
     std::string text;
     for (const Contact& c : contacts) {
-        text += (text.empty() ? "" : " ") + to_string(c);
+        text += (text.empty() ? "" : " ") + to_string(c, dimension);
     }
     return text;
 }
 
-const std::vector<Column<FrameResult>>& of_frames() {
+/// sigma2, eps2; of spheres sigma3, eps3.
+std::string loaded(const std::string& name, int dimension) {
+    return name + std::to_string(dimension);
+}
+
+/// eps1, eps2, ...
+template <PerAxis<double> FrameResult::*strain>
+void add_strains(std::vector<Column<FrameResult>>& columns, const std::string& name, int dimension) {
+    for (std::size_t a = 0; a < static_cast<std::size_t>(dimension); ++a) {
+        columns.push_back(
+            {name + std::to_string(a + 1), [a](const FrameResult& f) { return or_null((f.*strain)[a]); }});
+    }
+}
+
+std::vector<Column<FrameResult>> of_frames(int dimension) {
     using F = FrameResult;
-    static const std::vector<Column<F>> columns{{"frame", [](const F& f) { return f.frame; }},
-                                                {"timestep", [](const F& f) { return f.timestep; }},
-                                                {"sigma2", [](const F& f) { return or_null(f.sigma2); }},
-                                                {"unbalanced", [](const F& f) { return or_null(f.unbalanced); }},
-                                                {"listed", [](const F& f) { return f.listed; }},
-                                                {"overlapping", [](const F& f) { return f.overlapping; }},
-                                                {"twice", [](const F& f) { return f.twice; }},
-                                                {"missing_rows", [](const F& f) { return f.missing_rows; }},
-                                                {"dofs", [](const F& f) { return f.counting.dof_count; }},
-                                                {"contacts", [](const F& f) { return f.counting.contact_count; }},
-                                                {"rank", [](const F& f) { return f.counting.rank; }},
-                                                {"h", [](const F& f) { return f.counting.hyperstaticity; }},
-                                                {"k", [](const F& f) { return f.counting.mechanisms; }},
-                                                {"rattlers", [](const F& f) { return f.rattlers; }},
-                                                {"snap", [](const F& f) { return f.snapped; }},
-                                                {"distance", [](const F& f) { return or_null(f.distance); }},
-                                                {"walls", [](const F& f) { return or_null(f.walls); }},
-                                                {"expected", [](const F& f) { return f.expected; }},
-                                                {"found", [](const F& f) { return f.found; }},
-                                                {"node", [](const F& f) { return f.node; }},
-                                                {"status", [](const F& f) { return to_string(f.status); }},
-                                                {"missing", [](const F& f) { return names(f.missing); }},
-                                                {"extra", [](const F& f) { return names(f.extra); }},
-                                                {"law", [](const F& f) { return or_null(f.law); }},
-                                                {"ratio", [](const F& f) { return or_null(f.ratio); }},
-                                                {"rest", [](const F& f) { return or_null(f.rest); }},
-                                                {"stiffness", [](const F& f) { return or_null(f.stiffness); }},
-                                                {"downhill", [](const F& f) { return or_null(f.downhill); }},
-                                                {"self_stress", [](const F& f) { return or_null(f.self_stress); }},
-                                                {"eps1", [](const F& f) { return or_null(f.eps1); }},
-                                                {"eps2", [](const F& f) { return or_null(f.eps2); }},
-                                                {"true_eps1", [](const F& f) { return or_null(f.true_eps1); }},
-                                                {"true_eps2", [](const F& f) { return or_null(f.true_eps2); }},
-                                                {"local", [](const F& f) { return f.local; }},
-                                                {"nearest_arc", [](const F& f) { return f.nearest_arc; }},
-                                                {"reason", [](const F& f) { return f.reason; }}};
+    std::vector<Column<F>> columns{{"frame", [](const F& f) { return f.frame; }},
+                                   {"timestep", [](const F& f) { return f.timestep; }},
+                                   {loaded("sigma", dimension), [](const F& f) { return or_null(f.stress); }},
+                                   {"unbalanced", [](const F& f) { return or_null(f.unbalanced); }},
+                                   {"listed", [](const F& f) { return f.listed; }},
+                                   {"overlapping", [](const F& f) { return f.overlapping; }},
+                                   {"twice", [](const F& f) { return f.twice; }},
+                                   {"missing_rows", [](const F& f) { return f.missing_rows; }},
+                                   {"dofs", [](const F& f) { return f.counting.dof_count; }},
+                                   {"contacts", [](const F& f) { return f.counting.contact_count; }},
+                                   {"rank", [](const F& f) { return f.counting.rank; }},
+                                   {"h", [](const F& f) { return f.counting.hyperstaticity; }},
+                                   {"k", [](const F& f) { return f.counting.mechanisms; }},
+                                   {"rattlers", [](const F& f) { return f.rattlers; }},
+                                   {"snap", [](const F& f) { return f.snapped; }},
+                                   {"distance", [](const F& f) { return or_null(f.distance); }},
+                                   {"walls", [](const F& f) { return or_null(f.walls); }},
+                                   {"expected", [](const F& f) { return f.expected; }},
+                                   {"found", [](const F& f) { return f.found; }},
+                                   {"node", [](const F& f) { return f.node; }},
+                                   {"status", [](const F& f) { return to_string(f.status); }},
+                                   {"missing", [dimension](const F& f) { return names(f.missing, dimension); }},
+                                   {"extra", [dimension](const F& f) { return names(f.extra, dimension); }},
+                                   {"law", [](const F& f) { return or_null(f.law); }},
+                                   {"ratio", [](const F& f) { return or_null(f.ratio); }},
+                                   {"rest", [](const F& f) { return or_null(f.rest); }},
+                                   {"stiffness", [](const F& f) { return or_null(f.stiffness); }},
+                                   {"downhill", [](const F& f) { return or_null(f.downhill); }},
+                                   {"self_stress", [](const F& f) { return or_null(f.self_stress); }}};
+    add_strains<&F::strain>(columns, "eps", dimension);
+    add_strains<&F::true_strain>(columns, "true_eps", dimension);
+    columns.push_back({"local", [](const F& f) { return f.local; }});
+    columns.push_back({"nearest_arc", [](const F& f) { return f.nearest_arc; }});
+    columns.push_back({"reason", [](const F& f) { return f.reason; }});
     return columns;
 }
 
-const std::vector<Column<PathEquilibrium>>& of_path() {
+std::vector<Column<PathEquilibrium>> of_path(int dimension) {
     using E = PathEquilibrium;
-    static const std::vector<Column<E>> columns{
-        {"number", [](const E& e) { return e.number; }},
-        {"sigma2", [](const E& e) { return or_null(e.sigma2); }},
-        {"eps2", [](const E& e) { return or_null(e.eps2); }},
-        {"sigma2_low", [](const E& e) { return or_null(e.low); }},
-        {"sigma2_high", [](const E& e) { return or_null(e.high); }},
-        {"arcs", [](const E& e) { return e.arcs; }},
-        {"contacts", [](const E& e) { return e.contacts.size(); }},
-        {"proved", [](const E& e) { return e.proved ? 1 : 0; }},
-        {"opens", [](const E& e) { return e.opens.i < 0 ? Json() : Json(to_string(e.opens)); }},
-        {"soft_limit", [](const E& e) { return or_null(e.soft_limit); }},
-        {"stiffness_needed", [](const E& e) { return or_null(e.stiffness_needed); }}};
-    return columns;
+    return {{"number", [](const E& e) { return e.number; }},
+            {loaded("sigma", dimension), [](const E& e) { return or_null(e.stress); }},
+            {loaded("eps", dimension), [](const E& e) { return or_null(e.strain); }},
+            {loaded("sigma", dimension) + "_low", [](const E& e) { return or_null(e.low); }},
+            {loaded("sigma", dimension) + "_high", [](const E& e) { return or_null(e.high); }},
+            {"arcs", [](const E& e) { return e.arcs; }},
+            {"contacts", [](const E& e) { return e.contacts.size(); }},
+            {"proved", [](const E& e) { return e.proved ? 1 : 0; }},
+            {"opens", [dimension](const E& e) { return e.opens.i < 0 ? Json() : Json(to_string(e.opens, dimension)); }},
+            {"soft_limit", [](const E& e) { return or_null(e.soft_limit); }},
+            {"stiffness_needed", [](const E& e) { return or_null(e.stiffness_needed); }}};
 }
 
 Json numbers(const std::vector<int>& values) {
     return fmt::format("{}", fmt::join(values, " "));
 }
 
-const std::vector<Column<BundleNode>>& of_nodes() {
+std::vector<Column<BundleNode>> of_nodes(int dimension) {
     using N = BundleNode;
-    static const std::vector<Column<N>> columns{{"node", [](const N& n) { return n.equilibrium.number; }},
-                                                {"sigma2", [](const N& n) { return or_null(n.equilibrium.sigma2); }},
-                                                {"eps2", [](const N& n) { return or_null(n.equilibrium.eps2); }},
-                                                {"sigma2_low", [](const N& n) { return or_null(n.equilibrium.low); }},
-                                                {"sigma2_high", [](const N& n) { return or_null(n.equilibrium.high); }},
-                                                {"contacts", [](const N& n) { return n.equilibrium.contacts.size(); }},
-                                                {"proved", [](const N& n) { return n.equilibrium.proved ? 1 : 0; }},
-                                                {"members", [](const N& n) { return numbers(n.members); }},
-                                                {"frames", [](const N& n) { return numbers(n.frames); }}};
-    return columns;
+    return {{"node", [](const N& n) { return n.equilibrium.number; }},
+            {loaded("sigma", dimension), [](const N& n) { return or_null(n.equilibrium.stress); }},
+            {loaded("eps", dimension), [](const N& n) { return or_null(n.equilibrium.strain); }},
+            {loaded("sigma", dimension) + "_low", [](const N& n) { return or_null(n.equilibrium.low); }},
+            {loaded("sigma", dimension) + "_high", [](const N& n) { return or_null(n.equilibrium.high); }},
+            {"contacts", [](const N& n) { return n.equilibrium.contacts.size(); }},
+            {"proved", [](const N& n) { return n.equilibrium.proved ? 1 : 0; }},
+            {"members", [](const N& n) { return numbers(n.members); }},
+            {"frames", [](const N& n) { return numbers(n.frames); }}};
 }
 
-const std::vector<Column<BundleMember>>& of_members() {
+std::vector<Column<BundleMember>> of_members() {
     using M = BundleMember;
-    static const std::vector<Column<M>> columns{
-        {"rule", [](const M& m) { return opening_rule_words[static_cast<std::size_t>(m.rule)]; }},
-        {"seed", [](const M& m) { return m.seed; }},
-        {"rattlers", [](const M& m) { return m.rest; }},
-        {"nodes", [](const M& m) { return numbers(m.nodes); }},
-        {"end", [](const M& m) { return m.end; }}};
-    return columns;
+    return {{"rule", [](const M& m) { return opening_rule_words[static_cast<std::size_t>(m.rule)]; }},
+            {"seed", [](const M& m) { return m.seed; }},
+            {"rattlers", [](const M& m) { return m.rest; }},
+            {"nodes", [](const M& m) { return numbers(m.nodes); }},
+            {"end", [](const M& m) { return m.end; }}};
 }
 
 /// "nan" for null.
@@ -210,8 +217,8 @@ std::string plot(const std::vector<std::string>& clauses) {
 std::string staircase(const std::vector<PathEquilibrium>& path) {
     std::string text;
     for (std::size_t k = 0; k < path.size(); ++k) {
-        text += k > 0 ? fmt::format("{} {}\n", path[k - 1].eps2, path[k].sigma2) : "";
-        text += fmt::format("{} {}\n", path[k].eps2, path[k].sigma2);
+        text += k > 0 ? fmt::format("{} {}\n", path[k - 1].strain, path[k].stress) : "";
+        text += fmt::format("{} {}\n", path[k].strain, path[k].stress);
     }
     return text;
 }
@@ -220,32 +227,35 @@ std::string staircase(const std::vector<PathEquilibrium>& path) {
 std::string path_panel(const Comparison& comparison, Blocks& blocks) {
     const std::string bundle = lines_of(comparison.bundle.nodes, [](const BundleNode& node) {
         const PathEquilibrium& e = node.equilibrium;
-        return std::isfinite(e.high) ? fmt::format("{} {} {} {}\n", e.eps2, e.low, e.high, node.members.size())
+        return std::isfinite(e.high) ? fmt::format("{} {} {} {}\n", e.strain, e.low, e.high, node.members.size())
                                      : std::string();
     });
-    const std::string frames = lines_of(comparison.frames, [](const FrameResult& f) {
-        return fmt::format("{} {}\n", std::isfinite(f.true_eps2) ? f.true_eps2 : f.eps2, f.sigma2);
+    const int d = comparison.dimension;
+    const auto a = static_cast<std::size_t>(d) - 1;
+    const std::string frames = lines_of(comparison.frames, [a](const FrameResult& f) {
+        return fmt::format("{} {}\n", std::isfinite(f.true_strain[a]) ? f.true_strain[a] : f.strain[a], f.stress);
     });
-    return plot({blocks.add("bundle: eps2 sigma2_low sigma2_high members", bundle,
+    return plot({blocks.add(fmt::format("bundle: eps{0} sigma{0}_low sigma{0}_high members", d), bundle,
                             "{} using 1:2:(0):($3-$2) with vectors nohead lw 4 lc \"#c3d3e3\" title \"bundle: "
                             "supported loads\""),
-                 blocks.add("exact run: eps2 sigma2", staircase(comparison.path),
+                 blocks.add(fmt::format("exact run: eps{0} sigma{0}", d), staircase(comparison.path),
                             "{} with lines lw 2 lc \"#1f4e79\" title \"exact run\""),
-                 blocks.add("frames: eps2 of the true vertex or of the frame, sigma2", frames,
+                 blocks.add(fmt::format("frames: eps{0} of the true vertex or of the frame, sigma{0}", d), frames,
                             "{} with points pt 6 lc \"#c55a11\" title \"frames\"")});
 }
 
 /// Against the load: exact limits, the status of each frame.
 std::string status_panel(const Comparison& comparison, Blocks& blocks) {
     const std::string limits =
-        lines_of(comparison.path, [](const PathEquilibrium& e) { return fmt::format("{}\n", e.sigma2); });
+        lines_of(comparison.path, [](const PathEquilibrium& e) { return fmt::format("{}\n", e.stress); });
     const std::string statuses = lines_of(comparison.frames, [](const FrameResult& f) {
-        return fmt::format("{} {}\n", f.sigma2, static_cast<int>(f.status));
+        return fmt::format("{} {}\n", f.stress, static_cast<int>(f.status));
     });
     return plot(
-        {blocks.add("exact limits: sigma2", limits,
+        {blocks.add(fmt::format("exact limits: sigma{}", comparison.dimension), limits,
                     fmt::format("{{}} using 1:(-0.5):(0):({}) with vectors nohead lc \"#bbbbbb\"", frame_statuses)),
-         blocks.add("statuses: sigma2 status", statuses, "{} with points pt 7 ps 0.7 lc \"#c55a11\"")});
+         blocks.add(fmt::format("statuses: sigma{} status", comparison.dimension), statuses,
+                    "{} with points pt 7 ps 0.7 lc \"#c55a11\"")});
 }
 
 /// Errors of the forces that have a point.
@@ -262,10 +272,10 @@ std::string errors_panel(const Comparison& comparison, Blocks& blocks) {
     std::vector<std::string> curves;
     for (const Curve& curve : all) {
         const std::string lines = lines_of(comparison.frames, [&](const FrameResult& f) {
-            return shown(f.*curve.error) ? fmt::format("{} {}\n", f.sigma2, f.*curve.error) : std::string();
+            return shown(f.*curve.error) ? fmt::format("{} {}\n", f.stress, f.*curve.error) : std::string();
         });
-        curves.push_back(blocks.add(fmt::format("errors of the forces: sigma2, {}", curve.name), lines,
-                                    fmt::format("{{}} with points {} title \"{}\"", curve.style, curve.name)));
+        curves.push_back(blocks.add(fmt::format("errors of the forces: sigma{}, {}", comparison.dimension, curve.name),
+                                    lines, fmt::format("{{}} with points {} title \"{}\"", curve.style, curve.name)));
     }
     const std::string panel = plot(curves);
     return panel.empty() ? panel
@@ -281,18 +291,18 @@ Chart figure(const Comparison& comparison) {
     }
     double low = HUGE_VAL, high = -HUGE_VAL;
     for (const FrameResult& f : comparison.frames) {
-        low = std::min(low, f.sigma2);
-        high = std::max(high, f.sigma2);
+        low = std::min(low, f.stress);
+        high = std::max(high, f.stress);
     }
     const double margin = 0.03 * (high - low) + 1e-6 * high;
     Blocks blocks;
     std::string body = "set multiplot layout 3,1\nset grid\nset key right bottom\n";
-    body +=
-        fmt::format("set yrange [{}:{}]\nset xlabel \"strain ε_2\"\nset ylabel \"σ_2\"\n", low - margin, high + margin);
+    body += fmt::format("set yrange [{}:{}]\nset xlabel \"strain ε_{}\"\nset ylabel \"σ_{}\"\n", low - margin,
+                        high + margin, comparison.dimension, comparison.dimension);
     body += path_panel(comparison, blocks);
-    body += fmt::format("unset key\nset xrange [{}:{}]\nset xlabel \"σ_2\"\nset ylabel \"\"\nset yrange [-0.5:{}] "
+    body += fmt::format("unset key\nset xrange [{}:{}]\nset xlabel \"σ_{}\"\nset ylabel \"\"\nset yrange [-0.5:{}] "
                         "reverse\nset ytics ({})\n",
-                        low - margin, high + margin, frame_statuses - 0.5, tics);
+                        low - margin, high + margin, comparison.dimension, frame_statuses - 0.5, tics);
     body += status_panel(comparison, blocks);
     body += errors_panel(comparison, blocks);
     body += "unset multiplot\nunset logscale\nset format y\nset xrange [*:*]\n";
@@ -301,36 +311,32 @@ Chart figure(const Comparison& comparison) {
 
 } // namespace
 
-const std::vector<std::string>& frame_columns() {
-    static const std::vector<std::string> columns = names_of_columns(of_frames());
-    return columns;
+std::vector<std::string> frame_columns(int dimension) {
+    return names_of_columns(of_frames(dimension));
 }
 
-const std::vector<std::string>& path_columns() {
-    static const std::vector<std::string> columns = names_of_columns(of_path());
-    return columns;
+std::vector<std::string> path_columns(int dimension) {
+    return names_of_columns(of_path(dimension));
 }
 
-const std::vector<std::string>& node_columns() {
-    static const std::vector<std::string> columns = names_of_columns(of_nodes());
-    return columns;
+std::vector<std::string> node_columns(int dimension) {
+    return names_of_columns(of_nodes(dimension));
 }
 
-const std::vector<std::string>& member_columns() {
-    static const std::vector<std::string> columns = names_of_columns(of_members());
-    return columns;
+std::vector<std::string> member_columns() {
+    return names_of_columns(of_members());
 }
 
 std::string frames_csv(const Comparison& comparison) {
-    return csv(of_frames(), comparison.frames);
+    return csv(of_frames(comparison.dimension), comparison.frames);
 }
 
 std::string path_csv(const Comparison& comparison) {
-    return csv(of_path(), comparison.path);
+    return csv(of_path(comparison.dimension), comparison.path);
 }
 
 std::string bundle_csv(const Comparison& comparison) {
-    return csv(of_nodes(), comparison.bundle.nodes);
+    return csv(of_nodes(comparison.dimension), comparison.bundle.nodes);
 }
 
 std::string members_csv(const Comparison& comparison) {
@@ -341,6 +347,9 @@ std::string comparison_json(const Series& series, const Comparison& comparison) 
     Json out;
     out["format"] = comparison_folder.format;
     out["version"] = 1;
+    if (comparison.dimension != plane) {
+        out["dimension"] = comparison.dimension;
+    }
     out["title"] = series.title;
     out["made_by"] = series.program;
     out["stiffness"] = series.law != ForceLaw::none ? Json(series.stiffness) : Json();
@@ -357,15 +366,15 @@ std::string comparison_json(const Series& series, const Comparison& comparison) 
                             {"to", d->to},
                             {"reason", d->reason},
                             {"words", d->words},
-                            {"opened", names(d->opened)},
-                            {"closed", names(d->closed)}};
+                            {"opened", names(d->opened, comparison.dimension)},
+                            {"closed", names(d->closed, comparison.dimension)}};
     }
     out["path_end"] = comparison.path_end;
     out["status"] = comparison.status;
-    out["frames"] = objects(of_frames(), comparison.frames);
-    out["path"] = objects(of_path(), comparison.path);
+    out["frames"] = objects(of_frames(comparison.dimension), comparison.frames);
+    out["path"] = objects(of_path(comparison.dimension), comparison.path);
     out["bundle"] = {{"common", comparison.bundle.common},
-                     {"nodes", objects(of_nodes(), comparison.bundle.nodes)},
+                     {"nodes", objects(of_nodes(comparison.dimension), comparison.bundle.nodes)},
                      {"members", objects(of_members(), comparison.bundle.members)}};
     return json::dumped(out, 1) + "\n";
 }

@@ -11,11 +11,11 @@
 namespace isostat::compare {
 
 /// Columns of comparison.csv (one row per frame), path.csv (one per equilibrium of the exact run), bundle/nodes.csv and
-/// bundle/members.csv.
-const std::vector<std::string>& frame_columns();
-const std::vector<std::string>& path_columns();
-const std::vector<std::string>& node_columns();
-const std::vector<std::string>& member_columns();
+/// bundle/members.csv. Of spheres the loaded stress is sigma3.
+std::vector<std::string> frame_columns(int dimension = 2);
+std::vector<std::string> path_columns(int dimension = 2);
+std::vector<std::string> node_columns(int dimension = 2);
+std::vector<std::string> member_columns();
 
 std::string frames_csv(const Comparison& comparison);
 std::string path_csv(const Comparison& comparison);

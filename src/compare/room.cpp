@@ -45,7 +45,7 @@ class RattlerPairs {
 /// One sweep of projections: each pair that is nearer than `wanted` is parted by moving its rattlers.
 void part(Packing& packing, const std::vector<Contact>& pairs, const std::vector<unsigned char>& rattles,
           double wanted) {
-    const std::size_t disks = 2 * packing.radius.size();
+    const std::size_t disks = packing.length_at(0);
     for (const Contact& pair : pairs) {
         const double missing = wanted - gap(packing, pair);
         if (!(missing > 0)) {
@@ -54,7 +54,7 @@ void part(Packing& packing, const std::vector<Contact>& pairs, const std::vector
         const GapGradient gradient = gap_gradient(packing, pair);
         const auto moves = [&](int k) {
             const auto at = static_cast<std::size_t>(gradient.coordinate[static_cast<std::size_t>(k)]);
-            return at < disks && rattles[at / 2] != 0;
+            return at < disks && rattles[at / packing.axes()] != 0;
         };
         double square = 0;
         for (int k = 0; k < gradient.count; ++k) {
@@ -70,6 +70,11 @@ void part(Packing& packing, const std::vector<Contact>& pairs, const std::vector
     }
 }
 
+/// Above that of a unit square or cube.
+double diagonal(const Packing& packing) {
+    return packing.dimension == plane ? 1.4143 : 1.7321;
+}
+
 /// Bounds of the gap when every coordinate may be off by `radius`: rounding as in the centre of a certificate.
 struct GapBounds {
     double lower, upper;
@@ -78,10 +83,10 @@ GapBounds gap_bounds(const Packing& packing, const Contact& pair, double radius)
     using roundoff::u;
     const double h = gap(packing, pair);
     double length = std::abs(h) + touching_distance(packing.radius, pair);
-    double off = pair.kind == ContactKind::disk_disk ? 1.4143 * 2 * radius : 2 * radius;
+    double off = pair.kind == ContactKind::disk_disk ? diagonal(packing) * 2 * radius : 2 * radius;
     if (!pair.image.is_here()) { // sums on the way to the separation, and the periods as many times as they enter
-        const int periods = std::abs(pair.image.m[0]) + std::abs(pair.image.m[1]);
-        off = 1.4143 * (2 + 2 * periods) * radius;
+        const int periods = std::abs(pair.image.m[0]) + std::abs(pair.image.m[1]) + std::abs(pair.image.m[2]);
+        off = diagonal(packing) * (2 + 2 * periods) * radius;
         const auto [low, high] = std::minmax_element(packing.q.begin(), packing.q.end());
         length += (2 + 2 * periods) * std::max(std::abs(*low), std::abs(*high));
     }
@@ -103,27 +108,33 @@ Least least_gap(const Packing& packing, const std::vector<Contact>& pairs, doubl
     return out;
 }
 
-/// Whether a rattler overlaps grains of the list wherever it is put in a square: its square is divided until each part
-/// is within one of them. The gap to a grain changes by no more than the rattler moves.
+/// Whether a rattler overlaps grains of the list wherever it is put in a square or cube, which is divided until each
+/// part is within one of them. The gap to a grain changes by no more than the rattler moves.
 class Covering {
   public:
     /// `pairs`: of the rattler and grains of the list; `radius`: by which their coordinates may be off.
     Covering(Packing packing, std::vector<Contact> pairs, std::size_t rattler, double radius)
-        : packing_(std::move(packing)), pairs_(std::move(pairs)), rattler_(2 * rattler), radius_(radius) {}
+        : packing_(std::move(packing)), pairs_(std::move(pairs)), rattler_(packing_.axes() * rattler), radius_(radius) {
+    }
 
     /// False: not shown.
-    bool holds(double half_side) { return covered(packing_.q[rattler_], packing_.q[rattler_ + 1], half_side); }
+    bool holds(double half_side) {
+        PerAxis<double> centre{};
+        std::copy_n(&packing_.q[rattler_], packing_.axes(), centre.begin());
+        return covered(centre, half_side);
+    }
 
   private:
-    bool covered(double x, double y, double half) {
+    bool covered(const PerAxis<double>& centre, double half) {
         constexpr int most = 100'000; // parts
         if (++parts_ > most) {
             return false;
         }
-        packing_.q[rattler_] = x;
-        packing_.q[rattler_ + 1] = y;
+        const std::size_t d = packing_.axes();
+        std::copy_n(centre.begin(), d, &packing_.q[rattler_]);
         // To a corner; centres are rounded at most 25 times on the way here.
-        const double way = 1.4143 * half + 64 * roundoff::u * (std::abs(x) + std::abs(y));
+        const double size = std::abs(centre[0]) + std::abs(centre[1]) + std::abs(centre[2]);
+        const double way = diagonal(packing_) * half + 64 * roundoff::u * size;
         if (std::any_of(pairs_.begin(), pairs_.end(),
                         [&](const Contact& pair) { return gap_bounds(packing_, pair, radius_).upper + way < 0; })) {
             return true;
@@ -132,8 +143,15 @@ class Covering {
         if (!(next > 1e-8 * packing_.min_radius())) {
             return false;
         }
-        return covered(x - next, y - next, next) && covered(x + next, y - next, next) &&
-               covered(x - next, y + next, next) && covered(x + next, y + next, next);
+        bool all = true;
+        for (std::size_t part = 0; all && part < std::size_t{1} << d; ++part) {
+            PerAxis<double> corner = centre;
+            for (std::size_t a = 0; a < d; ++a) {
+                corner[a] += ((part >> a) & 1U) != 0 ? next : -next;
+            }
+            all = covered(corner, next);
+        }
+        return all;
     }
 
     Packing packing_;
@@ -209,8 +227,8 @@ std::string make_room(Snap& snap) {
             }
         }
     }
-    return fmt::format("a rattler found no room at the vertex of the list: {} stay {:.3g} apart", to_string(least.pair),
-                       gap(placed, least.pair));
+    return fmt::format("a rattler found no room at the vertex of the list: {} stay {:.3g} apart",
+                       to_string(least.pair, placed.dimension), gap(placed, least.pair));
 }
 
 } // namespace isostat::compare

@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <random>
 #include <vector>
 
 namespace isostat::compare {
@@ -22,7 +23,7 @@ namespace {
 
 /// A vertex is looked for within this distance, in smallest radii: farther away grains are not nearly rigid.
 constexpr double nearest_vertex = 0.1;
-constexpr double up = 1 + 0x1p-49; // of a difference, a sum and a hypotenuse, each rounded
+constexpr double up = 1 + 0x1p-49; // of a difference and a sum, each rounded
 
 /// Disks and contacts of the list alone.
 void take_backbone(const SoftState& soft, Snap& out) {
@@ -46,12 +47,16 @@ void take_backbone(const SoftState& soft, Snap& out) {
     // Where several forces vanish together for structural reasons, the end of the interval needs them.
     out.backbone.load.infinitesimal = generic_infinitesimal(packing.radius, 1, packing.dimension);
     balance(out.backbone.load.infinitesimal, packing.cell);
+    if (packing.dimension != plane) { // a sphere may bear forces in a plane alone, and rest on a wall beside
+        out.backbone.load.infinitesimal = resting_loads(packing, out.backbone.contacts, 1);
+    }
 }
 
 /// In names of the whole packing.
 std::string renamed(const Snap& snap, const Contact& c) {
     const auto disk = [&](int i) { return snap.disks[static_cast<std::size_t>(i)]; };
-    return to_string(Contact{c.kind, disk(c.i), c.kind == ContactKind::disk_disk ? disk(c.j) : c.j, c.image});
+    return to_string(Contact{c.kind, disk(c.i), c.kind == ContactKind::disk_disk ? disk(c.j) : c.j, c.image},
+                     snap.packing.dimension);
 }
 
 /// The first force that is proved negative, or empty.
@@ -83,13 +88,14 @@ void measure_moves(const SoftState& soft, Snap& out) {
     };
     out.moved.assign(soft.packing.radius.size(), 0);
     out.distance = 0;
+    const std::size_t d = soft.packing.axes();
     for (std::size_t b = 0; b < out.disks.size(); ++b) {
         const auto i = static_cast<std::size_t>(out.disks[b]);
-        out.moved[i] = std::hypot(way(2 * b, 2 * i), way(2 * b + 1, 2 * i + 1)) * up;
+        out.moved[i] = distance_above(d, [&](std::size_t a) { return way(d * b + a, d * i + a); });
         out.distance = std::max(out.distance, out.moved[i]);
-        std::copy_n(&q[2 * b], 2, &out.packing.q[2 * i]);
+        std::copy_n(&q[d * b], d, &out.packing.q[d * i]);
     }
-    const std::size_t n = 2 * soft.packing.radius.size(), m = 2 * out.disks.size();
+    const std::size_t n = soft.packing.length_at(0), m = out.backbone.packing.length_at(0);
     out.walls = 0;
     for (std::size_t k = 0; m + k < q.size(); ++k) { // walls, or periods and tilt
         out.walls = std::max(out.walls, way(m + k, n + k));
@@ -156,16 +162,37 @@ State backbone_of(const State& state, const std::vector<Contact>& carrying) {
 
 std::vector<Contact> able_to_carry(const Packing& packing, std::vector<Contact> contacts) {
     std::erase_if(contacts, [](const Contact& c) { return c.kind == ContactKind::held; });
-    if (packing.dimension != plane) {
-        return contacts;
-    }
-    const std::vector<int> from = crafted::peel(packing, contacts).contact_from;
+    const crafted::Peeling peeling = crafted::peel(packing, contacts);
+    const int all = static_cast<int>(contacts.size());
+    const auto loaded = [&](int i) { return peeling.disk_from[static_cast<std::size_t>(i)] <= all; };
     std::vector<Contact> out;
     for (std::size_t l = 0; l < contacts.size(); ++l) {
-        if (from[l] <= static_cast<int>(contacts.size())) {
-            out.push_back(contacts[l]);
+        const Contact& c = contacts[l];
+        const bool holds = loaded(c.i) && (c.kind != ContactKind::disk_disk || loaded(c.j));
+        if (peeling.contact_from[l] <= all || holds) {
+            out.push_back(c);
         }
     }
+    return out;
+}
+
+std::vector<double> resting_loads(const Packing& packing, const std::vector<Contact>& contacts, std::uint64_t seed) {
+    std::vector<double> out(packing.length_at(0), 0);
+    if (contacts.empty()) {
+        return out;
+    }
+    std::mt19937_64 random(seed);
+    const double unit = packing.min_radius() * packing.min_radius();
+    for (const Contact& contact : contacts) {
+        const double force = unit * (1 + static_cast<double>(random() >> 11U) * 0x1p-53);
+        const GapGradient gradient = gap_gradient(packing, contact);
+        for (std::size_t k = 0; k < static_cast<std::size_t>(gradient.count); ++k) {
+            if (const auto at = static_cast<std::size_t>(gradient.coordinate[k]); at < out.size()) {
+                out[at] -= force * gradient.value[k];
+            }
+        }
+    }
+    balance(out, packing.cell);
     return out;
 }
 
@@ -185,7 +212,7 @@ Snap snap(const SoftState& soft) {
     Packing& packing = out.backbone.packing;
     long steps = 0;
     if (const auto failure = to_vertex(packing, out.backbone.contacts, steps, nearest_vertex * packing.min_radius())) {
-        out.reason = failure->message();
+        out.reason = failure->message(packing.dimension);
         return out;
     }
     if (packing.cell.keeps_shape) {

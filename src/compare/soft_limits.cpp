@@ -53,10 +53,12 @@ std::string soft_limits(const fs::path& run, const fs::path& output, double stif
             ++left_out;
             continue;
         }
-        const State state = read_any_state(file).state;
-        if (!state.packing.cell.any() && !(state.packing.walls == Walls::box())) {
-            throw Error(ErrorKind::bad_input, file.string() + ": expected a box with two fixed and two movable walls, "
-                                                              "or a periodic cell, for --stiffness");
+        const State state = read_any_state(file, Dimensions::any).state;
+        const Walls box = Walls::box(state.packing.dimension);
+        if (!state.packing.cell.any() && !(state.packing.walls == box)) {
+            throw Error(ErrorKind::bad_input, file.string() +
+                                                  ": expected a box with a fixed lower and a movable upper "
+                                                  "wall along each axis, or a periodic cell, for --stiffness");
         }
         add_rows(rows, equilibrium, state, stiffness);
     }

@@ -2,7 +2,7 @@
 
 #include "compare/backbone.hpp"
 #include "compare/pair_images.hpp"
-#include "contact/candidates.hpp"
+#include "packing/words.hpp"
 #include "preparation/neighbours.hpp"
 
 #include <isostat/core/error.hpp>
@@ -33,7 +33,7 @@ std::vector<Contact> walls_of(const Packing& packing) {
     std::vector<Contact> out;
     for (const ContactKind kind : {ContactKind::lower_wall, ContactKind::upper_wall}) {
         for (int i = 0; i < packing.disk_count(); ++i) {
-            for (int axis = 0; axis < 2; ++axis) {
+            for (int axis = 0; axis < packing.dimension; ++axis) {
                 if (!packing.cell.periodic[static_cast<std::size_t>(axis)] && gap(packing, {kind, i, axis}) <= 0) {
                     out.emplace_back(kind, i, axis);
                 }
@@ -47,11 +47,13 @@ std::vector<Contact> walls_of(const Packing& packing) {
 std::string walls_apart(const Packing& packing) {
     std::string out;
     for (const ContactKind kind : {ContactKind::lower_wall, ContactKind::upper_wall}) {
-        for (int axis = 0; axis < 2 && !packing.cell.any(); ++axis) {
-            if (const auto [disk, distance] = nearest_to(packing, kind, axis); distance > 0) {
-                out += fmt::format("; none with the {} wall, which is {:.3g} from disk {} (are digits of its position "
+        for (int axis = 0; axis < packing.dimension; ++axis) {
+            const auto [disk, distance] = nearest_to(packing, kind, axis);
+            if (distance > 0 && !packing.cell.periodic[static_cast<std::size_t>(axis)]) {
+                out += fmt::format("; none with the {} wall, which is {:.3g} from {} {} (are digits of its position "
                                    "rounded?)",
-                                   to_string(Contact{kind, 0, axis}).substr(2), distance, disk);
+                                   to_string(Contact{kind, 0, axis}, packing.dimension).substr(2), distance,
+                                   grain_word(packing.dimension), disk);
             }
         }
     }
@@ -71,11 +73,12 @@ std::string far_wall(const Packing& packing) {
             const WallKind wall = kind == ContactKind::lower_wall ? packing.walls.lower[a] : packing.walls.upper[a];
             const auto [nearest, distance] = nearest_to(packing, kind, axis);
             if (wall != WallKind::absent && nearest >= 0 && distance > nearly_touching * packing.min_radius()) {
-                return fmt::format("no disk is near the {} wall, the nearest gap is {:.3g} (disk {}): expected the "
+                const char* grain = grain_word(packing.dimension);
+                return fmt::format("no {} is near the {} wall, the nearest gap is {:.3g} ({} {}): expected the "
                                    "positions of the walls, --box XLO:XHI,YLO:YHI{} (bounds of a file often are not "
                                    "those)",
-                                   to_string(Contact{kind, 0, axis}, packing.dimension).substr(2), distance, nearest,
-                                   packing.dimension == plane ? "" : ",ZLO:ZHI");
+                                   grain, to_string(Contact{kind, 0, axis}, packing.dimension).substr(2), distance,
+                                   grain, nearest, packing.dimension == plane ? "" : ",ZLO:ZHI");
             }
         }
     }
@@ -85,9 +88,9 @@ std::string far_wall(const Packing& packing) {
 std::string far_disks(const Packing& packing, double largest, const crafted::Plateau& plateau) {
     const double radius = packing.min_radius();
     if (plateau.deepest_overlap < -0.5 * radius) {
-        return fmt::format("two disks overlap by {:.3g} of the smallest radius: are the sizes diameters, taken for "
+        return fmt::format("two {}s overlap by {:.3g} of the smallest radius: are the sizes diameters, taken for "
                            "radii (--diameter COLUMN)?",
-                           -plateau.deepest_overlap / radius);
+                           grain_word(packing.dimension), -plateau.deepest_overlap / radius);
     }
     double nearest = plateau.deepest_overlap;
     constexpr double farthest = 8; // radii
@@ -136,7 +139,7 @@ SoftList list_by_forces(const std::string& file, const Packing& packing, const s
         const Contact pair = images.next(row.i, row.j);
         if (!forces.emplace(pair, row.force).second) {
             refuse(fmt::format("{}:{}", contacts, row.line),
-                   fmt::format("disks {} and {} come twice: expected each pair once",
+                   fmt::format("{}s {} and {} come twice: expected each pair once", grain_word(packing.dimension),
                                ids[static_cast<std::size_t>(row.i)], ids[static_cast<std::size_t>(row.j)]));
         }
     }
@@ -145,7 +148,7 @@ SoftList list_by_forces(const std::string& file, const Packing& packing, const s
     for (const Contact& wall : walls) {
         forces.emplace(wall, NAN);
     }
-    const std::string beside = packing.cell.any() ? "" : fmt::format(", {} overlaps with walls", walls.size());
+    const std::string beside = packing.cell.all() ? "" : fmt::format(", {} overlaps with walls", walls.size());
     out.words =
         fmt::format("{} pairs with a force in {}{}, without rattlers{}", pairs, contacts, beside, walls_apart(packing));
     for (const auto& [contact, force] : forces) {
@@ -158,14 +161,20 @@ SoftList list_by_forces(const std::string& file, const Packing& packing, const s
     return out;
 }
 
+std::vector<Contact> near_contacts(const Packing& packing) {
+    const double reach = 0.5 * packing.min_radius();
+    return preparation::near_contacts(packing, reach, reach);
+}
+
+std::vector<Contact> overlaps_of(const Packing& packing) {
+    std::vector<Contact> out = near_contacts(packing);
+    std::erase_if(out, [&](const Contact& c) { return !(gap(packing, c) < 0); });
+    return out;
+}
+
 SoftList list_by_overlaps(const Packing& packing) {
-    constexpr double reach = 0.5; // of the smallest radius
     SoftList out;
-    for (const Contact& c : find_candidates(packing, reach).contacts) {
-        if (gap(packing, c) < 0) {
-            out.contacts.push_back(c);
-        }
-    }
+    out.contacts = overlaps_of(packing);
     out.words = fmt::format("{} overlaps, without rattlers{}", out.contacts.size(), walls_apart(packing));
     out.contacts = able_to_carry(packing, out.contacts);
     return out;

@@ -41,7 +41,12 @@ struct SoftList {
 SoftList list_by_forces(const std::string& file, const Packing& packing, const std::vector<long>& ids,
                         std::optional<long> frame, const std::string& contacts, const PairColumns& columns);
 
-/// The pairs that overlap.
+/// Pairs and walls with gaps up to half the smallest radius, and more: all that overlap, however deep. Sorted.
+std::vector<Contact> near_contacts(const Packing& packing);
+/// Those that overlap.
+std::vector<Contact> overlaps_of(const Packing& packing);
+
+/// The same as a list.
 SoftList list_by_overlaps(const Packing& packing);
 
 } // namespace isostat::compare

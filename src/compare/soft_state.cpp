@@ -1,8 +1,11 @@
 #include "compare/soft_state.hpp"
 
 #include "compare/backbone.hpp"
+#include "packing/words.hpp"
 
 #include <isostat/core/error.hpp>
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,15 +13,47 @@
 
 namespace isostat::compare {
 
+namespace {
+
+/// Something gives way along each axis.
+bool gives_way(const Packing& packing) {
+    bool all = true;
+    for (std::size_t a = 0; a < packing.axes(); ++a) {
+        const bool walls = packing.walls.lower[a] == WallKind::fixed && packing.walls.upper[a] == WallKind::movable;
+        all = all && (walls || packing.cell.periodic[a]);
+    }
+    return all;
+}
+
+/// R_i R_j / (R_i + R_j), of a grain at a wall R_i.
+double radius_of(const Packing& packing, const Contact& c) {
+    const double one = packing.radius[static_cast<std::size_t>(c.i)];
+    const double other = c.kind == ContactKind::disk_disk ? packing.radius[static_cast<std::size_t>(c.j)] : 0;
+    return c.kind == ContactKind::disk_disk ? one * other / (one + other) : one;
+}
+
+} // namespace
+
+double ContactLaw::force(const Packing& packing, const Contact& contact) const {
+    const double overlap = std::max(0.0, -gap(packing, contact));
+    return stiffness * overlap * (kind == ForceLaw::hertz ? std::sqrt(overlap * radius_of(packing, contact)) : 1);
+}
+
+double ContactLaw::rounding(const Packing& packing, const Contact& contact, double of_gap) const {
+    const double overlap = std::max(0.0, -gap(packing, contact)) + of_gap;
+    const double steeper = kind == ForceLaw::hertz ? 1.5 * std::sqrt(overlap * radius_of(packing, contact)) : 1;
+    return stiffness * of_gap * steeper;
+}
+
 SoftForces soft_grains(const StateFile& file, const std::string& source) {
     State state = file.state;
     const bool fixed =
         std::any_of(state.packing.fixed.begin(), state.packing.fixed.end(), [](auto f) { return f != 0; });
-    const bool box = state.packing.walls == Walls::box() || state.packing.cell.all();
-    if (!box || fixed || !state.load.disk_force.empty()) {
-        throw Error(ErrorKind::bad_input, source +
-                                              ": expected a box with two fixed and two movable walls or a periodic "
-                                              "cell, no fixed disk and no force on a disk");
+    if (!gives_way(state.packing) || fixed || !state.load.disk_force.empty()) {
+        throw Error(ErrorKind::bad_input,
+                    fmt::format("{}: expected a fixed lower and a movable upper wall along each axis that is not "
+                                "periodic, no fixed {} and no force on a {}",
+                                source, grain_word(state.packing.dimension), grain_word(state.packing.dimension)));
     }
     SoftForces out;
     std::map<Contact, double> forces;
@@ -34,11 +69,11 @@ SoftForces soft_grains(const StateFile& file, const std::string& source) {
     return out;
 }
 
-void add_law(SoftForces& grains, double stiffness) {
+void add_law(SoftForces& grains, const ContactLaw& law) {
     grains.forces.resize(grains.soft.contacts.size(), NAN);
     for (std::size_t l = 0; l < grains.forces.size(); ++l) {
         if (std::isnan(grains.forces[l])) {
-            grains.forces[l] = stiffness * std::max(0.0, -gap(grains.soft.packing, grains.soft.contacts[l]));
+            grains.forces[l] = law.force(grains.soft.packing, grains.soft.contacts[l]);
         }
     }
 }

@@ -340,7 +340,7 @@ class Peeler {
 } // namespace
 
 Peeling peel(const Packing& packing, const std::vector<Contact>& contacts) {
-    return Peeler(packing, contacts).run();
+    return packing.dimension == plane ? Peeler(packing, contacts).run() : peel_in_space(packing, contacts);
 }
 
 } // namespace isostat::crafted

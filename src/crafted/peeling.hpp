@@ -17,10 +17,10 @@ struct Peeling {
 
 /// By removing the contacts from the last to the first; each removal looks at the two neighbours in angle only. Every
 /// sign is decided. Throws `Error(bad_input)` when two disks of a contact have the same centre. Cost O(N log N) beside
-/// near-parallel normals, which are decided in rationals.
+/// near-parallel normals, which are decided in rationals. Of spheres: `peel_in_space`.
 Peeling peel(const Packing& packing, const std::vector<Contact>& contacts);
 
-/// The same of spheres: by planes through a centre that leave every contact of the sphere on one side, each sign
+/// Of spheres: by planes through a centre that leave every contact of the sphere on one side, each sign
 /// decided by intervals or in rationals. Cost: for a sphere with z contacts O(z^3) signs whenever it loses one.
 Peeling peel_in_space(const Packing& packing, const std::vector<Contact>& contacts);
 

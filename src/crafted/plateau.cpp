@@ -216,7 +216,7 @@ class Sequence {
     }
 
     void count_backbones() {
-        peeling_ = packing_.dimension == plane ? peel(packing_, contacts_) : peel_in_space(packing_, contacts_);
+        peeling_ = peel(packing_, contacts_);
         const auto count = static_cast<std::size_t>(size()) + 1;
         carrying_.assign(count, 0);
         rattlers_.assign(count, 0);

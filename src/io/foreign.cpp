@@ -21,18 +21,6 @@ using foreign::Raw;
     throw Error(ErrorKind::bad_input, source + ": " + message);
 }
 
-/// Whether period vectors are written as the cell is. \p d: so many axes of them count.
-bool are_upper(const PerAxis<PerAxis<double>>& vectors, std::size_t d) {
-    bool upper = true;
-    for (std::size_t a = 0; a < d; ++a) {
-        upper = upper && vectors[a][a] > 0;
-        for (std::size_t b = a + 1; b < d; ++b) {
-            upper = upper && vectors[a][b] == 0;
-        }
-    }
-    return upper;
-}
-
 /// Disks where z is the same, or differs by so little that no gap of two disks, sqrt(d^2 + z^2), is another double:
 /// `rounding` is by how much.
 int dimension_of(Raw& raw, const std::string& source, const ForeignOptions& options, double& rounding) {
@@ -67,7 +55,7 @@ int dimension_of(Raw& raw, const std::string& source, const ForeignOptions& opti
     if (dimension == 2 && !raw.not_plane.empty()) {
         throw Error(ErrorKind::bad_input, raw.not_plane);
     }
-    if (raw.vectors && are_upper(*raw.vectors, static_cast<std::size_t>(dimension))) {
+    if (raw.vectors && foreign::are_upper(*raw.vectors, static_cast<std::size_t>(dimension))) {
         raw.vectors.reset();
     }
     return dimension;
@@ -144,6 +132,17 @@ double rounding_of(const Raw& raw, const ForeignPacking& found, const ForeignOpt
 }
 
 } // namespace
+
+bool foreign::are_upper(const PerAxis<PerAxis<double>>& vectors, std::size_t d) {
+    bool upper = true;
+    for (std::size_t a = 0; a < d; ++a) {
+        upper = upper && vectors[a][a] > 0;
+        for (std::size_t b = a + 1; b < d; ++b) {
+            upper = upper && vectors[a][b] == 0;
+        }
+    }
+    return upper;
+}
 
 const std::vector<std::string>& foreign_formats() {
     static const std::vector<std::string> formats{"lammps-data", "lammps-dump", "xyz", "table", "centres"};

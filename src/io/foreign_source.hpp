@@ -32,6 +32,9 @@ struct Bounds {
     std::string not_plane; ///< why this is no box of disks: a message, or empty
 };
 
+/// Whether period vectors are written as the cell is. \p d: so many axes of them count.
+bool are_upper(const PerAxis<PerAxis<double>>& vectors, std::size_t d);
+
 /// A tilt xy, xz or yz of LAMMPS, in a field of the line.
 void take_tilt(const TextLine& line, std::size_t field, std::size_t tilt, Bounds& bounds);
 

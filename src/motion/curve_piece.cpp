@@ -181,15 +181,16 @@ CurvePiece::Misfit CurvePiece::misfit(double h) const {
 }
 
 CurvePiece::Motion CurvePiece::motion(double h) const {
+    const double granted = row_units(centre().dimension) * u;
     Motion least;
     double loss = 0;
     double power = 1;
     for (std::size_t k = 1; k <= coefficients().size(); ++k, power *= h) {
         const RoundedSum sum = this->along_row(coefficients()[k - 1]);
         if (k == 1) {
-            least.row_rate = sum.value * this->forward() - 16 * u * sum.absolute;
+            least.row_rate = sum.value * this->forward() - granted * sum.absolute;
         } else {
-            loss += static_cast<double>(k) * power * (std::abs(sum.value) + 16 * u * sum.absolute);
+            loss += static_cast<double>(k) * power * (std::abs(sum.value) + granted * sum.absolute);
         }
         least.speed += static_cast<double>(k) * power * norm(coefficients()[k - 1]);
     }

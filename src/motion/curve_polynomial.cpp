@@ -31,10 +31,10 @@ std::vector<PerAxis<double>> separations(const Layout& layout, const std::vector
 
 /// Rounds to the multiples of a power of two for which C2 holds (proofs/cells.md): any coefficients will do, and the
 /// separations of these are exact.
-void put_on_grid(std::vector<double>& a) {
+void put_on_grid(std::vector<double>& a, int dimension) {
     int exponent = 0;
     std::frexp(largest(a), &exponent); // largest < 2^exponent
-    const double step = std::ldexp(1, exponent - 50);
+    const double step = std::ldexp(1, exponent - 52 + dimension);
     for (double& x : a) {
         x = step > 0 ? std::nearbyint(x / step) * step : 0.0;
     }
@@ -82,7 +82,7 @@ bool CurvePolynomial::first_coefficient() {
         x *= scale;
     }
     if (centre().cell.any()) {
-        put_on_grid(a);
+        put_on_grid(a, centre().dimension);
     }
     a_.push_back(std::move(a));
     return true;
@@ -112,7 +112,7 @@ void CurvePolynomial::find_shift() {
     }
     shift_ = solved(std::move(rhs));
     if (largest(shift_) < infinity) {
-        put_on_grid(shift_);
+        put_on_grid(shift_, centre().dimension);
     } else {
         shift_.clear();
     }
@@ -147,7 +147,7 @@ void CurvePolynomial::expand() {
         }
         a_.push_back(solved(rhs));
         if (centre().cell.any() && largest(a_.back()) < infinity) {
-            put_on_grid(a_.back());
+            put_on_grid(a_.back(), centre().dimension);
         }
         const double size = largest(a_.back()) * std::pow(reach_, static_cast<int>(k));
         if (!std::isfinite(size)) {

@@ -119,13 +119,16 @@ PowerWatch::Balance PowerWatch::balance(const CurvePiece& piece) const {
 /// The part of the free row; returns the largest speed.
 double PowerWatch::add_row(const CurvePiece& piece, double force, Power& power) {
     const auto& a = piece.coefficients();
+    const auto count = static_cast<double>(piece.structure().size());
+    const double granted = row_units(piece.centre().dimension) + 8;
     double speed = 0;
     double reach_power = 1;
     for (std::size_t k = 1; k <= a.size(); ++k, reach_power *= piece.reach()) {
         const RoundedSum sum = piece.along_row(a[k - 1]);
         const auto factor = static_cast<double>(k);
         power.c[k - 1] -= factor * force * sum.value;
-        power.c_open[k - 1] += 24 * u * factor * std::abs(force) * sum.absolute;
+        const double later = k > 1 ? count * std::abs(sum.value) : 0; // what contacts are added to it
+        power.c_open[k - 1] += u * factor * std::abs(force) * (granted * sum.absolute + later);
         double norm = 0;
         for (const double x : a[k - 1]) {
             norm += x * x;

@@ -13,6 +13,10 @@ using roundoff::u;
 /// Sums of up to 10^6 terms, their roots and a few products: relative rounding below 1e-9 (proofs/bounds.md).
 inline constexpr double up = 1 + 1e-9;
 using roundoff::root2;
+/// Relative error of a product with the exact row of a contact, in units of u: entries, products and their sum.
+constexpr double row_units(int dimension) {
+    return dimension == 2 ? 16 : 22;
+}
 
 template <std::size_t size> inline double dot(const std::array<double, size>& x, const std::array<double, size>& y) {
     double sum = 0;

@@ -5,6 +5,7 @@
 #include "convert.hpp"
 
 #include <isostat/compare/compare.hpp>
+#include <isostat/core/error.hpp>
 
 #include <atomic>
 
@@ -20,12 +21,14 @@ struct Snapped {
     std::string reason;
 };
 
-Snapped snapped(const PyState& file, double stiffness) {
-    require_plane(file.state.packing, "State", "snap");
+Snapped snapped(const PyState& file, double stiffness, const std::string& law) {
+    if (law != "linear" && law != "hertz") {
+        throw Error(ErrorKind::bad_input, "law is '" + law + "': expected \"linear\" or \"hertz\"");
+    }
     Snapped out;
     compare::SoftForces grains = compare::soft_grains(file, "state");
     if (finite(stiffness, "stiffness") > 0) {
-        compare::add_law(grains, stiffness);
+        compare::add_law(grains, {law == "hertz" ? compare::ForceLaw::hertz : compare::ForceLaw::linear, stiffness});
     }
     out.snap = compare::snap(grains.soft);
     out.reason = out.snap.reason;
@@ -37,7 +40,7 @@ Snapped snapped(const PyState& file, double stiffness) {
         if (state.ok()) {
             out.state = std::make_shared<PyState>(PyState{std::move(state.value()), {}});
         } else {
-            out.reason = state.failure().message();
+            out.reason = state.failure().message(file.state.packing.dimension);
         }
     }
     return out;
@@ -54,10 +57,10 @@ void bind_snap(py::module_& module) {
         .def_property_readonly(
             "k", [](const Snapped& self) { return self.snap.counting.mechanisms; }, "Of the list.")
         .def_property_readonly(
-            "rattlers", [](const Snapped& self) { return self.snap.rattlers; }, "Disks without a contact in the list.")
+            "rattlers", [](const Snapped& self) { return self.snap.rattlers; }, "Grains without a contact in the list.")
         .def_property_readonly(
             "distance", [](const Snapped& self) { return self.snap.distance; },
-            "Proved bound of the way of a disk with a force to the true vertex; length, inf without one.")
+            "Proved bound of the way of a grain with a force to the true vertex; length, inf without one.")
         .def_property_readonly(
             "walls", [](const Snapped& self) { return self.snap.walls; }, "The same of the walls, or the periods.")
         .def_property_readonly(
@@ -69,12 +72,13 @@ void bind_snap(py::module_& module) {
         .def_readonly("state", &Snapped::state, "State: the vertex, rattlers at rest. None.");
     module.def(
         "snap",
-        [](const PyState& state, double stiffness) {
-            return interruptible([state, stiffness] { return snapped(state, stiffness); });
+        [](const PyState& state, double stiffness, const std::string& law) {
+            return interruptible([state, stiffness, law] { return snapped(state, stiffness, law); });
         },
-        py::arg("state"), py::kw_only(), py::arg("stiffness") = 0.0,
+        py::arg("state"), py::kw_only(), py::arg("stiffness") = 0.0, py::arg("law") = "linear",
         "Snap: from soft grains (a State with their contacts; overlaps are allowed) to the vertex of rigid ones with "
-        "the same contacts, proved. `stiffness`: force / overlap, where the state has no forces. Ctrl-C leaves it.");
+        "the same contacts, proved. `stiffness`: force / overlap, where the state has no forces; with `law` \"hertz\" "
+        "force / (overlap^(3/2) sqrt(R_i R_j / (R_i + R_j))). Disks and spheres. Ctrl-C leaves it.");
 }
 
 /// The tables of `isostat compare`, as the text of comparison.json.

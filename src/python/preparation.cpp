@@ -64,8 +64,8 @@ std::shared_ptr<PyState> vertex_near(const Packing& packing, const std::optional
 }
 
 Packing read_any(const std::filesystem::path& path, const std::string& walls,
-                 const std::optional<std::vector<double>>& box, const std::string& radius,
-                 const std::string& diameter) {
+                 const std::optional<std::vector<double>>& box, const std::string& radius, const std::string& diameter,
+                 std::optional<int> dimension) {
     ForeignOptions options;
     if (walls != "none" && walls != "fixed" && walls != "box") {
         throw Error(ErrorKind::bad_input, "walls is '" + walls + "': expected \"box\", \"fixed\" or \"none\"");
@@ -80,9 +80,8 @@ Packing read_any(const std::filesystem::path& path, const std::string& walls,
     } else if (!diameter.empty()) {
         options.size = SizeStatement{SizeMeaning::diameter, diameter, 0};
     }
-    Packing packing = read_foreign(path, options).packing;
-    require_plane(packing, path.string(), "read_packing");
-    return packing;
+    options.dimension = dimension;
+    return read_foreign(path, options).packing;
 }
 
 void bind_plateau(py::module_& module) {
@@ -154,12 +153,14 @@ void bind_preparation(py::module_& module) {
                "State: the equilibrium downhill from a nearly jammed Packing in a box with a movable wall along each "
                "axis, proved. `stress`: of each axis, by default 1; of spheres the first two are equal. "
                "Raises Tie, Undecided, NotConverged, ... Ctrl-C ends it.");
-    module.def("read_packing", &read_any, py::arg("path"), py::kw_only(), py::arg("walls") = "box",
-               py::arg("box") = py::none(), py::arg("radius") = "", py::arg("diameter") = "",
-               py::call_guard<py::gil_scoped_release>(),
-               "Packing from another program: LAMMPS data and dumps, extended XYZ, CSV, tables. `walls`: \"box\" (two "
-               "movable), \"fixed\", \"none\"; `box`: (xlo, xhi, ylo, yhi); `radius` or `diameter`: the column that "
-               "holds it, where its name does not say.");
+    module.def(
+        "read_packing", &read_any, py::arg("path"), py::kw_only(), py::arg("walls") = "box",
+        py::arg("box") = py::none(), py::arg("radius") = "", py::arg("diameter") = "",
+        py::arg("dimension") = py::none(), py::call_guard<py::gil_scoped_release>(),
+        "Packing from another program: LAMMPS data and dumps, extended XYZ, CSV, tables. `walls`: \"box\" (two "
+        "movable, of spheres three), \"fixed\", \"none\"; `box`: (xlo, xhi, ylo, yhi), of spheres zlo and zhi too; "
+        "`radius` or `diameter`: the column that holds it, where its name does not say; `dimension` 2 or 3: disks "
+        "or spheres (default: spheres where z is not the same for all).");
     bind_plateau(module);
 }
 

@@ -109,40 +109,54 @@ py::tuple matrix_parts(const Packing& packing, const std::vector<Contact>& conta
 }
 
 Packing packing_of(const py::array_t<double, py::array::c_style | py::array::forcecast>& centres,
-                   const std::vector<double>& radii, std::array<double, 2> length,
-                   const std::array<std::string, 2>& lower, const std::array<std::string, 2>& upper,
-                   const std::vector<bool>& fixed) {
-    if (centres.ndim() != 2 || centres.shape(1) != 2 || static_cast<std::size_t>(centres.shape(0)) != radii.size()) {
-        throw Error(ErrorKind::bad_input, "positions: expected an array of shape (n, 2) for n radii");
+                   const std::vector<double>& radii, const std::vector<double>& length,
+                   const std::optional<std::vector<std::string>>& lower,
+                   const std::optional<std::vector<std::string>>& upper, const std::vector<bool>& fixed) {
+    const py::ssize_t d = centres.ndim() == 2 ? centres.shape(1) : 0;
+    if ((d != 2 && d != 3) || static_cast<std::size_t>(centres.shape(0)) != radii.size()) {
+        throw Error(ErrorKind::bad_input,
+                    "positions: expected an array of shape (n, 2), of spheres (n, 3), for n radii");
     }
     if (!fixed.empty() && fixed.size() != radii.size()) {
         throw Error(ErrorKind::bad_input, "fixed: expected one flag per disk");
     }
     Packing packing;
+    packing.dimension = packing.cell.dimension = static_cast<int>(d);
+    packing.walls = Walls::box(packing.dimension);
     packing.radius = radii;
     packing.q.assign(centres.data(), centres.data() + centres.size());
     packing.q.insert(packing.q.end(), length.begin(), length.end());
     packing.fixed.assign(fixed.begin(), fixed.end());
-    for (std::size_t a = 0; a < 2; ++a) {
-        packing.walls.lower[a] = wall_kind(lower[a]);
-        packing.walls.upper[a] = wall_kind(upper[a]);
-    }
+    const auto expect = [&](const char* name, std::size_t size) {
+        if (size != packing.axes()) {
+            throw Error(ErrorKind::bad_input,
+                        fmt::format("{} has {} entries: expected {}, one per axis", name, size, packing.axes()));
+        }
+    };
+    expect("length", length.size());
+    const auto take = [&](const char* name, const auto& words, PerAxis<WallKind>& walls) {
+        if (words) {
+            expect(name, words->size());
+            std::transform(words->begin(), words->end(), walls.begin(), wall_kind);
+        }
+    };
+    take("lower", lower, packing.walls.lower);
+    take("upper", upper, packing.walls.upper);
     validate(packing, "Packing");
-    require_plane(packing, "Packing", "the module");
     return packing;
 }
 
 void bind_packing(py::module_& module) {
     py::class_<Packing, std::shared_ptr<Packing>> packing(
         module, "Packing",
-        "Disks and walls: positions, radii, box. No contacts, no load.\n\nPacking(positions, radii, length, *, "
-        "lower=(\"fixed\", \"fixed\"), upper=(\"movable\", \"movable\"), fixed=[]): (n, 2) and (n,) floats, (Lx, Ly); "
-        "`fixed` has a flag per disk.");
+        "Disks or spheres and walls: positions, radii, box. No contacts, no load.\n\nPacking(positions, radii, length, "
+        "*, "
+        "lower=(\"fixed\", ...), upper=(\"movable\", ...), fixed=[]): (n, 2) and (n,) floats, (Lx, Ly), of spheres (n, "
+        "3) "
+        "and (Lx, Ly, Lz); `fixed` has a flag per grain.");
     packing
         .def(py::init(&packing_of), py::arg("positions"), py::arg("radii"), py::arg("length"), py::kw_only(),
-             py::arg("lower") = std::array<std::string, 2>{"fixed", "fixed"},
-             py::arg("upper") = std::array<std::string, 2>{"movable", "movable"},
-             py::arg("fixed") = std::vector<bool>{})
+             py::arg("lower") = py::none(), py::arg("upper") = py::none(), py::arg("fixed") = std::vector<bool>{})
         .def("__len__", &Packing::disk_count);
     bind_grains(packing, [](const py::object& self) -> const Packing& { return self.cast<const Packing&>(); });
 }

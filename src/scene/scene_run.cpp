@@ -103,11 +103,6 @@ State start_of_scene(State state, const Scene& scene, const std::string& source)
                                                           source, a, state.load.stress[a]));
         }
     }
-    if (state.packing.dimension != plane && scene.run.certify == CertifyLevel::arcs) {
-        throw Error(ErrorKind::bad_input, fmt::format("{}: spheres, and certify in [run] of {} is \"arcs\": expected "
-                                                      "\"decisions\" or \"states\", arcs are enclosed in the plane",
-                                                      source, scene.file));
-    }
     require_followed(state, source);
     check_start(state, source, scene.run.at_first_order());
     check_programme(scene, state.load.ratio());

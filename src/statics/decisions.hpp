@@ -18,14 +18,36 @@ namespace isostat {
 /// The contact to open, with the evidence.
 struct Opening {
     ContactId contact;
-    bool infinitesimal = false; ///< decided by the eps part: only rattlers move
+    bool infinitesimal = false; ///< decided by the eps part
     Enclosure force;            ///< the force (or multiplier, or infinitesimal force) that made the choice
     int direction = +1;         ///< rate of the gap; -1 only for a held coordinate that is pushed downwards
     double margin = 0;          ///< smallest |difference| / bound over the comparisons made
     Rung rung = Rung::none;
     bool perturbed = false;    ///< a first-order comparison was needed
     bool equal_forces = false; ///< another contact bore the same force: of a straight strut (S4), or in an edge (S6)
+    bool bears = false;        ///< with `infinitesimal`: grains that bear force move, not only rattlers
+    /// The power of an arc that opens this contact is that of the infinitesimal loads.
+    [[nodiscard]] bool moves_rattlers() const { return infinitesimal && !bears; }
 };
+
+/// All grains of the contact bear finite forces in other contacts. Where the finite force of the contact is 0, it holds
+/// a grain in a plane of such forces: the load does no work at first order when it opens, and some at the next (S2).
+/// `zero(l)`: the finite force of contact l is a structural zero. Cost: O(N).
+template <class Zero>
+bool grains_bear_force(const std::vector<Contact>& contacts, ContactId contact, const Zero& zero) {
+    const Contact& c = contacts[contact.index()];
+    const auto bears = [&](int grain) {
+        for (std::size_t l = 0; l < contacts.size(); ++l) {
+            const Contact& other = contacts[l];
+            const bool touches = other.i == grain || (other.kind == ContactKind::disk_disk && other.j == grain);
+            if (l != contact.index() && other.kind != ContactKind::held && touches && !zero(l)) {
+                return true;
+            }
+        }
+        return false;
+    };
+    return c.kind != ContactKind::held && bears(c.i) && (c.kind != ContactKind::disk_disk || bears(c.j));
+}
 
 /// The state of a vertex at a load: nothing to open (equilibrium), or the contact to open.
 struct OpeningDecision {

@@ -229,6 +229,9 @@ Result<OpeningDecision> Stage::open() {
     }
     Opening opening = picked.value();
     opening.infinitesimal = !finite_;
+    opening.bears = !finite_ && grains_bear_force(contacts_, opening.contact, [this](std::size_t l) {
+        return statics_.is_structural_zero(ContactId(l));
+    });
     if (auto failure = let_go(opening)) {
         return *failure;
     }

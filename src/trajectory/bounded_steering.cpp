@@ -61,8 +61,7 @@ Result<Arc> BoundedSteering::attempt() {
     const Opening& opening = start_.opening;
     const ArcOrigin origin{from_.packing, from_.structure, fresh_ ? *fresh_ : from_.factorisation, opening.contact,
                            opening.direction};
-    return follow_arc(origin, PowerLoad{start_.load, opening.infinitesimal, start_.kind == ArcKind::limit}, candidates_,
-                      arc_options_);
+    return follow_arc(origin, power_load(*start_.load, opening, start_.kind), candidates_, arc_options_);
 }
 
 Result<ArcProposal> BoundedSteering::propose() {

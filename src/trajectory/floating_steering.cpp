@@ -83,7 +83,7 @@ Result<ArcProposal> FloatingSteering::next() {
 /// With the arc that was begun beside the choice of what opens, if it was.
 Result<Arc> FloatingSteering::follow(Prediction& prediction) {
     const Opening& opening = start_.opening;
-    const PowerLoad power{&load_, opening.infinitesimal, start_.kind == ArcKind::limit};
+    const PowerLoad power = power_load(load_, opening, start_.kind);
     // Rattlers turn far from arc to arc: factors taken over predict their curvature badly.
     std::optional<Factorisation> block;
     if (opening.infinitesimal) {
@@ -176,7 +176,7 @@ std::optional<Failure> FloatingSteering::check_power(const ArcRecord& record) co
         return std::nullopt;
     }
     const std::size_t slot = start_.opening.contact.index();
-    const bool infinitesimal = start_.opening.infinitesimal;
+    const bool infinitesimal = start_.opening.moves_rattlers();
     if ((infinitesimal || !here_->is_structural_zero(slot)) && !here_->compressive(slot, infinitesimal)) {
         return failed(FailureKind::undecided, "the power of the load is not clearly positive at the end of {}",
                       names(record));

@@ -161,6 +161,8 @@ std::optional<Opening> FloatingVertex::stage(bool finite) {
     Opening opening;
     opening.contact = ContactId(best);
     opening.infinitesimal = !finite;
+    opening.bears = !finite && grains_bear_force(contacts, opening.contact,
+                                                 [this](std::size_t l) { return is_structural_zero(l); });
     opening.force = {f[best], std::numeric_limits<double>::infinity()};
     opening.direction = contacts[best].kind == ContactKind::held && f[best] >= 0 ? -1 : +1;
     return opening;

@@ -192,6 +192,9 @@ ArcProof Prover::prove(const Vertex& from, ArcProposal arc, const Opening& openi
         return proof;
     }
     proof.failure = descend(proof, from, opening, at.load);
+    if (!proof.failure && opening.moves_rattlers()) {
+        proof.failure = work_of_load(proof, opening, at.stress());
+    }
     if (!proof.failure && !record.power_turn) {
         proof.failure = power(proof, opening, at.stress());
     }
@@ -303,15 +306,15 @@ std::optional<Failure> Prover::arrive(ArcProof& proof, std::vector<TieDecision> 
 
 std::optional<Failure> Prover::descend(ArcProof& proof, const Vertex& from, const Opening& opening, const Load& load) {
     const Vertex& to = *proof.vertex;
-    if (!has_potential(load, opening.infinitesimal)) {
+    if (!has_potential(load, opening.moves_rattlers())) {
         proof.record.work = work_of(load, from.packing, to.packing).value;
         return std::nullopt;
     }
-    const bool recorded = load.kind == LoadKind::nominal && !opening.infinitesimal;
+    const bool recorded = load.kind == LoadKind::nominal && !opening.moves_rattlers();
     const Enclosure decrease =
-        potential_decrease(from, to, load, opening.infinitesimal,
+        potential_decrease(from, to, load, opening.moves_rattlers(),
                            recorded ? wanted_bound(load, from) : std::numeric_limits<double>::infinity());
-    record_work(proof.record, from, to, load, opening.infinitesimal ? std::nullopt : std::optional(decrease));
+    record_work(proof.record, from, to, load, opening.moves_rattlers() ? std::nullopt : std::optional(decrease));
     proof.descends = decrease.positive();
     // A way of length O(eps) ends where it began: first-order terms decide there.
     const bool at_once = from.perturbed && from.packing.q == to.packing.q;
@@ -329,18 +332,33 @@ std::optional<Failure> Prover::descend(ArcProof& proof, const Vertex& from, cons
                   named(proof.record.opened), named(proof.record.closed), decrease.value, decrease.radius);
 }
 
+/// The load does no work on an arc of rattlers, or has not turned where a contact closes that bears force.
+std::optional<Failure> Prover::work_of_load(const ArcProof& proof, const Opening& opening, double stress) {
+    const Statics& statics = proof.vertex->statics;
+    const ContactId slot = opening.contact;
+    const bool moves_no_load = statics.is_structural_zero(slot) || proof.vertex->perturbed;
+    if (moves_no_load || (!proof.record.power_turn && statics.force(slot, stress).positive())) {
+        return std::nullopt;
+    }
+    return failed(
+        FailureKind::undecided,
+        "grains that bear force move on the arc that opens {} and ends with {}, which the infinitesimal loads "
+        "open: the power of the load on that arc is not followed",
+        named(proof.record.opened), named(proof.record.closed));
+}
+
 /// F.t = f_c (G t)_c at the event, and the new gap closes: the power is positive there iff the new force is.
 std::optional<Failure> Prover::power(ArcProof& proof, const Opening& opening, double stress) {
     Vertex& to = *proof.vertex;
     ArcRecord& record = proof.record;
     const ContactId closed = opening.contact; // in the same slot
     const auto force = [&] {
-        return opening.infinitesimal ? to.statics.infinitesimal(closed) : to.statics.force(closed, stress);
+        return opening.moves_rattlers() ? to.statics.infinitesimal(closed) : to.statics.force(closed, stress);
     };
     Enclosure f = force();
     record.power = f.value;
     record.power_bound = f.radius;
-    if (to.perturbed && !opening.infinitesimal && !f.decided() && !to.statics.is_structural_zero(closed)) {
+    if (to.perturbed && !opening.moves_rattlers() && !f.decided() && !to.statics.is_structural_zero(closed)) {
         const Order order = to.statics.sign(to.statics.force_expression(closed, stress));
         PerturbedStatics& side = to.perturbed->statics;
         if ((!order.decided || order.sign == 0) && is_tie(order, side.size())) {
@@ -369,12 +387,12 @@ std::optional<Failure> Prover::power(ArcProof& proof, const Opening& opening, do
             return std::nullopt;
         }
     }
-    while ((!f.decided() || says_too_little(to.statics, f, stress, opening.infinitesimal)) && to.statics.climb()) {
+    while ((!f.decided() || says_too_little(to.statics, f, stress, opening.moves_rattlers())) && to.statics.climb()) {
         f = force();
         record.power = f.value;
         record.power_bound = f.radius;
     }
-    if (!opening.infinitesimal && to.statics.is_structural_zero(closed)) {
+    if (!opening.moves_rattlers() && to.statics.is_structural_zero(closed)) {
         return std::nullopt;
     }
     if (!f.positive()) {
@@ -397,9 +415,8 @@ void Prover::certify(ArcProof& proof, const Vertex& from, const Opening& opening
     const auto vertex = [](const Vertex& v, const Factorisation& factorisation) {
         return ArcVertex{v.packing, v.structure, factorisation, v.inverse, v.enclosure};
     };
-    proof.record.certificate =
-        certify_arc(vertex(from, first), opening.contact, opening.direction, vertex(to, last),
-                    PowerLoad{&load, opening.infinitesimal, proof.record.kind == ArcKind::limit}, candidates_);
+    proof.record.certificate = certify_arc(vertex(from, first), opening.contact, opening.direction, vertex(to, last),
+                                           power_load(load, opening, proof.record.kind), candidates_);
     proof.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 

@@ -114,6 +114,7 @@ class Prover {
                                   const Vertex::Gaps& gaps) const;
     static std::optional<Failure> descend(ArcProof& proof, const Vertex& from, const Opening& opening,
                                           const Load& load);
+    static std::optional<Failure> work_of_load(const ArcProof& proof, const Opening& opening, double stress);
     static std::optional<Failure> power(ArcProof& proof, const Opening& opening, double stress);
 
     const RunOptions* options_;

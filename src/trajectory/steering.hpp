@@ -4,6 +4,7 @@
 
 #include "contact/candidates.hpp"
 #include "linear/approximate_inverse.hpp"
+#include "motion/arc.hpp"
 #include "rigidity/isostatic.hpp"
 #include "statics/decisions.hpp"
 #include "trajectory/counting.hpp"
@@ -29,6 +30,11 @@ struct ArcStart {
 
 /// Of an arc that starts with an opening of a contact, but for the first one at a limit load.
 ArcKind kind_of(const Contact& opened, bool infinitesimal);
+
+/// Whose power an arc follows. That of a load that does no work at first order grows from 0.
+inline PowerLoad power_load(const Load& load, const Opening& opening, ArcKind kind) {
+    return {&load, opening.moves_rattlers(), kind == ArcKind::limit || opening.bears};
+}
 
 /// Where steering found no negative force. Nothing is proved of it.
 struct SteeredEnd {

@@ -20,10 +20,15 @@ struct SphereRun {
 constexpr std::array sphere_runs{SphereRun{"box_uniform_30_1", 2}, SphereRun{"slab_uniform_30_1", 3},
                                  SphereRun{"ortho_uniform_30_1", 3}, SphereRun{"tri_uniform_30_1", 4}};
 
-void play_spheres(const SphereRun& run, const std::filesystem::path& folder) {
+void play_spheres(const SphereRun& run, const std::filesystem::path& folder,
+                  CertifyLevel level = CertifyLevel::decisions, const std::function<void(State&)>& change = {}) {
     State start = test::state_of_spheres(test::read_spheres(run.name));
+    if (change) {
+        change(start);
+    }
     snap_to_grid(start.packing);
-    const SegmentOutcome outcome = played::into(folder, start, {towards(run.equilibria)}, {.max_strain = 1e9});
+    const SegmentOutcome outcome =
+        played::into(folder, start, {towards(run.equilibria)}, {.max_strain = 1e9, .certify = level});
     BOOST_REQUIRE_MESSAGE(outcome.completed, (outcome.failure ? outcome.failure->message(3) : ""));
 }
 
@@ -109,6 +114,59 @@ BOOST_AUTO_TEST_CASE(an_altered_arc_of_spheres_is_not_proved) {
         const Verdict expected = what == "closed" ? Verdict::undecided : Verdict::refuted;
         BOOST_TEST((found.verdict == expected), what << ": " << found.wrong);
     }
+}
+
+/// Raised along z, and a triclinic cell sheared in two of its planes.
+BOOST_AUTO_TEST_CASE(the_way_of_every_arc_of_spheres_is_proved_from_its_witness) {
+    const auto prove = [](const SphereRun& run, int loaded) {
+        BOOST_TEST_INFO_SCOPE(run.name << " along " << loaded);
+        const scratch::Folder folder;
+        play_spheres(run, folder.path() / "run", CertifyLevel::arcs,
+                     [loaded](State& start) { start.load.loaded_axis = loaded; });
+        const RunVerification found = played::proved(folder.path() / "run");
+        BOOST_TEST(found.ways_proved == found.arcs);
+    };
+    prove({"box_uniform_30_1", 1}, 2);
+    prove({"slab_uniform_30_1", 3}, 2);
+    prove({"tri_uniform_30_1", 1}, 3);
+    prove({"tri_uniform_30_1", 1}, 5);
+}
+
+/// The run itself says nothing of the power of true stresses; the checker proves that it is positive.
+BOOST_AUTO_TEST_CASE(the_way_of_spheres_is_proved_under_true_stresses) {
+    const scratch::Folder folder;
+    play_spheres({"slab_uniform_30_1", 3}, folder.path() / "run", CertifyLevel::arcs, [](State& start) {
+        start.load.kind = LoadKind::true_stress;
+        start.load.stress = {1, 1, 1};
+        start.load.refer_to(start.packing);
+    });
+    const RunVerification found = played::proved(folder.path() / "run");
+    BOOST_TEST(found.ways_proved == found.arcs);
+}
+
+BOOST_AUTO_TEST_CASE(a_forged_witness_of_spheres_proves_no_way) {
+    const scratch::Folder scratch_folder;
+    const std::filesystem::path folder = scratch_folder.path() / "run";
+    play_spheres({"tri_uniform_30_1", 1}, folder, CertifyLevel::arcs, [](State& start) { start.load.loaded_axis = 5; });
+    const std::filesystem::path file = folder / "certificates/arcs.jsonl";
+    const std::string true_text = scratch::read(file);
+    const auto forged = [&](const std::function<void(Json&)>& alter) {
+        Json first = Json::parse(true_text.substr(0, true_text.find('\n')));
+        alter(first);
+        scratch::write(file, json::dumped(first) + true_text.substr(true_text.find('\n')));
+        forger::seal(folder);
+        return verify_run(folder);
+    };
+    const auto moved = [](std::size_t component, double by) {
+        return [=](Json& witness) { witness["end"][component] = witness["end"][component].get<double>() + by; };
+    };
+    for (const std::size_t component : {0U, 40U}) {
+        const RunVerification found = forged(moved(component, 0.01));
+        BOOST_TEST((found.verdict == Verdict::undecided), component << ": " << found.wrong);
+        BOOST_TEST(found.ways_proved < found.arcs);
+    }
+    const RunVerification same = forged([](Json&) {});
+    BOOST_TEST(same.ways_proved == same.arcs);
 }
 
 // S4 is of the plane: two walls and a held coordinate leave no sphere out of what is compared.

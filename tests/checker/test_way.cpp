@@ -6,6 +6,7 @@
 #include "checker/way.hpp"
 #include "support/channel_roll.hpp"
 #include "support/crafted.hpp"
+#include "support/spheres.hpp"
 
 using namespace isostat;
 using namespace isostat::checker;
@@ -162,6 +163,38 @@ BOOST_AUTO_TEST_CASE(the_power_is_positive_until_the_load_stands_on_the_curve) {
     BOOST_REQUIRE(s * 1.01 < tube->reach());
     BOOST_TEST(power_is_positive(load, moving, *tube, 0, s * 0.999));
     BOOST_TEST(!power_is_positive(load, moving, *tube, 0, s * 1.001));
+}
+
+/// A small sphere in a corner and a large one between the walls of y: it rises from the floor as the angle above it
+/// grows, about the corner of radius sqrt 8 in x and z. V Phi' = sum of sigma_a L_b L_c L_a' vanishes at one angle.
+BOOST_AUTO_TEST_CASE(the_power_of_true_stresses_on_spheres_is_positive_from_where_it_turns) {
+    Moving moving;
+    moving.state = isostat::test::state_of_spheres(isostat::test::read_spheres("closed_two"));
+    const Contact floor{ContactKind::lower_wall, 1, 2};
+    std::copy_if(moving.state.contacts.begin(), moving.state.contacts.end(), std::back_inserter(moving.kept),
+                 [&](const Contact& c) { return c != floor; });
+    moving.coordinates = {0, 1, 2, 3, 4, 5, 6, 7, 8};
+    moving.moves.assign(9, true);
+    moving.loose.assign(9, false);
+    const double start = 0.58;
+    const double turn = 0.6;
+    const double radius = std::sqrt(8.0);
+    std::vector<double>& q = moving.state.packing.q;
+    q[3] = 1 + radius * std::cos(start);
+    q[5] = 1 + radius * std::sin(start);
+    q[6] = q[3] + 2;
+    q[8] = q[5] + 2;
+    const auto push = [&](double x) { return (3 + radius * x) * x; };
+    Pushing load;
+    load.fixed.assign(9, Bounds(0));
+    load.pressure = {1, 1, push(std::sin(turn)) / push(std::cos(turn))};
+    auto tube = Tube::make(moving, q, 5, 1);
+    BOOST_REQUIRE(tube);
+    BOOST_REQUIRE(tube->prove());
+    const double s = radius * (std::sin(turn) - std::sin(start));
+    BOOST_REQUIRE(s * 1.5 < tube->reach());
+    BOOST_TEST(power_is_positive(load, moving, *tube, s * 1.001, s * 1.5));
+    BOOST_TEST(!power_is_positive(load, moving, *tube, s * 0.999, s * 1.5));
 }
 
 BOOST_AUTO_TEST_CASE(a_way_against_the_load_is_not_proved) {

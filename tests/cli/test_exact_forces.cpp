@@ -33,6 +33,19 @@ BOOST_AUTO_TEST_CASE(zeros_of_a_pinned_sphere_are_seen_while_a_coordinate_is_hel
     expect(run({"verify", out}), 0);
 }
 
+// A wall without force holds a sphere in the plane of its contacts: when the infinitesimal loads open that wall the
+// load does work too, and the arc does not end where the power of the infinitesimal ones turns.
+BOOST_AUTO_TEST_CASE(a_sphere_that_bears_force_leaves_its_plane_with_the_power_of_the_load) {
+    const scratch::Folder folder;
+    scratch::write(folder / "scene.toml", "[packing]\nspheres = 12\nlaw = \"bidisperse\"\nseed = 22\n[[programme]]\n"
+                                          "do = \"up\"\nequilibria = 3\n[output]\npictures = false\n");
+    const std::string out = folder.at("run");
+    expect(run({"run", folder.at("scene.toml"), "-o", out, "-q"}), 0);
+    says(run({"verify", out}), 0, {"4 of 4 proved"});
+    const std::string events = scratch::read(folder / "run/events.jsonl");
+    BOOST_TEST(events.find("\"kind\":\"rattler\",\"opened\":\"5-top\"") != std::string::npos);
+}
+
 // A sphere that comes level with its neighbours of the same size at the wall that it meets.
 BOOST_AUTO_TEST_CASE(an_arc_may_end_where_its_power_is_0_by_counting) {
     const scratch::Folder folder;

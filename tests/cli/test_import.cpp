@@ -288,7 +288,7 @@ BOOST_AUTO_TEST_CASE(what_is_not_written_for_spheres_is_refused_by_name) {
     expect(run({"import", file, "-o", out, "--dimension", "2"}), 65, {"ortho_uniform_30_1.xyz:", "z of disk"});
     expect(run({"import", sphere_files + "box_uniform_100_1.txt", "-o", out, "--box", "0:14,0:15.1"}), 65,
            {"4 bounds", "expected 6"});
-    expect(run({"snap", file, "-o", out}), 65, {"a packing of spheres", "this command"});
+    says(run({"snap", file, "-o", out}), 1, {"snap      moving"}); // half of its contacts do not overlap
     BOOST_TEST(!fs::exists(out));
 }
 

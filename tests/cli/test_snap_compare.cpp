@@ -31,6 +31,38 @@ BOOST_AUTO_TEST_CASE(a_soft_frame_snaps_to_a_state_that_certify_takes) {
     expect(run({"verify", folder.at("certificate.json")}), 0);
 }
 
+BOOST_AUTO_TEST_CASE(a_frame_of_soft_spheres_snaps_to_the_rigid_packing_that_it_stands_for) {
+    const scratch::Folder folder;
+    const std::string pressure = "1.0006650184686099e-06", state = folder.at("state.json");
+    const auto snap_spheres = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), {"snap", scratch::data("spheres/soft/spheres.dump"), "-o", state});
+        return run(more);
+    };
+    const std::vector<std::string> listed{"--contacts", scratch::data("spheres/soft/contacts.dump"),
+                                          "--contact-columns", "c_ids[1],c_ids[2],c_forces"};
+    for (const bool by_overlaps : {false, true}) {
+        std::vector<std::string> words = by_overlaps ? std::vector<std::string>() : listed;
+        words.insert(words.end(), {"--cell", "isotropic", "--stress", pressure + "," + pressure + "," + pressure});
+        says(snap_spheres(words), 0,
+             {"N_f = 163, N = 163, rank 163, h = 0, k = 0, 5 rattlers", "of a sphere with a force"});
+    }
+    expect(run({"certify", state, "-o", folder.at("certificate.json")}), 0);
+    says(run({"verify", folder.at("certificate.json"), "--input", state}), 0, {"equilibrium    proved"});
+    // Forces of the wrong law are far from those that balance.
+    for (const auto& [law, right] : {std::pair("linear", true), std::pair("hertz", false)}) {
+        const Outcome made = snap_spheres({"--cell", "isotropic", "--stiffness", "1", "--law", law, "--json"});
+        expect(made, 0);
+        const double rest = std::stod(made.out.substr(made.out.find("\"rest\":") + 7));
+        BOOST_TEST((rest < 1e-2) == right, made.out);
+    }
+    // Two periods more give way, and the list has two contacts less than they need.
+    says(snap_spheres({"--cell", "rectangular"}), 1, {"k = 2", "snap      moving"});
+    expect(snap_spheres({"--cell", "isotropic", "--stress", "1,1"}), 64, {"S1,S2,S3, three positive numbers"});
+    expect(snap_spheres({"--cell", "isotropic", "--law", "hertz"}), 64, {"--stiffness"});
+    expect(run({"snap", scratch::data("spheres/box_uniform_100_1.txt"), "--box", "0:15,0:15.064,0:13.93", "-o", state}),
+           65, {"no sphere is near the right wall"});
+}
+
 BOOST_AUTO_TEST_CASE(a_stiffness_says_the_forces_that_the_file_does_not) {
     const scratch::Folder folder;
     for (const auto& [stiffness, right] : {std::pair{"1e5", true}, std::pair{"1.1e5", false}}) {

@@ -71,7 +71,7 @@ BOOST_AUTO_TEST_CASE(frames_of_a_loading_have_their_statuses_and_the_departure_i
         BOOST_TEST(f.rest < 1e-7);
         BOOST_TEST(f.stiffness > 1e-3);
         BOOST_TEST(f.stiffness < 3e-2);
-        BOOST_TEST(std::abs(f.true_eps2 - f.eps2) < 1e-4);
+        BOOST_TEST(std::abs(f.true_strain[1] - f.strain[1]) < 1e-4);
     }
     BOOST_TEST(result.frames[3].found == result.frames[3].expected + 1);
     BOOST_TEST(result.frames[8].counting.hyperstaticity == 1);
@@ -370,6 +370,13 @@ BOOST_AUTO_TEST_CASE(bad_input_is_named_with_file_and_row) {
                  {"unknown key 'colour'"});
     expect_error([](Copy& c) { c.manifest = scratch::replaced(c.manifest, "isostat-series 1", "isostat-series 2"); },
                  {"isostat-series 1"});
+    expect_error(
+        [](Copy& c) { // spheres, where the manifest speaks of disks
+            c.manifest = scratch::replaced(c.manifest, "select = \"type 1\"", "");
+            c.disks[8] = scratch::replaced(c.disks[8], "type", "z");
+            c.disks[11] = Copy::field(c.disks[11], 1, "1.5");
+        },
+        {"disks.dump:12", "z is '1.5'", "three lengths in reference_length"});
 }
 
 BOOST_AUTO_TEST_CASE(the_files_of_a_comparison_are_complete) {

@@ -265,7 +265,7 @@ BOOST_AUTO_TEST_CASE(a_frame_in_motion_is_on_the_arc_of_the_exact_run_whose_cont
     for (std::size_t k = 0; k < told.arcs.size(); ++k) {
         nearest.add(told.arcs[k], 7);
     }
-    nearest.tell(frames);
+    nearest.tell(frames, 2);
     BOOST_TEST(frames[0].result.nearest_arc ==
                fmt::format("arc {} on the way to equilibrium 7, the same contacts", told.arcs[0].arc));
     BOOST_TEST(frames[1].result.nearest_arc == fmt::format("arc {} on the way to equilibrium 7, without{}, with none",

@@ -5,6 +5,7 @@
 #include "compare/series_copy.hpp"
 #include "compare/surplus_split.hpp"
 #include "rigidity/isostatic.hpp"
+#include "support/spheres.hpp"
 
 #include <isostat/compare/snap.hpp>
 #include <isostat/io/state_file.hpp>
@@ -28,16 +29,15 @@ struct Sample {
 
     [[nodiscard]] SoftState soft(double stiffness, std::vector<double>* forces = nullptr) const {
         const Snap exact = compare::snap({state.packing, list, state.load});
-        const auto there = compare::soften(exact.backbone, state.load.stress[1], stiffness);
+        const auto there = compare::soften(exact.backbone, state.load.loaded_stress(), stiffness);
         SoftState out{state.packing, list, state.load};
+        const std::size_t d = state.packing.axes();
         for (std::size_t b = 0; b < exact.disks.size(); ++b) {
-            const auto i = static_cast<std::size_t>(exact.disks[b]);
-            out.packing.q[2 * i] = there->packing.q[2 * b];
-            out.packing.q[2 * i + 1] = there->packing.q[2 * b + 1];
+            std::copy_n(&there->packing.q[d * b], d, &out.packing.q[d * static_cast<std::size_t>(exact.disks[b])]);
         }
-        std::copy(there->packing.q.begin() + static_cast<std::ptrdiff_t>(2 * exact.disks.size()),
+        std::copy(there->packing.q.begin() + static_cast<std::ptrdiff_t>(there->packing.length_at(0)),
                   there->packing.q.end(),
-                  out.packing.q.begin() + static_cast<std::ptrdiff_t>(2 * state.packing.radius.size()));
+                  out.packing.q.begin() + static_cast<std::ptrdiff_t>(state.packing.length_at(0)));
         if (forces != nullptr) {
             *forces = there->forces;
         }
@@ -49,9 +49,73 @@ Sample of_cell(const std::string& name) {
     return {read_any_state(scratch::data("cells/" + name + ".json")).state};
 }
 
+/// In a box, a slab (walls along z), an orthorhombic and a triclinic cell.
+constexpr std::array sphere_names{"box_uniform_30_1", "slab_uniform_30_1", "ortho_uniform_30_1", "tri_uniform_30_1"};
+Sample of_spheres(const std::string& name) {
+    return {test::on_its_lengths(test::state_of_spheres(test::read_spheres(name)))};
+}
+
 } // namespace
 
 BOOST_AUTO_TEST_SUITE(compare_snap)
+
+BOOST_AUTO_TEST_CASE(soft_spheres_snap_to_their_vertex_in_walls_slabs_and_cells) {
+    for (const char* name : sphere_names) {
+        BOOST_TEST_INFO_SCOPE(name);
+        const Sample sample = of_spheres(name);
+        std::vector<double> forces;
+        SoftState soft = sample.soft(1e6, &forces);
+        const Snap found = compare::snap(soft);
+        BOOST_TEST_REQUIRE((found.outcome == SnapOutcome::vertex), found.reason);
+        double way = 0;
+        for (const int disk : found.disks) {
+            const auto i = static_cast<std::size_t>(disk);
+            double square = 0;
+            for (std::size_t k = 3 * i; k < 3 * i + 3; ++k) {
+                square += std::pow(soft.packing.q[k] - found.packing.q[k], 2);
+            }
+            BOOST_TEST(found.moved[i] >= std::sqrt(square));
+            way = std::max(way, std::sqrt(square));
+        }
+        BOOST_TEST(found.distance < way + 1e-10);
+        BOOST_TEST(way > 1e-8);
+        const double mean = compare::mean_force(forces);
+        BOOST_TEST(compare::split_forces(soft, forces, mean, found).rest < 1e-8);
+        const auto state = compare::with_resting_rattlers(found, 3);
+        BOOST_TEST_REQUIRE(state.ok(), (state.ok() ? "" : state.failure().message(3)));
+        const Certification truth = certify(state.value());
+        BOOST_TEST((truth.verdict == Verdict::proved));
+        BOOST_TEST((compare::carrying(state.value(), truth) == sample.list));
+        // A contact less holds nothing; one more is too many; beyond the interval a force has the other sign.
+        SoftState wrong = soft;
+        wrong.contacts.erase(wrong.contacts.begin() + 5);
+        BOOST_TEST((compare::snap(wrong).outcome == SnapOutcome::moving));
+        wrong = soft;
+        wrong.load.stress[2] *= 1.3;
+        const Snap overloaded = compare::snap(wrong);
+        BOOST_TEST((overloaded.outcome == SnapOutcome::refuted), overloaded.reason);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_sphere_among_its_like_on_a_wall_is_held_by_a_contact_without_force) {
+    const State hard = test::on_its_lengths(test::state_of_spheres(test::read_spheres("box_bidisperse_100_1")));
+    for (const double swollen : {1.0, 1 + 1e-7}) {
+        SoftState soft{hard.packing, compare::able_to_carry(hard.packing, hard.contacts), hard.load};
+        for (double& radius : soft.packing.radius) {
+            radius *= swollen;
+        }
+        BOOST_TEST(soft.contacts.size() == 261U);
+        BOOST_TEST(std::count(soft.contacts.begin(), soft.contacts.end(), Contact(ContactKind::lower_wall, 12, 2)) ==
+                   1);
+        const Snap found = compare::snap(soft);
+        BOOST_TEST_REQUIRE((found.outcome == SnapOutcome::vertex), found.reason);
+        BOOST_TEST(found.rattlers.size() == 14U);
+        BOOST_TEST(compare::carrying(found).size() == 260U);
+        const auto state = compare::with_resting_rattlers(found, 3);
+        BOOST_TEST_REQUIRE(state.ok(), (state.ok() ? "" : state.failure().message(3)));
+        BOOST_TEST((certify(state.value()).verdict == Verdict::proved));
+    }
+}
 
 BOOST_AUTO_TEST_CASE(soft_grains_are_proved_near_the_vertex_that_they_came_from) {
     const Sample sample;
@@ -88,8 +152,8 @@ BOOST_AUTO_TEST_CASE(rattlers_come_to_rest_and_the_state_is_an_equilibrium_with_
     BOOST_TEST((compare::carrying(state.value(), truth) == sample.list));
 }
 
-BOOST_AUTO_TEST_CASE(frames_of_a_periodic_cell_snap_to_their_vertex) {
-    for (const char* name : {"rect_16", "tilt_16"}) {
+BOOST_AUTO_TEST_CASE(frames_of_a_periodic_cell_or_a_channel_snap_to_their_vertex) {
+    for (const char* name : {"rect_16", "tilt_16", "channel_16"}) {
         for (const double stiffness : {1e5, 1e7}) {
             BOOST_TEST_INFO_SCOPE(name << ", stiffness " << stiffness);
             const Sample sample = of_cell(name);
@@ -221,29 +285,31 @@ BOOST_AUTO_TEST_CASE(lists_without_a_vertex_are_refused_with_the_reason) {
 }
 
 BOOST_AUTO_TEST_CASE(a_rattler_without_room_is_no_vertex) {
-    const Sample sample;
-    SoftState soft = sample.soft(1e6);
-    const Snap before = compare::snap(soft);
-    BOOST_TEST_REQUIRE(!before.rattlers.empty());
-    BOOST_TEST(before.cage > 0.0);
-    double& radius = soft.packing.radius[static_cast<std::size_t>(before.rattlers.front())];
-    const double fits = radius;
-    std::vector<SnapOutcome> outcomes;
-    for (double factor = 1; factor < 1.5; factor += 1.0 / 64) {
-        radius = factor * fits;
-        const Snap after = compare::snap(soft);
-        outcomes.push_back(after.outcome);
-        if (after.outcome == SnapOutcome::refuted) {
-            BOOST_TEST(after.reason.find("has no room") != std::string::npos, after.reason);
-        } else if (after.outcome == SnapOutcome::vertex) {
-            BOOST_TEST(compare::without_room(after) == "");
+    for (const Sample& sample : {Sample(), of_spheres("box_uniform_30_1")}) {
+        SoftState soft = sample.soft(1e6);
+        const Snap before = compare::snap(soft);
+        BOOST_TEST_REQUIRE(!before.rattlers.empty());
+        BOOST_TEST(before.cage > 0.0);
+        double& radius = soft.packing.radius[static_cast<std::size_t>(before.rattlers.front())];
+        const double fits = radius;
+        std::vector<SnapOutcome> outcomes;
+        for (double factor = 1; factor < 1.5; factor += 1.0 / 64) {
+            radius = factor * fits;
+            const Snap after = compare::snap(soft);
+            outcomes.push_back(after.outcome);
+            if (after.outcome == SnapOutcome::refuted) {
+                BOOST_TEST(after.reason.find("has no room") != std::string::npos, after.reason);
+            } else if (after.outcome == SnapOutcome::vertex) {
+                BOOST_TEST(compare::without_room(after) == "");
+            }
         }
+        BOOST_TEST((outcomes.front() == SnapOutcome::vertex));
+        BOOST_TEST((outcomes.back() == SnapOutcome::refuted));
+        BOOST_TEST(std::is_sorted(outcomes.begin(), outcomes.end(), [](SnapOutcome a, SnapOutcome b) {
+            return a == SnapOutcome::vertex &&
+                   b == SnapOutcome::refuted; // once there is no room, there is none for more
+        }));
     }
-    BOOST_TEST((outcomes.front() == SnapOutcome::vertex));
-    BOOST_TEST((outcomes.back() == SnapOutcome::refuted));
-    BOOST_TEST(std::is_sorted(outcomes.begin(), outcomes.end(), [](SnapOutcome a, SnapOutcome b) {
-        return a == SnapOutcome::vertex && b == SnapOutcome::refuted; // once there is no room, there is none for more
-    }));
 }
 
 BOOST_AUTO_TEST_CASE(soft_limits_approach_the_exact_one_as_one_over_the_stiffness) {

@@ -11,9 +11,9 @@ import isostat
 series = project / "tests/data/series/series.toml"
 
 
-def soft(stiffness):
-    """An equilibrium whose disks overlap as grains of that stiffness do, with its contacts that carry a force."""
-    state = isostat.prepare(30, seed=3)
+def soft(stiffness, dimension=2):
+    """An equilibrium whose grains overlap as those of that stiffness do, with its contacts that carry a force."""
+    state = isostat.prepare(30 if dimension == 2 else 15, seed=3, dimension=dimension)
     forces = isostat.inspect(state).forces
     carry = forces > 1e-9
     contacts = state.contacts[carry]
@@ -29,7 +29,7 @@ def soft(stiffness):
     hard = moved(state.positions[grains], state.length)
     step = np.linalg.solve(isostat.contact_matrix(hard).T.toarray(), forces[carry] / stiffness)
     q = np.concatenate([hard.positions.ravel(), hard.length]) + step  # H^T gives approach
-    return moved(q[:-2].reshape(-1, 2), q[-2:])
+    return moved(q[:-dimension].reshape(-1, dimension), q[-dimension:])
 
 
 class Compare(Folder):
@@ -43,6 +43,18 @@ class Compare(Folder):
             self.assertGreater(isostat.snap(soft(stiffness), stiffness=1.2 * stiffness).rest, 0.1)
             self.assertIs(isostat.certify(snap.state).verdict, isostat.Verdict.PROVED)
         self.assertTrue(math.isnan(isostat.snap(soft(1e5)).rest))  # no forces are said
+
+    def test_soft_spheres_snap_to_their_vertex(self):
+        grains = soft(1e6, dimension=3)
+        snap = isostat.snap(grains, stiffness=1e6)
+        self.assertEqual((snap.outcome, snap.h, snap.k), ("vertex", 0, 0), snap.reason)
+        self.assertEqual(snap.state.positions.shape, grains.positions.shape)
+        self.assertLess(snap.distance, 1e-3)
+        self.assertLess(snap.rest, 1e-2)
+        self.assertGreater(isostat.snap(grains, stiffness=1e6, law="hertz").rest, 0.1)
+        self.assertIs(isostat.certify(snap.state).verdict, isostat.Verdict.PROVED)
+        with self.assertRaisesRegex(isostat.BadInput, "linear"):
+            isostat.snap(grains, stiffness=1.0, law="cubic")
 
     def test_a_series_is_compared_as_by_the_program(self):
         compared = isostat.compare(series, bundle=0, local=True, output=self.folder / "out")

@@ -54,6 +54,19 @@ class Spheres(Folder):
             with self.assertRaisesRegex(isostat.BadInput, "three numbers"):
                 isostat.find_vertex(state.packing, stress=wrong)
 
+    def test_packings_are_made_of_arrays_and_read_from_files(self):
+        state = isostat.prepare(12, dimension=3)
+        packing = isostat.Packing(state.positions, list(state.radii), list(state.length))
+        self.assertEqual(packing.positions.shape, (12, 3))
+        self.assertEqual(packing.walls["upper"], ("movable",) * 3)
+        np.testing.assert_array_equal(isostat.find_vertex(packing).contacts, state.contacts)
+        for wrong in ({"length": [1, 2]}, {"lower": ["fixed"] * 2}, {"positions": np.zeros((12, 4))}):
+            with self.assertRaises(isostat.BadInput):
+                isostat.Packing(**({"positions": state.positions, "radii": list(state.radii), "length": list(state.length)} | wrong))
+        box = [0, 13.995847242391138, 0, 15.063850881057951, 0, 13.924292277825588]
+        read = isostat.read_packing(project / "tests/data/spheres/box_uniform_100_1.txt", box=box)
+        self.assertEqual(read.positions.shape, (100, 3))
+
     def test_what_takes_disks_only_says_so(self):
         state = isostat.State.read(cell)
         with self.assertRaisesRegex(isostat.BadInput, "spheres"):

@@ -1,6 +1,7 @@
 #pragma once
 // Runs played into folders as the program does it, and what the checker must say of them.
 
+#include "certificate/state_certifier.hpp"
 #include "io/json.hpp"
 #include "support/forger.hpp"
 #include "support/segments.hpp"
@@ -37,10 +38,13 @@ inline isostat::SegmentOutcome into(const std::filesystem::path& folder, isostat
     header.states_every = 1;
     isostat::RunCounters counters;
     isostat::RunDirectory directory(folder, header, isostat::RunDirectory::Mode::fresh, counters);
+    isostat::StateCertifier certifier(folder, "test", counters, directory);
+    const bool certified = options.certify >= isostat::CertifyLevel::states;
+    isostat::RunObserver& observer = certified ? static_cast<isostat::RunObserver&>(certifier) : directory;
     isostat::SegmentOutcome outcome;
     for (std::size_t k = 0; k < segments.size() && (k == 0 || outcome.completed); ++k) {
         directory.begin_segment(static_cast<int>(k), segments[k], 0, counters.equilibria);
-        outcome = run_segment(state, segments[k], static_cast<int>(k), options, counters, directory);
+        outcome = run_segment(state, segments[k], static_cast<int>(k), options, counters, observer);
     }
     directory.finish(isostat::RunStatus::completed, "");
     BOOST_TEST_MESSAGE((outcome.failure ? outcome.failure->message() : "completed"));

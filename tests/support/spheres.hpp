@@ -89,4 +89,17 @@ inline State state_of_spheres(const Json& file) {
     return state;
 }
 
+/// The same forces, as stresses on the lengths that it has, the last one 1.
+inline State on_its_lengths(State state) {
+    state.load.refer_to(state.packing);
+    PerAxis<double> stress{};
+    for (std::size_t a = 0; a < 3; ++a) {
+        stress[a] = state.load.stress[a] * state.packing.length(static_cast<int>(a));
+    }
+    for (std::size_t a = 0; a < 3; ++a) {
+        state.load.stress[a] = stress[a] / stress[2];
+    }
+    return state;
+}
+
 } // namespace isostat::test

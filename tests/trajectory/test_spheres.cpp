@@ -22,6 +22,11 @@ Contact floor_of(int sphere) {
     return {ContactKind::lower_wall, sphere, 2};
 }
 
+/// One equilibrium on, or back where `direction` is -1, with the arc enclosed.
+Played one_proved_arc(const State& start, int direction) {
+    return ::crafted::play(start, direction, 1, {}, {.certify = CertifyLevel::arcs});
+}
+
 void check_sphere_arc(const Played& played, const Contact& opened, const Contact& closed, double stress) {
     BOOST_TEST_REQUIRE(played.outcome.completed, played.why());
     BOOST_TEST_REQUIRE(played.records.arcs.size() == 1U);
@@ -29,6 +34,9 @@ void check_sphere_arc(const Played& played, const Contact& opened, const Contact
     BOOST_TEST((arc.opened == opened), to_string(arc.opened) << " opened");
     BOOST_TEST((arc.closed == closed), to_string(arc.closed) << " closed");
     BOOST_TEST(arc.stress == stress, boost::test_tools::tolerance(1e-12));
+    BOOST_TEST_REQUIRE(arc.certificate.has_value());
+    BOOST_TEST((arc.certificate->verdict == Verdict::proved), arc.certificate->reason);
+    BOOST_TEST((arc.certificate->power == Verdict::proved), arc.certificate->power_reason);
 }
 
 void check_sphere_lengths(const Packing& packing, const PerAxis<double>& lengths) {
@@ -106,15 +114,29 @@ BOOST_AUTO_TEST_SUITE(trajectory)
 BOOST_AUTO_TEST_CASE(two_spheres_go_round_a_loop) {
     const double dx = std::sqrt(7.0); // radii 1 and 2
     const State start = start_of_spheres("closed_two", {1, 1.5, 1});
-    const Played down = ::crafted::play(start, -1, 1);
+    const Played down = one_proved_arc(start, -1);
     check_sphere_arc(down, floor_of(1), ::crafted::left(1), 1 / dx);
     check_sphere_lengths(down.state.packing, {4, 4, 3 + dx});
-    const Played up = ::crafted::play(down.state, +1, 1);
+    const Played up = one_proved_arc(down.state, +1);
     check_sphere_arc(up, ::crafted::left(1), floor_of(1), dx);
     check_sphere_lengths(up.state.packing, {3 + dx, 4, 4});
     const EquilibriumRecord& there = down.records.equilibria.back();
     BOOST_TEST(there.strain[2] == 1 - (3 + dx), boost::test_tools::tolerance(1e-12)); // lengths of reference are 1
     BOOST_TEST(there.potential == 4 + 6 + (3 + dx) / dx, boost::test_tools::tolerance(1e-12));
+}
+
+/// The small ones in opposite corners of the floor: the large one leaves it for a wall, and comes back.
+BOOST_AUTO_TEST_CASE(three_spheres_go_round_a_loop) {
+    const Json file = test::read_spheres("closed_three");
+    const Json& expected = file["expected"];
+    const State start = start_of_spheres("closed_three", {1, 1.3, 2.5});
+    const Played down = one_proved_arc(start, -1);
+    check_sphere_arc(down, floor_of(2), ::crafted::left(2),
+                     std::stod(expected["limit_down"]["F_3"].get<std::string>()));
+    check_sphere_lengths(down.state.packing, expected["limit_down"]["then_cell"].get<PerAxis<double>>());
+    const Played up = one_proved_arc(down.state, +1);
+    check_sphere_arc(up, ::crafted::left(2), floor_of(2), expected["way_back"]["F_3"].get<double>());
+    check_sphere_lengths(up.state.packing, {start.packing.length(0), start.packing.length(1), start.packing.length(2)});
 }
 
 // F_1 = 1 - t, F_2 = 1.5 - t, F_3 = 1 + 2 t: the floor of the small sphere opens at F_3 / F_1 = tau, t < 0.
@@ -195,6 +217,36 @@ BOOST_AUTO_TEST_CASE(sequences_of_an_independent_program_are_followed) {
         }
         BOOST_TEST(next == played.records.arcs.size());
         BOOST_TEST(played.records.equilibria.size() == static_cast<std::size_t>(count) + 1);
+    }
+}
+
+/// A triclinic cell is loaded along an axis, and sheared in each of its three planes.
+BOOST_AUTO_TEST_CASE(every_arc_of_spheres_is_certified_with_its_power_and_none_is_changed) {
+    struct Loaded {
+        const char* name;
+        int axis, equilibria;
+    };
+    for (const auto& [name, axis, equilibria] :
+         {Loaded{"box_uniform_30_1", 2, 1}, Loaded{"slab_uniform_30_1", 2, 3}, Loaded{"ortho_uniform_30_1", 0, 1},
+          Loaded{"tri_uniform_30_1", 2, 1}, Loaded{"tri_uniform_30_1", 3, 1}, Loaded{"tri_uniform_30_1", 4, 1},
+          Loaded{"tri_uniform_30_1", 5, 1}}) {
+        BOOST_TEST_INFO_SCOPE(name << " along " << axis);
+        State state = test::state_of_spheres(test::read_spheres(name));
+        state.load.loaded_axis = axis;
+        snap_to_grid(state.packing);
+        const RunOptions options{.max_strain = 1e9, .certify = CertifyLevel::arcs};
+        const Played plain = ::crafted::play(state, +1, equilibria, {}, {.max_strain = 1e9});
+        const Played proved = ::crafted::play(state, +1, equilibria, {}, options);
+        BOOST_TEST_REQUIRE(proved.outcome.completed, proved.why());
+        BOOST_TEST((plain.state.packing.q == proved.state.packing.q));
+        BOOST_TEST_REQUIRE(plain.records.arcs.size() == proved.records.arcs.size());
+        for (std::size_t k = 0; k < proved.records.arcs.size(); ++k) {
+            const ArcRecord& arc = proved.records.arcs[k];
+            BOOST_TEST((arc.opened == plain.records.arcs[k].opened && arc.closed == plain.records.arcs[k].closed));
+            BOOST_TEST_REQUIRE(arc.certificate.has_value());
+            BOOST_TEST((arc.certificate->verdict == Verdict::proved), arc.step << ": " << arc.certificate->reason);
+            BOOST_TEST((arc.certificate->power == Verdict::proved), arc.step << ": " << arc.certificate->power_reason);
+        }
     }
 }
 

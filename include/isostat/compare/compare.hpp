@@ -30,8 +30,7 @@ struct FileContact {
     std::string row;
 };
 
-/// One frame. Lengths and forces in the unit of the manifest (its factors are multiplied out); left and bottom wall at
-/// 0.
+/// One frame. Lengths and forces in the unit of the manifest (its factors are multiplied out); lower walls at 0.
 struct Frame {
     int number = 0; ///< row of frames.csv, from 0
     long timestep = 0;
@@ -48,13 +47,13 @@ struct Frame {
 /// What the manifest says of every frame.
 struct Series {
     std::string title, program;
+    int dimension = 2; ///< 3: spheres
     ForceLaw law = ForceLaw::none;
-    double stiffness = 0; ///< 0: no law
-    bool listed = false;  ///< contacts between disks come from a file; else they are the pairs that overlap
-    bool wall_forces =
-        false;               ///< of each disk, from columns; else walls that a disk overlaps, with the force of the law
-    double rest = 1e-3;      ///< largest unbalanced force of a frame at rest, in mean forces
-    double agreement = 1e-3; ///< largest |force - stiffness overlap| of a frame that is understood, in mean forces
+    double stiffness = 0;     ///< 0: no law
+    bool listed = false;      ///< contacts between disks come from a file; else they are the pairs that overlap
+    bool wall_forces = false; ///< of each grain, from columns; else walls that one overlaps, with the force of the law
+    double rest = 1e-3;       ///< largest unbalanced force of a frame at rest, in mean forces
+    double agreement = 1e-3;  ///< largest |force - stiffness overlap| of a frame that is understood, in mean forces
     /// 0: another law; soft limits are predicted for linear contacts only.
     [[nodiscard]] double linear_stiffness() const { return law == ForceLaw::linear ? stiffness : 0; }
 };
@@ -63,7 +62,7 @@ struct Series {
 /// first frame; frames by time step. The constructor (manifest, table of frames) and `next` throw `Error(bad_input)`
 /// with file, line (of rows: and column) and what was expected: unknown keys, missing columns and wall positions (the
 /// bounds of a dump are never taken), numbers that are none, ids that are not there, radii that change, time steps that
-/// a file does not have, sigma2 that is not the force on the wall over the reference length. Contradictions between
+/// a file does not have, stresses that are not the force on the wall over its reference area. Contradictions between
 /// forces, overlaps and lists are not looked at: `compare` names them frame by frame. A lattice has many tilts, whole
 /// periods apart, and a disk many places: each is taken next to the one of the frame before, so contacts keep their
 /// images (programs flip a sheared box).
@@ -103,7 +102,8 @@ const char* to_string(FrameStatus status);
 struct FrameResult {
     int frame = 0;
     long timestep = 0;
-    double sigma2 = 0, unbalanced = 0;
+    double stress = 0; ///< the loaded one
+    double unbalanced = 0;
     int listed = 0, overlapping = 0, twice = 0, missing_rows = 0;
     Counting counting; ///< of the list without rattlers, at the soft place
     int rattlers = 0;
@@ -121,9 +121,9 @@ struct FrameResult {
     /// of the file. Where the vertex is one downhill: |g - f*|, f* its forces, an upper bound against that vertex; and,
     /// with h > 0, what of it is along the self-stresses of the list, in doubles.
     double downhill = 0, self_stress = 0;
-    double eps1 = 0, eps2 = 0;           ///< strains of the frame
-    double true_eps1 = 0, true_eps2 = 0; ///< of its true vertex
-    int node = -1;                       ///< of the bundle with this list
+    PerAxis<double> strain{};      ///< of the frame
+    PerAxis<double> true_strain{}; ///< of its true vertex
+    int node = -1;                 ///< of the bundle with this list
     /// With `local`: the exact run from the vertex of the frame before, at the load of this one, has the list of this
     /// frame ("same"), another one ("other"), or ended before ("undecided" and why). Empty: not asked, or no vertex
     /// there.
@@ -133,17 +133,18 @@ struct FrameResult {
     std::string nearest_arc;
 };
 
-/// One equilibrium of the exact run: a list of contacts, the interval of sigma_2 in which it is supported, and what
+/// One equilibrium of the exact run: a list of contacts, the interval of the loaded stress that supports it, and what
 /// stiffness does to the end of it ahead (predictions; NaN without one).
 struct PathEquilibrium {
-    int number = 0; ///< rearrangements before it
-    double sigma2 = 0, eps2 = 0, low = 0, high = 0;
+    int number = 0;                ///< rearrangements before it
+    double stress = 0, strain = 0; ///< the loaded ones
+    double low = 0, high = 0;
     int arcs = 0;
     bool proved = false;
     std::vector<Contact> contacts; ///< that carry a force, sorted
     State state;                   ///< complete
     Contact opens;                 ///< at the end ahead
-    double soft_limit = 0;         ///< of sigma_2 ahead, at the stiffness of the series
+    double soft_limit = 0;         ///< of that stress ahead, at the stiffness of the series
     double stiffness_needed = 0;   ///< for which it is within 1e-3 of the exact one
 };
 
@@ -157,7 +158,7 @@ struct BundleNode {
 struct BundleMember {
     OpeningRule rule = OpeningRule::most_negative;
     std::uint64_t seed = 0;   ///< of the rule `random`
-    std::string rest;         ///< down, up, left, right: where rattlers rest; "start": as in the start
+    std::string rest;         ///< down, up, left, right, back, front: where rattlers rest; "start": as in the start
     std::vector<int> nodes;   ///< one after another
     std::vector<int> at_load; ///< per frame: the node there, -1 beyond the end of the run
     std::string end;          ///< empty, or why it ends before the last frame
@@ -188,6 +189,7 @@ struct CompareOptions {
 };
 
 struct Comparison {
+    int dimension = 2;
     std::vector<FrameResult> frames;
     std::vector<PathEquilibrium> path;
     std::string path_end; ///< empty, or why the exact run ends before the last frame

@@ -88,6 +88,9 @@ std::vector<Contact> carrying(const State& state, const Certification& truth);
 /// The same of a state that is known to be an equilibrium: by its structural zeros. Cost: a rank, no bound.
 std::vector<Contact> carrying(const State& equilibrium);
 
+/// Those of a vertex, with the numbers of the whole packing.
+std::vector<Contact> carrying(const Snap& snap);
+
 /// Names of contacts, " 1-2 3-left", " none", or the first of them and how many more.
 std::string names_of(const std::vector<Contact>& contacts, int dimension = 2);
 

@@ -39,6 +39,8 @@ class Comparison:
         The bundle of exact runs.
     departure : dict or None
         The first frame that leaves the exact run: ``from``, ``to``, ``reason``, ``words``, ``opened``, ``closed``.
+    dimension : int
+        3: spheres, whose loaded stress is sigma3.
     status : int
         0: every frame at rest is the exact equilibrium of its load; 1: one departs; 2: one is undecided, or none is at rest.
     """
@@ -49,6 +51,7 @@ class Comparison:
         self.nodes = _array(content["bundle"]["nodes"])
         self.members = _array(content["bundle"]["members"])
         self.departure = content["departure"]
+        self.dimension = content.get("dimension", 2)
         self.status = content["status"]
         self.counts = content["counts"]
 

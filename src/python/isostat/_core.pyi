@@ -31,8 +31,8 @@ class Packing:
         radii: Sequence[float],
         length: Sequence[float],
         *,
-        lower: Sequence[str] = ...,
-        upper: Sequence[str] = ...,
+        lower: Optional[Sequence[str]] = ...,
+        upper: Optional[Sequence[str]] = ...,
         fixed: Sequence[bool] = ...,
     ) -> None: ...
     def __len__(self) -> int: ...
@@ -58,9 +58,9 @@ class State:
         length: Sequence[float],
         contacts: Iterable[Sequence[object]],
         *,
-        lower: Sequence[str] = ...,
-        upper: Sequence[str] = ...,
-        stress: Sequence[float] = ...,
+        lower: Optional[Sequence[str]] = ...,
+        upper: Optional[Sequence[str]] = ...,
+        stress: Optional[Sequence[float]] = ...,
         reference_length: Optional[Sequence[float]] = ...,
         load: str = ...,
         infinitesimal: Optional[Floats] = ...,
@@ -354,6 +354,7 @@ def read_packing(
     box: Optional[Sequence[float]] = ...,
     radius: str = ...,
     diameter: str = ...,
+    dimension: Optional[int] = ...,
 ) -> Packing: ...
 class Snap:
     outcome: Final[str]
@@ -367,7 +368,7 @@ class Snap:
     stiffness: Final[float]
     state: Final[Optional[State]]
 
-def snap(state: State, *, stiffness: float = ...) -> Snap: ...
+def snap(state: State, *, stiffness: float = ..., law: str = ...) -> Snap: ...
 def _compare(
     series: Path, reference: Optional[State], bundle: int, local: bool, nearest_arc: bool, output: Optional[Path]
 ) -> str: ...

@@ -10,7 +10,7 @@ import numpy as np
 
 from ._core import ExactPacking, Inspection, Packing, State, count
 
-_walls = {-1: "left", -2: "bottom", -3: "right", -4: "top"}
+_walls = {-1: "left", -2: "bottom", -3: "right", -4: "top", -5: "back", -6: "front"}
 
 
 def contact_pair(contact: Sequence[Any]) -> tuple[int, int]:
@@ -33,9 +33,9 @@ def from_arrays(
     length: Sequence[float],
     contacts: Iterable[Sequence[object]],
     *,
-    lower: Sequence[str] = ("fixed", "fixed"),
-    upper: Sequence[str] = ("movable", "movable"),
-    stress: Sequence[float] = (1.0, 1.0),
+    lower: Sequence[str] | None = None,
+    upper: Sequence[str] | None = None,
+    stress: Sequence[float] | None = None,
     reference_length: Sequence[float] | None = None,
     load: str = "nominal",
     infinitesimal: np.ndarray | None = None,
@@ -46,23 +46,23 @@ def from_arrays(
 
     Parameters
     ----------
-    positions : (n, 2) float
+    positions : (n, 2) float, of spheres (n, 3)
         Centres. Unit of length: yours.
     radii : (n,) float
-    length : (2,) float
-        Positions of the right and the top wall; the left and the bottom wall are at 0.
+    length : (d,) float
+        Positions of the right, the top (and the front) wall; the lower walls are at 0.
     contacts : rows (i, j)
-        Two disks, or a disk and ``"left"``, ``"bottom"``, ``"right"``, ``"top"`` (or -1 to -4). They
-        are part of the state: never found from a threshold.
-    lower, upper : pairs of "fixed", "absent", and for `upper` "movable"
-    stress : (2,) float
-        sigma_1 on the right, sigma_2 on the top wall; positive in compression.
-    reference_length : (2,) float, optional
+        Two grains, or a grain and ``"left"``, ``"bottom"``, ``"right"``, ``"top"`` (or -1 to -4), of spheres
+        ``"back"``, ``"front"`` (-5, -6). They are part of the state: never found from a threshold.
+    lower, upper : for each axis "fixed" (default of `lower`), "absent", and for `upper` "movable" (default)
+    stress : (d,) float
+        On the right, the top (and the front) wall; positive in compression; default: ones.
+    reference_length : (d,) float, optional
         Lengths at which nominal stress and strain are defined; default: `length`, where no wall is absent.
     load : "nominal" or "true"
-    infinitesimal : (n, 2) float, optional
+    infinitesimal : (n, d) float, optional
         Infinitesimal loads, on which rattlers rest.
-    disk_force : (n, 2) float, optional
+    disk_force : (n, d) float, optional
         External forces on disks; stress x length.
     fixed : numbers of disks that cannot move
 
@@ -77,11 +77,15 @@ def from_arrays(
     """
     positions = np.asarray(positions, dtype=float)
     radii = np.asarray(radii, dtype=float)
-    if positions.shape != (len(radii), 2):
-        raise ValueError(f"positions has shape {positions.shape}: expected ({len(radii)}, 2)")
+    axes = positions.shape[-1] if positions.ndim == 2 else 0
+    if axes not in (2, 3) or len(positions) != len(radii):
+        raise ValueError(f"positions has shape {positions.shape}: expected ({len(radii)}, 2), of spheres ({len(radii)}, 3)")
+    lower, upper = lower or ["fixed"] * axes, upper or ["movable"] * axes
+    stress = [1.0] * axes if stress is None else stress
     content: dict[str, Any] = {
         "format": "isostat-state",
         "version": 2,
+        "dimension": axes,
         "disks": np.column_stack((positions, radii)).tolist(),
         "length": [float(value) for value in length],
         "walls": {"lower": list(lower), "upper": list(upper)},

@@ -203,14 +203,17 @@ def comparison(compared, ax: Optional[Axes] = None) -> Axes:
     """
     ax = _axes(ax)
     path, frames = compared.path, compared.frames
-    ax.plot(np.repeat(path["eps2"], 2)[:-1], np.repeat(path["sigma2"], 2)[1:], label="exact run", linewidth=1.2)
-    strain = np.where(np.isnan(frames["true_eps2"]), frames["eps2"], frames["true_eps2"])
+    d = compared.dimension
+    eps, sigma, true_eps = f"eps{d}", f"sigma{d}", f"true_eps{d}"
+    if len(path):
+        ax.plot(np.repeat(path[eps], 2)[:-1], np.repeat(path[sigma], 2)[1:], label="exact run", linewidth=1.2)
+    strain = np.where(np.isnan(frames[true_eps]), frames[eps], frames[true_eps])
     marks = {"same": "o", "early": "^", "late": "v", "other": "s", "soft": "x", "moving": "+"}
     for status in dict.fromkeys(frames["status"]):
         at = frames["status"] == status
-        ax.plot(strain[at], frames["sigma2"][at], marks.get(status, "*"), label=status, linestyle="none")
-    ax.set_xlabel("strain eps2")
-    ax.set_ylabel("sigma2")
+        ax.plot(strain[at], frames[sigma][at], marks.get(status, "*"), label=status, linestyle="none")
+    ax.set_xlabel(f"strain {eps}")
+    ax.set_ylabel(sigma)
     ax.legend()
     return ax
 

@@ -44,8 +44,8 @@ int rank(const sparse::Matrix<std::uint64_t>& matrix, const sparse::Ordering& or
 int rank(const sparse::Matrix<std::uint32_t>& matrix, const sparse::Ordering& ordering);
 
 /// The rank mod p, exactly, of any matrix: a lower bound of the rank over Q, as above. Columns are eliminated in a
-/// COLAMD order, of many spheres in one by nested dissection; pivots are the candidate rows with the fewest entries in `matrix`. \pre rows are not repeated in a
-/// column. Cost: 1.3 to 1.6 times the other.
+/// COLAMD order, of many spheres in one by nested dissection; pivots are the candidate rows with the fewest entries in
+/// `matrix`. \pre rows are not repeated in a column. Cost: 1.3 to 1.6 times the other.
 int rank(const sparse::Matrix<std::uint64_t>& matrix);
 
 } // namespace isostat::exact

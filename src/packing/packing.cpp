@@ -207,8 +207,7 @@ void require_box(const Packing& packing, const std::string& source, const std::s
 
 void require_plane(const Packing& packing, const std::string& source, const std::string& what) {
     if (packing.dimension != plane) {
-        throw Error(ErrorKind::bad_input, fmt::format("{}: a packing of spheres (dimension {}); {} takes disks only so "
-                                                      "far, isostat inspect, certify and verify take spheres",
+        throw Error(ErrorKind::bad_input, fmt::format("{}: a packing of spheres (dimension {}); {} takes disks only",
                                                       source, packing.dimension, what));
     }
 }

@@ -88,7 +88,7 @@ BOOST_AUTO_TEST_CASE(paths_in_the_space_of_stresses_are_proved_and_others_refute
     }
 }
 
-BOOST_AUTO_TEST_CASE(an_altered_arc_of_spheres_is_not_proved) {
+BOOST_AUTO_TEST_CASE(an_altered_arc_of_spheres_is_not_proved, *boost::unit_test::label("slow")) {
     const scratch::Folder scratch_folder;
     const std::filesystem::path folder = scratch_folder.path() / "run";
     play_spheres(sphere_runs[1], folder);

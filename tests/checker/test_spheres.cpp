@@ -136,7 +136,7 @@ BOOST_AUTO_TEST_CASE(ranges_of_forces_of_spheres_hold_the_digits_of_another_prog
     }
 }
 
-BOOST_AUTO_TEST_CASE(forged_certificates_of_spheres_do_not_verify) {
+BOOST_AUTO_TEST_CASE(forged_certificates_of_spheres_do_not_verify, *boost::unit_test::label("slow")) {
     struct Forgery {
         const char* name;
         const char* claim; ///< that is refuted; "": some claim is not proved

@@ -23,7 +23,7 @@ BOOST_AUTO_TEST_SUITE(cli)
 
 // A pinned sphere keeps two contacts and a coordinate is held relative to it: with another one pinned the zeros show
 // (C9).
-BOOST_AUTO_TEST_CASE(zeros_of_a_pinned_sphere_are_seen_while_a_coordinate_is_held) {
+BOOST_AUTO_TEST_CASE(zeros_of_a_pinned_sphere_are_seen_while_a_coordinate_is_held, *boost::unit_test::label("slow")) {
     const scratch::Folder folder;
     scratch::write(folder / "scene.toml",
                    "[packing]\nspheres = 30\nlaw = \"equal\"\njitter = 1e-3\nseed = 5\n[cell]\nkind = \"triclinic\"\n"
@@ -35,7 +35,8 @@ BOOST_AUTO_TEST_CASE(zeros_of_a_pinned_sphere_are_seen_while_a_coordinate_is_hel
 
 // A wall without force holds a sphere in the plane of its contacts: when the infinitesimal loads open that wall the
 // load does work too, and the arc does not end where the power of the infinitesimal ones turns.
-BOOST_AUTO_TEST_CASE(a_sphere_that_bears_force_leaves_its_plane_with_the_power_of_the_load) {
+BOOST_AUTO_TEST_CASE(a_sphere_that_bears_force_leaves_its_plane_with_the_power_of_the_load,
+                     *boost::unit_test::label("slow")) {
     const scratch::Folder folder;
     scratch::write(folder / "scene.toml", "[packing]\nspheres = 12\nlaw = \"bidisperse\"\nseed = 22\n[[programme]]\n"
                                           "do = \"up\"\nequilibria = 3\n[output]\npictures = false\n");
@@ -47,7 +48,7 @@ BOOST_AUTO_TEST_CASE(a_sphere_that_bears_force_leaves_its_plane_with_the_power_o
 }
 
 // A sphere that comes level with its neighbours of the same size at the wall that it meets.
-BOOST_AUTO_TEST_CASE(an_arc_may_end_where_its_power_is_0_by_counting) {
+BOOST_AUTO_TEST_CASE(an_arc_may_end_where_its_power_is_0_by_counting, *boost::unit_test::label("slow")) {
     const scratch::Folder folder;
     scratch::write(folder / "scene.toml", "[packing]\nspheres = 45\nlaw = \"bidisperse\"\nseed = 2\n[[programme]]\n"
                                           "do = \"up\"\nequilibria = 1\n[output]\npictures = false\n");
@@ -63,7 +64,8 @@ BOOST_AUTO_TEST_CASE(an_arc_may_end_where_its_power_is_0_by_counting) {
     expect(run({"verify", out}), 1);
 }
 
-BOOST_AUTO_TEST_CASE(two_walls_of_an_edge_bear_one_force_and_the_infinitesimal_loads_order_them) {
+BOOST_AUTO_TEST_CASE(two_walls_of_an_edge_bear_one_force_and_the_infinitesimal_loads_order_them,
+                     *boost::unit_test::label("slow")) {
     for (const EdgeRun& edge : edge_runs) {
         BOOST_TEST_INFO_SCOPE("seed " << edge.seed);
         const scratch::Folder folder;

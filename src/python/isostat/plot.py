@@ -314,7 +314,8 @@ def increment_values(run: Records, quantity: str = "strain") -> np.ndarray:
 
     A stress that was reached inside a supported interval (``arcs`` = 0) is no rearrangement.
     """
-    column = _curve(run)[{"strain": 0, "stress": 1}[quantity]]
+    strain, ratio, _ = _curve(run)
+    column = {"strain": strain, "stress": ratio}[quantity]
     places = {int(number): k for k, number in enumerate(run.equilibria["number"])}
     values = []
     for k, row in enumerate(run.equilibria):

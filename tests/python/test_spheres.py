@@ -67,6 +67,32 @@ class Spheres(Folder):
         read = isostat.read_packing(project / "tests/data/spheres/box_uniform_100_1.txt", box=box)
         self.assertEqual(read.positions.shape, (100, 3))
 
+    def test_triaxial_tests_have_p_q_and_two_strains(self):
+        for loaded, rates in (("z", (0, 0, 1)), ("constant_mean", (-1, -1, 2))):
+            with self.subTest(loaded):
+                out = self.run_scene(f"""
+[packing]
+spheres = 12
+seed = 2
+[load]
+loaded = "{loaded}"
+[[programme]]
+do = "up"
+equilibria = 2
+""", "--force")
+                run = isostat.load(out)
+                test = run.triaxial
+                self.assertEqual(len(test), 3)
+                np.testing.assert_allclose((test["p"][0], test["q"][0]), (1, 0), atol=1e-15)
+                rise = test["q"] / 3  # of t on the path, of a third of sigma3 alone
+                np.testing.assert_allclose(test["p"], 1 + rise * sum(rates), rtol=1e-12)
+                self.assertGreater(test["q"][2], 0)
+                last = run.states[2]
+                strain = np.log(np.array(last.reference_length) / np.array(last.length))
+                np.testing.assert_allclose((test["axial"][2], test["volumetric"][2]), (strain[2], strain.sum()), rtol=1e-9)
+                isostat.plot.staircase(run)
+                isostat.plot.increments(run)
+
     def test_what_takes_disks_only_says_so(self):
         state = isostat.State.read(cell)
         with self.assertRaisesRegex(isostat.BadInput, "spheres"):

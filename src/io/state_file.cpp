@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace isostat {
 
@@ -224,7 +225,12 @@ void read_path(const Field& field, const Packing& packing, Load& load) {
         along.rate[k] = rates[k];
         along.at[k] = stress.at(k).number();
     }
-    load.set_loaded_stress(path.at("t").number());
+    const double t = path.at("t").number();
+    constexpr double farthest = 1e200; // the parts of a product with a rate are doubles then (`exact_stress`)
+    if (t != 0 && !(std::abs(t) >= 1 / farthest && std::abs(t) <= farthest)) {
+        path.at("t").fail("0, or a magnitude from 1e-200 to 1e200");
+    }
+    load.set_loaded_stress(t);
     if (!(load.other_stress() > 0)) {
         stress.fail("a mean stress above 0");
     }

@@ -3,6 +3,7 @@
 #include "trajectory/limit_attempts.hpp"
 #include "trajectory/segment_start.hpp"
 
+#include <isostat/core/error.hpp>
 #include <isostat/core/machine.hpp>
 #include <isostat/trajectory/trajectory.hpp>
 
@@ -300,6 +301,10 @@ SegmentOutcome run_segment(State& state, const Segment& segment, int segment_num
                            RunCounters& counters, RunObserver& observer) {
     require_floating_point();
     require_followed(state, "state");
+    if (options.certify == CertifyLevel::arcs && state.load.path) { // the power of an arc takes stresses as stored
+        throw Error(ErrorKind::bad_input, "state: several stresses change together, and certify is arcs: expected "
+                                          "decisions or states");
+    }
     const double stress = state.load.loaded_stress();
     if (segment.to_stress && segment.direction * (*segment.to_stress - stress) < 0) {
         return {false, failed(FailureKind::no_limit,

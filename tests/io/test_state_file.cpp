@@ -202,6 +202,8 @@ BOOST_AUTO_TEST_CASE(a_path_of_stresses_comes_back_and_contradictions_are_refuse
     check_same(state, read(text));
     check_same(state, read(replaced(text, "\"loaded_axis\":2,", "")));
     for (const auto& [from, to, word] : {std::array{"\"t\":0.1", "\"t\":0.2", "path.stress + t path.direction"},
+                                         {"\"t\":0.1", "\"t\":1e308", "1e+308: expected 0, or a magnitude"},
+                                         {"\"t\":0.1", "\"t\":5e-324", "expected 0, or a magnitude"},
                                          {"\"loaded_axis\":2", "\"loaded_axis\":1", "the last axis"},
                                          {"\"direction\":[-1.0,0.0,", "\"direction\":[-1.0,1e-9,", "1e-09: expected 0"},
                                          {"\"direction\":[-1.0,0.0,", "\"direction\":[", "1 numbers: expected three"},

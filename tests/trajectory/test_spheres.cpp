@@ -2,6 +2,8 @@
 #include "support/crafted.hpp"
 #include "support/spheres.hpp"
 
+#include <isostat/core/error.hpp>
+
 #include <Eigen/Dense>
 
 using namespace isostat;
@@ -153,6 +155,7 @@ BOOST_AUTO_TEST_CASE(two_spheres_go_round_a_loop_at_constant_mean_stress) {
     const Played up = ::crafted::play(down.state, +1, 1);
     check_sphere_arc(up, ::crafted::left(1), floor_of(1), (1 / tau - 1) / (1 / tau + 2));
     BOOST_TEST(up.records.equilibria.back().mean_stress == 3.5 / 3, boost::test_tools::tolerance(1e-12));
+    BOOST_CHECK_THROW((void)::crafted::play(down.state, +1, 1, {}, {.certify = CertifyLevel::arcs}), isostat::Error);
     start.load.follow({0, 0, -1}); // extension: t rises as sigma3 falls
     check_sphere_arc(::crafted::play(start, +1, 1), floor_of(1), ::crafted::left(1), 1 - tau);
 }

@@ -39,7 +39,7 @@ void write_packing(const std::filesystem::path& path, const Packing& packing, co
 /// count contacts: see `check_start`. A state with a periodic cell is refused: most of the program takes boxes only.
 StateFile parse_state(const std::string& text, const std::string& source);
 
-/// Spheres are refused by what takes disks only, which is most of the program so far (`require_plane`).
+/// Spheres are refused by what takes disks only, which says so (`require_plane`).
 enum class Dimensions : unsigned char { plane, any };
 
 /// The same, periodic cells too. Further messages: walls along a periodic axis, images in a box or more than 3 periods

@@ -216,6 +216,11 @@ std::size_t FrameFile::column(const FileFrame& frame, const std::string& name) c
         throw Error(ErrorKind::bad_input, fmt::format("{}: no column '{}': expected one of {}", place, name,
                                                       fmt::join(frame.header.names, ", ")));
     }
+    auto twice = foreign::columns_twice(frame.header.names);
+    std::erase_if(twice, [found](const auto& pair) { return pair.first != found; });
+    for (const TextLine& row : frame.rows) {
+        foreign::require_same(twice, frame.header.names, row);
+    }
     return static_cast<std::size_t>(found);
 }
 

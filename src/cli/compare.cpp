@@ -44,11 +44,14 @@ void begin(const CompareArguments& a) {
                     fmt::format("--init is '{}': expected a file beside {} or below", a.init, a.series));
     }
     const std::string frames = manifest.stem().string() + ".frames.csv";
+    for (const std::filesystem::path& file : {manifest, folder / frames}) {
+        if (std::filesystem::exists(std::filesystem::symlink_status(file))) {
+            throw Error(ErrorKind::usage, fmt::format("{} exists: expected a new name", file.string()));
+        }
+    }
     const compare::BegunSeries begun = compare::begin_series(a.init, disks.string(), frames);
-    constexpr const char *manifest_mark = "isostat-series", *frames_mark = "timestep,";
-    check_output(folder / frames, frames_mark, {a.init, a.series});
-    write_output(manifest, begun.manifest, manifest_mark);
-    write_output(folder / frames, begun.frames, frames_mark);
+    write_atomically(folder / frames, begun.frames);
+    write_atomically(manifest, begun.manifest);
     say("{} and {} are written: fill in the loads{}, then isostat compare {}\n", a.series, (folder / frames).string(),
         begun.frames.find(",left") == std::string::npos ? "" : " and the positions of the walls", a.series);
 }

@@ -1,6 +1,7 @@
 #include "compare/begin_series.hpp"
 
 #include "compare/frame_file.hpp"
+#include "io/text.hpp"
 #include "scene/section.hpp"
 
 #include <fmt/format.h>
@@ -36,7 +37,7 @@ std::string manifest_of(const FileFrame& first, std::size_t axes, bool periodic,
         "\"c_2[1]\" # or \"fx,fy\"\n\n{}"
         "[law]\nkind = \"none\" # or \"linear\", \"hertz\", with stiffness = 1e5\n\n"
         "[load]\nkind = \"nominal\" # or \"true\"\n{} # to check\nreference_length = [{}] # to check{}\n",
-        toml_text(name), fmt::join(first.header.names, " "), toml_text(frames),
+        toml_text(name), text::shown(fmt::format("{}", fmt::join(first.header.names, " "))), toml_text(frames),
         diameters ? "diameter = \"diameter\"" : "radius = \"radius\"",
         periodic ? fmt::format("[cell]\nkind = \"{}\"\n\n", tilted ? "tilted" : "rectangular") : "", stresses,
         fmt::join(lengths, ", "), first.header.box ? ": the bounds in the first frame" : "");

@@ -67,7 +67,7 @@ void FrameFile::recognise() {
     }
     TextLines lines(head, source_);
     foreign::Raw nothing;
-    names_ = foreign::read_table_names(lines, {}, nothing);
+    names_ = foreign::read_table_names(lines, {}, nothing, item_ == "ENTRIES");
     step_ = foreign::find_column(names_.names, "timestep");
     pending_ = lines.at_end() ? "" : row;
     lines_ = lines.number();

@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <span>
 #include <string_view>
 
@@ -112,7 +111,7 @@ std::string not_read(std::string_view text) {
          {"# vtk DataFile"sv, "is a VTK file: --skip N --columns x,y,z takes rows of points, or write a table x,y,r"},
          {"<VTKFile"sv, "is a VTK file in XML: write a table x,y,r"},
          {"<?xml"sv, "is in XML: write a table x,y,r"},
-         {"["sv, "is a list in JSON: write a table x,y,r"}}};
+         {"[{"sv, "is a list in JSON: write a table x,y,r"}}};
     for (const Known& known : all) {
         if (text.starts_with(known.begin)) {
             return known.words;
@@ -163,7 +162,8 @@ int dimension_of(Raw& raw, const std::string& source, const ForeignOptions& opti
         rounding = off(farthest) * off(farthest) / radius; // of two disks, 2 off
     }
     if (dimension == 2 && raw.leaves_the_plane()) {
-        throw Error(ErrorKind::bad_input, fmt::format("{}: expected a cell in the plane of the disks", raw.place));
+        throw Error(ErrorKind::bad_input, fmt::format("{}: expected a cell in the plane of the disks",
+                                                      raw.place.empty() ? source : raw.place));
     }
     for (std::size_t a = 0; dimension == 3 && !stated && a < 2; ++a) {
         if (std::all_of(raw.centre.begin(), raw.centre.end(),
@@ -212,9 +212,9 @@ Scaling scaling_of(const Raw& raw, std::size_t axes) {
     double bound = 0;
     for (std::size_t a = 0; a < axes; ++a) {
         const auto& [low, high] = (*raw.box)[a];
-        double reach = high - low;
-        for (std::size_t b = a + 1; b < axes; ++b) {
-            reach += std::abs(raw.tilt[Cell::tilt(a, b)]);
+        double reach = std::abs(high - low);
+        for (std::size_t b = 0; b < axes; ++b) {
+            reach += b == a ? 0 : std::abs(raw.vectors ? (*raw.vectors)[b][a] : b > a ? raw.tilt[Cell::tilt(a, b)] : 0);
         }
         out.factor = std::max(out.factor, reach);
         bound = std::max({bound, std::abs(low), std::abs(high)});
@@ -341,7 +341,8 @@ std::string recognise_format(const std::string& marked) {
 
 ForeignPacking parse_foreign(const std::string& whole, const std::string& source, const ForeignOptions& options) {
     ForeignPacking out;
-    const std::string text(after_lines(whole, options.skip));
+    const std::string rest(options.skip > 0 ? after_lines(whole, options.skip) : "");
+    const std::string& text = options.skip > 0 ? rest : whole;
     if (const std::string words = not_read(text); !words.empty()) {
         refuse(source, words);
     }
@@ -374,10 +375,6 @@ ForeignPacking parse_foreign(const std::string& whole, const std::string& source
     foreign::settle_bounds(raw, d, source, stated);
     out.notes = raw.notes;
     out.ids = raw.ids;
-    if (options.first_id) {
-        out.ids.resize(raw.centre.size());
-        std::iota(out.ids.begin(), out.ids.end(), *options.first_id);
-    }
     packing.fixed = raw.fixed;
     const auto axes = std::span(raw.boundary).first(d);
     if (!raw.fixed.empty() && std::find(axes.begin(), axes.end(), Boundary::periodic) != axes.end()) {

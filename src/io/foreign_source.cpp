@@ -212,7 +212,8 @@ Columns find_columns(const std::vector<std::string>& names, const ForeignOptions
     out.names = options.columns.empty() ? names : options.columns;
     std::replace(out.names.begin(), out.names.end(), std::string("-"), std::string());
     find_coordinates(out, out.names, where, raw);
-    out.id = find_column(out.names, "id");
+    out.first_id = options.first_id;
+    out.id = options.first_id ? -1 : find_column(out.names, "id");
     out.type = find_column(out.names, "type");
     find_size(out, options, where, raw);
     find_rows(options.select, out.names, where, out.select, out.selected);
@@ -252,6 +253,9 @@ void Rows::add(const TextLine& line, Raw& raw) {
         raw.ids.push_back(
             line.integer(static_cast<std::size_t>(columns_.id), fmt::format("id of disk {}", disk), 0, 1L << 62));
         ids_.emplace_back(raw.ids.back(), line.number());
+    }
+    if (columns_.first_id) {
+        raw.ids.push_back(*columns_.first_id + seen_ - 1);
     }
     double size = columns_.constant;
     const std::string name = columns_.meaning == SizeMeaning::radius ? "radius" : "diameter";

@@ -88,6 +88,7 @@ struct Columns {
     std::vector<std::string> selected;
     int fix = -1; ///< disks with a word of `fixed` there cannot move
     std::vector<std::string> fixed;
+    std::optional<long> first_id;          ///< of the first row; the column of ids is not read then
     int type = -1;                         ///< counted, for a note
     std::vector<std::string> names;        ///< of all columns
     std::vector<std::pair<int, int>> same; ///< columns of one name: their values must agree
@@ -149,7 +150,8 @@ struct TableNames {
     int line = 0; ///< 0: no line names them
     char separator = ' ';
 };
-TableNames read_table_names(TextLines& lines, const ForeignOptions& options, Raw& raw);
+/// \p any: a comment may name other columns than x and y, as many as the first row has.
+TableNames read_table_names(TextLines& lines, const ForeignOptions& options, Raw& raw, bool any = false);
 
 Raw read_lammps_data(const std::string& text, const std::string& source, const ForeignOptions& options);
 Raw read_lammps_dump(const std::string& text, const std::string& source, const ForeignOptions& options);

@@ -64,9 +64,9 @@ bool are_names(const std::vector<std::string>& words) {
     return !words.empty() && std::none_of(words.begin(), words.end(), [](const auto& word) { return is_value(word); });
 }
 
-/// The last comment before the first row that names columns x and y; else the last one that has as many words as the
-/// row has fields.
-void take_names_in_comments(TextLines& lines, TableNames& out) {
+/// The last comment before the first row that names columns x and y; else, of `any` columns, the last comment, where it
+/// has as many words as the row has fields.
+void take_names_in_comments(TextLines& lines, bool any, TableNames& out) {
     std::vector<std::string> last;
     int line = 0;
     while (!lines.at_end() && is_no_row(lines.peek())) {
@@ -82,7 +82,7 @@ void take_names_in_comments(TextLines& lines, TableNames& out) {
         }
     }
     const std::string_view row = lines.peek();
-    if (out.names.empty() && are_names(last) &&
+    if (any && out.names.empty() && are_names(last) &&
         last.size() == TextLine(row, line, &lines.source(), separator_of(row)).size()) {
         out.names = std::move(last);
         out.line = line;
@@ -123,10 +123,10 @@ void take_box_of_comment(std::string_view line, int number, Raw& raw) {
 
 } // namespace
 
-TableNames read_table_names(TextLines& lines, const ForeignOptions& options, Raw& raw) {
+TableNames read_table_names(TextLines& lines, const ForeignOptions& options, Raw& raw, bool any) {
     TableNames out;
     take_box_of_comment(lines.peek(), lines.number() + 1, raw);
-    take_names_in_comments(lines, out);
+    take_names_in_comments(lines, any, out);
     if (lines.at_end()) {
         lines.fail("the file ends here: expected rows of numbers");
     }

@@ -401,8 +401,10 @@ BOOST_AUTO_TEST_CASE(kind_28_a_manifest_to_begin_with) {
                                      "kind = \"none\"", "kind = \"linear\"\nstiffness = 1"));
     const auto found = json_of(run({"compare", series, "--bundle", "0", "--json"}));
     BOOST_TEST(found["counts"]["same"] == 2);
+    expect(run({"compare", series, "--init", folder.at("disks.dump")}), 64, {"series.toml exists"});
     scratch::write(folder / "other.txt", "mine");
-    expect(run({"compare", folder.at("other.txt"), "--init", folder.at("disks.dump")}), 64, {"holds something else"});
+    expect(run({"compare", folder.at("other.txt"), "--init", folder.at("disks.dump")}), 64,
+           {"exists: expected a new name"});
     BOOST_TEST(scratch::read(folder / "other.txt") == "mine");
     // Strain-controlled series are not compared, and the message says it.
     scratch::write(folder / "series.frames.csv", "timestep\n0\n100\n");

@@ -281,6 +281,37 @@ BOOST_AUTO_TEST_CASE(columns_that_are_needed_and_header_lines_come_once_or_agree
     expect_bad_input([&] { read("1 1 1 0 1\n", options); }, {"FILE:1", "'z' is given twice"});
 }
 
+BOOST_AUTO_TEST_CASE(rows_that_are_counted_have_their_number_in_the_file) {
+    ForeignOptions options;
+    options.first_id = 1;
+    const std::string rows = "id,type,x,y,r\n7,1,1,1,1\n8,2,3,1,1\n9,3,5,1,1\n";
+    BOOST_TEST(read(rows, options).ids == (std::vector<long>{1, 2, 3}));
+    options.select = RowsWith{"type", {"1", "3"}};
+    BOOST_TEST(read(rows, options).ids == (std::vector<long>{1, 3}));
+    options.first_id.reset();
+    BOOST_TEST(read(rows, options).ids == (std::vector<long>{7, 9}));
+    options.fixed = RowsWith{"type", {"3"}};
+    BOOST_TEST(read(rows, options).packing.fixed == (std::vector<unsigned char>{0, 1}));
+    options.select = RowsWith{"type", {"4"}};
+    expect_bad_input([&] { read(rows, options); }, {"no row has '4'"});
+}
+
+BOOST_AUTO_TEST_CASE(scaled_coordinates_of_a_turned_cell) {
+    const std::string head = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS abc origin pp pp pp\n"
+                             "0 2 0 1\n-3 0 0 1\n0 0 1 0\nITEM: ATOMS id ";
+    ForeignOptions cells;
+    cells.cells = true;
+    const Packing scaled = read(head + "xs ys zs radius\n1 0.25 0.5 0 0.5\n", cells).packing;
+    const Packing placed = read(head + "x y z radius\n1 -0.5 1.5 0 0.5\n", cells).packing; // (1, 1) + a/4 + b/2
+    for (std::size_t k = 0; k < placed.q.size(); ++k) {
+        BOOST_TEST(std::abs(scaled.q[k] - placed.q[k]) < 1e-15);
+    }
+    BOOST_TEST(placed.length(0) == 2);
+    BOOST_TEST(placed.length(1) == 3);
+    BOOST_TEST(std::abs(placed.q[0] - 0.5) < 1e-15);
+    BOOST_TEST(std::abs(placed.q[1] - 1.5) < 1e-15);
+}
+
 BOOST_AUTO_TEST_CASE(integers_of_files_are_written_as_integers) {
     for (const char* id : {"+7", "07", "-0", "7.0", "7e0", "1e99", "0x7", "nan", ""}) {
         expect_bad_input([&] { read(std::string("id,x,y,r\n") + id + ",1,1,1\n"); },

@@ -193,7 +193,15 @@ BOOST_AUTO_TEST_CASE(kind_7_vectors_of_forces) {
     }
     const auto component = json_of(snapped("07_force_vector.dump", "c_1[1],c_1[2],c_2[1]", {}, folder), 1);
     BOOST_TEST(contains(component["contacts"], "19 more are negative: is c_2[1] a component?"));
-    // Components in the wrong order are friction.
+    // Friction, and components in the wrong order.
+    scratch::write(folder / "friction.csv",
+                   scratch::replaced(scratch::read(scratch::data("field/07_contacts_fx_fy.csv")),
+                                     "1,8,0.001957927890048041,-0.00150217509421125",
+                                     "1,8,0.002957927890048041,-0.00050217509421125"));
+    expect(in_field("snap", "00_base16.dump",
+                    {"--contacts", folder.at("friction.csv"), "--contact-columns", "i,j,fx,fy", "--cell", "tilted",
+                     "-o", folder.at("state.json")}),
+           65, {"the tangential force of 0-7", "without friction"});
     expect(snapped("07_contacts_fx_fy.csv", "i,j,fy,fx", {}, folder), 65, {"07_contacts_fx_fy.csv"});
 }
 

@@ -221,9 +221,9 @@ pose y := A *m (without p - q); pose u : 'cV[F]_N := \col_l (if l \in zeros then
 have [l lS far] : exists2 l, l \in ~: zeros & b / 2%:R * norm (without p - q) < `|u l 0|.
   apply: some_entry => //; first by rewrite subr_eq0.
     have z_is k : k \in ~: free -> (invmx A *m u - (without p - q)) k 0 = 0.
-      apply: (block_solutions_vanish regular (S := ~: zeros)) => [|i j|i].
-      - by rewrite [LHS]cardsCs [RHS]cardsCs !setCK same.
+      apply: (block_solutions_vanish regular (S := ~: zeros)) => [i j||i].
       - by rewrite !inE negbK => iz jf; apply: A_zero.
+      - by rewrite [LHS]cardsCs [RHS]cardsCs !setCK same.
       by rewrite inE => iz; rewrite mulmxBr mulKVmx // -/y mxE [X in _ + X]mxE mxE (negPf iz) subrr.
     apply: norm_le => [|k]; first exact: norm_ge0.
     case kf: (k \in free); first by rewrite !mxE kf subrr normr0 norm_ge0.

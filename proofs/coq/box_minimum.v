@@ -19,6 +19,12 @@ Let s (l : nat) : F := scale w radius (contact_at contacts l).
 
 Definition potential (load p : 'cV[F]_N) : F := - \sum_k load k 0 * p k 0.
 
+(** Every other configuration near p, without an overlap at a listed contact, costs work of the finite load, or none of
+    it and work of the infinitesimal one. *)
+Definition strict_minimum (load small p : 'cV[F]_N) : Prop := exists2 e, 0 < e & forall p', norm (p' - p) < e -> p' != p ->
+  (forall l : 'I_N, apart n radius (at_ p') 0 (contact_at contacts l)) ->
+  potential load p < potential load p' \/ potential load p = potential load p' /\ potential small p < potential small p'.
+
 Hypothesis w0 : 0 < w.
 Hypothesis scales : forall l, 0 < scale 1 radius (contact_at contacts l).
 Hypothesis closed : gaps q = 0.
@@ -185,9 +191,7 @@ Proof. by rewrite !mxE. Qed.
 
 Hypothesis regular : A \in unitmx.
 
-Theorem equilibrium_is_a_strict_minimum : exists2 e, 0 < e & forall p, norm (p - q) < e -> p != q ->
-  (forall l : 'I_N, apart n radius (at_ p) 0 (contact_at contacts l)) ->
-  potential load q < potential load p \/ potential load q = potential load p /\ potential small q < potential small p.
+Theorem equilibrium_is_a_strict_minimum : strict_minimum load small q.
 Proof.
 have force' l : l \in ~: zeros -> 0 < f l 0 by rewrite inE => /force.
 exists (Num.min (reach (~: zeros) f) (reach zeros g)).

@@ -7,7 +7,7 @@ From Coq Require Import ZArith List.
 From mathcomp Require Import all_ssreflect all_algebra.
 From mathcomp Require Import ssrZ zify ring.
 From Isostat Require Import certificate contact_certificate dense_rows integers_in_a_field shifted_factor max_norm box
-  box_vertex box_certificate box_forces box_gaps.
+  box_vertex box_certificate box_forces box_gaps box_minimum.
 Set Implicit Arguments.
 Unset Strict Implicit.
 Import Order.Theory GRing.Theory Num.Theory.
@@ -163,22 +163,31 @@ rewrite -(ler_pmul2l t1); apply: le_trans below _.
 by rewrite -real_plus -!real_times real_le.
 Qed.
 
+(** The lists of flags as sets: they are as large, and no other contact touches the second. *)
+Let flagged (mask : seq bool) : {set 'I_N} := [set k : 'I_N | nth false mask k].
+Lemma zeros_are_counted : [/\ #|flagged (unloaded e)| = #|flagged (zeros e)|,
+    forall k, k \in flagged (unloaded e) -> load_vector (finite e) k 0 = 0
+  & forall k l : 'I_N, k \in flagged (unloaded e) -> l \notin flagged (zeros e) ->
+      (k : nat) \notin support F n (contact_at (contacts v) l)].
+Proof.
+have /and5P[_ _ _ /and5P[/eqP sZ /eqP sU /eqP same /allP no_load /allP apart] _] := check.
+have card (mask : seq bool) : size mask = N -> #|flagged mask| = count id mask.
+  move=> sM; rewrite cardsE cardE size_filter -(count_map (fun k : 'I_N => nth false mask k) id) -[in RHS](mkseq_nth false mask).
+  by rewrite sM /mkseq -val_enum_ord -map_comp enumT.
+split; first by rewrite !card.
+  move=> k; rewrite inE => uk; have := no_load (k : nat); rewrite mem_iota ltn_ord /unloaded_at uk => /(_ isT)/Z.eqb_eq zero.
+  by rewrite mxE zero real_zero.
+move=> k m; rewrite !inE => uk /negPf nz; have := apart (m : nat); rewrite mem_iota ltn_ord /zero_at nz => /(_ isT)/allP away.
+apply/negP; have -> : support F n (contact_at (contacts v) m) = unzip1 (rows_at_the_refined_one e (contact_at (contacts v) m)).
+  by rewrite /support /rows_at_the_refined_one; case: (contact_at _ _).
+by case/mapP=> d dr kd; have := away d dr; rewrite -kd /unloaded_at uk.
+Qed.
+
 Lemma zeros_are_zero (q f : 'cV[F]_N) : normals (radius F v) (contacts v) q \in unitmx ->
   balanced (radius F v) (contacts v) q (load_vector (finite e)) f -> forall l : 'I_N, zero_at e l -> f l 0 = 0.
 Proof.
-move=> unit bal l zl; have /and5P[_ _ _ /and5P[/eqP sZ /eqP sU /eqP same /allP no_load /allP apart] _] := check.
-have card (mask : seq bool) : size mask = N -> #|[set k : 'I_N | nth false mask k]| = count id mask.
-  move=> sM; rewrite cardsE cardE size_filter -(count_map (fun k : 'I_N => nth false mask k) id) -[in RHS](mkseq_nth false mask).
-  by rewrite sM /mkseq -val_enum_ord -map_comp enumT.
-apply: (structural_zeros unit bal (zeros := [set k : 'I_N | zero_at e k]) (free := [set k : 'I_N | unloaded_at e k])).
-- by rewrite !card.
-- move=> k; rewrite inE => uk; have := no_load (k : nat); rewrite mem_iota ltn_ord uk => /(_ isT)/Z.eqb_eq zero.
-  by rewrite mxE zero real_zero.
-- move=> k m; rewrite !inE => uk /negPf nz; have := apart (m : nat); rewrite mem_iota ltn_ord nz => /(_ isT)/allP away.
-  apply/negP; have -> : support F n (contact_at (contacts v) m) = unzip1 (rows_at_the_refined_one e (contact_at (contacts v) m)).
-    by rewrite /support /rows_at_the_refined_one; case: (contact_at _ _).
-  by case/mapP=> d dr kd; have := away d dr; rewrite -kd uk.
-- by rewrite inE.
+move=> unit bal l zl; have [same no_load apart] := zeros_are_counted.
+by apply: (structural_zeros unit bal same no_load apart); rewrite inE.
 Qed.
 
 (** What is said of a configuration: the statement of the theorem, in full. *)
@@ -202,7 +211,8 @@ Proof. by rewrite -(at_refined F posed) -at_sub => near; apply: le_trans near; a
 
 (** ... and that there is one such configuration, near the stored one. *)
 Definition certified_equilibrium : Prop := exists q : 'cV[F]_N,
-  [/\ norm (q - q1) <= real (error v), norm (q - q0) <= real (distance v), is_the_equilibrium q
+  [/\ norm (q - q1) <= real (error v), norm (q - q0) <= real (distance v), is_the_equilibrium q,
+     strict_minimum (radius F v) (contacts v) (load_vector (finite e)) (load_vector (infinitesimal e)) q
    & forall q' : 'cV[F]_N, norm (q' - q0) <= real (zoom v * ball v) ->
        (forall l : 'I_N, touch n (radius F v) (at_ q') (contact_at (contacts v) l)) -> q' = q].
 
@@ -216,12 +226,27 @@ have inside : norm (q - q0) <= real (zoom v * ball v).
 have /and5P[_ bal bal_small _ /andP[/andP[/allP claims g0] gaps_ok]] := check.
 have claimed (l : 'I_N) : interval_claimed e (if zero_at e l then infinitesimal e else finite e) l.
   by apply: claims; rewrite mem_iota ltn_ord.
-exists q; split=> //; split=> //.
-- by move=> c formed unlisted; apply: other_grains_are_apart gaps_ok formed unlisted => k; apply: near_the_refined_one.
-- have [f [fb fu fl]] := forces_are_claimed bal near inside unit; exists f; split=> // l.
-  by have := claimed l; case: ifP => [zl _|_ ok]; [apply: zeros_are_zero unit fb _ zl|apply: fl].
-- have [f [fb fu fl]] := forces_are_claimed bal_small near inside unit; exists f; split=> // l zl.
-  by have := claimed l; rewrite zl => /fl.
+have [f [fb fu fl]] := forces_are_claimed bal near inside unit.
+have [g [gb gu gl]] := forces_are_claimed bal_small near inside unit.
+have zero := zeros_are_zero unit fb.
+have pushing (l : 'I_N) : ~~ zero_at e l -> [/\ 0 < f l 0, real (nth 0 (low (finite e)) l) <= f l 0
+    & f l 0 <= real (nth 0 (high (finite e)) l)] by have := claimed l; case: ifP => // _ ok _; apply: fl.
+have pushing_small (l : 'I_N) : zero_at e l -> [/\ 0 < g l 0, real (nth 0 (low (infinitesimal e)) l) <= g l 0
+    & g l 0 <= real (nth 0 (high (infinitesimal e)) l)] by move=> zl; have := claimed l; rewrite zl => /gl.
+exists q; split=> //.
+- split=> //.
+  + by move=> c formed unlisted; apply: other_grains_are_apart gaps_ok formed unlisted => k; apply: near_the_refined_one.
+  + by exists f; split=> // l; case: ifPn => [/zero|/pushing].
+  by exists g.
+- have b0 : 0 < real (fine_stiffness v) :> F.
+    by case/and5P: posed => _ _ _ _ /and3P[]; rewrite -(real_zero F) real_lt /fine_stiffness; nia.
+  have [same no_load apart] := zeros_are_counted; have [regular _] := gaps_follow_displacements posed 0 vertex_ok inside.
+  apply: (equilibrium_is_a_strict_minimum w_gt0 (scales_are_positive F posed) _ b0 _ same no_load apart fb gb) => //.
+  + exact/(gaps_vanish _ _ _ w1).
+  + by move=> x; have [] := gaps_follow_displacements posed x vertex_ok inside.
+  + by move=> l; rewrite inE; apply: zero.
+  + by move=> l; rewrite inE => /pushing[].
+  by move=> l; rewrite inE => /pushing_small[].
 Qed.
 End Correct.
 Print Assumptions one_equilibrium.

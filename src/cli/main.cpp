@@ -260,7 +260,7 @@ Examples: isostat report out
         command.add_flag("--pdf", a.pdf, "charts as PDF too");
         command.add_flag("--html", a.html,
                          "of a run: also write trajectory.html, one page to look at every equilibrium and arc, without "
-                         "network");
+                         "network; of a state of spheres: a view that turns");
         command.add_flag("--no-charts", a.no_charts, "do not call gnuplot");
         option(command, "--stiffness", a.stiffness,
                "of a run: also where grains of this stiffness (force / overlap) would leave each structure, predicted: "

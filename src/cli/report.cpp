@@ -123,9 +123,9 @@ int report(const ReportArguments& arguments) {
         return report_ensemble(arguments);
     }
     const bool is_run = fs::is_directory(input);
-    if ((arguments.html || arguments.stiffness > 0) && !is_run) {
-        throw Error(ErrorKind::usage, fmt::format("{} belongs to the folder of a run: {} is none",
-                                                  arguments.html ? "--html" : "--stiffness", arguments.input));
+    if (arguments.stiffness > 0 && !is_run) {
+        throw Error(ErrorKind::usage,
+                    fmt::format("--stiffness belongs to the folder of a run: {} is none", arguments.input));
     }
     fs::path output = arguments.output;
     if (output.empty()) {

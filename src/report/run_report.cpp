@@ -9,8 +9,8 @@
 #include "report/gnuplot.hpp"
 #include "report/page.hpp"
 #include "report/picture.hpp"
+#include "report/sphere_page.hpp"
 #include "report/tables.hpp"
-#include "report/triaxial.hpp"
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/core/error.hpp>
@@ -45,11 +45,16 @@ class Writer {
             result_.notes.push_back(text);
         }
     }
-    void picture(const fs::path& path, const std::string& name) {
+    /// With its forces, if the state is an equilibrium.
+    StateFile read(const fs::path& path) {
         StateFile file = read_any_state(path, Dimensions::any);
         if (file.forces.empty()) {
             file.forces = solve_forces(file.state, path);
         }
+        return file;
+    }
+    void picture(const fs::path& path, const std::string& name) {
+        const StateFile file = read(path);
         const State& state = file.state;
         const std::string caption =
             state.packing.dimension != plane
@@ -179,18 +184,6 @@ std::vector<fs::path> stored_states(const fs::path& directory, const FolderConte
     return states;
 }
 
-/// Number and picture of each stored state of spheres, with the forces that it has.
-std::vector<std::pair<int, std::string>> sphere_pictures(const std::vector<fs::path>& states) {
-    std::vector<std::pair<int, std::string>> pictures;
-    for (const fs::path& path : states) {
-        const StateFile file = read_any_state(path, Dimensions::any);
-        if (pictures.empty() || pictures.back().first != file.state.equilibrium) { // the last one is stored twice
-            pictures.emplace_back(file.state.equilibrium, sphere_picture(file.state, file.forces, ""));
-        }
-    }
-    return pictures;
-}
-
 /// A stress on an axis changes, not those on tilts alone.
 bool changes_lengths(const Load& load) {
     return load.rate_of(0) != 0 || load.rate_of(1) != 0 || load.rate_of(2) != 0;
@@ -202,6 +195,18 @@ std::string page_of_disks(const fs::path& directory, const ReportOptions& option
         writer.note(fmt::format("trajectory.html: left out: {}", left_out));
     }
     return std::move(page.html);
+}
+
+std::string page_of_spheres(const std::vector<fs::path>& states, const std::string& title, const SphereRun& run,
+                            Writer& writer) {
+    json::Json views = json::Json::array();
+    for (const fs::path& path : states) {
+        const StateFile file = writer.read(path);
+        if (views.empty() || views.back()["equilibrium"] != file.state.equilibrium) { // the last one is stored twice
+            views.push_back(sphere_view(file.state, file.forces));
+        }
+    }
+    return sphere_page(title, views, run);
 }
 
 /// Figures go into the run that they are of, or where only a report is.
@@ -256,14 +261,13 @@ ReportResult report_run(const fs::path& directory, const fs::path& output, const
         }
         writer.vtk_series();
     }
-    if (options.html && load.dimension != plane && !triaxial) {
-        writer.note("trajectory.html: left out: the page of spheres is of a triaxial test, and tilts are loaded");
-    } else if (options.html) {
+    if (options.html && load.dimension != plane) {
         const std::string title =
             fmt::format("{} spheres: {}", first.packing.disk_count(), header.at("status").string());
-        writer.write("trajectory.html", triaxial ? triaxial_page(triaxial_points(rows, load), rows, names, words, title,
-                                                                 sphere_pictures(states))
-                                                 : page_of_disks(directory, options, writer));
+        const std::vector<TriaxialPoint> points = triaxial_points(rows, load);
+        writer.write("trajectory.html", page_of_spheres(states, title, {triaxial, points, rows, names, words}, writer));
+    } else if (options.html) {
+        writer.write("trajectory.html", page_of_disks(directory, options, writer));
     }
     std::string text = run_tables(rows, names, header.at("status").string(), words);
     const fs::path summary = directory / "summary.json"; // of runs that ended
@@ -280,6 +284,17 @@ ReportResult report_state(const fs::path& state, const fs::path& output, const R
     Writer writer(output, options, false);
     const std::string name = "forces_" + state.stem().string();
     writer.picture(state, name);
+    if (options.html) {
+        const StateFile file = writer.read(state);
+        if (file.state.packing.dimension == plane) {
+            throw Error(ErrorKind::usage, fmt::format("{}: --html of one state is a view of spheres: this file is of "
+                                                      "disks, and {}.svg shows them",
+                                                      state.string(), name));
+        }
+        const std::string title = fmt::format("{} spheres", file.state.packing.disk_count());
+        writer.write(name + ".html", sphere_page(title, {sphere_view(file.state, file.forces)}),
+                     "<title>Isostat</title>");
+    }
     return writer.take(fmt::format("force picture of {}\n", state.string()));
 }
 

@@ -95,7 +95,10 @@ class State:
     equilibrium: Final[int]
     provenance: Final[str]
     packing: Final[Packing]
+    rattlers: Final[list[int]]
     def _matrix(self) -> tuple[tuple[Floats, Integers, Integers], Pair]: ...
+    def _curvature(self) -> tuple[Integers, Integers, Integers, Floats]: ...
+    def _contact_table(self) -> str: ...
 
 class Counting:
     dofs: Final[int]
@@ -289,6 +292,41 @@ class ExactInspection:
         self, count: int = ...
     ) -> tuple[Verdict, list[tuple[Floats, float]], list[tuple[Floats, float]]]: ...
 
+class Jamming:
+    verdicts: Final[dict[str, Verdict]]
+    reasons: Final[dict[str, str]]
+    counts: Final[dict[str, Counting]]
+    backbone: Final[dict[str, Counting]]
+    backbone_disks: Final[int]
+
+class GenericitySample:
+    seed: Final[int]
+    failure: Final[Optional[str]]
+    contacts: Final[Integers]
+    carrying: Final[Integers]
+    rattlers: Final[int]
+    min_force: Final[float]
+    min_gap: Final[float]
+    sigma_min: Final[float]
+    within_original: Final[bool]
+
+class Genericity:
+    samples: Final[list[GenericitySample]]
+    proved: Final[int]
+    ties: Final[int]
+    undecided: Final[int]
+    failed: Final[int]
+    within: Final[int]
+    networks: Final[int]
+
+class _Ensemble:
+    def __init__(self, text: str, scene: Path, output: Path, seed: int, samples: int, mode: str) -> None: ...
+    def folder(self, number: int) -> os.PathLike[str]: ...
+    def prepare(self, number: int) -> bool: ...
+    def finished(self, number: int) -> bool: ...
+    def note(self, number: int, stopped: bool, reason: str) -> None: ...
+    def merge(self) -> list[tuple[int, str, str]]: ...
+
 class PlateauCounts:
     dofs: Final[int]
     contacts: Final[int]
@@ -330,6 +368,19 @@ def certify(file: Path) -> Certificate: ...
 @overload
 def certify(state: State) -> Certificate: ...
 def inspect(state: State) -> Inspection: ...
+def jamming(state: State) -> Jamming: ...
+def genericity(
+    packing: Union[State, ExactPacking],
+    *,
+    size: float = ...,
+    samples: int = ...,
+    seed: int = ...,
+    stress: float = ...,
+    keep_equal: bool = ...,
+    tilt: bool = ...,
+) -> Genericity: ...
+def _walked_to(folder: Path, number: int) -> State: ...
+def _members(folder: Path) -> list[tuple[int, os.PathLike[str]]]: ...
 def forces_at(state: State, sigma2: float) -> Floats: ...
 def _verify_certificate(certificate: Certificate) -> Verification: ...
 def _verify_file(path: Path) -> Verification: ...

@@ -1,3 +1,4 @@
+#include "certificate/finite_forces.hpp"
 #include "certificate/jammed_box.hpp"
 #include "contact/contact_set.hpp"
 #include "contact/own_images.hpp"
@@ -38,24 +39,19 @@ std::vector<std::vector<Interval>> pressed(State state, double radius) {
     constexpr double rounded = 0x1p-48; // nine operations, each to 2^-53
     const double x = state.packing.length(0);
     state.load.path.reset();
-    std::vector<std::vector<Interval>> corners;
-    for (unsigned corner = 0; corner < 1U << (state.packing.axes() - 1); ++corner) {
+    std::vector<PerAxis<double>> corners(1U << (state.packing.axes() - 1), state.load.stress);
+    for (unsigned corner = 0; corner < corners.size(); ++corner) {
         for (std::size_t a = 1; a < state.packing.axes(); ++a) {
             const double length = state.packing.lattice(a, a);
             const bool high = (corner >> (a - 1) & 1U) != 0;
             if (!(radius < length)) {
                 return {};
             }
-            state.load.stress[a] = high ? (1 + radius / x) / (1 - radius / length) * (1 + rounded)
-                                        : (1 - radius / x) / (1 + radius / length) * (1 - rounded);
+            corners[corner][a] = high ? (1 + radius / x) / (1 - radius / length) * (1 + rounded)
+                                      : (1 - radius / x) / (1 + radius / length) * (1 - rounded);
         }
-        Certification truth = certify(state);
-        if (!truth.claims.vertex) {
-            return {};
-        }
-        corners.push_back(std::move(truth.finite));
     }
-    return corners;
+    return finite_forces(std::move(state), corners);
 }
 
 /// The forces under an isotropic pressure are unique and say whether it is jammed strictly. It is a pressure where the

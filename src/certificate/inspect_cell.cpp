@@ -154,16 +154,17 @@ std::optional<BoxInspection> inspect_box(const State& state, const Certification
     const auto any = [](const auto& values) {
         return std::any_of(values.begin(), values.end(), [](const auto& value) { return value != 0; });
     };
-    if (box == Box::none || any(state.packing.fixed) || any(state.load.disk_force)) {
+    const bool holds = std::any_of(state.contacts.begin(), state.contacts.end(),
+                                   [](const Contact& c) { return c.kind == ContactKind::held; });
+    if (box == Box::none || any(state.packing.fixed) || any(state.load.disk_force) || holds) {
         return std::nullopt;
     }
     const std::vector<int> rattlers = rattlers_by_coordination(state.packing, state.contacts);
     State rest = state;
     rest.packing = without_disks(state.packing, rattlers);
     const auto rattles = [&](int i) { return std::binary_search(rattlers.begin(), rattlers.end(), i); };
-    std::erase_if(rest.contacts, [&](const Contact& c) {
-        return c.kind == ContactKind::held || rattles(c.i) || (c.kind == ContactKind::disk_disk && rattles(c.j));
-    });
+    std::erase_if(rest.contacts,
+                  [&](const Contact& c) { return rattles(c.i) || (c.kind == ContactKind::disk_disk && rattles(c.j)); });
     BoxInspection out;
     out.grains = state.packing.disk_count() - static_cast<int>(rattlers.size());
     Packing held = rest.packing;

@@ -17,8 +17,8 @@ struct BoxInspection {
 
 /// `proved` by the equilibrium of the state; where no wall moves by that of the same grains with the last upper wall
 /// movable, whose forces are a self-stress of the others (proofs/cells.md, C6 and C13, where the box is the cell).
-/// Nothing where a wall is absent, and where grains are fixed or bear forces. \pre `truth` is of this state. Cost: a
-/// rank and a certificate.
+/// Nothing where a wall is absent, and where grains are fixed, held or bear forces. \pre `truth` is of this state.
+/// Cost: a rank and a certificate.
 std::optional<BoxInspection> inspect_box(const State& state, const Certification& truth);
 
 } // namespace isostat

@@ -205,6 +205,9 @@ int compare_series(const CompareArguments& a) {
             print_frames(comparison);
         }
         print_ends(comparison, a.common.quiet ? 0 : series.linear_stiffness());
+        if (series.law == compare::ForceLaw::none) {
+            say("stiffness not tested: the manifest states no [law], forces are taken as they are\n");
+        }
     }
     if (!note.empty()) {
         say(stderr, "isostat: {}\n", note);

@@ -224,6 +224,18 @@ BOOST_AUTO_TEST_CASE(kind_8_forces_in_other_units_and_a_column_of_something_else
                                         {"--contacts", folder.at("distances.csv"), "--contact-columns", "id1,id2,fn",
                                          "--cell", "tilted", "-o", folder.at("state.json"), "--json"}));
     BOOST_TEST(contains(found["forces"]["units"], "is the column that of the forces?"));
+    // The same in a series, against its law.
+    for (const char* file : {"02_flip_disks_same.dump", "02_flip_contacts.dump", "02_flip_frames.csv"}) {
+        scratch::write(folder / file, scratch::read(scratch::data(std::string("field/") + file)));
+    }
+    const std::string manifest = scratch::read(scratch::data("field/02_noflip.toml"));
+    scratch::write(folder / "ten.toml", scratch::replaced(manifest, "stiffness = 1", "stiffness = 10"));
+    const auto frames = json_of(run({"compare", folder.at("ten.toml"), "--bundle", "0", "--json"}), 1)["frames"];
+    BOOST_TEST(frames[0]["status"] == "file");
+    BOOST_TEST(contains(frames[0]["reason"], "they are 0.1 times those"), frames[0]["reason"]);
+    scratch::write(folder / "none.toml",
+                   scratch::replaced(manifest, "kind = \"linear\"\nstiffness = 1", "kind = \"none\""));
+    says(run({"compare", folder.at("none.toml"), "--bundle", "0"}), 0, {"2 same", "stiffness not tested"});
 }
 
 BOOST_AUTO_TEST_CASE(kind_9_names_in_a_comment_and_kind_26_lists_that_count_rows) {

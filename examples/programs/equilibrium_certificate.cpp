@@ -1,5 +1,5 @@
 // A certificate of an equilibrium for a proof assistant: what `isostat certify` claims of a packing in the box, as a
-// Coq file with the integers from which proofs/coq/equilibrium_certificate.v proves it. Usage:
+// Coq file with the integers from which proofs/coq/load_certificate.v proves it. Usage:
 // equilibrium_certificate [CERTIFICATE.json | DISKS [SEED]] > file.v; without a file a random packing is prepared.
 // Nothing here has to be right: Coq checks every number, and proofs/coq/compare.py compares them with the file.
 #include <isostat/certificate/certify.hpp>
@@ -346,6 +346,16 @@ Numbers finite_load(const State& state, int exponent) {
     return load;
 }
 
+/// Its change per unit of the loaded stress.
+Numbers unit_load(const State& state, int exponent) {
+    Numbers load(state.packing.q.size());
+    for (const WallForce& wall : state.load.wall_forces(state.packing)) {
+        load[Integers::index(wall.coordinate)] =
+            -Number::from_double(wall.rate) * Number::from_double(wall.length) / power_of_two(exponent);
+    }
+    return load;
+}
+
 /// A common unit of the loads and of the ends of the intervals.
 int force_exponent(std::vector<double> numbers, const std::vector<Interval>& intervals) {
     for (const Interval& interval : intervals) {
@@ -373,11 +383,12 @@ void write_vertex(const Vertex& v) {
     for (const Contact& c : v.packing.contacts) {
         contacts.push_back(name(c));
     }
-    std::printf("(* The data of a certificate, for proofs/coq/questions/verdict.v. *)\n"
-                "From Coq Require Import ZArith List.\nFrom mathcomp Require Import all_ssreflect all_algebra.\n"
-                "From Isostat Require Import contact_certificate box_certificate equilibrium_certificate.\n"
-                "Definition touching : seq contact := %s.\nOpen Scope Z_scope.\n",
-                list(contacts).c_str());
+    std::printf(
+        "(* The data of a certificate, for proofs/coq/questions/verdict.v. *)\n"
+        "From Coq Require Import ZArith List.\nFrom mathcomp Require Import all_ssreflect all_algebra.\n"
+        "From Isostat Require Import contact_certificate box_certificate equilibrium_certificate load_certificate.\n"
+        "Definition touching : seq contact := %s.\nOpen Scope Z_scope.\n",
+        list(contacts).c_str());
     std::printf("Definition the_vertex : vertex_certificate := {|\n  disks := %d;\n  contacts := touching;\n"
                 "  stored := %s;\n  radii := %s;\n  weight := %s;\n  zoom := 2 ^ %d;\n  refined := %s;\n",
                 v.packing.disks, list(v.stored).c_str(), list(v.packing.radius).c_str(),
@@ -388,33 +399,111 @@ void write_vertex(const Vertex& v) {
                 v.shift.text().c_str(), v.factor.c_str());
 }
 
-void write_forces(const char* title, const Vertex& v, const Numbers& load, const std::vector<Interval>& intervals,
-                  int exponent) {
-    const Number zoom = power_of_two(zoom_exponent);
-    const Integers small = enlarged(v.packing, zoom);
-    const Quotients forces =
-        quotients(small, v.refined, load, Approximate(small, v.refined), v.error, v.stiffness * zoom);
+void write_solution(const Numbers& load, const Quotients& forces) {
+    std::printf("{|\n  load := %s;\n  fraction := 2 ^ %d;\n  quotients := %s;\n  slack := %s |}", list(load).c_str(),
+                forces.fraction, list(forces.value).c_str(), forces.slack.text().c_str());
+}
+
+void write_forces(const char* title, const Numbers& load, const Quotients& forces,
+                  const std::vector<Interval>& intervals, int exponent) {
     std::vector<double> low;
     std::vector<double> high;
     for (const Interval& interval : intervals) {
         low.push_back(interval.lower);
         high.push_back(interval.upper);
     }
-    std::printf("Definition %s : force_claim := {|\n  load := %s;\n  low := %s;\n  high := %s;\n  fraction := 2 ^ %d;\n"
-                "  quotients := %s;\n  slack := %s |}.\n",
-                title, list(load).c_str(), list(multiples(low, exponent)).c_str(),
-                list(multiples(high, exponent)).c_str(), forces.fraction, list(forces.value).c_str(),
-                forces.slack.text().c_str());
+    std::printf("Definition %s : force_claim := {| solution := ", title);
+    write_solution(load, forces);
+    std::printf(";\n  low := %s;\n  high := %s |}.\n", list(multiples(low, exponent)).c_str(),
+                list(multiples(high, exponent)).c_str());
+}
+
+Number size(const Number& x) {
+    return x.sign() < 0 ? -x : x;
+}
+
+/// One end of the interval, with the contacts that bear nothing there.
+struct EndWriter {
+    const State& state;
+    const Vertex& vertex;
+    const Numbers& load;
+    const Quotients& forces;
+    const Numbers& rate;
+    const Quotients& slopes;
+    const std::vector<bool>& zeros;
+    int stress_unit;
+
+    /// Force l is still positive where that of m vanishes: `outlasts` of load_certificate.v.
+    [[nodiscard]] bool outlasts(std::size_t m, std::size_t l, int direction) const {
+        const auto uncertain = [this](const Number& g, const Number& h) {
+            return size(g) * slopes.slack + size(h) * forces.slack + forces.slack * slopes.slack;
+        };
+        const Number& gl = forces.value[l];
+        const Number& gm = forces.value[m];
+        const Number fall_l = -direction * slopes.value[l];
+        const Number fall_m = -direction * slopes.value[m];
+        return uncertain(gl, fall_m) + uncertain(gm, fall_l) < gl * fall_m - gm * fall_l;
+    }
+    void write(const char* title, const LoadEndClaim& claim, int direction) const {
+        const auto found = std::find(state.contacts.begin(), state.contacts.end(), claim.opens);
+        const auto m = static_cast<std::size_t>(found - state.contacts.begin());
+        if (!claim.unbounded && m == state.contacts.size()) {
+            throw Error(ErrorKind::bad_input, "what opens at an end of the load interval is no contact");
+        }
+        std::vector<bool> mute = zeros;
+        Numbers any_load = rate;
+        for (std::size_t l = 0; l < mute.size(); ++l) {
+            mute[l] = claim.unbounded ? !(slopes.slack < direction * slopes.value[l])
+                                      : zeros[l] || l == m || !outlasts(m, l, direction);
+            any_load[l] = size(rate[l]) + (claim.unbounded ? Number() : size(load[l]));
+        }
+        const std::vector<double> ends = claim.unbounded ? std::vector<double>{0, 0}
+                                         : direction > 0 ? std::vector<double>{claim.stress.lower, claim.stress.upper}
+                                                         : std::vector<double>{claim.stress.upper, claim.stress.lower};
+        const Numbers stress = multiples(ends, stress_unit);
+        std::printf("Definition %s : load_end := {|\n  opens := %s;\n  mute := %s;\n  free := %s;\n  near := %s;\n"
+                    "  far := %s |}.\n",
+                    title, claim.unbounded ? "None" : ("Some " + std::to_string(m) + "%nat").c_str(),
+                    list(mute).c_str(), list(unloaded_by(vertex, any_load, mute)).c_str(), stress[0].text().c_str(),
+                    stress[1].text().c_str());
+    }
+};
+
+/// Powers of two: the units of forces and stresses, so that the load per unit of stress has their quotient as its own.
+struct ForceUnits {
+    int force = 0;
+    int small = 0;
+    int stress = 0;
+};
+
+ForceUnits force_units(const State& state, const CertificateClaims& claims,
+                       const std::vector<Interval>& infinitesimal) {
+    ForceUnits units;
+    units.force = force_exponent(state.load.disk_force, claims.forces->finite);
+    units.small = force_exponent(state.load.infinitesimal, infinitesimal);
+    units.stress = unit_exponent(state.load.loaded_stress(), 0);
+    for (const LoadEndClaim& end : {claims.load_interval->low, claims.load_interval->high}) {
+        if (!end.unbounded) {
+            units.stress = unit_exponent({end.stress.lower, end.stress.upper}, units.stress);
+        }
+    }
+    int lengths = 0;
+    for (const WallForce& wall : state.load.wall_forces(state.packing)) {
+        lengths = unit_exponent(wall.length, lengths);
+        units.force = std::min(units.force, unit_exponent(wall.stress, 0) + unit_exponent(wall.length, 0));
+    }
+    units.force = std::min(units.force, units.stress + lengths);
+    return units;
 }
 
 void write_certificate(const State& state, const CertificateClaims& claims) {
     const Packing& packing = state.packing;
-    if (packing.walls != Walls::box(packing.dimension) || !packing.fixed.empty() || packing.cell.any() ||
+    if (packing.walls != Walls::box() || !packing.fixed.empty() || packing.cell.any() || state.load.path ||
         state.load.kind != LoadKind::nominal || state.contacts.size() != packing.q.size()) {
         throw Error(ErrorKind::bad_input, "an isostatic packing in the box under dead loads was expected");
     }
-    if (!claims.vertex || !claims.forces || !claims.gaps) {
-        throw Error(ErrorKind::bad_input, "vertex, forces and gaps have to be claimed");
+    if (!claims.vertex || !claims.forces || !claims.gaps || !claims.load_interval) {
+        throw Error(ErrorKind::bad_input, "vertex, forces, gaps and load interval have to be claimed");
     }
     const Vertex v = vertex_of(state, claims.vertex->unique_radius);
     const ForcesClaim& forces = *claims.forces;
@@ -425,27 +514,41 @@ void write_certificate(const State& state, const CertificateClaims& claims) {
         zeros[l] = true;
         infinitesimal[l] = forces.infinitesimal[k];
     }
-    int unit = force_exponent(state.load.disk_force, forces.finite);
-    for (const WallForce& wall : state.load.wall_forces(packing)) {
-        unit = std::min(unit, unit_exponent(wall.stress, 0) + unit_exponent(wall.length, 0));
-    }
-    const Numbers load = finite_load(state, unit);
-    const int small_unit = force_exponent(state.load.infinitesimal, infinitesimal);
-    Numbers small_load = multiples(state.load.infinitesimal, small_unit);
+    const ForceUnits units = force_units(state, claims, infinitesimal);
+    const Numbers load = finite_load(state, units.force);
+    const Numbers rate = unit_load(state, units.force - units.stress);
+    Numbers small_load = multiples(state.load.infinitesimal, units.small);
     small_load.resize(packing.q.size());
+    const Number zoom = power_of_two(zoom_exponent);
+    const Integers small = enlarged(v.packing, zoom);
+    const Approximate system(small, v.refined);
+    const auto solved = [&](const Numbers& any) {
+        return quotients(small, v.refined, any, system, v.error, v.stiffness * zoom);
+    };
+    const Quotients finite = solved(load);
+    const Quotients slopes = solved(rate);
 
     write_vertex(v);
     std::printf(
-        "(* The units are 2 to these powers: of lengths, of refined lengths, of forces, of infinitesimal ones. *)\n"
-        "Definition exponents : seq Z := [:: %d; %d; %d; %d].\n",
-        v.unit, v.fine, unit, small_unit);
-    write_forces("the_forces", v, load, forces.finite, unit);
-    write_forces("the_infinitesimal_forces", v, small_load, infinitesimal, small_unit);
-    std::printf("Definition the_certificate : equilibrium_certificate := {|\n  vertex := the_vertex;\n"
+        "(* The units are 2 to these powers: of lengths, of refined lengths, of forces, of infinitesimal ones, of "
+        "stresses. *)\nDefinition exponents : seq Z := [:: %d; %d; %d; %d; %d].\n",
+        v.unit, v.fine, units.force, units.small, units.stress);
+    write_forces("the_forces", load, finite, forces.finite, units.force);
+    write_forces("the_infinitesimal_forces", small_load, solved(small_load), infinitesimal, units.small);
+    std::printf("Definition the_rate : force_solution := ");
+    write_solution(rate, slopes);
+    std::printf(".\n");
+    const EndWriter ends{state, v, load, finite, rate, slopes, zeros, units.stress};
+    ends.write("the_lower_end", claims.load_interval->low, -1);
+    ends.write("the_upper_end", claims.load_interval->high, 1);
+    std::printf("Definition the_certificate : load_certificate := {|\n  equilibrium := {|\n  vertex := the_vertex;\n"
                 "  finite := the_forces;\n  infinitesimal := the_infinitesimal_forces;\n  zeros := %s;\n"
-                "  unloaded := %s;\n  gap := %s |}.\n",
+                "  unloaded := %s;\n  gap := %s |};\n",
                 list(zeros).c_str(), list(unloaded_by(v, load, zeros)).c_str(),
                 rounded(std::ceil(std::ldexp(claims.gaps->smallest, -v.fine))).text().c_str());
+    std::printf(
+        "  rate := the_rate;\n  stress := %s;\n  lower_end := the_lower_end;\n  upper_end := the_upper_end |}.\n",
+        multiples({state.load.loaded_stress()}, units.stress)[0].text().c_str());
 }
 
 State prepared(int disks, std::uint64_t seed) {

@@ -222,6 +222,15 @@ case/and5P=> _ _ _ _ well; have [_ z0 s0] := positive; apply: transposed_inverse
 by rewrite -(real_zero F) real_lt /fine_stiffness; nia.
 Qed.
 
+Lemma gaps_follow_displacements (q : 'cV[F]_N) x : vertex_check v -> norm (q - q0) <= rho ->
+  A q \in unitmx /\ b * norm x <= norm (A q *m x).
+Proof.
+case/and5P=> _ _ _ _ well near; have [_ z0 s0] := positive.
+have b0 : 0 < b by rewrite -(real_zero F) real_lt /fine_stiffness; nia.
+have strong' y := strong y well.
+by split; [apply: (regular_in_the_ball b0 strong' near)|apply: (inverse_in_the_ball b0 strong' x near)].
+Qed.
+
 Theorem one_vertex : complete F -> vertex_check v -> exists q : 'cV[F]_N,
   [/\ norm (q - q1) <= r, norm (q - q0) <= real (distance v),
      forall l : 'I_N, touch n radius (at_ q) (contact_at (contacts v) l),

@@ -10,37 +10,73 @@ Unset Strict Implicit.
 Import Order.Theory GRing.Theory Num.Theory.
 Local Open Scope ring_scope.
 
-(** A regular matrix whose rows S vanish outside as many columns T: solutions with zeros in S have zeros in T. *)
-Lemma block_solutions_vanish (F : fieldType) (m : nat) (X : 'M[F]_m) (S T : {set 'I_m}) : X \in unitmx -> #|S| = #|T| ->
-  (forall i j, i \in S -> j \notin T -> X i j = 0) ->
-  forall x : 'cV[F]_m, (forall i, i \in S -> (X *m x) i 0 = 0) -> forall j, j \in T -> x j 0 = 0.
+(** Independent rows that vanish outside as many columns T: what they take to 0 is 0 in T. *)
+Lemma independent_rows_vanish (F : fieldType) (k m : nat) (R : 'M[F]_(k, m)) (T : {set 'I_m}) : row_free R -> k = #|T| ->
+  (forall a j, j \notin T -> R a j = 0) -> forall x : 'cV[F]_m, R *m x = 0 -> forall j, j \in T -> x j 0 = 0.
 Proof.
-move=> unit same outside x zero j jT.
-pose rows : 'M[F]_(#|S|, m) := rowsub enum_val X; pose units : 'M[F]_(#|T|, m) := rowsub enum_val 1%:M.
-have spanned (Y : 'M[F]_(#|S|, m)) : (forall a k, k \notin T -> Y a k = 0) -> (Y <= units)%MS.
-  move=> vanish; have -> : Y = (\matrix_(a, z) Y a (enum_val z)) *m units; last exact: submxMl.
-  apply/matrixP=> a k; rewrite [RHS]mxE; have [kT|kT] := boolP (k \in T).
-    rewrite (bigD1 (enum_rank_in kT k)) //= !mxE enum_rankK_in // eqxx mulr1 big1 ?addr0 // => z ne; rewrite !mxE.
-    case: eqP => [zk|]; last by rewrite mulr0.
+move=> /eqP free same outside x zero j jT; pose units : 'M[F]_(#|T|, m) := rowsub enum_val 1%:M.
+have inside : (R <= units)%MS.
+  have -> : R = (\matrix_(a, z) R a (enum_val z)) *m units; last exact: submxMl.
+  apply/matrixP=> a i; rewrite [RHS]mxE; have [iT|iT] := boolP (i \in T).
+    rewrite (bigD1 (enum_rank_in iT i)) //= !mxE enum_rankK_in // eqxx mulr1 big1 ?addr0 // => z ne; rewrite !mxE.
+    case: eqP => [zi|]; last by rewrite mulr0.
     by case/eqP: ne; apply: enum_val_inj; rewrite enum_rankK_in.
-  rewrite big1 => [|z _]; first exact: vanish.
-  by rewrite !mxE; case: eqP => [zk|]; rewrite ?mulr0 //; case/negP: kT; rewrite -zk enum_valP.
-have inside : (rows <= units)%MS by apply: spanned => a k kT; rewrite mxE outside ?enum_valP.
-have free_rows : \rank rows = #|S|.
-  have -> : rows = rowsub enum_val 1%:M *m X by rewrite mul_rowsub_mx mul1mx.
-  rewrite mxrankMfree ?row_free_unit //; apply/eqP/row_freeP; exists (rowsub enum_val 1%:M)^T.
-  apply/matrixP=> a z; rewrite !mxE (bigD1 (enum_val a)) //= !mxE eqxx mul1r big1 ?addr0 => [|k ne].
-    by rewrite (inj_eq enum_val_inj) eq_sym.
-  by rewrite !mxE [enum_val a == k]eq_sym (negPf ne) mul0r.
-have back : (units <= rows)%MS.
-  have : (rows == units)%MS by rewrite -(mxrank_leqif_eq inside) eqn_leq mxrankS //= free_rows same rank_leq_row.
+  rewrite big1 => [|z _]; first exact: outside.
+  by rewrite !mxE; case: eqP => [zi|]; rewrite ?mulr0 //; case/negP: iT; rewrite -zi enum_valP.
+have back : (units <= R)%MS.
+  have : (R == units)%MS by rewrite -(mxrank_leqif_eq inside) eqn_leq mxrankS //= free same rank_leq_row.
   by case/andP.
 have /submxP[y ey] := submx_trans (row_sub (enum_rank_in jT j) units) back.
 have -> : x j 0 = (row (enum_rank_in jT j) units *m x) 0 0.
   by rewrite row_rowsub enum_rankK_in // row1 -rowE mxE.
-rewrite ey -mulmxA; have -> : rows *m x = 0; last by rewrite mulmx0 mxE.
-by rewrite mul_rowsub_mx; apply/colP=> a; rewrite mxE zero ?enum_valP // mxE.
+by rewrite ey -mulmxA zero mulmx0 mxE.
 Qed.
+
+Section Blocks.
+Variables (F : fieldType) (m : nat) (X : 'M[F]_m) (S T : {set 'I_m}).
+Hypothesis unit : X \in unitmx.
+Hypothesis outside : forall i j, i \in S -> j \notin T -> X i j = 0.
+Let rows : 'M[F]_(#|S|, m) := rowsub enum_val X.
+
+Let rows_free : row_free rows.
+Proof.
+rewrite /rows /row_free; have -> : rowsub enum_val X = rowsub (@enum_val _ (mem S)) 1%:M *m X by rewrite mul_rowsub_mx mul1mx.
+rewrite mxrankMfree ?row_free_unit //; apply/row_freeP; exists (rowsub enum_val 1%:M)^T.
+apply/matrixP=> a z; rewrite !mxE (bigD1 (enum_val a)) //= !mxE eqxx mul1r big1 ?addr0 => [|k ne].
+  by rewrite (inj_eq enum_val_inj) eq_sym.
+by rewrite !mxE [enum_val a == k]eq_sym (negPf ne) mul0r.
+Qed.
+Let rows_outside a j : j \notin T -> rows a j = 0.
+Proof. by move=> jT; rewrite mxE outside ?enum_valP. Qed.
+Let rows_zero (x : 'cV[F]_m) : (forall i, i \in S -> (X *m x) i 0 = 0) -> rows *m x = 0.
+Proof. by move=> zero; rewrite mul_rowsub_mx; apply/colP=> a; rewrite mxE zero ?enum_valP // mxE. Qed.
+
+(** A regular matrix whose rows S vanish outside as many columns T: solutions with zeros in S have zeros in T. *)
+Lemma block_solutions_vanish : #|S| = #|T| ->
+  forall x : 'cV[F]_m, (forall i, i \in S -> (X *m x) i 0 = 0) -> forall j, j \in T -> x j 0 = 0.
+Proof. by move=> same x /rows_zero; apply: independent_rows_vanish rows_free same rows_outside _. Qed.
+
+(** One column more: such solutions are multiples of one vector in T, so that they vanish there together. *)
+Lemma block_solutions_vary_together : #|T| = #|S|.+1 -> forall x y : 'cV[F]_m,
+  (forall i, i \in S -> (X *m x) i 0 = 0) -> (forall i, i \in S -> (X *m y) i 0 = 0) ->
+  forall k, k \in T -> y k 0 != 0 -> x k 0 = 0 -> forall j, j \in T -> x j 0 = 0.
+Proof.
+move=> more x y /rows_zero x0 /rows_zero y0 k kT yk xk.
+apply: (@independent_rows_vanish _ (1 + #|S|) _ (col_mx (delta_mx 0 k) rows)) => [||a j jT|].
+- apply: inj_row_free => v; rewrite -[v]hsubmxK mul_row_col => sum.
+  have left : lsubmx v = 0.
+    have := congr1 (fun r : 'rV_m => (r *m y) 0 0) sum.
+    rewrite mul0mx mulmxDl -!mulmxA y0 mulmx0 addr0 -rowE [LHS]mxE big_ord1 [X in _ * X = _]mxE [RHS]mxE => /eqP.
+    rewrite mulf_eq0 (negPf yk) orbF => /eqP zero; apply/rowP=> i.
+    by rewrite [i]ord1 [RHS]mxE.
+  rewrite left mul0mx add0r in sum *; have /row_freeP[R' rr] := rows_free.
+  by have := congr1 (mulmx^~ R') sum; rewrite mul0mx -mulmxA rr mulmx1 => ->; rewrite row_mx0.
+- by rewrite more.
+- rewrite mxE; case: split => b; last exact: rows_outside.
+  by rewrite mxE; have [jk|_] := eqVneq j k; rewrite ?andbF //; case/negP: jT; rewrite jk.
+by rewrite mul_col_mx x0 -rowE; apply/colP=> a; rewrite mxE; case: split => b; rewrite ?mxE.
+Qed.
+End Blocks.
 
 Section Forces.
 Variables (F : realFieldType) (n : nat) (w : F) (radius : nat -> F) (contacts : seq contact).
@@ -128,6 +164,15 @@ have -> : fraction * f l 0 - scale_at l * G l 0 = scale_at l * (fraction *: g - 
 by rewrite normrM ler_wpmul2l // (le_trans (entry_norm _ _)).
 Qed.
 
+Lemma untouched_entry (k l : 'I_N) : (k : nat) \notin support (contact_at contacts l) ->
+  (normals radius contacts q)^T k l = 0.
+Proof.
+have -> : support (contact_at contacts l) = unzip1 (gradient n 1 (at_ q) (contact_at contacts l)).
+  by rewrite /support; case: (contact_at _ _).
+move=> absent; rewrite !mxE big1_seq ?mul0r // => e /andP[/eqP e1 es]; case/negP: absent.
+by rewrite -e1 map_f.
+Qed.
+
 (** K7. [zeros] are contacts, [free] degrees of freedom. *)
 Theorem structural_zeros (load f : 'cV[F]_N) (zeros free : {set 'I_N}) : balanced load f -> #|free| = #|zeros| ->
   (forall k, k \in free -> load k 0 = 0) ->
@@ -135,12 +180,7 @@ Theorem structural_zeros (load f : 'cV[F]_N) (zeros free : {set 'I_N}) : balance
   forall l, l \in zeros -> f l 0 = 0.
 Proof.
 move=> bal same unloaded apart; have unit : (normals radius contacts q)^T \in unitmx by rewrite unitmx_tr.
-apply: (block_solutions_vanish unit same) => [k l kf lz|k kf].
-  rewrite !mxE; have := apart k l kf lz.
-  have -> : support (contact_at contacts l) = unzip1 (gradient n 1 (at_ q) (contact_at contacts l)).
-    by rewrite /support; case: (contact_at _ _).
-  move=> absent; rewrite big1_seq ?mul0r // => e /andP[/eqP e1 es]; case/negP: absent.
-  by rewrite -e1 map_f.
+apply: (block_solutions_vanish unit _ same) => [k l kf lz|k kf]; first by apply/untouched_entry/apart.
 have -> : (normals radius contacts q)^T *m f = - load by apply/eqP; rewrite -addr_eq0; apply/eqP.
 by rewrite mxE unloaded ?oppr0.
 Qed.

@@ -19,6 +19,12 @@ Let s (l : nat) : F := scale w radius (contact_at contacts l).
 
 Definition potential (load p : 'cV[F]_N) : F := - \sum_k load k 0 * p k 0.
 
+(** Every other configuration near p, without an overlap at a listed contact, costs work of the finite load, or none of
+    it and work of the infinitesimal one. *)
+Definition strict_minimum (load small p : 'cV[F]_N) : Prop := exists2 e, 0 < e & forall p', norm (p' - p) < e -> p' != p ->
+  (forall l : 'I_N, apart n radius (at_ p') 0 (contact_at contacts l)) ->
+  potential load p < potential load p' \/ potential load p = potential load p' /\ potential small p < potential small p'.
+
 Hypothesis w0 : 0 < w.
 Hypothesis scales : forall l, 0 < scale 1 radius (contact_at contacts l).
 Hypothesis closed : gaps q = 0.
@@ -185,9 +191,7 @@ Proof. by rewrite !mxE. Qed.
 
 Hypothesis regular : A \in unitmx.
 
-Theorem equilibrium_is_a_strict_minimum : exists2 e, 0 < e & forall p, norm (p - q) < e -> p != q ->
-  (forall l : 'I_N, apart n radius (at_ p) 0 (contact_at contacts l)) ->
-  potential load q < potential load p \/ potential load q = potential load p /\ potential small q < potential small p.
+Theorem equilibrium_is_a_strict_minimum : strict_minimum load small q.
 Proof.
 have force' l : l \in ~: zeros -> 0 < f l 0 by rewrite inE => /force.
 exists (Num.min (reach (~: zeros) f) (reach zeros g)).
@@ -217,9 +221,9 @@ pose y := A *m (without p - q); pose u : 'cV[F]_N := \col_l (if l \in zeros then
 have [l lS far] : exists2 l, l \in ~: zeros & b / 2%:R * norm (without p - q) < `|u l 0|.
   apply: some_entry => //; first by rewrite subr_eq0.
     have z_is k : k \in ~: free -> (invmx A *m u - (without p - q)) k 0 = 0.
-      apply: (block_solutions_vanish regular (S := ~: zeros)) => [|i j|i].
-      - by rewrite [LHS]cardsCs [RHS]cardsCs !setCK same.
+      apply: (block_solutions_vanish regular (S := ~: zeros)) => [i j||i].
       - by rewrite !inE negbK => iz jf; apply: A_zero.
+      - by rewrite [LHS]cardsCs [RHS]cardsCs !setCK same.
       by rewrite inE => iz; rewrite mulmxBr mulKVmx // -/y mxE [X in _ + X]mxE mxE (negPf iz) subrr.
     apply: norm_le => [|k]; first exact: norm_ge0.
     case kf: (k \in free); first by rewrite !mxE kf subrr normr0 norm_ge0.

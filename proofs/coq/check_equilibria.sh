@@ -58,6 +58,13 @@ changes = {
     "a length": scale("state", "length", 0, by=1 + 2**-52),
     "a stress": scale("state", "load", "stress", 0, by=1.5),
     "an infinitesimal load": scale("state", "infinitesimal", 0, 0, by=1.5),
+    "the nearer end of the load": lambda c: c["claims"]["load_interval"]["high"]["stress"].__setitem__(0, c["claims"]["load_interval"]["high"]["stress"][1]),
+    "the further end of the load": lambda c: c["claims"]["load_interval"]["low"]["stress"].__setitem__(0, c["claims"]["load_interval"]["low"]["stress"][1]),
+    "what opens": lambda c: c["claims"]["load_interval"]["low"].__setitem__("opens", c["claims"]["load_interval"]["high"]["opens"]),
+    "an end that is none": lambda c: c["claims"]["load_interval"].__setitem__("high", {"unbounded": True}),
+    "the loaded axis": lambda c: c["state"]["load"].__setitem__("loaded_axis", 0),
+    "a path of the load": lambda c: c["state"]["load"].__setitem__("path", [0, 1]),
+    "stability": lambda c: c["claims"].__setitem__("stable", False),
     "a contact": lambda c: c["state"]["contacts"].reverse(),
 }
 for name, change in changes.items():

@@ -53,8 +53,8 @@ def main(certificate_path, log_path, data_path):
         certificate = json.load(file)
     with open(log_path, encoding="utf-8") as file:
         values = printed(file.read())
-    ((unit, fine, force, small), n, contacts, stored, radii, zoom, distance, ball, load, low, high, zeros, load_small,
-     low_small, high_small, gap) = values
+    ((unit, fine, force, small, unit_stress), n, contacts, stored, radii, zoom, distance, ball, load, low, high, zeros, load_small,
+     low_small, high_small, gap, rate, loaded, *ends) = values
     state, claims = certificate["state"], certificate["claims"]
     same("formats", [certificate["format"], certificate["version"], state["version"]], ["isostat-certificate", 1, 2])
     known = {"format", "version", "dimension", "equilibrium", "provenance", "load", "walls", "length", "disks", "disk_force",
@@ -83,6 +83,8 @@ def main(certificate_path, log_path, data_path):
 
     loads = state["load"]
     same("kind of load", loads["kind"], "nominal")
+    if set(loads) - {"kind", "stress", "loaded_axis", "reference_length"}:
+        differ(f"the load has what Coq was not told of: {sorted(loads)}")
     disk_force = [Fraction(x) for d in state.get("disk_force", []) for x in d] or [Fraction(0)] * (2 * n)
     reference = [Fraction(x) for x in loads["reference_length"]]
     stress = [Fraction(x) for x in loads["stress"]]
@@ -92,10 +94,10 @@ def main(certificate_path, log_path, data_path):
     claim = claims["forces"]
     same("structural zeros", [l for l, zero in enumerate(zeros) if zero], claim["structural_zeros"])
 
-    def intervals(proved_low, proved_high, exponent, where, claimed):
+    def intervals(proved_low, proved_high, exponent, where, claimed, what="force {}"):
         for l, (lower, upper) in zip(where, claimed):
             if not Fraction(lower) <= proved_low[l] * two**exponent or not proved_high[l] * two**exponent <= Fraction(upper):
-                differ(f"force {l}: the interval that is claimed is smaller than what Coq proved")
+                differ(f"{what.format(l)}: the interval that is claimed is smaller than what Coq proved")
 
     carrying = [l for l, zero in enumerate(zeros) if not zero]
     same("number of forces", len(zeros), len(claim["finite"]))
@@ -105,9 +107,19 @@ def main(certificate_path, log_path, data_path):
         lower, upper = claim["finite"][l]
         if not lower <= 0 <= upper:
             differ(f"force {l} is 0, and the interval that is claimed does not hold it")
+    axis = loads["loaded_axis"]
+    same("loaded stress", loaded * two**unit_stress, stress[axis])
+    same("load per unit of stress", scaled(rate, force - unit_stress),
+         [Fraction(0)] * (2 * n) + [-reference[1 - a] if a == axis else Fraction(0) for a in range(2)])
+    interval = claims["load_interval"]
+    for end, claimed, (opens, places) in (("low", interval["low"], ends[:2]), ("high", interval["high"], ends[2:])):
+        same(f"{end} end of the load: what opens", [contacts[l] for l in opens], [] if claimed["unbounded"] else [name(claimed["opens"])])
+        if not claimed["unbounded"]:
+            intervals([min(places)], [max(places)], unit_stress, [0], [claimed["stress"]], f"{end} end of the load")
+    same("claim of stability", claims["stable"], True)
     if gap * two**fine < Fraction(claims["gaps"]["smallest"]):
         differ("a larger gap is claimed than Coq proved")
-    print(f"{n} disks: Coq's packing is that of the certificate; counting, vertex, forces and gaps follow")
+    print(f"{n} disks: Coq's packing is that of the certificate; counting, vertex, forces, gaps, load interval and stability follow")
 
 
 main(*sys.argv[1:])

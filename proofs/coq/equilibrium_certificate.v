@@ -7,18 +7,22 @@ From Coq Require Import ZArith List.
 From mathcomp Require Import all_ssreflect all_algebra.
 From mathcomp Require Import ssrZ zify ring.
 From Isostat Require Import certificate contact_certificate dense_rows integers_in_a_field shifted_factor max_norm box
-  box_vertex box_certificate box_forces box_gaps.
+  box_vertex box_certificate box_forces box_gaps box_minimum.
 Set Implicit Arguments.
 Unset Strict Implicit.
 Import Order.Theory GRing.Theory Num.Theory.
 
-Record force_claim := ForceClaim {
+Record force_solution := ForceSolution {
   load : seq Z;      (* on each degree of freedom, in units of force *)
-  low : seq Z;       (* the claimed intervals of the forces, in units of force *)
-  high : seq Z;
   fraction : Z;
   quotients : seq Z; (* fraction * force / length of contact, rounded *)
   slack : Z          (* what they may be off *)
+}.
+
+Record force_claim := ForceClaim {
+  solution :> force_solution;
+  low : seq Z;       (* the claimed intervals of the forces, in units of force *)
+  high : seq Z
 }.
 
 Record equilibrium_certificate := EquilibriumCertificate {
@@ -38,11 +42,11 @@ Let N := (n.*2.+2)%N.
 Local Open Scope Z_scope.
 
 Definition rows_at_the_refined_one (c : contact) : seq (nat * Z) := gradient n (fine_weight v) (refined_at v) c.
-Definition contributions (value : Z -> Z -> Z) (p : force_claim) : seq (nat * Z) :=
+Definition contributions (value : Z -> Z -> Z) (p : force_solution) : seq (nat * Z) :=
   flatten [seq [seq (d.1, value d.2 cg.2) | d <- rows_at_the_refined_one cg.1] | cg <- zip (contacts v) (quotients p)].
-Definition residual (p : force_claim) : seq Z := put_all (contributions Z.mul p) [seq fraction p * z | z <- load p].
-Definition blur (p : force_claim) : seq Z := dense N (contributions (fun _ g => Z.abs g) p).
-Definition nearly_balanced (p : force_claim) : bool :=
+Definition residual (p : force_solution) : seq Z := put_all (contributions Z.mul p) [seq fraction p * z | z <- load p].
+Definition blur (p : force_solution) : seq Z := dense N (contributions (fun _ g => Z.abs g) p).
+Definition nearly_balanced (p : force_solution) : bool :=
   let res := residual p in let bl := blur p in
   [&& size (load p) == N, size (quotients p) == N, 0 <? fraction p, 0 <=? slack p
     & all (fun k => Z.abs (nth 0 res k) + 2 * error v * nth 0 bl k <=? fine_stiffness v * slack p) (iota 0 N)].
@@ -54,12 +58,14 @@ Definition interval_claimed (p : force_claim) (l : nat) : bool :=
     & scale_of l * (nth 0 (quotients p) l + slack p) <=? fraction p * nth 0 (high p) l].
 
 Definition zero_at (l : nat) : bool := nth false (zeros e) l.
-Definition unloaded_at (k : nat) : bool := nth false (unloaded e) k.
-Definition zeros_are_structural : bool :=
-  [&& size (zeros e) == N, size (unloaded e) == N, count id (zeros e) == count id (unloaded e),
-    all (fun k => ~~ unloaded_at k || (nth 0 (load (finite e)) k =? 0)) (iota 0 N)
-    & all (fun l => zero_at l || all (fun d => ~~ unloaded_at d.1) (rows_at_the_refined_one (contact_at (contacts v) l)))
-        (iota 0 N)].
+(** Two lists of flags: [free] has as many as [mask], less [more]; contacts without a flag do not touch [free]. *)
+Definition counted (more : nat) (mask free : seq bool) : bool :=
+  [&& size mask == N, size free == N, count id mask == (count id free + more)%N
+    & all (fun l => nth false mask l
+        || all (fun d => ~~ nth false free d.1) (rows_at_the_refined_one (contact_at (contacts v) l))) (iota 0 N)].
+Definition free_of (p : seq Z) (free : seq bool) : bool :=
+  all (fun k => ~~ nth false free k || (nth 0 p k =? 0)) (iota 0 N).
+Definition zeros_are_structural : bool := counted 0 (zeros e) (unloaded e) && free_of (load (finite e)) (unloaded e).
 Definition forces_claimed : bool :=
   all (fun l => interval_claimed (if zero_at l then infinitesimal e else finite e) l) (iota 0 N).
 
@@ -103,8 +109,8 @@ move=> sG; rewrite /contributions big_flatten big_map (big_nth (Lower 0 0, 0)) b
 by apply: eq_bigr => l _; rewrite nth_zip ?sG ?size_contacts // big_map.
 Qed.
 
-Definition load_vector (p : force_claim) : 'cV[F]_N := \col_k real (nth 0 (load p) k).
-Definition quotient_vector (p : force_claim) : 'cV[F]_N := \col_l real (nth 0 (quotients p) l).
+Definition load_vector (p : force_solution) : 'cV[F]_N := \col_k real (nth 0 (load p) k).
+Definition quotient_vector (p : force_solution) : 'cV[F]_N := \col_l real (nth 0 (quotients p) l).
 
 Let blur_is_sum p (k : 'I_N) : size (quotients p) = N ->
   \sum_(l < N) 2%:R * real (error v) * (count_mem (k : nat) (support F n (contact_at (contacts v) l)))%:R
@@ -130,13 +136,23 @@ Proof. by case/and5P: posed => _ _ _ _ /and3P[]; rewrite -(real_zero F) real_lt 
 Let w1 : w != 0 := lt0r_neq0 w_gt0.
 Let scales l : scale 1 (radius F v) (contact_at (contacts v) l) != 0 := lt0r_neq0 (scales_are_positive F posed l).
 
-Lemma forces_are_claimed (p : force_claim) (q : 'cV[F]_N) : nearly_balanced e p ->
+Lemma scale_is_positive l : 0 < real (scale_of e l) :> F.
+Proof.
+have : 0 < scale w (radius F v) (contact_at (contacts v) l).
+  by have := scales_are_positive F posed l; case: (contact_at _ _) => //= *; apply: w_gt0.
+by congr (0 < _); rewrite /scale_of; case: (contact_at _ _) => //= i j; rewrite real_plus.
+Qed.
+
+(** What a solution proves of the forces at the true vertex q. *)
+Definition encloses (p : force_solution) (f : 'cV[F]_N) : Prop := forall l : 'I_N,
+  real (scale_of e l) * real (nth 0 (quotients p) l - slack p) <= real (fraction p) * f l 0
+    <= real (scale_of e l) * real (nth 0 (quotients p) l + slack p).
+
+Lemma forces_are_found (p : force_solution) (q : 'cV[F]_N) : nearly_balanced e p ->
   norm (q - q1) <= real (error v) -> norm (q - q0) <= real (zoom v * ball v) ->
   normals (radius F v) (contacts v) q \in unitmx ->
   exists f, [/\ balanced (radius F v) (contacts v) q (load_vector p) f,
-    forall f', balanced (radius F v) (contacts v) q (load_vector p) f' -> f' = f
-    & forall l : 'I_N, interval_claimed e p l -> [/\ 0 < f l 0, real (nth 0 (low p) l) <= f l 0
-        & f l 0 <= real (nth 0 (high p) l)]].
+    forall f', balanced (radius F v) (contacts v) q (load_vector p) f' -> f' = f & encloses p f].
 Proof.
 case/and5P=> /eqP sL /eqP sG t0 c0 /allP res near inside unit.
 have b0 : 0 < real (fine_stiffness v) :> F.
@@ -148,37 +164,62 @@ have [] := forces_are_enclosed w1 scales unit b0 inverse near (load := load_vect
   move=> k; rewrite blur_is_sum // residual_is_sum // real_abs -real_times.
   have := res (k : nat); rewrite mem_iota ltn_ord => /(_ isT); rewrite -(real_le F) real_plus !real_times.
   by rewrite -[Zpos 2]/(Z.of_nat 2) real_of_nat.
-move=> f [bal alone close]; exists f; split=> // l /and3P[low0 low_ok high_ok].
-have S0 : 0 < scale w (radius F v) (contact_at (contacts v) l).
-  by have := scales_are_positive F posed l; case: (contact_at _ _) => //= *; apply: w_gt0.
+move=> f [bal alone close]; exists f; split=> // l.
 have SE : scale w (radius F v) (contact_at (contacts v) l) = real (scale_of e l).
   by rewrite /scale_of; case: (contact_at _ _) => //= i j; rewrite real_plus.
-have {close} := close l; rewrite (gtr0_norm S0) SE mxE ler_distl -mulrBr -mulrDr => /andP[above below].
+have := close l; rewrite SE (gtr0_norm (scale_is_positive l)) mxE ler_distl -mulrBr -mulrDr.
+by rewrite real_minus real_plus.
+Qed.
+
+Lemma forces_are_claimed (p : force_claim) (f : 'cV[F]_N) (l : 'I_N) : nearly_balanced e p -> encloses p f ->
+  interval_claimed e p l -> [/\ 0 < f l 0, real (nth 0 (low p) l) <= f l 0 & f l 0 <= real (nth 0 (high p) l)].
+Proof.
+case/and5P=> _ _ t0 _ _ /(_ l)/andP[above below] /and3P[low0 low_ok high_ok].
 have t1 : 0 < real (fraction p) :> F by rewrite -(real_zero F) real_lt.
 have low_f : real (nth 0 (low p) l) <= f l 0.
-  rewrite -(ler_pmul2l t1); apply: le_trans above.
-  by rewrite -real_times -real_minus -real_times real_le.
+  by rewrite -(ler_pmul2l t1); apply: le_trans above; rewrite -!real_times real_le.
 split=> //; first by apply: lt_le_trans low_f; rewrite -(real_zero F) real_lt.
-rewrite -(ler_pmul2l t1); apply: le_trans below _.
-by rewrite -real_plus -!real_times real_le.
+by rewrite -(ler_pmul2l t1); apply: le_trans below _; rewrite -!real_times real_le.
 Qed.
+
+Definition flagged (mask : seq bool) : {set 'I_N} := [set k : 'I_N | nth false mask k].
+Lemma counted_sets more mask free : counted e more mask free -> #|flagged mask| = (#|flagged free| + more)%N /\
+  forall k l : 'I_N, k \in flagged free -> l \notin flagged mask ->
+    (k : nat) \notin support F n (contact_at (contacts v) l).
+Proof.
+case/and4P=> /eqP sM /eqP sU /eqP same /allP apart.
+have card (m : seq bool) : size m = N -> #|flagged m| = count id m.
+  move=> sm; rewrite cardsE cardE size_filter -(count_map (fun k : 'I_N => nth false m k) id) -[in RHS](mkseq_nth false m).
+  by rewrite sm /mkseq -val_enum_ord -map_comp enumT.
+split=> [|k m]; first by rewrite !card.
+rewrite !inE => uk /negPf nz; have := apart (m : nat); rewrite mem_iota ltn_ord nz => /(_ isT)/allP away.
+apply/negP; have -> : support F n (contact_at (contacts v) m) = unzip1 (rows_at_the_refined_one e (contact_at (contacts v) m)).
+  by rewrite /support /rows_at_the_refined_one; case: (contact_at _ _).
+by case/mapP=> d dr kd; have := away d dr; rewrite -kd uk.
+Qed.
+
+Lemma counted_size more mask free : counted e more mask free -> size mask = N.
+Proof. by case/and4P=> /eqP. Qed.
+
+Lemma free_of_load p free : free_of e (load p) free -> forall k, k \in flagged free -> load_vector p k 0 = 0.
+Proof.
+move=> /allP zero k; rewrite inE => kf; have := zero (k : nat).
+by rewrite mem_iota ltn_ord kf => /(_ isT)/Z.eqb_eq none; rewrite mxE none real_zero.
+Qed.
+
+Let structural : zeros_are_structural e. Proof. by case/and5P: check. Qed.
+Let zeros_counted : #|flagged (unloaded e)| = #|flagged (zeros e)|.
+Proof. by case/andP: structural => /counted_sets[-> _]; rewrite addn0. Qed.
+Let zeros_apart (k l : 'I_N) : k \in flagged (unloaded e) -> l \notin flagged (zeros e) ->
+  (k : nat) \notin support F n (contact_at (contacts v) l).
+Proof. by case/andP: structural => /counted_sets[_ apart] _; apply: apart. Qed.
+Let zeros_unloaded : forall k, k \in flagged (unloaded e) -> load_vector (finite e) k 0 = 0.
+Proof. by case/andP: structural => _ /free_of_load. Qed.
 
 Lemma zeros_are_zero (q f : 'cV[F]_N) : normals (radius F v) (contacts v) q \in unitmx ->
   balanced (radius F v) (contacts v) q (load_vector (finite e)) f -> forall l : 'I_N, zero_at e l -> f l 0 = 0.
 Proof.
-move=> unit bal l zl; have /and5P[_ _ _ /and5P[/eqP sZ /eqP sU /eqP same /allP no_load /allP apart] _] := check.
-have card (mask : seq bool) : size mask = N -> #|[set k : 'I_N | nth false mask k]| = count id mask.
-  move=> sM; rewrite cardsE cardE size_filter -(count_map (fun k : 'I_N => nth false mask k) id) -[in RHS](mkseq_nth false mask).
-  by rewrite sM /mkseq -val_enum_ord -map_comp enumT.
-apply: (structural_zeros unit bal (zeros := [set k : 'I_N | zero_at e k]) (free := [set k : 'I_N | unloaded_at e k])).
-- by rewrite !card.
-- move=> k; rewrite inE => uk; have := no_load (k : nat); rewrite mem_iota ltn_ord uk => /(_ isT)/Z.eqb_eq zero.
-  by rewrite mxE zero real_zero.
-- move=> k m; rewrite !inE => uk /negPf nz; have := apart (m : nat); rewrite mem_iota ltn_ord nz => /(_ isT)/allP away.
-  apply/negP; have -> : support F n (contact_at (contacts v) m) = unzip1 (rows_at_the_refined_one e (contact_at (contacts v) m)).
-    by rewrite /support /rows_at_the_refined_one; case: (contact_at _ _).
-  by case/mapP=> d dr kd; have := away d dr; rewrite -kd uk.
-- by rewrite inE.
+by move=> unit bal l zl; apply: (structural_zeros unit bal zeros_counted zeros_unloaded zeros_apart); rewrite inE.
 Qed.
 
 (** What is said of a configuration: the statement of the theorem, in full. *)
@@ -200,28 +241,51 @@ Let near_the_refined_one (q : 'cV[F]_N) k : norm (q - q1) <= real (error v) ->
   `|at_ q k - real (refined_at v k)| <= real (error v).
 Proof. by rewrite -(at_refined F posed) -at_sub => near; apply: le_trans near; apply: at_norm. Qed.
 
-(** ... and that there is one such configuration, near the stored one. *)
-Definition certified_equilibrium : Prop := exists q : 'cV[F]_N,
-  [/\ norm (q - q1) <= real (error v), norm (q - q0) <= real (distance v), is_the_equilibrium q
+(** ... and that it is the one near the stored configuration, and a strict minimum. *)
+Definition is_certified (q : 'cV[F]_N) : Prop :=
+  [/\ norm (q - q1) <= real (error v), norm (q - q0) <= real (distance v), is_the_equilibrium q,
+     strict_minimum (radius F v) (contacts v) (load_vector (finite e)) (load_vector (infinitesimal e)) q
    & forall q' : 'cV[F]_N, norm (q' - q0) <= real (zoom v * ball v) ->
        (forall l : 'I_N, touch n (radius F v) (at_ q') (contact_at (contacts v) l)) -> q' = q].
+Definition certified_equilibrium : Prop := exists q, is_certified q.
+
+Let inside (q : 'cV[F]_N) : norm (q - q1) <= real (error v) -> norm (q - q0) <= real (distance v) ->
+  norm (q - q0) <= real (zoom v * ball v).
+Proof.
+move=> near close; apply: le_trans close _; have /and5P[_ _ /andP[ball_ok _] _ _] := vertex_ok.
+by rewrite -(real_le F) real_plus in ball_ok; apply: le_trans ball_ok; rewrite ler_addl (le_trans (norm_ge0 _) near).
+Qed.
+Lemma inside_the_ball q : is_certified q -> norm (q - q0) <= real (zoom v * ball v).
+Proof. by case=> near close _ _ _; apply: inside. Qed.
 
 Theorem one_equilibrium : complete F -> certified_equilibrium.
 Proof.
 move=> full; have [q [near close closed unit alone]] := one_vertex posed full vertex_ok.
-have inside : norm (q - q0) <= real (zoom v * ball v).
-  apply: le_trans close _; have /and5P[_ _ /andP[ball_ok _] /Z.leb_le _ _] := vertex_ok; have r0 : 0 <= real (error v) :> F.
-    by apply: le_trans near; apply: norm_ge0.
-  by rewrite -(real_le F) real_plus in ball_ok; apply: le_trans ball_ok; rewrite ler_addl.
+have inside_q := inside near close.
 have /and5P[_ bal bal_small _ /andP[/andP[/allP claims g0] gaps_ok]] := check.
 have claimed (l : 'I_N) : interval_claimed e (if zero_at e l then infinitesimal e else finite e) l.
   by apply: claims; rewrite mem_iota ltn_ord.
-exists q; split=> //; split=> //.
-- by move=> c formed unlisted; apply: other_grains_are_apart gaps_ok formed unlisted => k; apply: near_the_refined_one.
-- have [f [fb fu fl]] := forces_are_claimed bal near inside unit; exists f; split=> // l.
-  by have := claimed l; case: ifP => [zl _|_ ok]; [apply: zeros_are_zero unit fb _ zl|apply: fl].
-- have [f [fb fu fl]] := forces_are_claimed bal_small near inside unit; exists f; split=> // l zl.
-  by have := claimed l; rewrite zl => /fl.
+have [f [fb fu fl]] := forces_are_found bal near inside_q unit.
+have [g [gb gu gl]] := forces_are_found bal_small near inside_q unit.
+have zero := zeros_are_zero unit fb.
+have pushing (l : 'I_N) : ~~ zero_at e l -> [/\ 0 < f l 0, real (nth 0 (low (finite e)) l) <= f l 0
+    & f l 0 <= real (nth 0 (high (finite e)) l)] by have := claimed l; case: ifP => // _ /(forces_are_claimed bal fl).
+have pushing_small (l : 'I_N) : zero_at e l -> [/\ 0 < g l 0, real (nth 0 (low (infinitesimal e)) l) <= g l 0
+    & g l 0 <= real (nth 0 (high (infinitesimal e)) l)] by move=> zl; have := claimed l; rewrite zl => /(forces_are_claimed bal_small gl).
+exists q; split=> //.
+- split=> //.
+  + by move=> c formed unlisted; apply: other_grains_are_apart gaps_ok formed unlisted => k; apply: near_the_refined_one.
+  + by exists f; split=> // l; case: ifPn => [/zero|/pushing].
+  by exists g.
+- have b0 : 0 < real (fine_stiffness v) :> F.
+    by case/and5P: posed => _ _ _ _ /and3P[]; rewrite -(real_zero F) real_lt /fine_stiffness; nia.
+  have [regular _] := gaps_follow_displacements posed 0 vertex_ok inside_q.
+  apply: (equilibrium_is_a_strict_minimum w_gt0 (scales_are_positive F posed) _ b0 _ zeros_counted zeros_unloaded zeros_apart fb gb) => //.
+  + exact/(gaps_vanish _ _ _ w1).
+  + by move=> x; have [] := gaps_follow_displacements posed x vertex_ok inside_q.
+  + by move=> l; rewrite inE; apply: zero.
+  + by move=> l; rewrite inE => /pushing[].
+  by move=> l; rewrite inE => /pushing_small[].
 Qed.
 End Correct.
 Print Assumptions one_equilibrium.

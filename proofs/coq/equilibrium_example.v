@@ -1,13 +1,12 @@
 (** The certificate of an equilibrium at work: two disks in their box, as examples/programs/equilibrium_certificate.cpp
-    writes them for `isostat certify`. It is accepted; with a larger gap, another contact, or forces that pull,
-    it is refused. *)
+    writes them for `isostat certify`. It is accepted; with a larger gap, another contact, forces that pull, or another
+    end of the interval of the load, it is refused. No larger vertical stress opens a contact here; one that is 17 times
+    smaller does. *)
 From Coq Require Import ZArith List.
 From mathcomp Require Import all_ssreflect all_algebra.
-From Isostat Require Import contact_certificate max_norm box_certificate equilibrium_certificate.
+From Isostat Require Import contact_certificate max_norm box_certificate equilibrium_certificate load_certificate.
 Definition touching : seq contact := [:: Disks 0 1; Lower 1 0; Lower 1 1; Upper 0 0; Upper 0 1; Upper 1 1].
 Open Scope Z_scope.
-(* The units are 2 to these powers: of stored lengths, of refined ones, of forces, of infinitesimal ones. *)
-Definition exponents : seq Z := [:: -51; -91; -55; -61].
 Definition the_vertex : vertex_certificate := {|
   disks := 2;
   contacts := touching;
@@ -22,57 +21,97 @@ Definition the_vertex : vertex_certificate := {|
   stiffness := 99051080468625;
   shift := 693250346838745712476601450496;
   factor := [:: [:: (0, -3366588412172254); (1, -2423560242017666); (3, 1370053278589376)]; [:: (0, -356047438847835); (2, -1649645634951054); (3, 260399572646296); (4, 1275125153380951)]; [:: (0, 4368593339947622)]; [:: (0, 356047438847835); (2, -1649645634951054); (3, -260399572646296); (4, -2110579920254096); (5, 1497330610759670)]; [:: (1, 2092212239251594)]; [:: (2, 3073752503860239)]] |}.
+(* The units are 2 to these powers: of lengths, of refined lengths, of forces, of infinitesimal ones, of stresses. *)
+Definition exponents : seq Z := [:: -51; -91; -106; -61; -56].
 Definition the_forces : force_claim := {|
-  load := [:: 0; 0; 0; 0; -68191652351825632; -123062329846701248];
-  low := [:: 68571953440923848; 68191652351820552; 123062329846696128; 68191652351820552; 7211889366358985; 115850440480332112];
-  high := [:: 68571953440934008; 68191652351830712; 123062329846706368; 68191652351830712; 7211889366369081; 115850440480342320];
-  fraction := 2 ^ 135;
+  solution := {|
+  load := [:: 0; 0; 0; 0; -153553950060730161736990626676736; -277111731420474404316058960789504];
+  fraction := 2 ^ 84;
   quotients := [:: 704392916941062867624711902000; 1199640234849454388570239270912; 2164935401722456283719210631168; 1199640234849454388570239270912; 126872899464821754680570788597; 2038062502257634529038639842571];
-  slack := 991331 |}.
+  slack := 991331 |};
+  low := [:: 154410311982305821425126608994304; 153553950060718722593937105616896; 277111731420462875101012892319744; 153553950060718722593937105616896; 16239731131485783678388566753280; 260872000288965762617761675083776];
+  high := [:: 154410311982328699711233651113984; 153553950060741600880044147736576; 277111731420485933531105029259264; 153553950060741600880044147736576; 16239731131508517849307533017088; 260872000288988748990259774095360] |}.
 Definition the_infinitesimal_forces : force_claim := {|
+  solution := {|
   load := [:: -6344470489680329; -1087805033172337152; 711370969302332672; -1878431269022391040; 0; 0];
-  low := [:: 0; 0; 0; 0; 0; 0];
-  high := [:: 0; 0; 0; 0; 0; 0];
   fraction := 2 ^ 130;
   quotients := [:: 2047996309181298952639852427; -387592416667356754457955139584; 1630705652497194317855898730496; 0; -597658263108400005032805494808; 597658263108400005032805494808];
-  slack := 450575 |}.
-Definition the_certificate : equilibrium_certificate := {|
-  vertex := the_vertex;
-  finite := the_forces;
-  infinitesimal := the_infinitesimal_forces;
-  zeros := [:: false; false; false; false; false; false];
-  unloaded := [:: false; false; false; false; false; false];
-  gap := 891894500187681198555791360 |}.
+  slack := 450575 |};
+  low := [:: 0; 0; 0; 0; 0; 0];
+  high := [:: 0; 0; 0; 0; 0; 0] |}.
+Definition the_rate : force_solution := {|
+  load := [:: 0; 0; 0; 0; 0; -3845697807709414];
+  fraction := 2 ^ 140;
+  quotients := [:: 0; 0; 2164935401722456283719210631168; 0; 0; 2164935401722456283719210631168];
+  slack := 874660 |}.
+Definition the_lower_end : load_end := {|
+  opens := Some 5%nat;
+  mute := [:: false; false; false; false; false; true];
+  free := [:: false; false; false; false; false; false];
+  near := 4222830795221625;
+  far := 4222830795214103 |}.
+Definition the_upper_end : load_end := {|
+  opens := None;
+  mute := [:: true; true; false; true; true; false];
+  free := [:: true; true; true; false; true; false];
+  near := 0;
+  far := 0 |}.
+Definition the_certificate : load_certificate := {|
+  equilibrium := {|
+    vertex := the_vertex;
+    finite := the_forces;
+    infinitesimal := the_infinitesimal_forces;
+    zeros := [:: false; false; false; false; false; false];
+    unloaded := [:: false; false; false; false; false; false];
+    gap := 891894500187681198555791360 |};
+  rate := the_rate;
+  stress := 72057594037927936;
+  lower_end := the_lower_end;
+  upper_end := the_upper_end |}.
 Close Scope Z_scope.
 
-Lemma accepted : equilibrium_check the_certificate = true.
+Lemma accepted : load_check the_certificate = true.
 Proof. by vm_compute. Qed.
 
-Theorem two_disks_are_in_equilibrium (F : archiFieldType) : complete F -> certified_equilibrium F the_certificate.
-Proof. exact: one_equilibrium accepted. Qed.
+Theorem two_disks_are_in_equilibrium (F : archiFieldType) : complete F -> certified F the_certificate.
+Proof. move=> full; exact: equilibrium_with_its_interval full accepted. Qed.
 
 (** The same with another gap, with other contacts, under the opposite load. *)
+Definition two_disks : equilibrium_certificate := equilibrium the_certificate.
 Definition with_gap (g : Z) : equilibrium_certificate :=
-  EquilibriumCertificate the_vertex the_forces the_infinitesimal_forces (zeros the_certificate) (unloaded the_certificate) g.
+  EquilibriumCertificate the_vertex the_forces the_infinitesimal_forces (zeros two_disks) (unloaded two_disks) g.
 Definition with_contacts (cs : seq contact) : vertex_certificate :=
   VertexCertificate 2 cs (stored the_vertex) (radii the_vertex) (weight the_vertex) (zoom the_vertex)
     (refined the_vertex) (error the_vertex) (distance the_vertex) (ball the_vertex) (stiffness the_vertex)
     (shift the_vertex) (factor the_vertex).
 Definition pulling : force_claim :=
-  ForceClaim [seq Z.opp x | x <- load the_forces] [seq Z.opp x | x <- high the_forces]
-    [seq Z.opp x | x <- low the_forces] (fraction the_forces) [seq Z.opp x | x <- quotients the_forces] (slack the_forces).
+  ForceClaim (ForceSolution [seq Z.opp x | x <- load the_forces] (fraction the_forces)
+      [seq Z.opp x | x <- quotients the_forces] (slack the_forces))
+    [seq Z.opp x | x <- high the_forces] [seq Z.opp x | x <- low the_forces].
 
-Lemma a_larger_gap_is_refused : equilibrium_check (with_gap (Z.double (gap the_certificate))) = false.
+Lemma a_larger_gap_is_refused : equilibrium_check (with_gap (Z.double (gap two_disks))) = false.
 Proof. by vm_compute. Qed.
 Lemma another_contact_is_refused : vertex_check (with_contacts (Lower 0 0 :: behead touching)) = false.
 Proof. by vm_compute. Qed.
 Lemma a_missing_contact_is_refused : vertex_check (with_contacts (behead touching)) = false.
 Proof. by vm_compute. Qed.
 (** Opposite loads balance as well, with forces that pull: only their sign is wrong. *)
-Lemma forces_that_pull_balance : nearly_balanced the_certificate pulling = true.
+Lemma forces_that_pull_balance : nearly_balanced two_disks pulling = true.
 Proof. by vm_compute. Qed.
 Lemma forces_that_pull_are_refused : equilibrium_check (EquilibriumCertificate the_vertex pulling
-  the_infinitesimal_forces (zeros the_certificate) (unloaded the_certificate) (gap the_certificate)) = false.
+  the_infinitesimal_forces (zeros two_disks) (unloaded two_disks) (gap two_disks)) = false.
+Proof. by vm_compute. Qed.
+
+(** Going down, the force of disk 1 on the lower wall would vanish as well, at the stress 0: after that of the contact
+    that opens. Only that is wrong with this end. *)
+Definition a_later_end : load_end := LoadEnd (Some 2) (set_nth false (nseq 6 false) 2 true) (nseq 6 false)
+  (Z.pred (stress the_certificate)) (Zneg xH).
+Lemma the_later_force_vanishes_there : vanishes_between the_certificate false a_later_end 2 = true.
+Proof. by vm_compute. Qed.
+Lemma a_later_end_is_refused : end_check the_certificate false a_later_end = false.
+Proof. by vm_compute. Qed.
+Lemma ends_in_the_other_direction_are_refused : end_check the_certificate true (lower_end the_certificate)
+  || end_check the_certificate false (upper_end the_certificate) = false.
 Proof. by vm_compute. Qed.
 
 Print Assumptions two_disks_are_in_equilibrium.

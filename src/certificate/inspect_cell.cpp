@@ -1,3 +1,4 @@
+#include "certificate/jammed_box.hpp"
 #include "contact/contact_set.hpp"
 #include "contact/own_images.hpp"
 
@@ -123,7 +124,70 @@ std::vector<Contact> joined(std::vector<Contact> contacts, const std::vector<Con
     return contacts;
 }
 
+/// Both walls on every axis, and none of the upper ones moves.
+enum class Box : unsigned char { none, moves, stays };
+Box box_of(const Packing& packing) {
+    bool walls = !packing.cell.any(), moves = false;
+    for (std::size_t a = 0; a < packing.axes(); ++a) {
+        walls = walls && packing.walls.lower[a] != WallKind::absent && packing.walls.upper[a] != WallKind::absent;
+        moves = moves || packing.walls.upper[a] == WallKind::movable;
+    }
+    return !walls ? Box::none : moves ? Box::moves : Box::stays;
+}
+
+bool is_equilibrium(const Certification& truth) {
+    return truth.claims.vertex && truth.claims.forces && truth.claims.gaps && truth.signs.positive > 0;
+}
+
+/// The size of the box gives way: forces in walls that stay are then determined up to a factor.
+State with_size(State state) {
+    state.packing.walls.upper[state.packing.axes() - 1] = WallKind::movable;
+    const int dimension = state.packing.dimension;
+    state.load = {};
+    state.load.dimension = dimension;
+    state.load.loaded_axis = dimension - 1;
+    std::fill_n(state.load.stress.begin(), dimension, 1);
+    state.load.refer_to(state.packing);
+    return state;
+}
+
 } // namespace
+
+std::optional<BoxInspection> inspect_box(const State& state, const Certification& truth) {
+    const Box box = box_of(state.packing);
+    const auto any = [](const auto& values) {
+        return std::any_of(values.begin(), values.end(), [](const auto& value) { return value != 0; });
+    };
+    if (box == Box::none || any(state.packing.fixed) || any(state.load.disk_force)) {
+        return std::nullopt;
+    }
+    const std::vector<int> rattlers = rattlers_by_coordination(state.packing, state.contacts);
+    State rest = state;
+    rest.packing = without_disks(state.packing, rattlers);
+    const auto rattles = [&](int i) { return std::binary_search(rattlers.begin(), rattlers.end(), i); };
+    std::erase_if(rest.contacts, [&](const Contact& c) {
+        return c.kind == ContactKind::held || rattles(c.i) || (c.kind == ContactKind::disk_disk && rattles(c.j));
+    });
+    BoxInspection out;
+    out.grains = state.packing.disk_count() - static_cast<int>(rattlers.size());
+    Packing held = rest.packing;
+    std::fill_n(held.walls.upper.begin(), held.axes(), WallKind::fixed);
+    out.counting = count_contacts(held, rest.contacts);
+    const Counting& c = out.counting;
+    if (box == Box::moves ? is_equilibrium(truth) : c.hyperstaticity == 1 && is_equilibrium(certify(with_size(rest)))) {
+        out.collective = {Verdict::proved, "positive forces, and no mechanism: k = 0 at the true vertex"};
+    } else if (box == Box::stays && c.hyperstaticity > 1) {
+        out.collective.reason = fmt::format("h = {} of {} {}s that are no rattlers: {} contacts more than the size of "
+                                            "the box and the places determine, "
+                                            "which close in exact numbers alone (a packing in TOML)",
+                                            c.hyperstaticity, out.grains,
+                                            state.packing.dimension == plane ? "disk" : "sphere", c.hyperstaticity - 1);
+    } else {
+        out.collective.reason = fmt::format("no equilibrium is proved; h = {}, k = {} of the {} that are no rattlers",
+                                            c.hyperstaticity, c.mechanisms, out.grains);
+    }
+    return out;
+}
 
 CellInspection inspect_cell(const State& state, const Certification& truth) {
     assert(state.packing.cell.all());

@@ -366,7 +366,7 @@ StateFile of_box(StateFile file, const std::string& source) {
 StateFile parse_any_state(const std::string& text, const std::string& source, Dimensions dimensions) {
     const json::Json parsed = Field::parse(text, source);
     StateFile file = json::state_from_json(Field(parsed, source), source);
-    if (dimensions == Dimensions::plane) {
+    if (dimensions == Dimensions::two) {
         require_plane(file.state.packing, source, "this command");
     }
     return file;

@@ -319,11 +319,14 @@ void bind_equilibrium(InspectionClass& inspection) {
                 py::dict out;
                 if (self.seen.jamming) {
                     out["collectively"] = self.seen.jamming->collective;
-                    out["strictly"] = self.seen.jamming->strict;
+                    if (self.seen.jamming->strict) {
+                        out["strictly"] = *self.seen.jamming->strict;
+                    }
                 }
                 return out;
             },
-            "Of a cell: a Verdict for \"collectively\" and \"strictly\", of the disks that are not rattlers; else "
+            "Of a cell, or of walls that all stay (\"collectively\" alone): a Verdict for \"collectively\" and "
+            "\"strictly\", of the disks that are not rattlers; else "
             "empty.");
 }
 

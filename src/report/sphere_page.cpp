@@ -16,12 +16,12 @@ extern const char* const spheres_template; ///< source of the page, with places 
 
 namespace {
 
-using Curve = std::vector<std::pair<double, double>>;
+using Polyline = std::vector<std::pair<double, double>>;
 
 /// Curves in a frame with its ticks, as SVG.
 class Plot {
   public:
-    void add(const Curve& curve, const std::string& title) {
+    void add(const Polyline& curve, const std::string& title) {
         for (const auto& [x, y] : curve) {
             low_x_ = std::min(low_x_, x);
             high_x_ = std::max(high_x_, x);
@@ -65,7 +65,7 @@ class Plot {
         return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\" font-size=\"12\">{}</text>\n", x, y,
                            anchor, text);
     }
-    std::vector<std::pair<std::string, Curve>> curves_;
+    std::vector<std::pair<std::string, Polyline>> curves_;
     double low_x_ = HUGE_VAL, high_x_ = -HUGE_VAL, low_y_ = HUGE_VAL, high_y_ = -HUGE_VAL;
 };
 

@@ -4,16 +4,17 @@
     printed at the end, field by field, so that compare.py can lay it beside the certificate of the program. *)
 From Coq Require Import ZArith List.
 From mathcomp Require Import all_ssreflect all_algebra.
-From Isostat Require Import contact_certificate max_norm box_certificate equilibrium_certificate.
+From Isostat Require Import contact_certificate max_norm box_certificate equilibrium_certificate load_certificate.
 Require Data.certificate.
 
-Definition c : equilibrium_certificate := Data.certificate.the_certificate.
+Definition whole : load_certificate := Data.certificate.the_certificate.
+Definition c : equilibrium_certificate := equilibrium whole.
 
-Lemma accepted : equilibrium_check c = true.
+Lemma accepted : load_check whole = true.
 Proof. vm_cast_no_check (erefl true). Qed.
 
-Theorem packing_is_in_equilibrium (F : archiFieldType) : complete F -> certified_equilibrium F c.
-Proof. exact: one_equilibrium accepted. Qed.
+Theorem packing_is_in_equilibrium (F : archiFieldType) : complete F -> certified F whole.
+Proof. move=> full; exact: equilibrium_with_its_interval full accepted. Qed.
 
 Print Assumptions packing_is_in_equilibrium.
 Set Printing Depth 1000000.
@@ -33,3 +34,9 @@ Eval vm_compute in load (infinitesimal c).
 Eval vm_compute in low (infinitesimal c).
 Eval vm_compute in high (infinitesimal c).
 Eval vm_compute in gap c.
+Eval vm_compute in load (rate whole).
+Eval vm_compute in stress whole.
+Eval vm_compute in seq_of_opt (opens (lower_end whole)).
+Eval vm_compute in [:: near (lower_end whole); far (lower_end whole)].
+Eval vm_compute in seq_of_opt (opens (upper_end whole)).
+Eval vm_compute in [:: near (upper_end whole); far (upper_end whole)].

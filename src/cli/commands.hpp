@@ -76,6 +76,7 @@ struct ReportArguments {
     bool pdf = false;
     bool html = false;
     bool no_charts = false;
+    bool contacts = false;
     double stiffness = 0; ///< > 0: the table of soft limits too
 };
 int report(const ReportArguments& arguments);

@@ -83,7 +83,10 @@ struct Program {
         // For the build (src/CMakeLists.txt), which installs both; `--help` does not list them.
         app.add_flag_callback("--man", [this] { throw CLI::CallForVersion(man_page(app, program_name()), 0); })
             ->group("");
-        app.add_flag_callback("--completion", [this] { throw CLI::CallForVersion(bash_completion(app), 0); })
+        app.add_option_function<std::string>(
+               "--completion",
+               [this](const std::string& shell) { throw CLI::CallForVersion(shell_completion(app, shell), 0); })
+            ->check(CLI::IsMember({"bash", "zsh", "fish"}))
             ->group("");
         app.footer("Exit status: 0 done or proved; 1 refuted, or failed with a result; 2 undecided; 64 usage; 65 bad "
                    "input; 70 internal failure (says\n"
@@ -245,9 +248,10 @@ Example: isostat plan examples/biaxial-1936.toml)");
 
     void add_report() {
         auto& a = keep<ReportArguments>();
-        CLI::App& command =
-            add("report", "tables and figures of a run, or the force picture of a state",
-                R"(Charts are drawn by gnuplot; without it, data and scripts are written and said to be so.
+        CLI::App& command = add(
+            "report", "tables and figures of a run, or the force picture of a state",
+            R"(Charts are drawn by gnuplot; without it, data and scripts are written and said to be so. Of an ensemble the distribution of the forces
+of all samples together too: force_distribution.
 Examples: isostat report out
           isostat report out --html
           isostat report start.json -o pictures --vtk)");
@@ -261,6 +265,8 @@ Examples: isostat report out
         command.add_flag("--html", a.html,
                          "of a run: also write trajectory.html, one page to look at every equilibrium and arc, without "
                          "network; of a state of spheres: a view that turns");
+        command.add_flag("--contacts", a.contacts,
+                         "also contacts_*.csv of each stored state: points, normals, gaps, proved forces");
         command.add_flag("--no-charts", a.no_charts, "do not call gnuplot");
         option(command, "--stiffness", a.stiffness,
                "of a run: also where grains of this stiffness (force / overlap) would leave each structure, predicted: "
@@ -572,12 +578,18 @@ std::string wrong_command(const CLI::App& app, const std::string& word) {
            (far(near) <= 2 ? ": did you mean '" + near->get_name() + "'?" : "; isostat --help lists them");
 }
 
-/// Empty, or what else the first file on the command line is for.
-std::string use_of_input(const CLI::App& app) {
+/// The first file on the command line, or empty.
+std::string input_of(const CLI::App& app) {
     const CLI::App& command = *app.get_subcommands().front();
     const std::vector<const CLI::Option*> files =
         command.get_options([](const CLI::Option* o) { return o->get_positional() && !o->results().empty(); });
-    return files.empty() ? "" : other_use(command.get_name(), files.front()->results().front());
+    return files.empty() ? "" : files.front()->results().front();
+}
+
+/// Empty, or what else that file is for.
+std::string use_of_input(const CLI::App& app) {
+    const std::string file = input_of(app);
+    return file.empty() ? "" : other_use(app.get_subcommands().front()->get_name(), file);
 }
 
 /// `use` stands on a line of its own.
@@ -589,8 +601,16 @@ int complain(isostat::ErrorKind kind, const std::string& message, const std::str
     return isostat::Error(kind, "").exit_status();
 }
 
-/// What CLI11 prints: the help that was asked for, or what is wrong with the command line.
+/// What CLI11 prints: the help that was asked for, or what is wrong with the command line. Where an option is missing,
+/// a file that is not there, or is for another command, is told first.
 int explain(const CLI::App& app, const CLI::ParseError& error) {
+    if (error.get_name() == "RequiredError" && !app.get_subcommands().empty()) {
+        const std::string file = input_of(app), use = use_of_input(app);
+        std::error_code ignored;
+        if (!use.empty() || (!file.empty() && !std::filesystem::exists(file, ignored))) {
+            return complain(isostat::ErrorKind::bad_input, use.empty() ? file + ": does not exist" : use);
+        }
+    }
     std::ostringstream help, trouble;
     const int status = app.exit(error, help, trouble);
     say_lines(help.str());

@@ -374,27 +374,24 @@ template <class What, class Parts> void bind_genericity_of(py::module_& module, 
 }
 
 void bind_genericity(py::module_& module) {
-    py::class_<GenericitySample>(module, "GenericitySample", "One perturbed copy.")
-        .def_readonly("seed", &GenericitySample::seed, "Of its radii.")
-        .def_property_readonly(
-            "failure",
-            [](const GenericitySample& self) {
-                return self.failure ? std::optional(std::string(to_string(self.failure->kind))) : std::nullopt;
-            },
-            "Why nothing is proved of it (\"tie\", \"undecided\", ...); None: h = k = 0 is proved.")
-        .def_property_readonly(
-            "contacts", [](const GenericitySample& self) { return contact_array(self.contacts); }, "(N, 2).")
-        .def_property_readonly(
-            "carrying", [](const GenericitySample& self) { return contact_array(self.carrying); },
-            "(k, 2) contacts that carry force.")
-        .def_readonly("rattlers", &GenericitySample::rattlers, "How many.")
-        .def_readonly("min_force", &GenericitySample::min_force, "Proved lower bound of the smallest force.")
-        .def_readonly("min_gap", &GenericitySample::min_gap, "Proved lower bound of the smallest other gap; length.")
-        .def_readonly("sigma_min", &GenericitySample::sigma_min, "Proved lower bound of the smallest singular value.")
-        .def_readonly("within_original", &GenericitySample::within_original,
-                      "Every contact with force is one of the unperturbed packing.");
     py::class_<Genericity>(module, "Genericity", "What became of perturbed copies: see `genericity`.")
-        .def_readonly("samples", &Genericity::samples, "GenericitySample of each copy.")
+        .def_property_readonly(
+            "samples",
+            [](const Genericity& self) {
+                py::list rows;
+                for (const GenericitySample& s : self.samples) {
+                    using namespace py::literals;
+                    rows.append(
+                        py::dict("seed"_a = s.seed, "failure"_a = s.failure ? to_string(s.failure->kind) : nullptr,
+                                 "contacts"_a = contact_array(s.contacts), "carrying"_a = contact_array(s.carrying),
+                                 "rattlers"_a = s.rattlers, "min_force"_a = s.min_force, "min_gap"_a = s.min_gap,
+                                 "sigma_min"_a = s.sigma_min, "within_original"_a = s.within_original));
+                }
+                return rows;
+            },
+            "Of each copy a dictionary: `seed`; `failure`, a word, or None where h = k = 0 is proved; `contacts`, "
+            "those "
+            "`carrying` force, `rattlers`; proved lower bounds `min_force`, `min_gap`, `sigma_min`; `within_original`.")
         .def_readonly("proved", &Genericity::proved, "Copies with h = k = 0, proved.")
         .def_readonly("ties", &Genericity::ties, "Copies that tie.")
         .def_readonly("undecided", &Genericity::undecided, "Copies of which nothing is proved.")

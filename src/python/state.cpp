@@ -329,10 +329,7 @@ void bind_load(StateClass& state) {
             py::arg("stress"), "The same state where what the programme changes has this value.");
 }
 
-void bind_state_class(py::module_& module) {
-    StateClass state(
-        module, "State",
-        "A packing with its contacts and its load. It does not change; arrays are read-only views of its memory.");
+void bind_files(StateClass& state) {
     state
         .def_static(
             "read", [](const std::filesystem::path& path) { return read_any_state(path, Dimensions::any); },
@@ -357,6 +354,13 @@ void bind_state_class(py::module_& module) {
                         [](const py::tuple& text) {
                             return parse_any_state(text[0].cast<std::string>(), "State", Dimensions::any);
                         }));
+}
+
+void bind_state_class(py::module_& module) {
+    StateClass state(
+        module, "State",
+        "A packing with its contacts and its load. It does not change; arrays are read-only views of its memory.");
+    bind_files(state);
     bind_grains(state, [](const py::object& self) -> const Packing& { return state_of(self).packing; });
     bind_contacts(state);
     bind_load(state);

@@ -1,8 +1,10 @@
+#include "certificate/averages.hpp"
 #include "contact/separation.hpp"
 #include "io/text.hpp"
 #include "report/picture.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -172,6 +174,9 @@ std::string vtk_text(const State& state, std::span<const double> forces, const s
     for (std::size_t i = 0; i < points.size(); ++i) {
         text += fmt::format("{:.17g}\n", i < grains ? state.packing.radius[i] : 0.0);
     }
+    std::vector<int> count = contacts_of_grains(state);
+    count.resize(points.size(), 0);
+    text += fmt::format("SCALARS contacts int 1\nLOOKUP_TABLE default\n{}\n", fmt::join(count, "\n"));
     text += "SCALARS rattler int 1\nLOOKUP_TABLE default\n";
     for (const unsigned char flag : rattler) {
         text += fmt::format("{}\n", static_cast<int>(flag));

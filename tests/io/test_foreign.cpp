@@ -1,11 +1,17 @@
 // Packings of other programs: every format, what each says of sizes, walls and boundaries, and what is refused.
 
+#include "certificate/averages.hpp"
 #include "compare/frame_file.hpp"
 #include "io/bad_input.hpp"
 #include "support/scratch.hpp"
 
 #include <isostat/io/foreign.hpp>
 #include <isostat/io/state_file.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
 
 namespace {
 
@@ -378,6 +384,18 @@ BOOST_AUTO_TEST_CASE(what_is_written_for_other_programs_is_read_bit_for_bit) {
     same(xyz_text(state.packing, state.packing.q), "xyz");
     options.box = {0, state.packing.length(0), 0, state.packing.length(1)};
     same(csv_text(state.packing), "table");
+    // With the contacts of each disk: sums over pairs count twice, those of walls once.
+    const std::vector<int> contacts = contacts_of_grains(state);
+    const auto walls = std::count_if(state.contacts.begin(), state.contacts.end(),
+                                     [](const Contact& c) { return c.kind != ContactKind::disk_disk; });
+    BOOST_TEST(std::accumulate(contacts.begin(), contacts.end(), 0) ==
+               2 * static_cast<int>(state.contacts.size()) - walls);
+    same(csv_text(state.packing, contacts), "table");
+    options.box.clear();
+    same(xyz_text(state.packing, state.packing.q, contacts), "xyz");
+    const std::string last = fmt::format(",{}\n", contacts.back());
+    BOOST_TEST(csv_text(state.packing, contacts).ends_with(last));
+    BOOST_TEST(csv_text(state.packing, contacts).find("\nid,x,y,r,contacts\n") != std::string::npos);
 }
 
 BOOST_AUTO_TEST_CASE(dumps_of_pairs_have_frames_and_named_columns) {

@@ -150,11 +150,11 @@ class Mechanics(Folder):
         lattice = isostat.ExactPacking.read(project / "examples/packings/square_lattice_3.toml")
         answer = isostat.genericity(lattice, size=1e-6, samples=6, seed=2)
         self.assertEqual((answer.proved, answer.ties, answer.undecided, answer.failed), (6, 0, 0, 0))
-        self.assertEqual([sample.seed for sample in answer.samples], list(range(2, 8)))
-        self.assertGreater(answer.samples[0].min_force, 0)
-        self.assertIsNone(answer.samples[0].failure)
+        self.assertEqual([sample["seed"] for sample in answer.samples], list(range(2, 8)))
+        self.assertGreater(answer.samples[0]["min_force"], 0)
+        self.assertIsNone(answer.samples[0]["failure"])
         again = isostat.genericity(isostat.State.from_arrays(*self.plain(lattice)), size=1e-6, samples=6, seed=2)
-        self.assertEqual([s.min_force for s in again.samples], [s.min_force for s in answer.samples])
+        self.assertEqual([s["min_force"] for s in again.samples], [s["min_force"] for s in answer.samples])
         with self.assertRaises(isostat.BadInput):
             isostat.genericity(lattice, size=np.nan)
 

@@ -40,7 +40,6 @@ class Objects(Folder):
             plateau.ranges[0]: "gap from ",
             isostat.snap(state): "vertex, h = 0, k = 0",
             generic: "2 of 2 proved isostatic",
-            generic.samples[0]: "seed 1: isostatic, proved",
             isostat.jamming(isostat.State.read(project / "examples/cells/tilted-100.json")): "strict: proved",
             steps[0]: "number 0, 0 arcs, sigma2 = 1 in [",
             steps[1]: "step 1, limit: (",

@@ -11,6 +11,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import xml.etree.ElementTree
 from pathlib import Path
 
 import browser
@@ -234,6 +235,17 @@ class Page(Run, unittest.TestCase):
             drawn = self.browser.value(f"({function})(['{what}'])")
             self.assertGreater(drawn, without + 20, what)
         self.browser.value("for (const id of ['forces', 'rattlers', 'changes', 'motion']) byId(id).checked = true; draw()")
+
+    def test_the_packing_is_saved_as_svg_and_curves_have_a_legend(self):
+        self.browser.press("Home")
+        drawing = xml.etree.ElementTree.fromstring(self.browser.value("picture()"))
+        paths = [path.attrib for path in drawing.iter() if path.tag.endswith("path")]
+        circles = sum(path["d"].count("A") / 2 for path in paths if path["fill"] != "none")
+        disks, copies = self.browser.value("[run.packing.radii.length, run.packing.periodic.some((p) => p)]")
+        self.assertTrue(circles == disks or (copies and circles > disks), (circles, disks))
+        self.assertTrue(any(path.get("stroke") == "#8c1c13" for path in paths))  # forces
+        self.assertEqual(self.browser.value("[short(-1e-17), sci(7e-17, 2), short(1e-9), sci(null, 2)]"), ["0", "0.00e+0", "1e-9", "–"])
+        self.assertEqual(self.browser.value("document.querySelectorAll('#curves .key').length"), len(self.browser.value("run.segments")))
 
     def test_fits_windows_of_400_to_1600_pixels(self):
         self.browser.press("PageDown")

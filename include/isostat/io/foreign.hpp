@@ -8,6 +8,7 @@
 #include <array>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -118,8 +119,9 @@ ForeignPacking read_foreign(const std::filesystem::path& path, const ForeignOpti
 /// the cell: with its tilt, `pbc` in XYZ, and in LAMMPS data the disks moved into it, with image flags (LAMMPS wants
 /// them there; the moves are exact on the grid). Contacts and loads have no place there.
 std::string lammps_data_text(const Packing& packing, const std::string& title);
-std::string xyz_text(const Packing& packing, const std::vector<double>& displacement);
-std::string csv_text(const Packing& packing);
+std::string xyz_text(const Packing& packing, const std::vector<double>& displacement,
+                     std::span<const int> contacts = {});
+std::string csv_text(const Packing& packing, std::span<const int> contacts = {});
 
 /// The format of the text, or empty: "lammps-data", ..., and "state", "vertex", "packing" for the formats of this
 /// program (`read_state`, `crafted::read_packing`). From the content only.

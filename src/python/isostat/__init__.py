@@ -21,7 +21,6 @@ from ._core import (
     ExactInspection,
     ExactPacking,
     Genericity,
-    GenericitySample,
     Inspection,
     Jamming,
     Number,

@@ -299,19 +299,8 @@ class Jamming:
     backbone: Final[dict[str, Counting]]
     backbone_disks: Final[int]
 
-class GenericitySample:
-    seed: Final[int]
-    failure: Final[Optional[str]]
-    contacts: Final[Integers]
-    carrying: Final[Integers]
-    rattlers: Final[int]
-    min_force: Final[float]
-    min_gap: Final[float]
-    sigma_min: Final[float]
-    within_original: Final[bool]
-
 class Genericity:
-    samples: Final[list[GenericitySample]]
+    samples: Final[list[dict[str, object]]]
     proved: Final[int]
     ties: Final[int]
     undecided: Final[int]

@@ -57,7 +57,6 @@ _words: dict[type, Callable[[Any], str]] = {
     _core.Genericity: lambda g: (
         f"{g.proved} of {len(g.samples)} proved isostatic, {g.ties} ties, {g.undecided} undecided, {g.failed} failed"
     ),
-    _core.GenericitySample: lambda s: f"seed {s.seed}: {s.failure or 'isostatic, proved'}",
 }
 
 

@@ -36,7 +36,7 @@ State start_of(const std::string& reference) {
 }
 
 /// A manifest for a file of frames beside it or below.
-void begin(const CompareArguments& a) {
+void begin_manifest(const CompareArguments& a) {
     const std::filesystem::path manifest = a.series, folder = manifest.parent_path();
     const std::filesystem::path disks = std::filesystem::path(a.init).lexically_proximate(folder);
     if (disks.is_absolute() || (!disks.empty() && *disks.begin() == "..")) {
@@ -177,7 +177,7 @@ int compare_series(const CompareArguments& a) {
         options.frames = {static_cast<int>(frame(ends[0])), static_cast<int>(frame(ends[1]))};
     }
     if (!a.init.empty()) {
-        begin(a);
+        begin_manifest(a);
         return done;
     }
     compare::SeriesReader reader(a.series);

@@ -49,7 +49,8 @@ struct HeaderLine {
             ++numbers;
         }
         for (std::size_t k = numbers; k < line.size(); ++k) {
-            keyword += (keyword.empty() ? "" : " ") + std::string(line.field(k));
+            keyword += keyword.empty() ? "" : " ";
+            keyword += line.field(k);
         }
     }
 };
@@ -173,7 +174,7 @@ void read_atoms(TextLines& lines, const std::string& named, const DataHeader& he
     }
     Columns columns = find_columns(names, options, fmt::format("{}:{}", lines.source(), lines.number()), raw);
     if (defined && !options.size) {
-        raw.notes.back() = "diameters, as atom style " + style + " defines";
+        raw.notes.back() = fmt::format("diameters, as atom style {} defines", style);
     }
     const std::size_t width = names.size();
     Rows rows(std::move(columns), lines.source());

@@ -12,7 +12,7 @@ namespace isostat::foreign {
 namespace {
 
 /// General triclinic: the period vectors, each with a coordinate of the origin.
-void read_vectors(TextLines& lines, FrameHeader& frame) {
+void read_general_bounds(TextLines& lines, FrameHeader& frame) {
     PerAxis<PerAxis<double>> vectors{};
     PerAxis<double> origin{};
     for (std::size_t b = 0; b < most_axes; ++b) {
@@ -49,7 +49,7 @@ void read_bounds(TextLines& lines, std::string_view flags_text, FrameHeader& fra
         frame.loose[a] = codes[a].find_first_of("sm") != std::string_view::npos;
     }
     if (general) {
-        read_vectors(lines, frame);
+        read_general_bounds(lines, frame);
         return;
     }
     PerAxis<std::array<double, 2>> box{};

@@ -186,7 +186,7 @@ inline std::vector<std::string> jamming_objections(const State& state, const Tru
         std::map<std::string, Verdict> answers{{"a linear programme", motions.jammed(strict)},
                                                {"inspect", (strict ? seen.strict : seen.collective).verdict}};
         if (exact && exact->disks == motions.disks()) {
-            answers["the exact packing"] = strict ? exact->strict : exact->collective;
+            answers["the exact packing"] = strict ? exact->strict.value() : exact->collective;
         }
         for (const auto& [one, yes] : answers) {
             for (const auto& [other, no] : answers) {

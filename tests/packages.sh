@@ -18,6 +18,8 @@ isostat_mpi_packages=(libopenmpi-dev openmpi-bin)
 isostat_python_packages=(pybind11-dev python3-dev python3-numpy python3-scipy python3-matplotlib)
 # For a wheel of it (src/python/pyproject.toml).
 isostat_wheel_packages=(python3-pip python3-setuptools python3-wheel)
+# For a Debian package (tests/package).
+isostat_deb_packages=(dpkg-dev file)
 # For the type hints of it: optional, installed by continuous integration.
 isostat_types_packages=(mypy)
 # For counting instructions (tests/instructions/check.sh): optional, installed by continuous integration.
@@ -26,10 +28,10 @@ isostat_count_packages=(valgrind)
 isostat_page_packages=(chromium)
 # For LAMMPS against the exact trajectory (examples/peers/lammps): optional, installed by continuous integration.
 isostat_peer_packages=(lammps)
-# For the style of the sources and the pages of the headers: optional, installed by continuous integration.
-isostat_lint_packages=(clang-format-16 clang-tidy-16 doxygen)
+# For the style of the sources, the pages of the headers and the site of all pages: optional, installed by continuous integration.
+isostat_lint_packages=(clang-format-16 clang-tidy-16 doxygen mkdocs)
 if [ "${CI:-}" = true ]; then
-  isostat_packages+=("${isostat_proof_packages[@]}" "${isostat_mpi_packages[@]}" "${isostat_wheel_packages[@]}"
+  isostat_packages+=("${isostat_proof_packages[@]}" "${isostat_mpi_packages[@]}" "${isostat_wheel_packages[@]}" "${isostat_deb_packages[@]}"
     "${isostat_types_packages[@]}" "${isostat_count_packages[@]}" "${isostat_page_packages[@]}" "${isostat_peer_packages[@]}" "${isostat_lint_packages[@]}")
 fi
 if [ "${ISOSTAT_WITH_PYTHON:-}" = ON ]; then

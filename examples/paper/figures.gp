@@ -82,7 +82,10 @@ set title "Strain increments of the loading"
 set xlabel "strain increment 10^{6} Δε_2"
 set ylabel "density / 10^{6}"
 set xrange [0:10]
+set logscale y
+set format y "10^{%L}"
 plot for [i=1:words(large)] "histograms.csv" using ($1==word(large,i)+0 && $2==2 ? 1e6*$3 : NaN):(1e-6*$4) with histeps lw 1.5 dt dash[i] lc rgb colour[i] title sprintf("%s disks, %s values", word(large,i), word(strain_counts,i))
+set format y "% h"
 set title "Share of the increments ≥ x"
 set xlabel "strain increment Δε_2"
 set autoscale x

@@ -32,6 +32,19 @@ Coordination coordination(const State& state, const Certification& truth, int ra
     return {ends.all / std::max(1, grains), ends.carrying / std::max(1, grains - rattlers)};
 }
 
+std::vector<int> contacts_of_grains(const State& state) {
+    std::vector<int> count(state.packing.radius.size());
+    for (const Contact& contact : state.contacts) {
+        if (contact.kind != ContactKind::held) {
+            ++count[static_cast<std::size_t>(contact.i)];
+        }
+        if (contact.kind == ContactKind::disk_disk) {
+            ++count[static_cast<std::size_t>(contact.j)];
+        }
+    }
+    return count;
+}
+
 ForceAverages force_averages(const State& state, const Certification& truth) {
     ForceAverages sum;
     const Packing& packing = state.packing;

@@ -18,6 +18,9 @@ struct Coordination {
 /// \pre `truth` knows the finite forces, one for each contact
 Coordination coordination(const State& state, const Certification& truth, int rattlers);
 
+/// Listed contacts of each grain, with others and with walls, an own image twice; held coordinates are none.
+std::vector<int> contacts_of_grains(const State& state);
+
 /// Over the force-carrying contacts, from the middles of the proved forces and the stored coordinates, as computed.
 struct ForceAverages {
     using Tensor = std::array<PerAxis<double>, most_axes>;

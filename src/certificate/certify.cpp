@@ -1,4 +1,5 @@
 #include "certificate/exact_counting.hpp"
+#include "certificate/finite_forces.hpp"
 #include "certificate/reach.hpp"
 #include "certificate/true_vertex.hpp"
 #include "contact/candidates.hpp"
@@ -17,6 +18,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 
 namespace isostat {
 
@@ -51,6 +53,24 @@ class Prover {
         const bool all = c.counting && c.vertex && c.forces && c.gaps && c.load_interval && c.stable;
         result_.verdict = !result_.refuted.empty() ? Verdict::refuted : all ? Verdict::proved : Verdict::undecided;
         return std::move(result_);
+    }
+
+    /// As `finite_forces`; `state` is the one that this was made of.
+    std::vector<std::vector<Interval>> under(State& state, std::span<const PerAxis<double>> stresses) {
+        std::vector<std::vector<Interval>> forces;
+        if (!prove_counting() || !put_on_grid() || !prove_vertex()) {
+            return forces;
+        }
+        for (const PerAxis<double>& stress : stresses) {
+            state.load.stress = stress;
+            subject_ = std::make_unique<Subject>(state_, stored_->structure);
+            if (!exists_on_some_rung()) {
+                return {};
+            }
+            prove_forces();
+            forces.push_back(std::move(result_.finite));
+        }
+        return forces;
     }
 
   private:
@@ -208,6 +228,9 @@ bool Prover::put_on_grid() {
                         "than {} periods away",
                         farthest_image));
         return false;
+    }
+    if (moved == 0) {
+        return true; // they are there already
     }
     auto made = Centre::make(std::move(*snapped), state_.contacts);
     if (!made.ok()) {
@@ -461,6 +484,11 @@ void Prover::prove_stability(bool forces, bool gaps) {
 Certification certify(const State& state, const CertifyOptions& options) {
     require_floating_point();
     return Prover(state, options).run();
+}
+
+std::vector<std::vector<Interval>> finite_forces(State state, std::span<const PerAxis<double>> stresses) {
+    require_floating_point();
+    return Prover(state, {}).under(state, stresses);
 }
 
 } // namespace isostat

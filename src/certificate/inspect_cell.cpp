@@ -1,3 +1,5 @@
+#include "certificate/finite_forces.hpp"
+#include "certificate/jammed_box.hpp"
 #include "contact/contact_set.hpp"
 #include "contact/own_images.hpp"
 
@@ -37,24 +39,19 @@ std::vector<std::vector<Interval>> pressed(State state, double radius) {
     constexpr double rounded = 0x1p-48; // nine operations, each to 2^-53
     const double x = state.packing.length(0);
     state.load.path.reset();
-    std::vector<std::vector<Interval>> corners;
-    for (unsigned corner = 0; corner < 1U << (state.packing.axes() - 1); ++corner) {
+    std::vector<PerAxis<double>> corners(1U << (state.packing.axes() - 1), state.load.stress);
+    for (unsigned corner = 0; corner < corners.size(); ++corner) {
         for (std::size_t a = 1; a < state.packing.axes(); ++a) {
             const double length = state.packing.lattice(a, a);
             const bool high = (corner >> (a - 1) & 1U) != 0;
             if (!(radius < length)) {
                 return {};
             }
-            state.load.stress[a] = high ? (1 + radius / x) / (1 - radius / length) * (1 + rounded)
-                                        : (1 - radius / x) / (1 + radius / length) * (1 - rounded);
+            corners[corner][a] = high ? (1 + radius / x) / (1 - radius / length) * (1 + rounded)
+                                      : (1 - radius / x) / (1 + radius / length) * (1 - rounded);
         }
-        Certification truth = certify(state);
-        if (!truth.claims.vertex) {
-            return {};
-        }
-        corners.push_back(std::move(truth.finite));
     }
-    return corners;
+    return finite_forces(std::move(state), corners);
 }
 
 /// The forces under an isotropic pressure are unique and say whether it is jammed strictly. It is a pressure where the
@@ -123,7 +120,71 @@ std::vector<Contact> joined(std::vector<Contact> contacts, const std::vector<Con
     return contacts;
 }
 
+/// Both walls on every axis, and none of the upper ones moves.
+enum class Box : unsigned char { none, moves, stays };
+Box box_of(const Packing& packing) {
+    bool walls = !packing.cell.any(), moves = false;
+    for (std::size_t a = 0; a < packing.axes(); ++a) {
+        walls = walls && packing.walls.lower[a] != WallKind::absent && packing.walls.upper[a] != WallKind::absent;
+        moves = moves || packing.walls.upper[a] == WallKind::movable;
+    }
+    return !walls ? Box::none : moves ? Box::moves : Box::stays;
+}
+
+bool is_equilibrium(const Certification& truth) {
+    return truth.claims.vertex && truth.claims.forces && truth.claims.gaps && truth.signs.positive > 0;
+}
+
+/// The size of the box gives way: forces in walls that stay are then determined up to a factor.
+State with_size(State state) {
+    state.packing.walls.upper[state.packing.axes() - 1] = WallKind::movable;
+    const int dimension = state.packing.dimension;
+    state.load = {};
+    state.load.dimension = dimension;
+    state.load.loaded_axis = dimension - 1;
+    std::fill_n(state.load.stress.begin(), dimension, 1);
+    state.load.refer_to(state.packing);
+    return state;
+}
+
 } // namespace
+
+std::optional<BoxInspection> inspect_box(const State& state, const Certification& truth) {
+    const Box box = box_of(state.packing);
+    const auto any = [](const auto& values) {
+        return std::any_of(values.begin(), values.end(), [](const auto& value) { return value != 0; });
+    };
+    const bool holds = std::any_of(state.contacts.begin(), state.contacts.end(),
+                                   [](const Contact& c) { return c.kind == ContactKind::held; });
+    if (box == Box::none || any(state.packing.fixed) || any(state.load.disk_force) || holds) {
+        return std::nullopt;
+    }
+    const std::vector<int> rattlers = rattlers_by_coordination(state.packing, state.contacts);
+    State rest = state;
+    rest.packing = without_disks(state.packing, rattlers);
+    const auto rattles = [&](int i) { return std::binary_search(rattlers.begin(), rattlers.end(), i); };
+    std::erase_if(rest.contacts,
+                  [&](const Contact& c) { return rattles(c.i) || (c.kind == ContactKind::disk_disk && rattles(c.j)); });
+    BoxInspection out;
+    out.grains = state.packing.disk_count() - static_cast<int>(rattlers.size());
+    Packing held = rest.packing;
+    std::fill_n(held.walls.upper.begin(), held.axes(), WallKind::fixed);
+    out.counting = count_contacts(held, rest.contacts);
+    const Counting& c = out.counting;
+    if (box == Box::moves ? is_equilibrium(truth) : c.hyperstaticity == 1 && is_equilibrium(certify(with_size(rest)))) {
+        out.collective = {Verdict::proved, "positive forces, and no mechanism: k = 0 at the true vertex"};
+    } else if (box == Box::stays && c.hyperstaticity > 1) {
+        out.collective.reason = fmt::format("h = {} of {} {}s that are no rattlers: {} contacts more than the size of "
+                                            "the box and the places determine, "
+                                            "which close in exact numbers alone (a packing in TOML)",
+                                            c.hyperstaticity, out.grains,
+                                            state.packing.dimension == plane ? "disk" : "sphere", c.hyperstaticity - 1);
+    } else {
+        out.collective.reason = fmt::format("no equilibrium is proved; h = {}, k = {} of the {} that are no rattlers",
+                                            c.hyperstaticity, c.mechanisms, out.grains);
+    }
+    return out;
+}
 
 CellInspection inspect_cell(const State& state, const Certification& truth) {
     assert(state.packing.cell.all());

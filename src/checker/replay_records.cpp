@@ -1,6 +1,7 @@
 // The numbers of records against the vertices of a replay.
 #include "checker/choice.hpp"
 #include "checker/gaps.hpp"
+#include "checker/index.hpp"
 #include "checker/logarithm.hpp"
 #include "checker/newton.hpp"
 #include "checker/replay.hpp"

@@ -94,6 +94,27 @@ void print_cell(const CellInspection& cell) {
     print_answer("jammed strictly", cell.strict);
 }
 
+void print_box(const Packing& packing, const BoxInspection& box) {
+    const Counting& c = box.counting;
+    say("{:<24} N_f = {}, N = {}, h = {}, k = {} of {} {}s that are no rattlers by coordination\n", "walls held",
+        c.dof_count, c.contact_count, marked(c.hyperstaticity, c), marked(c.mechanisms, c), box.grains,
+        grain_word(packing.dimension));
+    print_answer("jammed collectively", box.collective);
+}
+
+Json box_json(const BoxInspection& box) {
+    const Counting& c = box.counting;
+    return {{"grains", box.grains},
+            {"N_f", c.dof_count},
+            {"N", c.contact_count},
+            {"rank", c.rank},
+            {"rank_exact", to_string(c.rank_exact)},
+            {"h", c.hyperstaticity},
+            {"k", c.mechanisms},
+            {"jammed",
+             {{"collective", {{"verdict", to_string(box.collective.verdict)}, {"reason", box.collective.reason}}}}}};
+}
+
 Json cell_json(const Packing& packing, const CellInspection& cell) {
     Json out;
     out["moves"] = moving(packing.cell);

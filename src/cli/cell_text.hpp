@@ -2,6 +2,7 @@
 /// \file
 /// What `inspect` says of a periodic cell.
 
+#include "certificate/jammed_box.hpp"
 #include "cli/common.hpp"
 
 #include <isostat/certificate/certify.hpp>
@@ -14,6 +15,9 @@ std::string cell_words(const Packing& packing);
 /// Counts of the stored coordinates, one row for each way to strain the cell.
 void print_counts(const std::string& title, const StrainCounts& counts);
 Json strains_json(const StrainCounts& counts);
+
+void print_box(const Packing& packing, const BoxInspection& box);
+Json box_json(const BoxInspection& box);
 
 /// The counts side by side, the words of jamming, and the count of contacts that elastic moduli need.
 void print_cell(const CellInspection& cell);

@@ -76,6 +76,7 @@ struct ReportArguments {
     bool pdf = false;
     bool html = false;
     bool no_charts = false;
+    bool contacts = false;
     double stiffness = 0; ///< > 0: the table of soft limits too
 };
 int report(const ReportArguments& arguments);
@@ -91,10 +92,14 @@ int verify(const VerifyArguments& arguments);
 
 /// What the user states of a packing made elsewhere, as typed.
 struct ForeignArguments {
-    std::string format, radius, diameter, walls, box, columns, select;
+    std::string format, radius, diameter, walls, box, lattice, columns, select, fixed, style;
+    std::string plane = "xy";
+    std::int64_t skip = 0;
+    std::optional<std::int64_t> ids; ///< of the first row
     std::string frame = "last";
     std::optional<int> dimension;
     bool spheres = false; ///< the command takes them
+    bool fixes = false;   ///< the command takes disks that cannot move
     bool periodic = false, not_periodic = false;
     bool walls_unless_periodic = false; ///< `walls` were not stated
     bool cells = false;                 ///< the command takes periodic cells
@@ -147,6 +152,7 @@ int snap(const SnapArguments& arguments);
 struct CompareArguments {
     Common common;
     std::string series, output, reference;
+    std::string init; ///< a file of frames: `series` is then written
     int bundle = 16;
     std::string frames; ///< "A:B"; empty: all
     bool local = false, nearest_arc = false;

@@ -4,7 +4,9 @@
 #include "cli/ranges.hpp"
 #include "cli/read_packing.hpp"
 #include "cli/terminal.hpp"
+#include "compare/begin_series.hpp"
 #include "compare/report.hpp"
+#include "io/files.hpp"
 #include "io/folders.hpp"
 
 #include <isostat/compare/compare.hpp>
@@ -31,6 +33,27 @@ State start_of(const std::string& reference) {
         (void)content_of(path, run_folder);
     }
     return read_any_state(std::filesystem::is_directory(path) ? path / state_name(0) : path, Dimensions::any).state;
+}
+
+/// A manifest for a file of frames beside it or below.
+void begin(const CompareArguments& a) {
+    const std::filesystem::path manifest = a.series, folder = manifest.parent_path();
+    const std::filesystem::path disks = std::filesystem::path(a.init).lexically_proximate(folder);
+    if (disks.is_absolute() || (!disks.empty() && *disks.begin() == "..")) {
+        throw Error(ErrorKind::usage,
+                    fmt::format("--init is '{}': expected a file beside {} or below", a.init, a.series));
+    }
+    const std::string frames = manifest.stem().string() + ".frames.csv";
+    for (const std::filesystem::path& file : {manifest, folder / frames}) {
+        if (std::filesystem::exists(std::filesystem::symlink_status(file))) {
+            throw Error(ErrorKind::usage, fmt::format("{} exists: expected a new name", file.string()));
+        }
+    }
+    const compare::BegunSeries begun = compare::begin_series(a.init, disks.string(), frames);
+    write_atomically(folder / frames, begun.frames);
+    write_atomically(manifest, begun.manifest);
+    say("{} and {} are written: fill in the loads{}, then isostat compare {}\n", a.series, (folder / frames).string(),
+        begun.frames.find(",left") == std::string::npos ? "" : " and the positions of the walls", a.series);
 }
 
 std::string shown(double x) {
@@ -153,6 +176,10 @@ int compare_series(const CompareArguments& a) {
         }
         options.frames = {static_cast<int>(frame(ends[0])), static_cast<int>(frame(ends[1]))};
     }
+    if (!a.init.empty()) {
+        begin(a);
+        return done;
+    }
     compare::SeriesReader reader(a.series);
     const compare::Series& series = reader.series();
     if (!a.reference.empty()) {
@@ -178,6 +205,9 @@ int compare_series(const CompareArguments& a) {
             print_frames(comparison);
         }
         print_ends(comparison, a.common.quiet ? 0 : series.linear_stiffness());
+        if (series.law == compare::ForceLaw::none) {
+            say("stiffness not tested: the manifest states no [law], forces are taken as they are\n");
+        }
     }
     if (!note.empty()) {
         say(stderr, "isostat: {}\n", note);

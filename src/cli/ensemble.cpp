@@ -251,7 +251,8 @@ int run_and_merge(const EnsembleArguments& arguments, const EnsembleHeader& head
         print_outcome(directory.samples().path(), samples, arguments.common.json);
     }
     for (const Sample& sample : samples) {
-        if (sample.status != SampleStatus::completed) {
+        const bool left = sample.status == SampleStatus::interrupted || sample.status == SampleStatus::missing;
+        if (sample.status != SampleStatus::completed && !left) { // the counts tell how many are left
             say(stderr, "isostat: seed {}: {}: {}\n", sample.seed, to_string(sample.status), sample.reason);
         }
     }

@@ -1,3 +1,4 @@
+#include "certificate/averages.hpp"
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
 #include "cli/terminal.hpp"
@@ -24,7 +25,7 @@ namespace fs = std::filesystem;
 /// What the first lines of a file in this format have.
 std::string mark_of(const std::string& format, int dimension) {
     return format == "xyz"   ? "\nLattice=\""
-           : format == "csv" ? (dimension == plane ? "\nid,x,y,r\n" : "\nid,x,y,z,r\n")
+           : format == "csv" ? (dimension == plane ? "\nid,x,y,r" : "\nid,x,y,z,r")
                              : " of isostat ";
 }
 
@@ -69,7 +70,8 @@ std::string series_text(const std::vector<fs::path>& files) {
     std::string text;
     std::vector<double> first;
     for (const fs::path& file : files) {
-        const Packing packing = read_any_state(file, Dimensions::any).state.packing;
+        const State state = read_any_state(file, Dimensions::any).state;
+        const Packing& packing = state.packing;
         if (first.empty()) {
             first = packing.q;
         }
@@ -77,7 +79,7 @@ std::string series_text(const std::vector<fs::path>& files) {
         for (std::size_t k = 0; files.size() > 1 && k < first.size() && k < packing.q.size(); ++k) {
             displacement.push_back(packing.q[k] - first[k]);
         }
-        text += xyz_text(packing, displacement);
+        text += xyz_text(packing, displacement, contacts_of_grains(state));
     }
     return text;
 }
@@ -109,7 +111,7 @@ int export_states(const ExportArguments& arguments) {
     } else {
         files = {files.back()};
         const std::string title = fmt::format("{} of {}", files.front().filename().string(), program_name());
-        text = format == "csv"   ? csv_text(last.state.packing)
+        text = format == "csv"   ? csv_text(last.state.packing, contacts_of_grains(last.state))
                : format == "vtk" ? vtk_text(last.state, forces_of(last), title)
                                  : lammps_data_text(last.state.packing, title);
     }
@@ -117,7 +119,9 @@ int export_states(const ExportArguments& arguments) {
     if (arguments.common.json) {
         print_json(Json{{"file", arguments.output}, {"format", format}, {"states", files.size()}});
     } else {
-        say("{}: {}, {} state{}\n", arguments.output, format, files.size(), files.size() == 1 ? "" : "s");
+        say("{}: {}, {} state{}{}\n", arguments.output, format, files.size(), files.size() == 1 ? "" : "s",
+            fs::is_directory(arguments.input) ? ", of those that are stored (states_every = 1 in a scene stores all)"
+                                              : "");
     }
     return done;
 }

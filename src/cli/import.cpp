@@ -133,9 +133,18 @@ ReadPacking read_imported(ImportArguments& a, bool crafted, bool own) {
     a.foreign.spheres = true;
     ReadPacking file = read_any_packing(a.file, a.foreign);
     const bool spheres = file.packing.dimension != plane;
-    if (!crafted && !own && !spheres && a.foreign.walls != "box") {
+    if (!crafted && !own && !spheres && a.foreign.walls != "box" && a.foreign.walls != "square") {
+        throw Error(
+            ErrorKind::usage,
+            fmt::format("--walls is '{}': expected box, two fixed and two movable walls, or square, whose size "
+                        "alone moves (in walls that stay forces are known up to a factor: square finds them, and "
+                        "isostat inspect of its state says whether they are jammed)",
+                        a.foreign.walls));
+    }
+    if (a.foreign.walls == "square" && (a.contacts == "nearest" || a.jitter != 0)) {
         throw Error(ErrorKind::usage,
-                    fmt::format("--walls is '{}': expected box, two fixed and two movable walls", a.foreign.walls));
+                    "--walls square has no way downhill: expected no --jitter, and --contacts plateau, "
+                    "a file, or --threshold");
     }
     if (own && spheres) {
         compare::refuse(a.file, "is a state of spheres: expected one of disks, which --jitter takes only so far");
@@ -270,6 +279,7 @@ Json provenance_of(const ImportArguments& a, const std::string& format, const Im
     out["contacts"] = found.contacts;
     out["seed"] = a.seed;
     out["jitter"] = a.jitter;
+    out["jitter_matters"] = found.copy;
     out["rounding"] = number(found.untold.rounding);
     out["moved"] = {
         {"backbone", number(moves.backbone)}, {"rattlers", number(moves.rattlers)}, {"walls", number(moves.walls)}};
@@ -330,7 +340,6 @@ void print_import_json(const ImportArguments& a, const ReadPacking& file, const 
         {"kind", word_of(imported.state.load.kind, load_kind_words)},
         {"by_default",
          {{"stress", a.stress.empty() && !imported.load_of_file}, {"kind", a.load.empty() && !imported.load_of_file}}}};
-    object["jitter_matters"] = imported.copy;
     object["verdict"] = to_string(imported.verdict());
     add_untold(object, imported.untold, imported.truth.verdict);
     print_json(object);
@@ -338,11 +347,17 @@ void print_import_json(const ImportArguments& a, const ReadPacking& file, const 
 
 /// What may help where no vertex is proved. Empty: nothing.
 std::string advice(const ImportArguments& a, bool crafted, std::vector<double> radius) {
+    if (a.foreign.walls == "square") {
+        return "; isostat inspect says of exact numbers (a packing in TOML) whether they are jammed";
+    }
     std::sort(radius.begin(), radius.end());
     const bool equal = std::adjacent_find(radius.begin(), radius.end()) != radius.end();
-    return equal && !crafted && a.jitter == 0 ? "; equal radii: try --jitter 1e-9 --contacts nearest (a copy, "
-                                                "whose h and strict verdict may be others)"
-                                              : "";
+    std::string out = a.contacts == "nearest" || crafted || a.contacts.empty()
+                          ? ""
+                          : "; --contacts nearest takes the vertex downhill whatever its contacts";
+    return out + (equal && !crafted && a.jitter == 0 ? "; equal radii: try --jitter 1e-9 --contacts nearest (a copy, "
+                                                       "whose h and strict verdict may be others)"
+                                                     : "");
 }
 
 /// A state of this program is imported with a jitter, a crafted packing without.

@@ -291,6 +291,7 @@ struct Answer {
     Result<Inspection> result;
     Certification truth;
     std::optional<CellInspection> cell;
+    std::optional<BoxInspection> box;
     compare::Untold untold;
     std::vector<double> singular;
 
@@ -309,6 +310,9 @@ std::optional<Coordination> coordination_of(const Answer& answer) {
 void print_all(const Answer& answer) {
     const State& state = answer.file.state;
     print_counting(state, answer.truth.counting);
+    if (const std::string copy = compare::words_of_copy(state); !copy.empty()) {
+        say("copy                     {}\n", copy);
+    }
     if (answer.result.ok()) {
         print_inspection(state, answer.result.value());
     } else {
@@ -325,6 +329,9 @@ void print_all(const Answer& answer) {
     }
     if (answer.cell) {
         print_cell(*answer.cell);
+    }
+    if (answer.box) {
+        print_box(state.packing, *answer.box);
     }
     print_face(state);
     print_forces_in_file(answer.file, answer.truth);
@@ -344,11 +351,17 @@ Json answer_json(const Answer& answer) {
         add_averages(object, state, answer.truth, *z);
     }
     add_untold(object, answer.untold, answer.truth.verdict);
+    if (const std::string copy = compare::words_of_copy(state); !copy.empty()) {
+        object["copy"] = copy;
+    }
     object["true_configuration"] = true_vertex_json(answer.truth);
     object["forces"] = forces_json(state, answer.truth);
     object["singular_values"] = numbers(answer.singular);
     if (answer.cell) {
         object["cell"] = cell_json(state.packing, *answer.cell);
+    }
+    if (answer.box) {
+        object["box"] = box_json(*answer.box);
     }
     add_face(object, state);
     add_forces_in_file(object, answer.file, answer.truth);
@@ -367,13 +380,12 @@ Answer answer_of(const InspectArguments& arguments, const StateFile& file) {
     if (cell) {
         withhold(untold, *cell);
     }
-    return {arguments,
-            file,
-            std::move(result),
-            std::move(truth),
-            std::move(cell),
-            std::move(untold),
-            singular_values_of(arguments, state)};
+    auto box = inspect_box(state, truth);
+    if (box) {
+        withhold(untold, box->collective);
+    }
+    return {arguments,       file,           std::move(result), std::move(truth),
+            std::move(cell), std::move(box), std::move(untold), singular_values_of(arguments, state)};
 }
 
 } // namespace

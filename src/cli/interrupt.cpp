@@ -1,6 +1,9 @@
 #include "cli/interrupt.hpp"
 
+#include <unistd.h>
+
 #include <csignal>
+#include <string_view>
 
 namespace isostat::cli {
 
@@ -21,6 +24,17 @@ extern "C" void on_signal(int signal) {
 void catch_interrupts() {
     std::signal(SIGINT, on_signal);
     std::signal(SIGTERM, on_signal);
+}
+
+void end_at_interrupts() {
+    for (const int signal : {SIGINT, SIGTERM}) {
+        std::signal(signal, [](int number) {
+            constexpr std::string_view words = "\nisostat: stopped\n";
+            const auto written [[maybe_unused]] = ::write(STDERR_FILENO, words.data(), words.size());
+            std::signal(number, SIG_DFL);
+            std::raise(number);
+        });
+    }
 }
 
 void ignore_file_size_signals() {

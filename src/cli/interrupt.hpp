@@ -11,6 +11,10 @@ namespace isostat::cli {
 /// the others end at the first one.
 void catch_interrupts();
 
+/// From now on SIGINT and SIGTERM end the program as they do, with a line. For long commands without a safe
+/// point: what they write is there as a whole or not at all.
+void end_at_interrupts();
+
 /// A limit of the file size is a failed write, with its message.
 void ignore_file_size_signals();
 

@@ -83,7 +83,10 @@ struct Program {
         // For the build (src/CMakeLists.txt), which installs both; `--help` does not list them.
         app.add_flag_callback("--man", [this] { throw CLI::CallForVersion(man_page(app, program_name()), 0); })
             ->group("");
-        app.add_flag_callback("--completion", [this] { throw CLI::CallForVersion(bash_completion(app), 0); })
+        app.add_option_function<std::string>(
+               "--completion",
+               [this](const std::string& shell) { throw CLI::CallForVersion(shell_completion(app, shell), 0); })
+            ->check(CLI::IsMember({"bash", "zsh", "fish"}))
             ->group("");
         app.footer("Exit status: 0 done or proved; 1 refuted, or failed with a result; 2 undecided; 64 usage; 65 bad "
                    "input; 70 internal failure (says\n"
@@ -245,9 +248,10 @@ Example: isostat plan examples/biaxial-1936.toml)");
 
     void add_report() {
         auto& a = keep<ReportArguments>();
-        CLI::App& command =
-            add("report", "tables and figures of a run, or the force picture of a state",
-                R"(Charts are drawn by gnuplot; without it, data and scripts are written and said to be so.
+        CLI::App& command = add(
+            "report", "tables and figures of a run, or the force picture of a state",
+            R"(Charts are drawn by gnuplot; without it, data and scripts are written and said to be so. Of an ensemble the distribution of the forces
+of all samples together too: force_distribution.
 Examples: isostat report out
           isostat report out --html
           isostat report start.json -o pictures --vtk)");
@@ -260,7 +264,9 @@ Examples: isostat report out
         command.add_flag("--pdf", a.pdf, "charts as PDF too");
         command.add_flag("--html", a.html,
                          "of a run: also write trajectory.html, one page to look at every equilibrium and arc, without "
-                         "network");
+                         "network; of a state of spheres: a view that turns");
+        command.add_flag("--contacts", a.contacts,
+                         "also contacts_*.csv of each stored state: points, normals, gaps, proved forces");
         command.add_flag("--no-charts", a.no_charts, "do not call gnuplot");
         option(command, "--stiffness", a.stiffness,
                "of a run: also where grains of this stiffness (force / overlap) would leave each structure, predicted: "
@@ -291,27 +297,44 @@ Examples: isostat verify certificate.json --input state.json
     }
 
     static void add_foreign(CLI::App& command, ForeignArguments& a) {
-        option(command, "--radius", a.radius, "the column, or the number, that is every disk's radius",
+        option(command, "--radius", a.radius,
+               "the column, or the number, that is every disk's radius; or those of the words of a column, "
+               "type:1=1,2=1.4",
                "COLUMN|NUMBER");
         option(command, "--diameter", a.diameter, "the same for diameters", "COLUMN|NUMBER")->excludes("--radius");
         option(command, "--walls", a.walls,
-               "none; box: left and bottom (of spheres the lower ones) fixed, the others movable; fixed: all (default: "
-               "none for files of other programs)",
-               CLI::IsMember({"none", "box", "fixed"}));
+               "none; box: left and bottom (of spheres the lower ones) fixed, the others movable; square: the size of "
+               "the box alone moves; fixed: all (default: none for files of other programs)",
+               CLI::IsMember({"none", "box", "square", "fixed"}));
         option(command, "--box", a.box,
                "positions of the walls instead of the bounds in the file (spheres: ,ZLO:ZHI too); with --periodic the "
                "periods, of a file without bounds",
                "XLO:XHI,YLO:YHI");
+        option(command, "--lattice", a.lattice,
+               "the cell of a file without bounds: periods and tilt (spheres: LX,LY,LZ,XY,XZ,YZ), or the entries of "
+               "the period vectors",
+               "LX,LY,TILT");
         option(command, "--dimension", a.dimension,
                "2: disks; 3: spheres (default: spheres where the file has a z that is not the same for all)",
                CLI::IsMember({2, 3}));
         option(command, "--frame", a.frame, "of a file with several, from 0 (default: last)", "NUMBER|last");
-        option(command, "--columns", a.columns, "names of the columns of a table without a header; - leaves one out",
+        option(command, "--columns", a.columns,
+               "names of the columns, in place of those of the file; - leaves one out (LAMMPS data: of the section "
+               "Atoms)",
                "x,y,r");
-        option(command, "--select", a.select, "rows with this value in this column are the disks, e.g. type=1",
-               "COLUMN=VALUE");
+        option(command, "--skip", a.skip, "lines before the rows of a table that are passed over (with --columns)",
+               ranges::integer(0, 1'000'000'000));
+        option(command, "--style", a.style, "atom style of a LAMMPS data file that does not name it", "STYLE");
+        option(command, "--plane", a.plane, "of disks: xy (default), xz, yz", CLI::IsMember({"xy", "xz", "yz"}));
+        option(command, "--ids", a.ids,
+               "the rows have the ids from this one on, in their order, for files of contacts that count rows",
+               ranges::integer(0, 1'000'000'000), "FIRST");
+        option(command, "--select", a.select, "rows with one of these values in this column are the disks, e.g. type=1",
+               "COLUMN=VALUE,...");
+        option(command, "--fixed", a.fixed, "disks with one of these values in this column cannot move",
+               "COLUMN=VALUE,...");
         option(command, "--format", a.format,
-               "lammps-data, lammps-dump, xyz, table, centres (default: from the content)");
+               "lammps-data, lammps-dump, xyz, table, braces, centres (default: from the content)");
         command.add_flag("--not-periodic", a.not_periodic,
                          "take periodic boundaries for open ones: contacts across them are not looked for");
         command
@@ -350,8 +373,8 @@ Examples: isostat import disks.dump --box 0:15.46,0:14.88 -o start.json
                    "plateau: as the widest range of thresholds with an isostatic backbone says; nearest: any; or a "
                    "dump of style local or a table with forces (default: plateau; nearest in a periodic cell)",
                    "plateau|nearest|FILE");
-        option(command, "--contact-columns", a.contact_columns, "columns of that file: two ids and the force",
-               "I,J,FORCE");
+        option(command, "--contact-columns", a.contact_columns,
+               "columns of that file: two ids and the force, or the components of its vector", "I,J,FORCE|FX,FY");
         option(command, "--threshold", a.threshold, "pairs with this gap or less are the contacts",
                ranges::number(-ranges::largest, ranges::largest))
             ->excludes(contacts);
@@ -384,8 +407,8 @@ Example: isostat snap disks.dump --frame 3 --box 0:15.46,0:14.88 --contacts pair
         needed(command, "-o,--output", a.output, "state file to write", "STATE.json");
         CLI::Option* contacts = option(command, "--contacts", a.contacts,
                                        "LAMMPS dump of style local, or a table (default: pairs that overlap)", "FILE");
-        option(command, "--contact-columns", a.contact_columns, "columns of that dump: two ids and the force",
-               "I,J,FORCE")
+        option(command, "--contact-columns", a.contact_columns,
+               "columns of that file: two ids and the force, or the components of its vector", "I,J,FORCE|FX,FY")
             ->needs(contacts);
         option(command, "--stress", a.stress,
                "sigma_1 and sigma_2, of spheres sigma_3 too (default: ones, or those of a state)", "S1,S2");
@@ -423,9 +446,14 @@ exact run, and why. The folder gets comparison.csv, path.csv, comparison.json, b
 the figure.
 Exit status 0: every frame at rest is the exact equilibrium of its load, proved; 1: a frame departs; 2: none departs, and one is
 undecided or all are in motion.
-Example: isostat compare series.toml -o comparison)");
+Examples: isostat compare series.toml --init disks.dump
+          isostat compare series.toml -o comparison)");
         needed(command, "series", a.series, "manifest (isostat-series 1)", "SERIES.toml");
         option(command, "-o,--output", a.output, "folder for tables and figure", "DIR");
+        option(command, "--init", a.init,
+               "write the manifest, and a table of frames beside it, for this file of frames; what it does not say is "
+               "left to fill in",
+               "DISKS");
         option(command, "--reference", a.reference,
                "start of the exact run: a state, or equilibrium 0 of the folder of a run (default: the vertex of the "
                "first frame that has one)",
@@ -550,12 +578,18 @@ std::string wrong_command(const CLI::App& app, const std::string& word) {
            (far(near) <= 2 ? ": did you mean '" + near->get_name() + "'?" : "; isostat --help lists them");
 }
 
-/// Empty, or what else the first file on the command line is for.
-std::string use_of_input(const CLI::App& app) {
+/// The first file on the command line, or empty.
+std::string input_of(const CLI::App& app) {
     const CLI::App& command = *app.get_subcommands().front();
     const std::vector<const CLI::Option*> files =
         command.get_options([](const CLI::Option* o) { return o->get_positional() && !o->results().empty(); });
-    return files.empty() ? "" : other_use(command.get_name(), files.front()->results().front());
+    return files.empty() ? "" : files.front()->results().front();
+}
+
+/// Empty, or what else that file is for.
+std::string use_of_input(const CLI::App& app) {
+    const std::string file = input_of(app);
+    return file.empty() ? "" : other_use(app.get_subcommands().front()->get_name(), file);
 }
 
 /// `use` stands on a line of its own.
@@ -567,8 +601,16 @@ int complain(isostat::ErrorKind kind, const std::string& message, const std::str
     return isostat::Error(kind, "").exit_status();
 }
 
-/// What CLI11 prints: the help that was asked for, or what is wrong with the command line.
+/// What CLI11 prints: the help that was asked for, or what is wrong with the command line. Where an option is missing,
+/// a file that is not there, or is for another command, is told first.
 int explain(const CLI::App& app, const CLI::ParseError& error) {
+    if (error.get_name() == "RequiredError" && !app.get_subcommands().empty()) {
+        const std::string file = input_of(app), use = use_of_input(app);
+        std::error_code ignored;
+        if (!use.empty() || (!file.empty() && !std::filesystem::exists(file, ignored))) {
+            return complain(isostat::ErrorKind::bad_input, use.empty() ? file + ": does not exist" : use);
+        }
+    }
     std::ostringstream help, trouble;
     const int status = app.exit(error, help, trouble);
     say_lines(help.str());

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <vector>
 
 namespace isostat::cli {
@@ -81,39 +82,113 @@ std::string man_page(const CLI::App& app, const std::string& version) {
     return text + fmt::format(".SH EXIT STATUS\n.nf\n{}\n.fi\n", text::man(app.get_footer()));
 }
 
-std::string bash_completion(const CLI::App& app) {
+namespace {
+
+/// "--output -o", each with a blank before it.
+std::string names_of(const CLI::Option& option) {
     std::string names;
-    std::string cases;
+    for (const std::string& name : option.get_lnames()) {
+        names += " --" + name;
+    }
+    for (const std::string& name : option.get_snames()) {
+        names += " -" + name;
+    }
+    return names;
+}
+
+/// "a b" of "TEXT:{a,b}": the words that an option takes; empty where it takes others.
+std::string values_of(const CLI::Option& option) {
+    const std::string type = option.get_type_name();
+    const std::size_t begin = type.find('{'), end = type.find('}');
+    if (begin == std::string::npos || end == std::string::npos || option.get_positional()) {
+        return "";
+    }
+    std::string words = type.substr(begin + 1, end - begin - 1);
+    std::replace(words.begin(), words.end(), ',', ' ');
+    return words;
+}
+
+/// The first words, and cases of `case` for the others.
+struct Completion {
+    std::string commands, options, values;
+};
+
+Completion completion(const CLI::App& app) {
+    Completion made;
     for (const CLI::App* command : commands_of(app)) {
-        names += (names.empty() ? "" : " ") + command->get_name();
+        made.commands += command->get_name() + " ";
         std::string options;
         for (const CLI::Option* option : options_of(*command)) {
+            options += names_of(*option);
             for (const std::string& name : option->get_lnames()) {
-                options += " --" + name;
+                made.values += values_of(*option).empty() ? ""
+                                                          : fmt::format("        \"{} --{}\") choices=\"{}\" ;;\n",
+                                                                        command->get_name(), name, values_of(*option));
+            }
+        }
+        made.options += fmt::format("        {}) choices=\"{}\" ;;\n", command->get_name(), options);
+    }
+    for (const CLI::Option* option : options_of(app)) {
+        made.commands += names_of(*option).substr(1) + " ";
+    }
+    return made;
+}
+
+std::string fish_completion(const CLI::App& app) {
+    const auto quoted = [](std::string text) {
+        std::erase_if(text, [](char c) { return c == '\'' || c == '\\'; });
+        return "'" + text + "'";
+    };
+    std::string text = "# fish completion of isostat\n";
+    for (const CLI::App* command : commands_of(app)) {
+        text += fmt::format("complete -c isostat -n __fish_use_subcommand -a {} -d {}\n", command->get_name(),
+                            quoted(command->get_description()));
+        for (const CLI::Option* option : options_of(*command)) {
+            std::string names;
+            for (const std::string& name : option->get_lnames()) {
+                names += " -l " + name;
             }
             for (const std::string& name : option->get_snames()) {
-                options += " -" + name;
+                names += " -s " + name;
             }
+            const std::string values = values_of(*option);
+            text += names.empty() ? ""
+                                  : fmt::format("complete -c isostat -n '__fish_seen_subcommand_from {}'{}{} -d {}\n",
+                                                command->get_name(), names,
+                                                !values.empty()                        ? " -x -a " + quoted(values)
+                                                : option->get_items_expected_max() > 0 ? " -r"
+                                                                                       : "",
+                                                quoted(option->get_description()));
         }
-        cases += fmt::format("        {}) words=\"{}\" ;;\n", command->get_name(),
-                             options.substr(std::min<std::size_t>(1, options.size())));
     }
-    std::string general;
-    for (const CLI::Option* option : options_of(app)) {
-        for (const std::string& name : option->get_lnames()) {
-            general += " --" + name;
-        }
+    return text;
+}
+
+} // namespace
+
+std::string shell_completion(const CLI::App& app, const std::string& shell) {
+    if (shell == "fish") {
+        return fish_completion(app);
+    }
+    const Completion made = completion(app);
+    const std::string cases = fmt::format("    [ \"$at\" -eq 1 ] && choices=\"{}\"\n"
+                                          "    [ \"$at\" -gt 1 ] && [[ $word == -* ]] && case $command in\n{}    esac\n"
+                                          "    [ \"$at\" -gt 2 ] && case \"$command $before\" in\n{}    esac\n",
+                                          made.commands, made.options, made.values);
+    if (shell == "zsh") {
+        return fmt::format("#compdef isostat\nlocal at=$((CURRENT - 1)) word=${{words[CURRENT]}} command=${{words[2]}} "
+                           "before=${{words[CURRENT - 1]}} choices=\n{}"
+                           "if [ -n \"$choices\" ]; then compadd -- ${{(s: :)choices}}; else _files; fi\n",
+                           cases);
     }
     return fmt::format("# bash completion of isostat\n_isostat() {{\n"
-                       "    local word=${{COMP_WORDS[COMP_CWORD]}} words=\n"
-                       "    case $COMP_CWORD:${{COMP_WORDS[1]}} in\n        1:*) words=\"{}{}\" ;;\n    esac\n"
-                       "    [ \"$COMP_CWORD\" -gt 1 ] && case ${{COMP_WORDS[1]}} in\n{}    esac\n"
+                       "    local at=$COMP_CWORD word=${{COMP_WORDS[COMP_CWORD]}} command=${{COMP_WORDS[1]}} choices=\n"
+                       "    local before=${{COMP_WORDS[COMP_CWORD - 1]}}\n{}"
                        "    COMPREPLY=()\n"
-                       "    if [ \"$COMP_CWORD\" -eq 1 ] || [[ $word == -* ]]; then\n"
-                       "        mapfile -t COMPREPLY < <(compgen -W \"$words\" -- \"$word\")\n"
-                       "    fi # otherwise names of files\n}}\n"
+                       "    [ -n \"$choices\" ] && mapfile -t COMPREPLY < <(compgen -W \"$choices\" -- \"$word\")\n"
+                       "    return 0 # otherwise names of files\n}}\n"
                        "complete -o default -F _isostat isostat\n",
-                       names, general, cases);
+                       cases);
 }
 
 } // namespace isostat::cli

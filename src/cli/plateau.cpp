@@ -4,6 +4,7 @@
 #include "cli/read_packing.hpp"
 #include "cli/terminal.hpp"
 #include "compare/soft_list.hpp"
+#include "contact/names.hpp"
 #include "core/words.hpp"
 #include "crafted/told_ranges.hpp"
 #include "io/files.hpp"
@@ -47,6 +48,22 @@ void print_strains(const ReadPacking& file, const crafted::Plateau& plateau, dou
         contacts_for_bulk_modulus(disks, file.packing.dimension),
         contacts_for_all_moduli(disks, file.packing.dimension));
     say("jammed                   undecided: that asks for forces; counts alone do not tell\n");
+}
+
+/// The pair or wall with the smallest gap; empty where none is near.
+std::string deepest_of(const ReadPacking& file) {
+    std::string out;
+    double smallest = HUGE_VAL;
+    const Walls& walls = file.packing.walls;
+    for (const Contact& c : compare::near_contacts(file.packing)) {
+        const auto& sides = c.kind == ContactKind::lower_wall ? walls.lower : walls.upper;
+        const bool there = c.kind == ContactKind::disk_disk || sides[static_cast<std::size_t>(c.j)] != WallKind::absent;
+        if (const double g = gap(file.packing, c); there && g < smallest) {
+            smallest = g;
+            out = to_string(c, file.packing.dimension);
+        }
+    }
+    return out;
 }
 
 std::string word(Verdict verdict) {
@@ -129,8 +146,9 @@ void print_text(const PlateauArguments& a, const ReadPacking& file, const crafte
     say("{:<28}{}, radii {:.6g} to {:.6g}\n", fmt::format("{}s", grain_word(file.packing.dimension)),
         file.packing.disk_count(), file.packing.min_radius(), file.packing.max_radius());
     say("thresholds                  {:.6g} to {:.6g} (unit of the file)\n", thresholds[0], thresholds[1]);
-    say("candidates                  {}, smallest gap {:.6g}; the contact list changes at {} thresholds\n",
-        plateau.candidates, plateau.deepest_overlap, plateau.changes);
+    const std::string deepest = plateau.candidates > 0 ? deepest_of(file) : "";
+    say("candidates                  {}, smallest gap {:.6g}{}; the contact list changes at {} thresholds\n",
+        plateau.candidates, plateau.deepest_overlap, deepest.empty() ? "" : ", of " + deepest, plateau.changes);
     say("gaps known to               {}: digits of the file, doubles, shifts\n", rounded_up(plateau.rounding, 2));
     say("rows                        {} of these, {} ranks computed, the rest follows from monotony\n\n",
         plateau.steps.size(), plateau.ranks_computed);
@@ -195,6 +213,7 @@ Json to_json(const PlateauArguments& a, const ReadPacking& file, const crafted::
     out["disks"] = file.packing.disk_count();
     out["thresholds"] = {thresholds[0], thresholds[1]};
     out["smallest_gap"] = number(plateau.deepest_overlap);
+    out["smallest_gap_of"] = plateau.candidates > 0 ? deepest_of(file) : "";
     out["candidates"] = plateau.candidates;
     out["changes"] = plateau.changes;
     out["ranks_computed"] = plateau.ranks_computed;
@@ -203,6 +222,8 @@ Json to_json(const PlateauArguments& a, const ReadPacking& file, const crafted::
     if (plateau.widest) {
         out["widest"] = ranges_json({plateau.widest->range})[0];
         out["widest"]["counts"] = counts_json(plateau.widest->counts);
+        out["widest"]["contacts"] =
+            contact_names(crafted::backbone_at(file.packing, plateau.widest->range.first), file.packing.dimension);
     }
     out["isostatic"] = ranges_json(told.backbone);
     out["isostatic_all_disks"] = ranges_json(told.all);
@@ -283,7 +304,7 @@ int plateau(const PlateauArguments& a) {
         thresholds = parse_range(a.thresholds, "--thresholds");
     }
     ForeignArguments foreign = a.foreign;
-    foreign.cells = foreign.spheres = true;
+    foreign.cells = foreign.spheres = foreign.fixes = true;
     ReadPacking file = read_any_packing(a.file, foreign);
     const Strain strain = value_of<Strain>(a.strain, std::array{"fixed", "isotropic", "diagonal", "full"}).value();
     if (a.thresholds.empty()) {

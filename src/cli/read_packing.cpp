@@ -2,6 +2,7 @@
 
 #include "cli/ranges.hpp"
 #include "compare/untold.hpp"
+#include "core/words.hpp"
 #include "io/digits.hpp"
 #include "io/files.hpp"
 #include "io/vertex_text.hpp"
@@ -28,6 +29,56 @@ constexpr std::int64_t most_frames = 1'000'000'000'000'000;
     throw Error(ErrorKind::usage, fmt::format("{} is '{}': expected {}", option, value, expected));
 }
 
+double number_of(const std::string& option, const std::string& text, const std::string& word,
+                 const std::string& expected) {
+    const auto value = ranges::number_in(word);
+    if (!value) {
+        usage(option, text, expected);
+    }
+    return *value;
+}
+
+/// A number, a column, or words of a column with the size of each, "type:1=1,2=1.4".
+SizeStatement size_of(const std::string& option, const std::string& text, SizeMeaning meaning) {
+    const std::string expected = "a positive number, the name of a column, or COLUMN:WORD=NUMBER,...";
+    SizeStatement out{meaning, text, 0};
+    if (const auto value = ranges::number_in(text)) {
+        out.column.clear();
+        out.value = *value;
+    } else if (const std::size_t first = text.find('='); first != std::string::npos) {
+        const std::size_t colon = text.rfind(':', first);
+        if (colon == std::string::npos) {
+            usage(option, text, expected);
+        }
+        out.column = text.substr(0, colon);
+        for (const std::string& pair : parse_list(text.substr(colon + 1))) {
+            const auto words = parse_list(pair, '=');
+            if (words.size() != 2) {
+                usage(option, text, expected);
+            }
+            out.of_word.emplace_back(words[0], number_of(option, text, words[1], expected));
+        }
+    }
+    const bool positive =
+        std::all_of(out.of_word.begin(), out.of_word.end(), [](const auto& w) { return w.second > 0; });
+    if (!positive || (out.column.empty() && !(out.value > 0))) {
+        usage(option, text, expected);
+    }
+    return out;
+}
+
+/// "COLUMN=VALUE,VALUE".
+std::optional<RowsWith> rows_of(const std::string& option, const std::string& text) {
+    if (text.empty()) {
+        return std::nullopt;
+    }
+    const auto words = parse_list(text, '=');
+    if (words.size() != 2 || words[0].empty() || words[1].empty()) {
+        usage(option, text, "COLUMN=VALUE,..., for instance type=1,2");
+    }
+    return RowsWith{words[0], parse_list(words[1])};
+}
+
 ForeignOptions options_of(const ForeignArguments& a) {
     ForeignOptions out;
     out.format = a.format;
@@ -37,21 +88,11 @@ ForeignOptions options_of(const ForeignArguments& a) {
     }
     out.dimension = a.dimension;
     if (!a.radius.empty() || !a.diameter.empty()) {
-        const bool radius = !a.radius.empty();
-        const std::string& text = radius ? a.radius : a.diameter;
-        SizeStatement size;
-        size.meaning = radius ? SizeMeaning::radius : SizeMeaning::diameter;
-        if (const auto value = ranges::number_in(text)) {
-            if (!(*value > 0)) {
-                usage(radius ? "--radius" : "--diameter", text, "a positive number or the name of a column");
-            }
-            size.value = *value;
-        } else {
-            size.column = text;
-        }
-        out.size = size;
+        out.size = size_of(a.radius.empty() ? "--diameter" : "--radius", a.radius.empty() ? a.diameter : a.radius,
+                           a.radius.empty() ? SizeMeaning::diameter : SizeMeaning::radius);
     }
-    out.walls = a.walls == "box" ? ForeignWalls::box : (a.walls == "fixed" ? ForeignWalls::fixed : ForeignWalls::none);
+    out.walls =
+        value_of<ForeignWalls>(a.walls, std::array{"none", "box", "square", "fixed"}).value_or(ForeignWalls::none);
     if (!a.box.empty()) {
         const auto axes = parse_list(a.box);
         if (axes.size() != 2 && axes.size() != most_axes) {
@@ -62,7 +103,7 @@ ForeignOptions options_of(const ForeignArguments& a) {
             out.box.insert(out.box.end(), range.begin(), range.end());
         }
         if (out.walls == ForeignWalls::none && !a.periodic) {
-            usage("--box", a.box, "--walls box or --walls fixed beside it, or --periodic");
+            usage("--box", a.box, "--walls box or --walls fixed beside it, or --periodic (a tilted cell: --lattice)");
         }
     }
     if (a.frame != "last") {
@@ -74,12 +115,17 @@ ForeignOptions options_of(const ForeignArguments& a) {
     if (!a.columns.empty()) {
         out.columns = parse_list(a.columns);
     }
-    if (!a.select.empty()) {
-        const auto words = parse_list(a.select, '=');
-        if (words.size() != 2 || words[0].empty() || words[1].empty()) {
-            usage("--select", a.select, "COLUMN=VALUE, for instance type=1");
-        }
-        out.select = {words[0], words[1]};
+    out.select = rows_of("--select", a.select);
+    out.fixed = rows_of("--fixed", a.fixed);
+    if (out.fixed && !a.fixes) {
+        usage("--fixed", a.fixed, "none: only isostat plateau takes disks that cannot move");
+    }
+    out.skip = a.skip;
+    out.style = a.style;
+    out.plane = a.plane;
+    out.first_id = a.ids;
+    for (const std::string& word : a.lattice.empty() ? std::vector<std::string>() : parse_list(a.lattice)) {
+        out.lattice.push_back(number_of("--lattice", a.lattice, word, "numbers LX,LY,TILT"));
     }
     out.not_periodic = a.not_periodic;
     out.periodic = a.periodic;
@@ -139,10 +185,13 @@ ReadPacking read_any_packing(const std::string& file, const ForeignArguments& ar
                 foreign.rounding};
     }
     if (options.size || !options.box.empty() || options.dimension || options.select || !arguments.walls.empty() ||
-        !options.columns.empty() || options.frame || options.not_periodic || options.periodic) {
+        !options.columns.empty() || options.frame || options.not_periodic || options.periodic || options.fixed ||
+        options.skip > 0 || !options.lattice.empty() || options.first_id || !options.style.empty() ||
+        options.plane != "xy") {
         throw Error(ErrorKind::usage, fmt::format("{} is a {} file of isostat, which says all of its sizes and walls: "
-                                                  "expected none of --radius, --diameter, --walls, --box, --frame, "
-                                                  "--dimension, --columns, --select, --periodic, --not-periodic",
+                                                  "expected none of --radius, --diameter, --walls, --box, --lattice, "
+                                                  "--frame, --dimension, --columns, --skip, --style, --plane, --ids, "
+                                                  "--select, --fixed, --periodic, --not-periodic",
                                                   file, format));
     }
     if (format == "packing") {

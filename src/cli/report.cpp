@@ -1,5 +1,6 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
+#include "cli/interrupt.hpp"
 #include "cli/progress.hpp"
 #include "cli/terminal.hpp"
 #include "compare/soft_limits.hpp"
@@ -28,6 +29,7 @@ ReportOptions options_of(const ReportArguments& arguments) {
     options.charts = !arguments.no_charts;
     options.html = arguments.html;
     options.pdf = arguments.pdf;
+    options.contacts = arguments.contacts;
     return options;
 }
 
@@ -69,6 +71,7 @@ int report_ensemble(const ReportArguments& arguments) {
     ReportOptions options = options_of(arguments);
     StatusLine line(quiet);
     Json list = Json::array();
+    std::vector<fs::path> reported;
     int status = done;
     const auto begin = std::chrono::steady_clock::now();
     if (!quiet) {
@@ -96,6 +99,7 @@ int report_ensemble(const ReportArguments& arguments) {
             }
             print_notes(result);
             list.push_back(json_of(member.folder.string(), result));
+            reported.push_back(member.folder);
         } catch (const Error& error) {
             if (error.kind() != ErrorKind::bad_input) {
                 throw;
@@ -105,15 +109,22 @@ int report_ensemble(const ReportArguments& arguments) {
             status = error.exit_status();
         }
     }
+    const fs::path together =
+        arguments.output.empty() ? fs::path(arguments.input) / "figures" : fs::path(arguments.output) / "figures";
+    const ReportResult forces = report_forces(reported, together, options);
     if (arguments.common.json) {
-        print_json(Json{{"input", arguments.input}, {"members", list}});
+        print_json(Json{{"input", arguments.input}, {"members", list}, {"forces", json_of(arguments.input, forces)}});
+    } else if (!quiet) {
+        say_lines(forces.text);
     }
+    print_notes(forces);
     return status;
 }
 
 } // namespace
 
 int report(const ReportArguments& arguments) {
+    end_at_interrupts();
     const fs::path input = arguments.input;
     if (is_ensemble(input)) {
         if (arguments.stiffness > 0) {
@@ -123,9 +134,9 @@ int report(const ReportArguments& arguments) {
         return report_ensemble(arguments);
     }
     const bool is_run = fs::is_directory(input);
-    if ((arguments.html || arguments.stiffness > 0) && !is_run) {
-        throw Error(ErrorKind::usage, fmt::format("{} belongs to the folder of a run: {} is none",
-                                                  arguments.html ? "--html" : "--stiffness", arguments.input));
+    if (arguments.stiffness > 0 && !is_run) {
+        throw Error(ErrorKind::usage,
+                    fmt::format("--stiffness belongs to the folder of a run: {} is none", arguments.input));
     }
     fs::path output = arguments.output;
     if (output.empty()) {

@@ -9,6 +9,7 @@
 #include "io/json.hpp"
 #include "packing/words.hpp"
 
+#include <isostat/compare/compare.hpp>
 #include <isostat/compare/snap.hpp>
 #include <isostat/core/error.hpp>
 #include <isostat/io/foreign.hpp>
@@ -103,9 +104,14 @@ Json json_of(const SnapArguments& a, const Read& read, const compare::Snap& snap
     if (!read.forces.empty() && snap.counting.hyperstaticity == 0 && snap.counting.mechanisms == 0) {
         const double mean = compare::mean_force(read.forces);
         const compare::ForceSplit split = compare::split_forces(read.soft, read.forces, mean, snap);
+        const double agreement = compare::Series().agreement;
+        const std::string units = split.rest > agreement ? split.units.words(agreement) : "";
         out["forces"] = {{"mean", number(mean)},
                          {"rest", number(split.rest)},
                          {"stiffness", number(split.stiffness)},
+                         {"factor", number(split.units.factor)},
+                         {"rest_in_units", number(split.units.left)},
+                         {"units", units},
                          {"contact", std::isfinite(split.rest)
                                          ? Json(to_string(split.worst, read.soft.packing.dimension))
                                          : Json()}};
@@ -162,6 +168,9 @@ void print(const SnapArguments& a, const Read& read, const compare::Snap& snap, 
                         ? ""
                         : fmt::format("; those by at most {} from the ones at the vertex",
                                       rounded_up((*forces)["stiffness"].get<double>(), 2)));
+        if (const std::string units = (*forces)["units"]; !units.empty()) {
+            say("          {}\n", units);
+        }
     }
     if (written) {
         say("written   {}\n", a.output);

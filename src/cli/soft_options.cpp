@@ -78,14 +78,14 @@ void take_cell(const CellStatement& statement, Packing& packing) {
 compare::SoftList stated_list(const std::string& file, const ReadPacking& packing, const std::string& frame,
                               const std::string& contacts, const std::string& columns) {
     const std::vector<std::string> names = parse_list(columns);
-    if (names.size() != 3) {
-        throw Error(
-            ErrorKind::usage,
-            fmt::format("--contact-columns is '{}': expected I,J,FORCE, names of columns of {}", columns, contacts));
+    if (names.size() != 3 && names.size() != 2 + packing.packing.axes() && names.size() != 2 + most_axes) {
+        throw Error(ErrorKind::usage, fmt::format("--contact-columns is '{}': expected I,J,FORCE or I,J,FX,FY, names "
+                                                  "of columns of {}",
+                                                  columns, contacts));
     }
     const auto number = frame == "last" ? std::nullopt : std::optional(std::stol(frame)); // read once already
     return compare::list_by_forces(file, packing.packing, packing.ids, number, contacts,
-                                   {names[0], names[1], names[2]});
+                                   {names[0], names[1], {names.begin() + 2, names.end()}});
 }
 
 } // namespace isostat::cli

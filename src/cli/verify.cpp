@@ -1,5 +1,6 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
+#include "cli/interrupt.hpp"
 #include "cli/terminal.hpp"
 #include "cli/verify_run.hpp"
 #include "ensemble/members.hpp"
@@ -50,6 +51,7 @@ Json json_of(const ClaimCheck& check) {
 } // namespace
 
 int verify(const VerifyArguments& arguments) {
+    end_at_interrupts();
     if (std::filesystem::is_directory(arguments.certificate)) {
         if (!arguments.input.empty()) {
             throw Error(ErrorKind::usage, "--input belongs to a certificate, not to a folder");

@@ -1,4 +1,4 @@
-# PARTS (html, css, js) as one string in OUTPUT.
+# PARTS (html, css, js) as one string, isostat::NAME, in OUTPUT.
 list(GET PARTS 0 html)
 list(GET PARTS 1 css)
 list(GET PARTS 2 js)
@@ -7,4 +7,4 @@ file(READ ${css} style)
 file(READ ${js} script)
 string(REPLACE "@STYLE@" "${style}" page "${page}")
 string(REPLACE "@SCRIPT@" "${script}" page "${page}")
-file(WRITE ${OUTPUT} "#include \"report/page.hpp\"\n\nconst char* const isostat::page_template = R\"page(${page})page\";\n")
+file(WRITE ${OUTPUT} "namespace isostat {\nextern const char* const ${NAME};\nconst char* const ${NAME} = R\"page(${page})page\";\n}\n")

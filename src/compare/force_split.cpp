@@ -4,6 +4,8 @@
 #include "statics/statics.hpp"
 #include "verified/centre.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -24,6 +26,30 @@ double factor_of(const Packing& packing, const Statics& statics, const Load& loa
 
 } // namespace
 
+Units units_of(const std::vector<double>& forces, const std::vector<double>& exact, double mean) {
+    double product = 0, square = 0;
+    for (std::size_t l = 0; l < forces.size(); ++l) {
+        const bool said = std::isfinite(forces[l]);
+        product += said ? forces[l] * exact[l] : 0;
+        square += said ? exact[l] * exact[l] : 0;
+    }
+    Units out{product / square, 0};
+    for (std::size_t l = 0; l < forces.size(); ++l) { // a NaN changes nothing
+        out.left = std::max(out.left, std::abs(forces[l] - out.factor * exact[l]) / mean);
+    }
+    return out;
+}
+
+std::string Units::words(double agreement) const {
+    return left <= agreement
+               ? fmt::format("they are {:.6g} times those, to {:.1e} mean forces: other units, or another load", factor,
+                             left)
+               : fmt::format(
+                     "no factor makes them agree, with the best one, {:.3g}, they differ by {:.2g} mean forces: "
+                     "is the column that of the forces?",
+                     factor, left);
+}
+
 ForceSplit split_forces(const SoftState& soft, const std::vector<double>& forces, double mean, const Snap& snap) {
     ForceSplit out;
     Packing packing = of_disks(soft.packing, snap.disks);
@@ -37,9 +63,11 @@ ForceSplit split_forces(const SoftState& soft, const std::vector<double>& forces
     const Statics statics(at.packing, load, at.structure, at.factorisation, at.inverse);
     const double factor = factor_of(at.packing, statics, load, forces);
     double rest = -1, stiffness = 0;
+    std::vector<double> exact;
     for (std::size_t l = 0; l < forces.size(); ++l) {
         const Enclosure f = statics.force(ContactId(l), load.loaded_stress());
         const double off = std::abs(forces[l] - factor * f.value) + factor * f.radius;
+        exact.push_back(f.value);
         if (off > rest) { // not of a NaN
             rest = off;
             out.worst = soft.contacts[l];
@@ -52,6 +80,7 @@ ForceSplit split_forces(const SoftState& soft, const std::vector<double>& forces
     }
     if (rest >= 0) {
         out.rest = rest / mean;
+        out.units = units_of(forces, exact, mean);
     }
     if (!snap.truth.finite.empty()) {
         out.stiffness = stiffness / mean;

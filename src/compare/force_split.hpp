@@ -5,9 +5,20 @@
 #include <isostat/compare/snap.hpp>
 
 #include <limits>
+#include <string>
 #include <vector>
 
 namespace isostat::compare {
+
+/// Forces over exact ones by least squares, and the largest difference from that, in mean forces. In rounded numbers.
+struct Units {
+    double factor = std::numeric_limits<double>::quiet_NaN();
+    double left = std::numeric_limits<double>::quiet_NaN();
+    /// Of forces that differ by more than `agreement`: other units, or no forces.
+    [[nodiscard]] std::string words(double agreement) const;
+};
+/// Forces that are NaN are left out.
+Units units_of(const std::vector<double>& forces, const std::vector<double>& exact, double mean);
 
 /// Over the mean force; NaN: not known.
 struct ForceSplit {
@@ -17,6 +28,7 @@ struct ForceSplit {
     /// Largest |f(H(q_soft)) - f(H(q*))|: what the overlaps change.
     double stiffness = std::numeric_limits<double>::quiet_NaN();
     Contact worst; ///< where `rest` is
+    Units units;   ///< of the forces of the file, against those of `rest`
 };
 
 /// \p forces: those of the file, one per contact of `soft`; NaN: not said. \p mean: the mean force. \pre `snap` is of

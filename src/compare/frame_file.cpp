@@ -67,7 +67,7 @@ void FrameFile::recognise() {
     }
     TextLines lines(head, source_);
     foreign::Raw nothing;
-    names_ = foreign::read_table_names(lines, {}, nothing);
+    names_ = foreign::read_table_names(lines, {}, nothing, item_ == "ENTRIES");
     step_ = foreign::find_column(names_.names, "timestep");
     pending_ = lines.at_end() ? "" : row;
     lines_ = lines.number();
@@ -215,6 +215,11 @@ std::size_t FrameFile::column(const FileFrame& frame, const std::string& name) c
     if (found < 0) {
         throw Error(ErrorKind::bad_input, fmt::format("{}: no column '{}': expected one of {}", place, name,
                                                       fmt::join(frame.header.names, ", ")));
+    }
+    auto twice = foreign::columns_twice(frame.header.names);
+    std::erase_if(twice, [found](const auto& pair) { return pair.first != found; });
+    for (const TextLine& row : frame.rows) {
+        foreign::require_same(twice, frame.header.names, row);
     }
     return static_cast<std::size_t>(found);
 }

@@ -34,7 +34,7 @@ class FrameFile {
     /// The frame of this time step; frames before it are passed over. Throws when there is none, and when time steps
     /// do not grow on the way to it.
     FileFrame at(long timestep);
-    /// The column, which must be there.
+    /// The column, which must be there; where its name comes twice in the frame the values agree.
     [[nodiscard]] std::size_t column(const FileFrame& frame, const std::string& name) const;
     /// "FILE:LINE".
     [[nodiscard]] std::string where(int line) const;
@@ -67,21 +67,22 @@ class FrameFile {
 };
 
 /// Names of the columns of a LAMMPS dump of style local, or of a table: two ids and the force between them, positive
-/// when it repels.
+/// when it repels, or the components of its vector.
 struct PairColumns {
-    std::string first, second, force;
+    std::string first, second;
+    std::vector<std::string> force;
 };
 
 struct PairForce {
-    int i = 0, j = 0; ///< i < j
-    double force = 0;
-    int line = 0; ///< of the file
+    int i = 0, j = 0;        ///< i < j
+    PerAxis<double> force{}; ///< a number, or a vector: the other way round where the row names j first
+    int line = 0;            ///< of the file
 };
 
-/// The pairs of disks with a positive force in a frame (from 0; none: the last) of a dump of style local (`compute
-/// property/local`, `compute pair/local`) or of a table, whose frames are told apart by a column `timestep`, as they
-/// come: a pair may touch through several images. \p ids: of the disks.
-/// Throws `Error(bad_input)` with file, line, value and what was expected: also for columns and ids that are not there.
+/// The pairs of disks with a force that is not 0 in a frame (from 0; none: the last) of a dump
+/// of style local (`compute property/local`, `compute pair/local`) or of a table, whose frames are told apart by a
+/// column `timestep`, as they come: a pair may touch through several images. \p ids: of the disks. Throws
+/// `Error(bad_input)` with file, line, value and what was expected: also for columns and ids that are not there.
 std::vector<PairForce> read_local_dump(const std::filesystem::path& path, const PairColumns& columns,
                                        const std::vector<long>& ids, std::optional<long> frame);
 

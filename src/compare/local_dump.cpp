@@ -17,7 +17,10 @@ class Pairs {
   public:
     Pairs(const FrameFile& file, const FileFrame& frame, const PairColumns& columns, const std::vector<long>& ids)
         : names_(frame.header.names), first_(file.column(frame, columns.first)),
-          second_(file.column(frame, columns.second)), force_(file.column(frame, columns.force)) {
+          second_(file.column(frame, columns.second)) {
+        for (const std::string& name : columns.force) {
+            force_.push_back(file.column(frame, name));
+        }
         for (std::size_t i = 0; i < ids.size(); ++i) {
             disk_of_.emplace(ids[i], static_cast<int>(i));
         }
@@ -28,8 +31,13 @@ class Pairs {
         if (i == j) {
             line.fail(line.field(second_), "second id", "another disk than the first");
         }
-        if (const double force = line.number(force_, names_[force_]); force > 0) {
-            pairs_.push_back({std::min(i, j), std::max(i, j), force, line.number()});
+        PairForce pair{std::min(i, j), std::max(i, j), {}, line.number()};
+        for (std::size_t a = 0; a < force_.size(); ++a) {
+            const double force = line.number(force_[a], names_[force_[a]]);
+            pair.force[a] = force_.size() > 1 && j < i ? -force : force;
+        }
+        if (pair.force != PerAxis<double>{}) {
+            pairs_.push_back(pair);
         }
     }
 
@@ -45,7 +53,8 @@ class Pairs {
     }
 
     std::vector<std::string> names_;
-    std::size_t first_, second_, force_;
+    std::size_t first_, second_;
+    std::vector<std::size_t> force_;
     std::map<long, int> disk_of_;
     std::vector<PairForce> pairs_;
 };

@@ -58,7 +58,16 @@ void read_columns(Section& section, const std::string& source, Manifest& out) {
     if (out.series.listed) {
         out.contact_i = required(section, "contact_i", "the column of the first id in the file of contacts");
         out.contact_j = required(section, "contact_j", "the column of the second id in the file of contacts");
-        out.contact_force = required(section, "contact_force", "the column of the force, positive in compression");
+        std::string force = required(section, "contact_force", "the column of the force, positive in compression");
+        for (std::size_t comma = force.find(','); comma != std::string::npos; comma = force.find(',')) {
+            out.contact_force.push_back(force.substr(0, comma));
+            force.erase(0, comma + 1);
+        }
+        out.contact_force.push_back(force);
+        if (const std::size_t count = out.contact_force.size();
+            count != 1 && (count < out.axes() || count > most_axes)) {
+            section.fail("contact_force", "one column, or those of a vector, \"fx,fy\"");
+        }
     }
     const auto radius = section.string("radius"), diameter = section.string("diameter");
     if (radius && diameter) {

@@ -12,7 +12,8 @@ namespace isostat::compare {
 struct Manifest {
     Series series;                       ///< without frames
     std::string disks, contacts, frames; ///< paths; `contacts` may be empty
-    std::string contact_i, contact_j, contact_force;
+    std::string contact_i, contact_j;
+    std::vector<std::string> contact_force;  ///< one column, or those of a vector
     std::vector<std::string> wall_force;     ///< as `wall_names`: columns of `disks`, or none
     std::string size;                        ///< column of the sizes
     bool diameters = false;                  ///< they are diameters

@@ -46,7 +46,7 @@ Result<WantedList> list_below(const Packing& packing, std::optional<double> thre
     if (plateau.ranges.empty()) {
         return Failure{plateau.special.empty() ? FailureKind::not_isostatic : FailureKind::undecided,
                        fmt::format("the backbone is isostatic at no threshold up to {:.6g}: isostat plateau shows the "
-                                   "counts, --contacts nearest takes the vertex downhill whatever its contacts",
+                                   "counts",
                                    largest)};
     }
     const auto range =
@@ -85,8 +85,7 @@ Result<NearestVertex> vertex_of_list(SoftState soft, const std::string& words, s
     if (snapped.outcome != SnapOutcome::vertex) {
         const bool undecided = snapped.outcome == SnapOutcome::undecided;
         return Failure{undecided ? FailureKind::undecided : FailureKind::not_isostatic,
-                       fmt::format("{}: the contacts of the file ({}) have no equilibrium near: {}; --contacts nearest "
-                                   "takes the vertex downhill whatever its contacts",
+                       fmt::format("{}: the contacts of the file ({}) have no equilibrium near: {}",
                                    to_string(snapped.outcome), words, snapped.reason)};
     }
     auto state = with_resting_rattlers(snapped, seed);

@@ -2,6 +2,7 @@
 #include "compare/frame_file.hpp"
 #include "compare/manifest.hpp"
 #include "compare/pair_images.hpp"
+#include "compare/soft_list.hpp"
 #include "io/digits.hpp"
 #include "io/files.hpp"
 #include "io/numbers.hpp"
@@ -78,7 +79,9 @@ class FrameTable {
         if (find(stress_column(last())) < 0 &&
             (manifest.load == LoadKind::true_stress || find(force_column(last())) < 0)) {
             throw Error(ErrorKind::bad_input,
-                        fmt::format("{}: no column '{}'{}: expected it", where_, stress_column(last()),
+                        fmt::format("{}: no column '{}'{}: expected it (series under stated stresses are compared, not "
+                                    "those under stated strains)",
+                                    where_, stress_column(last()),
                                     manifest.load == LoadKind::nominal ? " nor '" + force_column(last()) + "'" : ""));
         }
     }
@@ -186,7 +189,9 @@ class FrameTable {
         const double expected = load.stress[axis];
         if (!(std::abs(line.number(column, name) - expected) <= known * expected + rounding(line, column))) {
             line.fail(line.field(column), name,
-                      fmt::format("{}, the one of the manifest: frames differ in {}", expected, stress_column(last())));
+                      fmt::format("{}, the one of the manifest: frames differ in {} alone, series in which several "
+                                  "stresses change are not compared",
+                                  expected, stress_column(last())));
         }
     }
 
@@ -393,8 +398,8 @@ class Disks {
     /// Walls, or every axis periodic: as the manifest says. A cell is stated once.
     void check_boundaries(const FileFrame& rows, const Sides& sides) const {
         const FrameHeader& header = rows.header;
-        if (!header.not_plane.empty() && manifest_.series.dimension == plane) {
-            throw Error(ErrorKind::bad_input, header.not_plane);
+        if (header.leaves_the_plane() && manifest_.series.dimension == plane) {
+            throw Error(ErrorKind::bad_input, header.place + ": expected a cell in the plane of the disks");
         }
         if (header.vectors && !foreign::are_upper(*header.vectors, manifest_.axes())) {
             throw Error(ErrorKind::bad_input,
@@ -509,8 +514,11 @@ class Disks {
 /// Rows of the file of contacts. A contact that comes twice stays twice: `compare` names it.
 void read_contacts(const Manifest& manifest, FrameFile& dump, Frame& frame) {
     const FileFrame rows = dump.at(frame.timestep);
-    const std::size_t first = dump.column(rows, manifest.contact_i), second = dump.column(rows, manifest.contact_j),
-                      force = dump.column(rows, manifest.contact_force);
+    const std::size_t first = dump.column(rows, manifest.contact_i), second = dump.column(rows, manifest.contact_j);
+    std::vector<std::size_t> columns;
+    for (const std::string& name : manifest.contact_force) {
+        columns.push_back(dump.column(rows, name));
+    }
     const std::string grain = fmt::format("the id of a {}", grain_word(manifest.series.dimension));
     const std::string expected =
         manifest.periodic ? grain : fmt::format("{}, or {}", grain, fmt::join(manifest.wall_names(), ", "));
@@ -526,12 +534,16 @@ void read_contacts(const Manifest& manifest, FrameFile& dump, Frame& frame) {
         return static_cast<int>(found - frame.ids.begin());
     };
     PairImages images(frame.packing);
+    const std::size_t walls = frame.contacts.size(); // of columns of the disks
+    std::vector<VectorForce> vectors;
     for (const TextLine& row : rows.rows) {
         FileContact contact;
+        double sign = 1; // of a vector
         const auto one = wall_of(row.field(first), manifest), other = wall_of(row.field(second), manifest);
         if (one.has_value() != other.has_value() && !manifest.periodic) {
             contact.contact = one ? manifest.with_wall(disk(row, second, manifest.contact_j), *one)
                                   : manifest.with_wall(disk(row, first, manifest.contact_i), *other);
+            sign = one ? -1 : 1;
         } else {
             const int i = disk(row, first, manifest.contact_i), j = disk(row, second, manifest.contact_j);
             if (i == j) {
@@ -539,10 +551,22 @@ void read_contacts(const Manifest& manifest, FrameFile& dump, Frame& frame) {
                          fmt::format("another {} than the first", grain_word(manifest.series.dimension)));
             }
             contact.contact = images.next(i, j);
+            sign = i < j ? 1 : -1;
         }
-        contact.force = row.number(force, manifest.contact_force) * manifest.force_factor;
+        contact.force = row.number(columns[0], manifest.contact_force[0]) * manifest.force_factor;
+        vectors.push_back({contact.contact, {}});
+        for (std::size_t a = 0; a < columns.size() && columns.size() > 1; ++a) {
+            vectors.back().force[a] = sign * row.number(columns[a], manifest.contact_force[a]) * manifest.force_factor;
+        }
         contact.row = dump.where(row.number());
         frame.contacts.push_back(std::move(contact));
+    }
+    if (columns.size() > 1) {
+        std::string words;
+        const std::vector<double> parts = normal_parts(frame.packing, vectors, dump.where(rows.header.line), words);
+        for (std::size_t k = 0; k < parts.size(); ++k) {
+            frame.contacts[k + walls].force = parts[k];
+        }
     }
 }
 

@@ -2,6 +2,7 @@
 
 #include "compare/backbone.hpp"
 #include "compare/dashpot.hpp"
+#include "compare/force_split.hpp"
 #include "compare/soft_list.hpp"
 #include "compare/soft_state.hpp"
 #include "packing/words.hpp"
@@ -163,11 +164,23 @@ class Reader {
         } else if (may_be_dashpots(largest)) {
             out_.dashpots = "dashpots may be at work";
         } else {
-            contradict(fmt::format("{}: the force between {} is {:.6g} and {} {:.6g} (ratio {:.6g})", at(worst),
+            contradict(fmt::format("{}: the force between {} is {:.6g} and {} {:.6g} (ratio {:.6g}){}", at(worst),
                                    name(worst), force_.at(worst),
                                    series_.law == ForceLaw::linear ? "stiffness x overlap" : "that of the law",
-                                   expected(worst), out_.ratio));
+                                   expected(worst), out_.ratio, units_words()));
         }
+    }
+
+    /// Where most forces of the files are not those of the law.
+    [[nodiscard]] std::string units_words() const {
+        std::vector<double> said, exact;
+        int off = 0;
+        for (const auto& [c, beyond] : beyond_) {
+            said.push_back(force_.at(c));
+            exact.push_back(expected(c));
+            off += std::abs(beyond) > series_.agreement * out_.mean ? 1 : -1;
+        }
+        return off > 0 ? "; " + units_of(said, exact, out_.mean).words(series_.agreement) : "";
     }
 
     /// What a dashpot adds is no larger than what is left to accelerate the grains, times a few. In motion neither the

@@ -296,7 +296,8 @@ Chart figure(const Comparison& comparison) {
     }
     const double margin = 0.03 * (high - low) + 1e-6 * high;
     Blocks blocks;
-    std::string body = "set multiplot layout 3,1\nset grid\nset key right bottom\n";
+    std::string body = "set multiplot layout 3,1\nset lmargin at screen 0.14\nset rmargin at screen 0.96\nset "
+                       "grid\nset key right bottom\n";
     body += fmt::format("set yrange [{}:{}]\nset xlabel \"strain ε_{}\"\nset ylabel \"σ_{}\"\n", low - margin,
                         high + margin, comparison.dimension, comparison.dimension);
     body += path_panel(comparison, blocks);

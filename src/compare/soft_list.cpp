@@ -2,9 +2,11 @@
 
 #include "compare/backbone.hpp"
 #include "compare/pair_images.hpp"
+#include "contact/separation.hpp"
 #include "packing/words.hpp"
 #include "preparation/neighbours.hpp"
 
+#include <isostat/compare/compare.hpp>
 #include <isostat/core/error.hpp>
 
 #include <fmt/format.h>
@@ -12,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 namespace isostat::compare {
 
@@ -127,20 +130,77 @@ void check_nearness(const std::string& file, const Packing& packing) {
     }
 }
 
+std::vector<double> normal_parts(const Packing& packing, const std::vector<VectorForce>& rows, const std::string& file,
+                                 std::string& words) {
+    std::vector<double> out;
+    double sum = 0, slip = 0;
+    std::size_t where = 0, attract = 0;
+    for (const auto& [contact, force] : rows) {
+        PerAxis<double> normal{};
+        if (contact.kind == ContactKind::disk_disk) {
+            normal = direction(separation(packing.layout(), packing.q, contact));
+        } else {
+            normal[static_cast<std::size_t>(contact.j)] = contact.kind == ContactKind::lower_wall ? -1 : 1;
+        }
+        const double part = std::inner_product(force.begin(), force.end(), normal.begin(), 0.0);
+        double along = 0;
+        for (std::size_t a = 0; a < packing.axes(); ++a) {
+            along = std::hypot(along, force[a] - part * normal[a]);
+        }
+        where = along > slip ? out.size() : where;
+        slip = std::max(slip, along);
+        sum += part;
+        out.push_back(part);
+    }
+    const double sign = sum < 0 ? -1 : 1; // on the first grain, or on the second one
+    for (double& part : out) {
+        part *= sign;
+        attract += part < 0 ? 1 : 0;
+    }
+    if (attract > 0) {
+        refuse(file, fmt::format("of {} vectors {} pull where the others push: expected forces on the first grain of "
+                                 "each row, or on the second one of each",
+                                 out.size(), attract));
+    }
+    const double mean = out.empty() ? 1 : std::abs(sum) / static_cast<double>(out.size());
+    if (!(slip <= Series().agreement * mean)) {
+        refuse(file, fmt::format("the tangential force of {} is {:.3g} of the mean force: expected grains without "
+                                 "friction (are the columns the components, in their order?)",
+                                 to_string(rows[where].contact, packing.dimension), slip / mean));
+    }
+    words = fmt::format(", normal parts (tangential ones: at most {:.1e} of the mean force)", slip / mean);
+    return out;
+}
+
 SoftList list_by_forces(const std::string& file, const Packing& packing, const std::vector<long>& ids,
                         std::optional<long> frame, const std::string& contacts, const PairColumns& columns) {
     if (ids.empty()) {
-        refuse(file, "has no column id: expected one, the contacts speak of ids");
+        refuse(file,
+               "has no column id: expected one, the contacts speak of ids (--ids 0, or 1: the rows in their order)");
     }
     SoftList out;
     PairImages images(packing);
     std::map<Contact, double> forces;
-    for (const PairForce& row : read_local_dump(contacts, columns, ids, frame)) {
-        const Contact pair = images.next(row.i, row.j);
-        if (!forces.emplace(pair, row.force).second) {
-            refuse(fmt::format("{}:{}", contacts, row.line),
-                   fmt::format("{}s {} and {} come twice: expected each pair once", grain_word(packing.dimension),
-                               ids[static_cast<std::size_t>(row.i)], ids[static_cast<std::size_t>(row.j)]));
+    std::vector<PairForce> rows = read_local_dump(contacts, columns, ids, frame);
+    const auto attract = columns.force.size() > 1
+                             ? std::size_t{0}
+                             : std::erase_if(rows, [](const PairForce& row) { return row.force[0] < 0; });
+    std::vector<VectorForce> vectors;
+    for (const PairForce& row : rows) {
+        vectors.push_back({images.next(row.i, row.j), row.force});
+    }
+    std::string parts = attract == 0
+                            ? ""
+                            : fmt::format(" ({} more are negative: is {} a component? I,J,FX,FY takes vectors)",
+                                          attract, columns.force[0]);
+    const std::vector<double> numbers =
+        columns.force.size() > 1 ? normal_parts(packing, vectors, contacts, parts) : std::vector<double>();
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+        if (!forces.emplace(vectors[k].contact, numbers.empty() ? rows[k].force[0] : numbers[k]).second) {
+            refuse(fmt::format("{}:{}", contacts, rows[k].line),
+                   fmt::format("{}s {} and {} come twice{}: expected each pair once", grain_word(packing.dimension),
+                               ids[static_cast<std::size_t>(rows[k].i)], ids[static_cast<std::size_t>(rows[k].j)],
+                               packing.cell.any() ? ", and no other image of them overlaps" : ""));
         }
     }
     const std::size_t pairs = forces.size();
@@ -149,8 +209,8 @@ SoftList list_by_forces(const std::string& file, const Packing& packing, const s
         forces.emplace(wall, NAN);
     }
     const std::string beside = packing.cell.all() ? "" : fmt::format(", {} overlaps with walls", walls.size());
-    out.words =
-        fmt::format("{} pairs with a force in {}{}, without rattlers{}", pairs, contacts, beside, walls_apart(packing));
+    out.words = fmt::format("{} pairs with a force in {}{}{}, without rattlers{}", pairs, contacts, parts, beside,
+                            walls_apart(packing));
     for (const auto& [contact, force] : forces) {
         out.contacts.push_back(contact);
     }

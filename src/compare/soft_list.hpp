@@ -36,6 +36,16 @@ struct SoftList {
     std::string words;
 };
 
+/// A force that a row says as a vector, on one grain of a contact from the other.
+struct VectorForce {
+    Contact contact;
+    PerAxis<double> force{};
+};
+/// Their normal parts, positive; \p words says how large the tangential ones are. Throws `Error(bad_input)` where some
+/// pull and others push, and where a tangential part is more than `Series::agreement` mean forces: friction.
+std::vector<double> normal_parts(const Packing& packing, const std::vector<VectorForce>& rows, const std::string& file,
+                                 std::string& words);
+
 /// The pairs with a force in a LAMMPS dump of style local or a table (`read_local_dump`) and the walls that a disk
 /// overlaps. \p ids: of the disks.
 SoftList list_by_forces(const std::string& file, const Packing& packing, const std::vector<long>& ids,

@@ -128,6 +128,19 @@ double imported_rounding(const State& state) {
     return rounding;
 }
 
+std::string words_of_copy(const State& state) {
+    const auto provenance = state.provenance.empty() ? json::Json() : json::Json::parse(state.provenance);
+    const auto jitter = provenance.is_object() ? provenance.find("jitter") : provenance.end();
+    if (!provenance.is_object() || jitter == provenance.end() || !jitter->is_number() || jitter->get<double>() == 0) {
+        return "";
+    }
+    return fmt::format("of {} with radii off by up to {:.3g} of each: verdicts, h and jamming are of the copy{}",
+                       provenance.value("imported_from", json::Json("a file")).dump(), jitter->get<double>(),
+                       provenance.value("jitter_matters", json::Json(false)) == json::Json(true)
+                           ? ", and may be others of the file"
+                           : "");
+}
+
 Untold untold_by(double rounding, const State& state, const Certification& truth) {
     Untold out;
     out.rounding = rounding;
@@ -202,13 +215,17 @@ void withhold(const Untold& untold, Inspection& inspection) {
     }
 }
 
+void withhold(const Untold& untold, JammingAnswer& answer) {
+    if (untold.any() && answer.verdict != Verdict::undecided) {
+        answer.reason = fmt::format("gaps or forces cannot be told from 0; {} of the stored doubles: {}",
+                                    to_string(answer.verdict), answer.reason);
+        answer.verdict = Verdict::undecided;
+    }
+}
+
 void withhold(const Untold& untold, CellInspection& cell) {
     for (JammingAnswer* answer : {&cell.local, &cell.collective, &cell.strict}) {
-        if (untold.any() && answer->verdict != Verdict::undecided) {
-            answer->reason = fmt::format("gaps or forces cannot be told from 0; {} of the stored doubles: {}",
-                                         to_string(answer->verdict), answer->reason);
-            answer->verdict = Verdict::undecided;
-        }
+        withhold(untold, *answer);
     }
 }
 

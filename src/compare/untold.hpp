@@ -14,6 +14,10 @@ namespace isostat::compare {
 /// Throws `Error(bad_input)` for a value that is none.
 double imported_rounding(const State& state);
 
+/// Words where the state is a copy of a file with other radii (`jitter` of the provenance): of what its verdicts speak.
+/// Empty: it is none.
+std::string words_of_copy(const State& state);
+
 /// What cannot be told apart from 0 when every gap of a contact is off by the rounding.
 struct Untold {
     double rounding = 0;
@@ -34,6 +38,7 @@ Untold untold_by(double rounding, const State& state, const Certification& truth
 /// Of the packing the verdict is open where something is untold; what is proved of the doubles becomes the reason.
 Verdict withheld(const Untold& untold, Verdict of_the_doubles);
 void withhold(const Untold& untold, Inspection& inspection);
+void withhold(const Untold& untold, JammingAnswer& answer);
 void withhold(const Untold& untold, CellInspection& cell);
 
 } // namespace isostat::compare

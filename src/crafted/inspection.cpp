@@ -309,6 +309,15 @@ class Inspector {
     bool balanced_ = false; // some forces balance the load, and `forces` holds them (without contacts it is empty)
 };
 
+/// Fixed walls on all sides, and no disk is fixed.
+bool walls_stay(const ExactPacking& packing) {
+    bool stay = !packing.cell.any() && std::find(packing.fixed.begin(), packing.fixed.end(), 1) == packing.fixed.end();
+    for (std::size_t a = 0; a < packing.axes(); ++a) {
+        stay = stay && packing.walls.lower[a] == WallKind::fixed && packing.walls.upper[a] == WallKind::fixed;
+    }
+    return stay;
+}
+
 } // namespace
 
 std::string Inspection::verdict() const {
@@ -328,6 +337,8 @@ Result<Inspection> inspect(const ExactPacking& packing, const InspectionLimits& 
     Inspection out = Inspector(packing, limits, std::move(contacts.value())).run();
     if (packing.cell.all()) {
         out.strains = exact_strains(packing, exact_contacts(loose_cell(packing)).value());
+    }
+    if (packing.cell.all() || walls_stay(packing)) {
         out.jamming = judge_jamming(packing, out.hold, limits);
     }
     return out;

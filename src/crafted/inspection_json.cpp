@@ -31,9 +31,10 @@ void add_cell(const Inspection& inspection, Json& out) {
         }
     }
     if (inspection.jamming) {
-        out["jammed"] = {{"disks", inspection.jamming->disks},
-                         {"collective", to_string(inspection.jamming->collective)},
-                         {"strict", to_string(inspection.jamming->strict)}};
+        out["jammed"] = {
+            {"disks", inspection.jamming->disks},
+            {"collective", to_string(inspection.jamming->collective)},
+            {"strict", inspection.jamming->strict ? Json(to_string(*inspection.jamming->strict)) : Json()}};
     }
 }
 

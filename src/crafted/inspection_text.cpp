@@ -124,7 +124,9 @@ class InspectionTable {
         if (inspection_.jamming) {
             const std::string of = fmt::format(" ({} {}s that are no rattlers)", inspection_.jamming->disks, grain());
             line("jammed collectively", std::string(to_string(inspection_.jamming->collective)) + of);
-            line("jammed strictly", std::string(to_string(inspection_.jamming->strict)) + of);
+            if (inspection_.jamming->strict) {
+                line("jammed strictly", std::string(to_string(*inspection_.jamming->strict)) + of);
+            }
         }
     }
 
@@ -242,8 +244,8 @@ class Comparison {
     [[nodiscard]] std::vector<std::string> mismatches() && { return std::move(out_); }
 
   private:
-    static std::string jammed(const Inspection& inspection, Verdict Jamming::*how) {
-        return inspection.jamming ? std::string(to_string(*inspection.jamming.*how)) : "no cell whose axes all repeat";
+    static std::string jammed(const std::optional<Verdict>& verdict) {
+        return verdict ? std::string(to_string(*verdict)) : "no cell whose axes all repeat";
     }
     static std::map<std::string, std::string> words(const Inspection& inspection) {
         // A count that is only a bound matches nothing.
@@ -267,8 +269,9 @@ class Comparison {
             {"support", to_string(inspection.support)},
             {"second_order", to_string(inspection.second_order)},
             {"stable", std::string(to_string(inspection.stable))},
-            {"jammed_collectively", jammed(inspection, &Jamming::collective)},
-            {"jammed_strictly", jammed(inspection, &Jamming::strict)},
+            {"jammed_collectively",
+             jammed(inspection.jamming ? std::optional(inspection.jamming->collective) : std::nullopt)},
+            {"jammed_strictly", jammed(inspection.jamming ? inspection.jamming->strict : std::nullopt)},
         };
     }
 

@@ -39,7 +39,8 @@ Jamming judge_jamming(const ExactPacking& packing, const std::vector<DiskHold>& 
     Jamming out;
     out.disks = rest.disk_count();
     if (out.disks == 0) {
-        out.collective = out.strict = Verdict::refuted;
+        out.collective = Verdict::refuted;
+        out.strict = packing.cell.any() ? std::optional(Verdict::refuted) : std::nullopt;
         return out;
     }
     const auto inspected = [&](bool moves) {
@@ -50,6 +51,9 @@ Jamming judge_jamming(const ExactPacking& packing, const std::vector<DiskHold>& 
     out.collective = fixed.dof_count == 0
                          ? Verdict::proved
                          : jammed(fixed, fixed.one_sign_decided, fixed.one_sign.kind == exact::OneSign::strict);
+    if (!packing.cell.any()) {
+        return out;
+    }
     rest.load.emplace(); // a pressure of 1: minus the derivative of the volume
     for (std::size_t a = 0; a < rest.axes(); ++a) {
         rest.load->wall[a] = 1;

@@ -29,8 +29,9 @@ template <class Field> class Elimination {
     bool append(std::span<const int> rows, std::span<const Value> values, int preferred,
                 std::span<const int> weight = {});
 
-    /// Number of independent columns so far.
+    /// Number of independent columns so far, and the row of the last pivot.
     [[nodiscard]] int rank() const { return pivots_; }
+    [[nodiscard]] int pivot_row() const { return row_of_.back(); }
 
   private:
     /// Pivots [first, first + width) whose columns share the rows [begin, end) of `rows_`: the first width - 1 are the

@@ -108,12 +108,20 @@ int rank(const sparse::Matrix<std::uint32_t>& matrix, const sparse::Ordering& or
 }
 
 int rank(const sparse::Matrix<std::uint64_t>& matrix) {
+    return ranks_of_first_rows(matrix, std::array{matrix.rows}).back();
+}
+
+std::vector<int> ranks_of_first_rows(const sparse::Matrix<std::uint64_t>& matrix, std::span<const int> ends) {
+    std::vector<int> ranks(ends.size(), 0);
     if (matrix.entries() == 0) {
-        return 0;
+        return ranks;
     }
     std::vector<int> weight(static_cast<std::size_t>(matrix.rows), 0);
     for (const int row : matrix.row) {
         ++weight[static_cast<std::size_t>(row)];
+    }
+    for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
+        std::for_each(weight.begin() + ends[k], weight.end(), [&](int& w) { w += matrix.cols + 1; });
     }
     Elimination<Field<61>> elimination;
     elimination.start(weight.size());
@@ -122,12 +130,15 @@ int rank(const sparse::Matrix<std::uint64_t>& matrix) {
     for (const int column : dissect ? dissected(matrix) : colamd_order(matrix)) {
         const auto begin = static_cast<std::size_t>(matrix.start[static_cast<std::size_t>(column)]);
         const auto count = static_cast<std::size_t>(matrix.start[static_cast<std::size_t>(column) + 1]) - begin;
-        elimination.append({matrix.row.data() + begin, count}, {matrix.value.data() + begin, count}, -1, weight);
+        if (elimination.append({matrix.row.data() + begin, count}, {matrix.value.data() + begin, count}, -1, weight)) {
+            const auto first = std::upper_bound(ends.begin(), ends.end(), elimination.pivot_row());
+            std::for_each(ranks.begin() + (first - ends.begin()), ranks.end(), [](int& r) { ++r; });
+        }
         if (elimination.rank() == matrix.rows) {
             break;
         }
     }
-    return elimination.rank();
+    return ranks;
 }
 
 } // namespace isostat::exact

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace isostat::exact {
 
@@ -47,5 +48,9 @@ int rank(const sparse::Matrix<std::uint32_t>& matrix, const sparse::Ordering& or
 /// COLAMD order, of many spheres in one by nested dissection; pivots are the candidate rows with the fewest entries in
 /// `matrix`. \pre rows are not repeated in a column. Cost: 1.3 to 1.6 times the other.
 int rank(const sparse::Matrix<std::uint64_t>& matrix);
+
+/// The same of the first `ends[k]` rows for every k, in one elimination: a pivot is sought in later rows only where the
+/// rest of its column is 0 in the earlier ones. \pre `ends` ascends to the number of rows
+std::vector<int> ranks_of_first_rows(const sparse::Matrix<std::uint64_t>& matrix, std::span<const int> ends);
 
 } // namespace isostat::exact

@@ -9,12 +9,12 @@
 namespace isostat {
 
 void Digits::see(std::string_view number) {
-    const auto value = finite_number(number);
+    const auto value = written_number(number);
     if (!value || *value == 0) {
         return;
     }
     int digits = 0;
-    for (const char c : number.substr(0, number.find_first_of("eE"))) {
+    for (const char c : number.substr(0, number.find_first_of("eEdD"))) {
         digits += std::isdigit(static_cast<unsigned char>(c)) != 0 && (digits > 0 || c != '0') ? 1 : 0;
     }
     most_ = std::max(most_, digits);

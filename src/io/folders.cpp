@@ -68,6 +68,9 @@ std::vector<std::string> report_names() {
     for (const char* state : {"forces_eq_######", "forces_last"}) {
         names = joined(names, names_in(state, {".svg", ".vtk"}));
     }
+    for (const char* state : {"contacts_eq_######", "contacts_last"}) {
+        names.push_back(state + std::string(".csv"));
+    }
     return names;
 }
 
@@ -83,7 +86,8 @@ const std::array<std::string, 3> sample_names{"scene.toml", "log.txt", "sample.j
 
 std::vector<std::string> ensemble_names() {
     const std::vector<std::string> sample = joined(run_names(), {sample_names.begin(), sample_names.end()});
-    return joined({"lock", "ensemble.json", "equilibria.csv", "increments.csv", "samples.csv"},
+    return joined(joined({"lock", "ensemble.json", "equilibria.csv", "increments.csv", "samples.csv"},
+                         chart_names("figures/force_distribution")),
                   names_in("samples/seed_######/", sample));
 }
 

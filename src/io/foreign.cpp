@@ -1,6 +1,7 @@
 #include "io/files.hpp"
 #include "io/foreign_box.hpp"
 #include "io/numbers.hpp"
+#include "packing/words.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/io/foreign.hpp>
@@ -9,16 +10,124 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
+#include <string_view>
 
 namespace isostat {
 
 namespace {
 
+using foreign::Boundary;
 using foreign::Raw;
 
 [[noreturn]] void refuse(const std::string& source, const std::string& message) {
     throw Error(ErrorKind::bad_input, source + ": " + message);
+}
+
+/// The plane of the disks becomes that of x and y.
+void take_plane(Raw& raw, const std::string& plane, const std::string& source) {
+    if (plane == "xy") {
+        return;
+    }
+    if (!raw.has_z) {
+        refuse(source, fmt::format("--plane {} was stated and there is no column z: expected one", plane));
+    }
+    const PerAxis<std::size_t> from{plane == "xz" ? 0U : 1U, 2, plane == "xz" ? 1U : 0U};
+    const auto permuted = [&](auto& of_axes) {
+        const auto before = of_axes;
+        for (std::size_t a = 0; a < most_axes; ++a) {
+            of_axes[a] = before[from[a]];
+        }
+    };
+    std::for_each(raw.centre.begin(), raw.centre.end(), permuted);
+    permuted(raw.places);
+    permuted(raw.boundary);
+    permuted(raw.loose);
+    if (raw.box && !raw.vectors) {
+        const auto& [xy, xz, yz] = raw.tilt;
+        const auto length = [&](std::size_t a) { return (*raw.box)[a][1] - (*raw.box)[a][0]; };
+        raw.vectors = {{{length(0), 0, 0}, {xy, length(1), 0}, {xz, yz, length(2)}}};
+    }
+    if (raw.vectors) {
+        auto box = *raw.box;
+        std::for_each(raw.vectors->begin(), raw.vectors->end(), permuted);
+        permuted(*raw.vectors);
+        permuted(box);
+        const Digits digits = raw.sides[0];
+        permuted(raw.sides);
+        raw.sides[0].see(digits); // tilts are among them
+        raw.take_vectors(*raw.vectors, {box[0][0], box[1][0], box[2][0]});
+        raw.box = box;
+    }
+    raw.notes.push_back(fmt::format("the plane of {} is taken for that of the disks", plane));
+}
+
+/// Coordinates in units of the box: lengths.
+void multiply_out(Raw& raw, const std::string& source) {
+    if (!raw.box) {
+        refuse(source, "scaled coordinates, and the file has no bounds of a box: expected some");
+    }
+    const auto& box = *raw.box;
+    for (PerAxis<double>& x : raw.centre) {
+        const PerAxis<double> s = x;
+        for (std::size_t a = 0; a < most_axes; ++a) {
+            x[a] = box[a][0] + s[a] * (box[a][1] - box[a][0]);
+            for (std::size_t b = 0; b < most_axes; ++b) {
+                x[a] += b == a ? 0
+                               : s[b] * (raw.vectors ? (*raw.vectors)[b][a]
+                                         : b > a     ? raw.tilt[Cell::tilt(a, b)]
+                                                     : 0);
+            }
+        }
+    }
+    raw.notes.emplace_back("scaled coordinates were multiplied out in double: rounded at 2^-52 of the box");
+}
+
+/// What other programs write and is not read, by how it begins: what it is, and what to do.
+std::string not_read(std::string_view text) {
+    struct Known {
+        std::string_view begin;
+        const char* words;
+    };
+    using namespace std::string_view_literals;
+    static constexpr std::array<Known, 17> all{
+        {{"\x1f\x8b"sv, "is packed with gzip: unpack it (gunzip -k FILE)"},
+         {"BZh"sv, "is packed with bzip2: unpack it (bunzip2 -k FILE)"},
+         {"\xfd"
+          "7zXZ"sv,
+          "is packed with xz: unpack it (unxz -k FILE)"},
+         {"\x28\xb5\x2f\xfd"sv, "is packed with zstd: unpack it (unzstd FILE)"},
+         {"PK\x03\x04"sv, "is a zip archive (npz too): expected a text in it"},
+         {"\xff\xfe"sv, "is in UTF-16: iconv -f UTF-16 -t UTF-8 FILE makes a text of it"},
+         {"\xfe\xff"sv, "is in UTF-16: iconv -f UTF-16 -t UTF-8 FILE makes a text of it"},
+         {"\x89HDF"sv, "is an HDF5 file: write its centres and radii as a table x,y,r"},
+         {"CDF\x01"sv, "is a NetCDF file: write its centres and radii as a table x,y,r"},
+         {"CDF\x02"sv, "is a NetCDF file: write its centres and radii as a table x,y,r"},
+         {"MATLAB 5"sv, "is a MAT file: write its centres and radii as a table x,y,r (writematrix)"},
+         {"\x93NUMPY"sv, "is a file of numpy: numpy.savetxt(FILE, a, header='x y r') writes a table"},
+         {"---\n"sv, "is in YAML (a dump of style yaml?): dump of style custom, or a table x,y,r, is read"},
+         {"# vtk DataFile"sv, "is a VTK file: --skip N --columns x,y,z takes rows of points, or write a table x,y,r"},
+         {"<VTKFile"sv, "is a VTK file in XML: write a table x,y,r"},
+         {"<?xml"sv, "is in XML: write a table x,y,r"},
+         {"[{"sv, "is a list in JSON: write a table x,y,r"}}};
+    for (const Known& known : all) {
+        if (text.starts_with(known.begin)) {
+            return known.words;
+        }
+    }
+    return text.find('\0') != std::string_view::npos
+               ? "has bytes that are no text (a binary file?): write centres and radii as a table x,y,r"
+               : "";
+}
+
+/// Without its first lines.
+std::string_view after_lines(std::string_view text, long lines) {
+    for (long k = 0; k < lines && !text.empty(); ++k) {
+        text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
+    }
+    return text;
 }
 
 /// Disks where z is the same, or differs by so little that no gap of two disks, sqrt(d^2 + z^2), is another double:
@@ -52,8 +161,16 @@ int dimension_of(Raw& raw, const std::string& source, const ForeignOptions& opti
             fmt::format("z differs by up to {:.2g}, which changes no gap: taken for a plane", off(farthest)));
         rounding = off(farthest) * off(farthest) / radius; // of two disks, 2 off
     }
-    if (dimension == 2 && !raw.not_plane.empty()) {
-        throw Error(ErrorKind::bad_input, raw.not_plane);
+    if (dimension == 2 && raw.leaves_the_plane()) {
+        throw Error(ErrorKind::bad_input, fmt::format("{}: expected a cell in the plane of the disks",
+                                                      raw.place.empty() ? source : raw.place));
+    }
+    for (std::size_t a = 0; dimension == 3 && !stated && a < 2; ++a) {
+        if (std::all_of(raw.centre.begin(), raw.centre.end(),
+                        [&](const auto& x) { return x[a] == raw.centre[0][a]; })) {
+            raw.notes.push_back(fmt::format("{} is the same for all: --plane {} takes them for disks", axis_names[a],
+                                            a == 0 ? "yz" : "xz"));
+        }
     }
     if (raw.vectors && foreign::are_upper(*raw.vectors, static_cast<std::size_t>(dimension))) {
         raw.vectors.reset();
@@ -95,9 +212,9 @@ Scaling scaling_of(const Raw& raw, std::size_t axes) {
     double bound = 0;
     for (std::size_t a = 0; a < axes; ++a) {
         const auto& [low, high] = (*raw.box)[a];
-        double reach = high - low;
-        for (std::size_t b = a + 1; b < axes; ++b) {
-            reach += std::abs(raw.tilt[Cell::tilt(a, b)]);
+        double reach = std::abs(high - low);
+        for (std::size_t b = 0; b < axes; ++b) {
+            reach += b == a ? 0 : std::abs(raw.vectors ? (*raw.vectors)[b][a] : b > a ? raw.tilt[Cell::tilt(a, b)] : 0);
         }
         out.factor = std::max(out.factor, reach);
         bound = std::max({bound, std::abs(low), std::abs(high)});
@@ -131,6 +248,22 @@ double rounding_of(const Raw& raw, const ForeignPacking& found, const ForeignOpt
                             {packing.dimension, packing.cell.any() && tilted});
 }
 
+bool one_frame(const std::string& format) {
+    return format != "lammps-dump" && format != "xyz";
+}
+
+Raw read_raw(const std::string& format, const std::string& text, const std::string& source,
+             const ForeignOptions& options) {
+    const std::vector<std::string>& formats = foreign_formats();
+    static constexpr std::array readers{foreign::read_lammps_data, foreign::read_lammps_dump, foreign::read_xyz,
+                                        foreign::read_table,       foreign::read_braces,      foreign::read_centres};
+    const auto at = static_cast<std::size_t>(std::find(formats.begin(), formats.end(), format) - formats.begin());
+    if (at >= readers.size()) {
+        refuse(source, fmt::format("format '{}': expected one of {}", format, fmt::join(formats, ", ")));
+    }
+    return readers[at](text, source, options);
+}
+
 } // namespace
 
 bool foreign::are_upper(const PerAxis<PerAxis<double>>& vectors, std::size_t d) {
@@ -145,7 +278,7 @@ bool foreign::are_upper(const PerAxis<PerAxis<double>>& vectors, std::size_t d) 
 }
 
 const std::vector<std::string>& foreign_formats() {
-    static const std::vector<std::string> formats{"lammps-data", "lammps-dump", "xyz", "table", "centres"};
+    static const std::vector<std::string> formats{"lammps-data", "lammps-dump", "xyz", "table", "braces", "centres"};
     return formats;
 }
 
@@ -180,6 +313,10 @@ std::string recognise_format(const std::string& marked) {
     if (!start.empty() && is_count(start[0]) && start[0].size() > 1 && start[0].field(1) == "x") {
         return "vertex";
     }
+    if (!start.empty() && start[0].text().find("L1=") != std::string_view::npos && start[0].size() > 1 &&
+        start[0].field(0) == "N") {
+        return "braces";
+    }
     if (begins_with_centres(start)) {
         return "centres";
     }
@@ -202,34 +339,34 @@ std::string recognise_format(const std::string& marked) {
     return "table";
 }
 
-ForeignPacking parse_foreign(const std::string& text, const std::string& source, const ForeignOptions& options) {
+ForeignPacking parse_foreign(const std::string& whole, const std::string& source, const ForeignOptions& options) {
     ForeignPacking out;
-    out.format = options.format.empty() ? recognise_format(text) : options.format;
+    const std::string rest(options.skip > 0 ? after_lines(whole, options.skip) : "");
+    const std::string& text = options.skip > 0 ? rest : whole;
+    if (const std::string words = not_read(text); !words.empty()) {
+        refuse(source, words);
+    }
+    out.format = !options.format.empty() ? options.format : options.skip > 0 ? "table" : recognise_format(text);
+    if (options.skip > 0 && out.format != "table") {
+        refuse(source, fmt::format("{} lines were to be passed over: expected a table, the format is {}", options.skip,
+                                   out.format));
+    }
     if (options.size && options.size->column.empty() &&
         !(options.size->value > 0 && std::isfinite(options.size->value))) {
         refuse(source, fmt::format("stated size {}: expected a positive number", options.size->value));
     }
-    if (!options.columns.empty() && out.format != "table") {
-        refuse(source, fmt::format("names of columns were stated: expected a table, the format is {}", out.format));
+    if (!options.columns.empty() && out.format == "centres") {
+        refuse(source, "names of columns were stated: expected none, a file of centres has coordinates alone");
     }
-    if ((out.format == "lammps-data" || out.format == "centres") && options.frame.value_or(0) != 0) {
+    if (options.frame.value_or(0) != 0 && one_frame(out.format)) {
         refuse(source, fmt::format("frame {} was asked for: expected frame 0, a file of {} has one", *options.frame,
                                    out.format));
     }
-    Raw raw;
-    if (out.format == "lammps-data") {
-        raw = foreign::read_lammps_data(text, source, options);
-    } else if (out.format == "lammps-dump") {
-        raw = foreign::read_lammps_dump(text, source, options);
-    } else if (out.format == "xyz") {
-        raw = foreign::read_xyz(text, source, options);
-    } else if (out.format == "table") {
-        raw = foreign::read_table(text, source, options);
-    } else if (out.format == "centres") {
-        raw = foreign::read_centres(text, source, options);
-    } else {
-        refuse(source, fmt::format("format '{}': expected one of {}", out.format, fmt::join(foreign_formats(), ", ")));
+    Raw raw = read_raw(out.format, text, source, options);
+    if (raw.scaled) {
+        multiply_out(raw, source);
     }
+    take_plane(raw, options.plane, source);
     Packing& packing = out.packing;
     packing.dimension = packing.cell.dimension = dimension_of(raw, source, options, out.rounding);
     packing.walls = Walls::none();
@@ -238,6 +375,11 @@ ForeignPacking parse_foreign(const std::string& text, const std::string& source,
     foreign::settle_bounds(raw, d, source, stated);
     out.notes = raw.notes;
     out.ids = raw.ids;
+    packing.fixed = raw.fixed;
+    const auto axes = std::span(raw.boundary).first(d);
+    if (!raw.fixed.empty() && std::find(axes.begin(), axes.end(), Boundary::periodic) != axes.end()) {
+        refuse(source, "disks that cannot move were stated, of a periodic packing: expected walls or open boundaries");
+    }
     if (!text.ends_with('\n')) {
         out.notes.emplace_back("the last line has no end: was the file cut there?");
     }

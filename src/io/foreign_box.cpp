@@ -44,6 +44,41 @@ void take_box(Raw& raw, std::size_t axes, const std::string& source, ForeignOpti
     }
 }
 
+/// The cell of a file without one: lengths and tilts, or period vectors.
+void take_lattice(Raw& raw, std::size_t axes, const std::string& source, const ForeignOptions& options) {
+    const std::vector<double>& stated = options.lattice;
+    if (stated.empty()) {
+        return;
+    }
+    if (raw.box) {
+        refuse_box(source, "a lattice was stated and the file has one: expected one of them");
+    }
+    const std::size_t tilts = axes == 2 ? 1 : most_tilts;
+    PerAxis<PerAxis<double>> vectors{{{}, {}, {0, 0, 1}}};
+    if (stated.size() == axes || stated.size() == axes + tilts) {
+        for (std::size_t b = 0; b < axes; ++b) {
+            vectors[b][b] = stated[b];
+            for (std::size_t a = 0; a < b && stated.size() > axes; ++a) {
+                vectors[b][a] = stated[axes + Cell::tilt(a, b)];
+            }
+        }
+    } else if (stated.size() == axes * axes) {
+        for (std::size_t k = 0; k < stated.size(); ++k) {
+            vectors[k / axes][k % axes] = stated[k];
+        }
+    } else {
+        refuse_box(source,
+                   fmt::format("a lattice of {} numbers was stated: expected {} lengths, {} more for tilts, or {} "
+                               "entries of period vectors",
+                               stated.size(), axes, tilts, axes * axes));
+    }
+    raw.take_vectors(vectors, {});
+    raw.boundary.fill(Boundary::periodic);
+    if (are_upper(vectors, axes)) {
+        raw.vectors.reset();
+    }
+}
+
 void check_boundaries(Raw& raw, std::size_t axes, const std::string& source, const ForeignOptions& options) {
     for (std::size_t a = 0; a < axes; ++a) {
         const char* axis = axis_names[a];
@@ -126,7 +161,9 @@ void add_wall_pair(ForeignPacking& out, std::size_t a, const Raw& raw, const std
     }
     packing.q.push_back(shifted(high, low, worst));
     packing.walls.lower[a] = WallKind::fixed;
-    packing.walls.upper[a] = options.walls == ForeignWalls::box ? WallKind::movable : WallKind::fixed;
+    const bool moves =
+        options.walls == ForeignWalls::box || (options.walls == ForeignWalls::square && a + 1 == packing.axes());
+    packing.walls.upper[a] = moves ? WallKind::movable : WallKind::fixed;
 }
 
 /// Turns the packing until the period vectors are written as those of a cell: each entry below the diagonal by a
@@ -222,9 +259,17 @@ double add_cell(ForeignPacking& out, const Raw& raw, const std::string& source, 
         worst += turn(packing, *raw.vectors, out.notes);
     }
     for (std::size_t a = 0; a < d; ++a) {
-        if (packing.cell.periodic[a] && !(packing.lattice(a, a) > 0)) {
-            refuse_box(source, fmt::format("period {} along {}: expected a positive one", packing.lattice(a, a),
-                                           axis_names[a]));
+        const double period = packing.lattice(a, a), width = 2 * packing.max_radius();
+        if (packing.cell.periodic[a] && !(period > 0)) {
+            refuse_box(source, fmt::format("period {} along {}: expected a positive one", period, axis_names[a]));
+        }
+        constexpr double too_wide = 1.5;
+        if (packing.cell.periodic[a] && width > too_wide * period) {
+            refuse_box(source,
+                       fmt::format("a {} {} wide in a period of {} along {}: expected at most one period (sizes "
+                                   "in another unit, or diameters for radii?{})",
+                                   grain_word(packing.dimension), width, period, axis_names[a],
+                                   d == 2 ? "" : "; a packing of disks has one z, or --plane says which plane"));
         }
     }
     worst = std::max(worst, wrap_into_cell(packing).rounding);
@@ -243,9 +288,9 @@ double add_walls(ForeignPacking& out, const Raw& raw, const std::string& source,
         if (!options.box.empty()) {
             refuse_box(source, "a box was stated without walls: expected walls box or fixed");
         }
-        if (raw.box) {
-            out.notes.emplace_back("no walls: the bounds of the box in the file are not used");
-        }
+        out.notes.emplace_back(raw.box ? "no walls: the bounds of the box in the file are not used"
+                                       : "neither walls nor a cell: --lattice, --periodic with --box, or --walls with "
+                                         "--box state them");
         return 0;
     }
     if (options.box.empty() && !raw.box) {
@@ -262,6 +307,8 @@ double add_walls(ForeignPacking& out, const Raw& raw, const std::string& source,
     }
     out.notes.push_back(fmt::format("walls at {}: {}", fmt::join(places, " and "),
                                     options.walls == ForeignWalls::fixed ? "fixed"
+                                    : options.walls == ForeignWalls::square
+                                        ? "their size alone moves, as the last upper one"
                                     : packing.dimension == 2 ? "left and bottom fixed, right and top movable"
                                                              : "lower ones fixed, upper ones movable"));
     if (worst > 0) {
@@ -273,6 +320,7 @@ double add_walls(ForeignPacking& out, const Raw& raw, const std::string& source,
 } // namespace
 
 void settle_bounds(Raw& raw, std::size_t axes, const std::string& source, ForeignOptions& options) {
+    take_lattice(raw, axes, source, options);
     take_box(raw, axes, source, options);
     check_boundaries(raw, axes, source, options);
 }

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 namespace isostat::foreign {
 
 namespace {
@@ -19,19 +21,15 @@ long rows_left(TextLines lines) {
 }
 
 void read_vectors(TextLines& lines, std::size_t axes, Raw& raw) {
-    raw.vectors.emplace();
-    raw.box.emplace();
+    PerAxis<PerAxis<double>> vectors{{{}, {}, {0, 0, 1}}};
     for (std::size_t b = 0; b < axes; ++b) {
         const TextLine row = lines.next_row("a period vector", axes);
         for (std::size_t a = 0; a < axes; ++a) {
-            (*raw.vectors)[b][a] = row.number(a, "entry of a period vector");
+            vectors[b][a] = row.number(a, "entry of a period vector");
             raw.sides[0].see(row.field(a));
         }
-        (*raw.box)[b][1] = (*raw.vectors)[b][b];
-        for (std::size_t a = 0; a < b; ++a) {
-            raw.tilt[Cell::tilt(a, b)] = (*raw.vectors)[b][a];
-        }
     }
+    raw.take_vectors(vectors, {});
     raw.boundary.fill(Boundary::periodic);
 }
 
@@ -44,27 +42,23 @@ Raw read_centres(const std::string& text, const std::string& source, const Forei
     const auto axes = static_cast<std::size_t>(*raw.dimension);
     const long count = lines.next_row("the number of centres", 1).integer(0, "number of centres", 1, most_disks);
     const TextLine size = lines.next_row("the diameter", 1);
-    Columns columns;
-    columns.constant = size.positive(0, "diameter");
-    columns.meaning = raw.meaning = SizeMeaning::diameter;
-    if (options.size) {
-        find_size(columns, {}, options, source, raw);
-    } else {
-        raw.sizes.see(size.field(0));
-        raw.notes.push_back(
-            fmt::format("diameter {} for every disk, as line {} says", columns.constant, size.number()));
+    ForeignOptions stated = options;
+    if (!options.size) {
+        stated.size = SizeStatement{SizeMeaning::diameter, "", size.positive(0, "diameter")};
     }
-    find_selection(columns, {}, options, source);
+    Columns columns = find_columns(
+        axes == 2 ? std::vector<std::string>{"x", "y"} : std::vector<std::string>{"x", "y", "z"}, stated, source, raw);
+    if (!options.size) {
+        raw.sizes.see(size.field(0));
+        raw.notes.back() = fmt::format("diameter {} for every disk, as line {} says", columns.constant, size.number());
+    }
     if (const long left = rows_left(lines); left == count + *raw.dimension) {
         read_vectors(lines, axes, raw);
     } else if (left != count) {
         lines.fail(fmt::format("{} rows after this one: expected {} centres, or {} period vectors and then these", left,
                                count, axes));
     }
-    for (std::size_t a = 0; a < axes; ++a) {
-        columns.at[a] = static_cast<int>(a);
-    }
-    Rows rows(columns, source);
+    Rows rows(std::move(columns), source);
     while (rows.seen() < count) {
         rows.add(lines.next_row(fmt::format("centre {} of {}", rows.seen() + 1, count), axes), raw);
     }

@@ -5,10 +5,12 @@
 #include <isostat/core/error.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
-#include <cmath>
+#include <iterator>
 #include <set>
 #include <utility>
 
@@ -64,6 +66,8 @@ struct DataHeader {
     long atoms = -1;
     Bounds box;
     PerAxis<std::optional<std::array<double, 2>>> bounds;
+    PerAxis<PerAxis<double>> vectors{}; ///< general triclinic
+    PerAxis<double> origin{};
     std::set<std::string> seen; ///< keywords
 
     void take(const HeaderLine& header) {
@@ -94,6 +98,10 @@ struct DataHeader {
             for (std::size_t k = 0; k < most_tilts; ++k) {
                 take_tilt(line, k, k, box);
             }
+        } else if (is_among("|avec|bvec|cvec|abc origin|", header.keyword)) {
+            numbers(3);
+            const auto vector = static_cast<std::size_t>(header.keyword[0] - 'a');
+            take_vector(line, header.keyword == "abc origin" ? origin : vectors[vector], box);
         } else if (is_counter(header.keyword)) {
             numbers(1);
             (void)line.integer(0, "number of " + header.keyword, 0, most_disks);
@@ -104,36 +112,71 @@ struct DataHeader {
     }
 };
 
-void read_atoms(TextLines& lines, const std::string& style, const DataHeader& header, const ForeignOptions& options,
-                Raw& raw) {
-    // read_data of LAMMPS: sphere: id type diameter density x y z; bpm/sphere: id molecule type diameter density x y z.
-    if (style != "sphere" && style != "bpm/sphere") {
-        lines.fail(fmt::format("section Atoms {}: expected 'Atoms # sphere' or 'Atoms # bpm/sphere': other styles have "
-                               "no diameter, and columns are not guessed",
-                               style.empty() ? "does not name its style" : "has style '" + style + "'"));
-    }
-    Columns columns;
-    const int shift = style == "sphere" ? 0 : 1;
-    columns.id = 0;
-    columns.size = 2 + shift;
-    columns.at = {4 + shift, 5 + shift, 6 + shift};
-    columns.meaning = raw.meaning = SizeMeaning::diameter;
-    if (options.size) {
-        if (!options.size->column.empty() || options.size->meaning != SizeMeaning::diameter) {
-            lines.fail("the third column of atom style sphere is the diameter by definition: expected no other "
-                       "statement (a constant --diameter may replace it)");
+/// Atom styles and their columns, as read_data of LAMMPS reads them.
+struct Style {
+    std::string_view name, columns;
+};
+constexpr std::array<Style, 8> styles{{{"sphere", "id type diameter density x y z"},
+                                       {"bpm/sphere", "id molecule type diameter density x y z"},
+                                       {"atomic", "id type x y z"},
+                                       {"charge", "id type q x y z"},
+                                       {"bond", "id molecule type x y z"},
+                                       {"angle", "id molecule type x y z"},
+                                       {"molecular", "id molecule type x y z"},
+                                       {"full", "id molecule type q x y z"}}};
+
+/// Of hybrid styles id, type and place come first, then what else each has.
+std::vector<std::string> columns_of_style(const TextLines& lines, const std::string& text) {
+    const TextLine words(text, lines.number(), &lines.source());
+    const bool hybrid = words.size() > 1 && words.field(0) == "hybrid";
+    std::vector<std::string> out;
+    const auto add = [&](std::string_view names, std::size_t kept) {
+        const TextLine columns(names, lines.number(), &lines.source());
+        for (std::size_t c = 0; c < columns.size(); ++c) {
+            if (std::find(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(kept), columns.field(c)) ==
+                out.begin() + static_cast<std::ptrdiff_t>(kept)) {
+                out.emplace_back(columns.field(c));
+            }
         }
-        columns.size = -1;
-        columns.constant = options.size->value;
-        raw.notes.push_back(fmt::format("diameter {} for every disk, as stated", columns.constant));
-    } else {
-        raw.notes.emplace_back("diameters, as atom style " + style + " defines");
+    };
+    add(hybrid ? styles[2].columns : "", 0);
+    const std::size_t common = out.size();
+    std::size_t known = hybrid ? 1 : 0;
+    for (std::size_t k = known; k < words.size() && (hybrid || k == 0); ++k) {
+        for (const Style& style : styles) {
+            if (style.name == words.field(k)) {
+                add(style.columns, common);
+                ++known;
+            }
+        }
     }
-    const auto width = static_cast<std::size_t>(7 + shift);
-    std::vector<std::string> names(width);
-    names[static_cast<std::size_t>(1 + shift)] = "type";
-    find_selection(columns, names, options, fmt::format("{}:{}", lines.source(), lines.number()));
-    Rows rows(columns, lines.source());
+    if (known == 0 || known != words.size()) {
+        std::vector<std::string_view> names;
+        std::transform(styles.begin(), styles.end(), std::back_inserter(names), [](const Style& s) { return s.name; });
+        lines.fail(fmt::format("section Atoms {}: expected 'Atoms # sphere' or another of {}, or hybrid with several "
+                               "of these; --style sphere and --columns id,type,... state it",
+                               text.empty() ? "does not name its style" : "has style '" + text + "'",
+                               fmt::join(names, ", ")));
+    }
+    return out;
+}
+
+void read_atoms(TextLines& lines, const std::string& named, const DataHeader& header, const ForeignOptions& options,
+                Raw& raw) {
+    const std::string& style = options.style.empty() ? named : options.style;
+    const std::vector<std::string> names = options.columns.empty() ? columns_of_style(lines, style) : options.columns;
+    const bool defined = options.columns.empty() && find_column(names, "diameter") >= 0;
+    if (defined && options.size && options.size->of_word.empty() &&
+        (!options.size->column.empty() || options.size->meaning != SizeMeaning::diameter)) {
+        lines.fail("atom style sphere has a diameter by definition: expected no other statement (a constant "
+                   "--diameter may replace it, or --radius type:1=1)");
+    }
+    Columns columns = find_columns(names, options, fmt::format("{}:{}", lines.source(), lines.number()), raw);
+    if (defined && !options.size) {
+        raw.notes.back() = "diameters, as atom style " + style + " defines";
+    }
+    const std::size_t width = names.size();
+    Rows rows(std::move(columns), lines.source());
     while (rows.seen() < header.atoms) {
         const std::string what =
             fmt::format("atom {} of {}: {} values, and 3 image flags or none", rows.seen() + 1, header.atoms, width);
@@ -153,39 +196,6 @@ void read_atoms(TextLines& lines, const std::string& style, const DataHeader& he
         rows.add(line, raw);
     }
     rows.finish(raw);
-}
-
-/// Coordinates as wrapped, unwrapped or scaled to the box.
-void find_coordinates(Columns& columns, const std::vector<std::string>& names, const std::string& where, Raw& raw) {
-    for (const auto& [x, y, z, is_scaled, note] : {std::tuple{"x", "y", "z", false, ""},
-                                                   {"xu", "yu", "zu", false, "unwrapped coordinates xu yu"},
-                                                   {"xs", "ys", "zs", true, "scaled coordinates xs ys"},
-                                                   {"xsu", "ysu", "zsu", true, "scaled coordinates xsu ysu"}}) {
-        columns.at = {find_column(names, x), find_column(names, y), find_column(names, z)};
-        if (columns.at[0] >= 0 && columns.at[1] >= 0) {
-            raw.scaled = is_scaled;
-            if (*note != '\0') {
-                raw.notes.emplace_back(note);
-            }
-            return;
-        }
-    }
-    throw Error(ErrorKind::bad_input,
-                fmt::format("{}: no coordinates: expected columns x y, xu yu, xs ys or xsu ysu", where));
-}
-
-/// In units of the box: lengths.
-void multiply_out(Raw& raw) {
-    const auto& box = raw.box.value();
-    for (PerAxis<double>& x : raw.centre) {
-        for (std::size_t a = 0; a < most_axes; ++a) {
-            x[a] = box[a][0] + x[a] * (box[a][1] - box[a][0]);
-            for (std::size_t b = a + 1; b < most_axes; ++b) {
-                x[a] += x[b] * raw.tilt[Cell::tilt(a, b)];
-            }
-        }
-    }
-    raw.notes.emplace_back("scaled coordinates were multiplied out in double: rounded at 2^-52 of the box");
 }
 
 } // namespace
@@ -231,9 +241,13 @@ Raw read_lammps_data(const std::string& text, const std::string& source, const F
     if (!read) {
         lines.fail("the file ends here: expected a section 'Atoms # sphere'");
     }
-    if (header.bounds[0] && header.bounds[1]) {
+    if (header.seen.contains("avec")) {
+        header.box.take_vectors(header.vectors, header.origin);
+    } else if (header.bounds[0] && header.bounds[1]) {
         constexpr std::array<double, 2> none{};
         header.box.box = {*header.bounds[0], *header.bounds[1], header.bounds[2].value_or(none)};
+    }
+    if (header.box.box) {
         header.box.boundary = raw.boundary; // image flags told
         static_cast<Bounds&>(raw) = header.box;
     }
@@ -250,15 +264,8 @@ Raw read_lammps_dump(const std::string& text, const std::string& source, const F
         throw Error(ErrorKind::bad_input,
                     fmt::format("{}: frame {} has 0 atoms: expected at least 1", where, frame.number));
     }
-    Columns columns;
-    find_coordinates(columns, header.names, where, raw);
-    find_size(columns, header.names, options, where, raw);
-    find_selection(columns, header.names, options, where);
-    columns.id = find_column(header.names, "id");
-    frame.read(Rows(columns, source), raw);
-    if (raw.scaled) {
-        multiply_out(raw);
-    }
+    Columns columns = find_columns(header.names, options, where, raw);
+    frame.read(std::move(columns), raw);
     raw.notes.push_back(fmt::format("frame {} (time step {})", frame.number, header.timestep));
     return raw;
 }

@@ -29,7 +29,11 @@ struct Bounds {
     PerAxis<Boundary> boundary{Boundary::unknown, Boundary::unknown, Boundary::unknown};
     PerAxis<bool> loose{}; ///< the bounds only follow the disks: no walls there
     PerAxis<Digits> sides; ///< of box and tilts; those of a packing of disks are in the first two
-    std::string not_plane; ///< why this is no box of disks: a message, or empty
+    std::string place;     ///< what says so: the begin of a message
+    /// The cell has these vectors, from here.
+    void take_vectors(const PerAxis<PerAxis<double>>& periods, const PerAxis<double>& origin);
+    /// The period vectors of x and y are not in the plane of x and y, or that of z is not normal to it.
+    [[nodiscard]] bool leaves_the_plane() const;
 };
 
 /// Whether period vectors are written as the cell is. \p d: so many axes of them count.
@@ -37,6 +41,8 @@ bool are_upper(const PerAxis<PerAxis<double>>& vectors, std::size_t d);
 
 /// A tilt xy, xz or yz of LAMMPS, in a field of the line.
 void take_tilt(const TextLine& line, std::size_t field, std::size_t tilt, Bounds& bounds);
+/// A period vector, in the first three fields of the line.
+void take_vector(const TextLine& line, PerAxis<double>& vector, Bounds& bounds);
 
 /// What stands before the rows of a frame.
 struct FrameHeader : Bounds {
@@ -63,10 +69,11 @@ struct Raw : Bounds {
     std::vector<long> ids; ///< one per disk, or none
     SizeMeaning meaning = SizeMeaning::radius;
     std::vector<std::string> notes;
-    PerAxis<Digits> places; ///< digits of coordinates
-    Digits sizes;           ///< of radii or diameters
-    bool scaled = false;    ///< coordinates are in units of the box
-    std::string types;      ///< empty, or which there are, and that all are taken for disks; a note too
+    PerAxis<Digits> places;           ///< digits of coordinates
+    Digits sizes;                     ///< of radii or diameters
+    bool scaled = false;              ///< coordinates are in units of the box
+    std::string types;                ///< empty, or which there are, and that all are taken for disks; a note too
+    std::vector<unsigned char> fixed; ///< one per disk, or none
 };
 
 /// Which columns hold what.
@@ -76,25 +83,35 @@ struct Columns {
     SizeMeaning meaning = SizeMeaning::radius;
     std::string size_name; ///< empty: a constant
     double constant = 0;
-    int select = -1; ///< rows with `selected` there are disks; -1: every row is one
-    std::string selected;
-    int type = -1; ///< counted, for a note
+    std::vector<std::pair<std::string, double>> size_of; ///< not empty: of the words in column `size`
+    int select = -1; ///< rows with a word of `selected` there are disks; -1: every row is one
+    std::vector<std::string> selected;
+    int fix = -1; ///< disks with a word of `fixed` there cannot move
+    std::vector<std::string> fixed;
+    std::optional<long> first_id;          ///< of the first row; the column of ids is not read then
+    int type = -1;                         ///< counted, for a note
+    std::vector<std::string> names;        ///< of all columns
+    std::vector<std::pair<int, int>> same; ///< columns of one name: their values must agree
 };
 
-/// The column that selects rows, and that of types. Throws when the stated one is not there.
-void find_selection(Columns& columns, const std::vector<std::string>& names, const ForeignOptions& options,
-                    const std::string& where);
+/// By the names, which are those that the user stated where there are any. Throws when coordinates, what a statement
+/// speaks of, or the size (from the statement of the user, or from one of the names that state it) are not there;
+/// `where` starts the message.
+Columns find_columns(const std::vector<std::string>& names, const ForeignOptions& options, const std::string& where,
+                     Raw& raw);
 
-/// Takes the size from the statement of the user, or from one of the names that state it. Throws when nothing or more
-/// than one does; `where` starts the message.
-void find_size(Columns& columns, const std::vector<std::string>& names, const ForeignOptions& options,
-               const std::string& where, Raw& raw);
+std::string lower(std::string_view text);
 
 /// Throws when two columns have one name; "" names none.
 void refuse_twice(const std::vector<std::string>& names, const std::string& where);
 
-/// Column `name`, or -1. \pre no name is there twice.
+/// The first column `name`, or -1.
 int find_column(const std::vector<std::string>& names, std::string_view name);
+/// Pairs of columns with the same name; "" names none.
+std::vector<std::pair<int, int>> columns_twice(const std::vector<std::string>& names);
+/// Throws where a row has not the same words in such columns.
+void require_same(const std::vector<std::pair<int, int>>& twice, const std::vector<std::string>& names,
+                  const TextLine& row);
 
 /// Adds the rows that are selected to a raw packing; finds ids given twice.
 class Rows {
@@ -106,6 +123,7 @@ class Rows {
     [[nodiscard]] long seen() const { return seen_; }
 
   private:
+    [[nodiscard]] double size_of_word(const TextLine& line, const std::string& name) const;
     Columns columns_;
     std::string source_;
     std::vector<std::pair<long, int>> ids_; ///< with their lines
@@ -121,7 +139,7 @@ struct ChosenFrame {
     TextLines rows;
     const char* row;
     /// Adds them to a raw packing.
-    void read(Rows reader, Raw& raw);
+    void read(Columns columns, Raw& raw);
 };
 ChosenFrame choose_frame(const std::string& text, const std::string& source, const ForeignOptions& options,
                          const char* row, const std::function<FrameHeader(TextLines&)>& head);
@@ -132,12 +150,14 @@ struct TableNames {
     int line = 0; ///< 0: no line names them
     char separator = ' ';
 };
-TableNames read_table_names(TextLines& lines, const ForeignOptions& options, Raw& raw);
+/// \p any: a comment may name other columns than x and y, as many as the first row has.
+TableNames read_table_names(TextLines& lines, const ForeignOptions& options, Raw& raw, bool any = false);
 
 Raw read_lammps_data(const std::string& text, const std::string& source, const ForeignOptions& options);
 Raw read_lammps_dump(const std::string& text, const std::string& source, const ForeignOptions& options);
 Raw read_xyz(const std::string& text, const std::string& source, const ForeignOptions& options);
 Raw read_table(const std::string& text, const std::string& source, const ForeignOptions& options);
+Raw read_braces(const std::string& text, const std::string& source, const ForeignOptions& options);
 Raw read_centres(const std::string& text, const std::string& source, const ForeignOptions& options);
 
 } // namespace isostat::foreign

@@ -74,22 +74,24 @@ std::string lammps_data_text(const Packing& stored, const std::string& title) {
     return text;
 }
 
-std::string xyz_text(const Packing& packing, const std::vector<double>& displacement) {
+std::string xyz_text(const Packing& packing, const std::vector<double>& displacement, std::span<const int> contacts) {
     const Box box(packing);
     const auto repeats = [&](std::size_t axis) { return packing.cell.periodic[axis] ? "T" : "F"; };
-    std::string text = fmt::format("{}\nLattice=\"{} 0 0 {} {} 0 {} {} {}\" Origin=\"{} {} {}\" pbc=\"{} {} {}\" "
-                                   "Properties=id:I:1:species:S:1:pos:R:3:radius:R:1{}\n",
-                                   packing.disk_count(), box.length(0), box.tilt[0], box.length(1), box.tilt[1],
-                                   box.tilt[2], box.length(2), box.low[0], box.low[1], box.low[2], repeats(0),
-                                   repeats(1), repeats(2), displacement.empty() ? "" : ":displacement:R:3");
+    std::string text =
+        fmt::format("{}\nLattice=\"{} 0 0 {} {} 0 {} {} {}\" Origin=\"{} {} {}\" pbc=\"{} {} {}\" "
+                    "Properties=id:I:1:species:S:1:pos:R:3:radius:R:1{}{}\n",
+                    packing.disk_count(), box.length(0), box.tilt[0], box.length(1), box.tilt[1], box.tilt[2],
+                    box.length(2), box.low[0], box.low[1], box.low[2], repeats(0), repeats(1), repeats(2),
+                    displacement.empty() ? "" : ":displacement:R:3", contacts.empty() ? "" : ":contacts:I:1");
     for (std::size_t i = 0; i < packing.radius.size(); ++i) {
-        text += fmt::format("{} D {} {}{}\n", i, three(packing, packing.q, i), packing.radius[i],
-                            displacement.empty() ? "" : " " + three(packing, displacement, i));
+        text += fmt::format("{} D {} {}{}{}\n", i, three(packing, packing.q, i), packing.radius[i],
+                            displacement.empty() ? "" : " " + three(packing, displacement, i),
+                            contacts.empty() ? "" : fmt::format(" {}", contacts[i]));
     }
     return text;
 }
 
-std::string csv_text(const Packing& packing) {
+std::string csv_text(const Packing& packing, std::span<const int> contacts) {
     const Box box(packing);
     const std::size_t d = packing.axes();
     std::vector<std::string> sides, tilts;
@@ -106,10 +108,10 @@ std::string csv_text(const Packing& packing) {
     if (packing.cell.any()) {
         text += fmt::format(", tilt {}, periodic along {}", fmt::join(tilts, " "), periodic);
     }
-    text += fmt::format("\nid{},r\n", names);
+    text += fmt::format("\nid{},r{}\n", names, contacts.empty() ? "" : ",contacts");
     for (std::size_t i = 0; i < packing.radius.size(); ++i) {
-        text +=
-            fmt::format("{},{},{}\n", i, fmt::join(&packing.q[d * i], &packing.q[d * i] + d, ","), packing.radius[i]);
+        text += fmt::format("{},{},{}{}\n", i, fmt::join(&packing.q[d * i], &packing.q[d * i] + d, ","),
+                            packing.radius[i], contacts.empty() ? "" : fmt::format(",{}", contacts[i]));
     }
     return text;
 }

@@ -7,19 +7,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <map>
 
 namespace isostat::foreign {
 
 namespace {
-
-std::string lower(std::string_view text) {
-    std::string out(text);
-    std::transform(out.begin(), out.end(), out.begin(),
-                   [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); });
-    return out;
-}
 
 /// key=value, key="several words", key='..', key={..}; words without '=' are flags. Keys in lower case.
 std::map<std::string, std::string> key_values(const TextLine& line) {
@@ -87,7 +79,7 @@ std::vector<std::string> property_columns(const TextLine& line, const std::strin
 }
 
 std::vector<double> numbers_of(const TextLine& line, const std::string& key, const std::string& value,
-                               std::size_t count, Digits& digits) {
+                               std::array<std::size_t, 2> counts, Digits& digits) {
     std::string blanks = value;
     std::replace(blanks.begin(), blanks.end(), ',', ' ');
     const std::string source;
@@ -101,8 +93,8 @@ std::vector<double> numbers_of(const TextLine& line, const std::string& key, con
         out.push_back(*number);
         digits.see(fields.field(k));
     }
-    if (out.size() != count) {
-        line.fail(value, key, fmt::format("{} numbers", count));
+    if (out.size() != counts[0] && out.size() != counts[1]) {
+        line.fail(value, key, fmt::format("{} numbers", counts[1]));
     }
     return out;
 }
@@ -110,26 +102,17 @@ std::vector<double> numbers_of(const TextLine& line, const std::string& key, con
 void read_box(const TextLine& line, const std::map<std::string, std::string>& keys, FrameHeader& out) {
     const auto lattice = keys.find("lattice");
     if (lattice != keys.end()) {
-        const std::vector<double> v = numbers_of(line, "Lattice", lattice->second, 9, out.sides[0]);
+        std::vector<double> v = numbers_of(line, "Lattice", lattice->second, {4, 9}, out.sides[0]);
+        if (v.size() == 4) { // of disks
+            v = {v[0], v[1], 0, v[2], v[3], 0, 0, 0, 1};
+        }
         std::vector<double> origin(most_axes, 0);
         if (const auto o = keys.find("origin"); o != keys.end()) {
-            origin = numbers_of(line, "Origin", o->second, 3, out.sides[0]);
+            origin = numbers_of(line, "Origin", o->second, {3, 3}, out.sides[0]);
         }
-        const auto refuse_in_plane = [&](const char* expected) {
-            out.not_plane = fmt::format("{}: Lattice is '{}': expected {}", line.place(), lattice->second, expected);
-        };
-        if (!(v[0] > 0 && v[4] > 0)) {
-            refuse_in_plane("positive lengths");
-        }
-        if (v[1] != 0 || v[2] != 0 || v[5] != 0 || v[6] != 0 || v[7] != 0) {
-            refuse_in_plane("a first vector along x, a second one in the plane: only these are read of disks");
-        }
-        out.vectors = {{{v[0], v[1], v[2]}, {v[3], v[4], v[5]}, {v[6], v[7], v[8]}}};
-        out.tilt = {v[3], v[6], v[7]};
-        out.box.emplace();
-        for (std::size_t a = 0; a < most_axes; ++a) {
-            (*out.box)[a] = {origin[a], origin[a] + v[4 * a]};
-        }
+        out.place = fmt::format("{}: Lattice is '{}'", line.place(), lattice->second);
+        out.take_vectors({{{v[0], v[1], v[2]}, {v[3], v[4], v[5]}, {v[6], v[7], v[8]}}},
+                         {origin[0], origin[1], origin[2]});
         out.boundary.fill(Boundary::periodic); // unless pbc says otherwise
     }
     if (const auto pbc = keys.find("pbc"); pbc != keys.end()) {
@@ -171,7 +154,6 @@ FrameHeader read_xyz_header(const TextLine& comment, long rows) {
     const auto keys = key_values(comment);
     const auto properties = keys.find("properties");
     out.names = property_columns(comment, properties == keys.end() ? "species:S:1:pos:R:3" : properties->second);
-    refuse_twice(out.names, comment.place());
     read_box(comment, keys, out);
     return out;
 }
@@ -188,21 +170,11 @@ Raw read_xyz(const std::string& text, const std::string& source, const ForeignOp
         return header;
     });
     frame.header = read_xyz_header(*comment, frame.header.rows);
-    const std::vector<std::string>& names = frame.header.names;
-    const std::string where = comment->place();
-    Columns columns;
-    columns.at = {find_column(names, "pos.0"), find_column(names, "pos.1"), find_column(names, "pos.2")};
-    columns.id = find_column(names, "id");
-    if (columns.at[0] < 0) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{}: no coordinates: expected pos:R:2 or pos:R:3 in Properties", where));
-    }
-    find_size(columns, names, options, where, raw);
-    find_selection(columns, names, options, where);
+    Columns columns = find_columns(frame.header.names, options, comment->place(), raw);
     if (const auto& box = frame.header.box; box && ((*box)[0][0] != 0 || (*box)[1][0] != 0 || (*box)[2][0] != 0)) {
         raw.notes.emplace_back("upper bounds = Origin + Lattice in double: rounded at 2^-53 of them");
     }
-    frame.read(Rows(columns, source), raw);
+    frame.read(std::move(columns), raw);
     if (frame.number > 0) {
         raw.notes.push_back(fmt::format("frame {}", frame.number));
     }

@@ -11,17 +11,33 @@ namespace isostat::foreign {
 
 namespace {
 
+/// General triclinic: the period vectors, each with a coordinate of the origin.
+void read_vectors(TextLines& lines, FrameHeader& frame) {
+    PerAxis<PerAxis<double>> vectors{};
+    PerAxis<double> origin{};
+    for (std::size_t b = 0; b < most_axes; ++b) {
+        const TextLine line = lines.next("a period vector and a coordinate of the origin");
+        line.require_size(4, "a period vector and a coordinate of the origin");
+        take_vector(line, vectors[b], frame);
+        origin[b] = line.number(3, "origin");
+        frame.sides[0].see(line.field(3));
+    }
+    frame.take_vectors(vectors, origin);
+}
+
 void read_bounds(TextLines& lines, std::string_view flags_text, FrameHeader& frame) {
     const TextLine flags(flags_text, lines.number(), &lines.source());
     std::vector<std::string_view> codes;
-    bool tilted = false;
+    bool tilted = false, general = false;
     for (std::size_t k = 0; k < flags.size(); ++k) {
         const std::string_view code = flags.field(k);
         if (code == "xy" || code == "xz" || code == "yz") {
             tilted = true;
+        } else if (code == "abc" || code == "origin") {
+            general = true;
         } else if (code.size() == 2 && code.find_first_not_of("pfsm") == std::string_view::npos) {
             codes.push_back(code);
-        } else {
+        } else if (code != "xx" && code != "yy" && code != "zz") { // some programs write the words of the manual
             flags.fail(code, "boundary", "two of the letters p f s m, for instance ff");
         }
     }
@@ -31,6 +47,10 @@ void read_bounds(TextLines& lines, std::string_view flags_text, FrameHeader& fra
     for (std::size_t a = 0; a < codes.size(); ++a) {
         frame.boundary[a] = codes[a].find('p') != std::string_view::npos ? Boundary::periodic : Boundary::open;
         frame.loose[a] = codes[a].find_first_of("sm") != std::string_view::npos;
+    }
+    if (general) {
+        read_vectors(lines, frame);
+        return;
     }
     PerAxis<std::array<double, 2>> box{};
     for (std::size_t a = 0; a < most_axes; ++a) {
@@ -58,12 +78,36 @@ void read_bounds(TextLines& lines, std::string_view flags_text, FrameHeader& fra
 
 } // namespace
 
+void Bounds::take_vectors(const PerAxis<PerAxis<double>>& periods, const PerAxis<double>& origin) {
+    vectors = periods;
+    tilt = {periods[1][0], periods[2][0], periods[2][1]};
+    box.emplace();
+    for (std::size_t a = 0; a < most_axes; ++a) {
+        (*box)[a] = {origin[a], origin[a] + periods[a][a]};
+    }
+}
+
+bool Bounds::leaves_the_plane() const {
+    bool out = tilt[1] != 0 || tilt[2] != 0;
+    for (std::size_t a = 0; vectors && a < 2; ++a) {
+        out = out || (*vectors)[a][2] != 0 || (*vectors)[2][a] != 0;
+    }
+    return out;
+}
+
+void take_vector(const TextLine& line, PerAxis<double>& vector, Bounds& bounds) {
+    for (std::size_t a = 0; a < most_axes; ++a) {
+        vector[a] = line.number(a, "entry of a period vector");
+        bounds.sides[0].see(line.field(a));
+    }
+    bounds.place = fmt::format("{}: the period vector is '{}'", line.place(), line.text());
+}
+
 void take_tilt(const TextLine& line, std::size_t field, std::size_t tilt, Bounds& bounds) {
     bounds.tilt[tilt] = line.number(field, "tilt");
     bounds.sides[0].see(line.field(field));
-    if (tilt > 0 && bounds.tilt[tilt] != 0 && bounds.not_plane.empty()) {
-        bounds.not_plane = fmt::format("{}: tilt of the box is '{}': expected 0 in a packing in a plane", line.place(),
-                                       line.field(field));
+    if (tilt > 0 && bounds.tilt[tilt] != 0 && bounds.place.empty()) {
+        bounds.place = fmt::format("{}: tilt of the box is '{}'", line.place(), line.field(field));
     }
 }
 
@@ -104,7 +148,6 @@ FrameHeader read_dump_header(TextLines& lines, const std::string& item) {
             for (std::size_t k = 2; k < line.size(); ++k) {
                 frame.names.emplace_back(line.field(k));
             }
-            refuse_twice(frame.names, line.place());
             return frame;
         } else {
             line.fail(text, "item",

@@ -61,9 +61,12 @@ void TextLine::require_size(std::size_t count, const std::string& what) const {
 }
 
 double TextLine::number(std::size_t k, const std::string& name) const {
-    const auto value = finite_number(fields_[k]);
+    const auto value = written_number(fields_[k]);
     if (!value) {
-        fail(fields_[k], name, "a finite number");
+        std::string point(fields_[k]);
+        std::replace(point.begin(), point.end(), ',', '.');
+        fail(fields_[k], name,
+             finite_number(point) ? "a finite number, with a point (its comma reads as none)" : "a finite number");
     }
     return *value;
 }
@@ -135,7 +138,7 @@ std::string_view without_blanks(std::string_view text) {
 
 bool is_no_row(std::string_view line, char separator) {
     const std::size_t first = line.find_first_not_of(separator == blanks_or_commas ? " \t\r\n," : " \t\r\n");
-    return first == std::string_view::npos || line[first] == '#';
+    return first == std::string_view::npos || line[first] == '#' || line[first] == '%';
 }
 
 } // namespace isostat

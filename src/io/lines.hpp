@@ -29,7 +29,7 @@ class TextLine {
     [[noreturn]] void fail(std::string_view value, const std::string& name, const std::string& expected) const;
     /// Throws when there are not `count` fields.
     void require_size(std::size_t count, const std::string& what) const;
-    /// A finite number, all of the field. \pre k < size()
+    /// A `written_number`, all of the field. \pre k < size()
     [[nodiscard]] double number(std::size_t k, const std::string& name) const;
     /// The same, above 0.
     [[nodiscard]] double positive(std::size_t k, const std::string& name) const;
@@ -80,7 +80,7 @@ class TextLines {
 /// Without blanks, tabs and carriage returns at its ends.
 std::string_view without_blanks(std::string_view text);
 
-/// Blank, or a comment that begins with '#'. Commas are blank where they separate as blanks do.
+/// Blank, or a comment that begins with '#' or '%'. Commas are blank where they separate as blanks do.
 bool is_no_row(std::string_view line, char separator = ' ');
 
 } // namespace isostat

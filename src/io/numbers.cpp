@@ -4,6 +4,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <string>
 
 namespace isostat {
 
@@ -24,6 +25,16 @@ std::optional<double> finite_number(std::string_view word) {
     }
     const auto value = parsed<double>(word);
     return value && std::isfinite(*value) ? value : std::nullopt;
+}
+
+std::optional<double> written_number(std::string_view word) {
+    const std::size_t d = word.find_first_of("dD");
+    if (d == std::string_view::npos) {
+        return finite_number(word);
+    }
+    std::string plain(word);
+    plain[d] = 'e';
+    return finite_number(plain);
 }
 
 std::optional<std::int64_t> plain_integer(std::string_view word) {

@@ -1,6 +1,7 @@
 #include "io/files.hpp"
 #include "io/json.hpp"
 #include "io/state_json.hpp"
+#include "io/text.hpp"
 #include "io/vertex_text.hpp"
 #include "packing/pressed_sides.hpp"
 #include "packing/unbalanced.hpp"
@@ -365,7 +366,7 @@ StateFile of_box(StateFile file, const std::string& source) {
 StateFile parse_any_state(const std::string& text, const std::string& source, Dimensions dimensions) {
     const json::Json parsed = Field::parse(text, source);
     StateFile file = json::state_from_json(Field(parsed, source), source);
-    if (dimensions == Dimensions::plane) {
+    if (dimensions == Dimensions::two) {
         require_plane(file.state.packing, source, "this command");
     }
     return file;
@@ -397,9 +398,22 @@ StateFile read_any_state(const std::filesystem::path& path, Dimensions dimension
                                                   "vertex text; isostat import makes a state of it",
                                                   path.string(), format));
         }
-        throw Error(error.kind(), fmt::format("{} (neither a state nor a vertex text; isostat import makes a state of "
-                                              "a packing of another program: {}?)",
-                                              error.what(), format));
+        // The first line that is no comment: where it begins with a number, what is wrong with the vertex text was
+        // told.
+        std::size_t begin = content.find_first_not_of(" \t\r\n");
+        while (begin != std::string_view::npos && content[begin] == '#') {
+            begin = content.find_first_not_of(" \t\r\n", std::min(content.find('\n', begin), content.size()));
+        }
+        const std::string_view rest = begin == std::string_view::npos ? content : content.substr(begin);
+        if (rest.front() >= '0' && rest.front() <= '9') {
+            throw;
+        }
+        constexpr std::size_t few = 40;
+        throw Error(error.kind(),
+                    fmt::format("{}: neither a state (JSON) nor a vertex text (the number of disks comes "
+                                "first; isostat import reads packings of other programs): it begins "
+                                "with '{}'",
+                                path.string(), text::shown(rest.substr(0, std::min(rest.find('\n'), few)))));
     }
 }
 

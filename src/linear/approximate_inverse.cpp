@@ -134,6 +134,7 @@ struct ApproximateInverse::Base {
     sparse::Matrix<double> matrix;
     std::vector<int> block_rows, block_columns; ///< empty: the whole matrix
     std::vector<int> row_order, column_order;   ///< of the last full analysis, exchanged columns last
+    int entries = 0;                            ///< of L and U; 0: there are no factors
     int entries_then = 0;                       ///< of the factors made with it first
     double operations = 0;                      ///< that made the factors
     explicit Base(const sparse::Matrix<double>& m) : matrix(m) {
@@ -149,11 +150,11 @@ struct ApproximateInverse::Base {
             numeric = klu_factor(mutable_data(matrix.start), mutable_data(matrix.row), mutable_data(matrix.value),
                                  symbolic, &common);
         }
+        entries = numeric != nullptr ? numeric->lnz + numeric->unz : 0;
         if (numeric != nullptr && klu_flops(symbolic, numeric, &common) != 0) {
             operations = common.flops;
         }
     }
-    [[nodiscard]] int entries() const { return numeric != nullptr ? numeric->lnz + numeric->unz : 0; }
     Base(const Base&) = delete;
     Base& operator=(const Base&) = delete;
     ~Base() {
@@ -201,15 +202,14 @@ ApproximateInverse::ApproximateInverse(const sparse::Matrix<double>& matrix, std
     if (base->symbolic != nullptr) {
         base->row_order.assign(base->symbolic->P, base->symbolic->P + matrix.rows);
         base->column_order.assign(base->symbolic->Q, base->symbolic->Q + matrix.rows);
-        base->entries_then = base->entries();
+        base->entries_then = base->entries;
     }
-    base_ = std::move(base);
-    make_schedule();
+    make_schedule(std::move(base));
 }
 
 ApproximateInverse ApproximateInverse::renewed(const sparse::Matrix<double>& matrix) const {
     if (!valid() || base_->column_order.size() != static_cast<std::size_t>(matrix.rows) ||
-        base_->entries() > base_->entries_then + base_->entries_then / 5) {
+        base_->entries > base_->entries_then + base_->entries_then / 5) {
         return ApproximateInverse(matrix);
     }
     count_work(Work::factorisations);
@@ -239,15 +239,15 @@ ApproximateInverse ApproximateInverse::renewed(const sparse::Matrix<double>& mat
         return ApproximateInverse(matrix); // a block was left without pivot
     }
     ApproximateInverse inverse;
-    inverse.base_ = std::move(base);
-    inverse.make_schedule();
+    inverse.make_schedule(std::move(base));
     return inverse;
 }
 
-void ApproximateInverse::make_schedule() {
-    if (valid()) {
-        schedule_ = std::make_shared<const SolveSchedule>(*base_->symbolic, *base_->numeric);
+void ApproximateInverse::make_schedule(std::shared_ptr<Base> base) {
+    if (base->numeric != nullptr) {
+        schedule_ = std::make_shared<const SolveSchedule>(*base->symbolic, base->numeric);
     }
+    base_ = std::move(base);
 }
 
 ApproximateInverse ApproximateInverse::of_block(const sparse::Matrix<double>& matrix, std::vector<int> rows,
@@ -283,7 +283,7 @@ ApproximateInverse ApproximateInverse::of_block(const sparse::Matrix<double>& ma
 }
 
 bool ApproximateInverse::valid() const {
-    return base_->numeric != nullptr;
+    return schedule_ != nullptr || base_->numeric != nullptr;
 }
 
 double ApproximateInverse::relative_cost() const {
@@ -292,11 +292,11 @@ double ApproximateInverse::relative_cost() const {
         work += static_cast<double>(exchange->many.size());
     }
     // An entry of a dense vector costs about a sixth of one of the factors, which is reached through its index.
-    return 1 + work / (6 * std::max(1.0, static_cast<double>(base_->entries())));
+    return 1 + work / (6 * std::max(1.0, static_cast<double>(base_->entries)));
 }
 
 double ApproximateInverse::renewal_cost() const {
-    return base_->operations / std::max(1.0, static_cast<double>(base_->entries()));
+    return base_->operations / std::max(1.0, static_cast<double>(base_->entries));
 }
 
 ApproximateInverse ApproximateInverse::exchanged(int slot, const sparse::Matrix<double>& after) const {
@@ -351,8 +351,6 @@ void ApproximateInverse::velocities(std::span<double> rhs) const {
     }
     if (schedule_ != nullptr) {
         schedule_->solve_transposed(rhs);
-    } else if (base_->block_rows.empty()) {
-        klu_tsolve(base_->symbolic, base_->numeric, base_->matrix.rows, 1, rhs.data(), &common);
     } else {
         in_block(rhs, base_->block_columns, base_->block_rows, [&](std::vector<double>& x) {
             klu_tsolve(base_->symbolic, base_->numeric, static_cast<int>(x.size()), 1, x.data(), &common);
@@ -411,8 +409,6 @@ void ApproximateInverse::forces(std::span<double> rhs) const {
     klu_common common = base_->common;
     if (schedule_ != nullptr) {
         schedule_->solve(rhs);
-    } else if (base_->block_rows.empty()) {
-        klu_solve(base_->symbolic, base_->numeric, base_->matrix.rows, 1, rhs.data(), &common);
     } else {
         in_block(rhs, base_->block_rows, base_->block_columns, [&](std::vector<double>& x) {
             klu_solve(base_->symbolic, base_->numeric, static_cast<int>(x.size()), 1, x.data(), &common);

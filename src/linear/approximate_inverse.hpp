@@ -59,9 +59,9 @@ class ApproximateInverse {
 
   private:
     ApproximateInverse() = default;
-    void make_schedule();
     struct Base;
     struct Exchange;
+    void make_schedule(std::shared_ptr<Base> base);
     std::shared_ptr<const Base> base_;
     std::vector<std::shared_ptr<const Exchange>> exchanges_;
     std::shared_ptr<const SolveSchedule> schedule_; ///< null: of a block

@@ -15,14 +15,15 @@ struct SolveSchedule::Parts {
     Lines lower, upper, beside; ///< L by columns, U and F by rows
     std::vector<int> rows, columns, blocks;
 
-    Parts(klu_symbolic& symbolic, klu_numeric& numeric)
-        : lower(symbolic.n, numeric.lnz), upper(symbolic.n, numeric.unz), beside(symbolic.n, numeric.nzoff),
+    Parts(klu_symbolic& symbolic, klu_numeric*& numeric)
+        : lower(symbolic.n, numeric->lnz), upper(symbolic.n, numeric->unz), beside(symbolic.n, numeric->nzoff),
           rows(at(symbolic.n)), columns(at(symbolic.n)), blocks(at(symbolic.nblocks) + 1) {
         klu_common common;
         klu_defaults(&common);
-        klu_extract(&numeric, &symbolic, lower.start.data(), lower.index.data(), lower.value.data(), upper.start.data(),
+        klu_extract(numeric, &symbolic, lower.start.data(), lower.index.data(), lower.value.data(), upper.start.data(),
                     upper.index.data(), upper.value.data(), beside.start.data(), beside.index.data(),
                     beside.value.data(), rows.data(), columns.data(), nullptr, blocks.data(), &common);
+        klu_free_numeric(&numeric, &common);
         upper = upper.transposed();
         beside = beside.transposed();
         join_small_blocks();
@@ -89,7 +90,7 @@ struct SolveSchedule::Parts {
     }
 };
 
-SolveSchedule::SolveSchedule(klu_symbolic& symbolic, klu_numeric& numeric)
+SolveSchedule::SolveSchedule(klu_symbolic& symbolic, klu_numeric*& numeric)
     : SolveSchedule(std::make_shared<const Parts>(symbolic, numeric)) {}
 
 SolveSchedule::SolveSchedule(const std::shared_ptr<const Parts>& parts)

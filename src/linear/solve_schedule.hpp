@@ -16,8 +16,9 @@ namespace isostat {
 /// make many, are one with the block that comes after them: their rows of L^-1 F are rows of its U.
 class SolveSchedule {
   public:
-    /// Cost: half to two thirds of the factorisation; two threads share it.
-    SolveSchedule(klu_symbolic& symbolic, klu_numeric& numeric);
+    /// Takes the place of the factors, which are as large: none are left. Cost: half to two thirds of the
+    /// factorisation; two threads share it.
+    SolveSchedule(klu_symbolic& symbolic, klu_numeric*& numeric);
     /// A^-1 rhs, and A^-T rhs, in place. Zeros that follow from the pattern stay exact.
     void solve(std::span<double> rhs) const;
     void solve_transposed(std::span<double> rhs) const;

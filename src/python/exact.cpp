@@ -1,6 +1,8 @@
 // Exact numbers and crafted packings.
 #include "convert.hpp"
 #include "crafted/enclosed_bases.hpp"
+#include "crafted/genericity.hpp"
+#include "io/files.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/crafted/exact_packing.hpp>
@@ -100,6 +102,8 @@ void bind_number(py::module_& module) {
         .def("__float__", &Number::to_double)
         .def("__str__", &Number::text)
         .def("__repr__", [](const Number& a) { return "Number('" + a.text() + "')"; })
+        .def("__reduce__",
+             [](const py::object& a) { return py::make_tuple(py::type::of(a), py::make_tuple(py::str(a))); })
         .def("enclosure", &Number::enclosure, "(value, radius) in doubles; the number lies within.");
     module.def(
         "sqrt", [](const py::object& value) { return to_python(exact::sqrt(to_number(value))); }, py::arg("rational"),
@@ -114,6 +118,7 @@ struct Crafted {
     ExactPacking packing;
     std::optional<std::vector<Contact>> contacts;
     std::string title;
+    std::string text; ///< of the file, or of the state that it is of
 };
 
 struct CraftedInspection {
@@ -127,12 +132,15 @@ std::vector<Contact> contacts_of(const Crafted& crafted) {
 
 Crafted parsed(const std::string& text, const std::string& source) {
     crafted::PackingFile file = crafted::parse_packing(text, source);
-    return {std::move(file.packing), std::nullopt, std::move(file.title)};
+    return {std::move(file.packing), std::nullopt, std::move(file.title), text};
 }
 
 Crafted read(const std::filesystem::path& path) {
-    crafted::PackingFile file = crafted::read_packing(path.string());
-    return {std::move(file.packing), std::nullopt, std::move(file.title)};
+    return parsed(read_text(path), path.string());
+}
+
+Crafted of_state(const PyState& state) {
+    return {crafted::exact_copy(state.state.packing), state.state.contacts, "", state_text(state.state)};
 }
 
 CraftedInspection inspected(const Crafted& crafted) {
@@ -169,12 +177,15 @@ void bind_crafted(py::module_& module) {
         .def_static("read", &read, py::arg("path"), "Reads a packing file (TOML).")
         .def_static("parse", &parsed, py::arg("text"), py::arg("source") = "ExactPacking",
                     "The same from text; `source` begins messages.")
-        .def_static(
-            "of_state",
-            [](const PyState& state) {
-                return Crafted{crafted::exact_copy(state.state.packing), state.state.contacts, ""};
-            },
-            py::arg("state"), "The stored doubles of a State as exact numbers, with its contacts.")
+        .def_static("of_state", &of_state, py::arg("state"),
+                    "The stored doubles of a State as exact numbers, with its contacts.")
+        .def(py::pickle([](const Crafted& self) { return py::make_tuple(self.text, self.contacts.has_value()); },
+                        [](const py::tuple& parts) {
+                            const auto text = parts[0].cast<std::string>();
+                            return parts[1].cast<bool>()
+                                       ? of_state(parse_any_state(text, "ExactPacking", Dimensions::any))
+                                       : parsed(text, "ExactPacking");
+                        }))
         .def("__len__", [](const Crafted& self) { return self.packing.disk_count(); })
         .def_readonly("title", &Crafted::title, "Title of the file.")
         .def_property_readonly(
@@ -308,11 +319,14 @@ void bind_equilibrium(InspectionClass& inspection) {
                 py::dict out;
                 if (self.seen.jamming) {
                     out["collectively"] = self.seen.jamming->collective;
-                    out["strictly"] = self.seen.jamming->strict;
+                    if (self.seen.jamming->strict) {
+                        out["strictly"] = *self.seen.jamming->strict;
+                    }
                 }
                 return out;
             },
-            "Of a cell: a Verdict for \"collectively\" and \"strictly\", of the disks that are not rattlers; else "
+            "Of a cell, or of walls that all stay (\"collectively\" alone): a Verdict for \"collectively\" and "
+            "\"strictly\", of the disks that are not rattlers; else "
             "empty.");
 }
 
@@ -330,12 +344,74 @@ void bind_crafted_inspection(py::module_& module) {
         .def("__str__", [](const CraftedInspection& self) { return crafted::to_text(self.seen, self.packing); });
 }
 
+using crafted::Genericity, crafted::GenericitySample;
+
+Genericity made_generic(const Packing& packing, const std::vector<Contact>& contacts, double size, int samples,
+                        std::uint64_t seed, double stress, bool keep_equal, bool tilt) {
+    crafted::GenericityOptions options;
+    options.size = finite(size, "size");
+    options.samples = samples;
+    options.seed = seed;
+    options.stress = finite(stress, "stress");
+    options.keep_equal = keep_equal;
+    options.tilt = tilt;
+    return interruptible([packing, contacts, options] { return crafted::genericity(packing, contacts, options); });
+}
+
+template <class What, class Parts> void bind_genericity_of(py::module_& module, Parts parts) {
+    module.def(
+        "genericity",
+        [parts](const What& what, double size, int samples, std::uint64_t seed, double stress, bool keep_equal,
+                bool tilt) {
+            const auto [packing, contacts] = parts(what);
+            return made_generic(packing, contacts, size, samples, seed, stress, keep_equal, tilt);
+        },
+        py::arg("packing"), py::kw_only(), py::arg("size") = 1e-6, py::arg("samples") = 100, py::arg("seed") = 1,
+        py::arg("stress") = 1.0, py::arg("keep_equal") = false, py::arg("tilt") = false,
+        "Genericity of an ExactPacking or a State: each radius times 1 + size u, u uniform in [-1, 1), `samples` "
+        "times; are the copies isostatic? `keep_equal`: equal radii stay equal; `tilt`: that of a cell changes too. "
+        "As `isostat genericity`.");
+}
+
+void bind_genericity(py::module_& module) {
+    py::class_<Genericity>(module, "Genericity", "What became of perturbed copies: see `genericity`.")
+        .def_property_readonly(
+            "samples",
+            [](const Genericity& self) {
+                py::list rows;
+                for (const GenericitySample& s : self.samples) {
+                    using namespace py::literals;
+                    rows.append(
+                        py::dict("seed"_a = s.seed, "failure"_a = s.failure ? to_string(s.failure->kind) : nullptr,
+                                 "contacts"_a = contact_array(s.contacts), "carrying"_a = contact_array(s.carrying),
+                                 "rattlers"_a = s.rattlers, "min_force"_a = s.min_force, "min_gap"_a = s.min_gap,
+                                 "sigma_min"_a = s.sigma_min, "within_original"_a = s.within_original));
+                }
+                return rows;
+            },
+            "Of each copy a dictionary: `seed`; `failure`, a word, or None where h = k = 0 is proved; `contacts`, "
+            "those "
+            "`carrying` force, `rattlers`; proved lower bounds `min_force`, `min_gap`, `sigma_min`; `within_original`.")
+        .def_readonly("proved", &Genericity::proved, "Copies with h = k = 0, proved.")
+        .def_readonly("ties", &Genericity::ties, "Copies that tie.")
+        .def_readonly("undecided", &Genericity::undecided, "Copies of which nothing is proved.")
+        .def_readonly("failed", &Genericity::failed, "Copies without a vertex.")
+        .def_property_readonly("within", &Genericity::within, "Copies whose force network is part of the contacts.")
+        .def_property_readonly(
+            "networks", [](const Genericity& self) { return self.lists.size(); }, "Different force networks.");
+    bind_genericity_of<Crafted>(
+        module, [](const Crafted& what) { return std::pair(approximate(what.packing), contacts_of(what)); });
+    bind_genericity_of<PyState>(module,
+                                [](const PyState& what) { return std::pair(what.state.packing, what.state.contacts); });
+}
+
 } // namespace
 
 void bind_exact(py::module_& module) {
     bind_number(module);
     bind_crafted(module);
     bind_crafted_inspection(module);
+    bind_genericity(module);
 }
 
 } // namespace isostat::python

@@ -12,7 +12,8 @@
 
 namespace isostat::python {
 
-void bind_run(py::module_& module); // run.cpp
+void bind_run(py::module_& module);      // run.cpp
+void bind_ensemble(py::module_& module); // ensemble.cpp
 
 namespace {
 
@@ -142,4 +143,5 @@ PYBIND11_MODULE(_core, module) {
     bind_preparation(module);
     bind_compare(module);
     bind_run(module);
+    bind_ensemble(module);
 }

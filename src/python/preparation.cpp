@@ -1,6 +1,7 @@
 // Packings to begin with: prepared ones, and those of other programs.
 #include "convert.hpp"
 
+#include <isostat/core/error.hpp>
 #include <isostat/crafted/plateau.hpp>
 #include <isostat/io/foreign.hpp>
 #include <isostat/preparation/preparation.hpp>

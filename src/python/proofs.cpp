@@ -4,6 +4,7 @@
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/checker/verify.hpp>
+#include <isostat/core/error.hpp>
 #include <isostat/io/state_file.hpp>
 
 namespace isostat::python {
@@ -201,6 +202,50 @@ void bind_inspection(py::module_& module) {
         "the rank is not proved, Undecided when no bound was proved.");
 }
 
+void bind_jamming(py::module_& module) {
+    using Seen = CellInspection;
+    const auto counts = [](const StrainCounts& of) {
+        py::dict out;
+        for (std::size_t s = 0; s < strains.size(); ++s) {
+            out[to_string(strains[s])] = of[s];
+        }
+        return out;
+    };
+    const auto each = [](const Seen& self, auto member) {
+        py::dict out;
+        out["local"] = self.local.*member;
+        out["collective"] = self.collective.*member;
+        out["strict"] = self.strict.*member;
+        return out;
+    };
+    py::class_<Seen>(module, "Jamming", "Counts for every way to strain a cell, and what is jammed: see `jamming`.")
+        .def_property_readonly(
+            "verdicts", [each](const Seen& self) { return each(self, &JammingAnswer::verdict); },
+            "A Verdict for \"local\", \"collective\" and \"strict\", of the backbone.")
+        .def_property_readonly(
+            "reasons", [each](const Seen& self) { return each(self, &JammingAnswer::reason); }, "Why, in words.")
+        .def_property_readonly(
+            "counts", [counts](const Seen& self) { return counts(self.all); },
+            "A Counting for \"fixed cell\", \"isotropic\", \"diagonal\", \"full strain\".")
+        .def_property_readonly(
+            "backbone", [counts](const Seen& self) { return self.backbone ? counts(*self.backbone) : py::dict(); },
+            "The same without rattlers; empty where the forces are not known.")
+        .def_readonly("backbone_disks", &Seen::backbone_disks, "Grains of the backbone.");
+    module.def(
+        "jamming",
+        [](const PyState& state) {
+            const State copy = state.state;
+            if (!copy.packing.cell.all()) {
+                throw Error(ErrorKind::bad_input, "jamming: expected a cell that is periodic along every axis; a box "
+                                                  "is jammed under its load where `inspect` says stable");
+            }
+            return interruptible([copy] { return inspect_cell(copy, certify(copy)); });
+        },
+        py::arg("state"),
+        "Jamming of a periodic cell: locally, collectively and strictly jammed, each proved, refuted or undecided. "
+        "Needs an equilibrium that is proved.");
+}
+
 void bind_forces(py::module_& module) {
     module.def(
         "forces_at",
@@ -282,6 +327,7 @@ void bind_verification(py::module_& module) {
 void bind_proofs(py::module_& module) {
     bind_certificate(module);
     bind_inspection(module);
+    bind_jamming(module);
     bind_forces(module);
     bind_verification(module);
 }

@@ -1,10 +1,13 @@
 // A scene carried out from Python, with functions that are called for each arc and each equilibrium.
 #include "convert.hpp"
+#include "report/run_walk.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/io/run_directory.hpp>
 #include <isostat/preparation/preparation.hpp>
 #include <isostat/scene/scene.hpp>
+
+#include <fmt/format.h>
 
 #include <atomic>
 #include <optional>
@@ -218,9 +221,33 @@ void bind_equilibrium(py::module_& module) {
         .def_property_readonly("verdict", field(&Record::verdict), "Verdict on: every check of it holds.");
 }
 
+/// The state of an equilibrium that was not stored, found by following the records.
+PyState walked_to(const std::filesystem::path& folder, int number) {
+    std::optional<State> found;
+    const std::vector<std::string> lost =
+        walk_run(checker::read_records(folder, LastLine::may_be_cut), [&](const WalkedVertex& at) {
+            if (at.equilibrium != nullptr && at.state.equilibrium == number) {
+                found = at.state;
+            }
+            return !found;
+        });
+    if (!found) {
+        throw Error(ErrorKind::bad_input,
+                    fmt::format("{}: equilibrium {} is not stored, and its records were not followed to it{}",
+                                folder.string(), number, lost.empty() ? "" : ": left out is " + lost.front()));
+    }
+    return {std::move(*found), {}};
+}
+
 } // namespace
 
 void bind_run(py::module_& module) {
+    module.def(
+        "_walked_to",
+        [](const std::filesystem::path& folder, int number) {
+            return interruptible([folder, number] { return walked_to(folder, number); });
+        },
+        py::arg("folder"), py::arg("number"));
     bind_arc(module);
     bind_equilibrium(module);
     py::class_<Run>(module, "_Run")

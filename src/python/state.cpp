@@ -1,9 +1,11 @@
 // State and Packing: arrays that look into the library's memory.
+#include "certificate/contact_table.hpp"
 #include "contact/names.hpp"
 #include "convert.hpp"
 #include "packing/words.hpp"
 #include "rigidity/isostatic.hpp"
 
+#include <isostat/certificate/certify.hpp>
 #include <isostat/core/error.hpp>
 #include <isostat/rigidity/counting.hpp>
 
@@ -108,6 +110,81 @@ py::tuple matrix_parts(const Packing& packing, const std::vector<Contact>& conta
                           py::make_tuple(h.rows, h.cols));
 }
 
+/// (contact, row, column, value): second derivatives of the gaps with respect to two degrees of freedom.
+py::tuple curvature_parts(const State& state) {
+    const Packing& packing = state.packing;
+    if (packing.cell.keeps_shape) {
+        throw Error(ErrorKind::bad_input, "an isotropic cell is written as one of which a period moves, which has the "
+                                          "same forces and counts, and another stiffness: expected another cell");
+    }
+    const DofMap dofs(packing);
+    std::vector<int> contact, row, column;
+    std::vector<double> value, velocity(packing.q.size(), 0);
+    for (std::size_t l = 0; l < state.contacts.size(); ++l) {
+        const GapGradient gradient = gap_gradient(packing, state.contacts[l]);
+        const auto along = [&](int a, int b) { // of the quadratic form, along e_a + e_b
+            const auto i = static_cast<std::size_t>(gradient.coordinate[static_cast<std::size_t>(a)]),
+                       j = static_cast<std::size_t>(gradient.coordinate[static_cast<std::size_t>(b)]);
+            velocity[i] += 1;
+            velocity[j] += 1;
+            const double curvature = gap_curvature(packing, state.contacts[l], velocity.data());
+            velocity[i] = velocity[j] = 0;
+            return curvature;
+        };
+        const auto dof = [&](int a) {
+            return dofs.dof_of(static_cast<std::size_t>(gradient.coordinate[static_cast<std::size_t>(a)]));
+        };
+        for (int a = 0; a < gradient.count; ++a) {
+            for (int b = 0; b < gradient.count; ++b) {
+                if (dof(a) >= 0 && dof(b) >= 0) {
+                    contact.push_back(static_cast<int>(l));
+                    row.push_back(dof(a));
+                    column.push_back(dof(b));
+                    value.push_back(a == b ? along(a, a) / 4 : (along(a, b) - along(a, a) / 4 - along(b, b) / 4) / 2);
+                }
+            }
+        }
+    }
+    return py::make_tuple(taken(std::move(contact)), taken(std::move(row)), taken(std::move(column)),
+                          taken(std::move(value)));
+}
+
+/// Everything that a packing is, for copies.
+py::tuple packing_parts(const Packing& p) {
+    const Cell& c = p.cell;
+    PerAxis<std::array<int, 2>> walls{};
+    std::transform(p.walls.lower.begin(), p.walls.lower.end(), p.walls.upper.begin(), walls.begin(),
+                   [](WallKind lower, WallKind upper) {
+                       return std::array{static_cast<int>(lower), static_cast<int>(upper)};
+                   });
+    return py::make_tuple(p.dimension, p.radius, p.q, p.fixed, walls, c.periodic, c.period_moves, c.tilt_moves, c.pin,
+                          c.keeps_shape);
+}
+
+Packing packing_of_parts(const py::tuple& parts) {
+    Packing p;
+    std::size_t at = 0;
+    const auto take = [&](auto& member) { member = parts[at++].cast<std::decay_t<decltype(member)>>(); };
+    take(p.dimension);
+    take(p.radius);
+    take(p.q);
+    take(p.fixed);
+    PerAxis<std::array<int, 2>> walls{};
+    take(walls);
+    for (std::size_t a = 0; a < walls.size(); ++a) {
+        p.walls.lower[a] = static_cast<WallKind>(walls[a][0]);
+        p.walls.upper[a] = static_cast<WallKind>(walls[a][1]);
+    }
+    take(p.cell.periodic);
+    take(p.cell.period_moves);
+    take(p.cell.tilt_moves);
+    take(p.cell.pin);
+    take(p.cell.keeps_shape);
+    p.cell.dimension = p.dimension;
+    validate(p, "Packing");
+    return p;
+}
+
 Packing packing_of(const py::array_t<double, py::array::c_style | py::array::forcecast>& centres,
                    const std::vector<double>& radii, const std::vector<double>& length,
                    const std::optional<std::vector<std::string>>& lower,
@@ -157,7 +234,8 @@ void bind_packing(py::module_& module) {
     packing
         .def(py::init(&packing_of), py::arg("positions"), py::arg("radii"), py::arg("length"), py::kw_only(),
              py::arg("lower") = py::none(), py::arg("upper") = py::none(), py::arg("fixed") = std::vector<bool>{})
-        .def("__len__", &Packing::disk_count);
+        .def("__len__", &Packing::disk_count)
+        .def(py::pickle(&packing_parts, &packing_of_parts));
     bind_grains(packing, [](const py::object& self) -> const Packing& { return self.cast<const Packing&>(); });
 }
 
@@ -251,10 +329,7 @@ void bind_load(StateClass& state) {
             py::arg("stress"), "The same state where what the programme changes has this value.");
 }
 
-void bind_state_class(py::module_& module) {
-    StateClass state(
-        module, "State",
-        "A packing with its contacts and its load. It does not change; arrays are read-only views of its memory.");
+void bind_files(StateClass& state) {
     state
         .def_static(
             "read", [](const std::filesystem::path& path) { return read_any_state(path, Dimensions::any); },
@@ -274,7 +349,18 @@ void bind_state_class(py::module_& module) {
             "write",
             [](const PyState& self, const std::filesystem::path& path) { write_state(path, self.state, self.forces); },
             py::arg("path"), "Writes a state file in one step: no partial file. Raises CannotWrite.")
-        .def("__len__", [](const PyState& self) { return self.state.packing.disk_count(); });
+        .def("__len__", [](const PyState& self) { return self.state.packing.disk_count(); })
+        .def(py::pickle([](const PyState& self) { return py::make_tuple(state_text(self.state, self.forces)); },
+                        [](const py::tuple& text) {
+                            return parse_any_state(text[0].cast<std::string>(), "State", Dimensions::any);
+                        }));
+}
+
+void bind_state_class(py::module_& module) {
+    StateClass state(
+        module, "State",
+        "A packing with its contacts and its load. It does not change; arrays are read-only views of its memory.");
+    bind_files(state);
     bind_grains(state, [](const py::object& self) -> const Packing& { return state_of(self).packing; });
     bind_contacts(state);
     bind_load(state);
@@ -288,6 +374,17 @@ void bind_state_class(py::module_& module) {
             "packing", [](const PyState& self) { return self.state.packing; },
             "The disks and walls, as a Packing (a copy).")
         .def("_matrix", [](const PyState& self) { return matrix_parts(self.state.packing, self.state.contacts); })
+        .def("_curvature", [](const PyState& self) { return curvature_parts(self.state); })
+        .def("_contact_table",
+             [](const PyState& self) {
+                 const State copy = self.state;
+                 return interruptible([copy] { return contact_table(copy, certify(copy)); });
+             })
+        .def_property_readonly(
+            "rattlers",
+            [](const PyState& self) { return rattlers_by_coordination(self.state.packing, self.state.contacts); },
+            "Numbers of the grains that few contacts hold (at most d), counted until none is left; by forces: "
+            "`inspect`.")
         .def(
             "with_stress",
             [](const PyState& self, const std::vector<double>& stress, std::optional<double> shear) {

@@ -137,14 +137,14 @@ struct Distribution {
 std::string two_panels(const std::string& label, bool power_law, const std::string& left, const std::string& right) {
     const std::string x = text::gnuplot(label);
     const std::string x_left = power_law ? text::gnuplot("log_{10} " + label) : x;
-    std::string body =
-        "set multiplot layout 1,2\nset xtics font \",11\"\nset key top right samplen 2 font \",11\"\nset grid lc rgb "
-        "\"#dddddd\"\nset yrange [0:*]\n";
+    std::string body = "set multiplot layout 1,2\nset xtics font \",11\" rotate by -30\nset key outside below samplen "
+                       "2 font \",11\"\nset grid lc rgb "
+                       "\"#dddddd\"\nset yrange [0:*]\n";
     body += fmt::format("set xlabel {}\nset ylabel \"density\"\n{}\n", x_left, left);
     body += fmt::format("set xlabel {}\nset ylabel \"share of the values ≥ x\"\nset logscale y\nset "
                         "yrange [*:1.5]\nset format y "
                         "\"10^{{%L}}\"\n{}{}\nunset multiplot\n",
-                        x, power_law ? "set logscale x\nset format x \"10^{%L}\"\nset key bottom left\n" : "", right);
+                        x, power_law ? "set logscale x\nset format x \"10^{%L}\"\n" : "", right);
     return body;
 }
 

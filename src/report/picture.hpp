@@ -2,6 +2,8 @@
 /// \file
 /// One state as a picture: SVG for people, VTK for ParaView.
 
+#include "io/json.hpp"
+
 #include <isostat/contact/state.hpp>
 
 #include <span>
@@ -23,13 +25,20 @@ std::string force_picture(const State& state, std::span<const double> forces, co
 /// into it. \pre `state.packing.dimension` is 3
 std::string sphere_picture(const State& state, std::span<const double> forces, const std::string& caption);
 
+/// What the page of spheres draws, as numbers: `equilibrium`, `centre` and `reach` (half the diagonal) of all, mean
+/// `radius`, `balls` (x, y, z, radius, 1 for a rattler), `lines` (a contact from centre to centre, to the wall or to
+/// the image; the force over the mean force, with its sign), `edges` of box or cell. \pre as above
+json::Json sphere_view(const State& state, std::span<const double> forces);
+
 /// What a VTK file begins with.
 inline constexpr const char* vtk_mark = "# vtk DataFile Version 3.0\n";
 
-/// VTK legacy file (ASCII POLYDATA) of disks or spheres: a point and a vertex per grain with `radius` and `rattler`, a
-/// line per contact with `force`; contacts with walls end in extra points of radius 0 on the wall, those with images at
-/// the centre of the image, of radius 0 too. The last lines, of force 0, are the outline of a cell. 17 digits.
-/// `displacement`: empty, or d per grain: `displacement`, 0 on the extra points.
+/// VTK legacy file (ASCII POLYDATA) of disks or spheres: a point and a vertex per grain with `radius`, `contacts`
+/// (their number) and `rattler`, a line per contact with `force`; contacts with walls end in extra points of radius 0
+/// on the wall, those with images at the centre of the image, of radius 0 too. The last lines, of force 0, are the
+/// outline of a cell. 17 digits. `displacement`: empty, or d per grain: `displacement`, 0 on the extra points. Of
+/// spheres every line has points of its own with `tube`, a radius proportional to the force (a quarter of the mean
+/// radius at the mean force): ParaView's filter Tube draws the forces with "Vary Radius: By Absolute Scalar".
 std::string vtk_text(const State& state, std::span<const double> forces, const std::string& title,
                      std::span<const double> displacement = {});
 

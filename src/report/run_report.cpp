@@ -1,5 +1,6 @@
 #include "report/run_report.hpp"
 
+#include "certificate/contact_table.hpp"
 #include "core/work.hpp"
 #include "io/files.hpp"
 #include "io/folders.hpp"
@@ -9,8 +10,9 @@
 #include "report/gnuplot.hpp"
 #include "report/page.hpp"
 #include "report/picture.hpp"
+#include "report/sphere_page.hpp"
+#include "report/statistics.hpp"
 #include "report/tables.hpp"
-#include "report/triaxial.hpp"
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/core/error.hpp>
@@ -21,7 +23,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
+#include <iterator>
 
 namespace isostat {
 
@@ -45,11 +49,16 @@ class Writer {
             result_.notes.push_back(text);
         }
     }
-    void picture(const fs::path& path, const std::string& name) {
+    /// With its forces, if the state is an equilibrium.
+    StateFile read(const fs::path& path) {
         StateFile file = read_any_state(path, Dimensions::any);
         if (file.forces.empty()) {
             file.forces = solve_forces(file.state, path);
         }
+        return file;
+    }
+    void picture(const fs::path& path, const std::string& name) {
+        const StateFile file = read(path);
         const State& state = file.state;
         const std::string caption =
             state.packing.dimension != plane
@@ -60,6 +69,10 @@ class Writer {
             count_work(Work::pictures);
             const auto draw = state.packing.dimension == plane ? force_picture : sphere_picture;
             write(name + ".svg", draw(state, file.forces, caption), " by isostat ");
+        }
+        if (options_.contacts) {
+            write("contacts_" + name.substr(name.find('_') + 1) + ".csv", contact_table(state, certify(state)),
+                  contact_table_mark);
         }
         if (options_.vtk) {
             count_work(Work::vtk_files);
@@ -88,8 +101,8 @@ class Writer {
             }
         }
     }
-    /// The ParaView files in the order of their equilibria, as one series.
-    void vtk_series() {
+    /// The ParaView files in the order of their equilibria, as one series; in words how many, of a run with so many.
+    std::string vtk_series(std::size_t equilibria) {
         std::sort(series_.begin(), series_.end());
         json::Json files = json::Json::array();
         for (const auto& [equilibrium, name] : series_) {
@@ -100,6 +113,10 @@ class Writer {
         if (!files.empty()) {
             write("forces.vtk.series", json::dumped({{"file-series-version", "1.0"}, {"files", files}}, 2) + "\n");
         }
+        return files.empty()
+                   ? ""
+                   : fmt::format("\nParaView files of {} equilibria, of {} (states_every = 1 in a scene stores all)\n",
+                                 files.size(), equilibria);
     }
     ReportResult take(std::string text) {
         result_.text = std::move(text);
@@ -179,18 +196,6 @@ std::vector<fs::path> stored_states(const fs::path& directory, const FolderConte
     return states;
 }
 
-/// Number and picture of each stored state of spheres, with the forces that it has.
-std::vector<std::pair<int, std::string>> sphere_pictures(const std::vector<fs::path>& states) {
-    std::vector<std::pair<int, std::string>> pictures;
-    for (const fs::path& path : states) {
-        const StateFile file = read_any_state(path, Dimensions::any);
-        if (pictures.empty() || pictures.back().first != file.state.equilibrium) { // the last one is stored twice
-            pictures.emplace_back(file.state.equilibrium, sphere_picture(file.state, file.forces, ""));
-        }
-    }
-    return pictures;
-}
-
 /// A stress on an axis changes, not those on tilts alone.
 bool changes_lengths(const Load& load) {
     return load.rate_of(0) != 0 || load.rate_of(1) != 0 || load.rate_of(2) != 0;
@@ -202,6 +207,18 @@ std::string page_of_disks(const fs::path& directory, const ReportOptions& option
         writer.note(fmt::format("trajectory.html: left out: {}", left_out));
     }
     return std::move(page.html);
+}
+
+std::string page_of_spheres(const std::vector<fs::path>& states, const std::string& title, const SphereRun& run,
+                            Writer& writer) {
+    json::Json views = json::Json::array();
+    for (const fs::path& path : states) {
+        const StateFile file = writer.read(path);
+        if (views.empty() || views.back()["equilibrium"] != file.state.equilibrium) { // the last one is stored twice
+            views.push_back(sphere_view(file.state, file.forces));
+        }
+    }
+    return sphere_page(title, views, run);
 }
 
 /// Figures go into the run that they are of, or where only a report is.
@@ -242,7 +259,8 @@ ReportResult report_run(const fs::path& directory, const fs::path& output, const
     const Load& load = first.load;
     const bool triaxial = load.dimension != plane && !rows.empty() && changes_lengths(load);
     const LoadWords words = load_words(load);
-    if (options.pictures || options.vtk) {
+    std::string drawn;
+    if (options.pictures || options.vtk || options.contacts) {
         if (options.pictures) {
             for (const Chart& chart : make_charts(rows, names, words, options.pdf)) {
                 writer.chart(chart);
@@ -254,16 +272,15 @@ ReportResult report_run(const fs::path& directory, const fs::path& output, const
         for (const fs::path& path : states) {
             writer.picture(path, "forces_" + path.stem().string());
         }
-        writer.vtk_series();
+        drawn = writer.vtk_series(rows.size());
     }
-    if (options.html && load.dimension != plane && !triaxial) {
-        writer.note("trajectory.html: left out: the page of spheres is of a triaxial test, and tilts are loaded");
-    } else if (options.html) {
+    if (options.html && load.dimension != plane) {
         const std::string title =
             fmt::format("{} spheres: {}", first.packing.disk_count(), header.at("status").string());
-        writer.write("trajectory.html", triaxial ? triaxial_page(triaxial_points(rows, load), rows, names, words, title,
-                                                                 sphere_pictures(states))
-                                                 : page_of_disks(directory, options, writer));
+        const std::vector<TriaxialPoint> points = triaxial_points(rows, load);
+        writer.write("trajectory.html", page_of_spheres(states, title, {triaxial, points, rows, names, words}, writer));
+    } else if (options.html) {
+        writer.write("trajectory.html", page_of_disks(directory, options, writer));
     }
     std::string text = run_tables(rows, names, header.at("status").string(), words);
     const fs::path summary = directory / "summary.json"; // of runs that ended
@@ -271,8 +288,8 @@ ReportResult report_run(const fs::path& directory, const fs::path& output, const
         const json::Json ended = json::Field::parse(read_text(summary), summary.string());
         text += decision_table(json::Field(ended, summary.string()).at("counters").at("decisions"));
     }
-    writer.write("report.txt", text);
-    return writer.take(text);
+    writer.write("report.txt", text + drawn);
+    return writer.take(text + drawn);
 }
 
 ReportResult report_state(const fs::path& state, const fs::path& output, const ReportOptions& options) {
@@ -280,7 +297,67 @@ ReportResult report_state(const fs::path& state, const fs::path& output, const R
     Writer writer(output, options, false);
     const std::string name = "forces_" + state.stem().string();
     writer.picture(state, name);
+    if (options.html) {
+        const StateFile file = writer.read(state);
+        if (file.state.packing.dimension == plane) {
+            throw Error(ErrorKind::usage, fmt::format("{}: --html of one state is a view of spheres: this file is of "
+                                                      "disks, and {}.svg shows them",
+                                                      state.string(), name));
+        }
+        const std::string title = fmt::format("{} spheres", file.state.packing.disk_count());
+        writer.write(name + ".html", sphere_page(title, {sphere_view(file.state, file.forces)}),
+                     "<title>Isostat</title>");
+    }
     return writer.take(fmt::format("force picture of {}\n", state.string()));
+}
+
+namespace {
+
+/// Forces over their mean, without those that are 0.
+void add_scaled_forces(const fs::path& state, std::vector<double>& all) {
+    const StateFile file = fs::exists(state) ? read_any_state(state, Dimensions::any) : StateFile();
+    std::vector<double> forces;
+    for (std::size_t l = 0; l < file.forces.size(); ++l) {
+        if (file.forces[l] != 0 && file.state.contacts[l].kind != ContactKind::held) {
+            forces.push_back(file.forces[l]);
+        }
+    }
+    const double scale = mean(forces);
+    std::transform(forces.begin(), forces.end(), std::back_inserter(all), [scale](double f) { return f / scale; });
+}
+
+} // namespace
+
+ReportResult report_forces(const std::vector<fs::path>& runs, const fs::path& output, const ReportOptions& options) {
+    constexpr double width = 0.25;
+    std::array<std::vector<double>, 2> forces;
+    for (const fs::path& run : runs) {
+        add_scaled_forces(run / "states/eq_000000.json", forces[0]);
+        add_scaled_forces(run / "states/last.json", forces[1]);
+    }
+    double largest = width;
+    Chart chart{"force_distribution",
+                fmt::format("# {} samples, {} and {} contacts with a force\n# f/<f> P_first P_last\n", runs.size(),
+                            forces[0].size(), forces[1].size()),
+                ""};
+    for (const std::vector<double>& of : forces) {
+        largest = of.empty() ? largest : std::max(largest, *std::max_element(of.begin(), of.end()));
+    }
+    const int bins = static_cast<int>(std::ceil(largest / width));
+    const auto first = histogram(forces[0], 0, bins * width, bins), last = histogram(forces[1], 0, bins * width, bins);
+    for (std::size_t b = 0; b < first.size(); ++b) {
+        chart.data += fmt::format("{} {} {}\n", first[b].first, first[b].second, last[b].second);
+    }
+    chart.script = chart_script(chart.name, 640, 480,
+                                "set logscale y\nset format y \"10^{%T}\"\nset xlabel \"f / <f>\"\nset ylabel "
+                                "\"P(f / <f>)\"\nset grid lc rgb \"#dddddd\"\nplot \"force_distribution.dat\" using "
+                                "1:($2>0?$2:NaN) with points pt 7 title \"first equilibria\", \\\n    \"\" using "
+                                "1:($3>0?$3:NaN) with points pt 6 title \"last equilibria\"\n",
+                                options.pdf);
+    make_directory(output);
+    Writer writer(output, options, true);
+    writer.chart(chart);
+    return writer.take(fmt::format("forces of {} samples: {}\n", runs.size(), (output / chart.name).string()));
 }
 
 } // namespace isostat

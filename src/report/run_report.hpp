@@ -15,6 +15,7 @@ struct ReportOptions {
     bool charts = true;                                       ///< call gnuplot on the scripts (SVG and PNG)
     bool vtk = false;                                         ///< ParaView files
     bool pdf = false;                                         ///< charts as PDF too
+    bool contacts = false;                                    ///< contacts_*.csv of each state: `contact_table`
     bool html = false;                                        ///< of a run: trajectory.html
     std::function<void(std::size_t, std::size_t)> progress{}; ///< of the page: arcs gone through, and of the run
 };
@@ -40,5 +41,11 @@ ReportResult report_run(const std::filesystem::path& directory, const std::files
 /// Force picture, and VTK file when asked for, of one state. Forces are those of the file, or else solved for here.
 ReportResult report_state(const std::filesystem::path& state, const std::filesystem::path& output,
                           const ReportOptions& options);
+
+/// P(f / <f>) of the force-carrying contacts of all samples of an ensemble together, each over its own mean force: of
+/// their first and of their last equilibria, in bins of 1/4. force_distribution.dat, .gp and what gnuplot makes of
+/// them. Forces are those of the files, as computed.
+ReportResult report_forces(const std::vector<std::filesystem::path>& runs, const std::filesystem::path& output,
+                           const ReportOptions& options);
 
 } // namespace isostat

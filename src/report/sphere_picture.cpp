@@ -1,3 +1,4 @@
+#include "io/json.hpp"
 #include "io/text.hpp"
 #include "packing/cell_wrap.hpp"
 #include "report/picture.hpp"
@@ -78,13 +79,8 @@ class Drawing {
 
     /// Lines from centre to centre, or to the wall, as wide as the force is large; rattlers in blue.
     [[nodiscard]] std::string forces(double width) const {
-        double mean = 0, radius = 0;
-        int count = 0;
-        for (const double f : forces_) {
-            mean += std::abs(f);
-            count += f != 0 ? 1 : 0;
-        }
-        mean = count > 0 ? mean / count : 1;
+        const double mean = mean_force();
+        double radius = 0;
         std::string text;
         for (const Ball& ball : balls_) {
             radius += ball.radius / static_cast<double>(balls_.size());
@@ -139,23 +135,85 @@ class Drawing {
         return text + fmt::format("</g>\n<polygon class=\"cell\" points=\"{}\"/>\n", outline);
     }
 
+    /// Numbers of a view in space: see `sphere_view`.
+    [[nodiscard]] json::Json numbers() const {
+        using json::Json;
+        const auto put = [](Json& list, const Place& at) {
+            for (const double x : at) {
+                list.push_back(rounded(x, 6));
+            }
+        };
+        Json all;
+        all["equilibrium"] = state_.equilibrium;
+        for (const char* name : {"centre", "balls", "lines", "edges"}) {
+            all[name] = Json::array();
+        }
+        double reach = 0, radius = 0;
+        for (std::size_t a = 0; a < low_.size(); ++a) {
+            all["centre"].push_back(rounded((low_[a] + high_[a]) / 2, 6));
+            reach = std::hypot(reach, (high_[a] - low_[a]) / 2);
+        }
+        for (const Ball& ball : balls_) {
+            Json& row = all["balls"].emplace_back(Json::array());
+            put(row, ball.at);
+            row.push_back(rounded(ball.radius, 6));
+            row.push_back(ball.rattler ? 1 : 0);
+            radius += ball.radius / static_cast<double>(balls_.size());
+        }
+        all["reach"] = reach;
+        all["radius"] = radius;
+        const double mean = mean_force();
+        for (std::size_t l = 0; l < state_.contacts.size(); ++l) {
+            const Contact& contact = state_.contacts[l];
+            if (contact.kind != ContactKind::held) {
+                Json& row = all["lines"].emplace_back(Json::array());
+                put(row, balls_[static_cast<std::size_t>(contact.i)].at);
+                put(row, end_of(contact));
+                row.push_back(forces_.empty() ? 0 : rounded(forces_[l] / mean, 3));
+            }
+        }
+        for_each_edge([&](const Place& from, const Place& to) {
+            Json& row = all["edges"].emplace_back(Json::array());
+            put(row, from);
+            put(row, to);
+        });
+        return all;
+    }
+
     /// The edges of box or cell.
     [[nodiscard]] std::string edges(double width) const {
         std::string text;
-        for (unsigned bits = 0; bits < 8; ++bits) {
-            for (unsigned a = 0; a < 3; ++a) {
-                if ((bits >> a & 1U) == 0) {
-                    const Place from = corner(bits), to = corner(bits | 1U << a);
-                    text +=
-                        fmt::format("<line class=\"cell\" x1=\"{:.2f}\" y1=\"{:.2f}\" x2=\"{:.2f}\" y2=\"{:.2f}\"/>\n",
-                                    x(from, width), y(from, 2, width), x(to, width), y(to, 2, width));
-                }
-            }
-        }
+        for_each_edge([&](const Place& from, const Place& to) {
+            text += fmt::format("<line class=\"cell\" x1=\"{:.2f}\" y1=\"{:.2f}\" x2=\"{:.2f}\" y2=\"{:.2f}\"/>\n",
+                                x(from, width), y(from, 2, width), x(to, width), y(to, 2, width));
+        });
         return text;
     }
 
   private:
+    /// To so many digits.
+    [[nodiscard]] static double rounded(double value, int digits) {
+        return std::stod(fmt::format("{:.{}g}", value, digits));
+    }
+    /// Of the contacts that bear one; 1 without any.
+    [[nodiscard]] double mean_force() const {
+        double sum = 0;
+        int count = 0;
+        for (const double f : forces_) {
+            sum += std::abs(f);
+            count += f != 0 ? 1 : 0;
+        }
+        return count > 0 ? sum / count : 1;
+    }
+    template <class Visit> void for_each_edge(Visit visit) const {
+        for (unsigned bits = 0; bits < 8; ++bits) {
+            for (unsigned a = 0; a < 3; ++a) {
+                if ((bits >> a & 1U) == 0) {
+                    visit(corner(bits), corner(bits | 1U << a));
+                }
+            }
+        }
+    }
     [[nodiscard]] double entry(std::size_t a, std::size_t b) const { return state_.packing.lattice(a, b); }
     [[nodiscard]] Place corner(unsigned bits) const {
         PerAxis<double> periods{};
@@ -268,6 +326,10 @@ std::string sphere_picture(const State& state, std::span<const double> forces, c
     }
     return text +
            fmt::format("<text x=\"{}\" y=\"{:.0f}\">{}</text>\n</svg>\n", margin, height - 16, text::markup(caption));
+}
+
+json::Json sphere_view(const State& state, std::span<const double> forces) {
+    return Drawing(state, forces).numbers();
 }
 
 } // namespace isostat

@@ -6,7 +6,7 @@
 
 #include <isostat/contact/state.hpp>
 
-#include <functional>
+#include <array>
 #include <span>
 #include <string>
 #include <utility>
@@ -27,10 +27,18 @@ std::vector<TriaxialPoint> triaxial_points(std::span<const EquilibriumRow> rows,
 /// q/p and the volumetric strain against the axial strain; the data are the table of the points.
 Chart triaxial_chart(std::span<const TriaxialPoint> points, const std::vector<std::string>& names, bool pdf);
 
-/// A page that opens without network: both curves, the table of the equilibria, and the pictures of the stored states
-/// (number and SVG), one at a time. `title` is a line of text.
-std::string triaxial_page(std::span<const TriaxialPoint> points, std::span<const EquilibriumRow> rows,
-                          const std::vector<std::string>& names, const LoadWords& words, const std::string& title,
-                          std::span<const std::pair<int, std::string>> pictures);
+/// A segment of the programme: the point that the segment starts from, and its own points. At constant structure the
+/// stress moves, at constant stress the strain jumps.
+struct TriaxialBranch {
+    std::string title;
+    std::vector<TriaxialPoint> points;
+    [[nodiscard]] std::vector<std::pair<double, double>> stairs() const; ///< axial strain, q/p, both ends of a jump
+    [[nodiscard]] std::vector<std::pair<double, double>> volume() const; ///< axial, volumetric strain
+};
+std::vector<TriaxialBranch> triaxial_branches(std::span<const TriaxialPoint> points,
+                                              const std::vector<std::string>& names);
+
+/// Colours of the branches, in turn.
+inline constexpr std::array<const char*, 4> triaxial_hues{"#1f4e79", "#c55a11", "#548235", "#7b3f99"};
 
 } // namespace isostat

@@ -1,9 +1,13 @@
+#include "certificate/averages.hpp"
 #include "contact/separation.hpp"
 #include "io/text.hpp"
 #include "report/picture.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <vector>
 
@@ -54,6 +58,7 @@ Place corner(const Packing& packing, unsigned bits) {
 struct VtkLines {
     std::string lines;
     std::string forces;
+    std::vector<double> tube; ///< per point, of spheres: radius of the tube that draws the force
     std::size_t count = 0;
     std::size_t ends = 0;
 
@@ -84,22 +89,52 @@ void add_outline(const Packing& packing, std::vector<Place>& points, VtkLines& m
     }
 }
 
+/// Points of the line of a contact. In space both are new: the radius of a tube stands at the points of a line.
+std::vector<std::size_t> ends_of(const Packing& packing, const Contact& contact, std::vector<Place>& points) {
+    const bool new_begin = packing.dimension != plane;
+    const bool new_end = new_begin || contact.kind != ContactKind::disk_disk || !contact.image.is_here();
+    std::vector<std::size_t> ends{static_cast<std::size_t>(contact.i), static_cast<std::size_t>(contact.j)};
+    if (new_begin) {
+        ends[0] = points.size();
+        points.push_back(place_of(packing, contact.i));
+    }
+    if (new_end) {
+        ends[1] = points.size();
+        points.push_back(end_of(packing, contact));
+    }
+    return ends;
+}
+
+/// A quarter of the mean radius at the mean force, as in the picture.
+double tube_of_one(const State& state, std::span<const double> forces) {
+    double sum = 0, radii = 0;
+    for (const double f : forces) {
+        sum += std::abs(f);
+    }
+    for (const double r : state.packing.radius) {
+        radii += r;
+    }
+    const auto bearing =
+        static_cast<double>(forces.size() - static_cast<std::size_t>(std::count(forces.begin(), forces.end(), 0.0)));
+    return sum > 0 ? 0.25 * radii / static_cast<double>(state.packing.radius.size()) * bearing / sum : 0;
+}
+
 VtkLines vtk_lines(const State& state, std::span<const double> forces, std::vector<Place>& points) {
     VtkLines made;
+    made.tube.assign(points.size(), 0);
+    const double tube = tube_of_one(state, forces);
     for (std::size_t l = 0; l < state.contacts.size(); ++l) {
         const Contact& contact = state.contacts[l];
         if (contact.kind == ContactKind::held) {
             continue;
         }
-        auto end = static_cast<std::size_t>(contact.j);
-        if (contact.kind != ContactKind::disk_disk || !contact.image.is_here()) {
-            end = points.size();
-            points.push_back(end_of(state.packing, contact));
-        }
-        made.add({static_cast<std::size_t>(contact.i), end}, forces.empty() ? 0 : forces[l]);
+        const double force = forces.empty() ? 0 : forces[l];
+        made.add(ends_of(state.packing, contact, points), force);
+        made.tube.resize(points.size(), tube * std::abs(force)); // of the points that are new
     }
     if (state.packing.cell.any()) {
         add_outline(state.packing, points, made);
+        made.tube.resize(points.size(), 0);
     }
     return made;
 }
@@ -139,9 +174,18 @@ std::string vtk_text(const State& state, std::span<const double> forces, const s
     for (std::size_t i = 0; i < points.size(); ++i) {
         text += fmt::format("{:.17g}\n", i < grains ? state.packing.radius[i] : 0.0);
     }
+    std::vector<int> count = contacts_of_grains(state);
+    count.resize(points.size(), 0);
+    text += fmt::format("SCALARS contacts int 1\nLOOKUP_TABLE default\n{}\n", fmt::join(count, "\n"));
     text += "SCALARS rattler int 1\nLOOKUP_TABLE default\n";
     for (const unsigned char flag : rattler) {
         text += fmt::format("{}\n", static_cast<int>(flag));
+    }
+    if (state.packing.dimension != plane) {
+        text += "SCALARS tube double 1\nLOOKUP_TABLE default\n";
+        for (const double r : contacts.tube) {
+            text += fmt::format("{:.6g}\n", r);
+        }
     }
     if (!displacement.empty()) {
         std::vector<Place> moved(points.size(), Place{});

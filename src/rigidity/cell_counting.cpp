@@ -49,22 +49,22 @@ void for_each_strained_entry(const DofMap& dofs, const Contact& contact, const A
             }
         }
     }
-    const int first = dofs.dof_count();
-    int row = 0;
-    Number trace = ring.zero();
-    for (std::size_t a = 0; a < dofs.layout().axes() && strain != Strain::none; ++a) {
-        const std::size_t last = strain == Strain::full ? dofs.layout().axes() : a + 1;
-        for (std::size_t b = a; b < last; ++b) {
-            const Number entry = ring.negative(ring.product(arms.r[a], arms.period[b]));
-            if (strain == Strain::isotropic) {
-                trace = ring.sum(trace, entry);
-            } else {
-                visit(first + row++, entry);
-            }
+    const int end = dofs.dof_count() + strain_count(strain, dofs.layout().dimension);
+    const auto entry = [&](std::size_t a, std::size_t b) {
+        return ring.negative(ring.product(arms.r[a], arms.period[b]));
+    };
+    int row = dofs.dof_count();
+    if (row < end) {
+        Number trace = ring.zero();
+        for (std::size_t a = 0; a < dofs.layout().axes(); ++a) {
+            trace = ring.sum(trace, entry(a, a));
         }
+        visit(row++, trace);
     }
-    if (strain == Strain::isotropic) {
-        visit(first, trace);
+    for (std::size_t above = 0; above < dofs.layout().axes(); ++above) { // the diagonal, then the lines above it
+        for (std::size_t a = above == 0 ? 1 : 0; a + above < dofs.layout().axes() && row < end; ++a) {
+            visit(row++, entry(a, a + above));
+        }
     }
 }
 
@@ -93,9 +93,11 @@ Counting counted(int rows, int columns, int rank) {
     return counting;
 }
 
-/// With the rank of the matrix where the one mod p leaves it open.
+/// With the rank of the matrix where the one mod p leaves it open and a kernel can be had.
 Counting settled(Counting counting, const std::function<exact::NumberMatrix()>& matrix) {
-    if (counting.rank_exact != Verdict::proved) {
+    const bool small =
+        static_cast<long long>(counting.dof_count) * counting.contact_count <= exact::KernelLimits().cells;
+    if (counting.rank_exact != Verdict::proved && small) {
         const exact::Kernel kernel = exact::kernel(matrix());
         counting.rank = std::max(counting.rank, kernel.rank);
         counting.rank_exact = kernel.exact;
@@ -150,23 +152,24 @@ exact::NumberMatrix strained_matrix(const Packing& packing, const std::function<
     return matrix;
 }
 
-Counting count_strained(const Packing& packing, const std::vector<Contact>& contacts, Strain strain) {
-    const auto matrix = exact_strained_matrix(packing, contacts, strain);
-    const int rank = matrix.rows == 0 || matrix.cols == 0 ? 0 : exact::rank(matrix);
-    return settled(counted(matrix.rows, matrix.cols, rank), [&] {
-        return strained_matrix(
-            packing, [&](std::size_t k) { return exact::Number::from_double(packing.q[k]); }, contacts, strain);
-    });
-}
-
 Counting count_matrix(const exact::NumberMatrix& matrix) {
     return settled(counted(matrix.rows, matrix.cols(), exact::rank_bound(matrix).rank), [&] { return matrix; });
 }
 
 StrainCounts count_strains(const Packing& packing, const std::vector<Contact>& contacts) {
+    const auto matrix = exact_strained_matrix(packing, contacts, Strain::full);
+    const int disks = matrix.rows - strain_count(Strain::full, packing.dimension);
+    std::array<int, strains.size()> ends{};
+    std::transform(strains.begin(), strains.end(), ends.begin(),
+                   [&](Strain strain) { return disks + strain_count(strain, packing.dimension); });
+    const std::vector<int> ranks = exact::ranks_of_first_rows(matrix, ends);
     StrainCounts counts;
-    std::transform(strains.begin(), strains.end(), counts.begin(),
-                   [&](Strain strain) { return count_strained(packing, contacts, strain); });
+    for (std::size_t k = 0; k < counts.size(); ++k) {
+        counts[k] = settled(counted(ends[k], matrix.cols, ranks[k]), [&] {
+            return strained_matrix(
+                packing, [&](std::size_t c) { return exact::Number::from_double(packing.q[c]); }, contacts, strains[k]);
+        });
+    }
     return counts;
 }
 

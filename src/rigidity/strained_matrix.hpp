@@ -13,8 +13,9 @@
 
 namespace isostat {
 
-/// Rows: the degrees of freedom of the disks that are not fixed, without those of the pinned one; then the entries of
-/// E. Column of a contact: |r| times minus the gradient of its gap, exactly, mod 2^61 - 1: r on the disks as in
+/// Rows: the degrees of freedom of the disks that are not fixed, without those of the pinned one; then those of E =
+/// e 1 + E', E'_00 = 0: e, the rest of the diagonal, what is above it, of which every kind of strain has the first so
+/// many. Column of a contact: |r| times minus the gradient of its gap, exactly, mod 2^61 - 1: r on the disks as in
 /// `exact_contact_matrix`, - r_a (A m)_b on E_ab. \pre every axis is periodic
 sparse::Matrix<std::uint64_t> exact_strained_matrix(const Packing& packing, const std::vector<Contact>& contacts,
                                                     Strain strain);

@@ -3,6 +3,7 @@
 #include "contact/contact_set.hpp"
 #include "contact/other_pairs.hpp"
 #include "contact/words.hpp"
+#include "trajectory/descent.hpp"
 
 #include <isostat/rigidity/counting.hpp>
 

@@ -20,26 +20,14 @@ namespace {
 using roundoff::gamma;
 using roundoff::u;
 
-/// Nested dissection of the blocks that share a contact.
-std::vector<int> dissected(const sparse::Matrix<double>& h, std::size_t blocks) {
-    std::vector<int> start{0};
-    std::vector<int> row;
-    for (std::size_t l = 0; l < static_cast<std::size_t>(h.cols); ++l) {
-        for (int e = h.start[l]; e < h.start[l + 1]; ++e) { // rows are sorted
-            const int block = h.row[static_cast<std::size_t>(e)] / 2;
-            if (static_cast<int>(row.size()) == start.back() || row.back() != block) {
-                row.push_back(block);
-            }
-        }
-        start.push_back(static_cast<int>(row.size()));
-    }
-    return sparse::dissection_of_products(static_cast<int>(blocks), start, row);
-}
-
-/// Blocks that share a contact, as AMD wants them: columns of a symmetric pattern, both halves, with repetitions.
+/// An order of the rows, with the one that only fills up the last block. Without dissection the pairs of successive
+/// rows stay together, and AMD takes those that share a contact: columns of a symmetric pattern, both halves, with
+/// repetitions.
 std::vector<int> little_fill(const sparse::Matrix<double>& h, std::size_t blocks) {
     if (sparse::worth_dissection(h.rows, h.entries())) {
-        return dissected(h, blocks);
+        std::vector<int> rows = sparse::dissection_of_products(h.rows, h.start, h.row);
+        rows.resize(2 * blocks, h.rows);
+        return rows;
     }
     std::vector<int> start(blocks + 1, 0);
     std::vector<int> row;
@@ -67,7 +55,11 @@ std::vector<int> little_fill(const sparse::Matrix<double>& h, std::size_t blocks
         throw std::bad_alloc();
     }
     assert(status == AMD_OK || status == AMD_OK_BUT_JUMBLED);
-    return order;
+    std::vector<int> rows;
+    for (const int block : order) {
+        rows.insert(rows.end(), {2 * block, 2 * block + 1});
+    }
+    return rows;
 }
 
 } // namespace
@@ -76,43 +68,49 @@ void BlockCholesky::set(const sparse::Matrix<double>& h, FillOrder& order) {
     constexpr double outgrown = 1.2; // new contacts join parts that the order keeps apart: the work grows
     h_ = &h;
     blocks_ = (static_cast<std::size_t>(h.rows) + 1) / 2;
-    const bool known = order.blocks.size() == blocks_;
+    const bool known = order.rows.size() == 2 * blocks_;
     if (known) {
-        arrange(order.blocks);
+        arrange(order.rows);
     }
     if (!known || work() > outgrown * order.work) {
-        order.blocks = little_fill(h, blocks_);
-        arrange(order.blocks);
+        order.rows = little_fill(h, blocks_);
+        arrange(order.rows);
         order.work = work();
     }
 }
 
-/// The entries of each contact by blocks (rows are sorted: those of one block follow each other), and the blocks of
-/// H H^T that they make.
+/// The entries of each contact by blocks, and the blocks of H H^T that they make.
 void BlockCholesky::arrange(const std::vector<int>& order) {
-    position_.resize(blocks_);
-    for (std::size_t k = 0; k < blocks_; ++k) {
+    position_.resize(2 * blocks_);
+    for (std::size_t k = 0; k < order.size(); ++k) {
         position_[static_cast<std::size_t>(order[k])] = static_cast<int>(k);
     }
     diagonal_.assign(blocks_, Block{});
     if (h_->rows % 2 != 0) { // the last row is not there: coupled to nothing
-        diagonal_[static_cast<std::size_t>(position_[blocks_ - 1])].value[3] = 1;
+        const auto last = static_cast<std::size_t>(position_.back());
+        diagonal_[last / 2].value[3 * (last % 2)] = 1;
     }
     pairs_.clear();
     column_start_.assign(blocks_ + 1, 0);
     row_start_.assign(blocks_ + 1, 0);
     const auto contacts = static_cast<std::size_t>(h_->cols);
+    // Of two spheres and the coordinates of a cell, each perhaps in a block of its own.
+    std::array<Part, 2 * most_axes + most_axes + most_tilts> parts;
     for (std::size_t l = 0; l < contacts; ++l) {
-        std::array<Part, 8> parts{}; // of spheres: two for each, and four for the six coordinates of a cell
         std::size_t count = 0;
-        int last = -1;
+        std::size_t part = 0;
         for (auto e = static_cast<std::size_t>(h_->start[l]); e < static_cast<std::size_t>(h_->start[l + 1]); ++e) {
-            const int block = h_->row[e] / 2;
-            if (block != last) {
-                parts[count++].place = position_[static_cast<std::size_t>(block)];
-                last = block;
+            const int at = position_[static_cast<std::size_t>(h_->row[e])];
+            if (count == 0 || parts[part].place != at / 2) { // mostly those of one block follow each other
+                part = 0;
+                while (part < count && parts[part].place != at / 2) {
+                    ++part;
+                }
+                if (part == count) {
+                    parts[count++] = {at / 2, {}};
+                }
             }
-            parts[count - 1].value[static_cast<std::size_t>(h_->row[e] % 2)] = h_->value[e];
+            parts[part].value[static_cast<std::size_t>(at % 2)] = h_->value[e];
         }
         for (std::size_t k = 0; k < count; ++k) {
             const std::array<double, 2>& v = parts[k].value;
@@ -349,7 +347,7 @@ double BlockCholesky::error_bound(double shift) const {
     std::vector<double> relative(n); // gamma_{t_k}
     double trace = 0;
     for (std::size_t i = 0; i < n; ++i) {
-        const auto block = static_cast<std::size_t>(position_[i / 2]);
+        const auto block = static_cast<std::size_t>(position_[i] / 2);
         const int row_of_l = 2 * (across_start_[block + 1] - across_start_[block] + 1); // zeros in blocks counted too
         relative[i] = gamma(entries[i] + row_of_l + 4.0);
         trace += relative[i] * (2 * diagonal[i] + shift);
@@ -390,7 +388,8 @@ double BlockCholesky::largest_ratio(const std::vector<double>& relative, double 
     // y, block by block; 0 for the row that only fills up the last one.
     std::vector<std::array<double, 2>> weight(blocks_, {0.0, 0.0});
     for (std::size_t i = 0; i < y.size(); ++i) {
-        weight[static_cast<std::size_t>(position_[i / 2])][i % 2] = y[i];
+        const auto at = static_cast<std::size_t>(position_[i]);
+        weight[at / 2][at % 2] = y[i];
     }
     std::vector<std::array<double, 2>> of_l(blocks_, {0.0, 0.0});
     for (std::size_t j = 0; j < blocks_; ++j) {
@@ -416,7 +415,8 @@ double BlockCholesky::largest_ratio(const std::vector<double>& relative, double 
     double largest = 0;
     double largest_x = 0;
     for (std::size_t i = 0; i < relative.size(); ++i) {
-        const double l = of_l[static_cast<std::size_t>(position_[i / 2])][i % 2];
+        const auto at = static_cast<std::size_t>(position_[i]);
+        const double l = of_l[at / 2][at % 2];
         const double image = std::sqrt(relative[i]) * (of_b[i] + shift * y[i] + l);
         if (!std::isfinite(image)) { // maxima do not see a NaN
             return std::numeric_limits<double>::infinity();

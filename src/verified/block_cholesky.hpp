@@ -1,6 +1,6 @@
 #pragma once
-// Sparse Cholesky factorisation of H H^T - s I in blocks of 2 x 2, one block per pair of successive rows (the two
-// coordinates of a disk, or of the walls): private to the room.
+// Sparse Cholesky factorisation of H H^T - s I in blocks of 2 x 2, one block per pair of rows that follow each other in
+// the order of elimination (the two coordinates of a disk, or of the walls; of spheres any two): private to the room.
 
 #include "verified/inverse_bound.hpp"
 
@@ -12,7 +12,7 @@ namespace isostat {
 /// Left-looking, in double, round to nearest. It proves nothing by itself: statement V1 turns its success into a bound.
 class BlockCholesky {
   public:
-    /// The matrix to factorise; it must live as long as it is used. `order` is made (AMD) when it does not fit or lets
+    /// The matrix to factorise; it must live as long as it is used. `order` is made when it does not fit or lets
     /// the work grow too far. The memory of the last matrix is used again.
     void set(const sparse::Matrix<double>& h, FillOrder& order);
 
@@ -49,7 +49,7 @@ class BlockCholesky {
 
     const sparse::Matrix<double>* h_ = nullptr;
     std::size_t blocks_ = 0;
-    std::vector<int> position_;                 ///< of each block in the order
+    std::vector<int> position_;                 ///< of each row in the order; two make a block
     std::vector<Block> diagonal_;               ///< of H H^T, in the order
     std::vector<Pair> pairs_;                   ///< by contacts
     std::vector<int> column_start_, by_column_; ///< pairs by column

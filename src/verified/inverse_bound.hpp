@@ -27,8 +27,8 @@ struct InverseBound {
 
 /// An order of elimination of little fill, for the blocks of a Cholesky factorisation.
 struct FillOrder {
-    std::vector<int> blocks;
-    double work = 0; ///< of a factorisation in this order when it was made
+    std::vector<int> rows; ///< two by two they make a block
+    double work = 0;       ///< of a factorisation in this order when it was made
 };
 
 class BlockCholesky; // private to the room

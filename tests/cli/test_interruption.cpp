@@ -120,6 +120,18 @@ BOOST_AUTO_TEST_CASE(one_ctrl_c_ends_a_command_that_has_written_no_records) {
     }
 }
 
+BOOST_AUTO_TEST_CASE(verify_and_report_end_at_ctrl_c_with_a_line) {
+    const scratch::Folder folder;
+    const std::string pipe = folder.at("input"), said = folder.at("said");
+    BOOST_TEST_REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+    for (const char* command : {"verify", "report"}) {
+        const std::string line =
+            std::string("timeout -s INT 2 ") + ISOSTAT_PROGRAM + " " + command + " " + pipe + " 2>" + said;
+        BOOST_TEST(std::system(line.c_str()) != 0);
+        BOOST_TEST(contains(scratch::read(said), "isostat: stopped\n"), command);
+    }
+}
+
 BOOST_AUTO_TEST_CASE(resuming_a_finished_run_changes_nothing) {
     const scratch::Folder folder;
     const std::string scene = folder.at("s.toml");

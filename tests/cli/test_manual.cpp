@@ -18,7 +18,7 @@ std::set<std::string> options_of(const std::string& command) {
 /// What bash offers for the last of the words.
 std::set<std::string> offered(const std::string& words, int at) {
     const scratch::Folder folder;
-    scratch::write(folder / "completion", run({"--completion"}).out);
+    scratch::write(folder / "completion", run({"--completion", "bash"}).out);
     const std::string out = folder.at("out");
     const std::string line = "bash -c 'source " + folder.at("completion") + "; COMP_WORDS=(" + words +
                              "); COMP_CWORD=" + std::to_string(at) +
@@ -77,6 +77,35 @@ BOOST_AUTO_TEST_CASE(bash_completes_every_command_and_every_option) {
     }
     BOOST_TEST((offered("isostat run --res", 2) == std::set<std::string>{"--resume"}));
     BOOST_TEST(offered("isostat run sc", 2).empty()); // files: by bash itself
+    BOOST_TEST(
+        (offered("isostat export out --format \"\"", 4) == std::set<std::string>{"lammps-data", "xyz", "csv", "vtk"}));
+    BOOST_TEST((offered("isostat export out --format c", 4) == std::set<std::string>{"csv"}));
+    BOOST_TEST(offered("isostat export out -o c", 4).empty());
+}
+
+BOOST_AUTO_TEST_CASE(zsh_and_fish_have_every_command_option_and_value) {
+    const std::string zsh = run({"--completion", "zsh"}).out, fish = run({"--completion", "fish"}).out;
+    BOOST_TEST(zsh.starts_with("#compdef isostat\n"));
+    for (const std::string& command : all_commands()) {
+        BOOST_TEST(contains(fish, "-n __fish_use_subcommand -a " + command + " "), command);
+        const std::vector<std::string> row = matches(zsh, "\n        " + command + "\\) choices=\"([^\"]*)\"");
+        BOOST_TEST_REQUIRE(row.size() == 1U, command);
+        for (const std::string& option : options_of(command)) {
+            BOOST_TEST(contains(row[0] + " ", " " + option + " "), command << " " << option);
+            const std::string line = "'__fish_seen_subcommand_from " + command + "' -l " + option.substr(2);
+            BOOST_TEST(contains(fish, line), command << " " << option);
+        }
+    }
+    BOOST_TEST(contains(zsh, "\"export --format\") choices=\"lammps-data xyz csv vtk\""));
+    BOOST_TEST(contains(fish, "-l format -x -a 'lammps-data xyz csv vtk'"));
+    BOOST_TEST(run({"--completion", "tcsh"}).status == 64);
+    for (const auto& [shell, text] : {std::pair{"zsh", &zsh}, {"fish", &fish}}) { // where they are, they read it
+        const scratch::Folder folder;
+        scratch::write(folder / "completion", *text);
+        const std::string line =
+            std::string("! command -v ") + shell + " >/dev/null || " + shell + " -n " + folder.at("completion");
+        BOOST_TEST(std::system(line.c_str()) == 0, shell);
+    }
 }
 
 BOOST_AUTO_TEST_SUITE_END()

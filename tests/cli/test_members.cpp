@@ -71,6 +71,23 @@ BOOST_AUTO_TEST_CASE(report_takes_an_ensemble) {
         BOOST_TEST(fs::exists(many / seed(number) / "figures/report.txt"));
         BOOST_TEST(fs::exists(many / seed(number) / "figures/trajectory.html"));
     }
+    // The forces of all samples together: densities over bins of 1/4.
+    std::istringstream table(scratch::read(many / "figures/force_distribution.dat"));
+    double first = 0, last = 0, mean = 0;
+    for (std::string line; std::getline(table, line);) {
+        double centre = 0, of_first = 0, of_last = 0;
+        if (std::istringstream(line) >> centre >> of_first >> of_last) {
+            first += of_first / 4;
+            last += of_last / 4;
+            mean += centre * of_first / 4;
+        }
+    }
+    BOOST_TEST(first == 1, boost::test_tools::tolerance(1e-4)); // the file has six digits
+    BOOST_TEST(last == 1, boost::test_tools::tolerance(1e-4));
+    BOOST_TEST(mean == 1, boost::test_tools::tolerance(0.1)); // forces are over their mean
+    says(run({"report", many.string(), "--no-charts", "--contacts", "--quiet"}), 0, {});
+    BOOST_TEST(scratch::read(many / seed(1) / "figures/contacts_eq_000000.csv").starts_with("contact,i,j,mx,my"));
+    says(run({"ensemble", folder.at("s.toml"), "--samples", "3", "-o", many.string(), "--resume"}), 0, {"3 completed"});
     fs::remove(many / seed(2) / "run.json");
     expect(run({"report", many.string(), "--no-charts", "-o", folder.at("out")}), 65, {"seed 2", "not begun"});
     BOOST_TEST(fs::exists(folder / "out/seed_000003/report.txt")); // the others are reported

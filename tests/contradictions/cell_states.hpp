@@ -3,6 +3,8 @@
 
 #include "contradictions/cells.hpp"
 
+#include <isostat/core/error.hpp>
+
 namespace contradictions::detail {
 
 inline double a_few_ulps_from(double x, Random& random) {
@@ -25,45 +27,64 @@ inline std::vector<double> cell_radii(int disks, Random& random) {
 
 inline void draw_infinitesimal(State& state, Random& random) {
     state.load.infinitesimal.clear();
-    for (std::size_t k = 0; k < 2 * state.packing.radius.size(); ++k) {
+    for (std::size_t k = 0; k < state.packing.axes() * state.packing.radius.size(); ++k) {
         state.load.infinitesimal.push_back(random.integer(8) == 0 ? 0.0 : random.real(-1, 0.3));
     }
     isostat::balance(state.load.infinitesimal, state.packing.cell);
 }
 
-/// One more disk, in a void: it rests on two others, or on their images. \pre state at its vertex
+/// One more grain, in a void: it rests on two others, a sphere on three, or on their images. \pre state at its vertex
 inline bool add_rattler(State& state, Random& random) {
     const State before = state;
     const auto& p = before.packing;
+    const std::size_t axes = p.axes();
     const int count = p.disk_count();
     for (int tries = 0; tries < 60; ++tries) {
         const double r = p.min_radius() * random.real(0.1, 0.6);
-        Pile pair; // of the two that carry it
+        Pile below; // what carries it
         std::vector<Contact> contacts;
-        for (int side = 0; side < 2; ++side) {
+        for (std::size_t side = 0; side < axes; ++side) {
             const auto i = static_cast<std::size_t>(random.integer(count));
-            const int m = side == 1 && p.cell.periodic[0] ? random.integer(3) - 1 : 0;
-            const int k = side == 1 && p.cell.periodic[1] ? random.integer(3) - 1 : 0;
-            pair.radius.push_back(p.radius[i]);
-            pair.at.push_back(
-                {p.q[2 * i] + m * p.lattice(0, 0) + k * p.lattice(0, 1), p.q[2 * i + 1] + k * p.lattice(1, 1)});
-            contacts.push_back(isostat::pair_of(count, static_cast<int>(i),
-                                                {{static_cast<std::int8_t>(m), static_cast<std::int8_t>(k), 0}}));
+            isostat::Image m;
+            for (std::size_t a = 0; a < axes; ++a) {
+                m.m[a] = side > 0 && p.cell.periodic[a] ? static_cast<std::int8_t>(random.integer(3) - 1) : 0;
+            }
+            Place at{};
+            for (std::size_t a = 0; a < axes; ++a) {
+                at[a] = p.q[axes * i + a];
+                for (std::size_t b = a; b < axes; ++b) {
+                    at[a] += m.m[b] == 0 ? 0 : m.m[b] * p.lattice(a, b);
+                }
+            }
+            below.radius.push_back(p.radius[i]);
+            below.at.push_back(at);
+            contacts.push_back(isostat::pair_of(count, static_cast<int>(i), m));
         }
-        if (contacts[0] == contacts[1] || gap(pair, 0, pair.at[1], pair.radius[1]) > 2 * r) {
+        bool near = true;
+        for (std::size_t k = 1; k < axes; ++k) {
+            const bool again = std::find(contacts.begin(), contacts.begin() + static_cast<long>(k), contacts[k]) !=
+                               contacts.begin() + static_cast<long>(k);
+            near = near && !again && gap(below, 0, below.at[k], below.radius[k]) <= 2 * r;
+        }
+        if (!near) {
             continue;
         }
-        const auto place = resting_place(pair, 0, 1, r, random.integer(2) == 0 ? -1 : 1);
+        const auto beside = [&](std::size_t a) { return below.at[0][a] + random.real(-1, 1) * (below.radius[0] + r); };
+        const auto place = axes == 2 ? resting_place(below, 0, 1, r, random.integer(2) == 0 ? -1 : 1)
+                                     : resting_place(below, {0, 1, 2}, r, {beside(0), beside(1), beside(2)});
         if (!place) {
             continue;
         }
         state = before;
         state.packing.radius.push_back(r);
-        const std::array<double, 2> at{static_cast<double>((*place)[0]), static_cast<double>((*place)[1])};
-        state.packing.q.insert(state.packing.q.begin() + 2 * count, at.begin(), at.end());
+        std::vector<double> at;
+        for (std::size_t a = 0; a < axes; ++a) {
+            at.push_back(static_cast<double>((*place)[a]));
+        }
+        state.packing.q.insert(state.packing.q.begin() + static_cast<long>(axes) * count, at.begin(), at.end());
         state.contacts.insert(state.contacts.end(), contacts.begin(), contacts.end());
         std::sort(state.contacts.begin(), state.contacts.end());
-        state.load.infinitesimal.insert(state.load.infinitesimal.end(), {0, 0});
+        state.load.infinitesimal.insert(state.load.infinitesimal.end(), axes, 0);
         const Truth truth(state);
         if (truth.known && (truth.others.empty() || truth.others.front().gap > 0)) {
             return true;
@@ -75,21 +96,22 @@ inline bool add_rattler(State& state, Random& random) {
 
 /// The shear at which the force of one contact vanishes, or a few ulps beside it.
 inline void shear_to_the_end(State& state, const Truth& truth, Random& random) {
+    const auto tilt = static_cast<std::size_t>(random.integer(state.packing.dimension == 2 ? 1 : 3));
     State sheared = state;
-    sheared.load.shear[0] += 1;
+    sheared.load.shear[tilt] += 1;
     const Truth other(sheared);
     const auto l = static_cast<std::size_t>(random.integer(static_cast<int>(state.contacts.size())));
     const Real rate = other.force[l] - truth.force[l];
     if (abs(rate) > Real(1e-3)) {
-        const Real at = Real(state.load.shear[0]) - truth.force[l] / rate;
-        state.load.shear[0] = a_few_ulps_from(static_cast<double>(at), random);
+        const Real at = Real(state.load.shear[tilt]) - truth.force[l] / rate;
+        state.load.shear[tilt] = a_few_ulps_from(static_cast<double>(at), random);
     }
 }
 
 inline void stress_to_the_end(State& state, const Truth& truth, Random& random) {
     const End& end = random.integer(2) == 0 ? truth.low : truth.high;
     if (!end.unbounded && abs(end.stress) > 1e-30) {
-        state.load.stress[1] = a_few_ulps_from(static_cast<double>(end.stress), random);
+        state.load.set_loaded_stress(a_few_ulps_from(static_cast<double>(end.stress), random));
     }
 }
 
@@ -136,8 +158,8 @@ inline std::optional<State> in_cell_of_fixed_length(Random& random) {
     return in_small_cell(options, random);
 }
 
-inline std::optional<State> cell_at_threshold(CellKind kind, Random& random) {
-    auto state = in_small_cell(kind, random);
+/// Moved to a threshold, or near it.
+inline std::optional<State> at_threshold(std::optional<State> state, Random& random) {
     if (!state) {
         return {};
     }
@@ -145,10 +167,11 @@ inline std::optional<State> cell_at_threshold(CellKind kind, Random& random) {
     if (!truth.known) {
         return {};
     }
+    const int axes = state->packing.dimension;
     switch (random.integer(6)) {
     case 0: stress_to_the_end(*state, truth, random); break;
     case 1:
-        if (kind == CellKind::tilted) {
+        if (state->packing.cell.tilt_moves[0]) {
             shear_to_the_end(*state, truth, random);
         }
         break;
@@ -157,14 +180,59 @@ inline std::optional<State> cell_at_threshold(CellKind kind, Random& random) {
             x = x == 0 ? 0 : a_few_ulps_from(x, random);
         }
         break;
-    case 3: state->load.stress[static_cast<std::size_t>(random.integer(2))] = 0; break;
+    case 3: state->load.stress[static_cast<std::size_t>(random.integer(axes))] = 0; break;
     case 4:
-        state->load.reference_length = {random.real(0.5, 3), random.real(0.5, 3)};
+        for (int a = 0; a < axes; ++a) {
+            state->load.reference_length[static_cast<std::size_t>(a)] = random.real(0.5, 3);
+        }
         stress_to_the_end(*state, Truth(*state), random);
         break;
     default: break;
     }
     return state;
+}
+
+inline std::optional<State> cell_at_threshold(CellKind kind, Random& random) {
+    return at_threshold(in_small_cell(kind, random), random);
+}
+
+/// Forty packings of two to six spheres in cells of a kind: to prepare one for each state would take most of the time.
+inline const std::vector<State>& prepared_spheres(isostat::PreparedCell kind) {
+    static std::map<isostat::PreparedCell, std::vector<State>> made;
+    std::vector<State>& all = made[kind];
+    for (std::uint64_t seed = 1; all.size() < 40; ++seed) {
+        Random random(seed);
+        isostat::PreparationOptions options;
+        options.dimension = 3;
+        options.radii = cell_radii(2 + random.integer(5), random);
+        options.cell = kind;
+        options.seed = seed;
+        isostat::PreparationReport report;
+        try {
+            if (const auto prepared = isostat::prepare(options, report); prepared.ok()) {
+                all.push_back(prepared.value());
+            }
+        } catch (const isostat::Error&) { // too narrow for the largest
+        }
+    }
+    return all;
+}
+
+/// One of them, described otherwise; one in two has a rattler, and every other one of these is pinned.
+inline std::optional<State> spheres_at_threshold(isostat::PreparedCell kind, Random& random) {
+    State state = prepared_spheres(kind)[static_cast<std::size_t>(random.integer(40))];
+    describe_otherwise(state, random);
+    if (!polish(state)) {
+        return {};
+    }
+    if (random.integer(2) == 0 && add_rattler(state, random) && random.integer(2) == 0) {
+        state.packing.cell.pin = state.packing.disk_count() - 1;
+    }
+    if (random.integer(3) != 0) {
+        isostat::snap_to_grid(state.packing); // a run asks for that
+    }
+    draw_infinitesimal(state, random);
+    return at_threshold(std::move(state), random);
 }
 
 /// Cells whose doubles touch exactly, so that crafted inspection speaks of them: one disk in a rectangle, in a channel,

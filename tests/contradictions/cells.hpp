@@ -211,16 +211,25 @@ inline std::optional<State> make_cell(const CellOptions& options, Random& random
     return state;
 }
 
-/// Disks in the cell, but for some that are a period beside it, and another pin: the same packing.
+/// Grains in the cell, but for some that are a period beside it, and another pin: the same packing.
 inline void describe_otherwise(State& state, Random& random) {
     const auto& p = state.packing;
+    const std::size_t axes = p.axes();
     std::vector<isostat::Image> by;
     for (std::size_t i = 0; i < p.radius.size(); ++i) {
-        const double up = p.q[2 * i + 1] / p.lattice(1, 1);
-        const double across = (p.q[2 * i] - up * p.lattice(0, 1)) / p.lattice(0, 0);
-        const auto beside = [&random] { return random.integer(4) == 0 ? random.integer(3) - 1 : 0; };
-        const int m = p.cell.periodic[0] ? beside() - static_cast<int>(std::floor(across)) : 0;
-        by.push_back(cells::image(m, p.cell.periodic[1] ? beside() - static_cast<int>(std::floor(up)) : 0));
+        std::array<double, isostat::most_axes> periods{};
+        isostat::Image image;
+        for (std::size_t a = axes; a-- > 0;) {
+            periods[a] = p.q[axes * i + a];
+            for (std::size_t b = a + 1; b < axes; ++b) {
+                periods[a] -= periods[b] * p.lattice(a, b);
+            }
+            periods[a] /= p.lattice(a, a);
+            const int beside = random.integer(4) == 0 ? random.integer(3) - 1 : 0;
+            image.m[a] =
+                p.cell.periodic[a] ? static_cast<std::int8_t>(beside - static_cast<int>(std::floor(periods[a]))) : 0;
+        }
+        by.push_back(image);
     }
     state = cells::with_other_representatives(std::move(state), by);
     std::sort(state.contacts.begin(), state.contacts.end());

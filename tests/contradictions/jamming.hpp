@@ -1,5 +1,5 @@
 #pragma once
-// Whether the disks of a cell that carry a force are jammed, by linear programmes in double, against what `inspect`
+// Whether the grains of a cell that carry a force are jammed, by linear programmes in double, against what `inspect`
 // says of the state and what the exact packing says.
 
 #include "contradictions/exact.hpp"
@@ -17,10 +17,10 @@ using isostat::Verdict;
 
 namespace detail {
 
-/// Velocities of the disks that carry a force, the first one at rest, and of the three lengths of the cell.
+/// Velocities of the grains that carry a force, the first one at rest, and of the lengths and tilts of the cell.
 class Motions {
   public:
-    Motions(const State& state, const Truth& truth) : truth_(truth) {
+    Motions(const State& state, const Truth& truth) : truth_(truth), axes_(state.packing.dimension) {
         const auto& contacts = state.contacts;
         std::vector<bool> carries(state.packing.radius.size(), false);
         for (std::size_t l = 0; l < contacts.size(); ++l) {
@@ -31,10 +31,10 @@ class Motions {
         }
         for (std::size_t i = 0; i < carries.size(); ++i) {
             if (carries[i]) {
-                column_[static_cast<int>(i)] = 2 * static_cast<int>(column_.size()) - 2;
+                column_[static_cast<int>(i)] = axes_ * (static_cast<int>(column_.size()) - 1);
             }
         }
-        cell_ = 2 * static_cast<int>(column_.size()) - 2;
+        cell_ = axes_ * (static_cast<int>(column_.size()) - 1);
         const auto touches = [&](const Contact& c) {
             if (c.kind == ContactKind::disk_disk && column_.contains(c.i) && column_.contains(c.j)) {
                 touching_.push_back(c);
@@ -46,12 +46,13 @@ class Motions {
                 touches(other.pair);
             }
         }
-        const std::size_t walls = 2 * state.packing.radius.size();
-        length_ = {static_cast<double>(truth.q[walls]), static_cast<double>(truth.q[walls + 1])};
+        for (int a = 0; a < axes_; ++a) {
+            length_.push_back(static_cast<double>(truth.q[state.packing.length_at(a)]));
+        }
     }
     [[nodiscard]] int disks() const { return static_cast<int>(column_.size()); }
 
-    /// No motion but translations keeps all gaps >= 0; `strains`: of disks and cell, while the area does not grow.
+    /// No motion but translations keeps all gaps >= 0; `strains`: of disks and cell, while the volume does not grow.
     [[nodiscard]] Verdict jammed(bool strains) const {
         const Eigen::MatrixXd rows = rates(strains);
         if (rows.cols() == 0) {
@@ -76,26 +77,34 @@ class Motions {
     }
 
   private:
-    /// Per touching pair how fast its gap grows; with strains also how fast the area shrinks.
+    /// Per touching pair how fast its gap grows; with strains also how fast the volume shrinks, relatively.
     [[nodiscard]] Eigen::MatrixXd rates(bool strains) const {
         const auto pairs = static_cast<Eigen::Index>(touching_.size());
-        Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(pairs + (strains ? 1 : 0), cell_ + (strains ? 3 : 0));
+        const int tilts = axes_ * (axes_ - 1) / 2;
+        Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(pairs + (strains ? 1 : 0), cell_ + (strains ? axes_ + tilts : 0));
         for (Eigen::Index l = 0; l < pairs; ++l) {
             const Contact& c = touching_[static_cast<std::size_t>(l)];
             const auto r = truth_.between(c);
-            const double size = std::hypot(static_cast<double>(r[0]), static_cast<double>(r[1]));
-            const Eigen::RowVector2d n(static_cast<double>(r[0]) / size, static_cast<double>(r[1]) / size);
+            Eigen::RowVectorXd n(axes_);
+            for (int a = 0; a < axes_; ++a) {
+                n(a) = static_cast<double>(r[static_cast<std::size_t>(a)]);
+            }
+            n.normalize();
             for (const auto& [disk, sign] : {std::pair(c.j, 1), std::pair(c.i, -1)}) {
                 if (const int column = column_.at(disk); column >= 0) {
-                    rows.block<1, 2>(l, column) += sign * n;
+                    rows.block(l, column, 1, axes_) += sign * n;
                 }
             }
-            if (strains) {
-                rows.block<1, 3>(l, cell_) << n(0) * c.image.m[0], n(1) * c.image.m[1], n(0) * c.image.m[1];
+            for (int b = 0; strains && b < axes_; ++b) {
+                const int m = c.image.m[static_cast<std::size_t>(b)];
+                rows(l, cell_ + b) = n(b) * m;
+                for (int a = 0; a < b; ++a) {
+                    rows(l, cell_ + axes_ + a + b * (b - 1) / 2) = n(a) * m;
+                }
             }
         }
-        if (strains) {
-            rows.block<1, 3>(pairs, cell_) << -1 / length_[0], -1 / length_[1], 0;
+        for (int a = 0; strains && a < axes_; ++a) {
+            rows(pairs, cell_ + a) = -1 / length_[static_cast<std::size_t>(a)];
         }
         return rows;
     }
@@ -140,10 +149,11 @@ class Motions {
     }
 
     const Truth& truth_;
-    std::map<int, int> column_; ///< of disks that carry a force; that of the first one is -2
+    int axes_;
+    std::map<int, int> column_; ///< of grains that carry a force; that of the first one is below 0
     int cell_ = 0;              ///< first column of the cell
     std::vector<Contact> touching_;
-    std::array<double, 2> length_{};
+    std::vector<double> length_;
 };
 
 } // namespace detail

@@ -408,6 +408,10 @@ inline std::vector<StateClass> state_classes() {
         {"spheres: infinitesimal loads decide", [](Random& r) { return infinitesimal_decides(r, 3); }},
         {"spheres: true stresses", [](Random& r) { return true_stresses(r, 3); }},
         {"spheres: held coordinates", [](Random& r) { return held_coordinate(r, 3); }, false},
+        {"spheres in orthorhombic cells",
+         [](Random& r) { return spheres_at_threshold(isostat::PreparedCell::rectangular, r); }},
+        {"spheres in triclinic cells",
+         [](Random& r) { return spheres_at_threshold(isostat::PreparedCell::tilted, r); }},
     };
 }
 

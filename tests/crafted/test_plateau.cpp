@@ -13,6 +13,7 @@
 namespace {
 
 using namespace isostat::crafted;
+namespace crafted = isostat::crafted;
 using isostat::Packing;
 using isostat::Verdict;
 

@@ -76,9 +76,29 @@ sparse::Matrix<std::uint64_t> residues(const Dense<char>& pattern, int cols, Ran
     return compress(dense, cols, [&](std::size_t i, std::size_t j) { return pattern[i][j] != 0; });
 }
 
+sparse::Matrix<std::uint64_t> first_rows(const sparse::Matrix<std::uint64_t>& matrix, int count) {
+    sparse::Matrix<std::uint64_t> out{count, matrix.cols, {0}, {}, {}};
+    for (std::size_t j = 0; j < static_cast<std::size_t>(matrix.cols); ++j) {
+        for (auto e = static_cast<std::size_t>(matrix.start[j]); e < static_cast<std::size_t>(matrix.start[j + 1]);
+             ++e) {
+            if (matrix.row[e] < count) {
+                out.row.push_back(matrix.row[e]);
+                out.value.push_back(matrix.value[e]);
+            }
+        }
+        out.start.push_back(static_cast<int>(out.row.size()));
+    }
+    return out;
+}
+
 void check_mod_p(const sparse::Matrix<std::uint64_t>& matrix) {
     const int expected = dense_rank(matrix);
     BOOST_TEST(exact::rank(matrix) == expected);
+    const std::array ends{matrix.rows / 2, matrix.rows - matrix.rows / 4, matrix.rows};
+    const std::vector<int> ranks = exact::ranks_of_first_rows(matrix, ends);
+    for (std::size_t k = 0; k < ends.size(); ++k) {
+        BOOST_TEST(ranks[k] == dense_rank(first_rows(matrix, ends[k])));
+    }
     BOOST_TEST(exact::independent_columns(matrix).size() == static_cast<std::size_t>(expected));
     const sparse::Ordering ordering(matrix);
     if (matrix.rows == matrix.cols && ordering.structurally_regular()) {

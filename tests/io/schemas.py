@@ -145,6 +145,22 @@ def check_run(scene, folder, out):
     return seen
 
 
+def check_inspections(states, folder):
+    """What `inspect --json` prints of each state; keys that it prints, and how often."""
+    seen = {}
+    for path in states:
+        document = json.loads(isostat("inspect", path, "--json", cwd=folder).stdout)
+        fits("inspection", document, f"inspect {path.name}")
+        for key in document:
+            seen[key] = seen.get(key, 0) + 1
+    altered = {**document, "colour": 1}
+    check(errors("inspection", altered), "the inspection schema takes an unknown key")
+    for key in [k for k, count in seen.items() if count == len(states)]:
+        part = {k: v for k, v in document.items() if k != key}
+        check(errors("inspection", part) or key not in schemas["inspection.schema.json"]["required"], f"the inspection schema needs no {key}")
+    return set(seen)
+
+
 def main():
     for path in [*project.glob("tests/data/**/*.json"), *project.glob("examples/**/*.json")]:
         document = json.loads(path.read_text())
@@ -160,7 +176,13 @@ def main():
         for file in ("equal-pair", "two-forces", "two-gaps"):
             for name, cap in (("first", "max_choices = 0\n"), ("choose", "")):
                 seen |= check_run(f'[packing]\nfile = "{project}/examples/ties/{file}.json"\n[run]\nties = "choose"\n{cap}' + programme, folder, file + name)
-        wanted = {"state", "certificate", "run", "summary", "event", "witness", "perturbed", "certificate", "held_at"}
+        states = [project / "tests/data/definition/01-overlap.json", *folder.glob("*/states/last.json")]
+        states += [path for path in sorted((project / "examples").glob("*/*.json")) if json.loads(path.read_text()).get("format") == "isostat-state"]
+        printed = check_inspections(states, folder)
+        check({"cell", "disks", "spheres", "contact_stress", "left_at_zero"} <= printed, f"no state had all of {printed}")
+        seen.add("inspection")
+
+        wanted = {"inspection", "state", "certificate", "run", "summary", "event", "witness", "perturbed", "certificate", "held_at"}
         check(seen >= wanted, f"no run wrote {wanted - seen}")
         check(set(schemas) == {f"{s}.schema.json" for s in wanted - {"perturbed", "held_at"}}, f"schemas that no run was held to: {set(schemas)}")
 

@@ -218,8 +218,15 @@ BOOST_AUTO_TEST_CASE(foreign_cells_that_are_none_are_named) {
     const auto lattice = [](const std::string& vectors) {
         return "1\nLattice=\"" + vectors + "\" Properties=pos:R:3:radius:R:1\n0 0 0 0.5\n";
     };
-    expect_bad_input([&] { (void)read_foreign(lattice("-2 0 0 0 2 0 0 0 1")); }, {"file:2", "positive lengths"});
-    expect_bad_input([&] { (void)read_foreign(lattice("2 1 0 0 2 0 0 0 1")); }, {"file:2", "a first vector along x"});
+    BOOST_TEST(read_foreign(lattice("-2 0 0 0 2 0 0 0 1")).packing.length(0) == 2);
+    const Packing turned = read_foreign(lattice("2 1 0 0 2 0 0 0 1")).packing;
+    BOOST_TEST(std::abs(turned.length(0) - std::sqrt(5.0)) < 1e-15);
+    BOOST_TEST(std::abs(turned.lattice(0, 1) - 2 / std::sqrt(5.0)) < 1e-15);
+    BOOST_TEST(std::abs(turned.length(1) - 4 / std::sqrt(5.0)) < 1e-15);
+    for (const char* out : {"2 0 1 0 2 0 0 0 1", "2 0 0 0 2 0 1 0 1"}) {
+        expect_bad_input([&] { (void)read_foreign(lattice(out)); }, {"file:2", "in the plane of the disks"});
+    }
+    expect_bad_input([&] { (void)read_foreign(lattice("2 0 0 4 0 0 0 0 1")); }, {"period 0 along y"});
     ForeignOptions walls;
     walls.walls = ForeignWalls::box;
     expect_bad_input([&] { (void)read_foreign(lattice("2 0 0 0 2 0 0 0 1"), walls); }, {"walls or a box were stated"});

@@ -1,11 +1,17 @@
 // Packings of other programs: every format, what each says of sizes, walls and boundaries, and what is refused.
 
+#include "certificate/averages.hpp"
 #include "compare/frame_file.hpp"
 #include "io/bad_input.hpp"
 #include "support/scratch.hpp"
 
 #include <isostat/io/foreign.hpp>
 #include <isostat/io/state_file.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
 
 namespace {
 
@@ -151,7 +157,9 @@ BOOST_AUTO_TEST_CASE(whether_a_size_is_radius_or_diameter_is_never_guessed) {
     BOOST_TEST(says(read(data_file), "diameters, as atom style sphere defines"));
     expect_bad_input([&] { read(data_file, stated(SizeMeaning::radius, "diameter")); }, {"diameter by definition"});
     expect_bad_input([&] { read(scratch::replaced(data_file, " # sphere", "")); }, {"FILE:10", "Atoms # sphere"});
-    expect_bad_input([&] { read(scratch::replaced(data_file, "# sphere", "# atomic")); }, {"style 'atomic'"});
+    expect_bad_input([&] { read(scratch::replaced(data_file, "# sphere", "# atomic")); },
+                     {"no column states the size"});
+    expect_bad_input([&] { read(scratch::replaced(data_file, "# sphere", "# line")); }, {"style 'line'"});
 }
 
 BOOST_AUTO_TEST_CASE(periodic_boundaries_are_refused_unless_the_user_takes_them_for_open) {
@@ -238,7 +246,9 @@ BOOST_AUTO_TEST_CASE(what_does_not_fit_is_refused_with_line_value_and_what_was_e
     refused(replaced(dump, "NUMBER OF ATOMS\n2", "NUMBER OF ATOMS\n99999999999"), {"number of atoms"});
     refused(replaced(dump, "ff ff pp\n-1 3", "xy xz yz ff ff pp\n-1 3"), {"bounds of the box"});
     refused(replaced(dump, "ff ff pp\n-1 3", "ff fx pp\n-1 3"), {"'fx'", "p f s m"});
-    refused(replaced(dump, "type x y z radius", "type x y z radius radius"), {"'radius' is given twice"});
+    refused(replaced(replaced(dump, "type x y z radius", "type x y z radius radius"), "2 1 2 1.5 0 0.75",
+                     "2 1 2 1.5 0 0.75 0.7"),
+            {"FILE:20", "'radius' is given twice", "'0.7'", "'0.75'"});
     refused(replaced(dump, "-1 3\n", "3 -1\n"), {"upper bound"});
     refused(replaced(data_file, "2 atoms", "3 atoms"), {"FILE:15", "7 values"});
     refused(replaced(data_file, "2 atoms", "2 atoms\n2 atoms"), {"FILE:4", "once"});
@@ -255,14 +265,17 @@ BOOST_AUTO_TEST_CASE(what_does_not_fit_is_refused_with_line_value_and_what_was_e
     refused("x,y,r\n1,2,1e999\n", {"finite"});
 }
 
-BOOST_AUTO_TEST_CASE(columns_and_header_lines_come_once_whether_they_are_asked_for_or_not) {
+BOOST_AUTO_TEST_CASE(columns_that_are_needed_and_header_lines_come_once_or_agree) {
     const auto refused = [&](const std::string& text, const std::string& where, const std::string& what) {
         expect_bad_input([&] { read(text); }, {where, what});
     };
-    refused("x,y,r,name,name\n1,1,1,a,b\n", "FILE:1", "'name' is given twice");
-    refused("# x y r q q\n1 1 1 0 0\n", "FILE:1", "'q' is given twice");
-    refused(replaced(dump, "id type x y z radius", "id type x y z radius type"), "FILE:19", "'type' is given twice");
-    refused(replaced(xyz, "radius:R:1", "radius:R:1:pos.0:R:1"), "FILE:2", "'pos.0' is given twice");
+    for (const char* text : {"x,y,r,name,name\n1,1,1,a,b\n", "# x y r q q\n1 1 1 0 1\n", "x,y,r,x\n1,1,1,1\n"}) {
+        BOOST_TEST(read(text).packing.disk_count() == 1, text);
+    }
+    refused("x,y,r,x\n1,1,1,2\n", "FILE:2", "'x' is given twice");
+    refused("id,x,y,r,id\n1,1,1,1,2\n", "FILE:2", "'id' is given twice");
+    refused(replaced(replaced(xyz, "radius:R:1", "radius:R:1:pos.0:R:1"), "A 0 1.25 0 0.25", "A 0 1.25 0 0.25 1"),
+            "FILE:3", "'pos.0' is given twice");
     refused(replaced(dump, "ITEM: NUMBER OF ATOMS\n1", "ITEM: NUMBER OF ATOMS\n2\nITEM: NUMBER OF ATOMS\n1"), "FILE:5",
             "once");
     refused(replaced(data_file, "-0.5 0.5 zlo zhi", "-0.5 0.5 zlo zhi\n-0.5 0.5 zlo zhi"), "FILE:9", "once");
@@ -271,7 +284,38 @@ BOOST_AUTO_TEST_CASE(columns_and_header_lines_come_once_whether_they_are_asked_f
     options.columns = {"x", "y", "r", "-", "-"};
     BOOST_TEST(read("1 1 1 0 0\n", options).packing.disk_count() == 1);
     options.columns = {"x", "y", "r", "z", "z"};
-    expect_bad_input([&] { read("1 1 1 0 0\n", options); }, {"FILE", "'z' is given twice"});
+    expect_bad_input([&] { read("1 1 1 0 1\n", options); }, {"FILE:1", "'z' is given twice"});
+}
+
+BOOST_AUTO_TEST_CASE(rows_that_are_counted_have_their_number_in_the_file) {
+    ForeignOptions options;
+    options.first_id = 1;
+    const std::string rows = "id,type,x,y,r\n7,1,1,1,1\n8,2,3,1,1\n9,3,5,1,1\n";
+    BOOST_TEST(read(rows, options).ids == (std::vector<long>{1, 2, 3}));
+    options.select = RowsWith{"type", {"1", "3"}};
+    BOOST_TEST(read(rows, options).ids == (std::vector<long>{1, 3}));
+    options.first_id.reset();
+    BOOST_TEST(read(rows, options).ids == (std::vector<long>{7, 9}));
+    options.fixed = RowsWith{"type", {"3"}};
+    BOOST_TEST(read(rows, options).packing.fixed == (std::vector<unsigned char>{0, 1}));
+    options.select = RowsWith{"type", {"4"}};
+    expect_bad_input([&] { read(rows, options); }, {"no row has '4'"});
+}
+
+BOOST_AUTO_TEST_CASE(scaled_coordinates_of_a_turned_cell) {
+    const std::string head = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS abc origin pp pp pp\n"
+                             "0 2 0 1\n-3 0 0 1\n0 0 1 0\nITEM: ATOMS id ";
+    ForeignOptions cells;
+    cells.cells = true;
+    const Packing scaled = read(head + "xs ys zs radius\n1 0.25 0.5 0 0.5\n", cells).packing;
+    const Packing placed = read(head + "x y z radius\n1 -0.5 1.5 0 0.5\n", cells).packing; // (1, 1) + a/4 + b/2
+    for (std::size_t k = 0; k < placed.q.size(); ++k) {
+        BOOST_TEST(std::abs(scaled.q[k] - placed.q[k]) < 1e-15);
+    }
+    BOOST_TEST(placed.length(0) == 2);
+    BOOST_TEST(placed.length(1) == 3);
+    BOOST_TEST(std::abs(placed.q[0] - 0.5) < 1e-15);
+    BOOST_TEST(std::abs(placed.q[1] - 1.5) < 1e-15);
 }
 
 BOOST_AUTO_TEST_CASE(integers_of_files_are_written_as_integers) {
@@ -311,11 +355,13 @@ BOOST_AUTO_TEST_CASE(a_first_row_that_is_no_row_of_names_is_a_disk) {
     ForeignOptions columns;
     columns.columns = {"x", "y", "r"};
     const std::string rest = "\n0.5 0.5 0.5\n1.5 0.5 0.5\n";
-    for (const std::string bad : {"nan", "NaN", "-inf", "0.5D0", "1e400", "NA", "--1", "0x1p-1"}) {
+    for (const std::string bad : {"nan", "NaN", "-inf", "0.5D", "1e400", "NA", "--1", "0x1p-1", "1D2D3", "d5"}) {
         expect_bad_input([&] { (void)read(bad + " 0.5 0.5" + rest, columns); }, {"FILE:1:", "x of disk 0", "finite"});
         expect_bad_input([&] { (void)read("# x y r\n0.5 " + bad + " 0.5" + rest); },
                          {"FILE:2:", "y of disk 0", bad, "finite"});
     }
+    BOOST_TEST(read("5D-1 0.5 0.5" + rest, columns).packing.q[0] == 0.5); // Fortran
+    BOOST_TEST(read("5.0d+01 0.5 0.5" + rest, columns).packing.q[0] == 50.0);
     // Names are named, and the stated ones count.
     const ForeignPacking two = read("px py rad" + rest, columns);
     BOOST_TEST(two.packing.radius.size() == 2U);
@@ -338,6 +384,18 @@ BOOST_AUTO_TEST_CASE(what_is_written_for_other_programs_is_read_bit_for_bit) {
     same(xyz_text(state.packing, state.packing.q), "xyz");
     options.box = {0, state.packing.length(0), 0, state.packing.length(1)};
     same(csv_text(state.packing), "table");
+    // With the contacts of each disk: sums over pairs count twice, those of walls once.
+    const std::vector<int> contacts = contacts_of_grains(state);
+    const auto walls = std::count_if(state.contacts.begin(), state.contacts.end(),
+                                     [](const Contact& c) { return c.kind != ContactKind::disk_disk; });
+    BOOST_TEST(std::accumulate(contacts.begin(), contacts.end(), 0) ==
+               2 * static_cast<int>(state.contacts.size()) - walls);
+    same(csv_text(state.packing, contacts), "table");
+    options.box.clear();
+    same(xyz_text(state.packing, state.packing.q, contacts), "xyz");
+    const std::string last = fmt::format(",{}\n", contacts.back());
+    BOOST_TEST(csv_text(state.packing, contacts).ends_with(last));
+    BOOST_TEST(csv_text(state.packing, contacts).find("\nid,x,y,r,contacts\n") != std::string::npos);
 }
 
 BOOST_AUTO_TEST_CASE(dumps_of_pairs_have_frames_and_named_columns) {
@@ -349,8 +407,8 @@ BOOST_AUTO_TEST_CASE(dumps_of_pairs_have_frames_and_named_columns) {
         scratch::write(folder / "p.dump", text);
         std::vector<std::tuple<int, int, double>> rows;
         for (const compare::PairForce& row :
-             compare::read_local_dump(folder / "p.dump", {"i", "j", "f"}, {9, 8, 7}, frame)) {
-            rows.emplace_back(row.i, row.j, row.force);
+             compare::read_local_dump(folder / "p.dump", {"i", "j", {"f"}}, {9, 8, 7}, frame)) {
+            rows.emplace_back(row.i, row.j, row.force[0]);
         }
         return rows;
     };

@@ -177,7 +177,7 @@ template <class Real> class TruthIn {
     }
     [[nodiscard]] bool moves(std::size_t coordinate) const;
     [[nodiscard]] bool can_move(const Contact& pair) const;
-    /// Images of all pairs that can be the nearest, those that overlap among them. Of disks.
+    /// Images of all pairs that can be the nearest, those that overlap among them.
     [[nodiscard]] std::vector<Contact> near_images() const;
     void find_dofs();
     bool newton();
@@ -395,38 +395,60 @@ template <class Real> std::vector<Contact> TruthIn<Real>::near_images() const {
     if (!p.cell.any()) {
         return {};
     }
-    const auto at = [this](std::size_t k) { return static_cast<double>(q[k]); };
-    const double lx = at(wall(0));
-    const double ly = at(wall(1));
-    const double tilt = at(wall(2));
-    // |r| below this for one image at least of any disk and its own; a height of the cell is det A over a side.
-    const double reach = 2 * p.max_radius() + 2 * (p.cell.periodic[0] ? lx : std::hypot(tilt, ly));
-    const int across = p.cell.periodic[0] ? static_cast<int>(reach / (lx * ly / std::hypot(tilt, ly))) + 1 : 0;
-    const int up = p.cell.periodic[1] ? static_cast<int>(reach / ly) + 1 : 0;
+    const std::size_t d = axes();
+    // The lattice (upper triangle) and its inverse, whose rows are one over the heights of the cell long.
+    Eigen::Matrix3d lattice = Eigen::Matrix3d::Identity();
+    double reach = 2 * p.max_radius(); // |r| is below it for one image at least of any disk and its own
+    for (std::size_t b = 0; b < d; ++b) {
+        const auto column = static_cast<Eigen::Index>(b);
+        for (std::size_t a = 0; a <= b; ++a) {
+            lattice(static_cast<Eigen::Index>(a), column) =
+                static_cast<double>(q[a == b ? wall(static_cast<int>(a)) : tilt(a, b)]);
+        }
+        reach += p.cell.periodic[b] ? lattice.col(column).norm() : 0;
+    }
+    const Eigen::Matrix3d inverse = lattice.inverse();
+    std::array<int, most_axes> most{0, 0, 0}; // images on either side
+    for (std::size_t a = 0; a < d; ++a) {
+        most[a] =
+            p.cell.periodic[a] ? static_cast<int>(reach * inverse.row(static_cast<Eigen::Index>(a)).norm()) + 1 : 0;
+    }
+    const auto centre = [&](int i) {
+        Eigen::Vector3d x = Eigen::Vector3d::Zero();
+        for (std::size_t a = 0; a < d; ++a) {
+            x[static_cast<Eigen::Index>(a)] = static_cast<double>(q[of_disk(i) + a]);
+        }
+        return x;
+    };
     double smallest = HUGE_VAL;
+    const auto visit = [&](int i, int j, const Eigen::Vector3d& apart, const std::array<int, most_axes>& m) {
+        Image image;
+        Eigen::Vector3d r = apart;
+        for (std::size_t a = 0; a < d; ++a) {
+            image.m[a] = static_cast<std::int8_t>(m[a]);
+            r += m[a] * lattice.col(static_cast<Eigen::Index>(a));
+        }
+        const Contact pair(ContactKind::disk_disk, i, j, image);
+        if (i == j && !(pair.image > Image{})) {
+            return;
+        }
+        const double gap = r.norm() - p.radius[static_cast<std::size_t>(i)] - p.radius[static_cast<std::size_t>(j)];
+        const bool listed = std::find(state_->contacts.begin(), state_->contacts.end(), pair) != state_->contacts.end();
+        smallest = !listed && can_move(pair) ? std::min(smallest, gap) : smallest;
+        found.emplace_back(gap, pair);
+    };
     for (int i = 0; i < p.disk_count(); ++i) {
         for (int j = i; j < p.disk_count(); ++j) {
-            const auto x = static_cast<std::size_t>(2 * i);
-            const auto y = static_cast<std::size_t>(2 * j);
-            const double down = p.cell.periodic[1] ? std::round((at(y + 1) - at(x + 1)) / ly) : 0;
-            const double left =
-                p.cell.periodic[0] ? std::round((at(y) - at(x) - tilt * (at(y + 1) - at(x + 1)) / ly) / lx) : 0;
-            for (int m = -across; m <= across; ++m) {
-                for (int k = -up; k <= up; ++k) {
-                    const Contact pair(ContactKind::disk_disk, i, j,
-                                       {{static_cast<std::int8_t>(m - left), static_cast<std::int8_t>(k - down), 0}});
-                    if (i == j && !(pair.image > Image{})) {
-                        continue;
+            const Eigen::Vector3d apart = centre(j) - centre(i), periods = inverse * apart;
+            std::array<int, most_axes> nearby{0, 0, 0};
+            for (std::size_t a = 0; a < d; ++a) {
+                nearby[a] = most[a] > 0 ? -static_cast<int>(std::round(periods[static_cast<Eigen::Index>(a)])) : 0;
+            }
+            for (int m = -most[0]; m <= most[0]; ++m) {
+                for (int k = -most[1]; k <= most[1]; ++k) {
+                    for (int l = -most[2]; l <= most[2]; ++l) {
+                        visit(i, j, apart, {nearby[0] + m, nearby[1] + k, nearby[2] + l});
                     }
-                    const auto& c = pair.image.m;
-                    const double dx = at(y) - at(x) + c[0] * lx + c[1] * tilt;
-                    const double dy = at(y + 1) - at(x + 1) + c[1] * ly;
-                    const double gap = std::hypot(dx, dy) - p.radius[static_cast<std::size_t>(i)] -
-                                       p.radius[static_cast<std::size_t>(j)];
-                    const bool listed =
-                        std::find(state_->contacts.begin(), state_->contacts.end(), pair) != state_->contacts.end();
-                    smallest = !listed && can_move(pair) ? std::min(smallest, gap) : smallest;
-                    found.emplace_back(gap, pair);
                 }
             }
         }

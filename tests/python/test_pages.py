@@ -3,8 +3,13 @@
 import ast
 import importlib.util
 import os
+import pathlib
 import re
+import shutil
 import subprocess
+import sys
+import tempfile
+import textwrap
 import unittest
 
 import isostat
@@ -16,7 +21,7 @@ class Pages(unittest.TestCase):
     def test_the_two_commands_of_the_pages(self):
         for page in ("README.md", "src/python/README.md"):
             lines = (project / page).read_text().splitlines()
-            commands = [line.strip() for line in lines if "build/release/python" in line]
+            commands = [line.strip() for line in lines if "build/release/python" in line and "print(" in line]
             self.assertEqual(len(commands), 1, page)
             # What is tested is this build, not the release that the page builds.
             command = commands[0].replace("build/release/python", os.environ["PYTHONPATH"])
@@ -25,8 +30,34 @@ class Pages(unittest.TestCase):
             before = lines[[line.strip() for line in lines].index(commands[0]) - 1]
             self.assertEqual(before.strip(), "bash src/python/build", page)
 
+    def test_the_ten_lines_of_the_readme_run(self):
+        page = (project / "README.md").read_text()
+        (code,) = re.findall(r"^  ```python\n(.*?)^  ```$", page, re.M | re.S)
+        code = textwrap.dedent(code)
+        self.assertLessEqual(len([line for line in code.splitlines() if line]), 10)
+        with tempfile.TemporaryDirectory() as folder:
+            out = subprocess.run([sys.executable, "-c", code], cwd=folder, capture_output=True, text=True)
+            self.assertEqual(out.returncode, 0, out.stderr)
+            self.assertEqual(len(out.stdout.splitlines()), 7)
+            self.assertIn("proved", out.stdout.splitlines()[-1])
+            self.assertIn("<svg", (pathlib.Path(folder) / "forces.svg").read_text())
+
+    def test_the_manifest_of_the_readme_is_one(self):
+        page = (project / "README.md").read_text()
+        (manifest,) = re.findall(r"^  ```toml\n(.*?)^  ```$", page, re.M | re.S)
+        self.assertEqual(len(textwrap.dedent(manifest).splitlines()), 7)
+        with tempfile.TemporaryDirectory() as folder:
+            for name in ("disks.dump", "frames.csv"):
+                shutil.copy(project / "tests/data/series" / name, folder)
+            series = pathlib.Path(folder) / "series.toml"
+            series.write_text(textwrap.dedent(manifest))
+            self.assertGreater(len(isostat.compare(series).frames), 0)
+
     def test_the_page_names_what_there_is(self):
         page = (project / "src/python/README.md").read_text()
+        for name, thing in vars(isostat).items():
+            if callable(thing) and not isinstance(thing, type) and not name.startswith("_"):
+                self.assertRegex(page, rf"[`.]{name}\b", name)
         for name in re.findall(r"isostat\.([A-Za-z_]+)", page):
             there = hasattr(isostat, name) or importlib.util.find_spec(f"isostat.{name}")
             self.assertTrue(there, name)

@@ -46,7 +46,7 @@ class Records(Folder):
         # Beyond the interval of that structure a force is negative.
         beyond = isostat.forces_at(state, row["sigma2_high"] * 1.01)
         self.assertLess(beyond[:, 1].min(), 0)
-        with self.assertRaises(KeyError):
+        with self.assertRaisesRegex(isostat.BadInput, "expected a load that an equilibrium"):
             run.at(1e9)
 
     def sheared(self, equilibria=2):

@@ -59,7 +59,7 @@ class States(Folder):
                 with self.assertRaisesRegex(isostat.BadInput, "State|finite"):
                     ask()
         arrays = state.positions, state.radii, state.length
-        with self.assertRaises(TypeError):
+        with self.assertRaises(isostat.BadInput):
             isostat.State.from_arrays(*arrays, [(0.5, 1)])
         turned = isostat.State.from_arrays(*arrays, [(1, 0), (1, -3)])
         self.assertEqual(turned.contacts.tolist(), [[0, 1], [1, -3]])

@@ -11,6 +11,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import xml.etree.ElementTree
 from pathlib import Path
 
 import browser
@@ -235,6 +236,17 @@ class Page(Run, unittest.TestCase):
             self.assertGreater(drawn, without + 20, what)
         self.browser.value("for (const id of ['forces', 'rattlers', 'changes', 'motion']) byId(id).checked = true; draw()")
 
+    def test_the_packing_is_saved_as_svg_and_curves_have_a_legend(self):
+        self.browser.press("Home")
+        drawing = xml.etree.ElementTree.fromstring(self.browser.value("picture()"))
+        paths = [path.attrib for path in drawing.iter() if path.tag.endswith("path")]
+        circles = sum(path["d"].count("A") / 2 for path in paths if path["fill"] != "none")
+        disks, copies = self.browser.value("[run.packing.radii.length, run.packing.periodic.some((p) => p)]")
+        self.assertTrue(circles == disks or (copies and circles > disks), (circles, disks))
+        self.assertTrue(any(path.get("stroke") == "#8c1c13" for path in paths))  # forces
+        self.assertEqual(self.browser.value("[short(-1e-17), sci(7e-17, 2), short(1e-9), sci(null, 2)]"), ["0", "0.00e+0", "1e-9", "–"])
+        self.assertEqual(self.browser.value("document.querySelectorAll('#curves .key').length"), len(self.browser.value("run.segments")))
+
     def test_fits_windows_of_400_to_1600_pixels(self):
         self.browser.press("PageDown")
         for width in (400, 800, 1600):
@@ -247,6 +259,108 @@ class Page(Run, unittest.TestCase):
                 self.assertGreater(self.browser.value(f"byId('{canvas}').clientHeight"), 150)
             if PICTURES:
                 (PICTURES / f"page-{width}.png").write_bytes(base64.b64decode(self.browser.picture()))
+
+
+class Spheres(unittest.TestCase):
+    """The page of a run of spheres in a cell, whose view turns."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.scratch = tempfile.TemporaryDirectory()
+        folder = Path(cls.scratch.name)
+        scene = folder / "s.toml"
+        scene.write_text('[packing]\nspheres = 12\nseed = 3\n\n[cell]\nkind = "orthorhombic"\n[output]\npictures = false\n'
+                         '[[programme]]\ndo = "up"\nequilibria = 2\nname = "<b>@DATA@"\n')
+        cls.out = folder / "run"
+        for command in (("run", scene, "-o", cls.out, "-q"), ("report", cls.out, "--html", "--no-charts", "-q")):
+            done = isostat(*command)
+            assert done.returncode == 0, done.stderr
+        cls.page = cls.out / "figures" / "trajectory.html"
+        cls.browser = browser.Browser()
+        cls.browser.open(cls.page)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.browser.close()
+        cls.scratch.cleanup()
+
+    def tearDown(self):
+        self.assertEqual(self.browser.errors, [])
+
+    def drawn(self):
+        """Spheres and lines drawn, the two angles of the view."""
+        self.browser.settle()
+        return [float(x) for x in self.browser.value("document.body.dataset.drawn").split()]
+
+    def put(self, name, value):
+        self.browser.value(f"const e = document.getElementById('{name}'); e.value = {value}; "
+                           "e.dispatchEvent(new Event('input'))".replace("const e", "var e"))
+
+    def tick(self, name):
+        self.browser.value(f"document.getElementById('{name}').click()")
+
+    def ink(self):
+        """Pixels of the packing that are not blank."""
+        return self.browser.value("pen.getImageData(0, 0, canvas.width, canvas.height).data"
+                                  ".reduce((n, x, k) => n + (k % 4 == 3 && x > 0), 0)")
+
+    def test_asks_for_nothing_but_itself(self):
+        self.assertEqual({a for a in self.browser.addresses if not a.startswith("about:")},
+                         {"file://" + str(self.page)})
+
+    def test_names_from_files_are_text(self):
+        self.assertIn("<title>&lt;b&gt;@DATA@</title>", self.page.read_text())
+        self.assertEqual(self.browser.value("document.querySelectorAll('b').length"), 0)
+
+    def test_draws_the_spheres_contacts_and_forces_of_the_stored_states(self):
+        stored = {}
+        for path in sorted((self.out / "states").glob("eq_*.json")):
+            state = json.loads(path.read_text())
+            stored[state["equilibrium"]] = state
+        for k, (number, state) in enumerate(sorted(stored.items())):
+            self.put("which", k)
+            contacts = [c for c in state["contacts"]]
+            self.assertEqual(self.drawn()[0], len(state["disks"]) + len(contacts))
+            self.assertIn(f"Equilibrium {number}: {len(state['disks'])} spheres",
+                          self.browser.value("document.getElementById('what').textContent"))
+            lines = self.browser.value(f"states[{k}].lines")
+            forces = state["forces"]
+            mean = sum(map(abs, forces)) / sum(f != 0 for f in forces)
+            radius = [disk[-1] for disk in state["disks"]]
+            for line, contact, force in zip(lines, contacts, forces):
+                length = sum((a - b) ** 2 for a, b in zip(line[:3], line[3:6])) ** 0.5
+                apart = radius[contact[0]] + radius[contact[1]]  # a line ends at the image that is touched
+                self.assertLess(abs(length - apart), 1e-3 * apart)
+                self.assertLess(abs(line[6] - force / mean), 1e-2 * max(1, abs(force) / mean))
+
+    def test_turns_with_keys_and_the_pointer(self):
+        self.browser.value("canvas.focus()")
+        self.browser.press("0")
+        before = self.drawn()
+        self.browser.press("ArrowRight")
+        self.assertAlmostEqual(self.drawn()[2 - 1], before[1] + 0.1, 3)
+        place = self.browser.value("(r => [r.x + r.width / 2, r.y + r.height / 2])(canvas.getBoundingClientRect())")
+        at = dict(button="left", buttons=1, clickCount=1)
+        self.browser.ask("Input.dispatchMouseEvent", type="mousePressed", x=place[0], y=place[1], **at)
+        self.browser.ask("Input.dispatchMouseEvent", type="mouseMoved", x=place[0] + 50, y=place[1] + 20, **at)
+        self.browser.ask("Input.dispatchMouseEvent", type="mouseReleased", x=place[0] + 50, y=place[1] + 20, **at)
+        self.assertNotAlmostEqual(self.drawn()[1], before[1] + 0.1, 2)
+        self.assertNotAlmostEqual(self.drawn()[2], before[2], 2)
+
+    def test_leaves_out_what_is_not_asked_for(self):
+        everything, ink = self.drawn()[0], self.ink()
+        self.assertGreater(ink, 20000)
+        self.put("cut", 0.5)
+        part = self.drawn()[0]
+        self.assertTrue(0 < part < everything)
+        self.put("cut", 0)
+        for name in ("spheres", "forces", "rattlers"):
+            self.tick(name)
+        self.assertEqual(self.drawn()[0], 0)
+        self.assertLess(self.ink(), ink / 4)  # the edges of the cell stay
+        for name in ("spheres", "forces", "rattlers"):
+            self.tick(name)
+        self.assertEqual(self.drawn()[0], everything)
 
 
 if __name__ == "__main__":

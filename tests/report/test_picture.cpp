@@ -125,6 +125,22 @@ BOOST_AUTO_TEST_CASE(vtk_of_a_cell_has_its_outline_and_ends_of_contacts_at_image
                std::string::npos);
 }
 
+BOOST_AUTO_TEST_CASE(forces_of_spheres_are_tubes_of_a_radius_in_proportion) {
+    State one;
+    one.packing.dimension = one.packing.cell.dimension = 3;
+    one.packing.radius = {1};
+    one.packing.q = {1, 1, 1, 2, 2, 2};
+    one.packing.walls = Walls::box(3);
+    one.contacts = {{ContactKind::lower_wall, 0, 2}, {ContactKind::upper_wall, 0, 2}};
+    const std::string vtk = vtk_text(one, std::vector<double>{1, 3}, "title");
+    BOOST_TEST(vtk.find("POINTS 5 double\n1 1 1\n1 1 1\n1 1 0\n1 1 1\n1 1 2\n") != std::string::npos);
+    BOOST_TEST(vtk.find("LINES 2 6\n2 1 2\n2 3 4\n") != std::string::npos);
+    // A quarter of the radius at the mean force, which is 2.
+    BOOST_TEST(vtk.find("SCALARS tube double 1\nLOOKUP_TABLE default\n0\n0.125\n0.125\n0.375\n0.375\n") !=
+               std::string::npos);
+    BOOST_TEST(vtk_text(state, std::vector<double>{0, 0, 0, 4, 5, 6}, "title").find("tube") == std::string::npos);
+}
+
 BOOST_AUTO_TEST_CASE(displacements_are_vectors_of_the_disks) {
     const std::vector<double> moved{0.5, -0.25, 1, 2, 0, 0};
     const std::string vtk = vtk_text(state, {}, "title", moved);

@@ -1,5 +1,5 @@
+#include "report/sphere_page.hpp"
 #include "report/statistics.hpp"
-#include "report/triaxial.hpp"
 #include "support/test.hpp"
 
 #include <cmath>
@@ -53,9 +53,10 @@ BOOST_AUTO_TEST_CASE(a_triaxial_test_has_logarithmic_strains_and_q_over_p) {
     const Chart chart = triaxial_chart(points, {"up"}, false);
     BOOST_TEST((chart.data.find("# up\n# number axial_strain volumetric_strain p q q/p sin_phi\n0 0 0 ") == 0),
                chart.data);
-    const std::string page = triaxial_page(points, two, {"<up>"}, load_words(load), "a & b", {});
+    const std::string page =
+        sphere_page("a & @TABLE@", json::Json::array(), {true, points, two, {"<up>"}, load_words(load)});
     BOOST_TEST((page.find("<title>&lt;up&gt;</title>") != std::string::npos));
-    BOOST_TEST((page.find("a &amp; b") != std::string::npos));
+    BOOST_TEST((page.find("a &amp; @TABLE@") != std::string::npos));
 }
 
 BOOST_AUTO_TEST_CASE(stress_increments_are_between_two_rearrangements_of_one_segment) {

@@ -101,14 +101,18 @@ inline State triangular_lattice(int a, int b, bool tilts) {
 /// Its cell moved by other representatives: disk i shifted by `shift[i]` periods, the same contacts.
 inline State with_other_representatives(State state, const std::vector<Image>& shift) {
     const isostat::Packing packing = state.packing;
+    const std::size_t axes = packing.axes();
     for (std::size_t i = 0; i < shift.size(); ++i) {
-        state.packing.q[2 * i] += shift[i].m[0] * packing.lattice(0, 0) + shift[i].m[1] * packing.lattice(0, 1);
-        state.packing.q[2 * i + 1] += shift[i].m[1] * packing.lattice(1, 1);
+        for (std::size_t a = 0; a < axes; ++a) {
+            for (std::size_t b = a; b < axes; ++b) {
+                state.packing.q[axes * i + a] += shift[i].m[b] == 0 ? 0 : shift[i].m[b] * packing.lattice(a, b);
+            }
+        }
     }
     for (Contact& c : state.contacts) {
         if (c.kind == isostat::ContactKind::disk_disk) {
             Image m = c.image;
-            for (std::size_t a = 0; a < 2; ++a) {
+            for (std::size_t a = 0; a < axes; ++a) {
                 m.m[a] = static_cast<std::int8_t>(m.m[a] + shift[static_cast<std::size_t>(c.i)].m[a] -
                                                   shift[static_cast<std::size_t>(c.j)].m[a]);
             }

@@ -138,8 +138,8 @@ BOOST_AUTO_TEST_CASE(a_shifted_cholesky_factorisation_ends_below_the_smallest_ei
     cholesky.set(from.structure.matrix(), made);
     BOOST_TEST(made.work == cholesky.work());
     // Also a bad order that is said to be good, and the same that is found outgrown.
-    FillOrder backwards{made.blocks, 1e300};
-    std::iota(backwards.blocks.rbegin(), backwards.blocks.rend(), 0);
+    FillOrder backwards{made.rows, 1e300};
+    std::iota(backwards.rows.rbegin(), backwards.rows.rend(), 0);
     FillOrder outgrown = backwards;
     outgrown.work = made.work;
     for (FillOrder* order : {&made, &backwards, &outgrown}) {
@@ -151,7 +151,7 @@ BOOST_AUTO_TEST_CASE(a_shifted_cholesky_factorisation_ends_below_the_smallest_ei
         BOOST_TEST(cholesky.error_bound(0.5 * sigma * sigma) > 0x1p-53 * static_cast<double>(n));
     }
     BOOST_TEST(backwards.work == 1e300);
-    BOOST_TEST((outgrown.blocks == made.blocks));
+    BOOST_TEST((outgrown.rows == made.rows));
     // An odd number of rows: half of the last block is not there.
     sparse::Matrix<double> odd;
     odd.rows = odd.cols = 3;

@@ -127,7 +127,7 @@ struct CellInspection {
     JammingAnswer local, collective, strict;
 };
 
-/// \pre every axis is periodic; `truth` is of this state. Cost: up to eight ranks and two certificates.
+/// \pre every axis is periodic; `truth` is of this state. Cost: up to two ranks and a certificate.
 CellInspection inspect_cell(const State& state, const Certification& truth);
 
 } // namespace isostat

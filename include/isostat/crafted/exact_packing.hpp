@@ -164,13 +164,14 @@ const char* to_string(Support support);
 const char* to_string(SecondOrder answer);
 const char* to_string(exact::OneSign sign);
 
-/// Whether a packing in a cell is jammed, of its disks that are not rattlers by the position of the normals
-/// (proofs/cells.md, C12): `collective`: they cannot move in the fixed cell, but for a translation of all; `strict`:
-/// nor together with the cell, without making its area larger. `undecided`: the limits were reached.
+/// Whether a packing in a cell, or in walls none of which moves, is jammed, of its disks that are not rattlers by the
+/// position of the normals (proofs/cells.md, C12): `collective`: they cannot move in the fixed cell, but for a
+/// translation of all; `strict`: nor together with the cell, without making its area larger. `undecided`: the limits
+/// were reached.
 struct Jamming {
     int disks = 0;
     Verdict collective = Verdict::undecided;
-    Verdict strict = Verdict::undecided;
+    std::optional<Verdict> strict; ///< of a cell
 };
 
 /// Inward forces on one wall, period or tilt, everything else of the load unchanged, that some forces >= 0 balance.

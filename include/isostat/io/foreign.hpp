@@ -8,6 +8,7 @@
 #include <array>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,12 +23,21 @@ struct SizeStatement {
     SizeMeaning meaning = SizeMeaning::radius;
     std::string column; ///< name of the column that holds it; empty: every disk has `value`
     double value = 0;   ///< when `column` is empty
+    std::vector<std::pair<std::string, double>> of_word{}; ///< not empty: the sizes of the words that the column holds
+};
+
+/// The rows that have one of these words in a column.
+struct RowsWith {
+    std::string column;
+    std::vector<std::string> words;
 };
 
 /// Which walls a foreign packing gets; their positions are the bounds of the box.
 /// - `none`; - `box`: the lower ones fixed, the upper ones movable, as in the paper (as many more degrees of freedom as
-///   there are axes); - `fixed`: all fixed.
-enum class ForeignWalls { none, box, fixed };
+///   there are axes); - `square`: the size of the box alone moves, written as the last upper wall: where all forces are
+///   positive they are the same up to a factor, and so are N_f, h and k (as for `Cell::keeps_shape`); - `fixed`: all
+///   fixed.
+enum class ForeignWalls { none, box, square, fixed };
 
 /// What the file does not say, stated by the user. Nothing of it is guessed.
 struct ForeignOptions {
@@ -41,12 +51,20 @@ struct ForeignOptions {
     /// Empty, or xlo, xhi, ylo, yhi (of spheres: zlo, zhi too) instead of the bounds in the file; with `periodic`, of a
     /// file without bounds, the periods.
     std::vector<double> box;
+    /// Empty, or the cell of a file without one: its lengths, and then its tilts where there are some; or, of disks 4
+    /// and of spheres 9 numbers, its period vectors, one after another.
+    std::vector<double> lattice;
     std::optional<long> frame;        ///< of a file with several, from 0; the last one otherwise
-    std::vector<std::string> columns; ///< of a table without a header; "-" is a column to leave out
-    std::optional<std::pair<std::string, std::string>> select; ///< column and value: rows that have it are the disks
-    bool cells = false;        ///< periodic boundaries make a cell; else they are refused
-    bool periodic = false;     ///< boundaries that the file leaves open are periodic
-    bool not_periodic = false; ///< boundaries that the file calls periodic (or does not deny to be) are open
+    std::vector<std::string> columns; ///< in place of the names in the file; "-" is a column to leave out
+    long skip = 0;                    ///< lines before the rows of a table that are passed over
+    std::string style;                ///< atom style of a LAMMPS data file, in place of the one that it names
+    std::string plane = "xy";         ///< of disks: or "xz", "yz"
+    std::optional<long> first_id;     ///< the rows have the ids from this one on, whatever the file says
+    std::optional<RowsWith> select;   ///< these rows are the disks
+    std::optional<RowsWith> fixed;    ///< these disks cannot move
+    bool cells = false;               ///< periodic boundaries make a cell; else they are refused
+    bool periodic = false;            ///< boundaries that the file leaves open are periodic
+    bool not_periodic = false;        ///< boundaries that the file calls periodic (or does not deny to be) are open
 };
 
 struct ForeignPacking {
@@ -63,27 +81,29 @@ struct ForeignPacking {
     std::vector<std::string> notes;
 };
 
-/// "lammps-data", "lammps-dump", "xyz", "table", "centres".
+/// "lammps-data", "lammps-dump", "xyz", "table", "braces", "centres".
 const std::vector<std::string>& foreign_formats();
 
 /// Reads a packing from text. Numbers are rounded to the nearest double.
 ///
-/// - `lammps-data`: `Atoms # sphere` or `# bpm/sphere`; the third (fourth) column is the *diameter* by definition of
-///   these styles.
+/// - `lammps-data`: the atom styles sphere and bpm/sphere, with a *diameter* by definition; atomic, charge, bond,
+///   angle, molecular and full, with a stated size; hybrid of these.
 /// - `lammps-dump`: text; `x y`, `xu yu` (unwrapped) or scaled `xs ys`, `xsu ysu`; the columns `radius` or `diameter`.
 /// - `xyz`: extended XYZ, `Properties=` with `pos` and `radius` or `diameter`; `Lattice`, `Origin`, `pbc` (a lattice
 ///   without `pbc` is periodic by the convention of the format). Plain XYZ with a stated size.
 /// - `table`: rows of numbers separated by blanks, commas, semicolons or tabs, under a header: a first row of names, a
 ///   comment `# x y r`, `#format x_y_z_r`, or `columns`. Names: x, y, z, id; r, R, radius, Radius; d, D, diameter,
 ///   Diameter; others are ignored. A first row is of names when none of its fields is a value (begins like a number, or
-///   is nan, inf, NA, null, none); every other row is a disk. Where `columns` are stated too, a note says so.
+///   is nan, inf, NA, null, none); every other row is a disk. Where `columns` are stated too, a note says so. A comment
+///   `# box 0:4,0:2, tilt 0.5, periodic along xy`, as `csv_text` writes it, is the box. Comments begin with # or %.
+/// - `braces`: `N = 2 ,L1= { 4 , 0 } ,L2= { 0.5 , 2 }`, then rows `x , y , r ,` between braces (jambashbulk).
 /// - `centres`: the dimension (2 or 3), the number of grains, their diameter, each in a row; then rows of centres
 ///   (CALiPPSO, Lubachevsky-Stillinger), or the period vectors, one a row, and then the centres (TJ).
 ///
-/// Cells of spheres: period vectors that are not upper triangular are turned. A single sphere, or a layer of them with
-/// the same z, is one of disks unless `dimension` says otherwise.
+/// Period vectors that are not upper triangular are turned. A single sphere, or a layer of them with the same z, is one
+/// of disks unless `dimension` says otherwise. A column whose name comes twice is read where its values agree.
 ///
-/// A byte order mark is skipped. Exponents are written with e: the D of Fortran is refused, with nan and inf.
+/// A byte order mark is skipped. The exponent of a number may be written with D (Fortran); nan and inf are refused.
 ///
 /// Throws `Error(bad_input)` with file, line, value and what was expected: also for sizes whose meaning nobody stated,
 /// periodic boundaries unless `cells`, tilted boxes that are not periodic, disks with different z, ids given twice,
@@ -99,8 +119,9 @@ ForeignPacking read_foreign(const std::filesystem::path& path, const ForeignOpti
 /// the cell: with its tilt, `pbc` in XYZ, and in LAMMPS data the disks moved into it, with image flags (LAMMPS wants
 /// them there; the moves are exact on the grid). Contacts and loads have no place there.
 std::string lammps_data_text(const Packing& packing, const std::string& title);
-std::string xyz_text(const Packing& packing, const std::vector<double>& displacement);
-std::string csv_text(const Packing& packing);
+std::string xyz_text(const Packing& packing, const std::vector<double>& displacement,
+                     std::span<const int> contacts = {});
+std::string csv_text(const Packing& packing, std::span<const int> contacts = {});
 
 /// The format of the text, or empty: "lammps-data", ..., and "state", "vertex", "packing" for the formats of this
 /// program (`read_state`, `crafted::read_packing`). From the content only.

@@ -40,17 +40,17 @@ void write_packing(const std::filesystem::path& path, const Packing& packing, co
 StateFile parse_state(const std::string& text, const std::string& source);
 
 /// Spheres are refused by what takes disks only, which says so (`require_plane`).
-enum class Dimensions : unsigned char { plane, any };
+enum class Dimensions : unsigned char { two, any };
 
 /// The same, periodic cells too. Further messages: walls along a periodic axis, images in a box or more than 3 periods
 /// away, periods that are not positive, disks that overlap their own images, loads that do not sum to zero along a
 /// periodic axis.
 StateFile parse_any_state(const std::string& text, const std::string& source,
-                          Dimensions dimensions = Dimensions::plane);
+                          Dimensions dimensions = Dimensions::two);
 
 /// Reads a state file or, recognised by its first character, a vertex text (`vertex_text.hpp`).
 StateFile read_state(const std::filesystem::path& path);
-StateFile read_any_state(const std::filesystem::path& path, Dimensions dimensions = Dimensions::plane);
+StateFile read_any_state(const std::filesystem::path& path, Dimensions dimensions = Dimensions::two);
 
 /// The exact value lies in [lower, upper]; the ends may be infinite, never NaN.
 struct Interval {

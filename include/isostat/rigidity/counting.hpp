@@ -53,12 +53,10 @@ constexpr int strain_count(Strain strain, int d) {
     return 0;
 }
 
-/// N_f, N, rank, h, k of the stored coordinates. The rank is a lower bound from a prime field, and exact (`rank_exact`)
-/// where it is as high as N or N_f allow, or where the matrix is small and its kernel was checked in rationals.
-/// `free_dofs` is empty. \pre every axis is periodic
-Counting count_strained(const Packing& packing, const std::vector<Contact>& contacts, Strain strain);
-
-/// The same for every way to strain the cell, in the order of `strains`.
+/// N_f, N, rank, h, k of the stored coordinates for every way to strain the cell, in the order of `strains`. A rank is
+/// a lower bound from a prime field, and exact (`rank_exact`) where it is as high as N or N_f allow, or where the
+/// matrix is small and its kernel was checked in rationals. `free_dofs` is empty. \pre every axis is periodic. Cost:
+/// one exact rank.
 using StrainCounts = std::array<Counting, strains.size()>;
 StrainCounts count_strains(const Packing& packing, const std::vector<Contact>& contacts);
 

@@ -8,9 +8,10 @@ stress, force and strain are positive in compression.
 
 from __future__ import annotations
 
+import importlib
 import os
 
-from . import _core
+from . import _core, _repr
 from ._core import (
     Arc,
     Certificate,
@@ -19,7 +20,9 @@ from ._core import (
     Equilibrium,
     ExactInspection,
     ExactPacking,
+    Genericity,
     Inspection,
+    Jamming,
     Number,
     Packing,
     Plateau,
@@ -33,7 +36,9 @@ from ._core import (
     count,
     find_vertex,
     forces_at,
+    genericity,
     inspect,
+    jamming,
     plateau,
     prepare,
     read_packing,
@@ -42,10 +47,21 @@ from ._core import (
     sqrt,
 )
 from ._compare import Comparison, compare
+from ._ensemble import Ensemble, ensemble
 from ._exact import exact_packing
 from ._records import Records, States, load
 from ._run import Run
-from ._state import contact_matrix, contact_pair, disk_velocities, from_arrays, mechanism
+from ._state import (
+    contact_matrix,
+    contact_pair,
+    contact_table,
+    disk_velocities,
+    from_arrays,
+    mechanism,
+    modes,
+    stiffness_matrix,
+    unjamming_motion,
+)
 from ._words import (
     BadInput,
     CannotWrite,
@@ -58,6 +74,7 @@ from ._words import (
     NoLimit,
     NotConverged,
     NotIsostatic,
+    NotStored,
     Overlap,
     Tie,
     Unbounded,
@@ -69,6 +86,13 @@ from ._words import (
 __version__ = _core.version
 
 State.from_arrays = staticmethod(from_arrays)  # type: ignore[method-assign,assignment]
+
+
+def __getattr__(name: str):
+    """`isostat.plot`, which needs matplotlib, is imported when it is first asked for."""
+    if name == "plot":
+        return importlib.import_module("isostat.plot")
+    raise AttributeError(f"module 'isostat' has no attribute {name!r}")
 
 
 def verify(what, progress=None):

@@ -55,6 +55,10 @@ class Comparison:
         self.status = content["status"]
         self.counts = content["counts"]
 
+    def __repr__(self) -> str:
+        counts = ", ".join(f"{count} {what}" for what, count in self.counts.items() if count)
+        return f"<isostat.Comparison: {len(self.frames)} frames: {counts}>"
+
     def plot(self, ax=None):
         """The staircase of the exact run with the frames at their loads. Returns matplotlib axes."""
         from .plot import comparison

@@ -13,8 +13,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ._core import State, _integer_columns, forces_at
-from ._words import BadInput, Verdict
+from ._core import State, _integer_columns, _walked_to, forces_at
+from ._words import BadInput, NotStored, Verdict
 
 _walls = {"left": -1, "bottom": -2, "right": -3, "top": -4, "back": -5, "front": -6}
 _numbers = """force force_bound power power_bound work work_bound displacement margin held_at""".split()
@@ -75,6 +75,24 @@ def contact_of_name(name: str, dimension: int = 2) -> tuple[int, ...]:
     )
 
 
+def read_table(path: Path, integers: frozenset[str] = _integer_columns) -> np.ndarray:
+    """A CSV file of numbers with a row of names, without a line that was cut, as a structured array."""
+    lines = _complete_lines(path)
+    names = lines[0].lstrip("# ").split(",") if lines else []
+    rows = csv.reader(io.StringIO("\n".join(lines[1:])))
+    try:
+        kinds = np.dtype(
+            [(name, int if name in integers else float) for name in names]
+        )  # refuses a name that comes twice
+        casts = [_casts[kinds[name].kind] for name in names]
+        return np.array(
+            [tuple(cast(x) for cast, x in zip(casts, row, strict=True)) for row in rows],
+            dtype=kinds,
+        )
+    except ValueError as error:
+        raise BadInput(f"{path}: {error}") from None
+
+
 class States:
     """Stored states by the number of their equilibrium, read when they are asked for.
 
@@ -83,6 +101,9 @@ class States:
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
+
+    def __repr__(self) -> str:
+        return f"<isostat.States: {len(self)} of {self._folder}>"
 
     def numbers(self) -> list[int]:
         """Numbers of the equilibria whose states were stored, increasing."""
@@ -100,7 +121,7 @@ class States:
 
     def __getitem__(self, number: int) -> State:
         if number not in self:
-            raise KeyError(f"equilibrium {number} was not stored: there are {self.numbers()}")
+            raise NotStored(f"equilibrium {number} was not stored: there are {self.numbers()}")
         return State.read(self._path(int(number)))
 
     @property
@@ -156,20 +177,7 @@ class Records:
 
         Stresses in your unit, strains positive in compression; contacts are two fields ``_i``, ``_j``.
         """
-        lines = _complete_lines(self.path / "equilibria.csv")
-        names = lines[0].lstrip("# ").split(",") if lines else []
-        rows = csv.reader(io.StringIO("\n".join(lines[1:])))
-        try:
-            kinds = np.dtype(
-                [(name, int if name in _integer_columns else float) for name in names]
-            )  # refuses a name that comes twice
-            casts = [_casts[kinds[name].kind] for name in names]
-            return np.array(
-                [tuple(cast(x) for cast, x in zip(casts, row, strict=True)) for row in rows],
-                dtype=kinds,
-            )
-        except ValueError as error:
-            raise BadInput(f"{self.path / 'equilibria.csv'}: {error}") from None
+        return read_table(self.path / "equilibria.csv")
 
     @functools.cached_property
     def event_records(self) -> list[dict]:
@@ -270,19 +278,28 @@ class Records:
         """Forces (N,) in the contacts of each stored state; stress x length, positive in compression."""
         return [state.forces for state in self._stored]
 
-    def at(self, sigma2: float) -> tuple[State, np.ndarray]:
-        """The first stored equilibrium whose supported interval holds `sigma2`, under that stress (where the tilt is
-        loaded: that shear stress), and the intervals
-        (N, 2) of its forces there (`forces_at`). Structures of later segments may hold the same stress: `forces_at`
-        asks any state. Raises KeyError when no stored equilibrium holds it (``states_every = 1`` stores all).
+    def state(self, number: int) -> State:
+        """The state of an equilibrium, stored or not: what was not stored is found by following the records from the
+        start, in double precision. Raises BadInput where they cannot be followed.
+        """
+        return self.states[number] if number in self.states else _walked_to(self.path, int(number))
+
+    def at(self, sigma2: float, *, segment: int | None = None) -> tuple[State, np.ndarray]:
+        """The first equilibrium (of one `segment` of the programme, from 0) whose supported interval holds `sigma2`,
+        under that stress (where the tilt is loaded: that shear stress; on a path of stresses: that t), and the intervals
+        (N, 2) of its forces there, proved (`forces_at`). Any load of the path has one, whether its state was stored or
+        not (`state`). Raises BadInput for a load that no equilibrium holds.
         """
         rows = self.equilibria
-        holds = (rows[self._stress + "_low"] <= sigma2) & (sigma2 <= rows[self._stress + "_high"])
-        for number in rows["number"][holds]:
-            if int(number) in self.states:
-                state = self.states[int(number)]
-                return state.with_loaded_stress(float(sigma2)), forces_at(state, sigma2)
-        raise KeyError(sigma2)
+        if segment is not None:
+            rows = rows[rows["segment"] == segment]
+        low, high = rows[self._stress + "_low"], rows[self._stress + "_high"]
+        holding = rows["number"][(low <= sigma2) & (sigma2 <= high)]
+        if len(holding) == 0:
+            reached = f"from {np.nanmin(low):.17g} to {np.nanmax(high):.17g}" if len(rows) else "none"
+            raise BadInput(f"{self._stress} is {sigma2}: expected a load that an equilibrium of this run holds: {reached}")
+        state = self.state(int(holding[0]))
+        return state.with_loaded_stress(float(sigma2)), forces_at(state, sigma2)
 
     def certified(self) -> dict[int, Verdict]:
         """What the certificate of each equilibrium says, where one was made (level ``states``)."""

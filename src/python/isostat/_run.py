@@ -15,6 +15,7 @@ import numpy as np
 
 from ._core import Arc, Equilibrium, State, _Run
 from ._records import Records
+from ._words import BadInput
 
 _end = object()
 
@@ -39,6 +40,23 @@ def scene_text(scene: Mapping[str, Any]) -> str:
             lines.append(brackets.format(name))
             lines += [f"{key} = {_value(value)}" for key, value in table.items()]
     return "\n".join(lines) + "\n"
+
+
+def scene_of(scene: str | os.PathLike[str] | Mapping[str, Any], start: State | None) -> tuple[str, str, Path]:
+    """Text, name and folder of a scene file, or of its sections."""
+    if not isinstance(scene, Mapping):
+        try:
+            return Path(scene).read_text(), Path(scene).name, Path(scene).parent
+        except (OSError, UnicodeDecodeError) as error:
+            raise BadInput(f"{scene}: cannot be read: {error}") from None
+    sections = dict(scene) if start is None else {"packing": {"file": "start"}, **scene}
+    folder = Path.cwd()
+    for key in ("file", "radii_file"):  # a scene names files of its folder alone
+        if start is None and key in sections.get("packing", {}):
+            named = Path(sections["packing"][key]).resolve()
+            folder = named.parent
+            sections["packing"] = {**sections["packing"], key: named.name}
+    return scene_text(sections), "scene", folder
 
 
 class Run:
@@ -79,20 +97,12 @@ class Run:
         self.path = Path(tempfile.mkdtemp() if output is None else output)
         if output is None:
             weakref.finalize(self, shutil.rmtree, self.path, ignore_errors=True)
-        if isinstance(scene, Mapping):
-            sections = dict(scene) if start is None else {"packing": {"file": "start"}, **scene}
-            folder = Path.cwd()
-            for key in ("file", "radii_file"):  # a scene names files of its folder alone
-                if start is None and key in sections.get("packing", {}):
-                    named = Path(sections["packing"][key]).resolve()
-                    folder = named.parent
-                    sections["packing"] = {**sections["packing"], key: named.name}
-            text, name = scene_text(sections), "scene"
-        else:
-            name, folder = Path(scene).name, Path(scene).parent
-            text = Path(scene).read_text()
+        text, name, folder = scene_of(scene, start)
         self._run = _Run(text, name, folder, self.path, start)
         self._mode = "resume" if resume else "force" if force else "fresh"
+
+    def __repr__(self) -> str:
+        return f"<isostat.Run: {self.status or 'not begun'}, in {self.path}>"
 
     @property
     def status(self) -> str:
@@ -113,6 +123,10 @@ class Run:
     def state(self) -> State:
         """The last equilibrium; the run has stopped or ended."""
         return self.records.states.last
+
+    def at(self, sigma2: float, *, segment: int | None = None) -> tuple[State, np.ndarray]:
+        """As `Records.at`: the equilibrium under a load of the path, and the proved intervals of its forces."""
+        return self.records.at(sigma2, segment=segment)
 
     def play(
         self,

@@ -47,6 +47,12 @@ class BadInput(Error, ValueError):
     id = "bad_input"
 
 
+class NotStored(BadInput, KeyError):
+    """The state of an equilibrium is not in the folder of its run."""
+
+    __str__ = BadInput.__str__
+
+
 class InternalError(Error, RuntimeError):
     """A defect of the program or of this computer. Says nothing of the input."""
 

@@ -315,7 +315,9 @@ def increment_values(run: Records, quantity: str = "strain") -> np.ndarray:
     A stress that was reached inside a supported interval (``arcs`` = 0) is no rearrangement.
     """
     strain, ratio, _ = _curve(run)
-    column = {"strain": strain, "stress": ratio}[quantity]
+    if quantity not in ("strain", "stress"):
+        raise BadInput(f"quantity is {quantity!r}: expected 'strain' or 'stress'")
+    column = strain if quantity == "strain" else ratio
     places = {int(number): k for k, number in enumerate(run.equilibria["number"])}
     values = []
     for k, row in enumerate(run.equilibria):

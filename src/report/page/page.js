@@ -9,8 +9,9 @@ const rows = run.equilibria, events = run.events, recorded = run.frames;
 const rowCount = rows.number.length;
 const colour = { disk: "#e9e6df", rim: "#a9a59b", rattler: "#9fb8cf", force: "#8c1c13", contact: "#777", opened: "#d97a00", closed: "#0b4f94", motion: "#111" };
 const segmentColours = ["#1f4e79", "#c55a11", "#548235", "#7b3f99", "#997300", "#a61c3c"];
-const sci = (value, digits) => value === null ? "–" : Number(value).toExponential(digits);
-const short = (value, digits = 6) => value === null ? "–" : String(Number(Number(value).toPrecision(digits)));
+const told = (value) => Math.abs(value) < 2 ** -52 ? 0 : Number(value); // smaller strains are below the digits of a length
+const sci = (value, digits) => value === null ? "–" : told(value).toExponential(digits);
+const short = (value, digits = 6) => value === null ? "–" : String(Number(told(value).toPrecision(digits)));
 
 // --- the numbers of the frames ---------------------------------------------------------------------------------------
 
@@ -158,8 +159,34 @@ function contactName([i, j]) {
 
 // --- canvases --------------------------------------------------------------------------------------------------------
 
+/// Takes what a canvas takes and keeps it as SVG: circles and lines, the texts of this page alone.
+class Paper {
+  elements = []; path = ""; dash = []; globalAlpha = 1; lineWidth = 1; lineCap = "butt"; fillStyle = "#000"; strokeStyle = "#000";
+  beginPath() { this.path = ""; }
+  moveTo(x, y) { this.path += `M${x.toFixed(2)} ${y.toFixed(2)}`; }
+  lineTo(x, y) { this.path += `L${x.toFixed(2)} ${y.toFixed(2)}`; }
+  arc(x, y, r) { this.moveTo(x + r, y); for (const side of [-1, 1]) this.path += `A${r.toFixed(2)} ${r.toFixed(2)} 0 0 1 ${(x + side * r).toFixed(2)} ${y.toFixed(2)}`; }
+  setLineDash(dash) { this.dash = dash; }
+  add(look) { if (this.path) this.elements.push(`<path d="${this.path}" opacity="${this.globalAlpha}" ${look}/>`); }
+  fill() { this.add(`fill="${this.fillStyle}"`); }
+  stroke() { this.add(`fill="none" stroke="${this.strokeStyle}" stroke-width="${this.lineWidth}" stroke-linecap="${this.lineCap}" stroke-dasharray="${this.dash.join(" ")}"`); }
+  fillText() {}
+}
+let paper = null; // in place of the canvas of the packing while it is saved
+
+/// The packing as it is shown, as the text of an SVG file.
+function picture() {
+  const { clientWidth: width, clientHeight: height } = byId("packing");
+  paper = new Paper();
+  drawPacking();
+  const drawn = paper.elements.join("\n");
+  paper = null;
+  return `<svg xmlns="${"http:"}//www.w3.org/2000/svg" width="${width}" height="${height}" viewBox="0 0 ${width} ${height}">\n<rect width="100%" height="100%" fill="#fff"/>\n${drawn}\n</svg>\n`;
+}
+
 /// The drawing area in CSS pixels, sharp on every screen.
 function prepared(canvas) {
+  if (paper && canvas.id === "packing") return { pen: paper, width: canvas.clientWidth, height: canvas.clientHeight };
   const scale = window.devicePixelRatio || 1, width = canvas.clientWidth, height = canvas.clientHeight;
   if (canvas.width !== Math.round(width * scale)) canvas.width = Math.round(width * scale);
   if (canvas.height !== Math.round(height * scale)) canvas.height = Math.round(height * scale);
@@ -623,6 +650,13 @@ function listen() {
   byId("in").addEventListener("click", () => zoom(1.5));
   byId("out").addEventListener("click", () => zoom(1 / 1.5));
   byId("whole").addEventListener("click", () => zoom(0));
+  byId("save").addEventListener("click", () => {
+    const link = document.createElement("a");
+    link.href = URL.createObjectURL(new Blob([picture()], { type: "image/svg+xml" }));
+    link.download = `packing-${document.body.dataset.equilibrium}.svg`;
+    link.click();
+    URL.revokeObjectURL(link.href);
+  });
   byId("stairs").addEventListener("click", (event) => { play(false); if (chart) show(nearest(event.offsetX, event.offsetY)); });
   const canvas = byId("packing");
   let held = null;
@@ -652,6 +686,12 @@ function introduce() {
   document.title = `${name} – Isostat`;
   byId("name").textContent = name;
   for (const word of ["ratio", "strain"]) for (const place of document.getElementsByClassName(word)) place.textContent = run.words[word];
+  run.segments.forEach((name, s) => {
+    const key = document.createElement("span");
+    key.className = "key";
+    key.style.borderColor = segmentColours[s % segmentColours.length];
+    byId("curves").append(" ", key, name);
+  });
   const disks = run.packing ? `${run.packing.radii.length} disks, ` : "";
   byId("summary").textContent = `${run.program}: ${disks}${rowCount} equilibria, ${run.arcs} arcs; the run is: ${run.status}`;
   const proved = rows.proved.filter((p) => p === 1).length;

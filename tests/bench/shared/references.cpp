@@ -3,7 +3,6 @@
 #include "rigidity/isostatic.hpp"
 
 #include <klu.h>
-#include <umfpack.h>
 
 namespace bench {
 
@@ -51,24 +50,30 @@ int KluAnalysis::factorise() const {
     return entries;
 }
 
-void umfpack(const Matrix<double>& matrix) {
-    UmfpackAnalysis(matrix).factorise();
+void umfpack(const Matrix<double>& matrix, FillReducing order) {
+    UmfpackAnalysis(matrix, order).factorise();
 }
 
-UmfpackAnalysis::UmfpackAnalysis(const Matrix<double>& matrix) : matrix_(matrix) {
+UmfpackAnalysis::UmfpackAnalysis(const Matrix<double>& matrix, FillReducing order) : matrix_(matrix) {
+    umfpack_di_defaults(control_.data());
+    if (order == FillReducing::metis) {
+        control_[UMFPACK_ORDERING] = UMFPACK_ORDERING_METIS;
+    }
     umfpack_di_symbolic(matrix.rows, matrix.cols, matrix.start.data(), matrix.row.data(), matrix.value.data(),
-                        &symbolic_, nullptr, nullptr);
+                        &symbolic_, control_.data(), nullptr);
 }
 
 UmfpackAnalysis::~UmfpackAnalysis() {
     umfpack_di_free_symbolic(&symbolic_);
 }
 
-void UmfpackAnalysis::factorise() const {
+long UmfpackAnalysis::factorise() const {
     void* numeric = nullptr;
-    umfpack_di_numeric(matrix_.start.data(), matrix_.row.data(), matrix_.value.data(), symbolic_, &numeric, nullptr,
-                       nullptr);
+    std::array<double, UMFPACK_INFO> info{};
+    umfpack_di_numeric(matrix_.start.data(), matrix_.row.data(), matrix_.value.data(), symbolic_, &numeric,
+                       control_.data(), info.data());
     umfpack_di_free_numeric(&numeric);
+    return static_cast<long>(info[UMFPACK_LNZ] + info[UMFPACK_UNZ]);
 }
 
 Matrix<double> matrix_of(const isostat::State& state) {

@@ -5,11 +5,18 @@
 
 #include <isostat/contact/state.hpp>
 
+#include <umfpack.h>
+
+#include <array>
+
 namespace bench {
+
+/// UMFPACK's own choice of an order, or nested dissection.
+enum class FillReducing { chosen, metis };
 
 /// One analysis and one factorisation of the matrix, factors thrown away.
 void klu(const isostat::sparse::Matrix<double>& matrix);
-void umfpack(const isostat::sparse::Matrix<double>& matrix);
+void umfpack(const isostat::sparse::Matrix<double>& matrix, FillReducing order = FillReducing::chosen);
 
 /// The analysis alone, and the factorisation with an analysis at hand.
 class KluAnalysis {
@@ -27,14 +34,16 @@ class KluAnalysis {
 };
 class UmfpackAnalysis {
   public:
-    explicit UmfpackAnalysis(const isostat::sparse::Matrix<double>& matrix);
+    explicit UmfpackAnalysis(const isostat::sparse::Matrix<double>& matrix, FillReducing order = FillReducing::chosen);
     ~UmfpackAnalysis();
     UmfpackAnalysis(const UmfpackAnalysis&) = delete;
     UmfpackAnalysis& operator=(const UmfpackAnalysis&) = delete;
-    void factorise() const;
+    /// Entries of L and U together.
+    long factorise() const;
 
   private:
     const isostat::sparse::Matrix<double>& matrix_;
+    std::array<double, UMFPACK_CONTROL> control_{};
     void* symbolic_ = nullptr;
 };
 

@@ -13,9 +13,9 @@
 
 namespace bench {
 
-/// What a word of the command line names: a number of disks, prepared with seed 1 ("400") or another ("400:7"), or a
-/// state file. Says why when there is nothing.
-std::optional<isostat::State> start(const std::string& source);
+/// What a word of the command line names: a number of disks, or of spheres in a box, prepared with seed 1 ("400") or
+/// another ("400:7"), or a state file. Says why when there is nothing.
+std::optional<isostat::State> start(const std::string& source, int dimension = isostat::plane);
 
 struct StretchOptions {
     isostat::CertifyLevel level = isostat::CertifyLevel::decisions;

@@ -1,0 +1,12 @@
+# Before CPack packs: below /usr zsh looks in another folder than below /usr/local; and the Python module stands where Debian's Python looks below /usr, which is not where it looks below /usr/local.
+set(zsh "${CPACK_TEMPORARY_INSTALL_DIRECTORY}/usr/share/zsh")
+if(EXISTS "${zsh}/site-functions")
+  file(RENAME "${zsh}/site-functions" "${zsh}/vendor-completions")
+endif()
+file(GLOB folders "${CPACK_TEMPORARY_INSTALL_DIRECTORY}/usr/lib/python3.*/*-packages")
+foreach(folder IN LISTS folders)
+  get_filename_component(version ${folder} DIRECTORY)
+  file(MAKE_DIRECTORY "${CPACK_TEMPORARY_INSTALL_DIRECTORY}/usr/lib/python3")
+  file(RENAME ${folder} "${CPACK_TEMPORARY_INSTALL_DIRECTORY}/usr/lib/python3/dist-packages")
+  file(REMOVE_RECURSE ${version})
+endforeach()

@@ -1,0 +1,434 @@
+// Files of the kinds that people bring: README.md has the table.
+
+#include "cli/program.hpp"
+
+#include <cmath>
+
+namespace {
+
+using program::contains;
+using program::expect;
+using program::json_of;
+using program::run;
+
+/// "FILE words": the file among those of the table.
+program::Outcome in_field(const std::string& command, const std::string& file, std::vector<std::string> more = {}) {
+    more.insert(more.begin(), {command, scratch::data("field/" + file)});
+    return run(more);
+}
+
+/// The packing of sixteen disks that most files hold: N = 33 on this range of thresholds.
+void expect_base(const std::string& file, std::vector<std::string> more, double digits = 1e-11) {
+    BOOST_TEST_INFO_SCOPE(file);
+    more.insert(more.end(), {"--cell", "full", "--json"});
+    const auto found = json_of(in_field("plateau", file, more));
+    const auto& widest = found["widest"];
+    BOOST_TEST(widest["N"] == 33);
+    BOOST_TEST(widest["counts"]["h"] == 0);
+    BOOST_TEST(widest["counts"]["k"] == 0);
+    BOOST_TEST(widest["contacts"].size() == 33U);
+    BOOST_TEST(found["smallest_gap_of"] == "9-13");
+    BOOST_TEST(std::abs(widest["first"].get<double>() + 8.34698575139887e-5) < digits);
+    BOOST_TEST(std::abs(widest["last"].get<double>() - 0.00265559752709983) < digits);
+}
+
+const std::vector<std::string> cell{"--lattice", "9.539360729179307,9.569336627546415,0.06305756549215252"};
+
+std::vector<std::string> with_cell(std::vector<std::string> more) {
+    more.insert(more.end(), cell.begin(), cell.end());
+    return more;
+}
+
+/// Every word in the message of a file that is refused.
+void refused(const std::string& file, const std::vector<std::string>& more, const std::vector<std::string>& words) {
+    BOOST_TEST_INFO_SCOPE(file);
+    expect(in_field("plateau", file, more), 65, words);
+}
+
+/// The base with a list of contacts.
+program::Outcome snapped(const std::string& contacts, const std::string& columns, std::vector<std::string> more,
+                         const scratch::Folder& folder) {
+    more.insert(more.end(), {"--contacts", scratch::data("field/" + contacts), "--contact-columns", columns, "--cell",
+                             "tilted", "-o", folder.at("state.json"), "--json"});
+    return in_field("snap", "00_base16.dump", more);
+}
+
+/// Optimal packings of circles in the unit square: the radius is half less the largest coordinate.
+std::vector<std::string> in_square(const char* walls, const char* radius) {
+    return {"--columns", "-,x,y", "--radius", radius, "--walls", walls, "--box=-0.5:0.5,-0.5:0.5"};
+}
+constexpr const char* radius_of_10 = "0.148204322565228798668007362743";
+constexpr const char* radius_of_13 = "0.133993513499008491414263236065";
+constexpr const char* radius_of_19 = "0.112265437570936304737847917535";
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(field)
+
+BOOST_AUTO_TEST_CASE(kind_1_a_tilted_cell_and_the_text_between_braces) {
+    expect_base("00_base16.xyz", {});
+    expect_base("01_braces.txt", {});
+}
+
+BOOST_AUTO_TEST_CASE(kind_2_a_box_that_is_flipped_is_the_same_path) {
+    for (const char* series : {"02_flip.toml", "02_noflip.toml"}) {
+        const auto found = json_of(in_field("compare", series, {"--bundle", "0", "--json"}));
+        BOOST_TEST(found["counts"]["same"] == 2);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(kind_3_thresholds_that_nobody_asked_for_do_not_count) {
+    says(in_field("plateau", "03_soft14.xyz", {"--cell", "diagonal", "--thresholds=-1e-9:1e-9"}), 1,
+         {"at no threshold of [-1e-09, 1e-09]", "h = 3"});
+}
+
+BOOST_AUTO_TEST_CASE(kind_4_circles_in_a_square) {
+    auto more = in_square("fixed", radius_of_13);
+    more.emplace_back("--json");
+    const auto thirteen = json_of(in_field("plateau", "04_square13.txt", more), 1);
+    BOOST_TEST(thirteen["widest"]["N"] == 25);
+    BOOST_TEST(thirteen["widest"]["rattlers"] == 1);
+    BOOST_TEST(thirteen["widest"]["counts"]["N_f"] == 24);
+    BOOST_TEST(thirteen["widest"]["counts"]["h"] == 1);
+    more = in_square("fixed", radius_of_19);
+    more.emplace_back("--json");
+    const auto nineteen = json_of(in_field("plateau", "04_square19.txt", more), 1);
+    BOOST_TEST(nineteen["widest"]["N"] == 37);
+    BOOST_TEST(nineteen["widest"]["rattlers"] == 2);
+    // The size alone moves: 21 = 2 x 10 + 1 contacts, and the square of this size is jammed.
+    const scratch::Folder folder;
+    for (const auto& [file, radius, contacts] :
+         {std::tuple{"04_square10.txt", radius_of_10, 21}, {"04_square13.txt", radius_of_13, 25}}) {
+        const std::string state = folder.at(file) + ".json";
+        more = in_square("square", radius);
+        more.insert(more.end(), {"-o", state});
+        says(in_field("import", file, more), 0, {"their size alone moves", "proved"});
+        const auto found = json_of(run({"inspect", state, "--json"}));
+        BOOST_TEST(found["box"]["N"] == contacts);
+        BOOST_TEST(found["box"]["h"] == 1);
+        BOOST_TEST(found["box"]["k"] == 0);
+        BOOST_TEST(found["box"]["jammed"]["collective"]["verdict"] == "proved");
+    }
+    more = in_square("fixed", radius_of_10);
+    more.insert(more.end(), {"-o", folder.at("fixed.json")});
+    expect(in_field("import", "04_square10.txt", more), 64, {"--walls is 'fixed'", "square"});
+}
+
+BOOST_AUTO_TEST_CASE(kind_4_a_fixed_square_counts_no_rattlers_and_exact_numbers_prove_it_jammed) {
+    const auto found = json_of(in_field("inspect", "04_square7_fixed.json", {"--json"}), 1);
+    BOOST_TEST(found["k"] == 2); // of all disks
+    BOOST_TEST(found["box"]["grains"] == 6);
+    BOOST_TEST(found["box"]["h"] == 2);
+    BOOST_TEST(found["box"]["k"] == 0);
+    BOOST_TEST(found["box"]["jammed"]["collective"]["verdict"] == "undecided");
+    BOOST_TEST(contains(found["box"]["jammed"]["collective"]["reason"], "exact numbers"));
+    const auto exact = json_of(in_field("inspect", "04_square7_exact.toml", {"--json"}));
+    BOOST_TEST(exact["jammed"]["collective"] == "proved");
+    BOOST_TEST(exact["jammed"]["strict"].is_null());
+    BOOST_TEST(exact["jammed"]["disks"] == 6);
+}
+
+BOOST_AUTO_TEST_CASE(kind_4_a_square_whose_walls_stay_is_jammed_by_its_size) {
+    // The ten circles again, every wall fixed in the state: its size gives the self-stress.
+    const scratch::Folder folder;
+    auto more = in_square("square", radius_of_10);
+    more.insert(more.end(), {"-o", folder.at("ten.json")});
+    expect(in_field("import", "04_square10.txt", more), 0);
+    auto state = nlohmann::json::parse(scratch::read(folder / "ten.json"));
+    state["walls"]["upper"] = {"fixed", "fixed"};
+    state.erase("forces");
+    state.erase("load");
+    scratch::write(folder / "fixed.json", state.dump());
+    const auto found = json_of(run({"inspect", folder.at("fixed.json"), "--json"}), 1);
+    BOOST_TEST(found["box"]["h"] == 1);
+    BOOST_TEST(found["box"]["jammed"]["collective"]["verdict"] == "proved");
+    state["contacts"].erase(state["contacts"].begin()); // one less holds nothing
+    scratch::write(folder / "loose.json", state.dump());
+    const auto loose = nlohmann::json::parse(run({"inspect", folder.at("loose.json"), "--json"}).out);
+    BOOST_TEST(loose["box"]["jammed"]["collective"]["verdict"] == "undecided");
+}
+
+BOOST_AUTO_TEST_CASE(kind_5_gaps_and_forces_below_the_digits_are_not_told_from_0) {
+    for (const char* lattice : {"05_torus3_triangular.xyz", "05_torus11.xyz"}) {
+        const auto found = json_of(in_field("plateau", lattice, {"--json"}), 1);
+        BOOST_TEST(found["isostatic"].empty(), lattice);
+    }
+    const scratch::Folder folder;
+    const std::string state = folder.at("seven.json");
+    says(in_field("import", "05_torus_n7_c1.xyz", {"--cell", "isotropic", "-o", state}), 2,
+         {"8 gaps", "with these gaps closed N = 21 and h = 8"});
+    const auto found = json_of(run({"inspect", state, "--json"}), 2);
+    BOOST_TEST(found["cell"]["jammed"]["strict"]["verdict"] == "undecided");
+    // A copy with other radii says so, in import and in inspect.
+    const std::string copy = folder.at("copy.json");
+    says(in_field("import", "05_torus3_triangular.xyz", {"--cell", "isotropic", "--jitter", "1e-9", "-o", copy}), 0,
+         {"this is a copy with other radii"});
+    says(run({"inspect", copy}), 0, {"copy                     of", "may be others of the file"});
+}
+
+BOOST_AUTO_TEST_CASE(kind_5_published_contact_counts_on_the_hexagonal_torus) {
+    for (const auto& [file, contacts] : {std::pair{"05_torus3_triangular.xyz", 9},
+                                         {"05_torus_n7_c1.xyz", 21},
+                                         {"05_torus_n8_c2.xyz", 16},
+                                         {"05_torus11.xyz", 22}}) {
+        const auto found = nlohmann::json::parse(in_field("plateau", file, {"--thresholds=-1e-6:1e-6", "--json"}).out);
+        BOOST_TEST(found["widest"]["N"] == contacts, file);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(kind_6_a_column_that_comes_twice_and_agrees) {
+    expect_base("06_type_twice.dump", {});
+}
+
+BOOST_AUTO_TEST_CASE(kind_7_vectors_of_forces) {
+    const scratch::Folder folder;
+    for (const auto& [file, columns] : {std::pair{"07_force_vector.dump", "c_1[1],c_1[2],c_2[1],c_2[2],c_2[3]"},
+                                        {"07_positions_ids_force.dump", "c_cpl[7],c_cpl[8],c_cpl[10],c_cpl[11]"},
+                                        {"07_contacts_fx_fy.csv", "i,j,fx,fy"}}) {
+        const auto found = json_of(snapped(file, columns, {"--stress", "0.001,0.001"}, folder));
+        BOOST_TEST(found["N"] == 33, file);
+        BOOST_TEST(found["h"] == 0);
+        BOOST_TEST(found["forces"]["rest"].get<double>() < 1e-11);
+        BOOST_TEST(contains(found["contacts"], "normal parts"));
+    }
+    const auto component = json_of(snapped("07_force_vector.dump", "c_1[1],c_1[2],c_2[1]", {}, folder), 1);
+    BOOST_TEST(contains(component["contacts"], "19 more are negative: is c_2[1] a component?"));
+    // Friction, and components in the wrong order.
+    scratch::write(folder / "friction.csv",
+                   scratch::replaced(scratch::read(scratch::data("field/07_contacts_fx_fy.csv")),
+                                     "1,8,0.001957927890048041,-0.00150217509421125",
+                                     "1,8,0.002957927890048041,-0.00050217509421125"));
+    expect(in_field("snap", "00_base16.dump",
+                    {"--contacts", folder.at("friction.csv"), "--contact-columns", "i,j,fx,fy", "--cell", "tilted",
+                     "-o", folder.at("state.json")}),
+           65, {"the tangential force of 0-7", "without friction"});
+    expect(snapped("07_contacts_fx_fy.csv", "i,j,fy,fx", {}, folder), 65, {"07_contacts_fx_fy.csv"});
+}
+
+BOOST_AUTO_TEST_CASE(kind_8_forces_in_other_units_and_a_column_of_something_else) {
+    const scratch::Folder folder;
+    const auto units = json_of(snapped("00_base16_contacts.csv", "id1,id2,fn", {}, folder));
+    BOOST_TEST(std::abs(units["forces"]["factor"].get<double>() - 1e-3) < 1e-12);
+    BOOST_TEST(units["forces"]["rest_in_units"].get<double>() < 1e-11);
+    BOOST_TEST(contains(units["forces"]["units"], "other units, or another load"));
+    const auto right = json_of(snapped("00_base16_contacts.csv", "id1,id2,fn", {"--stress", "1e-3,1e-3"}, folder));
+    BOOST_TEST(right["forces"]["units"] == "");
+    std::string table = scratch::read(scratch::data("field/00_base16_contacts.csv")), distances;
+    int row = 0;
+    for (std::size_t at = 0; at < table.size(); at = table.find('\n', at) + 1, ++row) {
+        const std::string line = table.substr(at, table.find('\n', at) - at);
+        distances += row == 0 ? line + "\n" : line.substr(0, line.rfind(',')) + (row % 2 == 0 ? ",2.0\n" : ",2.4\n");
+    }
+    scratch::write(folder / "distances.csv", distances);
+    const auto found = json_of(in_field("snap", "00_base16.dump",
+                                        {"--contacts", folder.at("distances.csv"), "--contact-columns", "id1,id2,fn",
+                                         "--cell", "tilted", "-o", folder.at("state.json"), "--json"}));
+    BOOST_TEST(contains(found["forces"]["units"], "is the column that of the forces?"));
+    // The same in a series, against its law.
+    for (const char* file : {"02_flip_disks_same.dump", "02_flip_contacts.dump", "02_flip_frames.csv"}) {
+        scratch::write(folder / file, scratch::read(scratch::data(std::string("field/") + file)));
+    }
+    const std::string manifest = scratch::read(scratch::data("field/02_noflip.toml"));
+    scratch::write(folder / "ten.toml", scratch::replaced(manifest, "stiffness = 1", "stiffness = 10"));
+    const auto frames = json_of(run({"compare", folder.at("ten.toml"), "--bundle", "0", "--json"}), 1)["frames"];
+    BOOST_TEST(frames[0]["status"] == "file");
+    BOOST_TEST(contains(frames[0]["reason"], "they are 0.1 times those"), frames[0]["reason"]);
+    scratch::write(folder / "none.toml",
+                   scratch::replaced(manifest, "kind = \"linear\"\nstiffness = 1", "kind = \"none\""));
+    says(run({"compare", folder.at("none.toml"), "--bundle", "0"}), 0, {"2 same", "stiffness not tested"});
+}
+
+BOOST_AUTO_TEST_CASE(kind_9_names_in_a_comment_and_kind_26_lists_that_count_rows) {
+    const scratch::Folder folder;
+    const std::vector<std::string> stress{"--stress", "0.001,0.001"};
+    BOOST_TEST(json_of(snapped("09_comment_header.txt", "i,j,f", stress, folder))["N"] == 33);
+    BOOST_TEST(json_of(snapped("09_comment_header_zero_based.txt", "id1,id2,fn",
+                               {"--ids", "0", "--stress", "0.001,0.001"}, folder))["forces"]["rest"]
+                   .get<double>() < 1e-11);
+    const std::vector<std::string> import{
+        "--contacts",           scratch::data("field/00_base16_contacts.csv"), "--contact-columns", "id1,id2,fn", "-o",
+        folder.at("state.json")};
+    expect(in_field("import", "00_base16.xyz", import), 65, {"no column id", "--ids"});
+    auto with_ids = import;
+    with_ids.insert(with_ids.end(), {"--ids", "1"});
+    says(in_field("import", "00_base16.xyz", with_ids), 0, {"33 carry a force", "solid fraction 0.813004"});
+}
+
+BOOST_AUTO_TEST_CASE(kind_10_radius_by_type_or_species) {
+    expect_base("10_type_only.dump", {"--radius", "type:1=1,2=1.4"});
+    expect_base("10_species_only.xyz", {"--radius", "species:A=1,B=1.4"});
+    expect_base("10_species_only.xyz", {"--diameter", "species:A=2,B=2.8"});
+    refused("10_species_only.xyz", {"--radius", "species:A=1"}, {"species is 'B'", "whose radius was stated"});
+    refused("10_type_only.dump", {}, {"--radius type:1=1,2=1.4", "id type xs ys zs"});
+    expect(in_field("plateau", "10_type_only.dump", {"--radius", "type:1=0"}), 64, {"positive"});
+}
+
+BOOST_AUTO_TEST_CASE(kind_11_a_table_and_its_cell) {
+    expect_base("11_table_of_a_cell.csv", cell);
+    expect_base("11_table_of_a_cell.csv", {"--lattice", "9.539360729179307,0,0.06305756549215252,9.569336627546415"});
+    says(in_field("plateau", "11_table_of_a_cell.csv"), 1, {"neither walls nor a cell: --lattice"});
+    refused("11_table_of_a_cell.csv", {"--lattice", "1,2,3,4,5"}, {"5 numbers"});
+    refused("00_base16.xyz", cell, {"the file has one"});
+    refused("11_table_of_a_cell.csv", {"--lattice", "1,1"}, {"2.8 wide in a period of 1"});
+}
+
+BOOST_AUTO_TEST_CASE(kind_12_files_that_are_known_and_not_read_are_named) {
+    refused("12_binary.xyzd", {}, {"a binary file?"});
+    refused("12_dump.yaml", {}, {"YAML"});
+    refused("12_packed.dump.gz", {}, {"gzip", "gunzip -k"});
+    refused("12_points.vtk", {}, {"VTK"});
+    refused("12_records.json", {}, {"JSON"});
+    refused("12_utf16.csv", {}, {"UTF-16", "iconv"});
+}
+
+BOOST_AUTO_TEST_CASE(kind_13_general_triclinic_cells_are_turned) {
+    expect_base("13_abc_aligned.dump", {});
+    expect_base("13_abc_rotated.dump", {});
+    expect_base("13_general.data", {"--periodic"});
+    expect_base("13_old_header.dump", {"--periodic"});
+    says(in_field("plateau", "13_abc_rotated.dump", {"--cell", "full"}), 0, {"the cell is turned"});
+}
+
+BOOST_AUTO_TEST_CASE(kind_14_data_files_whose_style_is_stated) {
+    expect_base("14_no_style.data", {"--periodic", "--style", "sphere"});
+    expect_base("14_no_style.data", {"--periodic", "--columns", "id,type,d,-,x,y,z"});
+    expect_base("14_hybrid.data", {"--periodic"});
+    refused("14_no_style.data", {"--periodic"}, {"--style sphere", "--columns"});
+    refused("14_no_style.data", {"--periodic", "--style", "hybrid sphere line"}, {"has style 'hybrid sphere line'"});
+    refused("14_hybrid.data", {"--periodic", "--style", "sphere"}, {"7 values"});
+}
+
+BOOST_AUTO_TEST_CASE(kind_15_tables_after_lines_of_another_kind) {
+    expect_base("15_count_time_box.data", with_cell({"--skip", "1", "--columns", "x,y,-,-,r,-,-,-"}));
+    says(in_field("plateau", "15_ls.dat",
+                  {"--skip", "7", "--columns", "x,y", "--diameter", "2", "--lattice",
+                   "9.539360729179307,0,0,9.569336627546415"}),
+         1, {"candidates                  6"});
+    refused("15_ls.dat", {}, {"--columns x,y,r"});
+    says(in_field("plateau", "15_dim_n_diameter_lattice.dat"), 1, {"diameter 2 for every disk, as line 3 says"});
+    refused("15_dim_n_length.dat", {"--periodic", "--box", "0:1,0:1"}, {"2 wide in a period of 1"});
+    refused("15_count_time_box.data", {"--columns", "x,y,-,-,r,-,-,-"}, {"--skip N"});
+}
+
+BOOST_AUTO_TEST_CASE(kind_16_planes) {
+    expect_base("16_z_noise.dump", {});
+    says(in_field("plateau", "16_xz_plane.dump", {"--plane", "xz", "--cell", "full"}), 0,
+         {"the plane of xz is taken", "from N = 33"});
+    refused("16_xz_plane.dump", {}, {"wide in a period of 1 along y", "--plane"});
+    refused("16_three_dimensions.dump", {}, {"wide in a period of 1 along z"});
+    refused("17_upper.csv", {"--plane", "yz", "--columns", "x,y,r"}, {"no column z"});
+}
+
+BOOST_AUTO_TEST_CASE(kind_17_tables_of_other_programs) {
+    expect_base("17_fortran.txt", cell);
+    expect_base("17_percent.txt", cell, 1e-9); // fifteen digits
+    refused("17_upper.csv", cell, {"the columns are X Y R", "--columns x,y,radius"});
+    refused("17_units.csv", cell, {"x (m) y (m) radius (m)", "--columns x,y,radius"});
+    refused("17_paraview.csv", cell, {"Points:0", "--columns id,radius,-,-,-,x,y,z"});
+    refused("17_decimal_comma.csv", cell, {":2", "x of disk 0 is '8,876706966229836'", "comma"});
+    expect_base("17_upper.csv", with_cell({"--columns", "x,y,radius"}));
+    expect_base("17_units.csv", with_cell({"--columns", "x,y,radius"}));
+    expect_base("17_paraview.csv", with_cell({"--columns", "id,radius,-,-,-,x,y,z"}));
+}
+
+BOOST_AUTO_TEST_CASE(kind_18_plain_xyz_and_lattices_of_any_kind) {
+    expect_base("18_plain.xyz", with_cell({"--columns", "-,x,y,-,r"}));
+    expect_base("18_rotated.xyz", {});
+    expect_base("18_lattice4.xyz", {});
+}
+
+BOOST_AUTO_TEST_CASE(kind_19_atoms_that_are_walls) {
+    const auto selected = json_of(in_field("plateau", "19_wall_atoms.dump", {"--select", "type=1,2", "--json"}), 1);
+    BOOST_TEST(selected["disks"] == 4);
+    const auto fixed =
+        json_of(in_field("plateau", "19_wall_atoms.dump", {"--fixed", "type=3", "--thresholds", "0:0.1", "--json"}), 1);
+    BOOST_TEST(fixed["disks"] == 24);
+    BOOST_TEST(fixed["widest"]["N"] == 20); // four pairs, and each disk touches four atoms of the walls
+    BOOST_TEST(fixed["widest"]["counts"]["N_f"] == 8);
+    refused("00_base16.dump", {"--fixed", "type=3"}, {"cannot move", "periodic"});
+    const scratch::Folder folder;
+    expect(in_field("import", "19_wall_atoms.dump", {"--fixed", "type=3", "-o", folder.at("s.json")}), 64, {"--fixed"});
+}
+
+BOOST_AUTO_TEST_CASE(kind_20_sizes_that_are_wrong_by_a_factor) {
+    says(in_field("plateau", "20_half_radii.xyz"), 2, {"the smallest gap is 1.99 of the smallest radius"});
+    const scratch::Folder folder;
+    expect(in_field("import", "20_half_radii.xyz", {"--cell", "isotropic", "-o", folder.at("s.json")}), 65,
+           {"of its radius", "wrong by a factor"});
+}
+
+BOOST_AUTO_TEST_CASE(kind_22_the_pair_of_the_deepest_overlap_and_the_list) {
+    const auto found =
+        json_of(in_field("plateau", "22_square26_unequal.csv", {"--walls", "fixed", "--box", "0:1,0:1", "--json"}), 1);
+    BOOST_TEST(found["widest"]["N"] == 78);
+    BOOST_TEST(found["widest"]["contacts"].size() == 78U);
+    BOOST_TEST(found["smallest_gap_of"] == "8-12");
+}
+
+BOOST_AUTO_TEST_CASE(kind_23_decimals_and_their_digits) {
+    const std::vector<std::string> box{"--walls", "fixed", "--box", "0:0.3404,0:0.3404", "--json"};
+    const auto corner = json_of(in_field("plateau", "23_corner.csv", box), 1);
+    BOOST_TEST(corner["widest"]["N"] == 12);
+    BOOST_TEST(-corner["smallest_gap"].get<double>() < corner["rounding"].get<double>());
+    const auto over = json_of(in_field("plateau", "23_over.csv", box), 1);
+    BOOST_TEST(over["smallest_gap_of"] == "0-left");
+    BOOST_TEST(std::abs(over["smallest_gap"].get<double>() + 1e-5) < 1e-15);
+}
+
+BOOST_AUTO_TEST_CASE(kind_24_lattices_have_their_categories) {
+    for (const auto& [file, collective, strict] : {std::tuple{"24_honey.toml", "proved", "refuted"},
+                                                   {"24_honey2.toml", "refuted", "refuted"},
+                                                   {"24_kagome.toml", "refuted", "refuted"},
+                                                   {"24_square.toml", "refuted", "refuted"}}) {
+        const auto jammed = json_of(in_field("inspect", file, {"--json"}))["jammed"];
+        BOOST_TEST(jammed["collective"] == collective, file);
+        BOOST_TEST(jammed["strict"] == strict, file);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(kind_25_one_pair_through_three_images) {
+    const scratch::Folder folder;
+    const auto found =
+        json_of(in_field("snap", "25_three_images.xyz",
+                         {"--contacts", scratch::data("field/25_three_images_contacts.csv"), "--contact-columns",
+                          "i,j,f", "--cell", "isotropic", "-o", folder.at("s.json"), "--json"}));
+    BOOST_TEST(found["outcome"] == "vertex");
+    BOOST_TEST(found["N"] == 3);
+}
+
+BOOST_AUTO_TEST_CASE(kind_27_our_own_table_is_read_whole) {
+    const scratch::Folder folder;
+    says(in_field("import", "27_own_export.csv", {"-o", folder.at("s.json")}), 0,
+         {"periodic along x and y", "solid fraction 0.813004"});
+    expect(run({"export", folder.at("s.json"), "-o", folder.at("again.csv")}), 0);
+    says(run({"plateau", folder.at("again.csv"), "--cell", "full"}), 0, {"from N = 33"});
+    // A box, with walls where the first line says.
+    expect(run({"export", scratch::data("vertex100.txt"), "-o", folder.at("box.csv")}), 0);
+    says(run({"plateau", folder.at("box.csv"), "--walls", "box"}), 0, {"from N = 188 with 7 rattlers"});
+    scratch::write(folder / "other.csv", "# box of three disks\nx,y,r\n0,0,1\n2,0,1\n");
+    says(run({"plateau", folder.at("other.csv")}), 1, {"neither walls nor a cell"});
+}
+
+BOOST_AUTO_TEST_CASE(kind_28_a_manifest_to_begin_with) {
+    const scratch::Folder folder;
+    scratch::write(folder / "disks.dump", scratch::read(scratch::data("field/02_flip_disks.dump")));
+    const std::string series = folder.at("series.toml");
+    says(run({"compare", series, "--init", folder.at("disks.dump")}), 0, {"fill in the loads"});
+    expect(run({"compare", series, "--bundle", "0"}), 65, {"series.frames.csv:2", "sigma2 is ''"});
+    scratch::write(folder / "series.frames.csv", "timestep,sigma2\n0,0.001\n100,0.001\n");
+    scratch::write(folder / "series.toml",
+                   scratch::replaced(scratch::replaced(scratch::read(series), "sigma1 = 1.0", "sigma1 = 0.001"),
+                                     "kind = \"none\"", "kind = \"linear\"\nstiffness = 1"));
+    const auto found = json_of(run({"compare", series, "--bundle", "0", "--json"}));
+    BOOST_TEST(found["counts"]["same"] == 2);
+    expect(run({"compare", series, "--init", folder.at("disks.dump")}), 64, {"series.toml exists"});
+    scratch::write(folder / "other.txt", "mine");
+    expect(run({"compare", folder.at("other.txt"), "--init", folder.at("disks.dump")}), 64,
+           {"exists: expected a new name"});
+    BOOST_TEST(scratch::read(folder / "other.txt") == "mine");
+    // Strain-controlled series are not compared, and the message says it.
+    scratch::write(folder / "series.frames.csv", "timestep\n0\n100\n");
+    expect(run({"compare", series, "--bundle", "0"}), 65, {"no column 'sigma2'", "strain"});
+}
+
+BOOST_AUTO_TEST_SUITE_END()

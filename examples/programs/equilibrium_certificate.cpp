@@ -15,6 +15,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -239,8 +240,9 @@ std::string name(const Contact& c) {
     return std::string(kind) + " " + std::to_string(c.i) + " " + std::to_string(c.j);
 }
 
-/// Rows of L, with P^T L for the permutation P of the factor: A^T A - s I = L L^T, in integers of the unit.
-std::string factor_rows(const Matrix& squared, double shift) {
+/// Columns of P^T L, P the permutation of the factor: A^T A - s I = L L^T, in integers of the unit. Coq merges them
+/// quickly where their rows are in order.
+std::string factor_columns(const Matrix& squared, double shift) {
     Matrix shifted = squared;
     for (Eigen::Index k = 0; k < shifted.cols(); ++k) {
         shifted.coeffRef(k, k) -= shift;
@@ -250,18 +252,17 @@ std::string factor_rows(const Matrix& squared, double shift) {
         throw Error(ErrorKind::bad_input, "the shifted matrix has no factor");
     }
     const Matrix lower = factor.matrixL();
-    std::vector<std::vector<std::string>> rows(static_cast<std::size_t>(lower.rows()));
-    for (Eigen::Index k = 0; k < lower.outerSize(); ++k) {
-        for (Matrix::InnerIterator it(lower, k); it; ++it) {
-            const Eigen::Index row = factor.permutationPinv().indices()[it.row()];
-            rows[static_cast<std::size_t>(row)].push_back("(" + std::to_string(k) + ", " + rounded(it.value()).text() +
-                                                          ")");
-        }
-    }
     std::vector<std::string> items;
-    items.reserve(rows.size());
-    for (const auto& row : rows) {
-        items.push_back(list(row));
+    for (Eigen::Index k = 0; k < lower.outerSize(); ++k) {
+        std::map<Eigen::Index, std::string> column;
+        for (Matrix::InnerIterator it(lower, k); it; ++it) {
+            column[factor.permutationPinv().indices()[it.row()]] = rounded(it.value()).text();
+        }
+        std::vector<std::string> entries;
+        for (const auto& [row, value] : column) {
+            entries.push_back("(" + std::to_string(row) + ", " + value + ")");
+        }
+        items.push_back(list(entries));
     }
     return list(items);
 }
@@ -316,7 +317,7 @@ Vertex vertex_of(const State& state, double unique_radius) {
     v.shift = rounded(shift);
     v.ball = rounded(ball);
     v.stiffness = rounded(std::floor(std::sqrt(stiffness)));
-    v.factor = factor_rows(Matrix(coarse.a.transpose() * coarse.a), shift);
+    v.factor = factor_columns(Matrix(coarse.a.transpose() * coarse.a), shift);
 
     const Number zoom = power_of_two(zoom_exponent);
     Numbers start = v.stored;

@@ -6,7 +6,7 @@
 From Coq Require Import ZArith List.
 From mathcomp Require Import all_ssreflect all_algebra.
 From mathcomp Require Import ssrZ zify ring.
-From Isostat Require Import certificate contact_certificate dense_rows integers_in_a_field shifted_factor max_norm box
+From Isostat Require Import contact_certificate sparse_rows integers_in_a_field shifted_factor max_norm box
   box_vertex.
 Set Implicit Arguments.
 Unset Strict Implicit.
@@ -25,7 +25,7 @@ Record vertex_certificate := VertexCertificate {
   ball : Z;                   (* there is no other vertex so near the stored one *)
   stiffness : Z;              (* |A x| >= stiffness |x| for the largest entries *)
   shift : Z;
-  factor : seq (seq (Z * Z))  (* rows of L: columns and entries *)
+  factor : seq (seq (Z * Z))  (* columns of L: rows and entries *)
 }.
 
 Section Check.
@@ -40,19 +40,13 @@ Definition fine_radius (i : nat) : Z := zoom v * nth 0 (radii v) i.
 Definition fine_weight : Z := zoom v * weight v.
 Definition fine_stiffness : Z := zoom v * stiffness v.
 
-Definition matrix_rows : table := [seq dense N (gradient n (weight v) stored_at c) | c <- contacts v].
-Definition factor_rows : table := [seq dense N [seq (Z.to_nat e.1, e.2) | e <- row] | row <- factor v].
-
-Definition defect_row (columns rows factor_columns factor_rows : table) (i : nat) : seq Z :=
-  put i (- shift v) (add_multiple (-1) (combine N (nth [::] factor_rows i) factor_columns)
-    (combine N (nth [::] columns i) rows)).
+Definition matrix_rows : seq sparse := [seq sparse_of (gradient n (weight v) stored_at c) | c <- contacts v].
+Definition factor_columns : seq sparse := [seq [seq (Z.to_N e.1, e.2) | e <- column] | column <- factor v].
+Definition defect_rows : seq sparse :=
+  add_all_products 1 matrix_rows (add_all_products (-1) factor_columns (diagonal N (- shift v))).
 Definition largest_defect : Z :=
   shift v - 2 * Z.of_nat N * (stiffness v * stiffness v + 64 * (ball v * ball v)).
-Definition sum_of_sizes (row : seq Z) : Z := foldr (fun z => Z.add (Z.abs z)) 0 row.
-Definition well_conditioned : bool :=
-  let rows := matrix_rows in let columns := transpose N rows in
-  let lower := factor_rows in let upper := transpose N lower in
-  all (fun i => sum_of_sizes (defect_row columns rows upper lower i) <=? largest_defect) (iota 0 N).
+Definition well_conditioned : bool := let most := largest_defect in all (fun row => sizes row <=? most) defect_rows.
 
 Definition nearly_closed : bool :=
   all (fun c => Z.abs (doubled_gap n fine_weight fine_radius refined_at c) <=? 2 * (fine_stiffness * error v)) (contacts v).
@@ -105,58 +99,41 @@ Qed.
 
 Let A := derivative (real (fine_weight v) : F) (contacts v) : 'cV[F]_N -> 'M[F]_N.
 
-Let rows_ok : all (fun row => size row == N) (matrix_rows v).
-Proof. by rewrite all_map (eq_all (a2 := predT)) ?all_predT // => c; rewrite /= size_dense eqxx. Qed.
-Let factor_ok : all (fun row => size row == N) (factor_rows v).
-Proof. by rewrite all_map (eq_all (a2 := predT)) ?all_predT // => c; rewrite /= size_dense eqxx. Qed.
-Let B := of_rows N (matrix_rows v).
-Let L := of_rows N (factor_rows v).
+Let B := matrix_of N (matrix_rows v).
+Let L := (matrix_of N (factor_columns v))^T.
 
 Lemma derivative_at_the_stored_one : A stored_configuration = real (zoom v) *: map_mx real B.
 Proof.
 have finer c : gradient n (real (fine_weight v)) (at_ stored_configuration) c
     = [seq (e.1, real (zoom v) * real e.2 : F) | e <- gradient n (weight v) (stored_at v) c].
   by case: c => * /=; rewrite /separation ?at_stored !(rmorphM, rmorphN, rmorphB) /= ?mulrN ?mulrBr.
-apply/matrixP=> l m; rewrite !mxE (nth_map (Lower 0 0)) ?size_contacts // dense_entry //.
+apply/matrixP=> l m; rewrite !mxE (nth_map (Lower 0 0)) ?size_contacts // sparse_of_entry.
 by rewrite finer big_map rmorph_sum mulr_sumr.
 Qed.
 
-Let sum_of_sizes_is_sum (m : nat) (row : seq Z) : size row = m ->
-  real (sum_of_sizes row) = \sum_(j < m) `|real (nth 0 row j) : F|.
-Proof.
-elim: m row => [|m IH] [|z row] //= => [_|[s]]; first by rewrite big_ord0.
-by rewrite big_ord_recl /= -(IH _ s) -[Z.add _ _]/(Z.abs z + sum_of_sizes row) rmorphD /= real_abs.
-Qed.
+Let size_defect : size (defect_rows v) = N.
+Proof. by rewrite /defect_rows !(proj1 (add_all_products_entry _ _ _ 0 0)) size_diagonal. Qed.
 
-Let defect_entry (i j : 'I_N) (row := defect_row v (transpose N (matrix_rows v)) (matrix_rows v)
-    (transpose N (factor_rows v)) (factor_rows v) i) :
-  size row = N /\ nth 0 row j = (B^T *m B - (shift v)%:M - L *m L^T) i j.
+Let defect_entry (i j : 'I_N) : entry (nth [::] (defect_rows v) i) j = (B^T *m B - (shift v)%:M - L *m L^T) i j.
 Proof.
-have sB : size (matrix_rows v) = N by rewrite size_map.
-have sL : size (factor_rows v) = N by rewrite size_map.
-have [sT aT Bt] := transpose_rows sB rows_ok; have [sU aU Lt] := transpose_rows sL factor_ok.
-have square (X : table) (k : 'I_N) (c : table) : size X = N -> all (fun row => size row == N) X ->
-    size c = N -> all (fun row => size row == N) c -> size (combine N (nth [::] X k) c) = N.
-  move=> sX /allP aX sc ac; have sXk : size (nth [::] X k) = N by apply/eqP/aX/mem_nth; rewrite sX.
-  by have [] := combine_entry sXk sc ac.
-have sLL := square _ i _ sL factor_ok sU aU; have sBB := square _ i _ sT aT sB rows_ok.
-have [sum_size sum] := add_multiple_entry (Zneg xH) sLL sBB.
-have [sr entry] := put_entry i (- shift v) (add_multiple (Zneg xH) (combine N (nth [::] (factor_rows v) i)
-  (transpose N (factor_rows v))) (combine N (nth [::] (transpose N (matrix_rows v)) i) (matrix_rows v))) j.
-split; first by rewrite /row /defect_row sr.
-rewrite /row /defect_row [LHS]entry ?sum_size // sum !product_row // Bt Lt !mxE.
-rewrite -[Zneg xH]/(-1 : Z) mulN1r -[i == j]/(nat_of_ord i == j).
-move: (\sum_k _) (\sum_k _) => a b; by case: (_ == _); rewrite ?mulr1n ?mulr0n; ring.
+have products (rows : seq sparse) : size rows = N ->
+    \sum_(row <- rows) entry row i * entry row j = ((matrix_of N rows)^T *m matrix_of N rows) i j.
+  by move=> sr; rewrite (big_nth [::]) sr big_mkord mxE; apply: eq_bigr => l _; rewrite !mxE.
+rewrite /defect_rows (proj2 (add_all_products_entry _ _ _ _ _)) ?(proj1 (add_all_products_entry _ _ _ 0 0)) ?size_diagonal //.
+rewrite (proj2 (add_all_products_entry _ _ _ _ _)) ?size_diagonal // diagonal_entry // !products ?size_map //.
+have parts (X Y W : 'M[Z]_N) : (X - Y - W) i j = X i j - Y i j - W i j by rewrite !mxE.
+rewrite /L trmxK parts [_%:M _ _]mxE.
+rewrite -[Zneg xH]/(-1 : Z) mulN1r -[Zpos xH]/(1 : Z) mul1r -[i == j]/(nat_of_ord i == j).
+move: ((_ *m _) i j) ((_ *m _) i j) => s t; by case: (_ == _); rewrite ?mulr1n ?mulr0n; ring.
 Qed.
 
 Let small_defect i : well_conditioned v ->
   \sum_j `|defect (map_mx real B : 'M[F]_N) (map_mx real L) (real (shift v)) i j| <= real (largest_defect v).
 Proof.
-move=> /allP/(_ (i : nat)); rewrite mem_iota ltn_ord => /(_ isT); rewrite -(real_le F); apply: le_trans.
-have [size_row _] := defect_entry i i; rewrite (sum_of_sizes_is_sum size_row).
+move=> /(all_nthP [::])/(_ i); rewrite size_defect => /(_ (ltn_ord i)); rewrite -(real_le F); apply: le_trans.
+apply: le_trans _ (@sizes_are_larger F (real_rmorphism F) N _ (@real_abs F)).
 rewrite le_eqVlt; apply/orP; left; apply/eqP; apply: eq_bigr => j _; congr (`|_|).
-have [_ ->] := defect_entry i j.
-by rewrite /defect !map_trmx -!map_mxM -map_scalar_mx -!map_mxB mxE.
+by rewrite /= defect_entry /defect !map_trmx -!map_mxM -map_scalar_mx -!map_mxB mxE.
 Qed.
 
 Let q0 := stored_configuration.

@@ -134,6 +134,8 @@ Qed.
 Let w_gt0 : 0 < w.
 Proof. by case/and5P: posed => _ _ _ _ /and3P[]; rewrite -(real_zero F) real_lt /fine_weight; nia. Qed.
 Let w1 : w != 0 := lt0r_neq0 w_gt0.
+Let b0 : 0 < real (fine_stiffness v) :> F.
+Proof. by case/and5P: posed => _ _ _ _ /and3P[]; rewrite -(real_zero F) real_lt /fine_stiffness; nia. Qed.
 Let scales l : scale 1 (radius F v) (contact_at (contacts v) l) != 0 := lt0r_neq0 (scales_are_positive F posed l).
 
 Lemma scale_is_positive l : 0 < real (scale_of e l) :> F.
@@ -155,8 +157,6 @@ Lemma forces_are_found (p : force_solution) (q : 'cV[F]_N) : nearly_balanced e p
     forall f', balanced (radius F v) (contacts v) q (load_vector p) f' -> f' = f & encloses p f].
 Proof.
 case/and5P=> /eqP sL /eqP sG t0 c0 /allP res near inside unit.
-have b0 : 0 < real (fine_stiffness v) :> F.
-  by case/and5P: posed => _ _ _ _ /and3P[]; rewrite -(real_zero F) real_lt /fine_stiffness; nia.
 have inverse x := forces_follow_from_residuals posed x vertex_ok inside.
 have slack0 : 0 <= real (slack p) :> F by rewrite -(real_zero F) real_le.
 have [] := forces_are_enclosed w1 scales unit b0 inverse near (load := load_vector p) (G := quotient_vector p)
@@ -277,9 +277,7 @@ exists q; split=> //.
   + by move=> c formed unlisted; apply: other_grains_are_apart gaps_ok formed unlisted => k; apply: near_the_refined_one.
   + by exists f; split=> // l; case: ifPn => [/zero|/pushing].
   by exists g.
-- have b0 : 0 < real (fine_stiffness v) :> F.
-    by case/and5P: posed => _ _ _ _ /and3P[]; rewrite -(real_zero F) real_lt /fine_stiffness; nia.
-  have [regular _] := gaps_follow_displacements posed 0 vertex_ok inside_q.
+- have [regular _] := gaps_follow_displacements posed 0 vertex_ok inside_q.
   apply: (equilibrium_is_a_strict_minimum w_gt0 (scales_are_positive F posed) _ b0 _ zeros_counted zeros_unloaded zeros_apart fb gb) => //.
   + exact/(gaps_vanish _ _ _ w1).
   + by move=> x; have [] := gaps_follow_displacements posed x vertex_ok inside_q.

@@ -1,0 +1,114 @@
+#!/usr/bin/env python3
+"""Weakens the checker that Coq proves, one place at a time: none of the weaker ones may still have a proof.
+
+  python3 proofs/coq/mutants.py FOLDER [NAME ...]     all mutants, or those whose names contain NAME
+
+By night: three minutes of processor time. The sources are compiled in FOLDER, so that those of the project stay as they are. Of each
+mutant the changed file is compiled again, with those that need it, until one of them fails. That has to be *after* the changed definition:
+a mutant that is no definition at all says nothing. Exit status 1: a mutant still has a proof, or does not fit the sources."""
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+here = pathlib.Path(__file__).parent
+
+# Name, file, what stands there exactly once, what the mutant has.
+MUTANTS = [
+    ("the derivative changes half as much", "box_certificate.v", "+ 64 * (ball v * ball v)", "+ 32 * (ball v * ball v)"),
+    ("one entry of a row of the defect counts", "sparse_rows.v", "foldr (fun e => Z.add (Z.abs e.2)) Z0 row", "foldr (fun e => Z.max (Z.abs e.2)) Z0 row"),
+    ("the defect without a shift", "box_certificate.v", "(diagonal N (- shift v))", "(diagonal N 0)"),
+    ("gaps may be twice as large", "box_certificate.v", "<=? 2 * (fine_stiffness * error v)", "<=? 4 * (fine_stiffness * error v)"),
+    ("the chord may take larger steps", "box_certificate.v", "32 * error v <=? fine_stiffness &", "8 * error v <=? fine_stiffness &"),
+    ("the ball does not hold the vertex", "box_certificate.v", "(distance v + error v <=?", "(distance v <=?"),
+    ("radii may be 0", "box_certificate.v", "all (Z.ltb 0) (radii v)", "all (Z.leb 0) (radii v)"),
+    ("a gap with the squares of the radii", "box.v", "- (radius i + radius j) * (radius i + radius j)",
+     "- (radius i * radius i + radius j * radius j)"),
+    ("a normal that points outwards", "box.v", "| Upper i a => [:: ((n.*2 + a)%N, w); ((i.*2 + a)%N, - w)]",
+     "| Upper i a => [:: ((n.*2 + a)%N, w); ((i.*2 + a)%N, w)]"),
+    ("what is merged is lost", "sparse_rows.v", "(i, Z.add (Z.mul a b) c) ::", "(i, Z.mul a b) ::"),
+    ("half of the blur of forces", "equilibrium_certificate.v", "+ 2 * error v * nth 0 bl k", "+ error v * nth 0 bl k"),
+    ("a force may be 0", "equilibrium_certificate.v", "[&& 0 <? nth 0 (low p) l,", "[&& 0 <=? nth 0 (low p) l,"),
+    ("a lower end of a force without the slack", "equilibrium_certificate.v", "scale_of l * (nth 0 (quotients p) l - slack p)",
+     "scale_of l * nth 0 (quotients p) l"),
+    ("more zeros than degrees of freedom", "equilibrium_certificate.v", "(count id free + more)%N", "(count id free + more.+1)%N"),
+    ("degrees of freedom with a load", "equilibrium_certificate.v", "(nth 0 p k =? 0)) (iota 0 N).", "(0 <=? nth 0 p k)) (iota 0 N)."),
+    ("infinitesimal forces are not asked for", "equilibrium_certificate.v",
+     "interval_claimed (if zero_at l then infinitesimal e else finite e) l)", "zero_at l || interval_claimed (finite e) l)"),
+    ("one error between two disks", "box_gaps.v", "- 2 * error).", "- error)."),
+    ("disks are out of reach too soon", "box_gaps.v", "2 * widest + gap + 2 * error <=?", "widest + gap + 2 * error <=?"),
+    ("the sweep ends with the first disk", "box_gaps.v", "settled_until_far i rest && sweep rest else", "settled_until_far i rest else"),
+    ("the top wall is not looked at", "box_gaps.v", "settled (Upper i 0) & settled (Upper i 1)]", "settled (Upper i 0) & settled (Upper i 0)]"),
+    ("another force may vanish before", "load_certificate.v", "outlasts up m l) (iota 0 N)]", "outlasts up l m) (iota 0 N)]"),
+    ("uncertain products without the last term", "load_certificate.v",
+     "Z.abs b * slack (finite e) + slack (finite e) * slack (rate c).", "Z.abs b * slack (finite e)."),
+    ("the force that vanishes may not fall", "load_certificate.v", "slack (rate c) <? fall up m,", "- slack (rate c) <? fall up m,"),
+    ("a place without the slack of the slope", "load_certificate.v", "(ahead up (far x) * fall up m - Z.abs", "(ahead up (far x) * fall up m + Z.abs"),
+    ("forces of an end that do not vary together", "load_certificate.v", "[&& counted e 1 (mute x)", "[&& counted e 2 (mute x)"),
+    ("no end where a force falls", "load_certificate.v", "(fall up l + slack (rate c) <? 0)", "(fall up l - slack (rate c) <? 0)"),
+]
+
+
+def needing(files):
+    """File -> files that have to be compiled with it, in the order of _CoqProject."""
+    direct = {f: set(re.findall(r"\w+", " ".join(re.findall(r"From Isostat Require Import ([^.]*)\.", (here / f).read_text())))) for f in files}
+    result = {}
+    for first in files:
+        seen = [first]
+        for f in files[files.index(first) + 1:]:
+            if any(s[:-2] in direct[f] for s in seen):
+                seen.append(f)
+        result[first] = seen
+    return result
+
+
+def coqc(folder, file):
+    """Nothing, or the line of the error with its words."""
+    run = subprocess.run(["coqc", "-Q", ".", "Isostat", "-w", "none", file], cwd=folder, capture_output=True, text=True)
+    if run.returncode == 0:
+        return None
+    where = re.search(r'line (\d+), characters', run.stderr)
+    return (int(where[1]) if where else 0, run.stderr.strip().splitlines()[-1])
+
+
+def main(folder, *names):
+    folder = pathlib.Path(folder)
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    files = [line for line in (here / "_CoqProject").read_text().split() if line.endswith(".v")]
+    order = needing(files)
+    chosen = [m for m in MUTANTS if any(n in m[0] for n in names or ("",))]
+    wanted = [f for f in files if any(m[1] in order[f] or f in order[m[1]] for m in chosen)]
+    for f in files:
+        shutil.copy(here / f, folder)
+    for f in files:
+        if f in wanted and coqc(folder, f):
+            sys.exit(f"{f} does not compile without any change")
+    survivors = 0
+    for name, file, text, mutant in chosen:
+        source = (here / file).read_text()
+        if source.count(text) != 1:
+            print(f"{name}: its text stands {source.count(text)} times in {file}, expected once")
+            survivors += 1
+            continue
+        before = source[:source.index(text)].count("\n") + 1
+        saved = {f: (folder / f"{f}o").read_bytes() for f in order[file]}
+        (folder / file).write_text(source.replace(text, mutant))
+        answer = "STILL HAS A PROOF"
+        for f in order[file]:
+            error = coqc(folder, f)
+            if error:
+                sound = f != file or error[0] > before
+                answer = f"refused, {f} line {error[0]}" if sound else f"NO DEFINITION: {error[1]}"
+                break
+        survivors += not answer.startswith("refused")
+        print(f"{name}: {answer}", flush=True)
+        shutil.copy(here / file, folder)
+        for f, old in saved.items():
+            (folder / f"{f}o").write_bytes(old)
+    print(f"{len(chosen)} mutants, {survivors} not refused")
+    sys.exit(survivors > 0)
+
+
+main(*sys.argv[1:])

@@ -175,7 +175,7 @@ std::array<double, 2> parse_range(const std::string& text, const std::string& op
 
 ReadPacking read_any_packing(const std::string& file, const ForeignArguments& arguments) {
     const ForeignOptions options = options_of(arguments);
-    const std::string text = read_text(file);
+    const std::string text = read_packed_text(file);
     const std::string format = options.format.empty() ? recognise_format(text) : options.format;
     const bool own = format == "state" || format == "vertex" || format == "packing";
     if (!own) {

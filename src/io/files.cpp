@@ -7,7 +7,9 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
+#include <zlib.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdint>
@@ -17,6 +19,7 @@
 #include <random>
 #include <sstream>
 #include <utility>
+#include <vector>
 
 namespace isostat {
 
@@ -52,6 +55,43 @@ std::pair<std::filesystem::path, Descriptor> temporary_beside(const std::filesys
 }
 
 } // namespace
+
+std::string read_packed_text(const std::filesystem::path& path) {
+    std::string packed = read_text(path);
+    if (!packed.starts_with("\x1f\x8b")) {
+        return packed;
+    }
+    constexpr int gzip = 16 + MAX_WBITS;
+    constexpr std::size_t most = std::size_t{1} << 32U;
+    std::string text;
+    std::vector<char> part(std::size_t{1} << 16U);
+    z_stream stream{};
+    bool sound = ::inflateInit2(&stream, gzip) == Z_OK;
+    int status = Z_OK;
+    for (std::size_t at = 0; sound && (at < packed.size() || status != Z_STREAM_END) && text.size() <= most;) {
+        if (status == Z_STREAM_END) { // files that were joined
+            ::inflateReset(&stream);
+        }
+        const std::size_t there = std::min<std::size_t>(packed.size() - at, std::size_t{1} << 30U);
+        // NOLINTBEGIN(cppcoreguidelines-pro-type-reinterpret-cast): the library wants its own names of bytes
+        stream.next_in = reinterpret_cast<Bytef*>(packed.data() + at);
+        stream.next_out = reinterpret_cast<Bytef*>(part.data());
+        // NOLINTEND(cppcoreguidelines-pro-type-reinterpret-cast)
+        stream.avail_in = static_cast<uInt>(there);
+        stream.avail_out = static_cast<uInt>(part.size());
+        status = ::inflate(&stream, Z_NO_FLUSH);
+        at += there - stream.avail_in;
+        text.append(part.data(), part.size() - stream.avail_out);
+        sound = status == Z_OK || status == Z_STREAM_END;
+    }
+    ::inflateEnd(&stream);
+    if (!sound || text.size() > most) {
+        throw Error(ErrorKind::bad_input,
+                    fmt::format("{}: is packed with gzip and {}", path.string(),
+                                sound ? "larger than 4 GiB: unpack it" : "damaged or cut: expected all of it"));
+    }
+    return text;
+}
 
 std::string read_text(const std::filesystem::path& path) {
     std::error_code ignored;

@@ -12,6 +12,10 @@ namespace isostat {
 /// The bytes of a file. Throws `Error(bad_input)` naming the file when it cannot be read or is blank.
 std::string read_text(const std::filesystem::path& path);
 
+/// The same of a file that may be packed with gzip: its content, of at most 4 GiB. Throws too where a packed file is
+/// damaged or cut.
+std::string read_packed_text(const std::filesystem::path& path);
+
 /// The text after a UTF-8 byte order mark, which some programs write at the start of a file: all of it when there is
 /// none. Every reader of text begins with this.
 std::string_view without_byte_order_mark(std::string_view text);

@@ -395,7 +395,7 @@ ForeignPacking parse_foreign(const std::string& whole, const std::string& source
 }
 
 ForeignPacking read_foreign(const std::filesystem::path& path, const ForeignOptions& options) {
-    return parse_foreign(read_text(path), path.string(), options);
+    return parse_foreign(read_packed_text(path), path.string(), options);
 }
 
 } // namespace isostat

@@ -272,10 +272,21 @@ BOOST_AUTO_TEST_CASE(kind_11_a_table_and_its_cell) {
     refused("11_table_of_a_cell.csv", {"--lattice", "1,1"}, {"2.8 wide in a period of 1"});
 }
 
+BOOST_AUTO_TEST_CASE(kind_12_a_file_packed_with_gzip_is_read_whole_or_refused) {
+    expect_base("12_packed.dump.gz", {});
+    const scratch::Folder folder;
+    const std::string packed = scratch::read(scratch::data("field/12_packed.dump.gz"));
+    for (const std::size_t kept : {std::size_t{3}, packed.size() / 2, packed.size() - 1}) {
+        scratch::write(folder / "cut.gz", packed.substr(0, kept));
+        expect(run({"plateau", folder.at("cut.gz")}), 65, {"damaged or cut"});
+    }
+    scratch::write(folder / "more.gz", packed + "x");
+    expect(run({"plateau", folder.at("more.gz")}), 65, {"damaged or cut"});
+}
+
 BOOST_AUTO_TEST_CASE(kind_12_files_that_are_known_and_not_read_are_named) {
     refused("12_binary.xyzd", {}, {"a binary file?"});
     refused("12_dump.yaml", {}, {"YAML"});
-    refused("12_packed.dump.gz", {}, {"gzip", "gunzip -k"});
     refused("12_points.vtk", {}, {"VTK"});
     refused("12_records.json", {}, {"JSON"});
     refused("12_utf16.csv", {}, {"UTF-16", "iconv"});

@@ -1,4 +1,5 @@
 // inspect, certify, verify: what is known and proved of one state, and of a run.
+#include "certificate/jammed_box.hpp"
 #include "convert.hpp"
 #include "io/files.hpp"
 
@@ -6,6 +7,8 @@
 #include <isostat/checker/verify.hpp>
 #include <isostat/core/error.hpp>
 #include <isostat/io/state_file.hpp>
+
+#include <map>
 
 namespace isostat::python {
 
@@ -202,48 +205,68 @@ void bind_inspection(py::module_& module) {
         "the rank is not proved, Undecided when no bound was proved.");
 }
 
-void bind_jamming(py::module_& module) {
-    using Seen = CellInspection;
-    const auto counts = [](const StrainCounts& of) {
-        py::dict out;
+/// What is jammed, of a cell or of a box.
+struct Jamming {
+    std::map<std::string, Verdict> verdicts;
+    std::map<std::string, std::string> reasons;
+    std::map<std::string, Counting> counts, backbone;
+    int grains = 0;
+
+    void add(const std::string& what, const JammingAnswer& answer) {
+        verdicts[what] = answer.verdict;
+        reasons[what] = answer.reason;
+    }
+};
+
+Jamming jamming_of(const State& state) {
+    Jamming out;
+    const Certification truth = certify(state);
+    if (state.packing.cell.all()) {
+        const CellInspection cell = inspect_cell(state, truth);
+        out.add("local", cell.local);
+        out.add("collective", cell.collective);
+        out.add("strict", cell.strict);
         for (std::size_t s = 0; s < strains.size(); ++s) {
-            out[to_string(strains[s])] = of[s];
+            out.counts[to_string(strains[s])] = cell.all[s];
+            if (cell.backbone) {
+                out.backbone[to_string(strains[s])] = (*cell.backbone)[s];
+            }
         }
-        return out;
-    };
-    const auto each = [](const Seen& self, auto member) {
-        py::dict out;
-        out["local"] = self.local.*member;
-        out["collective"] = self.collective.*member;
-        out["strict"] = self.strict.*member;
-        return out;
-    };
-    py::class_<Seen>(module, "Jamming", "Counts for every way to strain a cell, and what is jammed: see `jamming`.")
-        .def_property_readonly(
-            "verdicts", [each](const Seen& self) { return each(self, &JammingAnswer::verdict); },
-            "A Verdict for \"local\", \"collective\" and \"strict\", of the backbone.")
-        .def_property_readonly(
-            "reasons", [each](const Seen& self) { return each(self, &JammingAnswer::reason); }, "Why, in words.")
-        .def_property_readonly(
-            "counts", [counts](const Seen& self) { return counts(self.all); },
-            "A Counting for \"fixed cell\", \"isotropic\", \"diagonal\", \"full strain\".")
-        .def_property_readonly(
-            "backbone", [counts](const Seen& self) { return self.backbone ? counts(*self.backbone) : py::dict(); },
-            "The same without rattlers; empty where the forces are not known.")
-        .def_readonly("backbone_disks", &Seen::backbone_disks, "Grains of the backbone.");
+        out.grains = cell.backbone_disks;
+    } else if (const auto box = inspect_box(state, truth)) {
+        out.add("collective", box->collective);
+        out.counts["box"] = out.backbone["box"] = box->counting;
+        out.grains = box->grains;
+    } else {
+        throw Error(ErrorKind::bad_input,
+                    "jamming: expected a cell that is periodic along every axis, or a box with all "
+                    "its walls, no grain fixed and no force on a grain");
+    }
+    return out;
+}
+
+void bind_jamming(py::module_& module) {
+    py::class_<Jamming>(module, "Jamming", "What is jammed, and counts: see `jamming`.")
+        .def_readonly("verdicts", &Jamming::verdicts,
+                      "A Verdict for \"local\", \"collective\" and \"strict\", of a box for \"collective\": of "
+                      "the grains that carry a force, while walls stay.")
+        .def_readonly("reasons", &Jamming::reasons, "Why, in words.")
+        .def_readonly("counts", &Jamming::counts,
+                      "A Counting for \"fixed cell\", \"isotropic\", \"diagonal\", \"full strain\"; \"box\" "
+                      "without rattlers.")
+        .def_readonly("backbone", &Jamming::backbone,
+                      "The same without rattlers; empty where the forces are not known.")
+        .def_readonly("grains", &Jamming::grains, "Grains of the backbone; in a box those that are no rattlers.");
     module.def(
         "jamming",
         [](const PyState& state) {
             const State copy = state.state;
-            if (!copy.packing.cell.all()) {
-                throw Error(ErrorKind::bad_input, "jamming: expected a cell that is periodic along every axis; a box "
-                                                  "is jammed under its load where `inspect` says stable");
-            }
-            return interruptible([copy] { return inspect_cell(copy, certify(copy)); });
+            return interruptible([copy] { return jamming_of(copy); });
         },
         py::arg("state"),
-        "Jamming of a periodic cell: locally, collectively and strictly jammed, each proved, refuted or undecided. "
-        "Needs an equilibrium that is proved.");
+        "Jamming of a periodic cell or of a box, each answer proved, refuted or undecided. Needs an equilibrium that "
+        "is "
+        "proved.");
 }
 
 void bind_forces(py::module_& module) {

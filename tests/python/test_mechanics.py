@@ -137,14 +137,16 @@ class Mechanics(Folder):
         self.assertEqual(rolling.rattlers, [0])
         self.assertIsNone(isostat.unjamming_motion(rolling))  # of what is no rattler
 
-    def test_jamming_of_cells(self):
+    def test_jamming_of_cells_and_boxes(self):
         seen = isostat.jamming(isostat.State.read(project / "examples/cells/tilted-100.json"))
         self.assertEqual(set(seen.verdicts), {"local", "collective", "strict"})
         self.assertIs(seen.verdicts["strict"], Verdict.PROVED)
         self.assertEqual(seen.counts["full strain"].h, 0)
-        self.assertEqual(seen.backbone_disks, 94)
-        with self.assertRaisesRegex(isostat.BadInput, "periodic"):
-            isostat.jamming(two_disks())
+        self.assertEqual(seen.grains, 94)
+        box = isostat.jamming(two_disks())
+        self.assertEqual((box.verdicts, box.grains, box.counts["box"].dofs), ({"collective": Verdict.PROVED}, 2, 4))  # walls stay
+        with self.assertRaisesRegex(isostat.BadInput, "expected a cell"):
+            isostat.jamming(two_disks(fixed=[0]))
 
     def test_genericity_as_the_program(self):
         lattice = isostat.ExactPacking.read(project / "examples/packings/square_lattice_3.toml")

@@ -147,6 +147,20 @@ class Objects(Folder):
         with self.assertRaises(isostat.Error):
             isostat.ensemble(sections, self.folder / "many", samples=3)
 
+    def test_what_stops_an_ensemble_leaves_one_that_goes_on(self):
+        sections = {"packing": {"disks": 12}, "programme": [{"do": "up", "equilibria": 2}], "output": {"pictures": False}}
+        folder = self.folder / "stopped"
+
+        def stop(done, samples):
+            raise ZeroDivisionError(done)
+
+        with self.assertRaises(ZeroDivisionError):
+            isostat.ensemble(sections, folder, samples=3, jobs=1, progress=stop)
+        self.assertEqual(isostat.Ensemble(folder).samples["status"][0], 0)
+        self.assertGreater(isostat.Ensemble(folder).samples["status"][1:].min(), 2)  # not finished
+        again = isostat.ensemble(sections, folder, samples=3, resume=True)
+        self.assertLess(again.samples["status"].max(), 3)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -297,7 +297,7 @@ class Jamming:
     reasons: Final[dict[str, str]]
     counts: Final[dict[str, Counting]]
     backbone: Final[dict[str, Counting]]
-    backbone_disks: Final[int]
+    grains: Final[int]
 
 class Genericity:
     samples: Final[list[dict[str, object]]]

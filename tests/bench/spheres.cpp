@@ -83,7 +83,8 @@ bool measure(const State& state, const Settings& settings, bench::Table& table, 
         options.arcs = settings.arcs;
         const bench::Stretch run = bench::run_stretch(state, options);
         arcs = run.counters.steps;
-        const sparse::Matrix<double> last = bench::matrix_of(run.last);
+        const sparse::Matrix<double> last =
+            run.last.contacts.empty() ? h : bench::matrix_of(run.last); // no equilibrium
         arc = run.milliseconds_per_arc / bench::milliseconds(unit(last), settings.repeats).median();
         if (!run.failure.empty()) {
             fmt::print(stderr, "{}\n", run.failure);

@@ -79,7 +79,7 @@ def main(folder, *names):
     files = [line for line in (here / "_CoqProject").read_text().split() if line.endswith(".v")]
     order = needing(files)
     chosen = [m for m in MUTANTS if any(n in m[0] for n in names or ("",))]
-    wanted = [f for f in files if any(m[1] in order[f] or f in order[m[1]] for m in chosen)]
+    wanted = [f for f in files if any(needed in order[f] for m in chosen for needed in order[m[1]])]
     for f in files:
         shutil.copy(here / f, folder)
     for f in files:

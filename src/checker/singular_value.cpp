@@ -2,7 +2,6 @@
 
 #include "checker/index.hpp"
 #include "checker/wide.hpp"
-#include "sparse/fill_order.hpp"
 
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCholesky>
@@ -75,9 +74,6 @@ struct Normal {
         usable = static_cast<double>(touching) <= largest_square / 2; // an entry of B is at most that
         if (usable) {
             choose_order(n);
-            usable = std::find(place.begin(), place.end(), -1) == place.end(); // a permutation
-        }
-        if (usable) {
             multiply(problem);
         }
     }
@@ -116,21 +112,6 @@ struct Normal {
     }
 
     void choose_order(int n) {
-        std::vector<int> start{0};
-        std::vector<int> dofs;
-        for (const std::vector<Entry>& contact : entries_) {
-            std::transform(contact.begin(), contact.end(), std::back_inserter(dofs),
-                           [](const Entry& e) { return e.dof; });
-            start.push_back(static_cast<int>(dofs.size()));
-        }
-        place.assign(static_cast<std::size_t>(n), -1);
-        if (sparse::worth_dissection(n, static_cast<int>(dofs.size()))) {
-            const std::vector<int> order = sparse::dissection_of_products(n, start, dofs);
-            for (int k = 0; k < n; ++k) {
-                place[at(order[at(k)])] = k;
-            }
-            return;
-        }
         std::vector<Eigen::Triplet<double>> pattern;
         for (const std::vector<Entry>& contact : entries_) {
             for (const Entry& a : contact) {
@@ -143,6 +124,7 @@ struct Normal {
         b.setFromTriplets(pattern.begin(), pattern.end());
         Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
         Eigen::AMDOrdering<int>()(b, order);
+        place.resize(static_cast<std::size_t>(n));
         for (int k = 0; k < n; ++k) {
             place[at(order.indices()[k])] = k;
         }

@@ -1,7 +1,5 @@
 #include "checker/solver.hpp"
 
-#include "sparse/fill_order.hpp"
-
 #include <Eigen/SparseCore>
 #include <klu.h>
 
@@ -35,10 +33,6 @@ struct Solver::Factors {
 
     explicit Factors(Eigen::SparseMatrix<double>& matrix) : size(static_cast<int>(matrix.rows())) {
         klu_defaults(&common);
-        const int entries = static_cast<int>(matrix.nonZeros());
-        if (sparse::worth_dissection(size, entries)) {
-            sparse::choose_order(common, size, entries);
-        }
         symbolic = klu_analyze(size, matrix.outerIndexPtr(), matrix.innerIndexPtr(), &common);
         if (symbolic != nullptr) {
             numeric = klu_factor(matrix.outerIndexPtr(), matrix.innerIndexPtr(), matrix.valuePtr(), symbolic, &common);

@@ -45,8 +45,7 @@ enum class Dimensions : unsigned char { two, any };
 /// The same, periodic cells too. Further messages: walls along a periodic axis, images in a box or more than 3 periods
 /// away, periods that are not positive, disks that overlap their own images, loads that do not sum to zero along a
 /// periodic axis.
-StateFile parse_any_state(const std::string& text, const std::string& source,
-                          Dimensions dimensions = Dimensions::two);
+StateFile parse_any_state(const std::string& text, const std::string& source, Dimensions dimensions = Dimensions::two);
 
 /// Reads a state file or, recognised by its first character, a vertex text (`vertex_text.hpp`).
 StateFile read_state(const std::filesystem::path& path);

@@ -100,7 +100,7 @@ void take_box_of_comment(std::string_view line, int number, Raw& raw) {
     Bounds out;
     std::array<double, 2 * most_axes + most_tilts> numbers{};
     for (std::size_t k = 0; k < numbers.size(); ++k) {
-        const std::string word = found[static_cast<int>(k) + 1];
+        const std::string word = found[static_cast<std::size_t>(k) + 1];
         const auto value = finite_number(word);
         if (!value && !word.empty()) {
             return;

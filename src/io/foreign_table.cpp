@@ -89,12 +89,15 @@ void take_names_in_comments(TextLines& lines, bool any, TableNames& out) {
     }
 }
 
+/// Characters: std::regex calls itself for each, and a longer line could end its stack.
+constexpr std::size_t longest_header = 4096;
+
 /// "# box 0:4,0:2, tilt 0.5, periodic along xy", the first line of our own tables; another comment is none.
 void take_box_of_comment(std::string_view line, int number, Raw& raw) {
     static const std::regex form(R"(# box ([^ ,:]+):([^ ,:]+),([^ ,:]+):([^ ,:]+)(?:,([^ ,:]+):([^ ,:]+))?)"
                                  R"((?:, tilt ([^ ,]+)(?: ([^ ,]+) ([^ ,]+))?, periodic along ([xyz]+))?[ \r]*)");
     std::match_results<std::string_view::const_iterator> found;
-    if (!std::regex_match(line.begin(), line.end(), found, form)) {
+    if (line.size() > longest_header || !std::regex_match(line.begin(), line.end(), found, form)) {
         return;
     }
     Bounds out;
@@ -179,6 +182,9 @@ Raw read_braces(const std::string& text, const std::string& source, const Foreig
     Raw raw;
     (void)lines.find_row();
     const TextLine header = lines.next_row("N = .., L1= { .. }, L2= { .. }", 0);
+    if (header.text().size() > longest_header) {
+        header.fail(header.text().substr(0, 40), "header", fmt::format("at most {} characters", longest_header));
+    }
     static const std::regex vector(R"(L([12])\s*=\s*\{\s*([^\s,{}]+)\s*,\s*([^\s,{}]+)\s*\})");
     PerAxis<PerAxis<double>> periods{{{}, {}, {0, 0, 1}}};
     for (auto at = std::cregex_iterator(header.text().begin(), header.text().end(), vector);

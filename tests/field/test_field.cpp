@@ -442,4 +442,19 @@ BOOST_AUTO_TEST_CASE(kind_28_a_manifest_to_begin_with) {
     expect(run({"compare", series, "--bundle", "0"}), 65, {"no column 'sigma2'", "strain"});
 }
 
+BOOST_AUTO_TEST_CASE(lines_of_a_megabyte_end_no_reader) {
+    const scratch::Folder folder;
+    const std::string much(1'000'000, '1');
+    const std::string blank(1'000'000, ' ');
+    for (const std::string& line : {"# box " + much + ":4,0:2", "# box 0:4,0:2" + blank}) { // comments like any other
+        scratch::write(folder / "long.csv", line + "\nx,y,r\n1,1,0.5\n");
+        const program::Outcome outcome = run({"plateau", folder.at("long.csv")});
+        BOOST_TEST((outcome.status >= 0 && outcome.status <= 2), outcome.status);
+    }
+    for (const std::string& line : {"N = 1 ,L1= { " + much + " , 0 }", "N = 1 ," + blank + "L1= {"}) {
+        scratch::write(folder / "long.txt", line + "\n{\n1 , 1 , 0.5 ,\n}\n");
+        expect(run({"plateau", folder.at("long.txt"), "--format", "braces"}), 65, {"at most 4096 characters"});
+    }
+}
+
 BOOST_AUTO_TEST_SUITE_END()

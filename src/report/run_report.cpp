@@ -293,20 +293,17 @@ ReportResult report_run(const fs::path& directory, const fs::path& output, const
 }
 
 ReportResult report_state(const fs::path& state, const fs::path& output, const ReportOptions& options) {
+    const std::string name = "forces_" + state.stem().string();
+    if (options.html && read_any_state(state, Dimensions::any).state.packing.dimension == plane) {
+        throw Error(ErrorKind::usage, fmt::format("{}: --html of one state is a view of spheres: this file is of "
+                                                  "disks, and without --html {}.svg shows them",
+                                                  state.string(), name));
+    }
     make_directory(output);
     Writer writer(output, options, false);
-    const std::string name = "forces_" + state.stem().string();
     writer.picture(state, name);
     if (options.html) {
-        const StateFile file = writer.read(state);
-        if (file.state.packing.dimension == plane) {
-            throw Error(ErrorKind::usage, fmt::format("{}: --html of one state is a view of spheres: this file is of "
-                                                      "disks, and {}.svg shows them",
-                                                      state.string(), name));
-        }
-        const std::string title = fmt::format("{} spheres", file.state.packing.disk_count());
-        writer.write(name + ".html", sphere_page(title, {sphere_view(file.state, file.forces)}),
-                     "<title>Isostat</title>");
+        writer.write(name + ".html", page_of_spheres({state}, "One state", {}, writer), "<title>Isostat</title>");
     }
     return writer.take(fmt::format("force picture of {}\n", state.string()));
 }

@@ -146,6 +146,7 @@ BOOST_AUTO_TEST_CASE(a_run_of_spheres_names_what_it_loads_by_axis) {
     BOOST_TEST((page.find("\"balls\":[[") != std::string::npos));
     says(run({"report", out + "/states/last.json", "--html", "-o", folder.at("one")}), 0, {"forces_last.html"});
     BOOST_TEST((scratch::read(folder / "one/forces_last.html").find("\"equilibrium\":2,") != std::string::npos));
+    BOOST_TEST((scratch::read(folder / "one/forces_last.html").find("json\">[{\"equilibrium\"") != std::string::npos));
     for (const auto& [load, words] :
          {std::pair{"tilt", "an axis, x to z, or a tilt, xy to yz"}, {"xy", "that tilt does not move"}}) {
         scene(fmt::format("[load]\nloaded = \"{}\"\n", load), "do = \"up\"\nequilibria = 2\n");
@@ -158,6 +159,8 @@ BOOST_AUTO_TEST_CASE(a_run_of_spheres_names_what_it_loads_by_axis) {
 BOOST_AUTO_TEST_CASE(what_takes_disks_only_says_so_in_one_sentence) {
     const scratch::Folder folder;
     const std::string state = state_file(folder, "box_uniform_30_1");
+    expect(run({"report", scratch::data("cells/tilt_16.json"), "--html", "-o", folder.at("no")}), 64, {"a view of spheres"});
+    BOOST_TEST(!std::filesystem::exists(folder / "no"));
     for (const std::vector<std::string>& command :
          {std::vector<std::string>{"import", state, "-o", folder.at("t.json")}}) {
         const Outcome outcome = run(command);

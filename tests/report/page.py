@@ -347,6 +347,16 @@ class Spheres(unittest.TestCase):
         self.assertNotAlmostEqual(self.drawn()[1], before[1] + 0.1, 2)
         self.assertNotAlmostEqual(self.drawn()[2], before[2], 2)
 
+    def test_one_state_has_a_page_of_its_own(self):
+        state = self.out / "states" / "last.json"
+        done = isostat("report", state, "--html", "-q", "-o", self.out.parent / "one")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.browser.open(self.out.parent / "one" / "forces_last.html")
+        known = json.loads(state.read_text())
+        self.assertEqual(self.drawn()[0], len(known["disks"]) + len(known["contacts"]))
+        self.browser.addresses.clear()
+        self.browser.open(self.page)
+
     def test_leaves_out_what_is_not_asked_for(self):
         everything, ink = self.drawn()[0], self.ink()
         self.assertGreater(ink, 20000)

@@ -159,7 +159,8 @@ BOOST_AUTO_TEST_CASE(a_run_of_spheres_names_what_it_loads_by_axis) {
 BOOST_AUTO_TEST_CASE(what_takes_disks_only_says_so_in_one_sentence) {
     const scratch::Folder folder;
     const std::string state = state_file(folder, "box_uniform_30_1");
-    expect(run({"report", scratch::data("cells/tilt_16.json"), "--html", "-o", folder.at("no")}), 64, {"a view of spheres"});
+    expect(run({"report", scratch::data("cells/tilt_16.json"), "--html", "-o", folder.at("no")}), 64,
+           {"a view of spheres"});
     BOOST_TEST(!std::filesystem::exists(folder / "no"));
     for (const std::vector<std::string>& command :
          {std::vector<std::string>{"import", state, "-o", folder.at("t.json")}}) {

@@ -125,6 +125,7 @@ def numbers_are_those_of_the_certificates(names):
         done = subprocess.run([program, "verify", file], capture_output=True, text=True)
         expect(done.returncode == (2 if name.startswith("tie") else 0), f"{file}: {done.stdout}{done.stderr}")
         certificate = json.loads(file.read_text())
+        expect(not certificate["state"].get("provenance"), f"{file} names folders of the computer that made it")
         case, at, forces = make.case_of(name, "", certificate["state"], certificate)
         kept = json.loads((folder / "packings" / f"{name}.json").read_text())
         for key in case.keys() - {"what"}:

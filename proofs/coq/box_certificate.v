@@ -14,7 +14,8 @@ Import Order.Theory GRing.Theory Num.Theory.
 
 Record vertex_certificate := VertexCertificate {
   disks : nat;
-  contacts : seq contact;
+  contacts : seq contact;     (* and the coordinates that are held: 2 n + 2 rows *)
+  walls : seq bool;           (* which there are: the two lower ones, the two upper ones *)
   stored : seq Z;             (* coordinates x_0 y_0 x_1 y_1 ... Lx Ly *)
   radii : seq Z;
   weight : Z;                 (* a length: rows of walls are multiplied by it *)
@@ -37,6 +38,7 @@ Local Open Scope Z_scope.
 Definition stored_at : nat -> Z := nth 0 (stored v).
 Definition refined_at : nat -> Z := nth 0 (refined v).
 Definition fine_radius (i : nat) : Z := zoom v * nth 0 (radii v) i.
+Definition fine_place (k : nat) : Z := zoom v * stored_at k.
 Definition fine_weight : Z := zoom v * weight v.
 Definition fine_stiffness : Z := zoom v * stiffness v.
 
@@ -49,14 +51,14 @@ Definition largest_defect : Z :=
 Definition well_conditioned : bool := let most := largest_defect in all (fun row => sizes row <=? most) defect_rows.
 
 Definition nearly_closed : bool :=
-  all (fun c => Z.abs (doubled_gap n fine_weight fine_radius refined_at c) <=? 2 * (fine_stiffness * error v)) (contacts v).
+  all (fun c => Z.abs (doubled_gap n fine_weight fine_radius fine_place refined_at c) <=? 2 * (fine_stiffness * error v)) (contacts v).
 Definition near_the_stored_one : bool :=
   (distance v + error v <=? zoom v * ball v)
   && all (fun k => Z.abs (refined_at k - zoom v * stored_at k) + error v <=? distance v) (iota 0 N).
 
 Definition well_posed : bool :=
   [&& (size (stored v) == N) && (size (refined v) == N), (size (radii v) == n) && all (Z.ltb 0) (radii v),
-    (size (contacts v) == N) && all (well_formed n) (contacts v), size (factor v) == N
+    (size (contacts v) == N) && all (in_the_packing n (walls v)) (contacts v), size (factor v) == N
     & [&& 0 <? weight v, 0 <? zoom v & 0 <? stiffness v]].
 Definition vertex_check : bool :=
   [&& well_posed, nearly_closed, near_the_stored_one, 32 * error v <=? fine_stiffness & well_conditioned].
@@ -70,9 +72,10 @@ Let n := disks v.
 Let N := (n.*2.+2)%N.
 
 Definition configuration (x : nat -> Z) : 'cV[F]_N := \col_k real (x k).
-Definition stored_configuration := configuration (fun k => zoom v * stored_at v k).
+Definition stored_configuration := configuration (fine_place v).
 Definition refined_configuration := configuration (refined_at v).
 Definition radius (i : nat) : F := real (fine_radius v i).
+Definition place (k : nat) : F := real (fine_place v k).
 
 Hypothesis posed : well_posed v.
 Let size_stored : size (stored v) = N. Proof. by case/and5P: posed => /andP[/eqP]. Qed.
@@ -93,8 +96,8 @@ Lemma at_refined k : at_ refined_configuration k = real (refined_at v k).
 Proof. by apply: at_configuration => m big; rewrite /refined_at nth_default ?size_refined. Qed.
 Lemma at_stored k : at_ stored_configuration k = real (zoom v) * real (stored_at v k).
 Proof.
-rewrite at_configuration ?rmorphM // => m big.
-by rewrite /stored_at nth_default ?size_stored ?mulr0.
+rewrite at_configuration /fine_place ?real_times // => m big.
+by rewrite /stored_at nth_default ?size_stored ?Z.mul_0_r.
 Qed.
 
 Let A := derivative (real (fine_weight v) : F) (contacts v) : 'cV[F]_N -> 'M[F]_N.
@@ -155,15 +158,15 @@ rewrite !real_morphism !real_of_nat.
 rewrite le_eqVlt; apply/orP; left; apply/eqP; ring.
 Qed.
 
-Let small : nearly_closed v -> norm (gaps (real (fine_weight v)) radius (contacts v) q1) <= b * real (error v).
+Let small : nearly_closed v -> norm (gaps (real (fine_weight v)) radius place (contacts v) q1) <= b * real (error v).
 Proof.
 move=> /(all_nthP (Lower 0 0)) closed; rewrite -rmorphM.
-have bound l : `|gaps (real (fine_weight v)) radius (contacts v) q1 l 0| <= real (fine_stiffness v * error v).
+have bound l : `|gaps (real (fine_weight v)) radius place (contacts v) q1 l 0| <= real (fine_stiffness v * error v).
   have := closed l; rewrite size_contacts ltn_ord => /(_ isT); rewrite -(real_le F) -real_abs.
   rewrite -(doubled_gap_morphism (real_rmorphism F)) -[Z.mul _ _]/(Z.of_nat 2 * (fine_stiffness v * error v)).
   rewrite [real (Z.of_nat 2 * _)]rmorphM.
   rewrite !real_morphism real_of_nat mxE normrM ger0_norm ?invr_ge0 ?ler0n // ler_pdivr_mull ?ltr0n //.
-  by rewrite (doubled_gap_ext _ _ _ _ at_refined).
+  by rewrite (doubled_gap_ext _ _ _ _ _ at_refined).
 by apply: norm_le => //; apply: le_trans (bound ord0).
 Qed.
 
@@ -187,8 +190,8 @@ have radius_gt0 i : (i < n)%N -> 0 < radius i.
   move=> i_n; have := pR 0 i; rewrite sR => /(_ i_n) Ri.
   by rewrite /radius -(rmorph0 (real_rmorphism F)) real_lt; apply/Z.ltb_lt/Z.mul_pos_pos; [lia|exact/Z.ltb_lt].
 case: (ltnP l N) => lN; last by rewrite /contact_at nth_default ?size_contacts //= ltr01.
-have := formed (Lower 0 0) l; rewrite size_contacts => /(_ lN); rewrite /contact_at.
-case: (nth _ _ _) => [i j|i a|i a] /=; rewrite ?ltr01 // => /and3P[i_n j_n _].
+have := formed (Lower 0 0) l; rewrite size_contacts => /(_ lN)/andP[+ _]; rewrite /contact_at.
+case: (nth _ _ _) => [i j|i a|i a|k] /=; rewrite ?ltr01 // => /and3P[i_n j_n _].
 by rewrite addr_gt0 ?radius_gt0.
 Qed.
 
@@ -210,10 +213,10 @@ Qed.
 
 Theorem one_vertex : complete F -> vertex_check v -> exists q : 'cV[F]_N,
   [/\ norm (q - q1) <= r, norm (q - q0) <= real (distance v),
-     forall l : 'I_N, touch n radius (at_ q) (contact_at (contacts v) l),
+     forall l : 'I_N, touch n radius place (at_ q) (contact_at (contacts v) l),
      normals radius (contacts v) q \in unitmx
    & forall q' : 'cV[F]_N, norm (q' - q0) <= rho ->
-       (forall l : 'I_N, touch n radius (at_ q') (contact_at (contacts v) l)) -> q' = q].
+       (forall l : 'I_N, touch n radius place (at_ q') (contact_at (contacts v) l)) -> q' = q].
 Proof.
 move=> full /and5P[_ closed near step well]; have [w0 z0 s0] := positive.
 have w1 : real (fine_weight v) != 0 :> F by rewrite real_eq0 /fine_weight; nia.
@@ -228,9 +231,9 @@ have scales l : scale 1 radius (contact_at (contacts v) l) != 0 := lt0r_neq0 (sc
 exists q; split=> //.
 - rewrite -(subrKA q1) (le_trans (norm_triangle _ _)) // addrC; apply: le_trans (near_stored near).
   by rewrite ler_add2l.
-- exact/(gaps_vanish _ _ _ w1).
+- exact/(gaps_vanish _ _ _ _ w1).
 - exact: (normals_are_regular scales w1).
-- by move=> q' near' /(gaps_vanish _ _ _ w1); apply: alone.
+- by move=> q' near' /(gaps_vanish _ _ _ _ w1); apply: alone.
 Qed.
 End Correct.
 Print Assumptions one_vertex.

@@ -121,7 +121,7 @@ have -> : support (contact_at contacts l) = unzip1 (gradient n w (at_ q) (contac
   by rewrite /support; case: (contact_at _ _).
 have opposite i j a : `|- separation (at_ q) i j a - - separation (at_ q1) i j a| <= 2%:R * r.
   by rewrite -opprD normrN moved.
-by apply: lists; case: (contact_at _ _) => [i j|i a|i a] /=; rewrite ?subrr ?normr0 ?r0 ?eqxx ?moved ?opposite.
+by apply: lists; case: (contact_at _ _) => [i j|i a|i a|k] /=; rewrite ?subrr ?normr0 ?r0 ?eqxx ?moved ?opposite.
 Qed.
 
 Hypothesis b0 : 0 < b.

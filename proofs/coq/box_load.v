@@ -15,8 +15,9 @@ Let N := (n.*2.+2)%N.
 Variable q : 'cV[F]_N.
 Let bal := balanced radius contacts q.
 
-(** Contacts push, or bear nothing, and balance the load. *)
-Definition borne (load : 'cV[F]_N) : Prop := exists2 f, balanced radius contacts q load f & forall l : 'I_N, 0 <= f l 0.
+(** Contacts push, or bear nothing, and balance the load; what holds a coordinate may pull as well. *)
+Definition borne (load : 'cV[F]_N) : Prop := exists2 f, balanced radius contacts q load f &
+  forall l : 'I_N, ~~ holds (contact_at contacts l) -> 0 <= f l 0.
 
 Hypothesis regular : normals radius contacts q \in unitmx.
 Variables load rate f u : 'cV[F]_N.
@@ -29,15 +30,16 @@ rewrite /balanced mulmxDr -scalemxAr addrACA.
 by rewrite load_balanced add0r -scalerDr rate_balanced scaler0.
 Qed.
 
-Let borne_iff t : borne (load + t *: rate) <-> forall l : 'I_N, 0 <= f l 0 + u l 0 * t.
+Let borne_iff t : borne (load + t *: rate) <->
+  forall l : 'I_N, ~~ holds (contact_at contacts l) -> 0 <= f l 0 + u l 0 * t.
 Proof.
 have entry l : (f + t *: u) l 0 = f l 0 + u l 0 * t by rewrite !mxE mulrC.
 split=> [[g /(balancing_forces_are_unique regular (forces_follow_the_load t)) <- pushing] l|pushing].
-  by rewrite -entry.
-by exists (f + t *: u) => [|l]; [exact: forces_follow_the_load|rewrite entry].
+  by rewrite -entry; apply: pushing.
+by exists (f + t *: u) => [|l]; [exact: forces_follow_the_load|rewrite entry; apply: pushing].
 Qed.
 
-Hypothesis pushing : forall l, 0 <= f l 0.
+Hypothesis pushing : forall l : 'I_N, ~~ holds (contact_at contacts l) -> 0 <= f l 0.
 
 (** [mute]: contacts that bear nothing at the end. [free]: degrees of freedom without load that no other contact
     touches. *)
@@ -60,16 +62,17 @@ Variable m : 'I_N.
 Hypothesis more : #|mute| = #|free|.+1.
 Hypothesis free_of_load : forall k, k \in free -> load k 0 = 0.
 Hypothesis m_mute : m \in mute.
+Hypothesis m_touches : ~~ holds (contact_at contacts m).
 Hypothesis m_pushes : 0 < f m 0.
 Hypothesis m_falls : u m 0 < 0.
-Hypothesis others : forall l, l \notin mute -> 0 < f m 0 * u l 0 - f l 0 * u m 0.
+Hypothesis others : forall l : 'I_N, l \notin mute -> ~~ holds (contact_at contacts l) -> 0 < f m 0 * u l 0 - f l 0 * u m 0.
 Let t1 := f m 0 / - u m 0.
 
 (** Beyond t1 the force of m would pull. At t1 those of [mute] are 0 and all others push. *)
 Theorem the_load_is_borne_up_to_its_end : [/\ 0 < t1,
   forall t, 0 <= t -> borne (load + t *: rate) <-> t <= t1,
   forall l, l \in mute -> (f + t1 *: u) l 0 = 0
-  & forall l, l \notin mute -> 0 < (f + t1 *: u) l 0].
+  & forall l : 'I_N, l \notin mute -> ~~ holds (contact_at contacts l) -> 0 < (f + t1 *: u) l 0].
 Proof.
 have um : 0 < - u m 0 by rewrite oppr_gt0.
 have entry l : (f + t1 *: u) l 0 = f l 0 + u l 0 * t1 by rewrite !mxE mulrC.
@@ -80,23 +83,30 @@ have mutes l : l \in mute -> (f + t1 *: u) l 0 = 0.
     by rewrite !mxE free_of_load ?free_of_rate // mulr0 addr0.
   - by rewrite gt_eqF.
   by rewrite entry /t1 mulrCA invrN !mulrN mulfV ?lt_eqF // mulr1 subrr.
-have louder l : l \notin mute -> 0 < (f + t1 *: u) l 0.
-  move=> /others; rewrite entry; have -> : f l 0 + u l 0 * t1 = (f m 0 * u l 0 - f l 0 * u m 0) / - u m 0.
+have louder (l : 'I_N) : l \notin mute -> ~~ holds (contact_at contacts l) -> 0 < (f + t1 *: u) l 0.
+  move=> lm /(others lm); rewrite entry; have -> : f l 0 + u l 0 * t1 = (f m 0 * u l 0 - f l 0 * u m 0) / - u m 0.
     by rewrite /t1; field; rewrite lt_eqF.
   by move=> num; apply: divr_gt0.
 split=> // [|t t0]; first exact: divr_gt0.
-rewrite borne_iff; apply: supported_interval_ends_at_the_smallest_ratio (pushing) m_falls _ t0 => l ul.
-rewrite -nonnegative_up_to_the_ratio // -entry.
-by have [/mutes->|/louder/ltW] := boolP (l \in mute).
+pose touching (x : 'cV[F]_N) (l : 'I_N) := if holds (contact_at contacts l) then 0 else x l 0.
+have [|||least most] := @supported_interval_ends_at_the_smallest_ratio F N (touching f) (touching u) m t _ _ _ t0.
+- by move=> l; rewrite /touching; case: ifPn => // /pushing.
+- by rewrite /touching (negPf m_touches).
+- move=> l; rewrite /touching (negPf m_touches); case: ifPn => [_|touch ul]; first by rewrite ltxx.
+  rewrite -nonnegative_up_to_the_ratio // -entry.
+  by have [/mutes->|/louder/(_ touch)/ltW] := boolP (l \in mute).
+rewrite /touching (negPf m_touches) -/t1 in least most.
+rewrite borne_iff; split=> [all|/most all l touch]; last by have := all l; rewrite (negPf touch).
+by apply: least => l; case: ifPn => [_|/all //]; rewrite mul0r addr0.
 Qed.
 End End.
 
 (** Without a force that falls there is no end. *)
-Theorem the_load_is_borne_without_end : #|mute| = #|free| -> (forall l, l \notin mute -> 0 < u l 0) ->
+Theorem the_load_is_borne_without_end : #|mute| = #|free| -> (forall l : 'I_N, l \notin mute -> ~~ holds (contact_at contacts l) -> 0 < u l 0) ->
   forall t, 0 <= t -> borne (load + t *: rate).
 Proof.
-move=> same rising t t0; apply/borne_iff => l; apply: addr_ge0; first exact: pushing.
-apply: mulr_ge0 => //; have [lm|/rising/ltW //] := boolP (l \in mute).
+move=> same rising t t0; apply/borne_iff => l touch; apply: addr_ge0; first exact: pushing.
+apply: mulr_ge0 => //; have [lm|/rising/(_ touch)/ltW //] := boolP (l \in mute).
 by rewrite (structural_zeros regular rate_balanced (esym same) free_of_rate untouched lm).
 Qed.
 End Load.

@@ -1,6 +1,6 @@
 (** Statement K11 (../checker.md) for a box under dead loads: an equilibrium is a strict local minimum of the potential.
 
-    Configurations compete in which no listed contact overlaps. Where the potential of the finite load does not grow, as
+    Configurations compete in which no listed contact overlaps and held coordinates are at their places. Where the potential of the finite load does not grow, as
     only grains without finite force have moved, that of the infinitesimal loads does. *)
 From mathcomp Require Import all_ssreflect all_algebra ring.
 From Isostat Require Import shifted_factor max_norm contact_certificate box box_forces box_gaps.
@@ -10,10 +10,10 @@ Import Order.Theory GRing.Theory Num.Theory.
 Local Open Scope ring_scope.
 
 Section Minimum.
-Variables (F : realFieldType) (n : nat) (w : F) (radius : nat -> F) (contacts : seq contact).
+Variables (F : realFieldType) (n : nat) (w : F) (radius place : nat -> F) (contacts : seq contact).
 Let N := (n.*2.+2)%N.
 Variables (q : 'cV[F]_N) (b : F).
-Let gaps := gaps w radius contacts : 'cV[F]_N -> 'cV[F]_N.
+Let gaps := gaps w radius place contacts : 'cV[F]_N -> 'cV[F]_N.
 Let A : 'M[F]_N := derivative w contacts q.
 Let s (l : nat) : F := scale w radius (contact_at contacts l).
 
@@ -22,7 +22,7 @@ Definition potential (load p : 'cV[F]_N) : F := - \sum_k load k 0 * p k 0.
 (** Every other configuration near p, without an overlap at a listed contact, costs work of the finite load, or none of
     it and work of the infinitesimal one. *)
 Definition strict_minimum (load small p : 'cV[F]_N) : Prop := exists2 e, 0 < e & forall p', norm (p' - p) < e -> p' != p ->
-  (forall l : 'I_N, apart n radius (at_ p') 0 (contact_at contacts l)) ->
+  (forall l : 'I_N, apart n radius place (at_ p') 0 (contact_at contacts l)) ->
   potential load p < potential load p' \/ potential load p = potential load p' /\ potential small p < potential small p'.
 
 Hypothesis w0 : 0 < w.
@@ -81,7 +81,7 @@ have t0 : 0 < t.
   by rewrite -t0 mulr0 (norm_eq0 (esym t0)) mulmx0 mxE normr0 ltxx.
 have low l : l \in S -> - (4%:R * t ^+ 2) <= y l 0.
   move=> /free open; pose z := derivative w contacts (2%:R^-1 *: (p + q)) *m (p - q).
-  have gz : gaps p = z by rewrite /z -(gaps_at_the_middle w radius) -/gaps closed subr0.
+  have gz : gaps p = z by rewrite /z -(gaps_at_the_middle w radius place) -/gaps closed subr0.
   have mid : 2%:R^-1 *: (p + q) - q = 2%:R^-1 *: (p - q).
     by apply/colP=> k; rewrite !mxE; move: (p k 0) (q k 0) => *; field.
   have := derivative_is_lipschitz w contacts (2%:R^-1 *: (p + q)) q (p - q).
@@ -132,13 +132,14 @@ Hypothesis untouched : forall k l : 'I_N, k \in free -> l \notin zeros -> (k : n
 Hypothesis balance : balanced radius contacts q load f.
 Hypothesis small_balance : balanced radius contacts q small g.
 Hypothesis no_force : forall l, l \in zeros -> f l 0 = 0.
-Hypothesis force : forall l, l \notin zeros -> 0 < f l 0.
+Hypothesis force : forall l, l \notin zeros -> ~~ holds (contact_at contacts l) -> 0 < f l 0.
+Hypothesis zeros_touch : forall l, l \in zeros -> ~~ holds (contact_at contacts l).
 Hypothesis small_force : forall l, l \in zeros -> 0 < g l 0.
 
 Let A_zero (k l : 'I_N) : k \in free -> l \notin zeros -> A l k = 0.
 Proof.
 move=> kf lz; rewrite mxE big1_seq // => e /andP[/eqP e1 es]; case/negP: (untouched kf lz).
-by rewrite -e1 /support; move: es; case: (contact_at _ _) => [i j|i a|i a] /= /(map_f fst).
+by rewrite -e1 /support; move: es; case: (contact_at _ _) => [i j|i a|i a|k'] /= /(map_f fst).
 Qed.
 
 (** The vertex with those coordinates of p that are not free. *)
@@ -150,7 +151,7 @@ move=> lz; rewrite !mxE; congr (_ * _).
 have away k : k \in support F n (contact_at contacts l) -> at_ (without p) k = at_ p k.
   move=> touched; rewrite /at_; apply: eq_bigr => m /eqP mk; rewrite mxE; case: ifP => // /untouched/(_ lz).
   by rewrite mk touched.
-move: away; rewrite /support; case: (contact_at _ _) => [i j|i a|i a] /= away; rewrite /separation ?away //;
+move: away; rewrite /support; case: (contact_at _ _) => [i j|i a|i a|k] /= away; rewrite /separation ?away //;
   by rewrite ?inE ?eqxx ?orbT.
 Qed.
 
@@ -186,6 +187,18 @@ have half1 : 0 < 1 - 2%:R^-1 :> F by rewrite subr_gt0 invf_lt1 ?ltr0n // ltr1n.
 by rewrite -(pmulr_lle0 _ half1).
 Qed.
 
+(** Contacts that bear a finite force. *)
+Let bearing : {set 'I_N} := [set l | (l \notin zeros) && ~~ holds (contact_at contacts l)].
+
+(** A row that holds a coordinate sees no displacement. *)
+Let held_row p (l : 'I_N) : holds (contact_at contacts l) -> gaps p l 0 = 0 -> (A *m (p - q)) l 0 = 0.
+Proof.
+move=> held zero; have : gaps p l 0 - gaps q l 0 = 0 by rewrite zero closed mxE subrr.
+rewrite -[X in X = 0 -> _](_ : (gaps p - gaps q) l 0 = _); last by rewrite mxE [X in _ + X]mxE.
+rewrite /gaps gaps_at_the_middle !derivative_entry; move: held.
+by case: (contact_at contacts l).
+Qed.
+
 Let difference (x y : 'cV[F]_N) k : (x - y) k 0 = x k 0 - y k 0.
 Proof. by rewrite !mxE. Qed.
 
@@ -193,15 +206,18 @@ Hypothesis regular : A \in unitmx.
 
 Theorem equilibrium_is_a_strict_minimum : strict_minimum load small q.
 Proof.
-have force' l : l \in ~: zeros -> 0 < f l 0 by rewrite inE => /force.
-exists (Num.min (reach (~: zeros) f) (reach zeros g)).
+have force' l : l \in bearing -> 0 < f l 0 by rewrite inE => /andP[/force].
+exists (Num.min (reach bearing f) (reach zeros g)).
   by rewrite lt_minr !reach_is_positive.
 move=> p; rewrite lt_minr => /andP[near near_small] pq free_of_overlap.
 have open l : 0 <= gaps p l 0.
   rewrite mxE mulr_ge0 ?invr_ge0 ?ler0n //; have := free_of_overlap l.
-  case: (contact_at _ _) => [i j|i a|i a] /=; rewrite /separation ?addr0 ?addn0 ?subr_ge0 -?expr2 //.
-    by move=> low; rewrite mulr_ge0 ?subr_ge0 // addr_ge0 // ltW.
-  by move=> low; rewrite mulr_ge0 ?subr_ge0 ?ler_subr_addl // addr_ge0 // ltW.
+  case: (contact_at _ _) => [i j|i a|i a|k] /=; rewrite /separation ?addr0 ?addn0 ?subr_ge0 -?expr2 //.
+  - by move=> low; rewrite mulr_ge0 ?subr_ge0 // addr_ge0 // ltW.
+  - by move=> low; rewrite mulr_ge0 ?subr_ge0 ?ler_subr_addl // addr_ge0 // ltW.
+  by move=> ->; rewrite subrr mulr0.
+have stay (l : 'I_N) : holds (contact_at contacts l) -> gaps p l 0 = 0.
+  by rewrite mxE; have := free_of_overlap l; case: (contact_at _ _) => //= k -> _; rewrite subrr !mulr0.
 have [stays|moves] := eqVneq (without p) q.
   have fixed k : k \notin free -> (p - q) k 0 = 0.
     move=> kf; have := congr1 (fun x : 'cV[F]_N => x k 0) stays; rewrite /= mxE (negPf kf) => pk.
@@ -215,10 +231,11 @@ have [stays|moves] := eqVneq (without p) q.
   by rewrite fixed ?kf ?mulr0.
 left; rewrite -(same_potential p).
 apply: (potential_grows balance force' (le_lt_trans (nearer p) near)) => [l|l|].
-- by rewrite inE => lz; rewrite same_gaps.
-- by rewrite inE negbK => /no_force ->; rewrite mul0r.
+- by rewrite inE => /andP[lz _]; rewrite same_gaps.
+- rewrite inE negb_and !negbK; have [/no_force -> _|lz /= held] := boolP (l \in zeros); first by rewrite mul0r.
+  by rewrite held_row ?mulr0 // same_gaps ?stay.
 pose y := A *m (without p - q); pose u : 'cV[F]_N := \col_l (if l \in zeros then 0 else y l 0).
-have [l lS far] : exists2 l, l \in ~: zeros & b / 2%:R * norm (without p - q) < `|u l 0|.
+have [l lS far] : exists2 l, l \in bearing & b / 2%:R * norm (without p - q) < `|u l 0|.
   apply: some_entry => //; first by rewrite subr_eq0.
     have z_is k : k \in ~: free -> (invmx A *m u - (without p - q)) k 0 = 0.
       apply: (block_solutions_vanish regular (S := ~: zeros)) => [i j||i].
@@ -230,8 +247,9 @@ have [l lS far] : exists2 l, l \in ~: zeros & b / 2%:R * norm (without p - q) < 
     have := z_is k; rewrite inE kf => /(_ isT); rewrite difference => /eqP.
     rewrite subr_eq0 => /eqP <-.
     exact: entry_norm.
-  by move=> l; rewrite inE negbK => lz; rewrite mxE lz.
-by exists l => //; move: far; rewrite mxE; move: lS; rewrite inE => /negPf ->.
+  move=> l; rewrite inE negb_and !negbK mxE; case: ifP => //= lz held.
+  by rewrite /y held_row // same_gaps ?lz ?stay.
+by exists l => //; move: far; rewrite mxE; move: lS; rewrite inE => /andP[/negPf ->].
 Qed.
 End Minimum.
 

@@ -10,11 +10,11 @@ Import Order.Theory GRing.Theory Num.Theory.
 Local Open Scope ring_scope.
 
 Section Vertex.
-Variables (F : archiFieldType) (n : nat) (w : F) (radius : nat -> F) (contacts : seq contact).
+Variables (F : archiFieldType) (n : nat) (w : F) (radius place : nat -> F) (contacts : seq contact).
 Let N := (n.*2.+2)%N.
 Variables (q0 q1 : 'cV[F]_N) (b rho r : F).
 Let A := derivative w contacts : 'cV[F]_N -> 'M[F]_N.
-Let gaps := gaps w radius contacts : 'cV[F]_N -> 'cV[F]_N.
+Let gaps := gaps w radius place contacts : 'cV[F]_N -> 'cV[F]_N.
 Hypothesis b0 : 0 < b.
 Hypothesis strong : forall x, 2%:R * N%:R * (b ^+ 2 + 64%:R * rho ^+ 2) * square x <= square (A q0 *m x).
 

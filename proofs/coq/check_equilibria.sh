@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Certificates of equilibria, made by the program, proved again by Coq alone:
-#   bash proofs/coq/check_equilibria.sh ISOSTAT WRITER FOLDER CERTIFICATE.json | DISKS ...
-# Each one must be accepted, and what Coq prints of it must agree with the file (compare.py). The first one is forged, one
-# number at a time: Coq must compute that each forgery is refused, and compare.py must see each change of the file.
+#   bash proofs/coq/check_equilibria.sh ISOSTAT WRITER FOLDER STATE.json | DISKS ...
+# Each one must be accepted, and what Coq prints of it must agree with the file (compare.py). The first one and those from
+# files are forged, one number at a time: Coq must compute that each forgery is refused, and compare.py must see each change of the file.
 set -euo pipefail
 isostat=$(realpath "$1")
 writer=$(realpath "$2")
@@ -11,32 +11,61 @@ shift 3
 theory=$(cd "$(dirname "$0")" && pwd)
 coq() { (cd "$1" && coqc -Q "$theory" Isostat -Q . Data -w none "$2.v" >"$2.log" 2>&1) || { cat "$1/$2.log"; return 1; }; }
 
-first=
+# What `make` has compiled is what prove.py would compile; `isostat verify --coq` uses it as well.
+mkdir -p -m 700 "$folder/cache"
+XDG_CACHE_HOME=$(realpath "$folder/cache")
+export XDG_CACHE_HOME
+compiled=$(python3 -B "$theory/prove.py" --cache)
+if [ ! -e "$compiled" ]; then
+  (umask 077 && mkdir -p "$compiled" && cp --no-preserve=mode "$theory"/*.vo "$compiled")
+fi
+
+forged=()
 for packing in "$@"; do
   place=$folder/equilibrium_$(basename "$packing" .json)
   mkdir -p "$place"
-  first=${first:-$place}
+  [ "${#forged[@]}" -gt 0 ] && [ ! -f "$packing" ] || forged+=("$place")
   if [ -f "$packing" ]; then
-    cp "$packing" "$place/certificate.json"
+    cp "$packing" "$place/state.json"
   else
     printf '[packing]\ndisks = %d\ndiameters = [1.0, 2.0]\nseed = 1\n' "$packing" >"$place/scene.toml"
     "$isostat" prepare "$place/scene.toml" -o "$place/state.json" --quiet
-    "$isostat" certify "$place/state.json" -o "$place/certificate.json" >"$place/certify.log"
   fi
-  "$writer" "$place/certificate.json" >"$place/certificate.v"
-  cp "$theory/questions/verdict.v" "$place"
-  begin=$SECONDS
-  coq "$place" certificate
-  coq "$place" verdict
-  python3 "$theory/compare.py" "$place/certificate.json" "$place/verdict.log" "$place/certificate.v"
-  echo "equilibrium '$packing': packing_is_in_equilibrium proved in $((SECONDS - begin)) s, closed under the global context"
+  "$isostat" certify "$place/state.json" -o "$place/certificate.json" >"$place/certify.log"
+  answer=$(python3 -B "$theory/prove.py" "$writer" "$place/certificate.json" --keep "$place" | tail -1) || { echo "$answer"; exit 1; }
+  echo "equilibrium '$packing': $answer"
 done
 
-cp "$theory/questions/forgeries.v" "$first"
-coq "$first" forgeries
-echo "$(sed -n 's/^ *= \([0-9]*\).*/\1/p' "$first/forgeries.log") forgeries of '$1': Coq computes that each is refused"
+first=${forged[0]}
+# The same by `isostat verify --coq`, of a file and of one with a larger gap (its digest is the one that the program asks for).
+says() { # STATUS WORDS FILE...
+  local answer status=0
+  answer=$("$isostat" verify --coq "${@:3}" 2>&1) || status=$?
+  grep -qE "$2" <<<"$answer" && [ "$status" -eq "$1" ] || { echo "$answer"; echo "expected status $1 and '$2', found status $status"; exit 1; }
+}
+says 0 '^coq +proved' "$first/certificate.json"
+python3 - "$first" "$isostat" <<'END'
+import json, re, subprocess, sys
+first, isostat = sys.argv[1:]
+forged = json.load(open(f"{first}/certificate.json", encoding="utf-8"))
+forged["claims"]["gaps"]["smallest"] *= 1.5
+for _ in range(2):
+    with open(f"{first}/forged.json", "w", encoding="utf-8") as file:
+        json.dump(forged, file)
+    answer = subprocess.run([isostat, "verify", f"{first}/forged.json"], capture_output=True, text=True).stderr
+    forged["digest"] = (re.findall(r"[0-9a-f]{64}", answer) or [""])[-1]
+END
+says 1 '^coq +undecided not accepted' "$first/forged.json"
+answer=$(python3 -B "$theory/prove.py" "$writer" "$first/certificate.json" --sha256 "$(sha256sum <"$first/forged.json" | cut -c1-64)" | tail -1) || true
+[ "$answer" = "undecided the certificate has changed since it was read" ] || { echo "$answer"; exit 1; }
+echo "isostat verify --coq: accepts '$1', refuses the one with a larger gap"
 
-python3 - "$theory/compare.py" "$first" <<'END'
+for place in "${forged[@]}"; do
+cp "$theory/questions/forgeries.v" "$place"
+coq "$place" forgeries
+echo "$(sed -n 's/^ *= \([0-9]*\).*/\1/p' "$place/forgeries.log") forgeries of '$(basename "$place")': Coq computes that each is refused"
+
+python3 - "$theory/compare.py" "$place" <<'END'
 import copy, json, subprocess, sys
 compare, first = sys.argv[1:]
 genuine = json.load(open(f"{first}/certificate.json", encoding="utf-8"))
@@ -55,8 +84,8 @@ changes = {
     "a force from above": lambda c: c["claims"]["forces"]["finite"][-1].__setitem__(1, c["claims"]["forces"]["finite"][-1][0]),
     "a coordinate": scale("state", "disks", 0, 0, by=1 + 2**-52),
     "a radius of a disk": scale("state", "disks", 0, 2, by=1 + 2**-52),
-    "a length": scale("state", "length", 0, by=1 + 2**-52),
-    "a stress": scale("state", "load", "stress", 0, by=1.5),
+    "a length": scale("state", "length", 1, by=1 + 2**-52),
+    "a stress": scale("state", "load", "stress", genuine["state"]["load"]["loaded_axis"], by=1.5),
     "an infinitesimal load": scale("state", "infinitesimal", 0, 0, by=1.5),
     "the nearer end of the load": lambda c: c["claims"]["load_interval"]["high"]["stress"].__setitem__(0, c["claims"]["load_interval"]["high"]["stress"][1]),
     "the further end of the load": lambda c: c["claims"]["load_interval"]["low"]["stress"].__setitem__(0, c["claims"]["load_interval"]["low"]["stress"][1]),
@@ -66,7 +95,15 @@ changes = {
     "a path of the load": lambda c: c["state"]["load"].__setitem__("path", [0, 1]),
     "stability": lambda c: c["claims"].__setitem__("stable", False),
     "a contact": lambda c: c["state"]["contacts"].reverse(),
+    "an upper wall": lambda c: c["state"]["walls"]["upper"].__setitem__(0, "fixed" if genuine["state"]["walls"]["upper"][0] == "movable" else "movable"),
+    "a lower wall": lambda c: c["state"]["walls"]["lower"].__setitem__(0, "absent"),
+    "a lower wall that moves": lambda c: c["state"]["walls"]["lower"].__setitem__(1, "movable"),
+    "a fixed disk": lambda c: c["state"].__setitem__("fixed", genuine["state"].get("fixed", []) + [0]),
+    "disks that are fixed": lambda c: c["state"].__setitem__("fixed", genuine["state"].get("fixed", [0, 1])[1:]),
 }
+if genuine["claims"]["load_interval"]["high"]["unbounded"]:
+    for name in ("the nearer end of the load", "what opens", "an end that is none"):
+        del changes[name]
 for name, change in changes.items():
     other = copy.deepcopy(genuine)
     change(other)
@@ -78,3 +115,4 @@ for name, change in changes.items():
         sys.exit(f"compare.py did not see the change of {name}")
 print(f"{len(changes)} changes of the file: compare.py sees each")
 END
+done

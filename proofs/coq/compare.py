@@ -46,19 +46,19 @@ def name(contact):
 
 def main(certificate_path, log_path, data_path):
     with open(data_path, encoding="utf-8") as data:
-        for sentence in re.sub(r"\(\*.*?\*\)", " ", data.read(), flags=re.S).split(".\n"):
-            if sentence.strip() and not re.match(r"\s*(From (Coq|mathcomp|Isostat) Require Import|Definition|Open Scope) ", sentence):
+        for sentence in re.sub(r"\(\*.*?\*\)", " ", data.read(), flags=re.S).split("."):
+            if sentence.strip() and not re.match(r"\s+(From (Coq|mathcomp|Isostat) Require Import|Definition|Open Scope) ", f"\n{sentence}"):
                 differ(f"{data_path} has more than definitions: {sentence.strip()[:60]}")
     with open(certificate_path, encoding="utf-8") as file:
         certificate = json.load(file)
     with open(log_path, encoding="utf-8") as file:
         values = printed(file.read())
-    ((unit, fine, force, small, unit_stress), n, contacts, stored, radii, zoom, distance, ball, load, low, high, zeros, load_small,
+    ((unit, fine, force, small, unit_stress), n, contacts, walls, stored, radii, zoom, distance, ball, load, low, high, zeros, load_small,
      low_small, high_small, gap, rate, loaded, *ends) = values
     state, claims = certificate["state"], certificate["claims"]
     same("formats", [certificate["format"], certificate["version"], state["version"]], ["isostat-certificate", 1, 2])
-    known = {"format", "version", "dimension", "equilibrium", "provenance", "load", "walls", "length", "disks", "disk_force",
-             "infinitesimal", "contacts", "forces"}
+    known = {"format", "version", "dimension", "equilibrium", "provenance", "load", "walls", "length", "disks", "fixed",
+             "disk_force", "infinitesimal", "contacts", "forces"}
     if set(state) - known:
         differ(f"the state has what Coq was not told of: {sorted(set(state) - known)}")
     lengths = [Fraction(x) for x in state["length"]]
@@ -70,11 +70,16 @@ def main(certificate_path, log_path, data_path):
     same("number of disks", n, len(state["disks"]))
     same("coordinates", scaled(stored, unit), [Fraction(x) for d in state["disks"] for x in d[:2]] + lengths)
     same("radii", scaled(radii, unit), [Fraction(d[2]) for d in state["disks"]])
-    same("contacts", contacts, [name(c) for c in state["contacts"]])
+    lower, upper = state["walls"]["lower"], state["walls"]["upper"]
+    if set(state["walls"]) != {"lower", "upper"} or set(lower) - {"fixed", "absent"} or set(upper) - {"fixed", "absent", "movable"}:
+        differ(f"these walls are not what Coq was told of: {state['walls']}")
+    same("walls", walls, [kind != "absent" for kind in lower + upper])
+    movable = [kind == "movable" for kind in upper]
+    held = [2 * i + a for i in state.get("fixed", []) for a in range(2)] + [2 * n + a for a in range(2) if not movable[a]]
+    same("contacts and what is held", contacts, [name(c) for c in state["contacts"]] + [f"Held {k}" for k in held])
     same("units", zoom * two**fine, two**unit)
-    same("walls", state["walls"], {"lower": ["fixed", "fixed"], "upper": ["movable", "movable"]})
-    counting = claims["counting"]
-    same("counting", [2 * n + 2, 2 * n + 2, 2 * n + 2, 0, 0],
+    counting, moving = claims["counting"], 2 * n + 2 - len(held)
+    same("counting", [moving, moving, moving, 0, 0],
          [counting[k] for k in ("dof_count", "contact_count", "rank", "hyperstaticity", "hypostaticity")])
     if distance * two**fine > Fraction(claims["vertex"]["radius"]):
         differ("the radius that is claimed is smaller than what Coq proved")
@@ -88,7 +93,7 @@ def main(certificate_path, log_path, data_path):
     disk_force = [Fraction(x) for d in state.get("disk_force", []) for x in d] or [Fraction(0)] * (2 * n)
     reference = [Fraction(x) for x in loads["reference_length"]]
     stress = [Fraction(x) for x in loads["stress"]]
-    same("load", scaled(load, force), disk_force + [-stress[0] * reference[1], -stress[1] * reference[0]])
+    same("load", scaled(load, force), disk_force + [-stress[a] * reference[1 - a] if movable[a] else Fraction(0) for a in range(2)])
     same("infinitesimal load", scaled(load_small, small),
          [Fraction(x) for d in state["infinitesimal"] for x in d] + [Fraction(0)] * 2)
     claim = claims["forces"]
@@ -99,8 +104,8 @@ def main(certificate_path, log_path, data_path):
             if not Fraction(lower) <= proved_low[l] * two**exponent or not proved_high[l] * two**exponent <= Fraction(upper):
                 differ(f"{what.format(l)}: the interval that is claimed is smaller than what Coq proved")
 
-    carrying = [l for l, zero in enumerate(zeros) if not zero]
-    same("number of forces", len(zeros), len(claim["finite"]))
+    carrying = [l for l, zero in enumerate(zeros[:len(state["contacts"])]) if not zero]
+    same("number of forces", len(zeros), len(claim["finite"]) + len(held))
     intervals(low, high, force, carrying, [claim["finite"][l] for l in carrying])
     intervals(low_small, high_small, small, claim["structural_zeros"], claim["infinitesimal"])
     for l in claim["structural_zeros"]:
@@ -110,7 +115,7 @@ def main(certificate_path, log_path, data_path):
     axis = loads["loaded_axis"]
     same("loaded stress", loaded * two**unit_stress, stress[axis])
     same("load per unit of stress", scaled(rate, force - unit_stress),
-         [Fraction(0)] * (2 * n) + [-reference[1 - a] if a == axis else Fraction(0) for a in range(2)])
+         [Fraction(0)] * (2 * n) + [-reference[1 - a] if a == axis and movable[a] else Fraction(0) for a in range(2)])
     interval = claims["load_interval"]
     for end, claimed, (opens, places) in (("low", interval["low"], ends[:2]), ("high", interval["high"], ends[2:])):
         same(f"{end} end of the load: what opens", [contacts[l] for l in opens], [] if claimed["unbounded"] else [name(claimed["opens"])])

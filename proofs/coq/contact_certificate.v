@@ -15,8 +15,10 @@ Set Implicit Arguments.
 Unset Strict Implicit.
 Import Order.Theory GRing.Theory Num.Theory.
 
-(** Disks and axes are numbered from 0. *)
-Inductive contact := Disks of nat & nat | Lower of nat & nat | Upper of nat & nat.
+(** Disks and axes are numbered from 0. [Held k] is no contact but a row like one: coordinate k, of a fixed disk or of a
+  wall that does not move, stays where it is. *)
+Inductive contact := Disks of nat & nat | Lower of nat & nat | Upper of nat & nat | Held of nat.
+Definition holds (c : contact) : bool := if c is Held _ then true else false.
 
 Section Check.
 Variables (n : nat) (q : seq Z) (contacts : seq contact).
@@ -32,6 +34,7 @@ Definition sparse_row (c : contact) : seq (nat * Z) :=
     (j.*2 + 1, difference j i 1)]
   | Lower i a => [:: (i.*2 + a, Zneg xH)]
   | Upper i a => [:: (i.*2 + a, Zpos xH); (n.*2 + a, Zneg xH)]
+  | Held k => [:: (k, Zpos xH)]
   end%N.
 
 (** Names two disks, or a disk and an axis, of a packing of n disks. Without this condition [Disks i n] would take the
@@ -40,6 +43,7 @@ Definition well_formed (c : contact) : bool :=
   match c with
   | Disks i j => [&& i < n, j < n & i != j]
   | Lower i a | Upper i a => (i < n) && (a < 2)
+  | Held k => k < N
   end%N.
 
 Fixpoint add_multiple (a : Z) (x sum : seq Z) : seq Z :=
@@ -85,7 +89,7 @@ by split=> // j; rewrite e0 entry big_cons.
 Qed.
 
 Lemma well_formed_rows_are_in_range c : well_formed c -> all (fun e => e.1 < N)%N (sparse_row c).
-Proof. by case: c => [i j|i a|i a] /=; lia. Qed.
+Proof. by case: c => [i j|i a|i a|k] /=; rewrite /N; lia. Qed.
 
 Lemma certified_inverse p (B : table) (l j : 'I_N) : certified p B ->
   Z.modulo (Z.sub ((integer_matrix *m \matrix_(k, m) nth 0 (nth [::] B k) m) l j) (if l == j then Zpos xH else Z0)) p
@@ -147,7 +151,7 @@ Lemma distinct_centres_have_lengths : size contacts = N -> distinct_centres ->
   forall l : 'I_N, length_of (nth contact0 contacts l) != 0.
 Proof.
 move=> sC /(all_nthP contact0) away l; have := away l; rewrite sC => /(_ (ltn_ord l)).
-case: (nth _ _ _) => [i j|? ?|? ?] /=; rewrite ?oner_eq0 //.
+case: (nth _ _ _) => [i j|? ?|? ?|?] /=; rewrite ?oner_eq0 //.
 apply: contra; set x := difference i j 0; set y := difference i j 1.
 have zero (z : Z) : (int_of_Z z)%:~R ^+ 2 = 0 :> F -> Z.eqb z Z0.
   by move/eqP; rewrite sqrf_eq0 intr_eq0 => /eqP z0; apply/Z.eqb_eq/(can_inj int_of_ZK).

@@ -57,6 +57,8 @@ Definition interval_claimed (p : force_claim) (l : nat) : bool :=
   [&& 0 <? nth 0 (low p) l, fraction p * nth 0 (low p) l <=? scale_of l * (nth 0 (quotients p) l - slack p)
     & scale_of l * (nth 0 (quotients p) l + slack p) <=? fraction p * nth 0 (high p) l].
 
+(** Row l holds a coordinate: its force has any sign. *)
+Definition held_at (l : nat) : bool := holds (contact_at (contacts v) l).
 Definition zero_at (l : nat) : bool := nth false (zeros e) l.
 (** Two lists of flags: [free] has as many as [mask], less [more]; contacts without a flag do not touch [free]. *)
 Definition counted (more : nat) (mask free : seq bool) : bool :=
@@ -67,13 +69,14 @@ Definition free_of (p : seq Z) (free : seq bool) : bool :=
   all (fun k => ~~ nth false free k || (nth 0 p k =? 0)) (iota 0 N).
 Definition zeros_are_structural : bool := counted 0 (zeros e) (unloaded e) && free_of (load (finite e)) (unloaded e).
 Definition forces_claimed : bool :=
-  all (fun l => interval_claimed (if zero_at l then infinitesimal e else finite e) l) (iota 0 N).
+  all (fun l => if held_at l then ~~ zero_at l else
+    interval_claimed (if zero_at l then infinitesimal e else finite e) l) (iota 0 N).
 
 Definition widest : Z := foldr Z.max 0 [seq fine_radius v i | i <- iota 0 n].
 Definition equilibrium_check : bool :=
   [&& vertex_check v, nearly_balanced (finite e), nearly_balanced (infinitesimal e), zeros_are_structural
     & forces_claimed && (0 <? gap e)
-      && gaps_check n (contacts v) (fine_radius v) (refined_at v) (error v) (gap e) widest].
+      && gaps_check n (walls v) (contacts v) (fine_radius v) (fine_place v) (refined_at v) (error v) (gap e) widest].
 End Check.
 
 Local Open Scope ring_scope.
@@ -224,12 +227,14 @@ Qed.
 
 (** What is said of a configuration: the statement of the theorem, in full. *)
 Definition is_the_equilibrium (q : 'cV[F]_N) : Prop :=
-  [/\ forall l : 'I_N, touch n (radius F v) (at_ q) (contact_at (contacts v) l),
+  [/\ forall l : 'I_N, in_the_packing n (walls v) (contact_at (contacts v) l)
+       /\ touch n (radius F v) (place F v) (at_ q) (contact_at (contacts v) l),
      normals (radius F v) (contacts v) q \in unitmx,
-     forall c, well_formed n c -> ~~ listed (contacts v) c -> apart n (radius F v) (at_ q) (real (gap e)) c,
+     forall c, in_the_packing n (walls v) c -> ~~ holds c -> ~~ listed (contacts v) c ->
+       apart n (radius F v) (place F v) (at_ q) (if immobile n (contacts v) c then 0 else real (gap e)) c,
      exists f : 'cV[F]_N, [/\ balanced (radius F v) (contacts v) q (load_vector (finite e)) f,
        forall f', balanced (radius F v) (contacts v) q (load_vector (finite e)) f' -> f' = f
-       & forall l : 'I_N, if zero_at e l then f l 0 = 0 else
+       & forall l : 'I_N, ~~ held_at e l -> if zero_at e l then f l 0 = 0 else
            [/\ 0 < f l 0, real (nth 0 (low (finite e)) l) <= f l 0 & f l 0 <= real (nth 0 (high (finite e)) l)]]
    & exists f : 'cV[F]_N, [/\ balanced (radius F v) (contacts v) q (load_vector (infinitesimal e)) f,
        forall f', balanced (radius F v) (contacts v) q (load_vector (infinitesimal e)) f' -> f' = f
@@ -244,9 +249,9 @@ Proof. by rewrite -(at_refined F posed) -at_sub => near; apply: le_trans near; a
 (** ... and that it is the one near the stored configuration, and a strict minimum. *)
 Definition is_certified (q : 'cV[F]_N) : Prop :=
   [/\ norm (q - q1) <= real (error v), norm (q - q0) <= real (distance v), is_the_equilibrium q,
-     strict_minimum (radius F v) (contacts v) (load_vector (finite e)) (load_vector (infinitesimal e)) q
+     strict_minimum (radius F v) (place F v) (contacts v) (load_vector (finite e)) (load_vector (infinitesimal e)) q
    & forall q' : 'cV[F]_N, norm (q' - q0) <= real (zoom v * ball v) ->
-       (forall l : 'I_N, touch n (radius F v) (at_ q') (contact_at (contacts v) l)) -> q' = q].
+       (forall l : 'I_N, touch n (radius F v) (place F v) (at_ q') (contact_at (contacts v) l)) -> q' = q].
 Definition certified_equilibrium : Prop := exists q, is_certified q.
 
 Let inside (q : 'cV[F]_N) : norm (q - q1) <= real (error v) -> norm (q - q0) <= real (distance v) ->
@@ -263,26 +268,34 @@ Proof.
 move=> full; have [q [near close closed unit alone]] := one_vertex posed full vertex_ok.
 have inside_q := inside near close.
 have /and5P[_ bal bal_small _ /andP[/andP[/allP claims g0] gaps_ok]] := check.
-have claimed (l : 'I_N) : interval_claimed e (if zero_at e l then infinitesimal e else finite e) l.
+have claimed (l : 'I_N) : if held_at e l then ~~ zero_at e l
+    else interval_claimed e (if zero_at e l then infinitesimal e else finite e) l.
   by apply: claims; rewrite mem_iota ltn_ord.
+have touching (l : 'I_N) : zero_at e l -> ~~ held_at e l by have := claimed l; case: ifP => // _ /negPf ->.
 have [f [fb fu fl]] := forces_are_found bal near inside_q unit.
 have [g [gb gu gl]] := forces_are_found bal_small near inside_q unit.
 have zero := zeros_are_zero unit fb.
-have pushing (l : 'I_N) : ~~ zero_at e l -> [/\ 0 < f l 0, real (nth 0 (low (finite e)) l) <= f l 0
-    & f l 0 <= real (nth 0 (high (finite e)) l)] by have := claimed l; case: ifP => // _ /(forces_are_claimed bal fl).
+have pushing (l : 'I_N) : ~~ zero_at e l -> ~~ held_at e l -> [/\ 0 < f l 0, real (nth 0 (low (finite e)) l) <= f l 0
+    & f l 0 <= real (nth 0 (high (finite e)) l)] by move=> /negPf zl /negPf hl; have := claimed l; rewrite zl hl => /(forces_are_claimed bal fl).
 have pushing_small (l : 'I_N) : zero_at e l -> [/\ 0 < g l 0, real (nth 0 (low (infinitesimal e)) l) <= g l 0
-    & g l 0 <= real (nth 0 (high (infinitesimal e)) l)] by move=> zl; have := claimed l; rewrite zl => /(forces_are_claimed bal_small gl).
+    & g l 0 <= real (nth 0 (high (infinitesimal e)) l)] by move=> zl; have := claimed l; rewrite zl (negPf (touching l zl)) => /(forces_are_claimed bal_small gl).
 exists q; split=> //.
 - split=> //.
-  + by move=> c formed unlisted; apply: other_grains_are_apart gaps_ok formed unlisted => k; apply: near_the_refined_one.
+  + move=> l; split; last exact: closed.
+    have /and5P[_ _ /andP[/eqP sC /all_nthP rows] _ _] := posed.
+    by apply: rows; rewrite sC.
+  + move=> c formed pair unlisted; apply: other_grains_are_apart gaps_ok formed pair unlisted => k.
+      exact: near_the_refined_one.
+    case/(has_nthP (Lower 0 0)) => l lN here; rewrite size_contacts in lN; have := closed (Ordinal lN).
+    by rewrite /contact_at /=; case: (nth _ _ _) here => //= m /eqP ->.
   + by exists f; split=> // l; case: ifPn => [/zero|/pushing].
   by exists g.
 - have [regular _] := gaps_follow_displacements posed 0 vertex_ok inside_q.
   apply: (equilibrium_is_a_strict_minimum w_gt0 (scales_are_positive F posed) _ b0 _ zeros_counted zeros_unloaded zeros_apart fb gb) => //.
-  + exact/(gaps_vanish _ _ _ w1).
+  + exact/(gaps_vanish _ _ _ _ w1).
   + by move=> x; have [] := gaps_follow_displacements posed x vertex_ok inside_q.
   + by move=> l; rewrite inE; apply: zero.
-  + by move=> l; rewrite inE => /pushing[].
+  + by move=> l; rewrite inE => zl /(pushing l zl)[].
   by move=> l; rewrite inE => /pushing_small[].
 Qed.
 End Correct.

@@ -10,6 +10,7 @@ Open Scope Z_scope.
 Definition the_vertex : vertex_certificate := {|
   disks := 2;
   contacts := touching;
+  walls := nseq 4 true;
   stored := [:: 5965993140654854; 2536575797225128; 2130989135994552; 2130989135994552; 7691395615418828; 4261978271989102];
   radii := [:: 1725402474763974; 2130989135994551];
   weight := 2251799813685248;
@@ -81,7 +82,7 @@ Definition two_disks : equilibrium_certificate := equilibrium the_certificate.
 Definition with_gap (g : Z) : equilibrium_certificate :=
   EquilibriumCertificate the_vertex the_forces the_infinitesimal_forces (zeros two_disks) (unloaded two_disks) g.
 Definition with_contacts (cs : seq contact) : vertex_certificate :=
-  VertexCertificate 2 cs (stored the_vertex) (radii the_vertex) (weight the_vertex) (zoom the_vertex)
+  VertexCertificate 2 cs (walls the_vertex) (stored the_vertex) (radii the_vertex) (weight the_vertex) (zoom the_vertex)
     (refined the_vertex) (error the_vertex) (distance the_vertex) (ball the_vertex) (stiffness the_vertex)
     (shift the_vertex) (factor the_vertex).
 Definition pulling : force_claim :=

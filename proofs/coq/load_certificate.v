@@ -55,10 +55,10 @@ Definition vanishes_between (up : bool) (x : load_end) (m : nat) : bool :=
 Definition end_check (up : bool) (x : load_end) : bool :=
   free_of e (load (rate c)) (free x) &&
   if opens x is Some m then
-    [&& counted e 1 (mute x) (free x), free_of e (load (finite e)) (free x), nth false (mute x) m && ~~ zero_at e m,
+    [&& counted e 1 (mute x) (free x), free_of e (load (finite e)) (free x), nth false (mute x) m && ~~ (zero_at e m || held_at e m),
       slack (rate c) <? fall up m, vanishes_between up x m
-      & all (fun l => nth false (mute x) l || outlasts up m l) (iota 0 N)]
-  else counted e 0 (mute x) (free x) && all (fun l => nth false (mute x) l || (fall up l + slack (rate c) <? 0)) (iota 0 N).
+      & all (fun l => nth false (mute x) l || held_at e l || outlasts up m l) (iota 0 N)]
+  else counted e 0 (mute x) (free x) && all (fun l => nth false (mute x) l || held_at e l || (fall up l + slack (rate c) <? 0)) (iota 0 N).
 
 Definition load_check : bool :=
   [&& equilibrium_check e, nearly_balanced e (rate c), end_check false (lower_end c) & end_check true (upper_end c)].
@@ -85,7 +85,7 @@ Definition is_the_end (q : 'cV[F]_N) (up : bool) (x : load_end) : Prop :=
     [/\ first up (real (near x)) t, first up t (real (far x)),
        forall s, first up now s -> borne (radius F v) (contacts v) q (load_at s) <-> first up s t
      & exists2 f, balanced (radius F v) (contacts v) q (load_at t) f
-       & forall l : 'I_N, if (l == m :> nat) || nth false (mute x) l then f l 0 = 0 else 0 < f l 0]
+       & forall l : 'I_N, ~~ held_at e l -> if (l == m :> nat) || nth false (mute x) l then f l 0 = 0 else 0 < f l 0]
   else forall s, first up now s -> borne (radius F v) (contacts v) q (load_at s).
 
 Let sign (up : bool) : F := if up then 1 else -1.
@@ -108,8 +108,8 @@ Hypothesis bal : balanced (radius F v) (contacts v) q (load_vector F e (finite e
 Hypothesis rate_bal : balanced (radius F v) (contacts v) q (load_vector F e (rate c)) u.
 Hypothesis f_known : encloses (finite e) f.
 Hypothesis u_known : encloses (rate c) u.
-Hypothesis positive : forall l : 'I_N, ~~ zero_at e l -> 0 < f l 0.
-Hypothesis pushing : forall l : 'I_N, 0 <= f l 0.
+Hypothesis positive : forall l : 'I_N, ~~ zero_at e l -> ~~ held_at e l -> 0 < f l 0.
+Hypothesis pushing : forall l : 'I_N, ~~ held_at e l -> 0 <= f l 0.
 Hypothesis solved : nearly_balanced e (finite e).
 Hypothesis rate_solved : nearly_balanced e (rate c).
 Hypothesis check : end_check c up x.
@@ -200,7 +200,7 @@ have free_of_rate : forall k, k \in flagged e (free x) -> (sign up *: load_vecto
 have ahead s : first up (real (stress c)) s -> 0 <= sign up * (s - real (stress c)).
   by move=> /firstE; rewrite mulrBr subr_ge0.
 case/andP: check => _; rewrite /is_the_end; case: (opens x) => [m|].
-  case/and5P=> counted_ok /(free_of_load F) unloaded /andP[mute_m zm] falls /andP[between others].
+  case/and5P=> counted_ok /(free_of_load F) unloaded /andP[mute_m] /norP[zm hm0] falls /andP[between others].
   have [same untouched] := counted_sets F counted_ok.
   have mN : (m < N)%N.
     by apply: contraTT mute_m; rewrite -leqNgt => Nm; rewrite nth_default // (counted_size counted_ok).
@@ -209,12 +209,12 @@ case/andP: check => _; rewrite /is_the_end; case: (opens x) => [m|].
     by rewrite subr_gt0 real_lt.
   have m_falls : (sign up *: u) m' 0 < 0 by rewrite hE oppr_lt0 divr_gt0 ?mulr_gt0.
   have := vanishing hm between; set t := f m' 0 / _ => /andP[t_near t_far].
-  have [||l lm|t0 until gone louder] := the_load_is_borne_up_to_its_end regular bal signed_rate pushing untouched free_of_rate _ unloaded
-    _ (positive (l := m') zm) m_falls (m := m').
+  have [||l lm touch|t0 until gone louder] := the_load_is_borne_up_to_its_end regular bal signed_rate pushing untouched free_of_rate _ unloaded
+    _ hm0 (positive (l := m') zm hm0) m_falls (m := m').
   - by rewrite same addn1.
   - by rewrite inE.
   - apply: outlasting; have /allP := others; move=> /(_ (l : nat)); rewrite mem_iota ltn_ord => /(_ isT).
-    by move: lm; rewrite inE => /negPf ->.
+    by move: lm touch; rewrite inE /held_at => /negPf -> /negPf ->.
   have at_t : sign up * ((real (stress c) + sign up * t) - real (stress c)) = t.
     by rewrite [real _ + _]addrC addrK mulrA sign_sign mul1r.
   set end_ := real (stress c) + sign up * t in at_t *.
@@ -227,14 +227,14 @@ case/andP: check => _; rewrite /is_the_end; case: (opens x) => [m|].
   - by apply/firstE; rewrite signed_end -ler_subr_addl -mulrBr.
   - by move=> s /ahead s0; rewrite (load_ahead up); apply: iff_trans (from_t s); apply: until.
   exists (f + t *: (sign up *: u)); first by rewrite (load_ahead up) at_t; apply: forces_follow_the_load.
-  move=> l; have [lm|_] := eqVneq (l : nat) m.
+  move=> l touch; have [lm|_] := eqVneq (l : nat) m.
     by rewrite (val_inj (lm : val l = val m')); apply: gone; rewrite inE.
-  by rewrite /=; case: ifPn => lm; [apply: gone|apply: louder]; rewrite inE.
+  by rewrite /=; case: ifPn => lm; [apply: gone|apply: louder]; rewrite ?inE.
 case/andP=> counted_ok /allP rising s /ahead s0; rewrite (load_ahead up).
 have [same untouched] := counted_sets F counted_ok.
-apply: (the_load_is_borne_without_end regular bal signed_rate pushing untouched free_of_rate) => // [|l lm].
+apply: (the_load_is_borne_without_end regular bal signed_rate pushing untouched free_of_rate) => // [|l lm touch].
   by rewrite same addn0.
-have := rising (l : nat); rewrite mem_iota ltn_ord => /(_ isT); move: lm; rewrite inE => /negPf -> /= rise.
+have := rising (l : nat); rewrite mem_iota ltn_ord => /(_ isT); move: lm touch; rewrite inE /held_at => /negPf -> /negPf -> /= rise.
 have := h_known l; rewrite ler_distl => /andP[_ high].
 rewrite hE oppr_gt0 pmulr_llt0 ?invr_gt0 // pmulr_llt0 ?S0 //; apply: le_lt_trans high _.
 by rewrite -real_plus -(real_zero F) real_lt.
@@ -254,8 +254,9 @@ have inside := inside_the_ball equilibrium_ok ok.
 have [g [gbal _ g_known]] := forces_are_found equilibrium_ok solved near inside regular.
 have [u [u_bal _ u_known]] := forces_are_found equilibrium_ok rate_solved near inside regular.
 have fg := alone _ gbal; rewrite {}fg in gbal g_known.
-have pushing (l : 'I_N) : ~~ zero_at e l -> 0 < f l 0 by have := signs l; case: ifP => // _ [].
-have none (l : 'I_N) : 0 <= f l 0 by have := signs l; case: ifP => [_ -> //|_ [/ltW]].
+have pushing (l : 'I_N) : ~~ zero_at e l -> ~~ held_at e l -> 0 < f l 0.
+  by move=> zl hl; have := signs l hl; rewrite (negPf zl) => -[].
+have none (l : 'I_N) : ~~ held_at e l -> 0 <= f l 0 by move=> hl; have := signs l hl; case: ifP => [_ -> //|_ [/ltW]].
 by exists q; split=> //; apply: end_is_proved equilibrium_ok regular bal u_bal g_known u_known pushing none solved rate_solved _.
 Qed.
 End Correct.

@@ -19,7 +19,7 @@ Definition rebuilt (lists : seq (seq Z)) (scalars : seq Z) (flags : seq (seq boo
   let l := nth [::] lists in let s := nth 0 scalars in let f := nth [::] flags in let o := nth None opening in
   LoadCertificate
     (EquilibriumCertificate
-      (VertexCertificate (disks v) touching (l 0%N) (l 1%N) (s 0%N) (s 1%N) (l 2%N) (s 2%N) (s 3%N) (s 4%N) (s 5%N) (s 6%N) rows)
+      (VertexCertificate (disks v) touching (f 6%N) (l 0%N) (l 1%N) (s 0%N) (s 1%N) (l 2%N) (s 2%N) (s 3%N) (s 4%N) (s 5%N) (s 6%N) rows)
       (ForceClaim (ForceSolution (l 3%N) (s 7%N) (l 6%N) (s 8%N)) (l 4%N) (l 5%N))
       (ForceClaim (ForceSolution (l 7%N) (s 9%N) (l 10%N) (s 10%N)) (l 8%N) (l 9%N))
       (f 0%N) (f 1%N) (s 11%N))
@@ -33,7 +33,7 @@ Definition above := upper_end whole.
 Definition scalars : seq Z := [:: weight v; zoom v; error v; distance v; ball v; stiffness v; shift v;
   fraction (finite c); slack (finite c); fraction (infinitesimal c); slack (infinitesimal c); gap c;
   fraction (rate whole); slack (rate whole); stress whole; near below; far below; near above; far above].
-Definition flags : seq (seq bool) := [:: zeros c; unloaded c; mute below; free below; mute above; free above].
+Definition flags : seq (seq bool) := [:: zeros c; unloaded c; mute below; free below; mute above; free above; walls v].
 Definition opening : seq (option nat) := [:: opens below; opens above].
 
 (** All lists that differ from l in one place, there by f. *)
@@ -47,8 +47,12 @@ Definition with_list (k : nat) (l : seq Z) := rebuilt (set_nth [::] lists k l) s
 Definition in_list (k : nat) (f : nat -> Z -> Z) : seq load_certificate :=
   [seq with_list k l | l <- changed f (nth [::] lists k)].
 
+(** A wall that is touched is said to be none. Without contacts it may be: less is claimed then. *)
+Definition touched (k : nat) : bool :=
+  has (fun d => match d with Lower _ a => a == k | Upper _ a => 2 + a == k | _ => false end)%N (contacts v).
+
 (** Intervals of forces that are used are moved beyond their own other end; the others stay out of this. *)
-Definition used (zero : bool) : seq nat := [seq l <- iota 0 (size (zeros c)) | zero_at c l == zero].
+Definition used (zero : bool) : seq nat := [seq l <- iota 0 (size (zeros c)) | (zero_at c l == zero) && ~~ held_at c l].
 Definition moved (k : nat) (p : force_claim) (zero : bool) : seq load_certificate :=
   [seq with_list k (set_nth 0 (low p) l (nth 0 (high p) l + 1)) | l <- used zero]
   ++ [seq with_list k.+1 (set_nth 0 (high p) l (nth 0 (low p) l - 1)) | l <- used zero].
@@ -101,7 +105,9 @@ Definition forgeries : seq load_certificate :=
   ++ [seq rebuilt lists (set_nth 0 scalars k (bad_scalar k (nth 0 scalars k))) flags (contacts v) (factor v) opening
     | k <- iota 0 (size scalars) & matters k]
   ++ flatten [seq [seq rebuilt lists scalars (set_nth [::] flags k f) (contacts v) (factor v) opening
-    | f <- changed (fun _ => negb) (nth [::] flags k)] | k <- iota 0 (size flags)]
+    | f <- changed (fun _ => negb) (nth [::] flags k)] | k <- iota 0 6]
+  ++ [seq rebuilt lists scalars (set_nth [::] flags 6 (set_nth false (walls v) k false)) (contacts v) (factor v) opening
+    | k <- iota 0 4 & touched k]
   ++ forged_contacts ++ forged_rows ++ forged_opening.
 
 Lemma rebuilding_changes_nothing : load_check genuine = true.

@@ -21,6 +21,7 @@ Set Printing Depth 1000000.
 Eval vm_compute in (Data.certificate.exponents : seq Z).
 Eval vm_compute in disks (vertex c).
 Eval vm_compute in contacts (vertex c).
+Eval vm_compute in walls (vertex c).
 Eval vm_compute in stored (vertex c).
 Eval vm_compute in radii (vertex c).
 Eval vm_compute in zoom (vertex c).

@@ -1,7 +1,7 @@
 #pragma once
 // The samples of every size, from the folders of their runs.
 
-#include "report/inference.hpp"
+#include "inference.hpp"
 #include "report/statistics.hpp"
 
 #include <isostat/io/run_directory.hpp>

@@ -10,13 +10,16 @@
 
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
+#include <gmpxx.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <map>
+#include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -27,10 +30,20 @@ using Numbers = std::vector<Number>;
 using Matrix = Eigen::SparseMatrix<double>;
 using Vector = Eigen::VectorXd;
 
+/// Nothing is wrong with the certificate; this program has no data with which Coq could prove what it claims.
+class Undecided : public std::runtime_error {
+  public:
+    using std::runtime_error::runtime_error;
+};
+
 constexpr int zoom_exponent = 40; // the unit of the refined configuration is 2^40 times smaller
 
 Number power_of_two(int exponent) {
     return Number::from_double(std::ldexp(1.0, exponent));
+}
+
+Number size(const Number& x) {
+    return x.sign() < 0 ? -x : x;
 }
 
 /// The integer next to x.
@@ -64,10 +77,12 @@ struct Entry {
     Number value;
 };
 
-/// The packing in integers of one unit.
+/// The packing in integers of one unit. Coordinates that do not move are held at their places, by rows after those of
+/// the contacts.
 struct Integers {
     int disks = 0;
     Numbers radius;
+    Numbers place;
     Number weight;
     std::vector<Contact> contacts;
 
@@ -82,6 +97,9 @@ struct Integers {
             return x * x + y * y - sum * sum;
         }
         const Number x = q[index(at(c.i, c.j))];
+        if (c.kind == ContactKind::held) {
+            return (weight + weight) * (x - place[index(at(c.i, c.j))]);
+        }
         const Number room = c.kind == ContactKind::lower_wall ? x : q[index(at(disks, c.j))] - x;
         return (weight + weight) * (room - radius[index(c.i)]);
     }
@@ -91,7 +109,7 @@ struct Integers {
             const Number y = q[index(at(c.i, 1))] - q[index(at(c.j, 1))];
             return {{at(c.i, 0), x}, {at(c.i, 1), y}, {at(c.j, 0), -x}, {at(c.j, 1), -y}};
         }
-        if (c.kind == ContactKind::lower_wall) {
+        if (c.kind != ContactKind::upper_wall) {
             return {{at(c.i, c.j), weight}};
         }
         return {{at(disks, c.j), weight}, {at(c.i, c.j), -weight}};
@@ -117,7 +135,7 @@ struct Approximate {
         a.setFromTriplets(entries.begin(), entries.end());
         factor.compute(Matrix(a.transpose() * a));
         if (factor.info() != Eigen::Success) {
-            throw Error(ErrorKind::bad_input, "the contact matrix is too near a singular one for a factor in double");
+            throw Undecided("the contact matrix is too near a singular one for a factor in double");
         }
     }
     /// A x = b.
@@ -148,7 +166,7 @@ Vector to_doubles(const Numbers& x) {
 Number largest(const Numbers& x) {
     Number result;
     for (const Number& a : x) {
-        result = std::max(result, a.sign() < 0 ? -a : a);
+        result = std::max(result, size(a));
     }
     return result;
 }
@@ -185,8 +203,8 @@ struct Quotients {
 Quotients quotients(const Integers& packing, const Numbers& q, const Numbers& load, const Approximate& system,
                     const Number& error, const Number& stiffness) {
     Quotients result;
-    const double size = system.solve_transposed(to_doubles(load)).lpNorm<Eigen::Infinity>();
-    result.fraction = size > 0 ? std::max(0, 100 - std::ilogb(size)) : 0;
+    const double length = system.solve_transposed(to_doubles(load)).lpNorm<Eigen::Infinity>();
+    result.fraction = length > 0 ? std::max(0, 100 - std::ilogb(length)) : 0;
     result.value.assign(packing.contacts.size(), Number());
     for (int step = 0;; ++step) {
         Numbers residual(load.size());
@@ -198,7 +216,7 @@ Quotients quotients(const Integers& packing, const Numbers& q, const Numbers& lo
             const Number& g = result.value[l];
             for (const Entry& e : packing.gradient(packing.contacts[l], q)) {
                 residual[Integers::index(e.coordinate)] += e.value * g;
-                blur[Integers::index(e.coordinate)] += g.sign() < 0 ? -g : g;
+                blur[Integers::index(e.coordinate)] += size(g);
             }
         }
         if (step == 12) {
@@ -211,6 +229,12 @@ Quotients quotients(const Integers& packing, const Numbers& q, const Numbers& lo
 
 // What follows writes Coq.
 
+/// In hexadecimal digits, which Coq reads in less time than decimal ones.
+std::string numeral(const Number& x) {
+    const std::string digits = mpz_class(size(x).text()).get_str(16);
+    return (x.sign() < 0 ? "-0x" : "0x") + digits;
+}
+
 std::string list(const std::vector<std::string>& items) {
     std::string text = "[::";
     for (std::size_t k = 0; k < items.size(); ++k) {
@@ -221,7 +245,7 @@ std::string list(const std::vector<std::string>& items) {
 std::string list(const Numbers& numbers) {
     std::vector<std::string> items;
     for (const Number& x : numbers) {
-        items.push_back(x.text());
+        items.push_back(numeral(x));
     }
     return list(items);
 }
@@ -234,6 +258,9 @@ std::string list(const std::vector<bool>& flags) {
 }
 
 std::string name(const Contact& c) {
+    if (c.kind == ContactKind::held) {
+        return "Held " + std::to_string(2 * c.i + c.j);
+    }
     const char* kind = c.kind == ContactKind::disk_disk    ? "Disks"
                        : c.kind == ContactKind::lower_wall ? "Lower"
                                                            : "Upper";
@@ -249,14 +276,14 @@ std::string factor_columns(const Matrix& squared, double shift) {
     }
     Eigen::SimplicialLLT<Matrix> factor(shifted);
     if (factor.info() != Eigen::Success) {
-        throw Error(ErrorKind::bad_input, "the shifted matrix has no factor");
+        throw Undecided("the shifted matrix has no factor");
     }
     const Matrix lower = factor.matrixL();
     std::vector<std::string> items;
     for (Eigen::Index k = 0; k < lower.outerSize(); ++k) {
         std::map<Eigen::Index, std::string> column;
         for (Matrix::InnerIterator it(lower, k); it; ++it) {
-            column[factor.permutationPinv().indices()[it.row()]] = rounded(it.value()).text();
+            column[factor.permutationPinv().indices()[it.row()]] = numeral(rounded(it.value()));
         }
         std::vector<std::string> entries;
         for (const auto& [row, value] : column) {
@@ -285,8 +312,10 @@ struct Vertex {
 /// A packing in a unit `zoom` times smaller.
 Integers enlarged(Integers packing, const Number& zoom) {
     packing.weight *= zoom;
-    for (Number& r : packing.radius) {
-        r *= zoom;
+    for (Numbers* lengths : {&packing.radius, &packing.place}) {
+        for (Number& x : *lengths) {
+            x *= zoom;
+        }
     }
     return packing;
 }
@@ -299,20 +328,19 @@ Numbers multiples(const std::vector<double>& values, int exponent) {
     return result;
 }
 
-Vertex vertex_of(const State& state, double unique_radius) {
-    const Packing& packing = state.packing;
+Vertex vertex_of(const Packing& packing, const std::vector<Contact>& rows, double unique_radius) {
     Vertex v;
     v.unit = unit_exponent(packing.radius, unit_exponent(packing.q, 0));
     v.fine = v.unit - zoom_exponent;
-    v.packing = {packing.disk_count(), multiples(packing.radius, v.unit),
-                 power_of_two(std::ilogb(packing.radius[0]) - v.unit + 1), state.contacts};
     v.stored = multiples(packing.q, v.unit);
+    v.packing = {packing.disk_count(), multiples(packing.radius, v.unit), v.stored,
+                 power_of_two(std::ilogb(packing.radius[0]) - v.unit + 1), rows};
     const Approximate coarse(v.packing, v.stored);
     const double shift = 0.7 * coarse.smallest_eigenvalue();
     const double ball = std::ceil(std::ldexp(unique_radius, -v.unit));
     const double stiffness = 0.9 * shift / (2.0 * static_cast<double>(v.stored.size())) - 64 * ball * ball;
     if (!(stiffness > 0)) {
-        throw Error(ErrorKind::bad_input, "the claimed radius of uniqueness is too large for this certificate");
+        throw Undecided("the claimed radius of uniqueness is too large for this certificate");
     }
     v.shift = rounded(shift);
     v.ball = rounded(ball);
@@ -379,7 +407,7 @@ std::vector<bool> unloaded_by(const Vertex& v, const Numbers& load, const std::v
     return result;
 }
 
-void write_vertex(const Vertex& v) {
+void write_vertex(const Vertex& v, const Walls& walls) {
     std::vector<std::string> contacts;
     for (const Contact& c : v.packing.contacts) {
         contacts.push_back(name(c));
@@ -390,10 +418,15 @@ void write_vertex(const Vertex& v) {
         "From Isostat Require Import contact_certificate box_certificate equilibrium_certificate load_certificate.\n"
         "Definition touching : seq contact := %s.\nOpen Scope Z_scope.\n",
         list(contacts).c_str());
-    std::printf("Definition the_vertex : vertex_certificate := {|\n  disks := %d;\n  contacts := touching;\n"
-                "  stored := %s;\n  radii := %s;\n  weight := %s;\n  zoom := 2 ^ %d;\n  refined := %s;\n",
-                v.packing.disks, list(v.stored).c_str(), list(v.packing.radius).c_str(),
-                v.packing.weight.text().c_str(), zoom_exponent, list(v.refined).c_str());
+    std::vector<bool> there;
+    for (const auto& kinds : {walls.lower, walls.upper}) {
+        there.insert(there.end(), {kinds[0] != WallKind::absent, kinds[1] != WallKind::absent});
+    }
+    std::printf(
+        "Definition the_vertex : vertex_certificate := {|\n  disks := %d;\n  contacts := touching;\n"
+        "  walls := %s;\n  stored := %s;\n  radii := %s;\n  weight := %s;\n  zoom := 2 ^ %d;\n  refined := %s;\n",
+        v.packing.disks, list(there).c_str(), list(v.stored).c_str(), list(v.packing.radius).c_str(),
+        v.packing.weight.text().c_str(), zoom_exponent, list(v.refined).c_str());
     std::printf("  error := %s;\n  distance := %s;\n  ball := %s;\n  stiffness := %s;\n  shift := %s;\n"
                 "  factor := %s |}.\n",
                 v.error.text().c_str(), v.distance.text().c_str(), v.ball.text().c_str(), v.stiffness.text().c_str(),
@@ -417,10 +450,6 @@ void write_forces(const char* title, const Numbers& load, const Quotients& force
     write_solution(load, forces);
     std::printf(";\n  low := %s;\n  high := %s |}.\n", list(multiples(low, exponent)).c_str(),
                 list(multiples(high, exponent)).c_str());
-}
-
-Number size(const Number& x) {
-    return x.sign() < 0 ? -x : x;
 }
 
 /// One end of the interval, with the contacts that bear nothing there.
@@ -454,8 +483,9 @@ struct EndWriter {
         std::vector<bool> mute = zeros;
         Numbers any_load = rate;
         for (std::size_t l = 0; l < mute.size(); ++l) {
-            mute[l] = claim.unbounded ? !(slopes.slack < direction * slopes.value[l])
-                                      : zeros[l] || l == m || !outlasts(m, l, direction);
+            mute[l] = vertex.packing.contacts[l].kind == ContactKind::held ? false
+                      : claim.unbounded ? !(slopes.slack < direction * slopes.value[l])
+                                        : zeros[l] || l == m || !outlasts(m, l, direction);
             any_load[l] = size(rate[l]) + (claim.unbounded ? Number() : size(load[l]));
         }
         const std::vector<double> ends = claim.unbounded ? std::vector<double>{0, 0}
@@ -497,19 +527,42 @@ ForceUnits force_units(const State& state, const CertificateClaims& claims,
     return units;
 }
 
+/// The contacts, and what is held: the coordinates that are no degrees of freedom.
+std::vector<Contact> rows_of(const State& state) {
+    std::vector<Contact> rows = state.contacts;
+    const DofMap dofs(state.packing);
+    for (int k = 0; k < dofs.coordinate_count(); ++k) {
+        if (dofs.dof_of(Integers::index(k)) < 0) {
+            rows.push_back({ContactKind::held, k / 2, k % 2});
+        }
+    }
+    return rows;
+}
+
 void write_certificate(const State& state, const CertificateClaims& claims) {
     const Packing& packing = state.packing;
-    if (packing.walls != Walls::box() || !packing.fixed.empty() || packing.cell.any() || state.load.path ||
-        state.load.kind != LoadKind::nominal || state.contacts.size() != packing.q.size()) {
-        throw Error(ErrorKind::bad_input, "an isostatic packing in the box under dead loads was expected");
+    const std::vector<Contact> rows = rows_of(state);
+    const std::pair<bool, const char*> not_covered[] = {
+        {packing.dimension != 2, "spheres"},
+        {!packing.bars.empty(), "clumps"},
+        {packing.cell.any(), "periodic cells"},
+        {state.load.path.has_value(), "paths in stress space"},
+        {state.load.kind != LoadKind::nominal, "true stresses"},
+        {rows.size() != packing.q.size(), "packings that are not isostatic"},
+        {claims.gaps && !std::isfinite(claims.gaps->smallest), "packings without a pair that does not touch"},
+        {!claims.vertex || !claims.forces || !claims.gaps || !claims.load_interval,
+         "certificates without one of the claims vertex, forces, gaps, load interval"},
+    };
+    for (const auto& [found, what] : not_covered) {
+        if (found) {
+            throw Undecided(std::string("the checker in Coq does not cover ") + what);
+        }
     }
-    if (!claims.vertex || !claims.forces || !claims.gaps || !claims.load_interval) {
-        throw Error(ErrorKind::bad_input, "vertex, forces, gaps and load interval have to be claimed");
-    }
-    const Vertex v = vertex_of(state, claims.vertex->unique_radius);
-    const ForcesClaim& forces = *claims.forces;
-    std::vector<bool> zeros(state.contacts.size(), false);
-    std::vector<Interval> infinitesimal(state.contacts.size());
+    const Vertex v = vertex_of(packing, rows, claims.vertex->unique_radius);
+    ForcesClaim forces = *claims.forces;
+    forces.finite.resize(rows.size()); // nothing is claimed of what is held
+    std::vector<bool> zeros(rows.size(), false);
+    std::vector<Interval> infinitesimal(rows.size());
     for (std::size_t k = 0; k < forces.structural_zeros.size(); ++k) {
         const std::size_t l = Integers::index(forces.structural_zeros[k]);
         zeros[l] = true;
@@ -529,7 +582,7 @@ void write_certificate(const State& state, const CertificateClaims& claims) {
     const Quotients finite = solved(load);
     const Quotients slopes = solved(rate);
 
-    write_vertex(v);
+    write_vertex(v, packing.walls);
     std::printf(
         "(* The units are 2 to these powers: of lengths, of refined lengths, of forces, of infinitesimal ones, of "
         "stresses. *)\nDefinition exponents : seq Z := [:: %d; %d; %d; %d; %d].\n",
@@ -579,6 +632,9 @@ int main(int argc, char** argv) {
     } catch (const Error& error) {
         std::fprintf(stderr, "%s\n", error.what());
         return error.exit_status();
+    } catch (const Undecided& error) {
+        std::fprintf(stderr, "%s\n", error.what());
+        return 2;
     }
     return 0;
 }

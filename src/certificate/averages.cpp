@@ -1,6 +1,8 @@
 #include "certificate/averages.hpp"
 
 #include "certificate/contact_table.hpp"
+#include "contact/separation.hpp"
+#include "packing/bodies.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +17,7 @@ double mean_of_ends(const Interval& force) {
 
 /// Held coordinates carry no force between grains.
 bool carries(const State& state, const Certification& truth, std::size_t l) {
-    return truth.structural_zero[l] == 0 && state.contacts[l].kind != ContactKind::held;
+    return truth.structural_zero[l] == 0 && state.contacts[l].is_unilateral();
 }
 
 } // namespace
@@ -23,22 +25,22 @@ bool carries(const State& state, const Certification& truth, std::size_t l) {
 Coordination coordination(const State& state, const Certification& truth, int rattlers) {
     Coordination ends;
     for (std::size_t l = 0; l < state.contacts.size(); ++l) {
-        const ContactKind kind = state.contacts[l].kind;
-        const int of_contact = kind == ContactKind::disk_disk ? 2 : kind == ContactKind::held ? 0 : 1;
+        const int of_contact = !state.contacts[l].is_unilateral() ? 0 : state.contacts[l].of_disks() ? 2 : 1;
         ends.all += of_contact;
         ends.carrying += carries(state, truth, l) ? of_contact : 0;
     }
-    const int grains = state.packing.disk_count();
+    const int grains = Bodies(state.packing).count();
     return {ends.all / std::max(1, grains), ends.carrying / std::max(1, grains - rattlers)};
 }
 
 std::vector<int> contacts_of_grains(const State& state) {
     std::vector<int> count(state.packing.radius.size());
     for (const Contact& contact : state.contacts) {
-        if (contact.kind != ContactKind::held) {
-            ++count[static_cast<std::size_t>(contact.i)];
+        if (!contact.is_unilateral()) {
+            continue;
         }
-        if (contact.kind == ContactKind::disk_disk) {
+        ++count[static_cast<std::size_t>(contact.i)];
+        if (contact.of_disks()) {
             ++count[static_cast<std::size_t>(contact.j)];
         }
     }
@@ -55,14 +57,14 @@ ForceAverages force_averages(const State& state, const Certification& truth) {
     int contacts = 0;
     int pairs = 0;
     for (std::size_t l = 0; l < state.contacts.size(); ++l) {
-        if (!carries(state, truth, l)) {
+        const Contact& contact = state.contacts[l];
+        const bool bar = contact.kind == ContactKind::bar; // hands on what acts on one member to the others
+        if (!carries(state, truth, l) && !bar) {
             continue;
         }
-        const Contact& contact = state.contacts[l];
         const bool pair = contact.kind == ContactKind::disk_disk;
         const double force = mean_of_ends(truth.finite[l]);
-        const double length = packing.radius[static_cast<std::size_t>(contact.i)] +
-                              (pair ? packing.radius[static_cast<std::size_t>(contact.j)] : 0);
+        const double length = zero_distance(packing, contact);
         const PerAxis<double> n = outward(state, contact);
         for (std::size_t a = 0; a < packing.axes(); ++a) {
             for (std::size_t b = 0; b < packing.axes(); ++b) {
@@ -71,8 +73,8 @@ ForceAverages force_averages(const State& state, const Certification& truth) {
             }
             sum.pressure += force * n[a] * n[a] * length / volume / packing.dimension;
         }
-        sum.mean_force += force;
-        ++contacts;
+        sum.mean_force += bar ? 0 : force;
+        contacts += bar ? 0 : 1;
         pairs += pair ? 1 : 0;
     }
     for (PerAxis<double>& row : sum.fabric) {

@@ -50,7 +50,8 @@ class Prover {
             prove_stability(forces, gaps);
         }
         const CertificateClaims& c = result_.claims;
-        const bool all = c.counting && c.vertex && c.forces && c.gaps && c.load_interval && c.stable;
+        const bool all =
+            (c.counting && c.vertex && c.forces && c.gaps && c.load_interval && c.stable) || c.minimum.has_value();
         result_.verdict = !result_.refuted.empty() ? Verdict::refuted : all ? Verdict::proved : Verdict::undecided;
         return std::move(result_);
     }
@@ -108,6 +109,9 @@ class Prover {
     }
 
     bool prove_counting();
+    bool claim_regular(int rows);
+    void claim_minimum();
+    [[nodiscard]] std::optional<Contact> held_under_load() const;
     void claim_that_nothing_moves();
     void claim_other_counts();
     bool put_on_grid();
@@ -167,13 +171,58 @@ bool Prover::prove_counting() {
         auto made = Centre::make(state_.packing, state_.contacts);
         if (made.ok()) {
             stored_ = std::move(made.value());
-            result_.claims.counting = CountingClaim{dof_count, count, count, 0, 0, Rung::exact};
-            result_.counting = {dof_count, count, count, 0, 0, Verdict::proved, {}};
-            return true;
+            return claim_regular(count);
         }
     }
     claim_other_counts();
     return false;
+}
+
+/// With as many rows as degrees of freedom, all independent: what is held makes up for free motions, and does nothing
+/// else (proofs/clumps.md, U2).
+bool Prover::claim_regular(int rows) {
+    const std::vector<Contact>& list = state_.contacts;
+    const int bars = bar_count(list);
+    const int held = static_cast<int>(
+        std::count_if(list.begin(), list.end(), [](const Contact& c) { return c.kind == ContactKind::held; }));
+    const int contacts = rows - bars - held;
+    result_.counting = {rows - bars, contacts, contacts, 0, held, Verdict::proved, {}};
+    if (const auto bears = held > 0 ? held_under_load() : std::nullopt) {
+        const std::string reason = fmt::format("the load may act on a mechanism ({})", named(*bears));
+        absent("counting", reason);
+        absent_from_vertex_on(reason);
+        claim_minimum();
+        return false;
+    }
+    result_.claims.counting = CountingClaim{rows - bars, contacts, contacts, 0, held, Rung::exact};
+    return true;
+}
+
+/// Along mechanisms that the load reaches (U8). The claims leave room for a checker with other bounds.
+void Prover::claim_minimum() {
+    constexpr double room = 16;
+    const Load& load = state_.load;
+    if (state_.packing.cell.any() || load.kind != LoadKind::nominal || !load.infinitesimal.empty()) {
+        return;
+    }
+    const auto found = inspect_mechanism(state_, result_.counting);
+    if (found.ok() && found.value().stable == Verdict::proved) {
+        result_.claims.minimum = MinimumClaim{room * found.value().away, found.value().curvature / 2};
+        result_.claims.undecided = {"all other claims: of an isostatic structure, and the load acts on mechanisms"};
+    }
+}
+
+/// The first held coordinate that the load may act on; infinitesimal loads may act on any.
+std::optional<Contact> Prover::held_under_load() const {
+    const std::vector<double>& g = state_.load.infinitesimal;
+    const bool pressed = std::any_of(g.begin(), g.end(), [](double x) { return x != 0; });
+    const Subject subject(state_, stored_->structure);
+    for (std::size_t l = 0; l < state_.contacts.size(); ++l) {
+        if (state_.contacts[l].kind == ContactKind::held && (subject.zero[l] == 0 || pressed)) {
+            return state_.contacts[l];
+        }
+    }
+    return std::nullopt;
 }
 
 void Prover::claim_that_nothing_moves() {
@@ -191,6 +240,14 @@ void Prover::claim_that_nothing_moves() {
 
 /// Of a structure that is not isostatic, or not proved to be.
 void Prover::claim_other_counts() {
+    if (std::any_of(state_.contacts.begin(), state_.contacts.end(),
+                    [](const Contact& c) { return c.kind == ContactKind::held; })) {
+        result_.counting = count_contacts(state_.packing, state_.contacts);
+        const std::string reason = "coordinates are held, and the list with these is not proved regular";
+        absent("counting", reason);
+        absent_from_vertex_on(reason);
+        return;
+    }
     const Counting counting = exact_counting(state_);
     result_.counting = counting;
     const std::string numbers =
@@ -334,6 +391,9 @@ ForceSigns Prover::look_at(const std::vector<Interval>& finite, SignFailures& fa
     ForceSigns signs;
     for (std::size_t l = 0; l < finite.size(); ++l) {
         const Interval& f = finite[l];
+        if (!state_.contacts[l].is_unilateral()) {
+            continue; // of either sign
+        }
         if (subject_->zero[l] != 0) {
             ++signs.structural_zero;
         } else if (f.lower > 0) {
@@ -364,6 +424,9 @@ void Prover::look_at_zeros(ForcesClaim& claim, SignFailures& failures) const {
         const auto l = static_cast<std::size_t>(zero);
         const Interval& f = infinitesimal[l];
         claim.infinitesimal.push_back(f);
+        if (!state_.contacts[l].is_unilateral()) {
+            continue;
+        }
         if (f.upper < 0 && left_at_zero(state_, state_.contacts[l])) {
             failures.doubtful = "the run left the force at 0, and the infinitesimal one " + in_contact(l, f);
         } else if (f.upper < 0 && failures.negative.empty()) {

@@ -11,7 +11,7 @@
 namespace isostat {
 
 PerAxis<double> outward(const State& state, const Contact& contact) {
-    if (contact.kind == ContactKind::disk_disk) {
+    if (contact.of_disks()) {
         return direction(separation(state.packing.layout(), state.packing.q, contact));
     }
     PerAxis<double> normal{};
@@ -39,14 +39,13 @@ std::string contact_table(const State& state, const Certification& truth) {
     const auto& forces = truth.claims.forces;
     for (std::size_t l = 0; l < state.contacts.size(); ++l) {
         const Contact& contact = state.contacts[l];
-        if (contact.kind == ContactKind::held) {
+        if (!contact.is_unilateral()) {
             continue;
         }
         const std::string name = to_string(contact, packing.dimension);
         const PerAxis<double> normal = outward(state, contact);
         text += fmt::format("\"{}\",{},{}", name, contact.i,
-                            contact.kind == ContactKind::disk_disk ? std::to_string(contact.j)
-                                                                   : name.substr(name.find('-') + 1));
+                            contact.of_disks() ? std::to_string(contact.j) : name.substr(name.find('-') + 1));
         for (std::size_t a = 0; a < packing.axes(); ++a) {
             text += fmt::format(",{}", static_cast<int>(contact.image.m[a]));
         }

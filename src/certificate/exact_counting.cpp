@@ -20,7 +20,7 @@ exact::NumberMatrix exact_matrix(const State& state) {
     for (const Contact& contact : state.contacts) {
         const Separation separation(contact, state.packing.layout());
         PerAxis<exact::Number> r;
-        if (contact.kind == ContactKind::disk_disk) {
+        if (contact.of_disks()) {
             r = separation.of_disks([&](std::size_t k) { return exact::Number::from_double(state.packing.q[k]); },
                                     std::minus<>());
         }
@@ -43,9 +43,9 @@ Counting exact_counting(const State& state) {
     }
     const exact::Kernel kernel = exact::kernel(exact_matrix(state));
     if (kernel.exact == Verdict::proved) {
-        counting.rank = kernel.rank;
-        counting.hyperstaticity = counting.contact_count - kernel.rank;
-        counting.mechanisms = counting.dof_count - kernel.rank;
+        counting.rank = kernel.rank - bar_count(state.contacts);
+        counting.hyperstaticity = counting.contact_count - counting.rank;
+        counting.mechanisms = counting.dof_count - counting.rank;
         counting.rank_exact = Verdict::proved;
     }
     return counting;

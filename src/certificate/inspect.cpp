@@ -1,5 +1,6 @@
 #include "contact/contact_set.hpp"
 #include "core/roundoff.hpp"
+#include "packing/bodies.hpp"
 
 #include <isostat/certificate/certify.hpp>
 
@@ -41,8 +42,11 @@ void describe_forces(Inspection& inspection) {
         if (inspection.structural_zero[l] != 0) {
             continue;
         }
-        ++record.backbone;
         record.force_bound = std::max(record.force_bound, half_width(f));
+        if (!inspection.contacts[l].is_unilateral()) {
+            continue;
+        }
+        ++record.backbone;
         record.margin = std::min(record.margin, std::abs(middle(f)) / half_width(f));
         if (middle(f) < record.min_force) {
             record.min_force = middle(f);
@@ -65,13 +69,53 @@ void describe_interval(EquilibriumRecord& record, const CertificateClaims& claim
     end(+1, record.stress_high, record.opens_high);
 }
 
+/// By body: without a force, or with all of them, loads among them, at one member, about whose centre the body turns.
+void find_rattlers(const State& state, Inspection& inspection) {
+    const Bodies bodies(state.packing);
+    constexpr int several = -2;
+    std::vector<int> holder(state.packing.radius.size(), -1); // of a body, at its first member: which one is held
+    const auto bears = [&](int disk) {
+        int& at = holder[static_cast<std::size_t>(bodies.of(disk))];
+        at = at == -1 || at == disk ? disk : several;
+    };
+    for (const Contact& contact : unmarked(state.contacts, inspection.structural_zero)) {
+        if (contact.is_unilateral()) {
+            bears(contact.i);
+            bears(contact.of_disks() ? contact.j : contact.i);
+        }
+    }
+    for (std::size_t k = 0; k < state.load.disk_force.size(); ++k) {
+        if (state.load.disk_force[k] != 0) {
+            bears(static_cast<int>(k / state.packing.axes()));
+        }
+    }
+    const std::vector<std::vector<int>> members = bodies.members();
+    for (const std::vector<int>& body : members) { // a fixed member holds its body
+        for (const int member : body) {
+            if (state.packing.is_fixed(DiskId(static_cast<std::size_t>(member)))) {
+                bears(member);
+            }
+        }
+    }
+    for (int i = 0; i < state.packing.disk_count(); ++i) {
+        if (holder[static_cast<std::size_t>(bodies.of(i))] == -1) {
+            inspection.rattlers.push_back(i);
+        }
+    }
+    for (const std::vector<int>& body : members) {
+        if (holder[static_cast<std::size_t>(body.front())] >= 0) {
+            inspection.rotational_rattlers.push_back(body.front());
+        }
+    }
+}
+
 /// Of a state whose true vertex was found.
 void describe(const State& state, Inspection& inspection) {
     const Certification& truth = inspection.truth;
     const CertificateClaims& claims = truth.claims;
     EquilibriumRecord& record = inspection.record;
     inspection.structural_zero = truth.structural_zero;
-    inspection.rattlers = untouched(state.packing.disk_count(), unmarked(state.contacts, truth.structural_zero));
+    find_rattlers(state, inspection);
     describe_forces(inspection);
     describe_interval(record, claims);
     inspection.equilibrium = claims.counting && claims.vertex && claims.forces && claims.gaps;
@@ -112,12 +156,16 @@ Result<Inspection> inspect_vertex(const State& state) {
         return Failure{FailureKind::not_isostatic, numbers(counting) + ": forces are not determined by the geometry"};
     }
     const bool space = state.packing.dimension != plane;
-    if ((space || state.packing.cell.any()) && (counting.mechanisms > 0 || has_held(state))) {
+    const bool clumps = !state.packing.bars.empty();
+    // Of clumps, other mechanisms than free motions: the certificate counts these, and claims nothing of them.
+    const bool moves = clumps ? counting.mechanisms > 0 && has_held(state) && !inspection.truth.claims.counting
+                              : counting.mechanisms > 0 || has_held(state);
+    if ((space || state.packing.cell.any()) && moves) {
         return Failure{FailureKind::not_isostatic,
                        fmt::format("{}: mechanisms {} are counted, not followed yet", numbers(counting),
                                    space ? "of spheres" : "in a periodic cell")};
     }
-    if (counting.mechanisms > 0 || has_held(state)) {
+    if (moves) {
         auto found = inspect_mechanism(state, counting.mechanisms > 0 ? count_contacts(state.packing, state.contacts)
                                                                       : counting);
         if (!found.ok()) {
@@ -132,6 +180,10 @@ Result<Inspection> inspect_vertex(const State& state) {
         inspection.stable = mechanism.stable;
         inspection.second_order = mechanism.second_order;
         inspection.remark = std::move(mechanism.remark);
+        if (clumps) {
+            inspection.rattlers.clear();
+            find_rattlers(state, inspection);
+        }
         return inspection;
     }
     if (!inspection.truth.claims.vertex) {

@@ -120,6 +120,14 @@ std::vector<Contact> joined(std::vector<Contact> contacts, const std::vector<Con
     return contacts;
 }
 
+/// Own images that touch and are not in the list.
+std::vector<Contact> own_besides(const Packing& packing, const std::vector<Contact>& contacts) {
+    std::vector<Contact> own = touching_own_images(packing);
+    std::erase_if(
+        own, [&](const Contact& pair) { return std::find(contacts.begin(), contacts.end(), pair) != contacts.end(); });
+    return own;
+}
+
 /// Both walls on every axis, and none of the upper ones moves.
 enum class Box : unsigned char { none, moves, stays };
 Box box_of(const Packing& packing) {
@@ -156,15 +164,15 @@ std::optional<BoxInspection> inspect_box(const State& state, const Certification
     };
     const bool holds = std::any_of(state.contacts.begin(), state.contacts.end(),
                                    [](const Contact& c) { return c.kind == ContactKind::held; });
-    if (box == Box::none || any(state.packing.fixed) || any(state.load.disk_force) || holds) {
+    const bool clumps = !state.packing.bars.empty(); // what their rattlers are is told by forces
+    if (clumps || box == Box::none || any(state.packing.fixed) || any(state.load.disk_force) || holds) {
         return std::nullopt;
     }
     const std::vector<int> rattlers = rattlers_by_coordination(state.packing, state.contacts);
     State rest = state;
     rest.packing = without_disks(state.packing, rattlers);
     const auto rattles = [&](int i) { return std::binary_search(rattlers.begin(), rattlers.end(), i); };
-    std::erase_if(rest.contacts,
-                  [&](const Contact& c) { return rattles(c.i) || (c.kind == ContactKind::disk_disk && rattles(c.j)); });
+    std::erase_if(rest.contacts, [&](const Contact& c) { return rattles(c.i) || (c.of_disks() && rattles(c.j)); });
     BoxInspection out;
     out.grains = state.packing.disk_count() - static_cast<int>(rattlers.size());
     Packing held = rest.packing;
@@ -174,26 +182,36 @@ std::optional<BoxInspection> inspect_box(const State& state, const Certification
     if (box == Box::moves ? is_equilibrium(truth) : c.hyperstaticity == 1 && is_equilibrium(certify(with_size(rest)))) {
         out.collective = {Verdict::proved, "positive forces, and no mechanism: k = 0 at the true vertex"};
     } else if (box == Box::stays && c.hyperstaticity > 1) {
-        out.collective.reason = fmt::format("h = {} of {} {}s that are no rattlers: {} contacts more than the size of "
-                                            "the box and the places determine, "
-                                            "which close in exact numbers alone (a packing in TOML)",
-                                            c.hyperstaticity, out.grains,
-                                            state.packing.dimension == plane ? "disk" : "sphere", c.hyperstaticity - 1);
+        out.collective.reason =
+            fmt::format("h = {} of {} {}s that are no rattlers: {} contact{} more than the size of "
+                        "the box and the places determine, "
+                        "which doubles cannot prove to close (exact numbers can, in TOML)",
+                        c.hyperstaticity, out.grains, state.packing.dimension == plane ? "disk" : "sphere",
+                        c.hyperstaticity - 1, c.hyperstaticity == 2 ? "" : "s");
     } else {
         out.collective.reason = fmt::format("no equilibrium is proved; h = {}, k = {} of the {} that are no rattlers",
                                             c.hyperstaticity, c.mechanisms, out.grains);
     }
+    if (box == Box::stays && out.collective.verdict == Verdict::undecided) {
+        out.collective.if_closed = jammed_if_closed(held, rest.contacts).collective;
+    }
     return out;
+}
+
+void add_if_closed(const Packing& packing, const std::vector<Contact>& contacts, CellInspection& cell) {
+    const IfClosed seen = jammed_if_closed(packing, joined(contacts, own_besides(packing, contacts)));
+    cell.collective.if_closed = seen.collective;
+    cell.strict.if_closed = seen.strict;
+    if (seen.collective && seen.collective->verdict == Verdict::proved) {
+        cell.local.if_closed = seen.collective;
+    }
 }
 
 CellInspection inspect_cell(const State& state, const Certification& truth) {
     assert(state.packing.cell.all());
     CellInspection out;
     out.dimension = state.packing.dimension;
-    std::vector<Contact> own = touching_own_images(state.packing);
-    std::erase_if(own, [&](const Contact& pair) {
-        return std::find(state.contacts.begin(), state.contacts.end(), pair) != state.contacts.end();
-    });
+    std::vector<Contact> own = own_besides(state.packing, state.contacts);
     out.all = count_strains(state.packing, joined(state.contacts, own));
     const bool equilibrium = truth.claims.vertex && truth.claims.forces && truth.claims.gaps;
     const auto& on_disks = state.load.disk_force;
@@ -204,6 +222,9 @@ CellInspection inspect_cell(const State& state, const Certification& truth) {
                                            : "no equilibrium of this state is proved: the counts alone do "
                                              "not tell"};
         out.local = out.collective = out.strict = unknown;
+        if (!loaded) {
+            add_if_closed(state.packing, state.contacts, out);
+        }
         return out;
     }
     const std::vector<Contact> carrying = unmarked(state.contacts, truth.structural_zero);

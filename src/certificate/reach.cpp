@@ -60,9 +60,10 @@ double least_stretch(const Packing& packing) {
 std::optional<std::string> beyond_claims(const State& state) {
     const auto held = std::find_if(state.contacts.begin(), state.contacts.end(),
                                    [](const Contact& c) { return c.kind == ContactKind::held; });
-    return held == state.contacts.end() ? out_of_range(state)
-                                        : fmt::format("the state keeps a coordinate ({}), which is not a contact",
-                                                      to_string(*held, state.packing.dimension));
+    return held == state.contacts.end() || !state.packing.bars.empty()
+               ? out_of_range(state)
+               : fmt::format("the state keeps a coordinate ({}), which is not a contact",
+                             to_string(*held, state.packing.dimension));
 }
 
 double largest_length(const Packing& packing) {

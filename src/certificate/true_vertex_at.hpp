@@ -77,6 +77,8 @@ template <class T> class TrueVertexAt final : public TrueVertex {
     [[nodiscard]] std::string name(int l) const {
         return to_string(subject_.state.contacts[index(l)], subject_.state.packing.dimension);
     }
+    /// The supported interval ends where a contact opens; a bar bears forces of either sign.
+    [[nodiscard]] bool limits(int l) const { return subject_.state.contacts[index(l)].is_unilateral(); }
     /// Of the force in contact l when the load goes in the direction.
     double rate(int l, int direction) { return direction * A::rounded(unit_load().value[index(l)]); }
     std::string open_rate(int l);
@@ -126,7 +128,7 @@ template <class T> Interval TrueVertexAt<T>::gap(const Contact& contact) const {
     const CorrectedConfiguration<T>& at = vertex_.at();
     const double size = target(centre_.packing, contact);
     double value = 0;
-    if (contact.kind == ContactKind::disk_disk) {
+    if (contact.of_disks()) {
         double square = 0;
         for (const T& r : at.separation(contact)) {
             const double d = A::rounded(r);
@@ -264,7 +266,7 @@ template <class T> std::string TrueVertexAt<T>::open_rate(int l) {
 template <class T> LoadEndAnswer TrueVertexAt<T>::without_end(int direction) {
     const double bound = unit_load().bound;
     for (int l = 0; l < subject_.size(); ++l) {
-        if (subject_.zero_slope[index(l)] == 0 && !(rate(l, direction) > bound * (1 + 4 * u))) {
+        if (limits(l) && subject_.zero_slope[index(l)] == 0 && !(rate(l, direction) > bound * (1 + 4 * u))) {
             return {{}, open_rate(l)};
         }
     }
@@ -286,7 +288,7 @@ std::string TrueVertexAt<T>::vanishes_before(int first, const std::vector<int>& 
         skip[index(l)] = 1;
     }
     for (int l = 0; l < subject_.size(); ++l) {
-        if (skip[index(l)] != 0 || subject_.zero_slope[index(l)] != 0) {
+        if (skip[index(l)] != 0 || subject_.zero_slope[index(l)] != 0 || !limits(l)) {
             continue;
         }
         const T product = slope.value[index(l)] * t;
@@ -314,7 +316,7 @@ template <class T> int TrueVertexAt<T>::opens(int first, const std::vector<int>&
     const auto key = [&](int l) { return A::rounded(g.value[index(l)]) / std::abs(rate(l, direction)); };
     int best = first;
     for (const int l : members) {
-        best = rate(l, direction) != 0 && key(l) < key(best) ? l : best;
+        best = limits(l) && rate(l, direction) != 0 && key(l) < key(best) ? l : best;
     }
     return best;
 }
@@ -324,7 +326,10 @@ template <class T> LoadEndAnswer TrueVertexAt<T>::load_end(int direction) {
     const Solution& slope = unit_load();
     const auto vanishing = first_to_vanish(
         force.value.size(), [&](std::size_t l) { return A::rounded(force.value[l]); },
-        [&](std::size_t l) { return subject_.zero_slope[l] == 0 ? rate(static_cast<int>(l), direction) : 0.0; });
+        [&](std::size_t l) {
+            const int of = static_cast<int>(l);
+            return limits(of) && subject_.zero_slope[l] == 0 ? rate(of, direction) : 0.0;
+        });
     if (!vanishing) {
         return without_end(direction);
     }

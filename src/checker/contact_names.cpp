@@ -67,10 +67,9 @@ std::optional<Contact> contact_spelt(std::string_view name, int dimension) {
                                            : take(rest, i) && i >= 0 && take_word(rest, "-")
                                                ? contact_with(i, rest, dimension)
                                                : std::nullopt;
-    const bool itself =
-        contact && contact->kind == ContactKind::disk_disk && contact->i == contact->j && contact->image.is_here();
-    const bool turned = contact && contact->kind == ContactKind::disk_disk &&
-                        !(pair_of(contact->i, contact->j, contact->image) == *contact);
+    const bool itself = contact && contact->of_disks() && contact->i == contact->j && contact->image.is_here();
+    const bool turned =
+        contact && contact->of_disks() && !(pair_of(contact->i, contact->j, contact->image) == *contact);
     return contact && !itself && !turned && to_string(*contact, dimension) == name ? contact : std::nullopt;
 }
 
@@ -82,8 +81,7 @@ std::optional<Contact> contact_named(std::string_view name, const Packing& packi
     if (contact->kind == ContactKind::held) {
         return contact->i < static_cast<int>(packing.q.size()) ? contact : std::nullopt;
     }
-    bool there = contact->i < packing.disk_count() &&
-                 (contact->kind != ContactKind::disk_disk || contact->j < packing.disk_count());
+    bool there = contact->i < packing.disk_count() && (!contact->of_disks() || contact->j < packing.disk_count());
     for (std::size_t a = 0; a < packing.axes(); ++a) {
         there = there && (contact->image.m[a] == 0 || packing.cell.periodic[a]);
     }

@@ -20,7 +20,7 @@ bool with_a_sphere_there(const std::vector<Contact>& contacts, const Contact& c,
         at.i = c.i == wall.i ? c.j : c.i;
         return std::find(contacts.begin(), contacts.end(), at) != contacts.end();
     };
-    return c.kind == ContactKind::disk_disk && touches(wall) && touches(other);
+    return c.of_disks() && touches(wall) && touches(other);
 }
 
 } // namespace

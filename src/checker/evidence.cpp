@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace isostat::checker {
 
 namespace {
@@ -29,7 +31,7 @@ std::optional<int> eliminated_rank(const Problem& problem) {
 } // namespace
 
 Evidence::Evidence(const State& checked, CheckerArithmetic arithmetic, bool held_allowed,
-                   std::shared_ptr<const Solver> near, int digits)
+                   std::shared_ptr<const Solver> near, int digits, const Rational& around)
     : state(checked), problem(checked, held_allowed, digits) {
     if (!problem.unsupported.empty()) {
         return;
@@ -39,11 +41,11 @@ Evidence::Evidence(const State& checked, CheckerArithmetic arithmetic, bool held
         rank = eliminated_rank(problem);
         return;
     }
-    const auto bound = [this](CheckerArithmetic kind) {
+    const auto bound = [this, &around](CheckerArithmetic kind) {
         InverseBound found = bound_inverse(problem, *solver, kind);
         if (found.found || !inverse.found) {
             inverse = std::move(found);
-            vertex = inverse.found ? find_vertex(problem, *solver, inverse) : TrueVertex();
+            vertex = inverse.found ? find_vertex(problem, *solver, inverse, around) : TrueVertex();
         }
     };
     if (near) {
@@ -83,6 +85,11 @@ const std::vector<Range>& Evidence::infinitesimal() const {
                              : std::vector<Range>();
     }
     return *infinitesimal_;
+}
+
+int Evidence::count(ContactKind kind) const {
+    return static_cast<int>(std::count_if(state.contacts.begin(), state.contacts.end(),
+                                          [kind](const Contact& c) { return c.kind == kind; }));
 }
 
 std::string Evidence::why_no_inverse() const {

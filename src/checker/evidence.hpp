@@ -15,9 +15,10 @@ namespace isostat::checker {
 
 struct Evidence {
     /// `near`: factors of the matrix at a configuration close by, or nothing; with `automatic` only. `digits`: those
-    /// of the problem; forces get as many more.
+    /// of the problem; forces get as many more. `around`: everything holds at every vertex of the list whose held
+    /// coordinates are no farther than that from their stored values (K27).
     Evidence(const State& checked, CheckerArithmetic arithmetic, bool held_allowed = false,
-             std::shared_ptr<const Solver> near = {}, int digits = usual_digits);
+             std::shared_ptr<const Solver> near = {}, int digits = usual_digits, const Rational& around = 0);
 
     const State& state;
     Problem problem;
@@ -38,6 +39,9 @@ struct Evidence {
     [[nodiscard]] std::string named(const Contact& contact) const {
         return to_string(contact, state.packing.dimension);
     }
+    /// How many of the list are of a kind; and whether some row is of no contact.
+    [[nodiscard]] int count(ContactKind kind) const;
+    [[nodiscard]] bool has_other_rows() const { return count(ContactKind::bar) + count(ContactKind::held) > 0; }
     [[nodiscard]] std::string why_no_inverse() const;
     [[nodiscard]] std::string why_no_vertex() const;
 
@@ -67,6 +71,7 @@ Verification judge(const CertificateClaims& claims, const Evidence& evidence);
 /// Parts of it with a file of their own; the claims are there.
 ClaimCheck judge_forces(const Evidence& evidence, const ForcesClaim& claim);
 ClaimCheck judge_load_interval(const Evidence& evidence, const LoadIntervalClaim& claim);
+ClaimCheck judge_minimum(const Evidence& evidence, const MinimumClaim& claim);
 /// One end of the interval; direction 1 is the upper one. `text`: what was found.
 Verdict judge_load_end(const Evidence& evidence, const LoadEndClaim& claim, int direction, std::string& text);
 

@@ -122,7 +122,7 @@ Velocities::Solution Velocities::opening(std::size_t contact, int direction) con
 Range Velocities::gap_rate(const Contact& pair, const Solution& v) const {
     const auto i = static_cast<std::size_t>(pair.i);
     const auto j = static_cast<std::size_t>(pair.j);
-    if (pair.kind == ContactKind::disk_disk) {
+    if (pair.of_disks()) {
         const Row row(pair, e_.problem.layout);
         const auto x = separate(row, [&](std::size_t k) { return place(e_.problem, e_.vertex, k); });
         const auto change = separate(row, [&](std::size_t k) { return component(e_.problem, v, k); });
@@ -139,7 +139,7 @@ Range Velocities::gap_rate(const Contact& pair, const Solution& v) const {
 
 /// |D v|^2: what the velocity adds to F'' of a pair of disks.
 Range Velocities::turning(const Contact& pair, const Solution& v) const {
-    if (pair.kind != ContactKind::disk_disk) {
+    if (!pair.of_disks()) {
         return Range(Rational(0));
     }
     const Row row(pair, e_.problem.layout);
@@ -156,13 +156,13 @@ Range Velocities::bend(const Contact& pair, std::size_t opened, const Solution& 
     std::vector<Rational> b;
     Rational off = 0;
     for (std::size_t l = 0; l < contacts.size(); ++l) {
-        const bool grows = l == opened && contacts[l].kind == ContactKind::disk_disk; // F'' = h'^2 + D h''
+        const bool grows = l == opened && contacts[l].of_disks(); // F'' = h'^2 + D h''
         const Range second = Range(Rational(grows ? 1 : 0)) - turning(contacts[l], v);
         b.push_back((second.lower + second.upper) / 2);
         off = std::max<Rational>(off, (second.upper - second.lower) / 2);
     }
     Range along = gap_rate(pair, solve(b, off));
-    if (pair.kind != ContactKind::disk_disk) {
+    if (!pair.of_disks()) {
         return along;
     }
     const Range rate = gap_rate(pair, v);
@@ -184,7 +184,7 @@ FirstOrder::FirstOrder(const Evidence& evidence, const std::vector<double>& rho)
 
 Rational FirstOrder::grown(const Contact& pair) const {
     Rational sum(rho_[static_cast<std::size_t>(pair.i)]);
-    if (pair.kind == ContactKind::disk_disk) {
+    if (pair.of_disks()) {
         sum += Rational(rho_[static_cast<std::size_t>(pair.j)]);
     }
     return sum;
@@ -204,7 +204,7 @@ std::vector<Range> FirstOrder::forces(const std::vector<Range>& f0) const {
     };
     for (std::size_t l = 0; l < e_.state.contacts.size(); ++l) {
         const Contact& c = e_.state.contacts[l];
-        if (c.kind != ContactKind::disk_disk) {
+        if (!c.of_disks()) {
             continue;
         }
         const Range g = f0[l] / Range(e_.problem.force_factor(static_cast<int>(l)));
@@ -231,7 +231,7 @@ std::vector<Range> FirstOrder::forces(const std::vector<Range>& f0) const {
     std::vector<Range> f1 = contact_forces(e_.problem, *e_.solver, e_.inverse, e_.vertex, load);
     for (std::size_t l = 0; l < f1.size(); ++l) {
         const Contact& c = e_.state.contacts[l];
-        if (c.kind == ContactKind::disk_disk) { // f = g (R_i + R_j), and the radii grow
+        if (c.of_disks()) { // f = g (R_i + R_j), and the radii grow
             f1[l] = f1[l] + f0[l] / Range(e_.problem.force_factor(static_cast<int>(l))) * Range(grown(c));
         }
     }

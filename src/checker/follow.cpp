@@ -32,7 +32,7 @@ double gap_at(const Packing& packing, const std::vector<double>& q, const Contac
     const auto i = static_cast<std::size_t>(c.i);
     const auto j = static_cast<std::size_t>(c.j);
     const auto& r = packing.radius;
-    if (c.kind == ContactKind::disk_disk) {
+    if (c.of_disks()) {
         return distance(packing, q, c) - r[i] - r[j];
     }
     const double x = q[packing.axes() * i + j];
@@ -131,7 +131,7 @@ class Walk {
     Walk(const State& from, const Motion& motion)
         : from_(from), motion_(motion), turns_(motion.closed.kind == ContactKind::held),
           tolerance_(1e-9 * from.packing.min_radius()), reach_(0.2 * from.packing.min_radius()),
-          kept_(from.packing, from.contacts, motion.solver), q_(from.packing.q) {}
+          body_(bodies_of(from.packing)), kept_(from.packing, from.contacts, motion.solver), q_(from.packing.q) {}
 
     Followed to_the_end() {
         if (!kept_.square() || !(motion_.displacement >= 0) || !std::isfinite(motion_.displacement)) {
@@ -253,6 +253,7 @@ class Walk {
             if (!pairs) {
                 return false;
             }
+            std::erase_if(*pairs, [this](const Contact& pair) { return are_members(body_, pair); });
             pairs_ = std::move(*pairs);
             listed_at_ = q_;
         }
@@ -403,6 +404,7 @@ class Walk {
     bool falls_ = false;  ///< the gap that closes
     double tolerance_;    ///< of gaps that are looked at, not proved
     double reach_;
+    std::vector<int> body_; ///< of each disk
     System kept_;
     std::vector<double> q_;
     std::vector<double> listed_at_; ///< coordinates at which pairs_ was made

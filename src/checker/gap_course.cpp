@@ -32,7 +32,7 @@ Bounds value_of(const std::vector<Bounds>& c, const Bounds& s, int derivative) {
 /// Relative position of the two grains of a pair along p(s), and how far the curve may be from it.
 struct GapCourses::Motion {
     Motion(const Tube& tube, const Moving& moving, const Contact& pair)
-        : wall(pair.kind != ContactKind::disk_disk), target(moving.state.packing.radius[at(pair.i)]),
+        : wall(!pair.of_disks()), target(moving.state.packing.radius[at(pair.i)]),
           x(wall ? 1 : moving.state.packing.axes()) {
         const Layout layout = moving.state.packing.layout();
         if (!wall) {
@@ -103,7 +103,8 @@ struct GapCourses::Motion {
 
 GapCourses::GapCourses(const Moving& moving, const std::vector<Contact>& contacts, const Contact& opened,
                        std::optional<std::vector<Contact>> watched)
-    : moving_(moving), kept_(contacts.begin(), contacts.end()), watched_(std::move(watched)) {
+    : moving_(moving), kept_(contacts.begin(), contacts.end()), body_(bodies_of(moving.state.packing)),
+      watched_(std::move(watched)) {
     kept_.erase(opened);
     if (opened.kind != ContactKind::held) {
         last_[opened] = Course::zero;
@@ -332,7 +333,7 @@ bool GapCourses::look(const Tube& tube, double from, double to) {
         }
         const std::vector<Contact> walls = near_walls(tube, way);
         pairs->insert(pairs->end(), walls.begin(), walls.end());
-        std::erase_if(*pairs, [this](const Contact& pair) { return kept_.contains(pair); });
+        std::erase_if(*pairs, [this](const Contact& pair) { return kept_.contains(pair) || are_members(body_, pair); });
     }
     // Each pair that is near is looked at; what was noted of pairs that are near no more is forgotten below.
     for (const Contact& pair : *pairs) {

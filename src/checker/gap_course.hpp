@@ -39,6 +39,7 @@ class GapCourses {
 
     const Moving& moving_;
     std::set<Contact> kept_;
+    std::vector<int> body_; ///< of each disk
     std::optional<std::vector<Contact>> watched_;
     std::map<Contact, Course> last_;
     std::string trouble_;

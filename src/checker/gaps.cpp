@@ -3,6 +3,7 @@
 #include "checker/images.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <set>
 
 namespace isostat::checker {
@@ -29,11 +30,12 @@ bool own_image_moves(const Packing& packing, const Contact& pair) {
 
 bool exists_and_moves(const Packing& packing, const Contact& pair) {
     const auto axis = static_cast<std::size_t>(pair.j);
-    if (pair.kind == ContactKind::disk_disk && packing.cell.any()) { // no disk is fixed there
+    if (pair.of_disks() && packing.cell.any()) { // no disk is fixed there
         return pair.i != pair.j || own_image_moves(packing, pair);
     }
     switch (pair.kind) {
-    case ContactKind::disk_disk: return !is_fixed(packing, pair.i) || !is_fixed(packing, pair.j);
+    case ContactKind::disk_disk:
+    case ContactKind::bar: return !is_fixed(packing, pair.i) || !is_fixed(packing, pair.j);
     case ContactKind::lower_wall: return packing.walls.lower[axis] != WallKind::absent && !is_fixed(packing, pair.i);
     case ContactKind::upper_wall:
         return packing.walls.upper[axis] == WallKind::movable ||
@@ -71,7 +73,7 @@ struct Approximation {
         const auto i = static_cast<std::size_t>(pair.i);
         const auto j = static_cast<std::size_t>(pair.j);
         const std::size_t of_i = layout.of_disk(pair.i);
-        if (pair.kind != ContactKind::disk_disk) {
+        if (!pair.of_disks()) {
             const double x = q[of_i + j];
             return (pair.kind == ContactKind::lower_wall ? x : q[layout.of_length(j)] - x) - radius[i];
         }
@@ -94,7 +96,7 @@ Range exact_gap(const Problem& problem, const TrueVertex& vertex, const Contact&
     const std::vector<Integer>& q = vertex.middle;
     const Row row(pair, problem.layout);
     const Range blur = Range::around(0, 2 * std::max(2, row.spread()) * vertex.radius);
-    if (pair.kind == ContactKind::disk_disk) {
+    if (pair.of_disks()) {
         const Integer root = sqrt(row.square(q, problem.layout.axes()));
         const Integer distance = problem.radius[i] + problem.radius[j];
         return Range(problem.length(root - distance), problem.length(root + 1 - distance)) + blur;
@@ -108,14 +110,16 @@ Range exact_gap(const Problem& problem, const TrueVertex& vertex, const Contact&
 /// Collects the pairs whose approximate gap is nearly the smallest one so far.
 class Collector {
   public:
-    Collector(const State& state, const Approximation& at) : state_(state), layout_(state.packing.layout()), at_(at) {
+    Collector(const State& state, const Approximation& at)
+        : state_(state), layout_(state.packing.layout()), at_(at), body_(bodies_of(state.packing)) {
         contacts_.insert(state.contacts.begin(), state.contacts.end());
     }
     /// Pairs with an approximate gap above this are certainly not the nearest.
     [[nodiscard]] double limit() const { return best_ + 4 * at_.error; }
     void offer(const Contact& pair) {
         const double gap = at_.gap(pair, layout_);
-        if (gap > limit() || !exists_and_moves(state_.packing, pair) || contacts_.contains(pair)) {
+        if (gap > limit() || !exists_and_moves(state_.packing, pair) || contacts_.contains(pair) ||
+            are_members(body_, pair)) {
             return;
         }
         best_ = std::min(best_, gap);
@@ -136,6 +140,7 @@ class Collector {
     const State& state_;
     Layout layout_;
     const Approximation& at_;
+    std::vector<int> body_;
     std::set<Contact> contacts_;
     std::vector<std::pair<double, Contact>> near_;
     double best_ = std::numeric_limits<double>::infinity();
@@ -186,6 +191,7 @@ std::optional<Contact> fixed_overlap(const Problem& problem, const State& state)
     const Layout& layout = problem.layout;
     const auto coordinate = [&](int i, std::size_t a) { return q[layout.of_disk(i) + a]; };
     const auto radius = [&problem](int i) { return problem.radius[static_cast<std::size_t>(i)]; };
+    const std::vector<int> body = bodies_of(state.packing);
     std::sort(fixed.begin(), fixed.end(), [&](int i, int j) { return coordinate(i, 0) < coordinate(j, 0); });
     Integer widest = 0;
     for (const int i : fixed) {
@@ -210,7 +216,7 @@ std::optional<Contact> fixed_overlap(const Problem& problem, const State& state)
             }
             const Contact pair = pair_of(std::min(i, j), std::max(i, j));
             const Integer sum = radius(i) + radius(j);
-            if (Row(pair, layout).square(q, layout.axes()) < sum * sum) {
+            if (!are_members(body, pair) && Row(pair, layout).square(q, layout.axes()) < sum * sum) {
                 return pair;
             }
         }
@@ -219,7 +225,8 @@ std::optional<Contact> fixed_overlap(const Problem& problem, const State& state)
 }
 
 bool is_free_pair(const State& state, const Contact& pair) {
-    return exists_and_moves(state.packing, pair) &&
+    const bool members = !state.packing.bars.empty() && are_members(bodies_of(state.packing), pair);
+    return !members && exists_and_moves(state.packing, pair) &&
            std::find(state.contacts.begin(), state.contacts.end(), pair) == state.contacts.end();
 }
 

@@ -14,8 +14,9 @@ namespace {
 
 ClaimCheck judge_counting(const Evidence& evidence, const CountingClaim& claim, bool at_vertex) {
     ClaimCheck check{.claim = "counting", .claimed = true};
-    const int dofs = evidence.problem.dofs();
-    const int contacts = evidence.problem.contacts();
+    const int bars = evidence.count(ContactKind::bar);
+    const int dofs = evidence.problem.dofs() - bars;
+    const int contacts = evidence.problem.contacts() - bars - evidence.count(ContactKind::held);
     check.numbers = {{"dof_count", dofs}, {"contact_count", contacts}};
     if (claim.dof_count != dofs || claim.contact_count != contacts ||
         claim.hyperstaticity != claim.contact_count - claim.rank ||
@@ -30,18 +31,22 @@ ClaimCheck judge_counting(const Evidence& evidence, const CountingClaim& claim, 
         return answer(check, Verdict::undecided,
                       fmt::format("{}; the rank is not proved: {}", counts, evidence.why_no_inverse()));
     }
-    check.numbers.emplace_back("rank", *evidence.rank);
-    if (claim.rank != *evidence.rank) {
-        return answer(check, Verdict::refuted,
-                      fmt::format("{}; the rank is {}, not {}", counts, *evidence.rank, claim.rank));
+    if (evidence.has_other_rows() && !evidence.inverse.found) {
+        return answer(check, Verdict::undecided,
+                      counts + "; whether bars and held coordinates are independent is open");
     }
-    std::string stored = fmt::format("{}, rank {} as stored (exact elimination)", counts, *evidence.rank);
+    const int rank = evidence.has_other_rows() ? contacts : *evidence.rank; // all rows are independent
+    check.numbers.emplace_back("rank", rank);
+    if (claim.rank != rank) {
+        return answer(check, Verdict::refuted, fmt::format("{}; the rank is {}, not {}", counts, rank, claim.rank));
+    }
+    std::string stored = fmt::format("{}, rank {} as stored (exact elimination)", counts, rank);
     if (evidence.inverse.found) {
         const bool by_sigma = evidence.inverse.singular_value > 0;
         const double bound =
             by_sigma ? rounded_down(evidence.inverse.singular_value) : rounded_up(evidence.inverse.residual_row);
         check.numbers.emplace_back(by_sigma ? "singular_value" : "inverse_residual", bound);
-        stored = fmt::format("{}, rank {} as stored ({} {:.2g}, {})", counts, *evidence.rank,
+        stored = fmt::format("{}, rank {} as stored ({} {:.2g}, {})", counts, rank,
                              by_sigma ? "singular values of A >=" : "|I - RA| <=", bound, evidence.inverse.arithmetic);
     }
     if (!at_vertex) {
@@ -162,7 +167,7 @@ bool has_volume_potential(const Evidence& evidence) {
 ClaimCheck judge_stability(const Evidence& evidence, const std::vector<ClaimCheck>& others) {
     ClaimCheck check{.claim = "stable", .claimed = true};
     for (std::size_t l = 0; l < evidence.forces.size(); ++l) {
-        if (evidence.forces[l].negative()) {
+        if (evidence.forces[l].negative() && evidence.state.contacts[l].is_unilateral()) {
             return answer(check, Verdict::refuted,
                           fmt::format("the force of {} is in {}: its contact opens", evidence.name(l),
                                       shown(evidence.forces[l])));
@@ -180,8 +185,9 @@ ClaimCheck judge_stability(const Evidence& evidence, const std::vector<ClaimChec
         }
     }
     return answer(check, Verdict::proved,
-                  fmt::format("strict local minimum of {}: regular, all forces positive",
-                              nominal ? "the potential" : "sum sigma_a ln L_a"));
+                  fmt::format("strict local minimum of {}{}: regular, all forces positive",
+                              nominal ? "the potential" : "sum sigma_a ln L_a",
+                              evidence.count(ContactKind::held) == 0 ? "" : ", but for motions that change no force"));
 }
 
 /// What stands in the way of judging a claim at all; empty: nothing.
@@ -229,9 +235,14 @@ Verification judge(const CertificateClaims& claims, const Evidence& evidence) {
         [&] { return judge_load_interval(evidence, *claims.load_interval); });
     add("stable", claims.stable, about_vertex(claims.stable), [&] { return judge_stability(evidence, result.checks); });
 
+    if (claims.minimum) {
+        add("minimum", true, evidence.problem.unsupported, [&] { return judge_minimum(evidence, *claims.minimum); });
+    }
     result.verdict = Verdict::proved;
     for (const ClaimCheck& check : result.checks) {
-        result.verdict = both(result.verdict, check.verdict);
+        if (check.claimed || !claims.minimum) { // which is in the place of all others
+            result.verdict = both(result.verdict, check.verdict);
+        }
     }
     return result;
 }

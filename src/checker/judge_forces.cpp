@@ -35,6 +35,43 @@ struct Smallest {
     }
 };
 
+/// The infinitesimal forces of the structural zeros; the smallest one of a contact.
+Smallest judge_infinitesimal(ClaimCheck& check, const Evidence& evidence, const ForcesClaim& claim) {
+    const std::vector<int>& zeros = claim.structural_zeros;
+    Smallest infinitesimal;
+    for (std::size_t k = 0; k < zeros.size(); ++k) {
+        const auto l = static_cast<std::size_t>(zeros[k]);
+        const Range& force = evidence.infinitesimal()[l];
+        const std::string is = fmt::format("the infinitesimal force of {} is in {}", evidence.name(l), shown(force));
+        worsen(check, lies_in(force, claim.infinitesimal[k]), is + ", claimed in " + shown(claim.infinitesimal[k]));
+        if (!evidence.state.contacts[l].is_unilateral()) {
+            continue;
+        }
+        worsen(check, is_positive(force), is + ", claimed positive");
+        infinitesimal.offer(force, l);
+    }
+    return infinitesimal;
+}
+
+/// What is held bears nothing, by counting, and no infinitesimal load acts there.
+void judge_held(ClaimCheck& check, const Evidence& evidence, const std::vector<int>& zeros) {
+    const std::vector<double>& g = evidence.state.load.infinitesimal;
+    const bool pressed = std::any_of(g.begin(), g.end(), [](double x) { return x != 0; });
+    for (std::size_t l = 0; l < evidence.forces.size(); ++l) {
+        if (evidence.state.contacts[l].kind != ContactKind::held) {
+            continue;
+        }
+        const Range& force = evidence.forces[l];
+        if (!contains(zeros, l)) {
+            worsen(check, force.has_zero() ? Verdict::undecided : Verdict::refuted,
+                   fmt::format("the force of {} is in {}, and the coordinate is held", evidence.name(l), shown(force)));
+        }
+        if (pressed) {
+            worsen(check, Verdict::undecided, "infinitesimal loads act where coordinates are held");
+        }
+    }
+}
+
 } // namespace
 
 ClaimCheck judge_forces(const Evidence& evidence, const ForcesClaim& claim) {
@@ -47,6 +84,7 @@ ClaimCheck judge_forces(const Evidence& evidence, const ForcesClaim& claim) {
 
     Smallest smallest;
     Rational widest = 0;
+    int positive = 0;
     for (std::size_t l = 0; l < evidence.forces.size(); ++l) {
         const bool listed = contains(zeros, l);
         const bool vanishes = (listed && zeros_vanish) || (small_vanish && contains(small, l));
@@ -58,8 +96,12 @@ ClaimCheck judge_forces(const Evidence& evidence, const ForcesClaim& claim) {
             worsen(check, vanishes ? Verdict::proved : zero, is + ", claimed to be a structural zero");
             continue;
         }
-        worsen(check, is_positive(force), is + ", claimed positive");
         widest = std::max<Rational>(widest, force.upper - force.lower);
+        if (!evidence.state.contacts[l].is_unilateral()) {
+            continue; // of either sign
+        }
+        ++positive;
+        worsen(check, is_positive(force), is + ", claimed positive");
         smallest.offer(force, l);
     }
     worsen(check, zeros_vanish ? Verdict::proved : Verdict::undecided,
@@ -67,18 +109,10 @@ ClaimCheck judge_forces(const Evidence& evidence, const ForcesClaim& claim) {
                        "contact",
                        zeros.size(), free_of_others(evidence.problem, zeros, evidence.finite_load)));
 
-    Smallest infinitesimal;
-    for (std::size_t k = 0; k < zeros.size(); ++k) {
-        const auto l = static_cast<std::size_t>(zeros[k]);
-        const Range& force = evidence.infinitesimal()[l];
-        const std::string is = fmt::format("the infinitesimal force of {} is in {}", evidence.name(l), shown(force));
-        worsen(check, lies_in(force, claim.infinitesimal[k]), is + ", claimed in " + shown(claim.infinitesimal[k]));
-        worsen(check, is_positive(force), is + ", claimed positive");
-        infinitesimal.offer(force, l);
-    }
-
+    const Smallest infinitesimal = judge_infinitesimal(check, evidence, claim);
+    judge_held(check, evidence, zeros);
     check.numbers = {{"structural_zeros", static_cast<double>(zeros.size())}, {"widest_range", rounded_up(widest)}};
-    std::string proved = fmt::format("{} forces > 0", evidence.forces.size() - zeros.size());
+    std::string proved = fmt::format("{} forces > 0", positive);
     if (smallest.lower) {
         check.numbers.emplace_back("smallest_force", rounded_down(*smallest.lower));
         proved += fmt::format(", smallest {:.6g} in {} (ranges up to {:.1g} wide)", rounded_down(*smallest.lower),

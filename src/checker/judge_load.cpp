@@ -25,6 +25,15 @@ struct End {
         const std::vector<Range>& slopes = evidence.slopes();
         std::vector<int> unclear;
         for (std::size_t l = 0; l < slopes.size(); ++l) {
+            const ContactKind kind = evidence.state.contacts[l].kind;
+            if (kind == ContactKind::bar) {
+                continue; // of either sign
+            }
+            if (kind == ContactKind::held && !slopes[l].has_zero()) {
+                text = fmt::format("no interval: {} is held, and bears {} per unit of stress", evidence.name(l),
+                                   shown(slopes[l]));
+                return Verdict::refuted;
+            }
             if (closing(slopes[l])) {
                 text = fmt::format("a finite stress (the force of {} changes by {} per unit of it), claimed unbounded",
                                    evidence.name(l), shown(slopes[l]));
@@ -44,7 +53,7 @@ struct End {
     Verdict judge_bounded() {
         const auto found = std::find(evidence.state.contacts.begin(), evidence.state.contacts.end(), claim.opens);
         const auto opens = static_cast<std::size_t>(found - evidence.state.contacts.begin());
-        if (opens >= evidence.slopes().size()) {
+        if (opens >= evidence.slopes().size() || !claim.opens.is_unilateral()) {
             text = evidence.named(claim.opens) + ", which is no contact";
             return Verdict::refuted;
         }
@@ -68,11 +77,12 @@ struct End {
         std::vector<int> unclear;
         for (std::size_t l = 0; l < evidence.forces.size(); ++l) {
             const Range force = evidence.forces[l] + step * evidence.slopes()[l];
-            if (l != opens && force.negative()) {
+            const bool unilateral = evidence.state.contacts[l].is_unilateral();
+            if (l != opens && force.negative() && unilateral) {
                 text += fmt::format(", but {} opens before", evidence.name(l));
                 return Verdict::refuted;
             }
-            if (l == opens || !force.positive()) {
+            if (l == opens || (unilateral ? !force.positive() : force.has_zero())) {
                 unclear.push_back(static_cast<int>(l));
             }
         }

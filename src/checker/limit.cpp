@@ -279,7 +279,7 @@ Objections check_limit(const Place& place, const EventRecord& event, double boun
     const Range step = step_to_limit(place, opened);
     std::vector<std::size_t> together;
     for (std::size_t l = 0; l < e.forces.size(); ++l) {
-        const bool other = l != opened && !contains(place.zeros, l);
+        const bool other = l != opened && !contains(place.zeros, l) && !place.is_bar(l);
         if (!other || (e.forces[l] + step * e.slopes()[l]).positive()) {
             continue;
         }

@@ -29,17 +29,17 @@ double System::held_value(const Contact& c) const {
 template <class T> T System::value(const std::vector<T>& q, const Contact& c) const {
     const auto i = static_cast<std::size_t>(c.i);
     const auto j = static_cast<std::size_t>(c.j);
-    const auto& r = packing_.radius;
     if (c.kind == ContactKind::held) {
         return weight_ * (q[i] - held_value(c));
     }
-    if (c.kind == ContactKind::disk_disk) {
+    const auto [one, other] = closed_at(packing_, c);
+    if (c.of_disks()) {
         const Row row(c, packing_.layout());
-        const T sum = T(r[i]) + r[j];
+        const T sum = T(one) + other;
         return (row.square(q, packing_.axes()) - sum * sum) / 2;
     }
     const T& x = q[packing_.axes() * i + j];
-    return weight_ * ((c.kind == ContactKind::lower_wall ? x : T(q[packing_.length_at(j)] - x)) - r[i]);
+    return weight_ * ((c.kind == ContactKind::lower_wall ? x : T(q[packing_.length_at(j)] - x)) - one);
 }
 
 void System::renew(const std::vector<double>& q) {

@@ -53,7 +53,7 @@ void add_rows(std::vector<Bounds>& force, const Moving& moving, const Tube& tube
         const std::size_t of_i = c.kind == ContactKind::held ? i : layout.of_disk(c.i);
         if (c.kind == ContactKind::held) {
             force[i] = force[i] + weight * g[l];
-        } else if (c.kind == ContactKind::disk_disk) {
+        } else if (c.of_disks()) {
             const Separation<Bounds> d = difference(m, c, layout);
             for (std::size_t a = 0; a < d.axes; ++a) {
                 const Bounds part = d[a] * g[l];
@@ -227,7 +227,7 @@ bool power_is_positive(const Pushing& load, const Moving& moving, const Tube& tu
     power[0] = power[0] - Bounds(tube.weight()) * g.back() * static_cast<double>(tube.direction());
     Bending bending(moving, tube, h);
     for (std::size_t l = 0; l < moving.kept.size(); ++l) {
-        if (moving.kept[l].kind == ContactKind::disk_disk && g[l] != 0) {
+        if (moving.kept[l].of_disks() && g[l] != 0) {
             bending.add(moving.kept[l], g[l], power);
         }
     }

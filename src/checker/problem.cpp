@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <numeric>
+#include <optional>
 
 namespace isostat::checker {
 
@@ -40,7 +42,7 @@ struct Known {
     Integer value = 0;
 };
 
-/// Disks on walls, held and fixed coordinates.
+/// Disks on walls, held and fixed coordinates. Of clumps what is held may move freely, and is at no known place (U2).
 std::vector<Known> known_coordinates(const State& state, const std::vector<Integer>& stored,
                                      const std::vector<Integer>& radius) {
     std::vector<Known> known(stored.size());
@@ -53,14 +55,19 @@ std::vector<Known> known_coordinates(const State& state, const std::vector<Integ
     }
     for (const Contact& contact : state.contacts) {
         switch (contact.kind) {
-        case ContactKind::disk_disk: break;
+        case ContactKind::disk_disk:
+        case ContactKind::bar: break;
         case ContactKind::lower_wall:
             known[layout.of_disk(contact.i) + at(contact.j)] = {Known::origin, radius[at(contact.i)]};
             break;
         case ContactKind::upper_wall:
             known[layout.of_disk(contact.i) + at(contact.j)] = {Known::upper_wall, radius[at(contact.i)]};
             break;
-        case ContactKind::held: known[at(contact.i)] = {Known::origin, stored[at(contact.i)]}; break;
+        case ContactKind::held:
+            if (state.packing.bars.empty()) {
+                known[at(contact.i)] = {Known::origin, stored[at(contact.i)]};
+            }
+            break;
         }
     }
     return known;
@@ -116,7 +123,7 @@ Row::Row(const Contact& contact, const Layout& layout) {
         add(static_cast<std::size_t>(contact.i), 1, 0);
         return;
     }
-    if (contact.kind != ContactKind::disk_disk) {
+    if (!contact.of_disks()) {
         const bool lower = contact.kind == ContactKind::lower_wall;
         add(layout.of_disk(contact.i) + axis, lower ? 1 : -1, axis);
         if (!lower) {
@@ -160,6 +167,49 @@ Structure::Structure(const Packing& packing, const std::vector<Contact>& contact
 
 namespace {
 
+/// Of a bar; nothing: there is none of these disks.
+std::optional<double> length_of(const Packing& packing, const Contact& contact) {
+    const auto bar = std::lower_bound(packing.bars.begin(), packing.bars.end(), Bar{contact.i, contact.j, 0});
+    const bool found = bar != packing.bars.end() && bar->i == contact.i && bar->j == contact.j;
+    return found ? std::optional(bar->length) : std::nullopt;
+}
+
+} // namespace
+
+std::array<double, 2> closed_at(const Packing& packing, const Contact& contact) {
+    const auto radius = [&packing](int disk) { return packing.radius[static_cast<std::size_t>(disk)]; };
+    switch (contact.kind) {
+    case ContactKind::disk_disk: return {radius(contact.i), radius(contact.j)};
+    case ContactKind::bar: return {*length_of(packing, contact), 0};
+    case ContactKind::lower_wall:
+    case ContactKind::upper_wall: return {radius(contact.i), 0};
+    case ContactKind::held: break;
+    }
+    return {};
+}
+
+std::vector<int> bodies_of(const Packing& packing) {
+    std::vector<int> body(packing.radius.size());
+    std::iota(body.begin(), body.end(), 0);
+    for (bool changed = !packing.bars.empty(); changed;) {
+        changed = false;
+        for (const Bar& bar : packing.bars) {
+            int& one = body[static_cast<std::size_t>(bar.i)];
+            int& other = body[static_cast<std::size_t>(bar.j)];
+            changed = changed || one != other;
+            one = other = std::min(one, other);
+        }
+    }
+    return body;
+}
+
+bool are_members(const std::vector<int>& body, const Contact& pair) {
+    return pair.of_disks() && pair.image.is_here() &&
+           body[static_cast<std::size_t>(pair.i)] == body[static_cast<std::size_t>(pair.j)];
+}
+
+namespace {
+
 /// Why a contact is not one of the packing, or is none; empty: nothing.
 std::string unsupported_contact(const Packing& packing, const Contact& contact) {
     const auto name = [&] { return to_string(contact, packing.dimension); };
@@ -168,13 +218,15 @@ std::string unsupported_contact(const Packing& packing, const Contact& contact) 
             return "the contact " + name() + " is with an image along an axis with walls";
         }
     }
+    if (contact.kind == ContactKind::bar) {
+        return length_of(packing, contact) ? "" : "there is no bar for " + name();
+    }
     if (contact.kind == ContactKind::held) {
         return "the state has a " + name() + ", which is no contact: not checked";
     }
     const auto axis = static_cast<std::size_t>(contact.j);
     const bool lower = contact.kind == ContactKind::lower_wall;
-    if (contact.kind != ContactKind::disk_disk &&
-        (lower ? packing.walls.lower : packing.walls.upper)[axis] == WallKind::absent) {
+    if (!contact.of_disks() && (lower ? packing.walls.lower : packing.walls.upper)[axis] == WallKind::absent) {
         return "there is no wall for the contact " + name();
     }
     return {};
@@ -209,6 +261,9 @@ Problem::Problem(const State& state, bool held_allowed, int asked)
     for (const double r : packing.radius) {
         unit = std::min(unit, granularity(r, unit));
     }
+    for (const Bar& bar : packing.bars) {
+        unit = std::min(unit, granularity(bar.length, unit));
+    }
     fine = unit - digits;
     spare = coordinate_unit - fine;
     weight_bits = wall_exponent - fine;
@@ -226,7 +281,8 @@ Problem::Problem(const State& state, bool held_allowed, int asked)
         if (contact.kind == ContactKind::held) {
             sum.push_back(stored[i]);
         } else {
-            sum.push_back(row.quadratic ? Integer(radius[i] + radius[static_cast<std::size_t>(contact.j)]) : radius[i]);
+            const auto [one, other] = closed_at(packing, contact);
+            sum.emplace_back(in_units(one, fine) + in_units(other, fine));
         }
         sum_square.push_back(row.quadratic ? Integer(sum.back() * sum.back()) : Integer(0));
     }
@@ -274,7 +330,7 @@ int most_touched_of(const std::vector<Contact>& contacts, int disks) {
         if (c.kind != ContactKind::held) {
             ++count[static_cast<std::size_t>(c.i)];
         }
-        if (c.kind == ContactKind::disk_disk) {
+        if (c.of_disks()) {
             ++count[static_cast<std::size_t>(c.j)];
         }
     }
@@ -293,10 +349,10 @@ void Problem::find_pinned(const State& state) {
         Pinned& along = pinned.emplace_back(Pinned{a, {}});
         for (std::size_t l = 0; l < rows.size(); ++l) {
             const Contact& c = state.contacts[l];
-            const bool on = c.i == cell.pin || (c.kind == ContactKind::disk_disk && c.j == cell.pin);
+            const bool on = c.i == cell.pin || (c.of_disks() && c.j == cell.pin);
             const bool holds =
                 c.kind == ContactKind::held && of_disk(c.i) && static_cast<std::size_t>(c.i) % layout.axes() == a;
-            if (holds || (on && c.kind == ContactKind::disk_disk && c.i != c.j)) {
+            if (holds || (on && c.of_disks() && c.i != c.j)) {
                 along.acting.push_back(static_cast<int>(l));
             }
         }

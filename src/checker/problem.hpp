@@ -73,6 +73,16 @@ inline constexpr int more_digits = 320;
 /// Of a question that stays open with fewer.
 inline constexpr int most_digits = 1280;
 
+/// Two lengths whose sum is the distance at which a contact, a bar or a pair is closed: radii, or the length of the bar
+/// and 0; of a held coordinate zeros. \pre a bar is one of the packing
+std::array<double, 2> closed_at(const Packing& packing, const Contact& contact);
+
+/// Per disk the smallest number of a disk that bars connect with it, in one step or several.
+std::vector<int> bodies_of(const Packing& packing);
+
+/// Two members of one body, which may overlap. `body`: of `bodies_of`.
+bool are_members(const std::vector<int>& body, const Contact& pair);
+
 /// Which coordinates move, and what each contact depends on.
 struct Structure {
     Structure(const Packing& packing, const std::vector<Contact>& contacts);
@@ -93,7 +103,7 @@ class Problem : public Structure {
 
     /// Empty, or why this state is outside what the checker handles.
     std::string unsupported;
-    std::vector<Integer> sum;        ///< per contact: R_i + R_j, or R of the disk at a wall
+    std::vector<Integer> sum;        ///< per contact: R_i + R_j, R of the disk at a wall, the length of a bar
     std::vector<Integer> sum_square; ///< of two disks
     std::vector<Integer> stored;     ///< coordinates
     std::vector<Integer> radius;

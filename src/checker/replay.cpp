@@ -17,13 +17,14 @@ namespace {
 
 /// Sign of all forces of one stage: those that are no structural zeros, or the infinitesimal ones of those that are.
 /// An objection where none is known to be negative, and one may be.
-Objections negative_ones(const Place& place, bool finite, Decision& decision) {
+Objections negative_ones(const Place& place, bool finite, Decision& decision, bool still) {
     std::vector<int>& negative = decision.candidates;
     Objections open;
     const Evidence& e = *place.evidence;
     bool silent = false;
     for (std::size_t l = 0; l < e.forces.size(); ++l) {
-        if (contains(place.zeros, l) == finite || static_cast<int>(l) == place.fresh) {
+        if (contains(place.zeros, l) == finite || static_cast<int>(l) == place.fresh || place.is_bar(l) ||
+            (still && place.is_held(l) && !finite)) {
             continue;
         }
         if (finite && place.fresh >= 0 && place.silent[l]) {
@@ -177,15 +178,15 @@ Objections sharpen(Place& place, int digits) {
     return open;
 }
 
-Objections decide(const Place& place, Decision& decision) {
-    if (Objections open = negative_ones(place, true, decision)) {
+Objections decide(const Place& place, Decision& decision, bool still) {
+    if (Objections open = negative_ones(place, true, decision, still)) {
         return open;
     }
     if (!decision.candidates.empty()) {
         decision.kind = "tension";
         return {};
     }
-    if (Objections open = negative_ones(place, false, decision)) {
+    if (Objections open = negative_ones(place, false, decision, still)) {
         return open;
     }
     decision.kind = decision.candidates.empty() ? "" : "rattler";

@@ -74,6 +74,9 @@ struct Place {
 
     [[nodiscard]] bool is_held(std::size_t contact) const { return state->contacts[contact].kind == ContactKind::held; }
 
+    /// It bears forces of either sign: it neither opens nor limits.
+    [[nodiscard]] bool is_bar(std::size_t contact) const { return state->contacts[contact].kind == ContactKind::bar; }
+
     /// A contact as records spell it.
     [[nodiscard]] std::string named(const Contact& contact) const {
         return to_string(contact, state->packing.dimension);
@@ -107,7 +110,8 @@ struct Decision {
     std::vector<int> candidates; ///< contacts whose (infinitesimal) force is negative
     std::vector<int> open;       ///< beside them: it may be
 };
-Objections decide(const Place& place, Decision& decision);
+/// `still`: what is held without a finite force stays, as free motions of clumps may (U2 in proofs/clumps.md).
+Objections decide(const Place& place, Decision& decision, bool still = false);
 
 /// The opening of an arc: `opened` is its position in the contact list, `bound` that of the end of the interval in the
 /// row of the equilibrium.

@@ -62,21 +62,21 @@ std::set<Contact> contact_set(const State& state) {
     return {state.contacts.begin(), state.contacts.end()};
 }
 
+/// Bodies without a force, each counted at its first member.
 int rattlers(const Place& place) {
-    std::vector<bool> carries(static_cast<std::size_t>(place.evidence->problem.layout.disks), false);
+    const std::vector<int> body = bodies_of(place.state->packing);
+    std::vector<bool> rattles(body.size());
+    for (std::size_t i = 0; i < body.size(); ++i) {
+        rattles[i] = body[i] == static_cast<int>(i);
+    }
     for (std::size_t l = 0; l < place.state->contacts.size(); ++l) {
-        if (!std::binary_search(place.zeros.begin(), place.zeros.end(), static_cast<int>(l))) {
-            const Contact& c = place.state->contacts[l];
-            if (c.kind == ContactKind::held) {
-                continue;
-            }
-            carries[static_cast<std::size_t>(c.i)] = true;
-            if (c.kind == ContactKind::disk_disk) {
-                carries[static_cast<std::size_t>(c.j)] = true;
-            }
+        const Contact& c = place.state->contacts[l];
+        if (!contains(place.zeros, l) && c.is_unilateral()) {
+            rattles[at(body[at(c.i)])] = false;
+            rattles[at(body[at(c.of_disks() ? c.j : c.i)])] = false;
         }
     }
-    return static_cast<int>(std::count(carries.begin(), carries.end(), false));
+    return static_cast<int>(std::count(rattles.begin(), rattles.end(), true));
 }
 
 /// A row names two disks, not the image: it is right when it is so of one of the pairs that it may mean, and wrong when
@@ -128,8 +128,8 @@ Objections check_smallest_force(const Place& place, const EquilibriumLine& line)
     const Evidence& e = *place.evidence;
     std::optional<std::size_t> smallest;
     for (std::size_t l = 0; l < e.forces.size(); ++l) {
-        const bool zero = std::binary_search(place.zeros.begin(), place.zeros.end(), static_cast<int>(l));
-        if (!zero && (!smallest || e.forces[l].lower < e.forces[*smallest].lower)) {
+        if (e.state.contacts[l].is_unilateral() && !contains(place.zeros, l) &&
+            (!smallest || e.forces[l].lower < e.forces[*smallest].lower)) {
             smallest = l;
         }
     }
@@ -308,7 +308,7 @@ bool is_left(const Place& place, std::size_t l) {
 /// No force is negative.
 Objections check_forces(const Place& place) {
     Decision decision;
-    if (Objections open = decide(place, decision)) {
+    if (Objections open = decide(place, decision, !place.state->packing.bars.empty())) {
         return open;
     }
     if (decision.kind.empty()) {
@@ -333,15 +333,16 @@ Objections check_forces(const Place& place) {
 
 Objections check_counts(const Place& place, const EquilibriumLine& line) {
     const Evidence& e = *place.evidence;
-    const int contacts = e.problem.contacts();
-    const auto zeros = static_cast<int>(place.zeros.size());
-    const std::vector<std::pair<const char*, int>> counts{{"dofs", e.problem.dofs()},
+    const int contacts = e.problem.contacts() - e.count(ContactKind::bar);
+    const auto zeros = static_cast<int>(
+        std::count_if(place.zeros.begin(), place.zeros.end(), [&](int l) { return !place.is_bar(at(l)); }));
+    const std::vector<std::pair<const char*, int>> counts{{"dofs", contacts},
                                                           {"contacts", contacts},
                                                           {"rank", contacts},
                                                           {"h", 0},
                                                           {"k", 0},
                                                           {"backbone", contacts - zeros},
-                                                          {"held", 0},
+                                                          {"held", e.count(ContactKind::held)},
                                                           {"rattlers", rattlers(place)},
                                                           {"proved", 1}};
     for (const auto& [name, found] : counts) {
@@ -577,8 +578,8 @@ Objections check_stored(const Place& place, const State& stored, const std::opti
     }
     const Packing& here = place.state->packing;
     if (stored.packing.radius != here.radius || !(stored.packing.walls == here.walls) ||
-        stored.packing.fixed != here.fixed || !(stored.packing.cell == here.cell)) {
-        return Objection{true, "the stored state has other disks or walls, or another cell"};
+        stored.packing.fixed != here.fixed || !(stored.packing.cell == here.cell) || stored.packing.bars != here.bars) {
+        return Objection{true, "the stored state has other disks, bars or walls, or another cell"};
     }
     const Load& a = stored.load;
     const Load& b = place.state->load;

@@ -14,7 +14,7 @@ bool grains_bear_force(const Place& place, std::size_t contact) {
     const auto bears = [&](int grain) {
         for (std::size_t l = 0; l < contacts.size(); ++l) {
             const Contact& c = contacts[l];
-            const bool touches = c.i == grain || (c.kind == ContactKind::disk_disk && c.j == grain);
+            const bool touches = c.i == grain || (c.of_disks() && c.j == grain);
             if (l != contact && c.kind != ContactKind::held && touches && !contains(place.zeros, l)) {
                 return true;
             }
@@ -22,8 +22,7 @@ bool grains_bear_force(const Place& place, std::size_t contact) {
         return false;
     };
     const Contact& opened = contacts[contact];
-    return opened.kind != ContactKind::held && bears(opened.i) &&
-           (opened.kind != ContactKind::disk_disk || bears(opened.j));
+    return opened.kind != ContactKind::held && bears(opened.i) && (!opened.of_disks() || bears(opened.j));
 }
 
 Objections check_turn(const Place& place, const EventRecord& event, bool rattles) {
@@ -106,6 +105,16 @@ bool turns_back_at_once(const Place& place, std::size_t contact, bool finite) {
         return false;
     }
     return falls ? multiplier(moved).negative() : multiplier(place).negative() && multiplier(moved).positive();
+}
+
+/// Whatever the sign of one force is, it competes with more than that of what opens. A held coordinate competes with
+/// minus its magnitude.
+bool is_less_negative(const Place& place, const std::vector<Range>& forces, std::size_t one, std::size_t opened) {
+    const Range& f = forces[one];
+    const Range& first = forces[opened];
+    const Rational least = place.is_held(one) ? std::min<Rational>(f.lower, -f.upper) : f.lower;
+    const Rational most = place.is_held(opened) && first.positive() ? Rational(-first.lower) : first.upper;
+    return most < least;
 }
 
 /// Nothing, or why the rule does not put `opened` before another contact that may open.
@@ -200,7 +209,7 @@ Objections check_rule(const Place& place, const EventRecord& event, std::size_t 
     }
     for (const int l : decision.open) { // what is less negative does not open, whatever its sign
         const auto other = static_cast<std::size_t>(l);
-        if (rule != "most_negative" || place.is_held(other) || !(forces[opened].upper < forces[other].lower)) {
+        if (rule != "most_negative" || !is_less_negative(place, forces, other, opened)) {
             return Objection{false, fmt::format("the sign of the force of {} is not known: {}", e.name(other),
                                                 shown(forces[other]))};
         }

@@ -83,7 +83,7 @@ Objections check_checkpoint(const CheckedRecords& checked, const RunRecords& rec
     Repeated here("checkpoint.json");
     if (checked.state != read_text(records.directory / "states" / "last.json")) {
         const std::string difference =
-            state_difference(last, parse_any_state(checked.state, "checkpoint.json", Dimensions::any).state);
+            state_difference(last, parse_any_state(checked.state, "checkpoint.json", Dimensions::any_clumps).state);
         return wrong(fmt::format("states/last.json: {} is not that of checkpoint.json",
                                  difference.empty() ? "a recorded result" : difference));
     }
@@ -191,7 +191,7 @@ Objections check_folder(const fs::path& directory, const RunRecords& records) {
         if (!fs::exists(path)) {
             return wrong("states/last.json is missing");
         }
-        last = read_any_state(path, Dimensions::any).state;
+        last = read_any_state(path, Dimensions::any_clumps).state;
     }
     if (Objections other = checked && last ? check_checkpoint(*checked, records, *last) : Objections()) {
         return other;

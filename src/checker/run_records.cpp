@@ -145,7 +145,7 @@ std::optional<StateFile> RunRecords::stored(int equilibrium) const {
     if (!std::filesystem::exists(path)) {
         return {};
     }
-    return read_any_state(path, Dimensions::any);
+    return read_any_state(path, Dimensions::any_clumps);
 }
 
 RunRecords read_records(const std::filesystem::path& directory, LastLine last) {
@@ -180,7 +180,7 @@ RunRecords read_records(const std::filesystem::path& directory, LastLine last) {
     records.certified_states = level == "states" || records.certified_arcs;
     records.states = directory / "states";
     if (std::filesystem::exists(directory / "start.json")) {
-        records.start = read_any_state(directory / "start.json", Dimensions::any).state;
+        records.start = read_any_state(directory / "start.json", Dimensions::any_clumps).state;
     }
     // A run that never left its start has no events: the file is empty then.
     const std::filesystem::path events = directory / "events.jsonl";

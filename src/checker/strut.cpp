@@ -11,7 +11,7 @@ using Vector = std::array<double, 2>;
 
 /// From the disk to what it touches through the contact.
 Vector outward(const State& state, const Contact& c, std::size_t disk) {
-    if (c.kind != ContactKind::disk_disk) {
+    if (!c.of_disks()) {
         Vector normal{};
         normal[static_cast<std::size_t>(c.j)] = c.kind == ContactKind::upper_wall ? 1 : -1;
         return normal;
@@ -75,12 +75,12 @@ struct Bare {
         around.assign(movable.size(), {});
         for (std::size_t l = 0; l < state.contacts.size(); ++l) {
             const Contact& c = state.contacts[l];
-            const bool own = c.kind == ContactKind::disk_disk && c.i == c.j; // it presses on the cell alone
+            const bool own = c.of_disks() && c.i == c.j; // it presses on the cell alone
             if (left_out[l] || own || c.kind == ContactKind::held) {
                 continue;
             }
             around[static_cast<std::size_t>(c.i)].push_back(l);
-            if (c.kind == ContactKind::disk_disk) {
+            if (c.of_disks()) {
                 around[static_cast<std::size_t>(c.j)].push_back(l);
             }
         }
@@ -110,7 +110,7 @@ struct Bare {
     }
 
     void give(const Contact& c, std::size_t from, const Vector& force, double room) {
-        if (c.kind == ContactKind::disk_disk) {
+        if (c.of_disks()) {
             const auto to = static_cast<std::size_t>(static_cast<std::size_t>(c.i) == from ? c.j : c.i);
             load[to][0] += force[0];
             load[to][1] += force[1];
@@ -137,7 +137,7 @@ std::optional<std::vector<unsigned char>> group(const State& state, const Bare& 
             if (l == a || l == b) {
                 continue;
             }
-            if (c.kind != ContactKind::disk_disk) {
+            if (!c.of_disks()) {
                 return std::nullopt;
             }
             const int other = c.i == disk ? c.j : c.i;
@@ -154,7 +154,7 @@ std::optional<std::vector<unsigned char>> group(const State& state, const Bare& 
 std::optional<std::size_t> end_of(const Contact& c, const std::vector<unsigned char>& inside) {
     const auto in = [&](int disk) { return inside[static_cast<std::size_t>(disk)] != 0; };
     const bool first = in(c.i);
-    const bool second = c.kind == ContactKind::disk_disk && in(c.j);
+    const bool second = c.of_disks() && in(c.j);
     if (first == second) {
         return std::nullopt;
     }
@@ -176,10 +176,15 @@ bool same_at_turn(const Place& place, std::size_t a, std::size_t b) {
 
 namespace {
 
+/// S4 is of the plane, and of single grains.
+bool has_struts(const Packing& packing) {
+    return packing.dimension == plane && packing.bars.empty();
+}
+
 std::vector<bool> without_force(const Place& place, const std::vector<int>& loose) {
     const State& state = *place.state;
-    if (state.packing.dimension != plane) {
-        return std::vector<bool>(state.contacts.size(), false); // S4 is of the plane
+    if (!has_struts(state.packing)) {
+        return std::vector<bool>(state.contacts.size(), false);
     }
     const Bare bare(place, loose);
     std::vector<bool> nothing = bare.left_out;
@@ -192,7 +197,7 @@ std::vector<bool> without_force(const Place& place, const std::vector<int>& loos
             const auto inside = group(state, bare, disk, l, l);
             return inside && end_of(c, *inside);
         };
-        nothing[l] = cut_off(c.i) || (c.kind == ContactKind::disk_disk && cut_off(c.j));
+        nothing[l] = cut_off(c.i) || (c.of_disks() && cut_off(c.j));
     }
     return nothing;
 }
@@ -244,14 +249,14 @@ std::optional<int> strut_order(const Place& place, std::size_t a, std::size_t b)
     const State& state = *place.state;
     const Contact& first = state.contacts[a];
     const Contact& second = state.contacts[b];
-    if (first.kind == ContactKind::held || second.kind == ContactKind::held || state.packing.dimension != plane) {
+    if (first.kind == ContactKind::held || second.kind == ContactKind::held || !has_struts(state.packing)) {
         return std::nullopt;
     }
     const Bare bare(place, {});
     if (bare.left_out[a] || bare.left_out[b]) {
         return std::nullopt;
     }
-    for (const int disk : {first.i, first.kind == ContactKind::disk_disk ? first.j : -1}) {
+    for (const int disk : {first.i, first.of_disks() ? first.j : -1}) {
         const auto inside = disk < 0 ? std::nullopt : group(state, bare, disk, a, b);
         const auto here = inside ? end_of(first, *inside) : std::nullopt;
         const auto there = inside ? end_of(second, *inside) : std::nullopt;

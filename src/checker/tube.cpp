@@ -68,6 +68,7 @@ Separation<Bounds> difference(const std::vector<double>& x, const Contact& c, co
     Separation<Bounds> d(layout.axes());
     switch (c.kind) {
     case ContactKind::disk_disk:
+    case ContactKind::bar:
         for (std::size_t a = 0; a < d.axes; ++a) {
             if (c.i != c.j) {
                 d[a] = Bounds(x[i + a]) - Bounds(x[layout.of_disk(c.j) + a]);
@@ -103,6 +104,7 @@ bool Moving::takes_part(const Contact& c) const {
     const auto x = state.packing.layout().of_disk(c.i) + at(c.j);
     switch (c.kind) {
     case ContactKind::disk_disk:
+    case ContactKind::bar:
         return (c.i != c.j && (disk_moves(c.i) || disk_moves(c.j))) || (!c.image.is_here() && cell_moves());
     case ContactKind::lower_wall: return moves[x];
     case ContactKind::upper_wall: return moves[x] || moves[state.packing.length_at(at(c.j))];
@@ -230,7 +232,7 @@ void Tube::expand() {
     std::vector<double> spread(disks + 1, 0.0); // integers
     std::vector<double> fourth(disks + 1, 0.0);
     for (const Contact& c : moving_.kept) {
-        if (c.kind == ContactKind::disk_disk) {
+        if (c.of_disks()) {
             const Blocks blocks(c, moving_);
             const double w = square_weight(c);
             for (std::size_t b = 0; b < blocks.count; ++b) {
@@ -276,7 +278,7 @@ void Tube::expand() {
         right[contacts] = 0;
         for (std::size_t l = 0; l < contacts; ++l) {
             double sum = 0;
-            for (std::size_t i = 0; i < k && moving_.kept[l].kind == ContactKind::disk_disk; ++i) {
+            for (std::size_t i = 0; i < k && moving_.kept[l].of_disks(); ++i) {
                 sum += product(differences[i][l], differences[k - 1 - i][l]);
             }
             right[l] = -0.5 * sum;
@@ -300,10 +302,10 @@ void Tube::bound_residuals() {
             d.push_back(difference(a_[k - 1], c, layout));
             stretch[k] = length_above(d[k]);
         }
-        const auto i = at(c.i);
         const auto j = at(c.j);
-        if (c.kind != ContactKind::disk_disk) {
-            residual[0] = ((d[0][0] - packing.radius[i]) * weight_).size();
+        const auto [one, other] = closed_at(packing, c);
+        if (!c.of_disks()) {
+            residual[0] = ((d[0][0] - one) * weight_).size();
             for (std::size_t k = 1; k <= order; ++k) {
                 residual[k] = (d[k][0] * weight_).size();
             }
@@ -315,7 +317,7 @@ void Tube::bound_residuals() {
             }
             continue;
         }
-        const Bounds sum = Bounds(packing.radius[i]) + packing.radius[j];
+        const Bounds sum = Bounds(one) + other;
         residual[0] = ((product(d[0], d[0]) - sum * sum) * 0.5).size();
         for (std::size_t k = 1; k <= 2 * order; ++k) {
             Bounds value(0);
@@ -343,7 +345,7 @@ double Tube::change_norm(double h) const {
     const std::size_t disks = moving_.state.packing.radius.size();
     std::vector<double> e(moving_.kept.size(), 0.0);
     for (std::size_t l = 0; l < e.size(); ++l) {
-        if (moving_.kept[l].kind == ContactKind::disk_disk) {
+        if (moving_.kept[l].of_disks()) {
             e[l] = series_above(stretch_[l], 0, h);
         }
     }
@@ -391,7 +393,7 @@ bool Tube::holds(double h) {
     for (std::size_t l = 0; l < residual_.size(); ++l) {
         values.push_back(series_above(residual_[l], 0, h));
         rates.push_back(series_above(residual_[l], 1, h, true));
-        if (moving_.kept[l].kind == ContactKind::disk_disk) {
+        if (moving_.kept[l].of_disks()) {
             turn = std::max(turn, series_above(stretch_[l], 1, h, true));
         }
     }
@@ -525,17 +527,16 @@ std::vector<double> Tube::corrected(double s) const {
     double unused = 0;
     std::vector<double> q = point(s, unused);
     const Packing& packing = moving_.state.packing;
-    const std::size_t disks = packing.radius.size();
     const Layout layout = packing.layout();
     for (int step = 0; step < 4; ++step) {
         std::vector<double> right;
         for (const Contact& c : moving_.kept) {
             const Separation<Bounds> d = difference(q, c, layout);
-            const double sum = packing.radius[at(c.i < static_cast<int>(disks) ? c.i : 0)] +
-                               (c.kind == ContactKind::disk_disk ? packing.radius[at(c.j)] : 0);
-            right.push_back(c.kind == ContactKind::held        ? 0
-                            : c.kind == ContactKind::disk_disk ? -(product(d, d).middle() - sum * sum) / 2
-                                                               : -weight_ * (d[0].middle() - sum));
+            const auto [one, other] = closed_at(packing, c);
+            const double sum = one + other;
+            right.push_back(c.kind == ContactKind::held ? 0
+                            : c.of_disks()              ? -(product(d, d).middle() - sum * sum) / 2
+                                                        : -weight_ * (d[0].middle() - sum));
         }
         right.push_back(0);
         const std::vector<double> change = linear_->solve(right);

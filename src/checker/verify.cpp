@@ -23,10 +23,11 @@ bool leaves_open(const Verification& result, std::string_view claim) {
 
 Verification verify(const Certificate& certificate, CheckerArithmetic arithmetic) {
     require_floating_point();
+    const bool clumps = !certificate.state.packing.bars.empty(); // which may hold coordinates of free motions
     const auto judged = [&certificate](const Evidence& evidence) { return judge(certificate.claims, evidence); };
     std::optional<Verification> first;
     {
-        const Evidence evidence(certificate.state, arithmetic);
+        const Evidence evidence(certificate.state, arithmetic, clumps);
         first = judged(evidence);
         if (arithmetic != CheckerArithmetic::automatic || evidence.inverse.singular_value == 0 ||
             !leaves_open(*first, "vertex")) {
@@ -34,11 +35,11 @@ Verification verify(const Certificate& certificate, CheckerArithmetic arithmetic
             const bool vague = arithmetic == CheckerArithmetic::automatic &&
                                (leaves_open(*first, "load_interval") || leaves_open(*first, "forces"));
             return vague && evidence.vertex.found
-                       ? judged(Evidence(certificate.state, arithmetic, false, {}, most_digits))
+                       ? judged(Evidence(certificate.state, arithmetic, clumps, {}, most_digits))
                        : *first;
         }
     }
-    Verification by_rows = judged(Evidence(certificate.state, CheckerArithmetic::rows));
+    Verification by_rows = judged(Evidence(certificate.state, CheckerArithmetic::rows, clumps));
     return leaves_open(by_rows, "vertex") ? *first : by_rows;
 }
 

@@ -43,7 +43,8 @@ Integer largest_move(const Problem& problem, const std::vector<Integer>& q) {
 
 } // namespace
 
-TrueVertex find_vertex(const Problem& problem, const Solver& solver, const InverseBound& inverse) {
+TrueVertex find_vertex(const Problem& problem, const Solver& solver, const InverseBound& inverse,
+                       const Rational& around) {
     TrueVertex vertex;
     const Rational slope = problem.row_curvature() * inverse.quadratic_sum;
     std::vector<std::vector<Integer>> starts{problem.stored};
@@ -51,10 +52,11 @@ TrueVertex find_vertex(const Problem& problem, const Solver& solver, const Inver
         starts.insert(starts.begin(), improved(problem, solver));
     }
     for (const std::vector<Integer>& start : starts) {
-        const Integer largest = largest_of(problem.twice_residuals(start));
+        Rational largest = Rational(largest_of(problem.twice_residuals(start)));
+        largest += 2 * Rational(problem.weight()) * around * power_of_two(-problem.fine);
         const Rational moved = problem.length(largest_move(problem, start));
         const Rational error = inverse.residual_row + slope * moved;
-        const Rational step = inverse.row_sum * Rational(largest) * power_of_two(2 * problem.fine - 1);
+        const Rational step = inverse.row_sum * largest * power_of_two(2 * problem.fine - 1);
         const Rational room = 1 - error;
         if (room <= 0) {
             continue;

@@ -18,7 +18,10 @@ struct TrueVertex {
     Rational column_residual; ///< bound of |I - R A(q*)|_1, below 1
 };
 
-TrueVertex find_vertex(const Problem& problem, const Solver& solver, const InverseBound& inverse);
+/// `around`: the zeros of all systems whose held coordinates are no farther than that from their stored values are
+/// within `radius` of `middle`, one of each (K27).
+TrueVertex find_vertex(const Problem& problem, const Solver& solver, const InverseBound& inverse,
+                       const Rational& around = 0);
 
 /// No two zeros lie within `distance` of the stored configuration (every coordinate), the true vertex being one.
 bool unique_within(const InverseBound& inverse, const TrueVertex& vertex, const Rational& distance);

@@ -370,9 +370,10 @@ Objections end_of(const Place& from, const Contact& closed, const Way& way, Stat
             end.packing.q[k] = way.witness.end[next++];
         }
     }
-    for (const Contact& c : from.state->contacts) {
-        if (c.kind == ContactKind::held && end.packing.q[at(c.i)] != from.state->packing.q[at(c.i)] &&
-            std::find(end.contacts.begin(), end.contacts.end(), c) != end.contacts.end()) {
+    for (std::size_t l = 0; l < end.contacts.size(); ++l) {
+        const Contact& c = end.contacts[l];
+        if (l != way.opened && c.kind == ContactKind::held &&
+            end.packing.q[at(c.i)] != from.state->packing.q[at(c.i)]) {
             return open(fmt::format("{} is at another place at the end", to_string(c, end.packing.dimension)));
         }
     }

@@ -1,7 +1,7 @@
+#include "answers/true_vertex.hpp"
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
 #include "cli/terminal.hpp"
-#include "cli/true_vertex_text.hpp"
 #include "io/files.hpp"
 
 #include <isostat/certificate/certify.hpp>
@@ -20,7 +20,8 @@ int certify(const CertifyArguments& arguments) {
     certificate.input = input.filename().string();
     certificate.input_hash = sha256(read_text(input));
     certificate.program = program_name();
-    const StateFile file = read_any_state(input, Dimensions::any);
+    StateFile file = read_any_state(input, Dimensions::any_clumps);
+    file.state = with_free_motions_held(std::move(file.state));
     certificate.state = file.state;
     Certification result = isostat::certify(certificate.state);
     certificate.claims = result.claims;
@@ -32,17 +33,21 @@ int certify(const CertifyArguments& arguments) {
         object["file"] = arguments.input;
         object["certificate"] = arguments.output;
         object["verdict"] = to_string(verdict);
-        add_untold(object, untold, result.verdict);
-        object["claims"] = claims_json(result);
+        answers::add_untold(object, untold, result.verdict);
+        object["claims"] = answers::claims_json(result, certificate.state.contacts);
         object["refuted"] = result.refuted;
         object["undecided"] = result.claims.undecided;
-        add_forces_in_file(object, file, result);
+        answers::add_forces_in_file(object, file, result);
         print_json(object);
     } else {
-        print_claims(result);
-        print_forces_in_file(file, result);
+        std::string text;
+        answers::print_claims(text, result, certificate.state.contacts);
+        answers::print_forces_in_file(text, file, result);
+        say_lines(text);
         say("{:<14} {}: {}\n", to_string(verdict),
-            verdict == Verdict::proved    ? "an isostatic, stable equilibrium without overlap at the true vertex"
+            verdict == Verdict::proved && result.claims.minimum
+                ? "an equilibrium without overlap, not isostatic, stable along its mechanisms"
+            : verdict == Verdict::proved  ? "an isostatic, stable equilibrium without overlap at the true vertex"
             : verdict == Verdict::refuted ? "not such an equilibrium"
             : untold.any()                ? fmt::format("the claims are of the stored doubles; {}", untold.words())
                                           : "some claims could not be made",

@@ -83,8 +83,10 @@ int report(const ReportArguments& arguments);
 
 struct VerifyArguments {
     Common common;
-    std::string certificate; ///< or the folder of a run
-    std::string input;       ///< empty, or the file that the certificate speaks of
+    std::vector<std::string> certificates; ///< or the folder of a run
+    std::string input;                     ///< empty, or the file that the certificate speaks of
+    bool coq = false;                      ///< also through the checker that is proved in Coq
+    double coq_limit = 0;                  ///< seconds for each certificate; 0: none
 };
 /// Checks a certificate with code that is separate from what made it. Exit status 0 only when every claim of an
 /// equilibrium is there and proved.
@@ -92,7 +94,7 @@ int verify(const VerifyArguments& arguments);
 
 /// What the user states of a packing made elsewhere, as typed.
 struct ForeignArguments {
-    std::string format, radius, diameter, walls, box, lattice, columns, select, fixed, style;
+    std::string format, radius, diameter, walls, box, lattice, columns, select, fixed, style, bodies;
     std::string plane = "xy";
     std::int64_t skip = 0;
     std::optional<std::int64_t> ids; ///< of the first row
@@ -100,6 +102,7 @@ struct ForeignArguments {
     std::optional<int> dimension;
     bool spheres = false; ///< the command takes them
     bool fixes = false;   ///< the command takes disks that cannot move
+    bool clumps = false;  ///< the command takes them
     bool periodic = false, not_periodic = false;
     bool walls_unless_periodic = false; ///< `walls` were not stated
     bool cells = false;                 ///< the command takes periodic cells

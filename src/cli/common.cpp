@@ -11,7 +11,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <cstdio>
 
 namespace isostat::cli {
@@ -20,8 +19,8 @@ std::string program_name() {
     return "isostat " ISOSTAT_VERSION;
 }
 
-Json number(double value) {
-    return std::isfinite(value) ? Json(value) : Json(nullptr);
+Json document(const char* format, const Common& common) {
+    return {{"format", format}, {"program", program_name()}, {"command", common.command}};
 }
 
 void print_json(const Json& object) {

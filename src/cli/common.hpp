@@ -2,8 +2,10 @@
 /// \file
 /// What several subcommands share.
 
+#include "cli/commands.hpp"
 #include "contact/names.hpp"
 #include "core/decimal.hpp"
+#include "io/json.hpp"
 
 #include <isostat/core/result.hpp>
 #include <isostat/core/verdict.hpp>
@@ -11,18 +13,17 @@
 #include <isostat/preparation/preparation.hpp>
 #include <isostat/scene/scene.hpp>
 
-#include <nlohmann/json.hpp>
-
 #include <filesystem>
 #include <string>
 #include <vector>
 
 namespace isostat::cli {
 
-using Json = nlohmann::ordered_json;
+using json::Json;
+using json::or_null;
 
-/// null for infinities and NaN, which JSON does not have.
-Json number(double value);
+/// Begins with its format ("isostat-plateau 1"), the program and the command line.
+Json document(const char* format, const Common& common);
 
 /// One line on standard output.
 void print_json(const Json& object);

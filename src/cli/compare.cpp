@@ -204,6 +204,10 @@ int compare_series(const CompareArguments& a) {
         if (!a.common.quiet) {
             print_frames(comparison);
         }
+        if (series.several) {
+            say("\n{} is over sigma1, which varies: the exact run has sigma1 = 1, soft limits are not predicted\n",
+                loaded_name(comparison));
+        }
         print_ends(comparison, a.common.quiet ? 0 : series.linear_stiffness());
         if (series.law == compare::ForceLaw::none) {
             say("stiffness not tested: the manifest states no [law], forces are taken as they are\n");

@@ -8,7 +8,7 @@
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/core/error.hpp>
-#include <isostat/io/foreign.hpp>
+#include <isostat/foreign/foreign.hpp>
 #include <isostat/io/state_file.hpp>
 
 #include <fmt/format.h>

@@ -1,19 +1,20 @@
+#include "answers/true_vertex.hpp"
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
 #include "cli/read_packing.hpp"
 #include "cli/soft_options.hpp"
 #include "cli/terminal.hpp"
-#include "cli/true_vertex_text.hpp"
-#include "compare/nearest_vertex.hpp"
 #include "io/files.hpp"
 #include "io/json.hpp"
+#include "packing/bodies.hpp"
 #include "packing/unbalanced.hpp"
 #include "packing/words.hpp"
+#include "snap/nearest_vertex.hpp"
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/core/error.hpp>
 #include <isostat/crafted/exact_packing.hpp>
-#include <isostat/io/foreign.hpp>
+#include <isostat/foreign/foreign.hpp>
 #include <isostat/io/state_file.hpp>
 
 #include <fmt/format.h>
@@ -33,7 +34,9 @@ struct Imported : compare::NearestVertex {
     std::vector<double> from; ///< coordinates of the file
     compare::Untold untold;   ///< by the rounding of the file
     bool load_of_file = false;
-    bool copy = false; ///< more is untold by the jitter: the state is of a copy
+    bool copy = false;      ///< more is untold by the jitter: the state is of a copy
+    bool as_listed = false; ///< the list is written, whatever is proved of it
+    bool held = false;      ///< nothing moves that a load could press on: no equilibrium is asked for
     [[nodiscard]] Verdict verdict() const { return withheld(untold, truth.verdict); }
 };
 
@@ -62,30 +65,66 @@ Load load_of(const ImportArguments& a, const Packing& packing) {
     return load;
 }
 
-/// Spheres in the pairs that touch as the digits of the file tell, or at a threshold: no way downhill leads them.
-Imported from_spheres(const ImportArguments& a, const ReadPacking& file) {
-    if (!a.contacts.empty() || a.jitter != 0) {
-        throw Error(
-            ErrorKind::usage,
-            fmt::format("{} is a packing of spheres: expected no --contacts and no --jitter, which are of disks "
-                        "so far (--threshold T lists the pairs with that gap or less)",
-                        a.file));
+/// Spheres and clumps: their contacts are those that the digits leave open, or those at a threshold.
+bool by_digits(const Packing& packing) {
+    return packing.dimension != plane || !packing.bars.empty();
+}
+
+/// Such grains, and disks in walls or a cell none of which moves: written in the contacts that they have, for no load
+/// determines a vertex, or no way downhill leads there.
+bool as_listed(const ImportArguments& a, const Packing& packing) {
+    return by_digits(packing) || a.foreign.walls == "fixed" || a.cell == "fixed";
+}
+
+/// In the contacts that plateau counts (`by_digits`: those that the digits leave open), of a threshold or of a list.
+Imported from_list(const ImportArguments& a, const ForeignPacking& file) {
+    const bool digits = by_digits(file.packing);
+    if (a.jitter != 0 || (digits ? !a.contacts.empty() : a.contacts == "nearest")) {
+        throw Error(ErrorKind::usage,
+                    fmt::format("{} is a packing of {}: expected no --jitter and no --contacts{} (--threshold T lists "
+                                "the pairs with that gap or less)",
+                                a.file,
+                                !file.packing.bars.empty() ? "clumps"
+                                : digits                   ? "spheres"
+                                                           : "disks in walls or a cell that stays",
+                                digits ? ", which are of disks so far" : " nearest"));
     }
     Imported out;
     out.from = file.packing.q;
-    compare::WantedList list = compare::list_up_to(file.packing, a.threshold.value_or(file.rounding));
-    const std::string words = list.words + (a.threshold ? "" : ", which the digits of the file leave open");
-    static_cast<compare::NearestVertex&>(out) =
-        compare::vertex_as_listed({file.packing, std::move(list.contacts), load_of(a, file.packing)}, words, a.seed);
+    compare::SoftState listed{file.packing, {}, load_of(a, file.packing)};
+    std::string words;
+    if (digits || a.threshold) {
+        compare::WantedList list = compare::list_up_to(file.packing, a.threshold.value_or(file.rounding));
+        listed.contacts = std::move(list.contacts);
+        words = list.words + (a.threshold ? "" : ", which the digits of the file leave open");
+    } else if (a.contacts == "plateau") {
+        compare::WantedList list = compare::list_of_plateau(file.packing, file.rounding);
+        listed.contacts = std::move(list.contacts);
+        words = std::move(list.words);
+    } else {
+        compare::SoftList list = stated_list(a.file, file, a.foreign.frame, a.contacts, a.contact_columns);
+        listed.contacts = std::move(list.contacts);
+        words = std::move(list.words);
+    }
+    out.as_listed = true;
+    out.held = !digits;
+    if (out.held) {
+        out.state.packing = file.packing;
+        out.state.contacts = std::move(listed.contacts);
+        out.state.load = listed.load;
+        out.contacts = fmt::format("{}, {}", out.state.contacts.size(), words);
+    } else {
+        static_cast<compare::NearestVertex&>(out) = compare::vertex_as_listed(listed, words, a.seed);
+    }
     return out;
 }
 
 /// The vertex of a packing of another program.
-Result<Imported> from_foreign(const ImportArguments& a, ReadPacking& file) {
+Result<Imported> from_foreign(const ImportArguments& a, ForeignPacking& file) {
     const Load load = load_of(a, file.packing);
     compare::check_nearness(a.file, file.packing);
-    if (file.packing.dimension != plane) {
-        return from_spheres(a, file);
+    if (as_listed(a, file.packing)) {
+        return from_list(a, file);
     }
     std::optional<compare::WantedList> wanted;
     if (a.threshold || a.contacts == "plateau") {
@@ -111,7 +150,7 @@ Result<Imported> from_foreign(const ImportArguments& a, ReadPacking& file) {
 }
 
 void set_cell(ImportArguments& a, bool own, Packing& packing) {
-    a.contacts = a.contacts.empty() && packing.dimension == plane ? "nearest" : a.contacts;
+    a.contacts = !a.contacts.empty() || by_digits(packing) ? a.contacts : a.cell == "fixed" ? "plateau" : "nearest";
     const Cell before = packing.cell;
     take_cell({a.file, a.cell}, packing);
     if (own && a.cell.empty()) { // a state says what moves
@@ -124,22 +163,18 @@ void set_cell(ImportArguments& a, bool own, Packing& packing) {
 }
 
 /// What is read, with walls unless it is periodic.
-ReadPacking read_imported(ImportArguments& a, bool crafted, bool own) {
+ForeignPacking read_imported(ImportArguments& a, bool crafted, bool own) {
     if (!crafted && !own && a.foreign.walls.empty()) {
         a.foreign.walls = "box";
         a.foreign.walls_unless_periodic = true;
     }
     a.foreign.cells = !crafted;
-    a.foreign.spheres = true;
-    ReadPacking file = read_any_packing(a.file, a.foreign);
+    a.foreign.spheres = a.foreign.clumps = true;
+    ForeignPacking file = read_any_packing(a.file, a.foreign);
     const bool spheres = file.packing.dimension != plane;
-    if (!crafted && !own && !spheres && a.foreign.walls != "box" && a.foreign.walls != "square") {
-        throw Error(
-            ErrorKind::usage,
-            fmt::format("--walls is '{}': expected box, two fixed and two movable walls, or square, whose size "
-                        "alone moves (in walls that stay forces are known up to a factor: square finds them, and "
-                        "isostat inspect of its state says whether they are jammed)",
-                        a.foreign.walls));
+    if (a.foreign.walls == "none" && !crafted && !own && !spheres) {
+        throw Error(ErrorKind::usage, "--walls is 'none': expected box, two fixed and two movable walls; square, whose "
+                                      "size alone moves; or fixed");
     }
     if (a.foreign.walls == "square" && (a.contacts == "nearest" || a.jitter != 0)) {
         throw Error(ErrorKind::usage,
@@ -160,17 +195,18 @@ ReadPacking read_imported(ImportArguments& a, bool crafted, bool own) {
         if (!crafted) { // a crafted packing says what moves
             take_cell({a.file, a.cell}, file.packing);
         }
-        a.contacts = a.contacts.empty() && !spheres ? "plateau" : a.contacts;
+        a.contacts = a.contacts.empty() && !by_digits(file.packing) ? "plateau" : a.contacts;
     }
     return file;
 }
 
 /// A vertex text as it is: its contacts, its load.
 Result<Imported> from_vertex_text(const ImportArguments& a) {
-    if (!a.contacts.empty() || a.threshold || !a.stress.empty() || !a.load.empty()) {
+    if (!a.contacts.empty() || a.threshold || !a.stress.empty() || !a.load.empty() || !a.cell.empty() ||
+        !a.foreign.walls.empty()) {
         compare::refuse(a.file,
-                        "is a vertex text, which has its contacts and its load: expected no --contacts, --threshold, "
-                        "--stress or --load");
+                        "is a vertex text, which has its contacts, its walls and its load: expected no --contacts, "
+                        "--threshold, --stress, --load, --walls or --cell");
     }
     Imported out;
     out.state = read_any_state(a.file).state;
@@ -256,6 +292,19 @@ void judge_moves(const ImportArguments& a, const Imported& found, const compare:
     }
 }
 
+compare::Moves moves_of(const Imported& found) {
+    if (!found.held) {
+        return compare::moves_to(found.state, found.truth, found.from);
+    }
+    compare::Moves at_rest;
+    at_rest.disk.assign(found.state.packing.radius.size(), 0);
+    at_rest.rattler.assign(at_rest.disk.size(), 0);
+    for (const int rattler : rattlers_by_coordination(found.state.packing, found.state.contacts)) {
+        at_rest.rattler[static_cast<std::size_t>(rattler)] = 1;
+    }
+    return at_rest;
+}
+
 constexpr const char* moves_mark = ",moved,rattler\n";
 
 std::string moves_csv(const Imported& found, const compare::Moves& moves) {
@@ -280,9 +329,9 @@ Json provenance_of(const ImportArguments& a, const std::string& format, const Im
     out["seed"] = a.seed;
     out["jitter"] = a.jitter;
     out["jitter_matters"] = found.copy;
-    out["rounding"] = number(found.untold.rounding);
+    out["rounding"] = or_null(found.untold.rounding);
     out["moved"] = {
-        {"backbone", number(moves.backbone)}, {"rattlers", number(moves.rattlers)}, {"walls", number(moves.walls)}};
+        {"backbone", or_null(moves.backbone)}, {"rattlers", or_null(moves.rattlers)}, {"walls", or_null(moves.walls)}};
     return out;
 }
 
@@ -303,7 +352,7 @@ std::vector<double> stress_of(const Load& load) {
     return {load.stress.begin(), load.stress.begin() + load.dimension};
 }
 
-void print_import(const ImportArguments& a, const ReadPacking& file, const Imported& found,
+void print_import(const ImportArguments& a, const ForeignPacking& file, const Imported& found,
                   const compare::Moves& moves) {
     const State& state = found.state;
     say("file      {} ({})\n", a.file, file.format);
@@ -312,10 +361,18 @@ void print_import(const ImportArguments& a, const ReadPacking& file, const Impor
     }
     const auto rattlers = std::count(moves.rattler.begin(), moves.rattler.end(), 1);
     say("contacts  {}\n", found.contacts);
+    if (found.held) {
+        say("written   {}: {} disks, {} rattlers by coordination, {} contacts, solid fraction {:.6f}; nothing moves "
+            "that a load presses on: isostat inspect says whether it is jammed\n",
+            a.output, state.packing.disk_count(), rattlers, state.contacts.size(), state.packing.solid_fraction());
+        return;
+    }
     say("moved     {} with a force at most {}, {} {}", grains_of(state.packing), rounded_up(moves.backbone, 3),
         state.packing.cell.any() ? "cell" : "walls", rounded_up(moves.walls, 3));
     say("{}\n", rattlers == 0 ? ""
-                              : fmt::format(", {} rattlers, which rest on infinitesimal loads, {}", rattlers,
+                              : fmt::format(", {} {}, {}", rattlers,
+                                            state.packing.bars.empty() ? "rattlers, which rest on infinitesimal loads"
+                                                                       : "without a force",
                                             rounded_up(moves.rattlers, 3)));
     const auto stress = stress_of(state.load);
     say("load      sigma = ({}), {}{}\n", fmt::format("{}", fmt::join(stress, ", ")),
@@ -325,31 +382,46 @@ void print_import(const ImportArguments& a, const ReadPacking& file, const Impor
             "strict verdict may differ from those of the file\n");
     }
     say("{:<9} {}: {} {}, {} contacts, solid fraction {:.6f}{}\n", to_string(found.verdict()), a.output,
-        state.packing.disk_count(), grains_of(state.packing), state.contacts.size(), state.packing.solid_fraction(),
+        state.packing.disk_count(), grains_of(state.packing),
+        std::count_if(state.contacts.begin(), state.contacts.end(), [](const Contact& c) { return c.is_unilateral(); }),
+        state.packing.solid_fraction(),
         found.untold.any()
             ? fmt::format("; {}; {} of the stored doubles", found.untold.words(), to_string(found.truth.verdict))
-            : "");
+        : found.truth.claims.minimum ? "; not isostatic, stable along its mechanisms"
+                                     : "");
 }
 
-void print_import_json(const ImportArguments& a, const ReadPacking& file, const Imported& imported, Json object) {
+void print_import_json(const ImportArguments& a, const ForeignPacking& file, const Imported& imported, Json object) {
     object["state"] = a.output;
     object["notes"] = file.notes;
     object[grains_of(imported.state.packing)] = imported.state.packing.disk_count();
+    if (!imported.state.packing.bars.empty()) {
+        object["bodies"] = Bodies(imported.state.packing).count();
+    }
+    if (imported.held) {
+        object["load"] = object["verdict"] = nullptr;
+        print_json(object);
+        return;
+    }
     object["load"] = {
         {"stress", stress_of(imported.state.load)},
         {"kind", word_of(imported.state.load.kind, load_kind_words)},
         {"by_default",
          {{"stress", a.stress.empty() && !imported.load_of_file}, {"kind", a.load.empty() && !imported.load_of_file}}}};
     object["verdict"] = to_string(imported.verdict());
-    add_untold(object, imported.untold, imported.truth.verdict);
+    answers::add_untold(object, imported.untold, imported.truth.verdict);
     print_json(object);
 }
 
 /// What may help where no vertex is proved. Empty: nothing.
-std::string advice(const ImportArguments& a, bool crafted, std::vector<double> radius) {
+std::string advice(const ImportArguments& a, bool crafted, const Packing& packing) {
+    if (by_digits(packing)) {
+        return "";
+    }
     if (a.foreign.walls == "square") {
         return "; isostat inspect says of exact numbers (a packing in TOML) whether they are jammed";
     }
+    std::vector<double> radius = packing.radius;
     std::sort(radius.begin(), radius.end());
     const bool equal = std::adjacent_find(radius.begin(), radius.end()) != radius.end();
     std::string out = a.contacts == "nearest" || crafted || a.contacts.empty()
@@ -390,7 +462,7 @@ int import(const ImportArguments& arguments) {
     if (own) {
         keep_load(a);
     }
-    ReadPacking file = listed ? ReadPacking{} : read_imported(a, crafted, own);
+    ForeignPacking file = listed ? ForeignPacking{} : read_imported(a, crafted, own);
     file.format = listed ? format : file.format;
     auto found = listed ? from_vertex_text(a) : crafted ? from_crafted(a, text) : from_foreign(a, file);
     if (found.ok() && !crafted && !listed) {
@@ -399,25 +471,25 @@ int import(const ImportArguments& arguments) {
         const double jitter = 2 * a.jitter * file.packing.max_radius();
         f.copy = a.jitter > 0 && compare::untold_by(jitter + file.rounding, f.state, f.truth).any();
     }
-    const bool spheres = file.packing.dimension != plane; // written as the file lists them, whatever is proved
+    const bool as_is = found.ok() && found.value().as_listed;
     const bool refuted = found.ok() && found.value().verdict() == Verdict::refuted;
-    if (!found.ok() || (refuted && !spheres)) {
+    if (!found.ok() || (refuted && !as_is)) {
         const std::string why = found.ok() ? found.value().truth.refuted.front() : found.failure().message();
-        say(stderr, "isostat: {}: {}{}\n", a.file, why, advice(a, crafted, file.packing.radius));
+        say(stderr, "isostat: {}: {}{}\n", a.file, why, advice(a, crafted, file.packing));
         return refuted ? failed : status_of(found.failure().kind);
     }
     Imported& imported = found.value();
-    const compare::Moves moves = compare::moves_to(imported.state, imported.truth, imported.from);
+    const compare::Moves moves = moves_of(imported);
     if (imported.truth.claims.vertex) {
         judge_moves(a, imported, moves, file.notes);
     }
     const Json provenance = provenance_of(a, format, imported, moves);
     imported.state.provenance = json::dumped(provenance);
-    if (imported.truth.verdict != Verdict::proved) {
+    if (imported.truth.verdict != Verdict::proved && !imported.held) {
         say(stderr, "isostat: {}: {}{}\n", a.file, fmt::format("{}", fmt::join(imported.truth.claims.undecided, "; ")),
-            advice(a, crafted, file.packing.radius));
+            advice(a, crafted, file.packing));
     }
-    if (!spheres && (!imported.truth.claims.vertex || !imported.truth.claims.forces)) {
+    if (!as_is && (!imported.truth.claims.vertex || !imported.truth.claims.forces)) {
         return undecided;
     }
     write_state(a.output, imported.state);
@@ -429,7 +501,7 @@ int import(const ImportArguments& arguments) {
     } else {
         print_import(a, file, imported, moves);
     }
-    return status_of(imported.verdict());
+    return imported.held ? 0 : status_of(imported.verdict());
 }
 
 } // namespace isostat::cli

@@ -3,7 +3,8 @@
 #include "io/files.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/io/foreign.hpp>
+#include <isostat/foreign/foreign.hpp>
+#include <isostat/io/state_file.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

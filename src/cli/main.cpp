@@ -288,10 +288,17 @@ first order included; the first wrong record is named. Runs with
 states_every = 1 can be taken up again after an arc that the replay cannot follow. Of an ensemble every run is: 1 when one is
 refuted, else 65 when one cannot be read, else 2 when one is undecided, unfinished or missing.
 Examples: isostat verify certificate.json --input state.json
+          isostat verify out/certificates/eq_*.json --coq
           isostat verify out)");
-        needed(command, "certificate", a.certificate, "certificate (JSON), or folder of a run or of an ensemble",
+        needed(command, "certificate", a.certificates, "certificates (JSON), or the folder of a run or of an ensemble",
                "CERT.json|DIR");
         option(command, "--input", a.input, "also check that this is the file that the certificate speaks of", "FILE");
+        auto* coq = command.add_flag("--coq", a.coq,
+                                     "also put the certificate through the checker that is proved in Coq (disks that "
+                                     "all move in a box; minutes; Debian packages: see proofs/coq_checker.md)");
+        option(command, "--coq-limit", a.coq_limit, "seconds for each certificate (default: as long as it takes)",
+               ranges::number(1, 1e9), "SECONDS")
+            ->needs(coq);
         add_threads(command, a.common);
         does(command, a, verify, true);
     }
@@ -333,6 +340,11 @@ Examples: isostat verify certificate.json --input state.json
                "COLUMN=VALUE,...");
         option(command, "--fixed", a.fixed, "disks with one of these values in this column cannot move",
                "COLUMN=VALUE,...");
+        option(
+            command, "--bodies", a.bodies,
+            "import: the column whose rows with the same number above 0 are one rigid body, e.g. mol; none (default: "
+            "body, clump or clumpId where there is one)",
+            "COLUMN|none");
         option(command, "--format", a.format,
                "lammps-data, lammps-dump, xyz, table, braces, centres (default: from the content)");
         command.add_flag("--not-periodic", a.not_periodic,
@@ -346,8 +358,8 @@ Examples: isostat verify certificate.json --input state.json
     static void add_cell(CLI::App& command, std::string& cell) {
         option(command, "--cell", cell,
                "what of a periodic cell moves besides its disks: rectangular, two periods; tilted, the tilt too; "
-               "isotropic, its size alone (default: tilted if the file's is)",
-               CLI::IsMember({"rectangular", "tilted", "isotropic"}));
+               "isotropic, its size alone; fixed, nothing (default: tilted if the file's is)",
+               CLI::IsMember({"rectangular", "tilted", "isotropic", "fixed"}));
     }
 
     void add_import() {
@@ -362,7 +374,8 @@ In a periodic cell or a channel: the vertex downhill whatever its contacts, unle
 Proofs are of the doubles written. Where gaps or forces are below what the digits of the file tell, so that they may be 0 in its
 packing, they are named and the answer is undecided, here and when inspect or certify read the state.
 Spheres: the pairs that touch as the digits of the file tell (or at --threshold) are the contacts, Newton's method goes to their vertex
-where they determine one, and the state is written whatever is proved of it: isostat inspect says more.
+where they determine one, and the state is written whatever is proved of it: isostat inspect says more. So with clumps, the rows of
+one rigid body (--bodies), whose members keep the distances that they have in the file.
 Exit status 0: written and certified; 1: no such equilibrium; 2: undecided.
 Examples: isostat import disks.dump --box 0:15.46,0:14.88 -o start.json
           isostat import disks.dump --box 0:15.46,0:14.88 --contacts pairs.dump --contact-columns 'c_1[1],c_1[2],c_2[2]' -o start.json)");
@@ -621,7 +634,7 @@ int explain(const CLI::App& app, const CLI::ParseError& error) {
 int run_program(int argc, char** argv) {
     Program program(quoted(argc, argv));
     if (argc <= 1) {
-        say("{}", program.app.help());
+        say_lines(program.app.help());
         return isostat::Error(isostat::ErrorKind::usage, "").exit_status();
     }
     const std::string wrong = argc > 1 ? wrong_command(program.app, argv[1]) : ""; // NOLINT(*-pointer-arithmetic)

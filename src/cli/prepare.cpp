@@ -55,7 +55,7 @@ int prepare(const PrepareArguments& arguments) {
         for (int a = 0; a < state.packing.dimension; ++a) {
             object["length"].push_back(state.packing.length(a));
         }
-        object["solid_fraction"] = number(state.packing.solid_fraction());
+        object["solid_fraction"] = or_null(state.packing.solid_fraction());
         print_json(object);
     } else if (!quiet) {
         say("{}: {} {}, {} contacts, solid fraction {:.6f}\n", arguments.output, state.packing.disk_count(),

@@ -1,15 +1,15 @@
 #include "cli/read_packing.hpp"
 
 #include "cli/ranges.hpp"
-#include "compare/untold.hpp"
 #include "core/words.hpp"
 #include "io/digits.hpp"
 #include "io/files.hpp"
 #include "io/vertex_text.hpp"
+#include "snap/untold.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/crafted/exact_packing.hpp>
-#include <isostat/io/foreign.hpp>
+#include <isostat/foreign/foreign.hpp>
 #include <isostat/io/state_file.hpp>
 
 #include <fmt/format.h>
@@ -120,6 +120,7 @@ ForeignOptions options_of(const ForeignArguments& a) {
     if (out.fixed && !a.fixes) {
         usage("--fixed", a.fixed, "none: only isostat plateau takes disks that cannot move");
     }
+    out.bodies = a.bodies;
     out.skip = a.skip;
     out.style = a.style;
     out.plane = a.plane;
@@ -173,7 +174,7 @@ std::array<double, 2> parse_range(const std::string& text, const std::string& op
     return {*low, *high};
 }
 
-ReadPacking read_any_packing(const std::string& file, const ForeignArguments& arguments) {
+ForeignPacking read_any_packing(const std::string& file, const ForeignArguments& arguments) {
     const ForeignOptions options = options_of(arguments);
     const std::string text = read_packed_text(file);
     const std::string format = options.format.empty() ? recognise_format(text) : options.format;
@@ -181,22 +182,24 @@ ReadPacking read_any_packing(const std::string& file, const ForeignArguments& ar
     if (!own) {
         ForeignPacking foreign = parse_foreign(text, file, options);
         require_plane_unless(arguments.spheres, foreign.packing, file);
-        return {std::move(foreign.packing), std::move(foreign.format), std::move(foreign.notes), std::move(foreign.ids),
-                foreign.rounding};
+        if (!arguments.clumps) {
+            require_single_grains(foreign.packing, file, "this command (but --bodies none leaves bodies out)");
+        }
+        return foreign;
     }
     if (options.size || !options.box.empty() || options.dimension || options.select || !arguments.walls.empty() ||
-        !options.columns.empty() || options.frame || options.not_periodic || options.periodic || options.fixed ||
-        options.skip > 0 || !options.lattice.empty() || options.first_id || !options.style.empty() ||
-        options.plane != "xy") {
+        !options.columns.empty() || !options.bodies.empty() || options.frame || options.not_periodic ||
+        options.periodic || options.fixed || options.skip > 0 || !options.lattice.empty() || options.first_id ||
+        !options.style.empty() || options.plane != "xy") {
         throw Error(ErrorKind::usage, fmt::format("{} is a {} file of isostat, which says all of its sizes and walls: "
                                                   "expected none of --radius, --diameter, --walls, --box, --lattice, "
                                                   "--frame, --dimension, --columns, --skip, --style, --plane, --ids, "
-                                                  "--select, --fixed, --periodic, --not-periodic",
+                                                  "--select, --fixed, --bodies, --periodic, --not-periodic",
                                                   file, format));
     }
     if (format == "packing") {
         const crafted::PackingFile crafted = crafted::parse_packing(text, file);
-        ReadPacking out{crafted::approximate(crafted.packing), format, {}, {}, 0};
+        ForeignPacking out{crafted::approximate(crafted.packing), format, {}, 0, {}};
         require_plane_unless(arguments.spheres, out.packing, file);
         out.rounding = rounding_of(out.packing);
         out.notes.emplace_back("exact numbers rounded to the nearest doubles: inspect decides contacts exactly");
@@ -205,8 +208,8 @@ ReadPacking read_any_packing(const std::string& file, const ForeignArguments& ar
     const State state = format != "state" ? parse_vertex_text(text, file)
                         : arguments.cells ? parse_any_state(text, file, Dimensions::any).state
                                           : parse_state(text, file).state;
-    ReadPacking out{
-        state.packing, format, {}, {}, std::max(rounding_of(state.packing), compare::imported_rounding(state))};
+    ForeignPacking out{
+        state.packing, format, {}, std::max(rounding_of(state.packing), compare::imported_rounding(state)), {}};
     require_plane_unless(arguments.spheres, state.packing, file);
     out.notes.emplace_back("the contact list of the file is not used");
     return out;

@@ -4,24 +4,16 @@
 
 #include "cli/commands.hpp"
 
-#include <isostat/packing/packing.hpp>
+#include <isostat/foreign/foreign.hpp>
 
 #include <string>
 #include <vector>
 
 namespace isostat::cli {
 
-struct ReadPacking {
-    Packing packing;
-    std::string format;
-    std::vector<std::string> notes;
-    std::vector<long> ids; ///< of the disks in a file of another program, or none
-    double rounding = 0;   ///< bound of what digits and doubles leave open of a gap
-};
-
 /// States, vertex texts, crafted packings (rounded to doubles) and files of other programs. Throws `Error(usage)` for
 /// statements that make no sense, `Error(bad_input)` for the file.
-ReadPacking read_any_packing(const std::string& file, const ForeignArguments& arguments);
+ForeignPacking read_any_packing(const std::string& file, const ForeignArguments& arguments);
 
 /// Words between commas, or whatever parts them.
 std::vector<std::string> parse_list(const std::string& text, char at = ',');

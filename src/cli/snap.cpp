@@ -1,19 +1,18 @@
+#include "answers/true_vertex.hpp"
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
 #include "cli/soft_options.hpp"
 #include "cli/terminal.hpp"
-#include "cli/true_vertex_text.hpp"
-#include "compare/force_split.hpp"
-#include "compare/soft_state.hpp"
 #include "io/files.hpp"
 #include "io/json.hpp"
 #include "packing/words.hpp"
+#include "snap/force_split.hpp"
+#include "snap/soft_state.hpp"
 
-#include <isostat/compare/compare.hpp>
-#include <isostat/compare/snap.hpp>
 #include <isostat/core/error.hpp>
-#include <isostat/io/foreign.hpp>
+#include <isostat/foreign/foreign.hpp>
 #include <isostat/io/state_file.hpp>
+#include <isostat/snap/snap.hpp>
 
 #include <fmt/format.h>
 
@@ -60,7 +59,7 @@ Read from_foreign(const SnapArguments& a) {
                     fmt::format("--walls is '{}': expected box, a fixed lower and a movable upper wall along each axis",
                                 foreign.walls));
     }
-    ReadPacking file = read_any_packing(a.file, foreign);
+    ForeignPacking file = read_any_packing(a.file, foreign);
     take_cell({a.file, a.cell}, file.packing);
     compare::check_nearness(a.file, file.packing);
     compare::SoftList list = a.contacts.empty()
@@ -99,18 +98,18 @@ Json json_of(const SnapArguments& a, const Read& read, const compare::Snap& snap
     out["rattlers"] = snap.rattlers;
     out["outcome"] = to_string(snap.outcome);
     out["reason"] = snap.reason;
-    out["distance"] = number(snap.distance);
-    out["walls"] = number(snap.walls);
+    out["distance"] = or_null(snap.distance);
+    out["walls"] = or_null(snap.walls);
     if (!read.forces.empty() && snap.counting.hyperstaticity == 0 && snap.counting.mechanisms == 0) {
         const double mean = compare::mean_force(read.forces);
         const compare::ForceSplit split = compare::split_forces(read.soft, read.forces, mean, snap);
-        const double agreement = compare::Series().agreement;
-        const std::string units = split.rest > agreement ? split.units.words(agreement) : "";
-        out["forces"] = {{"mean", number(mean)},
-                         {"rest", number(split.rest)},
-                         {"stiffness", number(split.stiffness)},
-                         {"factor", number(split.units.factor)},
-                         {"rest_in_units", number(split.units.left)},
+        const std::string units =
+            split.rest > compare::force_agreement ? split.units.words(compare::force_agreement) : "";
+        out["forces"] = {{"mean", or_null(mean)},
+                         {"rest", or_null(split.rest)},
+                         {"stiffness", or_null(split.stiffness)},
+                         {"factor", or_null(split.units.factor)},
+                         {"rest_in_units", or_null(split.units.left)},
                          {"units", units},
                          {"contact", std::isfinite(split.rest)
                                          ? Json(to_string(split.worst, read.soft.packing.dimension))
@@ -139,7 +138,7 @@ std::optional<State> state_of(const SnapArguments& a, const Read& read, const co
     }
     compare::Exchanged& e = found.value();
     report["unique"] = false;
-    report["distance"] = number(e.distance);
+    report["distance"] = or_null(e.distance);
     report["reason"] =
         fmt::format("{}; the vertex downhill is proved, not that it is the only one near: without{}; with{}",
                     snap.reason, compare::names_of(compare::without(read.soft.contacts, e.contacts), dimension),
@@ -194,9 +193,9 @@ int snap(const SnapArguments& a) {
     if (state) {
         const Certification truth = certify(*state);
         untold = compare::untold_by(read.rounding, *state, truth);
-        add_untold(report, untold, truth.verdict);
+        answers::add_untold(report, untold, truth.verdict);
         Json provenance = report;
-        provenance["rounding"] = number(read.rounding);
+        provenance["rounding"] = or_null(read.rounding);
         state->provenance = json::dumped(provenance);
         write_state(a.output, *state);
     }

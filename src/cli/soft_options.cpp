@@ -64,6 +64,10 @@ void take_cell(const CellStatement& statement, Packing& packing) {
         return;
     }
     packing.cell.keeps_shape = false;
+    if (cell == "fixed") {
+        packing.cell.move(false, false);
+        return;
+    }
     packing.cell.period_moves = packing.cell.periodic;
     const auto tilts = packing.q.begin() + static_cast<std::ptrdiff_t>(packing.length_at(packing.axes()));
     const bool tilted = std::any_of(tilts, packing.q.end(), [](double tilt) { return tilt != 0; });
@@ -75,7 +79,7 @@ void take_cell(const CellStatement& statement, Packing& packing) {
     }
 }
 
-compare::SoftList stated_list(const std::string& file, const ReadPacking& packing, const std::string& frame,
+compare::SoftList stated_list(const std::string& file, const ForeignPacking& packing, const std::string& frame,
                               const std::string& contacts, const std::string& columns) {
     const std::vector<std::string> names = parse_list(columns);
     if (names.size() != 3 && names.size() != 2 + packing.packing.axes() && names.size() != 2 + most_axes) {

@@ -3,7 +3,7 @@
 /// What is stated to `import` and `snap` of a packing of soft grains.
 
 #include "cli/read_packing.hpp"
-#include "compare/soft_list.hpp"
+#include "snap/soft_list.hpp"
 
 #include <string>
 
@@ -14,8 +14,8 @@ PerAxis<double> parse_lengths(const std::string& text, const char* option, int d
 /// Of --stress, as many as there are axes; ones for an empty text.
 PerAxis<double> parse_stress(const std::string& text, int dimension = 2);
 
-/// `--cell`: what of a periodic cell moves, "rectangular", "tilted" or "isotropic"; empty: the tilt too if the file has
-/// one.
+/// `--cell`: what of a periodic cell moves, "rectangular", "tilted", "isotropic" or "fixed"; empty: the tilt too if the
+/// file has one.
 struct CellStatement {
     std::string file, cell;
 };
@@ -25,7 +25,7 @@ void take_cell(const CellStatement& statement, Packing& packing);
 
 /// `--contacts` and `--contact-columns`: a file of pairs with forces and its columns, "I,J,FORCE". \p frame: of both
 /// files. Throws `Error(usage)`.
-compare::SoftList stated_list(const std::string& file, const ReadPacking& packing, const std::string& frame,
+compare::SoftList stated_list(const std::string& file, const ForeignPacking& packing, const std::string& frame,
                               const std::string& contacts, const std::string& columns);
 
 } // namespace isostat::cli

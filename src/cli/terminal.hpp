@@ -7,26 +7,14 @@
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <type_traits>
+#include <string>
+#include <utility>
 
 namespace isostat::cli {
 
-namespace terminal {
-
-/// Numbers as they are; all else is text that may be foreign.
-template <class T> auto safe(const T& value) {
-    if constexpr (std::is_arithmetic_v<T>) {
-        return value;
-    } else {
-        return text::shown(value);
-    }
-}
-
-} // namespace terminal
-
 /// Prints like `fmt::print`; only the format may break a line or move the cursor.
 template <class... Values> void say(std::FILE* out, fmt::format_string<Values...> format, Values&&... values) {
-    fmt::vprint(out, format, fmt::make_format_args(terminal::safe(values)...));
+    fmt::print(out, "{}", text::filled(format, std::forward<Values>(values)...));
 }
 template <class... Values> void say(fmt::format_string<Values...> format, Values&&... values) {
     say(stdout, format, std::forward<Values>(values)...);

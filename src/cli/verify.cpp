@@ -1,3 +1,4 @@
+#include "cli/ask_coq.hpp"
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
 #include "cli/interrupt.hpp"
@@ -7,12 +8,15 @@
 #include "io/files.hpp"
 #include "packing/words.hpp"
 
+#include <isostat/certificate/certify.hpp>
 #include <isostat/checker/verify.hpp>
 #include <isostat/core/error.hpp>
 #include <isostat/io/state_file.hpp>
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstdio>
 #include <filesystem>
 
 namespace isostat::cli {
@@ -25,7 +29,8 @@ ClaimCheck check_input(const Certificate& certificate, const std::string& input)
     check.claim = "input";
     check.claimed = true;
     const std::string hash = sha256(read_text(input));
-    const std::string difference = state_difference(read_any_state(input, Dimensions::any).state, certificate.state);
+    const std::string difference = state_difference(
+        with_free_motions_held(read_any_state(input, Dimensions::any_clumps).state), certificate.state);
     const bool same = hash == certificate.input_hash;
     check.verdict = same && difference.empty() ? Verdict::proved : Verdict::refuted;
     check.detail = !difference.empty()
@@ -43,44 +48,45 @@ Json json_of(const ClaimCheck& check) {
     object["detail"] = check.detail;
     Json& numbers = object["numbers"] = Json::object();
     for (const auto& [name, value] : check.numbers) {
-        numbers[name] = number(value);
+        numbers[name] = or_null(value);
     }
     return object;
 }
 
-} // namespace
+/// Refuted before undecided before proved.
+Verdict worst(Verdict a, Verdict b) {
+    return a == Verdict::refuted || b == Verdict::refuted ? Verdict::refuted : std::max(a, b);
+}
 
-int verify(const VerifyArguments& arguments) {
-    end_at_interrupts();
-    if (std::filesystem::is_directory(arguments.certificate)) {
-        if (!arguments.input.empty()) {
-            throw Error(ErrorKind::usage, "--input belongs to a certificate, not to a folder");
-        }
-        return is_ensemble(arguments.certificate) ? verify_ensemble(arguments) : verify_folder(arguments);
-    }
-    const Certificate certificate = read_certificate(arguments.certificate);
+/// A certificate; what `--json` says of it goes into `object`.
+Verdict verify_certificate(const std::string& file, const VerifyArguments& arguments, Json& object) {
+    const std::string text = read_text(file);
+    const Certificate certificate = parse_certificate(text, file);
     Verification verification = isostat::verify(certificate);
+    const std::size_t claims = verification.checks.size();
     if (!arguments.input.empty()) {
         verification.checks.push_back(check_input(certificate, arguments.input));
-        if (verification.checks.back().verdict == Verdict::refuted) {
-            verification.verdict = Verdict::refuted;
-        }
     }
+    if (arguments.coq) {
+        const bool quiet = arguments.common.json || arguments.common.quiet;
+        verification.checks.push_back(ask_coq(file, sha256(text), arguments.coq_limit, quiet));
+    }
+    for (std::size_t k = claims; k < verification.checks.size(); ++k) {
+        verification.verdict = worst(verification.verdict, verification.checks[k].verdict);
+    }
+    object["certificate"] = file;
+    object["program"] = certificate.program;
+    object["input"] = certificate.input;
+    object["input_hash"] = certificate.input_hash;
+    for (const ClaimCheck& check : verification.checks) {
+        object["checks"].push_back(json_of(check));
+    }
+    object["verdict"] = to_string(verification.verdict);
     if (arguments.common.json) {
-        Json object;
-        object["certificate"] = arguments.certificate;
-        object["program"] = certificate.program;
-        object["input"] = certificate.input;
-        object["input_hash"] = certificate.input_hash;
-        for (const ClaimCheck& check : verification.checks) {
-            object["checks"].push_back(json_of(check));
-        }
-        object["verdict"] = to_string(verification.verdict);
-        print_json(object);
-        return status_of(verification.verdict);
+        return verification.verdict;
     }
-    say("{}: claims of {} about {} ({} {}s, {} contacts)\n", arguments.certificate, certificate.program,
-        certificate.input, certificate.state.packing.disk_count(), grain_word(certificate.state.packing.dimension),
+    say("{}: claims of {} about {} ({} {}s, {} contacts)\n", file, certificate.program, certificate.input,
+        certificate.state.packing.disk_count(), grain_word(certificate.state.packing.dimension),
         certificate.state.contacts.size());
     for (const ClaimCheck& check : verification.checks) {
         say("{:<14} {:<9} {}\n", check.claim, check.claimed ? to_string(check.verdict) : "absent", check.detail);
@@ -88,8 +94,38 @@ int verify(const VerifyArguments& arguments) {
     for (const std::string& reason : certificate.claims.undecided) {
         say("not claimed by the program: {}\n", reason);
     }
-    say("{:<14} {}\n", "equilibrium", to_string(verification.verdict));
-    return status_of(verification.verdict);
+    const bool mechanisms = certificate.claims.minimum && verification.verdict == Verdict::proved;
+    say("{:<14} {}{}\n", "equilibrium", to_string(verification.verdict),
+        mechanisms ? ": not isostatic, with mechanisms along which the potential has a minimum" : "");
+    std::fflush(stdout);
+    return verification.verdict;
+}
+
+} // namespace
+
+int verify(const VerifyArguments& arguments) {
+    end_at_interrupts();
+    const std::string& first = arguments.certificates.front();
+    const bool one = arguments.certificates.size() == 1;
+    if (one && std::filesystem::is_directory(first)) {
+        if (!arguments.input.empty() || arguments.coq) {
+            throw Error(ErrorKind::usage, "--input and --coq belong to a certificate, not to a folder");
+        }
+        return is_ensemble(first) ? verify_ensemble(first, arguments.common) : verify_folder(first, arguments.common);
+    }
+    if (!one && !arguments.input.empty()) {
+        throw Error(ErrorKind::usage, "--input belongs to one certificate");
+    }
+    Json all;
+    Verdict verdict = Verdict::proved;
+    for (const std::string& file : arguments.certificates) {
+        verdict = worst(verdict, verify_certificate(file, arguments, all["certificates"].emplace_back()));
+    }
+    all["verdict"] = to_string(verdict);
+    if (arguments.common.json) {
+        print_json(one ? all["certificates"].front() : all);
+    }
+    return status_of(verdict);
 }
 
 } // namespace isostat::cli

@@ -115,9 +115,9 @@ MemberVerification verify_member(const Member& member, const std::function<void(
 
 } // namespace
 
-int verify_ensemble(const VerifyArguments& arguments) {
-    const std::vector<Member> members = members_of(arguments.certificate);
-    const bool quiet = arguments.common.json || arguments.common.quiet;
+int verify_ensemble(const std::string& folder, const Common& common) {
+    const std::vector<Member> members = members_of(folder);
+    const bool quiet = common.json || common.quiet;
     StatusLine line(quiet);
     Clock clock(members);
     RunVerification total;
@@ -147,8 +147,8 @@ int verify_ensemble(const VerifyArguments& arguments) {
         object["unreadable"] = member.unreadable.empty() ? Json(nullptr) : Json(member.unreadable);
         list.push_back(object);
     }
-    if (arguments.common.json) {
-        Json object = json_of(total, arguments.certificate);
+    if (common.json) {
+        Json object = json_of(total, folder);
         object["members"] = list;
         print_json(object);
     } else {

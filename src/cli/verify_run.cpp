@@ -89,13 +89,12 @@ void print_totals(const RunVerification& run) {
     say("verdict        {}\n", words(run));
 }
 
-int verify_folder(const VerifyArguments& arguments) {
-    VerifyTable table(arguments.common.json || arguments.common.quiet);
-    const RunVerification run =
-        verify_run(arguments.certificate, [&table](const VerificationProgress& at) { table.show(at); });
+int verify_folder(const std::string& folder, const Common& common) {
+    VerifyTable table(common.json || common.quiet);
+    const RunVerification run = verify_run(folder, [&table](const VerificationProgress& at) { table.show(at); });
     table.end();
-    if (arguments.common.json) {
-        print_json(json_of(run, arguments.certificate));
+    if (common.json) {
+        print_json(json_of(run, folder));
     } else if (!run.finished) {
         say("run            not finished: run.json says that it goes on, or was killed (`isostat run --resume`)\n");
     } else {

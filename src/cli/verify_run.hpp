@@ -12,10 +12,10 @@
 namespace isostat::cli {
 
 /// The finished run of a folder from its records alone.
-int verify_folder(const VerifyArguments& arguments);
+int verify_folder(const std::string& folder, const Common& common);
 /// Each run of an ensemble, one after the other. 1: a record is wrong; else 65: a run cannot be read; else 2: something
 /// is undecided, unfinished or missing; else 0.
-int verify_ensemble(const VerifyArguments& arguments);
+int verify_ensemble(const std::string& folder, const Common& common);
 
 /// What `--json` says of a run.
 Json json_of(const RunVerification& run, const std::string& folder);

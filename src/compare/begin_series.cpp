@@ -1,8 +1,8 @@
 #include "compare/begin_series.hpp"
 
-#include "compare/frame_file.hpp"
 #include "io/text.hpp"
 #include "scene/section.hpp"
+#include "snap/frame_file.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -28,19 +28,19 @@ std::string manifest_of(const FileFrame& first, std::size_t axes, bool periodic,
         lengths[a] = (*first.header.box)[a][1] - (*first.header.box)[a][0];
     }
     const std::string stresses = axes == 2 ? "sigma1 = 1.0" : "sigma1 = 1.0\nsigma2 = 1.0";
-    return fmt::format(
-        "format = \"isostat-series 1\"\n\n"
-        "[files]\ndisks = {} # its columns: {}\nframes = {} # to fill in\n"
-        "# contacts = \"pairs.dump\" # two ids and a force; without it contacts are overlaps\n"
-        "# select = \"type 1\"\n\n"
-        "[columns]\n{}\n# contact_i = \"c_1[1]\"\n# contact_j = \"c_1[2]\"\n# contact_force = "
-        "\"c_2[1]\" # or \"fx,fy\"\n\n{}"
-        "[law]\nkind = \"none\" # or \"linear\", \"hertz\", with stiffness = 1e5\n\n"
-        "[load]\nkind = \"nominal\" # or \"true\"\n{} # to check\nreference_length = [{}] # to check{}\n",
-        toml_text(name), text::shown(fmt::format("{}", fmt::join(first.header.names, " "))), toml_text(frames),
-        diameters ? "diameter = \"diameter\"" : "radius = \"radius\"",
-        periodic ? fmt::format("[cell]\nkind = \"{}\"\n\n", tilted ? "tilted" : "rectangular") : "", stresses,
-        fmt::join(lengths, ", "), first.header.box ? ": the bounds in the first frame" : "");
+    return fmt::format("format = \"isostat-series 1\"\n\n"
+                       "[files]\ndisks = {} # its columns: {}\nframes = {} # to fill in\n"
+                       "# contacts = \"pairs.dump\" # two ids and a force; without it contacts are overlaps\n"
+                       "# select = \"type 1\"\n\n"
+                       "[columns]\n{}\n# contact_i = \"c_1[1]\"\n# contact_j = \"c_1[2]\"\n# contact_force = "
+                       "\"c_2[1]\" # or \"fx,fy\"\n\n{}"
+                       "[law]\nkind = \"none\" # or \"linear\", \"hertz\", with stiffness = 1e5\n\n"
+                       "[load]\nkind = \"nominal\" # or \"true\"\n{} # to check; where it varies, delete this and fill "
+                       "in columns sigma1, ..\nreference_length = [{}] # to check{}\n",
+                       toml_text(name), text::shown(fmt::format("{}", fmt::join(first.header.names, " "))),
+                       toml_text(frames), diameters ? "diameter = \"diameter\"" : "radius = \"radius\"",
+                       periodic ? fmt::format("[cell]\nkind = \"{}\"\n\n", tilted ? "tilted" : "rectangular") : "",
+                       stresses, fmt::join(lengths, ", "), first.header.box ? ": the bounds in the first frame" : "");
 }
 
 } // namespace

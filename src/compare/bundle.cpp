@@ -2,7 +2,7 @@
 
 #include "core/parallel.hpp"
 
-#include <isostat/compare/snap.hpp>
+#include <isostat/snap/snap.hpp>
 
 #include <algorithm>
 #include <array>

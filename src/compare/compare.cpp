@@ -118,6 +118,15 @@ std::vector<Frame> read_some(SeriesReader& reader, std::size_t most, const Compa
                         frame->row + ": other radii than the start of the exact run (--reference): expected the same "
                                      "disks, in the order of their ids");
         }
+        for (std::size_t a = 0; options.start && a + 1 < frame->packing.axes(); ++a) {
+            const double stress = frame->load.stress[a] / frame->scale, expected = options.start->load.stress[a];
+            if (!(std::abs(stress - expected) <= 1e-9 * expected)) { // both are stated, with the digits of a file
+                throw Error(ErrorKind::bad_input,
+                            fmt::format("{}: sigma{} is {}{}: expected {}, that of the start of the exact run "
+                                        "(--reference)",
+                                        frame->row, a + 1, stress, frame->scale == 1 ? "" : " times sigma1", expected));
+            }
+        }
         out.push_back(std::move(*frame));
     }
     return out;
@@ -177,13 +186,17 @@ Comparison compare(SeriesReader& reader, const CompareOptions& options) {
     run.stop = options.stop;
     std::optional<State> start = options.start;
     if (start) {
-        if (start->packing.dimension != series.dimension || start->load.loaded_axis != series.dimension - 1) {
+        if (start->packing.dimension != series.dimension || start->load.loaded_axis != series.dimension - 1 ||
+            start->load.path) {
             throw Error(
                 ErrorKind::bad_input,
                 fmt::format("the start of the exact run (--reference) loads {} of {}s: expected sigma{} of {}s, "
                             "as the frames do",
                             start->load.stress_name(), grain_word(start->packing.dimension), series.dimension,
                             grain_word(series.dimension)));
+        }
+        if (series.several) {
+            start->load = over(start->load, start->load.stress[0]);
         }
         (void)snap_to_grid(start->packing); // bounds of a cell hold there
         reader.begin_after(start->packing);

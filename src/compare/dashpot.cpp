@@ -19,7 +19,7 @@ constexpr double left_over = 0.1;
 /// w, of one way to weigh; with `hertz` times the root of the overlap and of R_i R_j / (R_i + R_j).
 double weight(const Packing& packing, const Contact& c, int power, bool hertz) {
     const double r = packing.radius[static_cast<std::size_t>(c.i)];
-    const double s = c.kind == ContactKind::disk_disk ? packing.radius[static_cast<std::size_t>(c.j)] : HUGE_VAL;
+    const double s = c.of_disks() ? packing.radius[static_cast<std::size_t>(c.j)] : HUGE_VAL;
     const auto reduced = [&](int p) {
         const double a = std::pow(r, p), b = std::pow(s, p);
         return std::isinf(b) ? a : a * b / (a + b);

@@ -1,8 +1,8 @@
 #include "compare/departure.hpp"
 
-#include "compare/backbone.hpp"
+#include "snap/backbone.hpp"
 
-#include <isostat/compare/snap.hpp>
+#include <isostat/snap/snap.hpp>
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 #include "compare/frame.hpp"
 
-#include "compare/force_split.hpp"
-#include "compare/surplus_split.hpp"
+#include "snap/force_split.hpp"
+#include "snap/surplus_split.hpp"
 
 #include <fmt/format.h>
 
@@ -28,7 +28,7 @@ FrameResult begin(const Frame& frame, const Reading& reading) {
     FrameResult out;
     out.frame = frame.number;
     out.timestep = frame.timestep;
-    out.stress = frame.load.loaded_stress();
+    out.stress = frame.load.loaded_stress() / frame.scale;
     out.unbalanced = reading.unbalanced;
     out.listed = reading.listed;
     out.overlapping = reading.overlapping;
@@ -160,10 +160,20 @@ JudgedFrame judge(const Series& series, const Frame& frame, const Reading& readi
 
 } // namespace
 
+Load over(Load load, double scale) {
+    for (double& stress : load.stress) {
+        stress /= scale;
+    }
+    return load;
+}
+
 JudgedFrame judge(const Series& series, const Frame& frame, bool complete) {
     const Reading reading = read_frame(series, frame);
     JudgedFrame out = judge(series, frame, reading, complete);
     FrameResult& r = out.result;
+    if (out.state) {
+        out.state->load = over(out.state->load, frame.scale);
+    }
     const auto add = [&](const std::string& words) {
         r.reason += (r.reason.empty() || words.empty() ? "" : "; ") + words;
     };

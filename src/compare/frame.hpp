@@ -19,6 +19,9 @@ struct JudgedFrame {
     std::optional<State> state;    ///< complete, where one was asked for or exchange found it
 };
 
+/// The load with its stresses over a number.
+Load over(Load load, double scale);
+
 /// \p complete: make `state` also of a vertex that Newton's method found.
 JudgedFrame judge(const Series& series, const Frame& frame, bool complete);
 

@@ -107,8 +107,14 @@ void read_load(Section& section, Manifest& out) {
     }
     std::copy(lengths->begin(), lengths->end(), out.reference_length.begin());
     out.series.dimension = static_cast<int>(lengths->size());
+    out.series.several = !section.number("sigma1");
     for (std::size_t a = 0; a + 1 < out.axes(); ++a) {
-        out.stress[a] = positive(section, fmt::format("sigma{}", a + 1), std::nullopt);
+        const std::string key = fmt::format("sigma{}", a + 1);
+        if (!out.series.several) {
+            out.stress[a] = positive(section, key, std::nullopt);
+        } else if (section.number(key)) {
+            section.fail(key, "sigma1 beside it, or none of them: then each frame has its own");
+        }
     }
     section.finish();
 }

@@ -20,7 +20,7 @@ struct Manifest {
     std::string select_column, select_value; ///< disks with this value; empty: all
     double length_factor = 1, force_factor = 1;
     LoadKind load = LoadKind::nominal;
-    PerAxis<double> stress{}; ///< but that of the last axis, which the frames have
+    PerAxis<double> stress{}; ///< but that of the last axis, which the frames have (`several`: 0, they have all)
     PerAxis<double> reference_length{};
     bool periodic = false; ///< frames of a periodic cell: the bounds of the dump are its periods
     bool tilted = false;   ///< its tilts move, under no shear stress

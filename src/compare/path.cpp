@@ -1,9 +1,9 @@
 #include "compare/path.hpp"
 
-#include "compare/backbone.hpp"
 #include "core/parallel.hpp"
+#include "snap/backbone.hpp"
 
-#include <isostat/compare/snap.hpp>
+#include <isostat/snap/snap.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,12 +1,12 @@
 // Frames of a series, matched by time step.
-#include "compare/frame_file.hpp"
 #include "compare/manifest.hpp"
-#include "compare/pair_images.hpp"
-#include "compare/soft_list.hpp"
 #include "io/digits.hpp"
 #include "io/files.hpp"
 #include "io/numbers.hpp"
 #include "packing/words.hpp"
+#include "snap/frame_file.hpp"
+#include "snap/pair_images.hpp"
+#include "snap/soft_list.hpp"
 
 #include <isostat/core/error.hpp>
 
@@ -76,6 +76,13 @@ class FrameTable {
                 (void)required(name);
             }
         }
+        for (std::size_t axis = 0; manifest.series.several && axis < last(); ++axis) {
+            if (find(stress_column(axis)) < 0) {
+                throw Error(ErrorKind::bad_input, fmt::format("{}: no column '{}': expected it, or {} in [load] of the "
+                                                              "manifest",
+                                                              where_, stress_column(axis), stress_column(axis)));
+            }
+        }
         if (find(stress_column(last())) < 0 &&
             (manifest.load == LoadKind::true_stress || find(force_column(last())) < 0)) {
             throw Error(ErrorKind::bad_input,
@@ -106,6 +113,7 @@ class FrameTable {
             sides = sides_of(line);
         }
         frame.load = load_of(line);
+        frame.scale = manifest_.series.several ? frame.load.stress[0] : 1;
         return frame;
     }
 
@@ -153,13 +161,13 @@ class FrameTable {
         return sides;
     }
 
-    [[nodiscard]] Load load_of(const TextLine& line) const {
+    [[nodiscard]] Load load_of(const TextLine& line) {
         Load load;
         load.kind = manifest_.load;
         load.dimension = manifest_.series.dimension;
         load.loaded_axis = load.dimension - 1;
         load.reference_length = manifest_.reference_length;
-        load.stress = manifest_.stress;
+        load.stress = manifest_.series.several ? lateral_of(line) : manifest_.stress;
         const std::string name = stress_column(last()), force = force_column(last());
         double& loaded = load.stress[last()];
         if (const int at = find(name); at >= 0) {
@@ -178,6 +186,24 @@ class FrameTable {
         return load;
     }
 
+    /// The stresses of the axes but the last: in all frames in the proportion of the first one.
+    [[nodiscard]] PerAxis<double> lateral_of(const TextLine& line) {
+        PerAxis<double> out{};
+        for (std::size_t axis = 0; axis < last(); ++axis) {
+            const std::string name = stress_column(axis);
+            const auto column = static_cast<std::size_t>(find(name));
+            out[axis] = line.number(column, name);
+            if (!(out[axis] > 0 && std::isfinite(out[axis]))) {
+                line.fail(line.field(column), name, "a positive number");
+            }
+        }
+        proportion_ = count_ == 1 ? out : proportion_;
+        for (std::size_t axis = 1; axis < last(); ++axis) {
+            out[axis] = out[0] * (proportion_[axis] / proportion_[0]); // `check_stress` says whether that is in the row
+        }
+        return out;
+    }
+
     /// The stresses that the frames do not change are those of the manifest, to the digits that a file has.
     void check_stress(const TextLine& line, std::size_t axis, const Load& load) const {
         const std::string name = stress_column(axis);
@@ -189,9 +215,12 @@ class FrameTable {
         const double expected = load.stress[axis];
         if (!(std::abs(line.number(column, name) - expected) <= known * expected + rounding(line, column))) {
             line.fail(line.field(column), name,
-                      fmt::format("{}, the one of the manifest: frames differ in {} alone, series in which several "
-                                  "stresses change are not compared",
-                                  expected, stress_column(last())));
+                      manifest_.series.several
+                          ? fmt::format("{}, in the proportion to sigma1 that the first frame has: series in which it "
+                                        "changes are not compared",
+                                        expected)
+                          : fmt::format("{}, the one of the manifest: without sigma1 there each frame has its own",
+                                        expected));
         }
     }
 
@@ -228,6 +257,7 @@ class FrameTable {
     std::vector<std::string> names_;
     std::string where_;
     bool sides_ = true; ///< it has them
+    PerAxis<double> proportion_{};
     int count_ = 0;
     long last_ = -1; ///< time step
 };

@@ -1,11 +1,11 @@
 #include "compare/reading.hpp"
 
-#include "compare/backbone.hpp"
 #include "compare/dashpot.hpp"
-#include "compare/force_split.hpp"
-#include "compare/soft_list.hpp"
-#include "compare/soft_state.hpp"
 #include "packing/words.hpp"
+#include "snap/backbone.hpp"
+#include "snap/force_split.hpp"
+#include "snap/soft_list.hpp"
+#include "snap/soft_state.hpp"
 
 #include <fmt/format.h>
 
@@ -78,7 +78,7 @@ class Reader {
     }
     [[nodiscard]] std::string name(const Contact& c) const {
         const auto id = [&](int i) { return frame_.ids[static_cast<std::size_t>(i)]; };
-        if (c.kind == ContactKind::disk_disk) {
+        if (c.of_disks()) {
             return fmt::format("{}s {} and {}", grain(), id(c.i), id(c.j));
         }
         return fmt::format("{} {} and the {} wall", grain(), id(c.i), wall_name(c));
@@ -90,9 +90,9 @@ class Reader {
     [[nodiscard]] std::string at(const Contact& c) const {
         const auto row = row_.find(c);
         const std::string where = row == row_.end() ? frame_.row : row->second;
-        return c.kind == ContactKind::disk_disk || where == frame_.row ? where : where + ", " + frame_.row;
+        return c.of_disks() || where == frame_.row ? where : where + ", " + frame_.row;
     }
-    [[nodiscard]] static bool is_wall(const Contact& c) { return c.kind != ContactKind::disk_disk; }
+    [[nodiscard]] static bool is_wall(const Contact& c) { return !c.of_disks(); }
     /// The files list contacts of its kind.
     [[nodiscard]] bool has_rows(const Contact& c) const { return is_wall(c) ? walls_listed_ : series_.listed; }
 

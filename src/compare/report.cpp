@@ -354,6 +354,9 @@ std::string comparison_json(const Series& series, const Comparison& comparison) 
     out["title"] = series.title;
     out["made_by"] = series.program;
     out["stiffness"] = series.law != ForceLaw::none ? Json(series.stiffness) : Json();
+    if (series.several) {
+        out["over_sigma1"] = true; // what is called sigma2, of spheres sigma3
+    }
     std::array<int, frame_statuses> counts{};
     for (const FrameResult& f : comparison.frames) {
         ++counts[static_cast<std::size_t>(f.status)];

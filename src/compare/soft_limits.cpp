@@ -1,12 +1,12 @@
 #include "compare/soft_limits.hpp"
 
-#include "compare/backbone.hpp"
 #include "io/files.hpp"
+#include "snap/backbone.hpp"
 
-#include <isostat/compare/snap.hpp>
 #include <isostat/core/error.hpp>
 #include <isostat/io/run_directory.hpp>
 #include <isostat/io/state_file.hpp>
+#include <isostat/snap/snap.hpp>
 
 #include <fmt/format.h>
 

@@ -57,14 +57,15 @@ double wall_rounding(const Packing& packing, const Contact& contact) {
 } // namespace
 
 bool can_move(const Packing& packing, const Contact& pair) {
-    if (packing.cell.any() && pair.kind == ContactKind::disk_disk) { // no disk is fixed there
+    if (packing.cell.any() && pair.of_disks()) { // no disk is fixed there
         return pair.i != pair.j || moves_with_cell(packing, pair.image);
     }
     if (!packing.is_fixed(DiskId(pair.i))) {
         return true;
     }
     switch (pair.kind) {
-    case ContactKind::disk_disk: return !packing.is_fixed(DiskId(pair.j));
+    case ContactKind::disk_disk:
+    case ContactKind::bar: return !packing.is_fixed(DiskId(pair.j));
     case ContactKind::upper_wall: return packing.walls.upper[static_cast<std::size_t>(pair.j)] == WallKind::movable;
     case ContactKind::lower_wall:
     case ContactKind::held: return false;
@@ -173,7 +174,7 @@ Admissibility certify_admissible(const Packing& packing, double allowance, const
     if (known != nullptr && known->reach > 0 && packing.fixed.empty() && !packing.cell.any() &&
         known->reference == packing.q) {
         for (const Contact& contact : known->contacts) {
-            if (contact.kind == ContactKind::disk_disk) {
+            if (contact.of_disks()) {
                 look(contact);
             }
         }

@@ -77,8 +77,9 @@ PerAxis<double> direction(PerAxis<double> d) {
 }
 
 std::string to_string(const Contact& contact, int dimension) {
-    const auto axis = static_cast<std::size_t>(contact.kind == ContactKind::disk_disk ? 0 : contact.j);
+    const auto axis = static_cast<std::size_t>(contact.of_disks() ? 0 : contact.j);
     switch (contact.kind) {
+    case ContactKind::bar: return fmt::format("bar {}-{}", contact.i, contact.j);
     case ContactKind::disk_disk:
         return fmt::format("{}-{}{}", contact.i, contact.j, image_text(contact.image, dimension));
     case ContactKind::lower_wall: return fmt::format("{}-{}", contact.i, lower_name[axis]);
@@ -93,7 +94,8 @@ std::string to_string(const Contact& contact, int dimension) {
 double gap(const Packing& packing, const Contact& contact) {
     switch (contact.kind) {
     case ContactKind::disk_disk:
-        return norm(separation(packing.layout(), packing.q, contact)) - touching_distance(packing.radius, contact);
+    case ContactKind::bar:
+        return norm(separation(packing.layout(), packing.q, contact)) - zero_distance(packing, contact);
     case ContactKind::lower_wall:
     case ContactKind::upper_wall:
         return wall_distance(packing.layout(), packing.q, contact) - touching_distance(packing.radius, contact);
@@ -105,7 +107,7 @@ double gap(const Packing& packing, const Contact& contact) {
 GapGradient gap_gradient(const Packing& packing, const Contact& contact) {
     PerAxis<double> normal; // but for the sign; of a wall 1
     normal.fill(1);
-    if (contact.kind == ContactKind::disk_disk) {
+    if (contact.of_disks()) {
         normal = direction(separation(packing.layout(), packing.q, contact));
     }
     GapGradient g;
@@ -118,7 +120,7 @@ GapGradient gap_gradient(const Packing& packing, const Contact& contact) {
 }
 
 double gap_curvature(const Packing& packing, const Contact& contact, const double* v) {
-    if (contact.kind != ContactKind::disk_disk) {
+    if (!contact.of_disks()) {
         return 0;
     }
     const PerAxis<double> d = separation(packing.layout(), packing.q, contact);

@@ -18,10 +18,13 @@ template <class Number> Number with_sign_of_gap(const Packing& packing, const Co
     const auto minus = [](const Number& a, const Number& b) -> Number { return a - b; };
     const Separation separation(contact, packing.layout());
     const Number radius(packing.radius[static_cast<std::size_t>(contact.i)]);
-    if (contact.kind != ContactKind::disk_disk) {
+    if (!contact.of_disks()) {
         return separation.of_wall(at, minus) - radius + Number(allowance);
     }
-    const Number least = radius + Number(packing.radius[static_cast<std::size_t>(contact.j)]) - Number(allowance);
+    const Number touching = contact.kind == ContactKind::bar
+                                ? Number(packing.bar_length(contact.i, contact.j))
+                                : Number(radius + Number(packing.radius[static_cast<std::size_t>(contact.j)]));
+    const Number least = touching - Number(allowance);
     Number square(0);
     for (const Number& component : separation.of_disks(at, minus)) {
         square += CGAL::square(component);

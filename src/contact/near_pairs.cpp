@@ -5,6 +5,7 @@
 #include "contact/pair_list.hpp"
 #include "contact/regular_edges_in_space.hpp"
 #include "contact/separation.hpp"
+#include "packing/bodies.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -134,10 +135,13 @@ std::vector<Contact> pairs_within(const Packing& packing, double reach, int most
         std::sort(pairs.begin(), pairs.end());
         pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
     }
+    without_own_members(pairs, packing);
     return pairs;
 }
 
-NearPairs near_pairs(const Packing& packing, double reach, const std::shared_ptr<const RegularTriangulation>& from) {
+namespace {
+
+NearPairs near_disks(const Packing& packing, double reach, const std::shared_ptr<const RegularTriangulation>& from) {
     using Triangulation = RegularTriangulation;
     const bool applies = !packing.cell.any() && reach <= largest_reach * packing.min_radius();
     if (applies && packing.disk_count() > 0 && lengths_are_plain(packing.q, packing.radius) &&
@@ -158,6 +162,24 @@ NearPairs near_pairs(const Packing& packing, double reach, const std::shared_ptr
         }
     }
     return {pairs_within(packing, reach), nullptr};
+}
+
+} // namespace
+
+void without_own_members(std::vector<Contact>& pairs, const Packing& packing) {
+    if (packing.bars.empty()) {
+        return;
+    }
+    const Bodies bodies(packing);
+    std::erase_if(pairs, [&](const Contact& pair) {
+        return pair.of_disks() && pair.image.is_here() && bodies.of(pair.i) == bodies.of(pair.j);
+    });
+}
+
+NearPairs near_pairs(const Packing& packing, double reach, const std::shared_ptr<const RegularTriangulation>& from) {
+    NearPairs near = near_disks(packing, reach, from);
+    without_own_members(near.pairs, packing);
+    return near;
 }
 
 } // namespace isostat

@@ -20,10 +20,11 @@ struct NearPairs {
 };
 
 /// Every pair of disks with gap < reach (of the real numbers; a few pairs beyond by rounding may be in it), whatever
-/// the packing. The pairs are a function of the packing and the reach alone: neither `from`, a triangulation of the
-/// same disks elsewhere that is carried to these places if it is there, nor what finds them makes a difference.
-/// In a cell: every pair of a disk and an image, each once; found among finitely many images, without a triangulation
-/// that could be carried. \pre reach > 0; beyond 0.82 R_min the grid finds them
+/// the packing; members of one body are no pair, but for images. The pairs are a function of the packing and the reach
+/// alone: neither `from`, a triangulation of the same disks elsewhere that is carried to these places if it is there,
+/// nor what finds them makes a difference. In a cell: every pair of a disk and an image, each once; found among
+/// finitely many images, without a triangulation that could be carried. \pre reach > 0; beyond 0.82 R_min the grid
+/// finds them
 NearPairs near_pairs(const Packing& packing, double reach,
                      const std::shared_ptr<const RegularTriangulation>& from = nullptr);
 
@@ -39,5 +40,8 @@ std::optional<std::vector<Contact>> near_edges_in_space(const Packing& packing, 
 /// `most_per_disk` of each disk.
 std::vector<Contact> pairs_within(const Packing& packing, double reach,
                                   int most_per_disk = std::numeric_limits<int>::max());
+
+/// Leaves out pairs of members of one body; a member and an image of another one are a pair.
+void without_own_members(std::vector<Contact>& pairs, const Packing& packing);
 
 } // namespace isostat

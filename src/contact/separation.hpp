@@ -81,6 +81,7 @@ class Separation {
         const std::size_t x = layout_.of_disk(i_);
         switch (kind_) {
         case ContactKind::disk_disk:
+        case ContactKind::bar:
             for (std::size_t a = 0; a < layout_.axes() && i_ != j_; ++a) {
                 visit(x + a, a, -1);
             }
@@ -108,9 +109,9 @@ class Separation {
         for_each_coordinate([&](std::size_t coordinate, std::size_t component, int sign) {
             const int dof = dofs.dof_of(coordinate);
             if (dof >= 0) {
-                Number entry = kind_ != ContactKind::disk_disk ? Number(-sign)
-                               : sign > 0                      ? Number(-normal[component])
-                                                               : normal[component];
+                Number entry = kind_ > ContactKind::bar ? Number(-sign)
+                               : sign > 0               ? Number(-normal[component])
+                                                        : normal[component];
                 for (int times = std::abs(sign); times > 1; --times) {
                     entry = sign > 0 ? Number(entry - normal[component]) : Number(entry + normal[component]);
                 }
@@ -160,7 +161,7 @@ template <class Vector> inline auto wall_distance(const Layout& layout, const Ve
 }
 
 /// Separation at which the grains touch: R_i + R_j, R_i at a wall, 0 for a held coordinate. `radius`: a number of any
-/// kind for each disk.
+/// kind for each disk. \pre no bar
 template <class Radii> inline auto touching_distance(const Radii& radius, const Contact& contact) {
     using Number = std::remove_cvref_t<decltype(radius[0])>;
     switch (contact.kind) {
@@ -168,9 +169,16 @@ template <class Radii> inline auto touching_distance(const Radii& radius, const 
         return Number(radius[static_cast<std::size_t>(contact.i)] + radius[static_cast<std::size_t>(contact.j)]);
     case ContactKind::lower_wall:
     case ContactKind::upper_wall: return Number(radius[static_cast<std::size_t>(contact.i)]);
+    case ContactKind::bar:
     case ContactKind::held: break;
     }
     return Number(0);
+}
+
+/// The same in double, of a bar its length: where the row of any contact has its zero.
+inline double zero_distance(const Packing& packing, const Contact& contact) {
+    return contact.kind == ContactKind::bar ? packing.bar_length(contact.i, contact.j)
+                                            : touching_distance(packing.radius, contact);
 }
 
 } // namespace isostat

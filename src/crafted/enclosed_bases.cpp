@@ -34,7 +34,7 @@ class Encloser {
         const double moved = grid_step(stored_);
         for (const Contact& contact : inspection.contacts) {
             double distance = std::numeric_limits<double>::infinity();
-            if (contact.kind == ContactKind::disk_disk) {
+            if (contact.of_disks()) {
                 distance = touching_distance(stored_.radius, contact);
             }
             double steps = 0, square = 0;

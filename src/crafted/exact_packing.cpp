@@ -61,7 +61,7 @@ struct Touching {
         const Words first = describe(packing, contact.i);
         Words name = words("{}", to_string(contact, packing.dimension()));
         name.contacts.push_back(contact);
-        if (contact.kind != ContactKind::disk_disk) {
+        if (!contact.of_disks()) {
             return failed(FailureKind::overlap, "{} overlaps the wall of contact {}: gap = {}", first, name,
                           excess.text());
         }
@@ -123,6 +123,7 @@ std::vector<Contact> nearest_pairs(const Packing& rounded) {
             all.push_back(pair_of(i, j));
         }
     }
+    without_own_members(all, rounded);
     return all;
 }
 
@@ -143,6 +144,7 @@ ExactPacking exact_copy(const Packing& packing) {
         }
     }
     out.fixed = packing.fixed;
+    out.bars = packing.bars;
     out.walls = packing.walls;
     out.cell = packing.cell;
     out.cell.dimension = packing.dimension;
@@ -159,6 +161,7 @@ Packing approximate(const ExactPacking& packing) {
     out.dimension = packing.dimension();
     out.walls = packing.walls;
     out.fixed = packing.fixed;
+    out.bars = packing.bars;
     out.cell = packing.cell;
     for (const Number& r : packing.radius) {
         out.radius.push_back(r.to_double());
@@ -181,7 +184,14 @@ Result<std::vector<Contact>> exact_contacts(const ExactPacking& packing) {
         }
     }
     std::sort(touching.contacts.begin(), touching.contacts.end());
+    for (const Bar& bar : packing.bars) {
+        touching.contacts.emplace_back(ContactKind::bar, bar.i, bar.j);
+    }
     return std::move(touching.contacts);
+}
+
+Number scale_of_row(const ExactPacking& packing, const Contact& pair) {
+    return pair.kind == ContactKind::bar ? Number(1) : touching_distance(packing.radius, pair);
 }
 
 exact::NumberMatrix exact_contact_matrix(const ExactPacking& packing, const DofMap& dofs,
@@ -191,8 +201,8 @@ exact::NumberMatrix exact_contact_matrix(const ExactPacking& packing, const DofM
     for (const Contact& contact : contacts) {
         const Separation separation(contact, packing.layout());
         PerAxis<Number> normal;
-        if (contact.kind == ContactKind::disk_disk) {
-            const Number scale = touching_distance(packing.radius, contact).inverse();
+        if (contact.of_disks()) {
+            const Number scale = scale_of_row(packing, contact).inverse();
             normal = exact_separation(packing, contact);
             for (Number& component : normal) {
                 component *= scale;
@@ -212,8 +222,11 @@ Counting count_with_radii(const ExactPacking& packing, const std::vector<Contact
     exact::NumberMatrix out = exact_contact_matrix(packing, DofMap(approximate(packing)), contacts);
     for (std::size_t l = 0; l < contacts.size(); ++l) {
         const Contact& c = contacts[l];
-        out.column[l].emplace_back(out.rows + c.i, Number(c.kind == ContactKind::disk_disk && c.i == c.j ? 2 : 1));
-        if (c.kind == ContactKind::disk_disk && c.i != c.j) {
+        if (c.kind == ContactKind::bar) {
+            continue;
+        }
+        out.column[l].emplace_back(out.rows + c.i, Number(c.of_disks() && c.i == c.j ? 2 : 1));
+        if (c.of_disks() && c.i != c.j) {
             out.column[l].emplace_back(out.rows + c.j, Number(1));
         }
     }

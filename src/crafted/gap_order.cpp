@@ -82,7 +82,7 @@ struct GapOrder::Exact {
         const auto at = [&](std::size_t k) { return integer(packing.q[k], unit); };
         const auto minus = [](const Integer& a, const Integer& b) -> Integer { return a - b; };
         const Integer r = integer(packing.radius[static_cast<std::size_t>(contact.i)], unit);
-        if (contact.kind == ContactKind::disk_disk) {
+        if (contact.of_disks()) {
             const auto [dx, dy, dz] = separation.of_disks(at, minus);
             return {dx * dx + dy * dy + dz * dz,
                     r + integer(packing.radius[static_cast<std::size_t>(contact.j)], unit)};
@@ -106,7 +106,7 @@ GapOrder::GapOrder(GapOrder&&) noexcept = default;
 GapOrder::Item GapOrder::item(const Contact& contact) const {
     const std::vector<double>& q = packing_->q;
     const double touching = touching_distance(packing_->radius, contact);
-    if (contact.kind == ContactKind::disk_disk) {
+    if (contact.of_disks()) {
         const auto [dx, dy, dz] = separation(packing_->layout(), q, contact);
         const double distance = std::hypot(dx, dy, dz);
         return {contact, distance - touching,

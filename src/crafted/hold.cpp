@@ -43,13 +43,13 @@ bool span_all(const std::vector<ContactDirection>& arms, int dimension) {
 }
 
 /// Clears `carrying` of contacts that can carry no force until nothing changes, and sets `hold` of the grains whose
-/// hold is not `fixed` or `loaded`.
+/// hold is not `fixed`, `loaded` or `member`.
 void exclude_contacts(const std::vector<std::vector<ContactDirection>>& arms, Inspection& inspection, int dimension) {
     for (bool changed = true; changed;) {
         changed = false;
         for (std::size_t i = 0; i < arms.size(); ++i) {
             DiskHold& hold = inspection.hold[i];
-            if (hold == DiskHold::fixed || hold == DiskHold::loaded) {
+            if (hold >= DiskHold::fixed) {
                 continue;
             }
             std::vector<ContactDirection> left = arms[i];
@@ -77,7 +77,7 @@ void judge_holds(Inspection& inspection, const ExactPacking& packing) {
         const Contact& contact = inspection.contacts[l];
         const auto i = static_cast<std::size_t>(contact.i);
         const auto j = static_cast<std::size_t>(contact.j);
-        if (contact.kind == ContactKind::disk_disk) {
+        if (contact.of_disks()) {
             const PerAxis<Number> r = exact_separation(packing, contact);
             arms[i].push_back({l, r});
             arms[j].push_back({l, {-r[0], -r[1], -r[2]}});
@@ -97,6 +97,10 @@ void judge_holds(Inspection& inspection, const ExactPacking& packing) {
         if (!packing.load->disk[k].is_zero()) {
             inspection.hold[k / packing.axes()] = DiskHold::loaded;
         }
+    }
+    for (const Bar& bar : packing.bars) {
+        inspection.hold[static_cast<std::size_t>(bar.i)] = DiskHold::member;
+        inspection.hold[static_cast<std::size_t>(bar.j)] = DiskHold::member;
     }
     for (std::size_t i = 0; i < n; ++i) {
         inspection.hold[i] = packing.is_fixed(static_cast<int>(i)) ? DiskHold::fixed : inspection.hold[i];

@@ -49,8 +49,9 @@ StrainCounts exact_strains(const ExactPacking& packing, const std::vector<Contac
     const Packing rounded = approximate(packing);
     StrainCounts counts;
     std::transform(strains.begin(), strains.end(), counts.begin(), [&](Strain strain) {
-        return count_matrix(strained_matrix(
-            rounded, [&](std::size_t k) { return packing.coordinate(k); }, touching, strain));
+        return without_bars(count_matrix(strained_matrix(
+                                rounded, [&](std::size_t k) { return packing.coordinate(k); }, touching, strain)),
+                            bar_count(touching));
     });
     return counts;
 }
@@ -66,6 +67,7 @@ class Inspector {
     Inspector(const ExactPacking& packing, const InspectionLimits& limits, std::vector<Contact> contacts)
         : packing_(packing), limits_(limits), dofs_(approximate(packing)) {
         out_.contacts = std::move(contacts);
+        unilateral_ = static_cast<std::size_t>(out_.contact_count());
         matrix_ = exact_contact_matrix(packing_, dofs_, out_.contacts);
         out_.dof_count = dofs_.dof_count();
         out_.rigid_motions = rigid_motions(
@@ -85,11 +87,20 @@ class Inspector {
             out_.second_order = SecondOrder::no_mechanism;
         }
         judge_stability();
+        const int bars = bar_count(out_.contacts);
+        out_.dof_count -= bars;
+        out_.rank -= bars;
+        out_.generic_rank -= bars;
+        out_.with_radii = without_bars(out_.with_radii, bars);
         return std::move(out_);
     }
 
   private:
-    [[nodiscard]] std::size_t contact_count() const { return out_.contacts.size(); }
+    [[nodiscard]] std::size_t contact_count() const { return out_.contacts.size(); } // with bars
+    /// Without those of bars, whose sign is free.
+    [[nodiscard]] std::vector<Number> unilateral(const std::vector<Number>& forces) const {
+        return {forces.begin(), forces.begin() + static_cast<std::ptrdiff_t>(unilateral_)};
+    }
 
     [[nodiscard]] std::vector<std::pair<int, Number>> load_column() const {
         std::vector<std::pair<int, Number>> column;
@@ -176,7 +187,7 @@ class Inspector {
         if (out_.rank_exact == Verdict::proved && out_.hyperstaticity == 0) {
             out_.one_sign_decided = true;
         } else if (out_.bases_exact == Verdict::proved && affordable(out_.self_stresses.size(), contact_count())) {
-            out_.one_sign = exact::one_sign(out_.self_stresses, static_cast<int>(contact_count()));
+            out_.one_sign = exact::one_sign(out_.self_stresses, out_.contact_count());
             out_.one_sign_decided = true;
         }
     }
@@ -188,7 +199,7 @@ class Inspector {
         }
         const std::vector<Number> load = external_force(packing_, dofs_);
         for (const auto& [dof, change] : units_) {
-            if (auto range = load_range(out_.forces, change, out_.self_stresses)) {
+            if (auto range = load_range(unilateral(out_.forces), change, out_.self_stresses)) {
                 range->dof = dof;
                 for (std::optional<Number>* end : {&range->least, &range->most}) {
                     if (*end) {
@@ -207,7 +218,7 @@ class Inspector {
         out_.forces_unique = out_.self_stresses.empty();
         if (out_.forces_unique) {
             int least = 1;
-            for (const Number& f : out_.forces) {
+            for (const Number& f : unilateral(out_.forces)) {
                 least = std::min(least, f.sign());
             }
             judge_zeros();
@@ -220,20 +231,20 @@ class Inspector {
         if (!affordable(out_.self_stresses.size() + 1, contact_count() + 1)) {
             return;
         }
-        // f = f0 + S c > 0 is t f0 + S c > 0 with t > 0: one more component for t.
+        // f = f0 + S c > 0 is t f0 + S c > 0 with t > 0: one more component for t, before those of bars.
         std::vector<std::vector<Number>> span = out_.self_stresses;
-        for (auto& vector : span) {
-            vector.emplace_back(0);
-        }
         span.push_back(out_.forces);
-        span.back().emplace_back(1);
-        const exact::OneSignAnswer answer = exact::one_sign(span, static_cast<int>(contact_count()) + 1);
+        for (auto& vector : span) {
+            vector.insert(vector.begin() + static_cast<std::ptrdiff_t>(unilateral_),
+                          Number(&vector == &span.back() ? 1 : 0));
+        }
+        const exact::OneSignAnswer answer = exact::one_sign(span, out_.contact_count() + 1);
         if (answer.kind == exact::OneSign::none) {
             out_.support = Support::none;
-        } else if (answer.combination.back().sign() > 0) {
+        } else if (answer.combination[unilateral_].sign() > 0) {
             take(answer.combination);
             out_.support = answer.kind == exact::OneSign::strict ? Support::positive : Support::with_zeros;
-        } else if (affordable(static_cast<std::size_t>(out_.dof_count), contact_count())) {
+        } else if (packing_.bars.empty() && affordable(static_cast<std::size_t>(out_.dof_count), contact_count())) {
             std::vector<std::vector<Number>> rows(static_cast<std::size_t>(out_.dof_count),
                                                   std::vector<Number>(contact_count()));
             for (std::size_t l = 0; l < contact_count(); ++l) {
@@ -278,15 +289,15 @@ class Inspector {
     }
 
     void take(const std::vector<Number>& combination) {
-        const Number scale = combination.back().inverse();
+        const Number scale = combination[unilateral_].inverse();
         for (std::size_t l = 0; l < contact_count(); ++l) {
-            out_.forces[l] = combination[l] * scale;
+            out_.forces[l] = combination[l < unilateral_ ? l : l + 1] * scale;
         }
     }
 
     void judge_stability() {
         if (out_.support == Support::none || out_.support == Support::unbalanced) {
-            out_.stable = Verdict::refuted;
+            out_.stable = packing_.bars.empty() || out_.hyperstaticity == 0 ? Verdict::refuted : Verdict::undecided;
             return;
         }
         if (!balanced_ || out_.support == Support::undecided) {
@@ -305,6 +316,7 @@ class Inspector {
     DofMap dofs_;
     exact::NumberMatrix matrix_;
     Inspection out_;
+    std::size_t unilateral_ = 0;                             // contacts that are no bars
     std::vector<std::pair<int, std::vector<Number>>> units_; // forces that balance an inward unit at this dof
     bool balanced_ = false; // some forces balance the load, and `forces` holds them (without contacts it is empty)
 };
@@ -338,7 +350,7 @@ Result<Inspection> inspect(const ExactPacking& packing, const InspectionLimits& 
     if (packing.cell.all()) {
         out.strains = exact_strains(packing, exact_contacts(loose_cell(packing)).value());
     }
-    if (packing.cell.all() || walls_stay(packing)) {
+    if (packing.bars.empty() && (packing.cell.all() || walls_stay(packing))) {
         out.jamming = judge_jamming(packing, out.hold, limits);
     }
     return out;

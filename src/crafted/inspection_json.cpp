@@ -1,4 +1,5 @@
 #include "contact/names.hpp"
+#include "packing/bodies.hpp"
 
 #include <isostat/crafted/exact_packing.hpp>
 
@@ -59,6 +60,17 @@ Json ranges_json(const Inspection& inspection, const std::vector<std::string>& c
     return out;
 }
 
+/// Names of what has a flag, or has none.
+template <class Flags> Json flagged(const std::vector<std::string>& names, const Flags& flags, bool set) {
+    Json out = Json::array();
+    for (std::size_t l = 0; l < flags.size(); ++l) {
+        if ((flags[l] != 0) == set) {
+            out.push_back(names[l]);
+        }
+    }
+    return out;
+}
+
 } // namespace
 
 std::string to_json(const Inspection& inspection, const ExactPacking& packing) {
@@ -71,7 +83,7 @@ std::string to_json(const Inspection& inspection, const ExactPacking& packing) {
     }
     out["disks"] = packing.disk_count();
     out["N_f"] = inspection.dof_count;
-    out["N"] = inspection.contacts.size();
+    out["N"] = inspection.contact_count();
     out["rank"] = inspection.rank;
     out["rank_exact"] = to_string(inspection.rank_exact);
     out["h"] = inspection.hyperstaticity;
@@ -83,17 +95,15 @@ std::string to_json(const Inspection& inspection, const ExactPacking& packing) {
     out["rank_with_radii"] = inspection.with_radii.rank;
     out["rank_with_radii_exact"] = to_string(inspection.with_radii.rank_exact);
     add_cell(inspection, out);
-    out["contacts"] = contacts;
+    out["contacts"] = std::vector(contacts.begin(), contacts.begin() + inspection.contact_count());
+    if (!packing.bars.empty()) {
+        out["bodies"] = Bodies(approximate(packing)).members();
+    }
     out["hold"] = Json::array();
     for (const DiskHold hold : inspection.hold) {
         out["hold"].push_back(to_string(hold));
     }
-    out["contacts_without_force"] = Json::array();
-    for (std::size_t l = 0; l < contacts.size(); ++l) {
-        if (inspection.carrying[l] == 0) {
-            out["contacts_without_force"].push_back(contacts[l]);
-        }
-    }
+    out["contacts_without_force"] = flagged(contacts, inspection.carrying, false);
     out["one_sign"] = inspection.one_sign_decided ? to_string(inspection.one_sign.kind) : "undecided";
     out["one_sign_stress"] = entries(inspection.one_sign.combination, contacts);
     out["support"] = to_string(inspection.support);
@@ -101,12 +111,7 @@ std::string to_json(const Inspection& inspection, const ExactPacking& packing) {
     out["without_force"] = inspection.without_force;
     out["forces"] = entries(inspection.forces, contacts);
     out["ranges"] = ranges_json(inspection, contacts, coordinates);
-    out["structural_zeros"] = Json::array();
-    for (std::size_t l = 0; l < inspection.structural_zero.size(); ++l) {
-        if (inspection.structural_zero[l] != 0) {
-            out["structural_zeros"].push_back(contacts[l]);
-        }
-    }
+    out["structural_zeros"] = flagged(contacts, inspection.structural_zero, true);
     out["second_order"] = to_string(inspection.second_order);
     out["stable"] = to_string(inspection.stable);
     out["bases_exact"] = to_string(inspection.bases_exact);

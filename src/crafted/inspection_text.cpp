@@ -1,5 +1,6 @@
 #include "contact/names.hpp"
 #include "core/words.hpp"
+#include "packing/bodies.hpp"
 #include "packing/words.hpp"
 
 #include <isostat/core/error.hpp>
@@ -57,7 +58,7 @@ std::string number_list(const std::vector<int>& numbers) {
 } // namespace
 
 const char* to_string(DiskHold hold) {
-    static constexpr std::array words{"held", "bridge", "rattler", "fixed", "loaded"};
+    static constexpr std::array words{"held", "bridge", "rattler", "fixed", "loaded", "member"};
     return word_of(hold, words);
 }
 
@@ -101,9 +102,13 @@ class InspectionTable {
     void counts() {
         const char* most = exact_ ? "" : "<= ";
         line(grain() + "s", std::to_string(packing_.disk_count()));
+        if (!packing_.bars.empty()) {
+            line("bodies", fmt::format("{}, each of one {} or more", Bodies(approximate(packing_)).count(), grain()));
+        }
         line("degrees of freedom N_f", std::to_string(inspection_.dof_count));
-        line("contacts N", fmt::format("{} (gaps decided exactly)", inspection_.contacts.size()));
-        line("contact list", list(contact_names_, "none"));
+        line("contacts N", fmt::format("{} (gaps decided exactly)", inspection_.contact_count()));
+        line("contact list",
+             list({contact_names_.begin(), contact_names_.begin() + inspection_.contact_count()}, "none"));
         line("rank", fmt::format("{}{} ({})", exact_ ? "" : ">= ", inspection_.rank,
                                  exact_ ? "proved" : "lower bound proved, upper bound undecided"));
         line("hyperstaticity h", fmt::format("{}{}", most, inspection_.hyperstaticity));
@@ -254,7 +259,7 @@ class Comparison {
         };
         return {
             {"N_f", std::to_string(inspection.dof_count)},
-            {"N", std::to_string(inspection.contacts.size())},
+            {"N", std::to_string(inspection.contact_count())},
             {"rank", count(inspection.rank)},
             {"h", count(inspection.hyperstaticity)},
             {"k", count(inspection.mechanisms)},
@@ -308,7 +313,7 @@ class Comparison {
             }
         };
         if (key == "contacts") {
-            contacts([](std::size_t) { return true; });
+            contacts([&](std::size_t l) { return inspection_.contacts[l].kind != ContactKind::bar; });
         } else if (key == "structural_zeros") {
             const auto& zero = inspection_.structural_zero;
             contacts([&](std::size_t l) { return l < zero.size() && zero[l] != 0; });

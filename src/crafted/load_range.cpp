@@ -31,6 +31,9 @@ std::optional<LoadRange> load_range(const std::vector<Number>& forces, const std
     // Farkas: no t is supported exactly where some y >= 0 has f y = -1, change y = 0 and stresses y = 0.
     Vectors rows{change};
     rows.insert(rows.end(), stresses.begin(), stresses.end());
+    for (std::vector<Number>& row : rows) { // forces behind have any sign
+        row.resize(forces.size());
+    }
     Vectors all = rows;
     all.push_back(forces);
     std::vector<Number> b(all.size());

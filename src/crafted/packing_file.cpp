@@ -1,6 +1,7 @@
 #include "contact/images.hpp"
 #include "io/files.hpp"
 #include "io/toml.hpp"
+#include "packing/bodies.hpp"
 #include "packing/unbalanced.hpp"
 #include "packing/words.hpp"
 
@@ -13,6 +14,7 @@
 #include <algorithm>
 #include <sstream>
 #include <string_view>
+#include <utility>
 
 namespace isostat::crafted {
 
@@ -59,8 +61,8 @@ class Reader {
         const bool space = root_.contains("spheres") || root_.contains("sphere");
         out_.packing.cell.dimension = space ? 3 : 2;
         allow(root_, "",
-              {"format", "title", "source", "note", space ? "spheres" : "disks", grain_word(space ? 3 : 2), "box",
-               "cell", "load", "expected"});
+              {"format", "title", "source", "note", space ? "spheres" : "disks", grain_word(space ? 3 : 2), "bodies",
+               "box", "cell", "load", "expected"});
         const std::string format = string(required(root_, "format"), "format");
         if (format != "isostat-packing 1") {
             fail(*root_.get("format"), "format", "\"" + format + "\"", "\"isostat-packing 1\"");
@@ -74,6 +76,7 @@ class Reader {
         grains();
         cell();
         box();
+        bodies();
         load();
         expected();
         return std::move(out_);
@@ -375,6 +378,41 @@ class Reader {
             } else if (!length[a].is_string() || length[a].as_string()->get() != "none") {
                 fail(length[a], "box.length", "a value", "\"none\" for an absent wall");
             }
+        }
+    }
+
+    /// The bars of the rigid bodies.
+    void bodies() {
+        const toml::node* node = root_.get("bodies");
+        if (node == nullptr) {
+            return;
+        }
+        ExactPacking& packing = out_.packing;
+        std::vector<std::vector<int>> all;
+        std::vector<unsigned char> taken = packing.fixed;
+        for (const toml::node& body : array(*node, "bodies")) {
+            all.emplace_back();
+            for (const toml::node& member : array(body, "bodies")) {
+                const int i = all.back().emplace_back(index(member, "bodies"));
+                if (std::exchange(taken[static_cast<std::size_t>(i)], 1) != 0) {
+                    fail(member, "bodies", std::to_string(i), fmt::format("a {} that is not fixed, once", grain()));
+                }
+            }
+            if (all.back().size() < 2) {
+                fail(body, "bodies", "one member or none", "two members or more");
+            }
+        }
+        const std::string where = fmt::format("{}:{}", name_, node->source().begin.line);
+        packing.bars = bars_of_bodies(approximate(packing), all, where);
+        std::vector<Contact> list;
+        for (const Bar& bar : packing.bars) {
+            list.emplace_back(ContactKind::bar, bar.i, bar.j);
+        }
+        if (exact::rank_bound(exact_contact_matrix(packing, DofMap(approximate(packing)), list)).rank <
+            static_cast<int>(list.size())) {
+            throw Error(ErrorKind::bad_input, where +
+                                                  ": the members of a body lie on one line, or in one plane: expected "
+                                                  "one more beside them, inside another one");
         }
     }
 

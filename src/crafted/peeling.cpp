@@ -219,9 +219,9 @@ class Peeler {
         const Contact& contact = contacts_[static_cast<std::size_t>(l)];
         const auto i = static_cast<std::size_t>(contact.i);
         const auto j = static_cast<std::size_t>(contact.j);
-        if (contact.kind == ContactKind::disk_disk && !contact.image.is_here()) {
+        if (contact.of_disks() && !contact.image.is_here()) {
             add_arms_of_image(l);
-        } else if (contact.kind == ContactKind::disk_disk) {
+        } else if (contact.of_disks()) {
             const std::array<double, 2> a{packing_.q[2 * i], packing_.q[2 * i + 1]};
             const std::array<double, 2> b{packing_.q[2 * j], packing_.q[2 * j + 1]};
             if (a == b) {
@@ -265,7 +265,7 @@ class Peeler {
         out_.contact_from[static_cast<std::size_t>(l)] = now_ + 1;
         const Contact& contact = contacts_[static_cast<std::size_t>(l)];
         take_arm(static_cast<std::size_t>(contact.i), l);
-        if (contact.kind == ContactKind::disk_disk) {
+        if (contact.of_disks()) {
             take_arm(static_cast<std::size_t>(contact.j), l);
         }
     }

@@ -25,7 +25,7 @@ struct Direction {
     [[nodiscard]] PerAxis<Number> in(const Packing& packing, const std::vector<Contact>& all) const {
         const Contact& c = all[static_cast<std::size_t>(contact)];
         PerAxis<Number> d{Number(0), Number(0), Number(0)};
-        if (c.kind != ContactKind::disk_disk) {
+        if (!c.of_disks()) {
             d[static_cast<std::size_t>(c.j)] = Number(c.kind == ContactKind::lower_wall ? -1 : 1);
             return d;
         }
@@ -81,7 +81,7 @@ class SpacePeeler {
                             fmt::format("{}: the two spheres have the same centre", to_string(contacts[l], 3)));
             }
             around_[static_cast<std::size_t>(contacts[l].i)].push_back(direction);
-            if (contacts[l].kind == ContactKind::disk_disk) {
+            if (contacts[l].of_disks()) {
                 around_[static_cast<std::size_t>(contacts[l].j)].push_back({static_cast<int>(l), true});
             }
         }
@@ -114,7 +114,7 @@ class SpacePeeler {
         from = now_ + 1;
         const Contact& c = contacts_[static_cast<std::size_t>(l)];
         take(c.i, l);
-        if (c.kind == ContactKind::disk_disk) {
+        if (c.of_disks()) {
             take(c.j, l);
         }
     }

@@ -165,6 +165,7 @@ class Sequence {
         return packing;
     }
     void check() const {
+        require_single_grains(packing_, "plateau", "a count against the gap threshold");
         const auto sensible = [](double x) { return std::abs(x) <= largest_length; };
         for (const double x : packing_.q) {
             if (!sensible(x)) {

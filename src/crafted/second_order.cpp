@@ -62,7 +62,7 @@ std::vector<std::vector<Number>> stress_form(const ExactPacking& packing, const 
     std::vector<std::vector<Number>> out(k, std::vector<Number>(k));
     for (std::size_t l = 0; l < contacts.size(); ++l) {
         const Contact& contact = contacts[l];
-        if (contact.kind != ContactKind::disk_disk || forces[l].is_zero()) {
+        if (!contact.of_disks() || forces[l].is_zero()) {
             continue; // a wall's gap is linear
         }
         const Separation separation(contact, packing.layout());
@@ -74,7 +74,7 @@ std::vector<std::vector<Number>> stress_form(const ExactPacking& packing, const 
             };
             relative[m] = separation.of_disks(velocity, std::minus<>());
         }
-        const Number weight = forces[l] / touching_distance(packing.radius, contact);
+        const Number weight = forces[l] / scale_of_row(packing, contact);
         for (std::size_t a = 0; a < k; ++a) {
             for (std::size_t b = 0; b < k; ++b) {
                 const Number product = dot(relative[a], relative[b]);

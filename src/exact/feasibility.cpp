@@ -212,10 +212,14 @@ std::optional<Number> least(const std::vector<Row>& rows, const Row& b, const Ro
     return value;
 }
 
-OneSignAnswer one_sign(const std::vector<Row>& vectors, int size) {
+OneSignAnswer one_sign(const std::vector<Row>& whole, int size) {
     const auto components = static_cast<std::size_t>(size);
-    if (vectors.empty() || size == 0) {
+    if (whole.empty() || size == 0) {
         return {};
+    }
+    std::vector<Row> vectors = whole;
+    for (Row& vector : vectors) {
+        vector.resize(components);
     }
     // Gordan: either some combination is > 0 everywhere, or some y >= 0, sum y = 1, is orthogonal to all vectors.
     std::vector<Row> rows = vectors;
@@ -229,9 +233,9 @@ OneSignAnswer one_sign(const std::vector<Row>& vectors, int size) {
         for (Number& w : weights) {
             w = -w;
         }
-        OneSignAnswer out{OneSign::strict, combine(vectors, weights, components)};
-        for (const Number& x : out.combination) {
-            require(x.sign() > 0);
+        OneSignAnswer out{OneSign::strict, combine(whole, weights, whole.front().size())};
+        for (std::size_t i = 0; i < components; ++i) {
+            require(out.combination[i].sign() > 0);
         }
         return out;
     }
@@ -250,11 +254,11 @@ OneSignAnswer one_sign(const std::vector<Row>& vectors, int size) {
     for (Number& w : weights) {
         w = -w;
     }
-    OneSignAnswer out{OneSign::partial, combine(vectors, weights, components)};
+    OneSignAnswer out{OneSign::partial, combine(whole, weights, whole.front().size())};
     bool somewhere = false;
-    for (const Number& x : out.combination) {
-        require(x.sign() >= 0);
-        somewhere = somewhere || x.sign() > 0;
+    for (std::size_t i = 0; i < components; ++i) {
+        require(out.combination[i].sign() >= 0);
+        somewhere = somewhere || out.combination[i].sign() > 0;
     }
     require(somewhere);
     return out;

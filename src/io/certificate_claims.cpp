@@ -87,6 +87,11 @@ Json claim(const LoadIntervalClaim& load, int dimension) {
     return {{"low", claim(load.low, dimension)}, {"high", claim(load.high, dimension)}, {"rung", to_string(load.rung)}};
 }
 
+Json claim(const MinimumClaim& minimum) {
+    return {{"away", number(minimum.away, "minimum.away")},
+            {"curvature", number(minimum.curvature, "minimum.curvature")}};
+}
+
 template <class Claim, class... More> Json or_absent(const std::optional<Claim>& value, More... more) {
     return value ? claim(*value, more...) : Json(nullptr);
 }
@@ -215,6 +220,18 @@ LoadEndClaim load_end_of(const Field& field, const State& state) {
     return claim;
 }
 
+MinimumClaim minimum_of(const Field& field) {
+    field.only({"away", "curvature"});
+    const MinimumClaim claim{field.at("away").number(), field.at("curvature").number()};
+    if (!(claim.away >= 0)) {
+        field.at("away").fail("a distance >= 0");
+    }
+    if (!(claim.curvature > 0)) {
+        field.at("curvature").fail("a positive number");
+    }
+    return claim;
+}
+
 LoadIntervalClaim load_interval_of(const Field& field, const State& state) {
     field.only({"low", "high", "rung"});
     return {load_end_of(field.at("low"), state), load_end_of(field.at("high"), state), rung_of(field.at("rung"))};
@@ -230,12 +247,15 @@ std::string claims_text(const CertificateClaims& claims, int dimension) {
     text += "  " + member_line("gaps", or_absent(claims.gaps, dimension)) + ",\n";
     text += "  " + member_line("load_interval", or_absent(claims.load_interval, dimension)) + ",\n";
     text += "  " + member_line("stable", claims.stable) + ",\n";
+    if (claims.minimum) {
+        text += "  " + member_line("minimum", claim(*claims.minimum)) + ",\n";
+    }
     text += "  " + member_line("undecided", claims.undecided) + "\n}";
     return text;
 }
 
 CertificateClaims claims_of(const Field& field, const State& state) {
-    field.only({"counting", "vertex", "forces", "gaps", "load_interval", "stable", "undecided"});
+    field.only({"counting", "vertex", "forces", "gaps", "load_interval", "stable", "minimum", "undecided"});
     const auto given = [&field](const char* name) { return !field.at(name).value().is_null(); };
     CertificateClaims claims;
     if (given("counting")) {
@@ -254,6 +274,9 @@ CertificateClaims claims_of(const Field& field, const State& state) {
         claims.load_interval = load_interval_of(field.at("load_interval"), state);
     }
     claims.stable = field.at("stable").boolean();
+    if (field.has("minimum")) {
+        claims.minimum = minimum_of(field.at("minimum"));
+    }
     const Field undecided = field.at("undecided");
     for (std::size_t k = 0; k < undecided.size(); ++k) {
         claims.undecided.push_back(undecided.at(k).string());

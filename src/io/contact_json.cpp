@@ -70,6 +70,7 @@ Json contact_to_json(const Contact& contact, int dimension) {
     }
     case ContactKind::lower_wall: return Json::array({contact.i, lower_name[axis]});
     case ContactKind::upper_wall: return Json::array({contact.i, upper_name[axis]});
+    case ContactKind::bar: return Json::array({"bar", contact.i, contact.j});
     case ContactKind::held: return Json::array({"held", contact.i});
     }
     return {};
@@ -83,6 +84,16 @@ Contact contact_of(const Field& field, const Packing& packing) {
     }
     const Field first = field.at(std::size_t{0});
     const Field second = field.at(std::size_t{1});
+    if (first.value().is_string() && first.string() == "bar") {
+        field.require_size(3, "[\"bar\", disk, disk]");
+        const int i = disk_index(second, packing.disk_count());
+        const int j = disk_index(field.at(std::size_t{2}), packing.disk_count());
+        const auto& bars = packing.bars;
+        if (std::none_of(bars.begin(), bars.end(), [&](const Bar& bar) { return bar.i == i && bar.j == j; })) {
+            field.fail("a bar of \"bars\"");
+        }
+        return {ContactKind::bar, i, j};
+    }
     if (first.value().is_string()) {
         field.require_size(2, "[\"held\", coordinate]");
         const long coordinate = second.integer();

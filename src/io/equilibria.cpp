@@ -213,6 +213,7 @@ EquilibriumRow row_of(const EquilibriumLine& line) {
 std::pair<int, int> contact_columns(const Contact& contact) {
     switch (contact.i < 0 ? ContactKind::held : contact.kind) {
     case ContactKind::disk_disk: return {contact.i, contact.j};
+    case ContactKind::bar: return {contact.i, first_bar - contact.j};
     case ContactKind::lower_wall: return {contact.i, contact.j < plane ? -1 - contact.j : back_wall};
     case ContactKind::upper_wall: return {contact.i, contact.j < plane ? -3 - contact.j : front_wall};
     case ContactKind::held: break;

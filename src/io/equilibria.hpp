@@ -21,6 +21,8 @@ namespace isostat {
 inline constexpr int no_contact = -9;
 /// In the second column, of spheres: after -1 left, -2 bottom, -3 right, -4 top.
 inline constexpr int back_wall = -5, front_wall = -6;
+/// In the second column, of a bar to disk j: that less j.
+inline constexpr int first_bar = -10;
 /// Columns i and j of a contact: see `equilibria_columns`.
 std::pair<int, int> contact_columns(const Contact& contact);
 

@@ -3,7 +3,7 @@
 /// What columns of equilibria.csv and fields of events.jsonl are called: in the plane by what is loaded, in space by
 /// axis.
 
-#include <isostat/packing/packing.hpp>
+#include <isostat/packing/load.hpp>
 
 #include <string>
 #include <vector>

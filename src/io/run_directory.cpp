@@ -143,7 +143,7 @@ void RunDirectory::read_checkpoint() {
     point.made = file.at("made").integer(0, std::numeric_limits<int>::max());
     point.segment_done = file.at("segment_done").boolean();
     point.counters = counters_from(file.at("counters"));
-    StateFile state = parse_any_state(file.at("state").value().dump(), path, Dimensions::any);
+    StateFile state = parse_any_state(file.at("state").value().dump(), path, Dimensions::any_clumps);
     point.state = state.state;
     const bool tilts = point.state.packing.cell.shears();
     file.at("strain").require_size(record_columns(point.state.load, tilts).measures.size(), "a strain for each axis");
@@ -173,7 +173,7 @@ std::optional<State> RunDirectory::start() const {
     if (!resumed_ || !fs::exists(path)) {
         return std::nullopt;
     }
-    return read_any_state(path, Dimensions::any).state;
+    return read_any_state(path, Dimensions::any_clumps).state;
 }
 
 void RunDirectory::keep_digest(const std::string& name) {
@@ -192,7 +192,7 @@ MoreColumns RunDirectory::columns_of(const State& state) const {
 }
 
 State RunDirectory::stored(int equilibrium) const {
-    return read_any_state(directory_ / state_name(equilibrium), Dimensions::any).state;
+    return read_any_state(directory_ / state_name(equilibrium), Dimensions::any_clumps).state;
 }
 
 void RunDirectory::begin_segment(int number, const Segment& goal, int made, int from) {

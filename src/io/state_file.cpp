@@ -8,7 +8,6 @@
 #include "packing/words.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/io/foreign.hpp>
 #include <isostat/io/state_file.hpp>
 
 #include <fmt/format.h>
@@ -171,7 +170,32 @@ Packing packing_of(const Field& document) {
             packing.fixed[static_cast<std::size_t>(i)] = 1;
         }
     }
+    if (document.has("bars")) {
+        const Field bars = document.at("bars");
+        for (std::size_t k = 0; k < bars.size(); ++k) {
+            const Field bar = bars.at(k);
+            bar.require_size(3, "[disk, disk, length]");
+            const auto disk = [&](std::size_t at) { return bar.at(at).integer(0, packing.disk_count() - 1); };
+            packing.bars.push_back({disk(0), disk(1), bar.at(std::size_t{2}).number()});
+        }
+        std::sort(packing.bars.begin(), packing.bars.end());
+    }
     return packing;
+}
+
+/// Lists that name no bar have all of them; the others name each.
+void complete_bars(State& state, const std::string& source) {
+    const std::vector<Bar>& bars = state.packing.bars;
+    const auto listed = static_cast<std::size_t>(std::count_if(
+        state.contacts.begin(), state.contacts.end(), [](const Contact& c) { return c.kind == ContactKind::bar; }));
+    if (listed != 0 && listed != bars.size()) {
+        throw Error(ErrorKind::bad_input,
+                    fmt::format("{}: contacts has {} of {} bars: expected all, or to leave them out", source, listed,
+                                bars.size()));
+    }
+    for (std::size_t k = listed; k < bars.size(); ++k) {
+        state.contacts.push_back({ContactKind::bar, bars[k].i, bars[k].j});
+    }
 }
 
 void require_balance(const Field& document, const char* name, const std::vector<double>& values, const Cell& cell) {
@@ -318,7 +342,7 @@ StateFile json::state_from_json(const Field& document, const std::string& source
         document.at("version").fail("1 or 2, the versions that this program reads");
     }
     document.only({"format", "version", "dimension", "equilibrium", "provenance", "load", "walls", "length", "cell",
-                   "disks", "fixed", "disk_force", "infinitesimal", "perturbation", "contacts", "forces"});
+                   "disks", "fixed", "bars", "disk_force", "infinitesimal", "perturbation", "contacts", "forces"});
     StateFile file;
     State& state = file.state;
     state.packing = packing_of(document);
@@ -341,6 +365,7 @@ StateFile json::state_from_json(const Field& document, const std::string& source
         state.contacts.push_back(json::contact_from_json(contacts.at(l), state.packing));
     }
     json::refuse_duplicates(state.contacts, state.packing.dimension, source, "contacts");
+    complete_bars(state, source);
     if (document.has("perturbation")) {
         state.perturbation = json::perturbation_from_json(document.at("perturbation"), state.packing);
     }
@@ -366,6 +391,9 @@ StateFile of_box(StateFile file, const std::string& source) {
 StateFile parse_any_state(const std::string& text, const std::string& source, Dimensions dimensions) {
     const json::Json parsed = Field::parse(text, source);
     StateFile file = json::state_from_json(Field(parsed, source), source);
+    if (dimensions != Dimensions::any_clumps) {
+        require_single_grains(file.state.packing, source, "this command");
+    }
     if (dimensions == Dimensions::two) {
         require_plane(file.state.packing, source, "this command");
     }

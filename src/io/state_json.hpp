@@ -1,7 +1,8 @@
 #pragma once
 /// \file
 /// Parts of state files. A contact is [i, j] for two disks, [i, j, [mx, my]] for the image of the second, [i, "left"]
-/// for a wall, ["held", coordinate] for a held coordinate. Whatever reads throws `Error(bad_input)`.
+/// for a wall, ["bar", i, j] for a bar, ["held", coordinate] for a held coordinate. Whatever reads throws
+/// `Error(bad_input)`.
 
 #include "io/json.hpp"
 

@@ -146,6 +146,11 @@ std::string state_text(const State& state, std::span<const double> forces) {
         }
     }
     append_member(text, "fixed", rows);
+    rows.clear();
+    for (const Bar& bar : packing.bars) {
+        rows.push_back(Json::array({bar.i, bar.j, finite(bar.length, "bars (length)")}));
+    }
+    append_member(text, "bars", rows);
     append_member(text, "disk_force", vectors(state.load.disk_force, packing.axes(), "disk_force"));
     append_member(text, "infinitesimal", vectors(state.load.infinitesimal, packing.axes(), "infinitesimal"));
     if (state.perturbation) {

@@ -3,8 +3,12 @@
 /// Text that somebody else wrote (names, titles, words of files), made harmless for whoever reads it. Each language has
 /// one function; no such text goes into a file or to the screen without that of its language. JSON has its library.
 
+#include <fmt/format.h>
+
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 
 namespace isostat::text {
 
@@ -14,6 +18,23 @@ std::string shown(std::string_view text);
 
 /// The same for text of several lines that is put together from such pieces: line feeds stay.
 std::string shown_lines(std::string_view text);
+
+/// Numbers as they are; all else is text that may be foreign.
+template <class T> auto safe(const T& value) {
+    if constexpr (std::is_arithmetic_v<T>) {
+        return value;
+    } else {
+        return shown(value);
+    }
+}
+/// Like `fmt::format`; only the format may break a line or move the cursor.
+template <class... Values> std::string filled(fmt::format_string<Values...> format, Values&&... values) {
+    return fmt::vformat(format, fmt::make_format_args(safe(values)...));
+}
+/// The same at the end of a text.
+template <class... Values> void say(std::string& text, fmt::format_string<Values...> format, Values&&... values) {
+    text += filled(format, std::forward<Values>(values)...);
+}
 
 /// Whether the text is one line that is shown as it is.
 bool is_plain_line(std::string_view text);

@@ -6,7 +6,7 @@
 #include "linear/factorisation.hpp"
 
 #include <isostat/core/result.hpp>
-#include <isostat/packing/packing.hpp>
+#include <isostat/packing/load.hpp>
 
 #include <memory>
 #include <optional>

@@ -20,7 +20,7 @@ double precise_rate(const CorrectedConfiguration<dd_real>& place, const Contact&
                     const std::vector<double>& v) {
     PerAxis<dd_real> normal;
     normal.fill(1.0); // walls, and coordinates
-    if (contact.kind == ContactKind::disk_disk) {
+    if (contact.of_disks()) {
         normal = place.separation(contact);
         const dd_real length = place.gap(contact) + place.length(contact);
         for (dd_real& component : normal) {

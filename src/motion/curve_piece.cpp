@@ -91,7 +91,7 @@ void CurvePiece::bound_coefficients_of(std::size_t l) {
     // |F| <= |gap| (1 + |gap| / 2D), |gap| < 1e-3 D; the computed gap is off by less than 8u D.
     const double length = curve().target[l];
     bound[0] = 1.001 * std::abs(gap(centre(), c)) + 8 * u * length;
-    if (c.kind != ContactKind::disk_disk) {
+    if (!c.of_disks()) {
         std::copy(size, size + order, bound + 1);
         return;
     }

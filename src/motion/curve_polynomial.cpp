@@ -48,7 +48,7 @@ CurvePolynomial::CurvePolynomial(const KeptCurve& curve, const ArcCentre& centre
     double ratio = 0; // |gap| / D of the kept contacts and of the one in the free row
     for (std::size_t l = 0; l < curve.contacts.size(); ++l) {
         const Contact& c = centre.structure().contacts()[l];
-        if (c.kind == ContactKind::disk_disk && l != curve.slot) {
+        if (c.of_disks() && l != curve.slot) {
             ratio = std::max(ratio, std::abs(gap(centre.packing(), c)) / curve.target[l]);
         }
     }

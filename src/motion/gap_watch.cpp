@@ -18,7 +18,7 @@ constexpr int max_depth = 60;
 /// Relative position of the two grains of a candidate along p(s), and what the tube adds to it.
 struct GapWatch::Motion {
     Motion(const CurvePiece& piece, const Contact& contact) {
-        wall = contact.kind != ContactKind::disk_disk;
+        wall = !contact.of_disks();
         components = wall ? 1 : most_axes;
         target = touching_distance(piece.centre().radius, contact);
         a.push_back(separation_over(piece.centre().layout(), piece.centre().q, contact));

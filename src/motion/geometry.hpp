@@ -22,7 +22,7 @@ struct CentreLine {
 
 /// Nothing for other contacts, and where squares under- or overflow: the general functions of the room contact serve.
 inline std::optional<CentreLine> centre_line(const Packing& at, const Contact& contact) {
-    if (contact.kind != ContactKind::disk_disk) {
+    if (!contact.of_disks()) {
         return std::nullopt;
     }
     CentreLine line{separation(at.layout(), at.q, contact), 0};
@@ -34,7 +34,7 @@ inline std::optional<CentreLine> centre_line(const Packing& at, const Contact& c
 }
 
 inline double gap_of(const Packing& at, const Contact& contact, const CentreLine& line) {
-    return line.length - touching_distance(at.radius, contact);
+    return line.length - zero_distance(at, contact);
 }
 
 /// The same bits as `gap`.
@@ -84,7 +84,8 @@ inline double quick_curvature(const Packing& at, const Contact& contact, const s
 inline PerAxis<double> separation_over(const Layout& layout, const std::vector<double>& x, const Contact& contact) {
     PerAxis<double> d{};
     switch (contact.kind) {
-    case ContactKind::disk_disk: return separation(layout, x, contact);
+    case ContactKind::disk_disk:
+    case ContactKind::bar: return separation(layout, x, contact);
     case ContactKind::lower_wall:
     case ContactKind::upper_wall: d[0] = wall_distance(layout, x, contact); break;
     case ContactKind::held: d[0] = x[static_cast<std::size_t>(contact.i)]; break;

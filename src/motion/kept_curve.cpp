@@ -22,11 +22,11 @@ KeptCurve::KeptCurve(const Packing& start_packing, std::vector<Contact> list, st
         const Contact& c = contacts[l];
         const auto i = static_cast<std::size_t>(c.i);
         const auto j = static_cast<std::size_t>(c.j);
-        target[l] = touching_distance(start->radius, c);
+        target[l] = zero_distance(*start, c);
         if (l == slot) {
             continue;
         }
-        if (c.kind == ContactKind::disk_disk) {
+        if (c.of_disks()) {
             smallest = std::min(smallest, target[l]);
             for (const std::size_t k : {i, j}) {
                 (start->is_fixed(DiskId(k)) ? at_rest : count)[k]++;

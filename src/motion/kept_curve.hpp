@@ -27,7 +27,7 @@ struct Blocks {
 struct KeptCurve {
     KeptCurve(const Packing& start, std::vector<Contact> contacts, std::size_t slot, double rest_radius);
     /// Two disks that keep contact: the equations of all others are linear.
-    [[nodiscard]] bool bends(std::size_t l) const { return l != slot && contacts[l].kind == ContactKind::disk_disk; }
+    [[nodiscard]] bool bends(std::size_t l) const { return l != slot && contacts[l].of_disks(); }
     /// Upper bound of the 2-norm of the matrix whose row l has blocks of norm e_l times their weight.
     [[nodiscard]] double norm_of(const std::vector<double>& e) const;
 

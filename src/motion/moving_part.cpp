@@ -67,7 +67,8 @@ bool MovingPart::moves(const Contact& contact) const {
     const auto i = static_cast<std::size_t>(contact.i);
     const auto j = static_cast<std::size_t>(contact.j);
     switch (contact.kind) {
-    case ContactKind::disk_disk: return disk_moves_[i] != 0 || disk_moves_[j] != 0;
+    case ContactKind::disk_disk:
+    case ContactKind::bar: return disk_moves_[i] != 0 || disk_moves_[j] != 0;
     case ContactKind::lower_wall: return disk_moves_[i] != 0;
     case ContactKind::upper_wall: return disk_moves_[i] != 0 || wall_moves_[j] != 0;
     case ContactKind::held: return coordinate_moves(i);

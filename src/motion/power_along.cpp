@@ -22,7 +22,7 @@ double product(const std::vector<double>& maybe_empty, const std::vector<double>
 
 /// n . third derivative of a kept gap, whose own third derivative is 0: -3 (t . curvature) / d, as approach.
 double third_approach(const CurveCourse& course, const Contact& c) {
-    if (c.kind != ContactKind::disk_disk) {
+    if (!c.of_disks()) {
         return 0;
     }
     const auto d = separation(course.at.layout(), course.at.q, c);

@@ -29,11 +29,12 @@ inline Enclosure shifted_equation(const Packing& start, const Packing& centre, c
     const auto d = shift.empty() ? decltype(x){} : separation_over(centre.layout(), shift, c);
     const auto& radius = centre.radius;
     const auto i = static_cast<std::size_t>(c.i);
-    if (c.kind != ContactKind::disk_disk) {
+    if (!c.of_disks()) {
         const dd_real off = dd_real(x[0]) + d[0] - radius[i];
         return {off.x[0], std::abs(off.x[1]) + rounding * (std::abs(x[0]) + radius[i])};
     }
-    const dd_real distance = dd_real(radius[i]) + radius[static_cast<std::size_t>(c.j)];
+    const dd_real distance = c.kind == ContactKind::bar ? dd_real(centre.bar_length(c.i, c.j))
+                                                        : dd_real(radius[i]) + radius[static_cast<std::size_t>(c.j)];
     dd_real square = 0.0;
     for (std::size_t a = 0; a < most_axes; ++a) {
         const dd_real component = dd_real(x[a]) + d[a];

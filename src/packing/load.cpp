@@ -1,6 +1,6 @@
 #include "packing/words.hpp"
 
-#include <isostat/packing/packing.hpp>
+#include <isostat/packing/load.hpp>
 
 #include <fmt/format.h>
 

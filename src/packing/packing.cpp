@@ -1,3 +1,4 @@
+#include "packing/bodies.hpp"
 #include "packing/words.hpp"
 
 #include <isostat/core/error.hpp>
@@ -56,6 +57,7 @@ double Packing::solid_fraction_without(std::span<const int> left_out) const {
         const bool counts = std::find(left_out.begin(), left_out.end(), i) == left_out.end();
         grains += !counts ? 0 : dimension == plane ? std::numbers::pi * r * r : 4 * std::numbers::pi / 3 * r * r * r;
     }
+    grains -= bars.empty() ? 0 : shared_by_members(*this, left_out);
     double cell_size = 1;
     for (int a = 0; a < dimension; ++a) {
         cell_size *= length(a);
@@ -243,6 +245,7 @@ void validate(const Packing& packing, const std::string& source) {
             }
         }
     }
+    validate_bars(packing, source);
     if (packing.cell.any()) {
         validate_cell(packing, source);
         validate_own_images(packing, source);

@@ -2,7 +2,7 @@
 /// \file
 /// The lengths that a stress presses on.
 
-#include <isostat/packing/packing.hpp>
+#include <isostat/packing/load.hpp>
 
 #include <string>
 

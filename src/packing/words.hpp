@@ -4,7 +4,7 @@
 
 #include "core/words.hpp"
 
-#include <isostat/packing/packing.hpp>
+#include <isostat/packing/load.hpp>
 
 namespace isostat {
 

@@ -60,7 +60,7 @@ int best_held(const Packing& packing) {
     std::vector<int> touching(packing.radius.size(), 0);
     for (const Contact& c : near_contacts(packing, near_enough * packing.min_radius(), 0)) {
         ++touching[static_cast<std::size_t>(c.i)];
-        if (c.kind == ContactKind::disk_disk) {
+        if (c.of_disks()) {
             ++touching[static_cast<std::size_t>(c.j)];
         }
     }

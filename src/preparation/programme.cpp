@@ -186,7 +186,7 @@ bool ContactProgramme::start_from_overlaps(ClpSimplex& simplex, const Packing& p
         if (rows.gap[k] <= 0) {
             ++nonbasic;
             ++degree[static_cast<std::size_t>(rows.contact[k].i)];
-            if (rows.contact[k].kind == ContactKind::disk_disk) {
+            if (rows.contact[k].of_disks()) {
                 ++degree[static_cast<std::size_t>(rows.contact[k].j)];
             }
         }

@@ -1,8 +1,8 @@
 // snap and compare: soft grains of other programs.
-#include "compare/force_split.hpp"
 #include "compare/report.hpp"
-#include "compare/soft_state.hpp"
 #include "convert.hpp"
+#include "snap/force_split.hpp"
+#include "snap/soft_state.hpp"
 
 #include <isostat/compare/compare.hpp>
 #include <isostat/core/error.hpp>
@@ -25,6 +25,7 @@ Snapped snapped(const PyState& file, double stiffness, const std::string& law) {
     if (law != "linear" && law != "hertz") {
         throw Error(ErrorKind::bad_input, "law is '" + law + "': expected \"linear\" or \"hertz\"");
     }
+    require_single_grains(file.state.packing, "state", "snap");
     Snapped out;
     compare::SoftForces grains = compare::soft_grains(file, "state");
     if (finite(stiffness, "stiffness") > 0) {
@@ -91,6 +92,7 @@ std::string compared(const std::filesystem::path& series, const std::optional<Py
     options.nearest_arc = nearest_arc;
     options.stop = &stop;
     if (reference) {
+        require_single_grains(reference->state.packing, "reference", "compare");
         options.start = reference->state;
     }
     auto task = std::async(std::launch::async, [&] {

@@ -140,6 +140,7 @@ Crafted read(const std::filesystem::path& path) {
 }
 
 Crafted of_state(const PyState& state) {
+    require_single_grains(state.state.packing, "State", "an exact packing");
     return {crafted::exact_copy(state.state.packing), state.state.contacts, "", state_text(state.state)};
 }
 
@@ -294,7 +295,7 @@ void bind_bases(InspectionClass& inspection) {
                 }
                 return words;
             },
-            "Per disk: \"held\", \"bridge\", \"rattler\", \"fixed\", \"loaded\".");
+            "Per disk: \"held\", \"bridge\", \"rattler\", \"fixed\", \"loaded\", \"member\" of a body.");
 }
 
 void bind_equilibrium(InspectionClass& inspection) {
@@ -399,10 +400,14 @@ void bind_genericity(py::module_& module) {
         .def_property_readonly("within", &Genericity::within, "Copies whose force network is part of the contacts.")
         .def_property_readonly(
             "networks", [](const Genericity& self) { return self.lists.size(); }, "Different force networks.");
-    bind_genericity_of<Crafted>(
-        module, [](const Crafted& what) { return std::pair(approximate(what.packing), contacts_of(what)); });
-    bind_genericity_of<PyState>(module,
-                                [](const PyState& what) { return std::pair(what.state.packing, what.state.contacts); });
+    bind_genericity_of<Crafted>(module, [](const Crafted& what) {
+        require_single_grains(approximate(what.packing), "ExactPacking", "genericity");
+        return std::pair(approximate(what.packing), contacts_of(what));
+    });
+    bind_genericity_of<PyState>(module, [](const PyState& what) {
+        require_single_grains(what.state.packing, "State", "genericity");
+        return std::pair(what.state.packing, what.state.contacts);
+    });
 }
 
 } // namespace

@@ -46,12 +46,15 @@ Contact contact_of(std::pair<int, int> pair) {
     if (i >= 0 && j <= -1 && j >= -4) {
         return j >= -2 ? Contact{ContactKind::lower_wall, i, -1 - j} : Contact{ContactKind::upper_wall, i, -3 - j};
     }
+    if (i >= 0 && j <= first_bar) {
+        return {ContactKind::bar, i, first_bar - j};
+    }
     if (i >= 0 && j == no_contact) {
         return {ContactKind::held, i, 0};
     }
     throw Error(ErrorKind::bad_input, "contact (" + std::to_string(i) + ", " + std::to_string(j) +
                                           "): expected (i, j) of two disks, or (i, -1) left, (i, -2) bottom, (i, -3) "
-                                          "right, (i, -4) top wall, (i, -9) held coordinate");
+                                          "right, (i, -4) top wall, (i, -9) held coordinate, (i, -10 - j) bar");
 }
 
 double finite(double value, const char* name) {

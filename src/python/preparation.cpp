@@ -3,7 +3,7 @@
 
 #include <isostat/core/error.hpp>
 #include <isostat/crafted/plateau.hpp>
-#include <isostat/io/foreign.hpp>
+#include <isostat/foreign/foreign.hpp>
 #include <isostat/preparation/preparation.hpp>
 
 namespace isostat::python {
@@ -50,6 +50,7 @@ std::shared_ptr<PyState> prepare_disks(int disks, int dimension, std::uint64_t s
 
 std::shared_ptr<PyState> vertex_near(const Packing& packing, const std::optional<std::vector<double>>& given,
                                      std::uint64_t seed) {
+    require_single_grains(packing, "Packing", "find_vertex");
     const std::vector<double> stress = given.value_or(std::vector<double>(packing.axes(), 1.0));
     if (stress.size() != packing.axes() || stress.front() != stress[packing.axes() - 2]) {
         throw Error(ErrorKind::bad_input, packing.dimension == plane
@@ -66,8 +67,9 @@ std::shared_ptr<PyState> vertex_near(const Packing& packing, const std::optional
 
 Packing read_any(const std::filesystem::path& path, const std::string& walls,
                  const std::optional<std::vector<double>>& box, const std::string& radius, const std::string& diameter,
-                 std::optional<int> dimension) {
+                 std::optional<int> dimension, const std::string& bodies) {
     ForeignOptions options;
+    options.bodies = bodies;
     if (walls != "none" && walls != "fixed" && walls != "box") {
         throw Error(ErrorKind::bad_input, "walls is '" + walls + "': expected \"box\", \"fixed\" or \"none\"");
     }
@@ -157,11 +159,12 @@ void bind_preparation(py::module_& module) {
     module.def(
         "read_packing", &read_any, py::arg("path"), py::kw_only(), py::arg("walls") = "box",
         py::arg("box") = py::none(), py::arg("radius") = "", py::arg("diameter") = "",
-        py::arg("dimension") = py::none(), py::call_guard<py::gil_scoped_release>(),
+        py::arg("dimension") = py::none(), py::arg("bodies") = "", py::call_guard<py::gil_scoped_release>(),
         "Packing from another program: LAMMPS data and dumps, extended XYZ, CSV, tables. `walls`: \"box\" (two "
         "movable, of spheres three), \"fixed\", \"none\"; `box`: (xlo, xhi, ylo, yhi), of spheres zlo and zhi too; "
         "`radius` or `diameter`: the column that holds it, where its name does not say; `dimension` 2 or 3: disks "
-        "or spheres (default: spheres where z is not the same for all).");
+        "or spheres (default: spheres where z is not the same for all); `bodies`: the column whose rows with the same "
+        "number above 0 are one clump, or \"none\" (default: body, clump or clumpId where there is one).");
     bind_plateau(module);
 }
 

@@ -32,15 +32,15 @@ Certified certify_file(const std::filesystem::path& path) {
     Certificate certificate;
     certificate.input = path.filename().string();
     certificate.input_hash = sha256(read_text(path));
-    certificate.state = read_any_state(path, Dimensions::any).state;
+    certificate.state = with_free_motions_held(read_any_state(path, Dimensions::any_clumps).state);
     return certified(std::move(certificate));
 }
 
 Certified certify_state(const PyState& state) {
     Certificate certificate;
     certificate.input = "State";
-    certificate.state = state.state;
-    certificate.input_hash = sha256(state_text(certificate.state));
+    certificate.input_hash = sha256(state_text(state.state));
+    certificate.state = with_free_motions_held(state.state);
     return certified(std::move(certificate));
 }
 
@@ -99,7 +99,13 @@ void bind_claims(CertificateClass& certificate) {
             "opens there. None: unbounded or not proved.")
         .def_property_readonly(
             "high", claim(&Claims::load_interval, [](const LoadIntervalClaim& c) { return load_end(c.high); }),
-            "((lower, upper), contact): upper end. None: unbounded or not proved.");
+            "((lower, upper), contact): upper end. None: unbounded or not proved.")
+        .def_property_readonly(
+            "minimum",
+            claim(&Claims::minimum, [](const MinimumClaim& c) { return py::make_tuple(c.away, c.curvature); }),
+            "(away, curvature), of clumps with mechanisms that the load reaches, in the place of the other claims: no "
+            "coordinate is farther than `away` from an equilibrium that is a strict local minimum, where the second "
+            "variation on the held coordinates is at least `curvature`. None.");
 }
 
 void bind_certificate(py::module_& module) {
@@ -109,7 +115,8 @@ void bind_certificate(py::module_& module) {
     certificate
         .def_property_readonly(
             "verdict", [](const Certified& self) { return self.verdict; },
-            "Verdict on: the true vertex is an isostatic, stable equilibrium without overlap.")
+            "Verdict on: the true vertex is an isostatic, stable equilibrium without overlap; with `minimum`, that the "
+            "equilibrium which it names is one.")
         .def_readonly("refuted", &Certified::refuted, "Sentences: claims that are proved to be wrong.")
         .def_property_readonly(
             "undecided", [](const Certified& self) { return self.certificate.claims.undecided; },
@@ -145,6 +152,18 @@ void bind_certificate(py::module_& module) {
         "than an inspection.");
 }
 
+void bind_inspect(py::module_& module) {
+    module.def(
+        "inspect",
+        [](const PyState& state) {
+            return value_or_raise(
+                interruptible([state] { return inspect_vertex(with_free_motions_held(state.state)); }));
+        },
+        py::arg("state"),
+        "Inspection of a State: rank, forces, supported interval, gaps, stability. Raises NotIsostatic when h > 0 or "
+        "the rank is not proved, Undecided when no bound was proved.");
+}
+
 void bind_inspection(py::module_& module) {
     using Seen = Inspection;
     const auto record = [](auto member) { return [member](const Seen& self) { return self.record.*member; }; };
@@ -164,7 +183,9 @@ void bind_inspection(py::module_& module) {
         .def_property_readonly("structural_zero", vector_of(&Seen::structural_zero),
                                "(N,) 1: the force is exactly 0 for every load on the walls.")
         .def_property_readonly("rattlers", vector_of(&Seen::rattlers),
-                               "Numbers of the disks without a force-carrying contact.")
+                               "Numbers of the disks without a force-carrying contact; of clumps of all their members.")
+        .def_property_readonly("rotational_rattlers", vector_of(&Seen::rotational_rattlers),
+                               "First members of clumps that turn about the one member with contacts.")
         .def_property_readonly("verdict", record(&Record::verdict),
                                "Verdict on: an isostatic equilibrium without overlap.")
         .def_property_readonly(
@@ -195,30 +216,28 @@ void bind_inspection(py::module_& module) {
         .def_property_readonly("potential", record(&Record::potential), "W = -sum F q.")
         .def_property_readonly("decided_by", record(&Record::decided_by),
                                "The arithmetic that settled it: \"double\", \"double-double\", \"mpfr\", \"exact\".");
-    module.def(
-        "inspect",
-        [](const PyState& state) {
-            return value_or_raise(interruptible([state] { return inspect_vertex(state.state); }));
-        },
-        py::arg("state"),
-        "Inspection of a State: rank, forces, supported interval, gaps, stability. Raises NotIsostatic when h > 0 or "
-        "the rank is not proved, Undecided when no bound was proved.");
+    bind_inspect(module);
 }
 
 /// What is jammed, of a cell or of a box.
 struct Jamming {
     std::map<std::string, Verdict> verdicts;
     std::map<std::string, std::string> reasons;
+    std::map<std::string, JammedIfClosed> if_closed;
     std::map<std::string, Counting> counts, backbone;
     int grains = 0;
 
     void add(const std::string& what, const JammingAnswer& answer) {
         verdicts[what] = answer.verdict;
         reasons[what] = answer.reason;
+        if (answer.if_closed) {
+            if_closed[what] = *answer.if_closed;
+        }
     }
 };
 
 Jamming jamming_of(const State& state) {
+    require_single_grains(state.packing, "State", "jamming");
     Jamming out;
     const Certification truth = certify(state);
     if (state.packing.cell.all()) {
@@ -246,11 +265,21 @@ Jamming jamming_of(const State& state) {
 }
 
 void bind_jamming(py::module_& module) {
+    py::class_<JammedIfClosed>(module, "JammedIfClosed",
+                               "Of every packing near the stored one in which all contacts of its list close, whatever "
+                               "the radii; whether there is such a packing is not asked.")
+        .def_readonly("verdict", &JammedIfClosed::verdict,
+                      "PROVED: each is jammed; REFUTED: each in which no other pair touches is not.")
+        .def_readonly("contacts", &JammedIfClosed::contacts, "How many, without those of rattlers by coordination.")
+        .def_readonly("within", &JammedIfClosed::within,
+                      "How near: the 2-norm of the change of coordinates and cell or box.");
     py::class_<Jamming>(module, "Jamming", "What is jammed, and counts: see `jamming`.")
         .def_readonly("verdicts", &Jamming::verdicts,
                       "A Verdict for \"local\", \"collective\" and \"strict\", of a box for \"collective\": of "
                       "the grains that carry a force, while walls stay.")
         .def_readonly("reasons", &Jamming::reasons, "Why, in words.")
+        .def_readonly("if_closed", &Jamming::if_closed,
+                      "Of answers that are undecided, where it is known: a JammedIfClosed.")
         .def_readonly("counts", &Jamming::counts,
                       "A Counting for \"fixed cell\", \"isotropic\", \"diagonal\", \"full strain\"; \"box\" "
                       "without rattlers.")
@@ -273,7 +302,7 @@ void bind_forces(py::module_& module) {
     module.def(
         "forces_at",
         [](const PyState& state, double sigma) {
-            const State copy = state.state;
+            const State copy = with_free_motions_held(state.state);
             finite(sigma, "sigma2");
             return interval_array(value_or_raise(interruptible([copy, sigma] { return forces_at(copy, sigma); })));
         },

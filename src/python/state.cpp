@@ -70,6 +70,16 @@ template <class Bound, class Of> void bind_grains(Bound& bound, const Of& of) {
             "fixed", [of](const py::object& self) { return view(of(self).fixed, self); },
             "(n,) flags, 1: cannot move; empty where no disk is fixed.")
         .def_property_readonly(
+            "bars",
+            [of](const py::object& self) {
+                py::list rows;
+                for (const Bar& bar : of(self).bars) {
+                    rows.append(py::make_tuple(bar.i, bar.j, bar.length));
+                }
+                return rows;
+            },
+            "(i, j, length): two members of a clump and the distance of their centres; empty without clumps.")
+        .def_property_readonly(
             "walls", [of](const py::object& self) { return walls_dict(of(self).walls, of(self).dimension); },
             "{\"lower\": (left, bottom), \"upper\": (right, top)}, of spheres (left, bottom, back), (right, top, "
             "front), each \"absent\", \"fixed\" or \"movable\".")
@@ -90,7 +100,7 @@ template <class Bound, class Of> void bind_grains(Bound& bound, const Of& of) {
             "Along x, y (and z): whether the packing repeats.")
         .def_property_readonly(
             "solid_fraction", [of](const py::object& self) { return of(self).solid_fraction(); },
-            "Area of the disks over that of the box; of spheres volumes.")
+            "Area of the disks over that of the box; of spheres volumes; of a clump that of its union.")
         .def_property_readonly(
             "dof_names", [of](const py::object& self) { return dof_names(of(self)); },
             "Names of the N_f degrees of freedom, in their order: \"x of disk 3\", \"top wall\".");
@@ -104,10 +114,10 @@ template <class T> py::array taken(std::vector<T>&& vector) {
 }
 
 /// (data, indices, indptr), shape: the arguments of scipy.sparse.csc_matrix.
-py::tuple matrix_parts(const Packing& packing, const std::vector<Contact>& contacts) {
-    sparse::Matrix<double> h = contact_matrix(packing, DofMap(packing), contacts);
+py::tuple matrix_parts(const State& state) {
+    SparseColumns h = contact_matrix(state);
     return py::make_tuple(py::make_tuple(taken(std::move(h.value)), taken(std::move(h.row)), taken(std::move(h.start))),
-                          py::make_tuple(h.rows, h.cols));
+                          py::make_tuple(h.rows, h.columns));
 }
 
 /// (contact, row, column, value): second derivatives of the gaps with respect to two degrees of freedom.
@@ -151,6 +161,7 @@ py::tuple curvature_parts(const State& state) {
 
 /// Everything that a packing is, for copies.
 py::tuple packing_parts(const Packing& p) {
+    require_single_grains(p, "Packing", "a copy");
     const Cell& c = p.cell;
     PerAxis<std::array<int, 2>> walls{};
     std::transform(p.walls.lower.begin(), p.walls.lower.end(), p.walls.upper.begin(), walls.begin(),
@@ -250,7 +261,7 @@ void bind_contacts(StateClass& state) {
         .def_property_readonly(
             "contacts", [](const PyState& self) { return contact_array(self.state.contacts); },
             "(N, 2) integers: disks i < j; or a disk and -1 left, -2 bottom, -3 right, -4 top wall, of spheres -5 "
-            "back, -6 front; or a held coordinate and -9. A copy.")
+            "back, -6 front; or a held coordinate and -9; or two members i < j of a clump as i and -10 - j. A copy.")
         .def_property_readonly(
             "images",
             [](const PyState& self) {
@@ -324,7 +335,7 @@ void bind_load(StateClass& state) {
             [](const PyState& self, double stress) {
                 State changed = self.state;
                 changed.load.set_loaded_stress(stress);
-                return parse_any_state(state_text(changed), "State", Dimensions::any);
+                return parse_any_state(state_text(changed), "State", Dimensions::any_clumps);
             },
             py::arg("stress"), "The same state where what the programme changes has this value.");
 }
@@ -332,13 +343,13 @@ void bind_load(StateClass& state) {
 void bind_files(StateClass& state) {
     state
         .def_static(
-            "read", [](const std::filesystem::path& path) { return read_any_state(path, Dimensions::any); },
+            "read", [](const std::filesystem::path& path) { return read_any_state(path, Dimensions::any_clumps); },
             py::arg("path"), py::call_guard<py::gil_scoped_release>(),
             "Reads a state file or a plain vertex text. Raises BadInput with file, field, value.")
         .def_static(
             "parse",
             [](const std::string& text, const std::string& source) {
-                return parse_any_state(text, source, Dimensions::any);
+                return parse_any_state(text, source, Dimensions::any_clumps);
             },
             py::arg("text"), py::arg("source") = "State", py::call_guard<py::gil_scoped_release>(),
             "Reads a state from the text of a file; `source` begins messages.")
@@ -352,7 +363,7 @@ void bind_files(StateClass& state) {
         .def("__len__", [](const PyState& self) { return self.state.packing.disk_count(); })
         .def(py::pickle([](const PyState& self) { return py::make_tuple(state_text(self.state, self.forces)); },
                         [](const py::tuple& text) {
-                            return parse_any_state(text[0].cast<std::string>(), "State", Dimensions::any);
+                            return parse_any_state(text[0].cast<std::string>(), "State", Dimensions::any_clumps);
                         }));
 }
 
@@ -373,8 +384,12 @@ void bind_state_class(py::module_& module) {
         .def_property_readonly(
             "packing", [](const PyState& self) { return self.state.packing; },
             "The disks and walls, as a Packing (a copy).")
-        .def("_matrix", [](const PyState& self) { return matrix_parts(self.state.packing, self.state.contacts); })
-        .def("_curvature", [](const PyState& self) { return curvature_parts(self.state); })
+        .def("_matrix", [](const PyState& self) { return matrix_parts(self.state); })
+        .def("_curvature",
+             [](const PyState& self) {
+                 require_single_grains(self.state.packing, "State", "a stiffness matrix");
+                 return curvature_parts(self.state);
+             })
         .def("_contact_table",
              [](const PyState& self) {
                  const State copy = self.state;
@@ -382,7 +397,10 @@ void bind_state_class(py::module_& module) {
              })
         .def_property_readonly(
             "rattlers",
-            [](const PyState& self) { return rattlers_by_coordination(self.state.packing, self.state.contacts); },
+            [](const PyState& self) {
+                require_single_grains(self.state.packing, "State", "a count of rattlers by coordination");
+                return rattlers_by_coordination(self.state.packing, self.state.contacts);
+            },
             "Numbers of the grains that few contacts hold (at most d), counted until none is left; by forces: "
             "`inspect`.")
         .def(
@@ -396,7 +414,7 @@ void bind_state_class(py::module_& module) {
                 changed.load.path.reset();
                 std::copy(stress.begin(), stress.end(), changed.load.stress.begin());
                 changed.load.shear[0] = shear.value_or(changed.load.shear[0]);
-                return parse_any_state(state_text(changed), "State", Dimensions::any);
+                return parse_any_state(state_text(changed), "State", Dimensions::any_clumps);
             },
             py::arg("stress"), py::arg("shear") = py::none(),
             "The same state under other stresses, one per axis, and another shear stress on a tilt xy that moves.");

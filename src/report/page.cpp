@@ -4,6 +4,7 @@
 #include "io/json.hpp"
 #include "io/text.hpp"
 #include "linear/factorisation.hpp"
+#include "packing/bodies.hpp"
 #include "packing/words.hpp"
 #include "report/page_bytes.hpp"
 #include "report/run_walk.hpp"
@@ -50,6 +51,7 @@ std::int64_t disk_with_image(const Contact& contact, int disks) {
 void append_contact(Json& list, const Contact& contact, const Packing& packing) {
     list.push_back(contact.i);
     switch (contact.kind) {
+    case ContactKind::bar:
     case ContactKind::disk_disk: list.push_back(disk_with_image(contact, packing.disk_count())); break;
     case ContactKind::lower_wall: list.push_back(-1 - contact.j); break;
     case ContactKind::upper_wall: list.push_back(-3 - contact.j); break;
@@ -179,7 +181,7 @@ class Frames {
         double sum = 0;
         int carrying = 0;
         for (std::size_t l = 0; l < forces.size(); ++l) {
-            const bool drawn = state.contacts[l].kind != ContactKind::held && forces[l] != 0;
+            const bool drawn = state.contacts[l].is_unilateral() && forces[l] != 0;
             sum += drawn ? std::abs(forces[l]) : 0;
             carrying += drawn ? 1 : 0;
         }
@@ -188,7 +190,7 @@ class Frames {
         }
         for (std::size_t l = 0; l < forces.size(); ++l) {
             const double part = std::abs(forces[l]) * carrying / sum * parts_of_force;
-            const bool drawn = state.contacts[l].kind != ContactKind::held && forces[l] != 0;
+            const bool drawn = state.contacts[l].is_unilateral() && forces[l] != 0;
             forces_ += drawn ? static_cast<char>(std::clamp(std::llround(part), 1LL, 255LL)) : '\0';
         }
         force_count_.push_back(static_cast<int>(forces.size()));
@@ -238,6 +240,10 @@ Json packing_json(const State& state) {
     const Packing& packing = state.packing;
     Json object;
     object["radii"] = std::vector<float>(packing.radius.begin(), packing.radius.end());
+    const Bodies bodies(packing);
+    for (int i = 0; i < packing.disk_count() && !packing.bars.empty(); ++i) {
+        object["body"].push_back(bodies.of(i));
+    }
     object["fixed"] = packing.fixed;
     object["periodic"] = std::array{packing.cell.periodic[0], packing.cell.periodic[1]}; // a page draws the plane
     object["loaded_axis"] = state.load.loaded_axis;

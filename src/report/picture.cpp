@@ -1,6 +1,7 @@
 #include "report/picture.hpp"
 
 #include "io/text.hpp"
+#include "packing/bodies.hpp"
 #include "packing/cell_wrap.hpp"
 
 #include <fmt/format.h>
@@ -53,7 +54,7 @@ State in_cell(State state) {
     }
     const Wrapped wrapped = wrap_into_cell(state.packing);
     for (Contact& contact : state.contacts) {
-        for (std::size_t a = 0; a < 2 && contact.kind == ContactKind::disk_disk; ++a) {
+        for (std::size_t a = 0; a < 2 && contact.of_disks(); ++a) {
             const double m = contact.image.m[a] + wrapped.periods[static_cast<std::size_t>(contact.j)][a] -
                              wrapped.periods[static_cast<std::size_t>(contact.i)][a];
             contact.image.m[a] = static_cast<std::int8_t>(std::clamp(m, -100.0, 100.0)); // more: no contact
@@ -230,7 +231,7 @@ void draw_contacts(Canvas& canvas, const State& state, std::span<const double> f
             continue;
         }
         const double force = forces.empty() ? 0 : forces[l];
-        const bool pair = contact.kind == ContactKind::disk_disk;
+        const bool pair = contact.of_disks();
         const Point end = pair ? second_centre(state, contact) : foot(state, contact).value_or(Point{});
         const char* const style = force == 0 ? "contact" : force < 0 ? "traction" : pair ? "force" : "force wall";
         const double width = force == 0 ? hairline : std::abs(force) * unit;
@@ -290,16 +291,20 @@ void draw_scale(Canvas& canvas, const State& state, std::span<const double> forc
 
 std::vector<unsigned char> rattler_flags(const State& state, std::span<const double> forces) {
     assert(forces.size() == state.contacts.size());
+    const Bodies bodies(state.packing);
     std::vector<unsigned char> flags(state.packing.radius.size(), 1);
     for (std::size_t l = 0; l < state.contacts.size(); ++l) {
         const Contact& contact = state.contacts[l];
-        if (forces[l] == 0 || contact.kind == ContactKind::held) {
+        if (forces[l] == 0 || !contact.is_unilateral()) {
             continue;
         }
-        flags[static_cast<std::size_t>(contact.i)] = 0;
-        if (contact.kind == ContactKind::disk_disk) {
-            flags[static_cast<std::size_t>(contact.j)] = 0;
+        flags[static_cast<std::size_t>(bodies.of(contact.i))] = 0;
+        if (contact.of_disks()) {
+            flags[static_cast<std::size_t>(bodies.of(contact.j))] = 0;
         }
+    }
+    for (int i = 0; i < state.packing.disk_count(); ++i) {
+        flags[static_cast<std::size_t>(i)] = flags[static_cast<std::size_t>(bodies.of(i))];
     }
     return flags;
 }

@@ -49,11 +49,15 @@ class Writer {
             result_.notes.push_back(text);
         }
     }
-    /// With its forces, if the state is an equilibrium.
+    /// With its forces, if the state is an equilibrium; bars are drawn without.
     StateFile read(const fs::path& path) {
-        StateFile file = read_any_state(path, Dimensions::any);
+        StateFile file = read_any_state(path, Dimensions::any_clumps);
         if (file.forces.empty()) {
+            file.state = with_free_motions_held(std::move(file.state));
             file.forces = solve_forces(file.state, path);
+        }
+        for (std::size_t l = 0; l < file.forces.size(); ++l) {
+            file.forces[l] = file.state.contacts[l].kind == ContactKind::bar ? 0 : file.forces[l];
         }
         return file;
     }
@@ -249,13 +253,13 @@ ReportResult report_run(const fs::path& directory, const fs::path& output, const
         names.push_back(programme.at(s).string());
     }
     const std::vector<EquilibriumRow> rows = read_equilibria(directory / "equilibria.csv");
+    const std::vector<fs::path> states = stored_states(directory, content);
+    const State first = states.empty() ? State() : read_any_state(states.front(), Dimensions::any_clumps).state;
     make_output(directory, output);
     Writer writer(output, options, true);
     for (const std::string& note : notes_on(content, run_folder)) {
         writer.note(note);
     }
-    const std::vector<fs::path> states = stored_states(directory, content);
-    const State first = states.empty() ? State() : read_any_state(states.front(), Dimensions::any).state;
     const Load& load = first.load;
     const bool triaxial = load.dimension != plane && !rows.empty() && changes_lengths(load);
     const LoadWords words = load_words(load);
@@ -294,7 +298,7 @@ ReportResult report_run(const fs::path& directory, const fs::path& output, const
 
 ReportResult report_state(const fs::path& state, const fs::path& output, const ReportOptions& options) {
     const std::string name = "forces_" + state.stem().string();
-    if (options.html && read_any_state(state, Dimensions::any).state.packing.dimension == plane) {
+    if (options.html && read_any_state(state, Dimensions::any_clumps).state.packing.dimension == plane) {
         throw Error(ErrorKind::usage, fmt::format("{}: --html of one state is a view of spheres: this file is of "
                                                   "disks, and without --html {}.svg shows them",
                                                   state.string(), name));
@@ -312,10 +316,10 @@ namespace {
 
 /// Forces over their mean, without those that are 0.
 void add_scaled_forces(const fs::path& state, std::vector<double>& all) {
-    const StateFile file = fs::exists(state) ? read_any_state(state, Dimensions::any) : StateFile();
+    const StateFile file = fs::exists(state) ? read_any_state(state, Dimensions::any_clumps) : StateFile();
     std::vector<double> forces;
     for (std::size_t l = 0; l < file.forces.size(); ++l) {
-        if (file.forces[l] != 0 && file.state.contacts[l].kind != ContactKind::held) {
+        if (file.forces[l] != 0 && file.state.contacts[l].is_unilateral()) {
             forces.push_back(file.forces[l]);
         }
     }

@@ -260,7 +260,7 @@ class Drawing {
     }
     [[nodiscard]] Place end_of(const Contact& contact) const {
         const Place at = balls_[static_cast<std::size_t>(contact.i)].at;
-        if (contact.kind != ContactKind::disk_disk) {
+        if (!contact.of_disks()) {
             Place foot = at;
             foot[static_cast<std::size_t>(contact.j)] =
                 contact.kind == ContactKind::lower_wall ? 0 : state_.packing.length(contact.j);

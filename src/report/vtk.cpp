@@ -28,7 +28,7 @@ Place place_of(const Packing& packing, int grain) {
 /// Where the line of a contact ends: on the wall, or at the centre of the second grain or of its image.
 Place end_of(const Packing& packing, const Contact& contact) {
     Place at = place_of(packing, contact.i);
-    if (contact.kind != ContactKind::disk_disk) {
+    if (!contact.of_disks()) {
         at[static_cast<std::size_t>(contact.j)] =
             contact.kind == ContactKind::lower_wall ? 0 : packing.length(contact.j);
         return at;
@@ -92,7 +92,7 @@ void add_outline(const Packing& packing, std::vector<Place>& points, VtkLines& m
 /// Points of the line of a contact. In space both are new: the radius of a tube stands at the points of a line.
 std::vector<std::size_t> ends_of(const Packing& packing, const Contact& contact, std::vector<Place>& points) {
     const bool new_begin = packing.dimension != plane;
-    const bool new_end = new_begin || contact.kind != ContactKind::disk_disk || !contact.image.is_here();
+    const bool new_end = new_begin || !contact.of_disks() || !contact.image.is_here();
     std::vector<std::size_t> ends{static_cast<std::size_t>(contact.i), static_cast<std::size_t>(contact.j)};
     if (new_begin) {
         ends[0] = points.size();

@@ -2,7 +2,7 @@
 /// \file
 /// How tables and figures call what a run loads.
 
-#include <isostat/packing/packing.hpp>
+#include <isostat/packing/load.hpp>
 
 #include <string>
 

@@ -177,7 +177,7 @@ std::vector<int> untouched(int disks, const std::vector<Contact>& pairs) {
     std::vector<unsigned char> touched(static_cast<std::size_t>(disks), 0);
     for (const Contact& pair : pairs) {
         if (pair.kind != ContactKind::held) { // whose number is that of a coordinate
-            const int other = pair.kind == ContactKind::disk_disk ? pair.j : pair.i;
+            const int other = pair.of_disks() ? pair.j : pair.i;
             touched[static_cast<std::size_t>(pair.i)] = touched[static_cast<std::size_t>(other)] = 1;
         }
     }
@@ -196,11 +196,11 @@ std::vector<int> rattlers_by_coordination(const Packing& packing, std::vector<Co
         std::vector<int> count(gone.size(), 0);
         std::erase_if(contacts, [&](const Contact& c) {
             return c.kind == ContactKind::held || gone[static_cast<std::size_t>(c.i)] != 0 ||
-                   (c.kind == ContactKind::disk_disk && gone[static_cast<std::size_t>(c.j)] != 0);
+                   (c.of_disks() && gone[static_cast<std::size_t>(c.j)] != 0);
         });
         for (const Contact& c : contacts) {
             ++count[static_cast<std::size_t>(c.i)];
-            count[static_cast<std::size_t>(c.j)] += c.kind == ContactKind::disk_disk ? 1 : 0;
+            count[static_cast<std::size_t>(c.j)] += c.of_disks() ? 1 : 0;
         }
         changes = false;
         for (std::size_t i = 0; i < gone.size(); ++i) {

@@ -22,19 +22,20 @@ struct Level {
     friend bool operator==(const Level& a, const Level& b) = default;
 };
 
-/// Per coordinate of the disks: 0, or the number of the level that it is at. Empty when no two disks share one.
+/// Per coordinate of the disks: 0, or the number of the level that it is at. Empty when no two disks share one. What is
+/// held of clumps may be a free motion: it has to be one wherever it is held, not only level with others (U2).
 std::vector<int> shared_levels(const Packing& packing, const std::vector<Contact>& contacts) {
     std::vector<std::pair<Level, int>> held; // with the coordinate
     const int disks = packing.disk_count();
     for (const Contact& contact : contacts) {
-        if (contact.kind == ContactKind::disk_disk) {
+        if (contact.of_disks()) {
             continue;
         }
         const auto i = static_cast<std::size_t>(contact.i);
         if (contact.kind == ContactKind::lower_wall || contact.kind == ContactKind::upper_wall) {
             held.push_back({{contact.j, contact.kind == ContactKind::upper_wall, packing.radius[i]},
                             packing.dimension * contact.i + contact.j});
-        } else if (contact.kind == ContactKind::held && contact.i < packing.dimension * disks) {
+        } else if (packing.bars.empty() && contact.i < packing.dimension * disks) {
             held.push_back({{contact.i % packing.dimension, false, packing.q[i]}, contact.i});
         }
     }
@@ -69,7 +70,7 @@ int most_held(int disks, const std::vector<Contact>& contacts) {
             continue;
         }
         ++count[static_cast<std::size_t>(c.i)];
-        if (c.kind == ContactKind::disk_disk) {
+        if (c.of_disks()) {
             ++count[static_cast<std::size_t>(c.j)];
         }
     }
@@ -148,7 +149,7 @@ ContactPattern::ContactPattern(const Packing& packing, const DofMap& dofs, const
             return level[packing.layout().of_disk(disk) + static_cast<std::size_t>(axis)];
         };
         const auto vanishes = [&](int axis) {
-            return contact.kind == ContactKind::disk_disk && !level.empty() && of(contact.i, axis) != 0 &&
+            return contact.of_disks() && !level.empty() && of(contact.i, axis) != 0 &&
                    of(contact.i, axis) == of(contact.j, axis) && !is_displaced(contact, axis);
         };
         Separation(contact, packing.layout()).for_each_coordinate([&](std::size_t coordinate, std::size_t axis, int) {

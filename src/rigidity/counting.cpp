@@ -1,13 +1,40 @@
 #include "exact/independent_columns.hpp"
 #include "exact/rank.hpp"
 #include "rigidity/isostatic.hpp"
+#include "rigidity/strained_matrix.hpp"
 
+#include <isostat/core/error.hpp>
 #include <isostat/core/machine.hpp>
 #include <isostat/rigidity/counting.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <utility>
 
 namespace isostat {
+
+SparseColumns contact_matrix(const State& state) {
+    auto h = contact_matrix(state.packing, DofMap(state.packing), state.contacts);
+    return {h.rows, h.cols, std::move(h.start), std::move(h.row), std::move(h.value)};
+}
+
+namespace {
+
+/// Bars count as independent: with a self-stress of their own, h and k would be wrong.
+void require_independent_bars(const Packing& packing, std::vector<Contact> contacts) {
+    std::erase_if(contacts, [](const Contact& c) { return c.kind != ContactKind::bar; });
+    const int rank = exact::rank(exact_contact_matrix(packing, DofMap(packing), contacts));
+    if (rank < static_cast<int>(contacts.size())) {
+        throw Error(
+            ErrorKind::bad_input,
+            fmt::format("{} bars, of which {} are independent: expected bodies that are rigid to first order (of "
+                        "members on one line a further one off the line, inside another, makes them so)",
+                        contacts.size(), rank));
+    }
+}
+
+} // namespace
 
 Counting count_contacts(const Packing& packing, const std::vector<Contact>& contacts) {
     require_floating_point();
@@ -20,7 +47,7 @@ Counting count_contacts(const Packing& packing, const std::vector<Contact>& cont
     if (counting.dof_count == counting.contact_count && exact::rank(matrix) == counting.dof_count) {
         counting.rank = counting.dof_count;
         counting.rank_exact = Verdict::proved;
-        return counting;
+        return without_bars(counting, bar_count(contacts));
     }
     // The identity behind H completes its independent columns to a basis: the unit columns used are the degrees of
     // freedom to hold.
@@ -38,11 +65,26 @@ Counting count_contacts(const Packing& packing, const std::vector<Contact>& cont
         }
     }
     counting.hyperstaticity = counting.contact_count - counting.rank;
+    if (counting.hyperstaticity > 0 && !packing.bars.empty()) {
+        require_independent_bars(packing, contacts);
+    }
     counting.mechanisms = counting.dof_count - counting.rank;
     if (counting.rank == std::min(counting.dof_count, counting.contact_count)) {
         counting.rank_exact = Verdict::proved;
     }
-    return counting;
+    return without_bars(counting, bar_count(contacts));
+}
+
+Counting without_bars(Counting all, int bars) {
+    all.dof_count -= bars;
+    all.contact_count -= bars;
+    all.rank -= bars;
+    return all;
+}
+
+int bar_count(const std::vector<Contact>& contacts) {
+    return static_cast<int>(
+        std::count_if(contacts.begin(), contacts.end(), [](const Contact& c) { return c.kind == ContactKind::bar; }));
 }
 
 } // namespace isostat

@@ -33,7 +33,7 @@ template <class Value> sparse::Matrix<Value> empty_matrix(int rows, std::size_t 
 
 /// Normal from the first disk to the second, the bits of `gap_gradient`, inline; of other contacts nothing.
 inline PerAxis<double> unit_normal(const Packing& packing, const Contact& contact) {
-    if (contact.kind != ContactKind::disk_disk) {
+    if (!contact.of_disks()) {
         return {};
     }
     PerAxis<double> normal = separation(packing.layout(), packing.q, contact);
@@ -66,7 +66,7 @@ sparse::Matrix<Value> reduced_contact_matrix(const Packing& packing, const DofMa
         const Separation separation(contact, packing.layout());
         PerAxis<Value> normal; // times the distance of the centres; of a wall 1
         normal.fill(1);
-        if (contact.kind == ContactKind::disk_disk) {
+        if (contact.of_disks()) {
             normal = separation.of_disks([&](std::size_t k) { return residue[k]; }, subtract);
         }
         separation.for_each_coordinate([&](std::size_t coordinate, std::size_t a, int sign) {

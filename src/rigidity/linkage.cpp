@@ -76,7 +76,7 @@ class Linkage {
             for (const auto& [from, to] : {ends(e), std::pair{ends(e).second, ends(e).first}}) {
                 beside_[from][to] = e;
             }
-            if (touching[e].kind != ContactKind::disk_disk) {
+            if (!touching[e].of_disks()) {
                 turning_.fix(e); // the normal of a wall does not turn
             }
         }
@@ -120,7 +120,7 @@ class Linkage {
     }
     [[nodiscard]] std::pair<int, int> ends(std::size_t e) const {
         const Contact& c = touching_[e];
-        return {c.i, c.kind == ContactKind::disk_disk ? c.j : wall(c.j, c.kind == ContactKind::upper_wall)};
+        return {c.i, c.of_disks() ? c.j : wall(c.j, c.kind == ContactKind::upper_wall)};
     }
     [[nodiscard]] bool touch(int a, int b) const { return beside_.at(a).count(b) != 0; }
     [[nodiscard]] std::size_t edge(int a, int b) const { return beside_.at(a).at(b); }
@@ -252,8 +252,7 @@ bool moves_as_linkage(const Packing& packing, const std::vector<Contact>& among,
     all.push_back(pair);
     const auto stands = [&packing](int i) { return packing.is_fixed(DiskId(static_cast<std::size_t>(i))); };
     const auto foreign = [&](const Contact& c) {
-        return c.kind == ContactKind::held || stands(c.i) ||
-               (c.kind == ContactKind::disk_disk && (c.i == c.j || stands(c.j)));
+        return c.kind == ContactKind::held || stands(c.i) || (c.of_disks() && (c.i == c.j || stands(c.j)));
     };
     if (std::any_of(all.begin(), all.end(), foreign)) {
         return false;

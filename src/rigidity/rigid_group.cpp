@@ -19,7 +19,7 @@ struct Group {
     explicit Group(int disks) : disk(static_cast<std::size_t>(disks), 0) {}
     void add(const Contact& contact) {
         disk[static_cast<std::size_t>(contact.i)] = 1;
-        if (contact.kind == ContactKind::disk_disk) {
+        if (contact.of_disks()) {
             disk[static_cast<std::size_t>(contact.j)] = 1;
         } else {
             (contact.kind == ContactKind::lower_wall ? lower : upper)[static_cast<std::size_t>(contact.j)] = true;

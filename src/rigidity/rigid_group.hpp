@@ -3,7 +3,7 @@
 /// Grains that move as one body, told by counting (proofs/degenerate.md, R1): private to the rooms on the right.
 
 #include <isostat/contact/state.hpp>
-#include <isostat/packing/packing.hpp>
+#include <isostat/packing/load.hpp>
 
 #include <vector>
 

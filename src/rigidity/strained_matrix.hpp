@@ -27,4 +27,7 @@ exact::NumberMatrix strained_matrix(const Packing& packing, const std::function<
 /// What the matrix counts: its kernel is sought where its rank mod p is not as high as rows and columns allow.
 Counting count_matrix(const exact::NumberMatrix& matrix);
 
+/// The counts of rigid bodies, of those of a list with so many bars, which are independent.
+Counting without_bars(Counting all, int bars);
+
 } // namespace isostat

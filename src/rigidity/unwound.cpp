@@ -22,7 +22,7 @@ Periods moved(Periods a, const Image& m, int sign) {
 
 std::optional<std::vector<Contact>> unwound(int disks, std::vector<Contact> contacts) {
     const auto any = [&](auto what) { return std::any_of(contacts.begin(), contacts.end(), what); };
-    if (any([](const Contact& c) { return c.kind == ContactKind::held; })) {
+    if (any([](const Contact& c) { return c.kind == ContactKind::held || c.kind == ContactKind::bar; })) {
         return std::nullopt;
     }
     if (!any([](const Contact& c) { return !c.image.is_here(); })) {
@@ -30,7 +30,7 @@ std::optional<std::vector<Contact>> unwound(int disks, std::vector<Contact> cont
     }
     std::vector<std::vector<std::size_t>> at(static_cast<std::size_t>(disks));
     for (std::size_t l = 0; l < contacts.size(); ++l) {
-        if (contacts[l].kind == ContactKind::disk_disk) {
+        if (contacts[l].of_disks()) {
             at[static_cast<std::size_t>(contacts[l].i)].push_back(l);
             at[static_cast<std::size_t>(contacts[l].j)].push_back(l);
         }

@@ -241,7 +241,7 @@ Load load_at_start(const Scene& scene) {
         return load;
     }
     try {
-        State state = read_any_state(scene.start, Dimensions::any).state;
+        State state = read_any_state(scene.start, Dimensions::any_clumps).state;
         choose_loaded(state, scene, scene.start.string());
         return state.load;
     } catch (const Error&) { // whoever reads the start says what is wrong

@@ -1,6 +1,7 @@
 #include "certificate/state_certifier.hpp"
 #include "io/json.hpp"
 
+#include <isostat/certificate/certify.hpp>
 #include <isostat/core/error.hpp>
 #include <isostat/io/state_file.hpp>
 #include <isostat/scene/scene.hpp>
@@ -85,6 +86,53 @@ void choose_loaded(State& state, const Scene& scene, const std::string& source) 
     state.load.loaded_axis = static_cast<int>(axis);
 }
 
+/// Into the provenance of the state.
+template <class Value> void note(State& state, const char* name, const Value& value) {
+    Json provenance = state.provenance.empty() ? Json::object() : Json::parse(state.provenance);
+    provenance[name] = value;
+    state.provenance = provenance.dump();
+}
+
+/// Free motions come to rest under infinitesimal loads, as those of rattlers do. What the file says is judged before.
+State clumps_at_rest(State state, const Scene& scene, const std::string& source) {
+    state = with_free_motions_held(std::move(state));
+    check_start(state, source);
+    if (state.load.infinitesimal.empty()) {
+        constexpr unsigned long long seed = 1;
+        state.load.infinitesimal = generic_infinitesimal(state.packing.radius, seed, state.packing.dimension);
+        balance(state.load.infinitesimal, state.packing.cell);
+    }
+    const bool moves = std::any_of(state.contacts.begin(), state.contacts.end(),
+                                   [](const Contact& c) { return c.kind == ContactKind::held; });
+    if (!moves) {
+        return state; // where a force is negative, the run records what follows
+    }
+    State unpressed = state;
+    unpressed.load.infinitesimal.clear();
+    if (const Certification truth = certify(unpressed); !truth.claims.counting) {
+        throw Error(
+            ErrorKind::bad_input,
+            fmt::format("{}: {}: a trajectory of clumps starts from an isostatic structure, but for bodies that "
+                        "bear no force or turn about one member",
+                        source, truth.claims.undecided.front()));
+    }
+    Segment rest;
+    rest.equilibria = 0; // the start alone
+    RunCounters counters;
+    RunObserver nobody;
+    RunOptions options = scene.run;
+    options.certify = CertifyLevel::decisions;
+    options.max_strain = HUGE_VAL; // the load stays
+    (void)snap_to_grid(state.packing);
+    const SegmentOutcome outcome = run_segment(state, rest, 0, options, counters, nobody);
+    if (outcome.failure) {
+        throw Error(ErrorKind::bad_input, fmt::format("{}: bodies that are free to move do not come to rest: {}",
+                                                      source, outcome.failure->message(state.packing.dimension)));
+    }
+    note(state, "arcs_to_rest", counters.steps);
+    return state;
+}
+
 State start_of_scene(State state, const Scene& scene, const std::string& source) {
     if (scene.load_kind) {
         state.load.kind = *scene.load_kind;
@@ -104,18 +152,19 @@ State start_of_scene(State state, const Scene& scene, const std::string& source)
         }
     }
     require_followed(state, source);
+    if (!state.packing.bars.empty()) {
+        state = clumps_at_rest(std::move(state), scene, source);
+    }
     check_start(state, source, scene.run.at_first_order());
     check_programme(scene, state.load.ratio());
     if (const double moved = snap_to_grid(state.packing); moved > 0) { // after the state of the file was judged
-        Json provenance = state.provenance.empty() ? Json::object() : Json::parse(state.provenance);
-        provenance["moved_to_grid"] = moved;
-        state.provenance = provenance.dump();
+        note(state, "moved_to_grid", moved);
     }
     return state;
 }
 
 State start_from_file(const Scene& scene) {
-    return start_of_scene(read_any_state(scene.start, Dimensions::any).state, scene, scene.start.string());
+    return start_of_scene(read_any_state(scene.start, Dimensions::any_clumps).state, scene, scene.start.string());
 }
 
 std::string provenance_of(const Scene& scene, const std::string& program, const std::string& command,

@@ -30,6 +30,11 @@ inline bool is_held(const Statics& statics, ContactId l) {
     return statics.structure().contacts()[l.index()].kind == ContactKind::held;
 }
 
+/// A bar bears forces of either sign: it neither opens nor limits.
+inline bool is_bar(const Statics& statics, ContactId l) {
+    return statics.structure().contacts()[l.index()].kind == ContactKind::bar;
+}
+
 /// The quantity of one contact as the ladder evaluates it.
 using Quantity = std::function<ForceExpression(ContactId)>;
 

@@ -39,14 +39,14 @@ bool grains_bear_force(const std::vector<Contact>& contacts, ContactId contact, 
     const auto bears = [&](int grain) {
         for (std::size_t l = 0; l < contacts.size(); ++l) {
             const Contact& other = contacts[l];
-            const bool touches = other.i == grain || (other.kind == ContactKind::disk_disk && other.j == grain);
+            const bool touches = other.i == grain || (other.of_disks() && other.j == grain);
             if (l != contact.index() && other.kind != ContactKind::held && touches && !zero(l)) {
                 return true;
             }
         }
         return false;
     };
-    return c.kind != ContactKind::held && bears(c.i) && (c.kind != ContactKind::disk_disk || bears(c.j));
+    return c.kind != ContactKind::held && bears(c.i) && (!c.of_disks() || bears(c.j));
 }
 
 /// The state of a vertex at a load: nothing to open (equilibrium), or the contact to open.

@@ -19,7 +19,8 @@ struct Edge {
     /// The contact presses the sphere as hard towards the one wall as towards the other.
     [[nodiscard]] bool presses_alike(const Contact& c, int dimension) const {
         switch (c.kind) {
-        case ContactKind::disk_disk: {
+        case ContactKind::disk_disk:
+        case ContactKind::bar: {
             const int neighbour = c.i == one.i ? c.j : c.i;
             return neighbour == one.i || (c.i != one.i && c.j != one.i) ||
                    (has(one, neighbour) && has(other, neighbour));

@@ -4,7 +4,7 @@
 
 #include <isostat/contact/state.hpp>
 #include <isostat/core/result.hpp>
-#include <isostat/packing/packing.hpp>
+#include <isostat/packing/load.hpp>
 
 #include <vector>
 

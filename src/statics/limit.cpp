@@ -29,7 +29,7 @@ class LimitContest final : public Contest {
         : statics_(statics), contacts_(statics.structure().contacts()), sigma_(sigma), direction_(direction),
           perturbed_(perturbed) {
         for (std::size_t l = 0; l < contacts_.size(); ++l) {
-            if (!is_held(statics_, ContactId(l)) && !statics_.slope_is_zero(ContactId(l))) {
+            if (contacts_[l].is_unilateral() && !statics_.slope_is_zero(ContactId(l))) {
                 candidates_.emplace_back(l);
             }
         }
@@ -193,7 +193,7 @@ void LimitContest::add_to_class(ContactId l) {
     std::vector<ContactId> members = statics_.vanish_with(l);
     members.insert(members.begin(), l);
     for (const ContactId member : members) {
-        if (std::exchange(in_class_[member.index()], 1) == 0) {
+        if (std::exchange(in_class_[member.index()], 1) == 0 && !is_bar(statics_, member)) {
             limit_.tie_class.push_back(member);
         }
     }
@@ -210,7 +210,7 @@ Enclosure LimitContest::at_limit(ContactId l) const {
 Result<Comparison> LimitContest::compare(std::size_t rival, std::size_t best) {
     const ContactId l(rival);
     const ContactId first(best);
-    if (in_class_[rival] != 0 || is_held(statics_, l) || statics_.is_structural_zero(l)) {
+    if (in_class_[rival] != 0 || !contacts_[rival].is_unilateral() || statics_.is_structural_zero(l)) {
         return Comparison{};
     }
     const Enclosure f = at_limit(l);

@@ -42,9 +42,11 @@ class Stage {
     }
 
   private:
-    /// Struts are of the plane (S4).
+    /// Struts are of the plane, and of single grains (S4).
     void ask_struts() {
-        if (statics_.structure().dofs().layout().dimension == plane) {
+        const bool clumps = std::any_of(contacts_.begin(), contacts_.end(),
+                                        [](const Contact& c) { return c.kind == ContactKind::bar; });
+        if (statics_.structure().dofs().layout().dimension == plane && !clumps) {
             turn_.emplace(statics_, zero_);
         }
     }
@@ -112,7 +114,7 @@ void Stage::find_zero_holds() {
 void Stage::sort_by_sign() {
     for (std::size_t index = 0; index < contacts_.size(); ++index) {
         const ContactId l(index);
-        if (statics_.is_structural_zero(l) == finite_ || idle_.has(l)) {
+        if (statics_.is_structural_zero(l) == finite_ || idle_.has(l) || is_bar(statics_, l)) {
             continue;
         }
         if (turn_ && turn_->carries_nothing(l)) {

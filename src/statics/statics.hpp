@@ -7,7 +7,7 @@
 
 #include <isostat/core/result.hpp>
 #include <isostat/core/verdict.hpp>
-#include <isostat/packing/packing.hpp>
+#include <isostat/packing/load.hpp>
 
 #include <memory>
 #include <optional>

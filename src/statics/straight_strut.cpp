@@ -100,8 +100,7 @@ struct Disks {
         assert(dofs.layout().dimension == plane);
         for (const Contact& c : contacts) {
             if (c.kind != ContactKind::held) {
-                count = std::max(
-                    count, static_cast<std::size_t>(std::max(c.i, c.kind == ContactKind::disk_disk ? c.j : 0)) + 1);
+                count = std::max(count, static_cast<std::size_t>(std::max(c.i, c.of_disks() ? c.j : 0)) + 1);
             }
         }
         free.assign(count, 1);
@@ -191,7 +190,7 @@ struct Bare {
         for (std::size_t l = 0; l < contacts.size(); ++l) {
             if (contacts[l].kind != ContactKind::held) {
                 at[static_cast<std::size_t>(contacts[l].i)].push_back(l);
-                if (contacts[l].kind == ContactKind::disk_disk) {
+                if (contacts[l].of_disks()) {
                     at[static_cast<std::size_t>(contacts[l].j)].push_back(l);
                 }
             }
@@ -208,7 +207,7 @@ struct Bare {
             std::erase_if(at[i], [&](std::size_t l) { return gone[l] != 0; });
             if (at[i].size() == 2 && take_away(statics, i, at[i][0], at[i][1])) {
                 for (const std::size_t l : at[i]) {
-                    const int j = contacts[l].kind != ContactKind::disk_disk     ? -1
+                    const int j = !contacts[l].of_disks()                        ? -1
                                   : static_cast<std::size_t>(contacts[l].i) == i ? contacts[l].j
                                                                                  : contacts[l].i;
                     const auto other = static_cast<std::size_t>(j);
@@ -247,7 +246,7 @@ struct Bare {
     void pass_on(const Statics& statics, std::size_t contact, std::size_t from, double force, double wrong) {
         gone[contact] = 1;
         const Contact& c = statics.structure().contacts()[contact];
-        if (c.kind != ContactKind::disk_disk) {
+        if (!c.of_disks()) {
             return;
         }
         const auto to = static_cast<std::size_t>(static_cast<std::size_t>(c.i) == from ? c.j : c.i);
@@ -276,7 +275,7 @@ ContactGraph graph_of(const Statics& statics, const Disks& disks, const std::vec
             continue;
         }
         const std::size_t a = node(c.i);
-        const std::size_t b = c.kind == ContactKind::disk_disk ? node(c.j) : graph.ground;
+        const std::size_t b = c.of_disks() ? node(c.j) : graph.ground;
         if (a != b) {
             graph.at[a].push_back({b, l});
             graph.at[b].push_back({a, l});
@@ -302,7 +301,7 @@ Enclosure excess_over(const Statics& statics, std::size_t a, std::size_t b, cons
     };
     const auto ends = [&](std::size_t contact, Vector& sum) { // of a unit force on the group
         const Contact& c = statics.structure().contacts()[contact];
-        for (const int disk : {c.i, c.kind == ContactKind::disk_disk ? c.j : -1}) {
+        for (const int disk : {c.i, c.of_disks() ? c.j : -1}) {
             if (disk >= 0 && inside[static_cast<std::size_t>(disk)] != 0) {
                 add(sum, push(statics, contact, static_cast<std::size_t>(disk)));
             }

@@ -5,19 +5,22 @@
 #include "motion/arc.hpp"
 #include "rigidity/isostatic.hpp"
 
-#include <isostat/packing/packing.hpp>
+#include <isostat/packing/load.hpp>
 
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
 
 namespace isostat {
 
-/// A force as the choice of what opens compares it.
+/// A force as the choice of what opens compares it: a bar never opens.
 inline double signed_size(const Contact& contact, double force) {
-    return contact.kind == ContactKind::held ? -std::abs(force) : force;
+    return contact.kind == ContactKind::held  ? -std::abs(force)
+           : contact.kind == ContactKind::bar ? std::numeric_limits<double>::infinity()
+                                              : force;
 }
 
 /// The most negative of the forces in the backbone, or of those outside; the number of all when none is negative.

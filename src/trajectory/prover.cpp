@@ -420,7 +420,7 @@ void Prover::certify(ArcProof& proof, const Vertex& from, const Opening& opening
     proof.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-EndProof Prover::prove_end(Vertex::Beginning beginning, const LimitLoad& limit, ContactId hold,
+EndProof Prover::prove_end(Vertex::Beginning beginning, const LimitLoad& limit, const ZeroHolds& zero,
                            const std::vector<ContactId>& zeros, long step) {
     EndProof proof;
     auto made = Vertex::make(std::move(beginning), limit.load, bounds_, ladder());
@@ -444,9 +444,7 @@ EndProof Prover::prove_end(Vertex::Beginning beginning, const LimitLoad& limit, 
     if (proof.failure) {
         return proof;
     }
-    proof.decision = ties_->settles()
-                         ? ask_again(vertex, limit.stress())
-                         : decide(vertex, limit.stress(), hold.valid() ? ZeroHolds{hold, {}} : ZeroHolds{}, step);
+    proof.decision = ties_->settles() ? ask_again(vertex, limit.stress()) : decide(vertex, limit.stress(), zero, step);
     if (proof.decision->ok() && !proof.decision->value().opening) {
         if (!ties_->settles()) {
             (void)ask_again(vertex, limit.stress());

@@ -96,7 +96,7 @@ class Prover {
 
     /// Whether a vertex, proved from nothing, is an equilibrium. `limit`: that the rearrangement started from; `zeros`:
     /// forces that vanish in the base; `hold`: held just now. The list of candidates is that at the vertex.
-    EndProof prove_end(Vertex::Beginning beginning, const LimitLoad& limit, ContactId hold,
+    EndProof prove_end(Vertex::Beginning beginning, const LimitLoad& limit, const ZeroHolds& zero,
                        const std::vector<ContactId>& zeros, long step);
     /// Asks again what made a vertex an equilibrium: after a resume the statics then stand on the same rung. With first
     /// order the answer must be the same with the load that the state stores.

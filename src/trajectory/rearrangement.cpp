@@ -17,6 +17,10 @@ constexpr std::size_t most_exchanges = 1000; ///< of lists at one place
 
 } // namespace
 
+ZeroHolds Standing::zero_holds() const {
+    return {fresh_hold.valid() ? std::optional(fresh_hold) : std::nullopt, resting};
+}
+
 void Standing::move_to(std::shared_ptr<Vertex> to, const Opening& opens) {
     const ArcKind begins = kind_of(to->structure.contacts()[opens.contact.index()], opens.infinitesimal);
     *this = {std::move(to), opens, begins};
@@ -82,7 +86,7 @@ std::optional<Failure> Rearrangement::follow_arcs() {
         }
         Prover other = prover_.another();
         std::optional<EndProof> end;
-        if (ahead_ && steered_to_ && !steered_to_->fresh_hold.valid() && !proofs.ended()) {
+        if (ahead_ && steered_to_ && !steered_to_->zero.fresh && !proofs.ended()) {
             end = prove_end(other, std::move(*steered_to_)); // the proofs before it may say that the arcs end elsewhere
         }
         proofs.finish();
@@ -304,13 +308,16 @@ std::optional<Failure> Rearrangement::act(Answer answer, ArcProof* refused, cons
 /// would do so for ever.
 std::optional<Failure> Rearrangement::set_aside(const ArcRecord& record) {
     here_.resting.push_back(here_.opening.contact);
-    ZeroHolds zero{std::nullopt, here_.resting};
-    if (here_.fresh_hold.valid()) {
-        zero.fresh = here_.fresh_hold;
-    }
-    auto again = prover_.decide(*here_.vertex, at_.stress(), zero, recorder_.counters.steps);
+    auto again = prover_.decide(*here_.vertex, at_.stress(), here_.zero_holds(), recorder_.counters.steps);
     if (!again.ok()) {
         return located(again.failure(), where(arcs_ + 1));
+    }
+    const bool free = !here_.vertex->packing.bars.empty() && !holds_what_bears(*here_.vertex);
+    if (!again.value().opening && free) { // the motion is one of a clump, which does no work wherever it is held (U2)
+        here_.zeros = again.value().zeros;
+        ended_ = true;
+        recorder_.count({DecisionKind::equilibrium, again.value().margin, again.value().rung, again.value().perturbed});
+        return std::nullopt;
     }
     if (!again.value().opening) {
         return failed(FailureKind::undecided,
@@ -326,7 +333,7 @@ std::optional<Failure> Rearrangement::set_aside(const ArcRecord& record) {
 }
 
 SteeredEnd Rearrangement::at_here() const {
-    return {here_.vertex->packing, here_.vertex->structure.contacts(), here_.fresh_hold, {}};
+    return {here_.vertex->packing, here_.vertex->structure.contacts(), here_.zero_holds(), {}};
 }
 
 /// The end is proved from nothing that the way to it left: full exact elimination, fresh factors and bound. A resumed
@@ -340,8 +347,7 @@ EndProof Rearrangement::prove_end(Prover& prover, SteeredEnd end) {
         auto begun = Vertex::begin(std::move(end.packing), std::move(end.contacts));
         listing.finish();
         if (begun.ok()) {
-            proof =
-                prover.prove_end(std::move(begun.value()), at_, end.fresh_hold, here_.zeros, recorder_.counters.steps);
+            proof = prover.prove_end(std::move(begun.value()), at_, end.zero, here_.zeros, recorder_.counters.steps);
         } else {
             proof.failure = begun.failure();
         }

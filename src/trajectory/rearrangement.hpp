@@ -31,6 +31,7 @@ struct Standing {
     std::vector<ContactId> zeros{};   ///< forces of an equilibrium that vanish in the base
     bool by_steps = false;            ///< the next arc must be proved before going on
 
+    [[nodiscard]] ZeroHolds zero_holds() const;
     /// To what opens at `vertex`, of which nothing else is known.
     void move_to(std::shared_ptr<Vertex> to, const Opening& opens);
 };

@@ -3,6 +3,8 @@
 #include "contact/contact_set.hpp"
 #include "contact/other_pairs.hpp"
 #include "contact/words.hpp"
+#include "core/roundoff.hpp"
+#include "packing/bodies.hpp"
 #include "trajectory/descent.hpp"
 
 #include <isostat/rigidity/counting.hpp>
@@ -123,12 +125,58 @@ void record_potential(EquilibriumRecord& record, const TrueCoordinates& q, const
 
 } // namespace
 
+namespace {
+
+/// First members of bodies without a contact that bears a force.
+std::vector<int> rattling_bodies(const Packing& packing, const std::vector<Contact>& carrying) {
+    const Bodies bodies(packing);
+    std::vector<unsigned char> held(packing.radius.size(), 0);
+    for (const Contact& contact : carrying) {
+        if (contact.is_unilateral()) {
+            held[static_cast<std::size_t>(bodies.of(contact.i))] = 1;
+            held[static_cast<std::size_t>(bodies.of(contact.of_disks() ? contact.j : contact.i))] = 1;
+        }
+    }
+    std::vector<int> rattling;
+    for (int i = 0; i < packing.disk_count(); ++i) {
+        if (bodies.of(i) == i && held[static_cast<std::size_t>(i)] == 0) {
+            rattling.push_back(i);
+        }
+    }
+    return rattling;
+}
+
+} // namespace
+
+bool holds_what_bears(const Vertex& vertex) {
+    const auto& contacts = vertex.structure.contacts();
+    for (std::size_t l = 0; l < contacts.size(); ++l) {
+        if (contacts[l].kind == ContactKind::held && !vertex.statics.is_structural_zero(ContactId(l))) {
+            return true;
+        }
+    }
+    return false;
+}
+
+int carrying_contacts(const Vertex& vertex) {
+    int carrying = vertex.statics.backbone_count();
+    const auto& contacts = vertex.structure.contacts();
+    for (std::size_t l = 0; l < contacts.size() && !vertex.packing.bars.empty(); ++l) {
+        carrying -= contacts[l].kind == ContactKind::bar && !vertex.statics.is_structural_zero(ContactId(l)) ? 1 : 0;
+    }
+    return carrying;
+}
+
 std::vector<int> rattlers(const Vertex& vertex) {
     std::vector<unsigned char> zero;
     for (int l = 0; l < vertex.structure.size(); ++l) {
         zero.push_back(vertex.statics.is_structural_zero(ContactId(l)) ? 1 : 0);
     }
-    return untouched(vertex.packing.disk_count(), unmarked(vertex.structure.contacts(), zero));
+    std::vector<Contact> carrying = unmarked(vertex.structure.contacts(), zero);
+    if (!vertex.packing.bars.empty()) {
+        return rattling_bodies(vertex.packing, carrying);
+    }
+    return untouched(vertex.packing.disk_count(), carrying);
 }
 
 std::vector<double> finite_forces(const Vertex& vertex, const Load& load) {
@@ -182,7 +230,7 @@ std::optional<Failure> describe_limits(Description& description, Vertex& vertex,
     for (const int direction : {-1, +1}) {
         double& stress = direction > 0 ? record.stress_high : record.stress_low;
         Contact& opens = direction > 0 ? record.opens_high : record.opens_low;
-        if (record.held > 0) { // at this load only: the multiplier of the held coordinate vanishes just here
+        if (holds_what_bears(vertex)) { // at this load only: the multiplier of what is held vanishes just here
             stress = load.loaded_stress();
             opens = none;
             continue;
@@ -202,6 +250,25 @@ std::optional<Failure> describe_limits(Description& description, Vertex& vertex,
     }
     return std::nullopt;
 }
+
+namespace {
+
+/// Bars do not count.
+void record_counts(EquilibriumRecord& record, const Vertex& vertex) {
+    const auto& contacts = vertex.structure.contacts();
+    const int bars = bar_count(contacts);
+    record.dof_count = vertex.structure.size() - bars;
+    record.contact_count = static_cast<int>(contacts.size()) - bars;
+    record.rank = record.dof_count; // what IsostaticStructure means
+    record.hyperstaticity = record.contact_count - record.rank;
+    record.mechanisms = record.dof_count - record.rank;
+    record.held = static_cast<int>(
+        std::count_if(contacts.begin(), contacts.end(), [](const Contact& c) { return c.kind == ContactKind::held; }));
+    record.rattlers = static_cast<int>(rattlers(vertex).size());
+    record.backbone = carrying_contacts(vertex);
+}
+
+} // namespace
 
 Result<Description> describe(Vertex& vertex, const Load& load) {
     Description description;
@@ -226,15 +293,7 @@ Result<Description> describe(Vertex& vertex, const Load& load) {
     }
     record_potential(record, q, load);
     const auto& contacts = vertex.structure.contacts();
-    record.dof_count = vertex.structure.size();
-    record.contact_count = static_cast<int>(contacts.size());
-    record.rank = vertex.structure.size(); // what IsostaticStructure means
-    record.hyperstaticity = record.contact_count - record.rank;
-    record.mechanisms = record.dof_count - record.rank;
-    record.held = static_cast<int>(
-        std::count_if(contacts.begin(), contacts.end(), [](const Contact& c) { return c.kind == ContactKind::held; }));
-    record.rattlers = static_cast<int>(rattlers(vertex).size());
-    record.backbone = vertex.statics.backbone_count();
+    record_counts(record, vertex);
     record.gap_residual = vertex.enclosure.max_gap;
     record.sigma_min_bound = vertex.inverse.sigma_min;
     if (auto failure = describe_limits(description, vertex, load)) {
@@ -253,7 +312,7 @@ Result<Description> describe(Vertex& vertex, const Load& load) {
     record.min_force_contact = {ContactKind::disk_disk, -1, -1};
     for (std::size_t l = 0; l < contacts.size(); ++l) {
         const ContactId id(l);
-        if (vertex.statics.is_structural_zero(id) || contacts[l].kind == ContactKind::held) {
+        if (vertex.statics.is_structural_zero(id) || !contacts[l].is_unilateral()) {
             continue;
         }
         const double f = vertex.statics.force(id, sigma).value;
@@ -270,12 +329,17 @@ std::optional<Failure> record_smallest_gap(EquilibriumRecord& record, const Vert
     const auto look = [&](const std::vector<Contact>& pairs) {
         record.min_gap_contact = {ContactKind::disk_disk, -1, -1};
         Enclosure smallest{std::numeric_limits<double>::infinity(), 0};
+        double least = smallest.value;
         for (const Contact& pair : pairs) {
             const Enclosure h = gap_at_vertex(vertex.packing, at, pair);
+            least = std::min(least, h.value - h.radius);
             if (h.value < smallest.value) {
                 smallest = h;
                 record.min_gap_contact = pair;
             }
+        }
+        if (smallest.value - least > smallest.radius) { // another one may be the smallest
+            smallest.radius = (smallest.value - least) * (1 + 4 * roundoff::u);
         }
         return smallest;
     };

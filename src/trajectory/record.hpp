@@ -39,6 +39,13 @@ void record_strain(ArcRecord& record, const Vertex& end, const Load& load);
 /// What the path tells, into the record of an arc.
 void record_path(ArcRecord& record, const Arc& path);
 
+/// Some held coordinate bears a finite force. What is held and bears nothing, by counting, is a free motion of a clump:
+/// a part that hangs below the one contact that it has (proofs/clumps.md, U2).
+bool holds_what_bears(const Vertex& vertex);
+
+/// Rows that bear a finite force, without bars.
+int carrying_contacts(const Vertex& vertex);
+
 /// Disks without a force-carrying contact.
 std::vector<int> rattlers(const Vertex& vertex);
 

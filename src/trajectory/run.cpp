@@ -2,6 +2,7 @@
 #include "core/roundoff.hpp"
 #include "trajectory/limit_attempts.hpp"
 #include "trajectory/segment_start.hpp"
+#include "trajectory/steering.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/core/machine.hpp>
@@ -121,8 +122,8 @@ std::optional<Failure> Run::first_equilibrium(const SegmentStart& start) {
     }
     const OpeningDecision& decision = decided.value();
     if (decision.opening) {
-        return rearrange(*decision.opening, decision.opening->infinitesimal ? ArcKind::rattler : ArcKind::tension,
-                         load());
+        const Contact& opens = vertex_->structure.contacts()[decision.opening->contact.index()];
+        return rearrange(*decision.opening, kind_of(opens, decision.opening->infinitesimal), load());
     }
     if (vertex_->perturbed) {
         vertex_->perturbed->zeros = decision.zeros;
@@ -162,7 +163,7 @@ Result<bool> Run::next_equilibrium() {
     if (recorder_.stopped()) {
         return failed(FailureKind::interrupted, "stopped at equilibrium {}", counters_.equilibria);
     }
-    if (record_.held > 0) {
+    if (holds_what_bears(*vertex_)) {
         return failed(FailureKind::undecided,
                       "equilibrium {} still holds {} coordinate(s): it is one at this load only, and no "
                       "contact limits it",
@@ -297,10 +298,22 @@ std::optional<Failure> Run::report(int arcs, std::optional<Result<Description>> 
 
 } // namespace
 
+namespace {
+
+/// Ties at first order are stated of single grains.
+void require_no_ties_of_clumps(const State& state, const RunOptions& options) {
+    if (!state.packing.bars.empty() && options.at_first_order()) {
+        throw Error(ErrorKind::bad_input, "state: a packing of clumps: expected ties = \"stop\"");
+    }
+}
+
+} // namespace
+
 SegmentOutcome run_segment(State& state, const Segment& segment, int segment_number, const RunOptions& options,
                            RunCounters& counters, RunObserver& observer) {
     require_floating_point();
     require_followed(state, "state");
+    require_no_ties_of_clumps(state, options);
     if (options.certify == CertifyLevel::arcs && state.load.path) { // the power of an arc takes stresses as stored
         throw Error(ErrorKind::bad_input, "state: several stresses change together, and certify is arcs: expected "
                                           "decisions or states");

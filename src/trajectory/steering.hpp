@@ -40,7 +40,7 @@ inline PowerLoad power_load(const Load& load, const Opening& opening, ArcKind ki
 struct SteeredEnd {
     Packing packing;
     std::vector<Contact> contacts;
-    ContactId fresh_hold; ///< valid: the last arc ended at a power turn, and holds this coordinate
+    ZeroHolds zero; ///< what is held at the power turn where the last arc ended, or turned back where it stood
     std::shared_ptr<const RegularTriangulation> triangulation; ///< of a configuration near
 };
 

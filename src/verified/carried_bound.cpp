@@ -1,5 +1,6 @@
 #include "core/dot.hpp"
 #include "core/roundoff.hpp"
+#include "verified/full_rank.hpp"
 #include "verified/inverse_bound.hpp"
 #include "verified/regularity_prover.hpp"
 
@@ -70,31 +71,6 @@ double residual_of_mechanism(const sparse::Matrix<double>& h, int slot, const st
     return std::sqrt(square) * slack;
 }
 
-/// r = v - H z. Returns an upper bound of the exact |v - H z|_2.
-double residual_of_forces(const sparse::Matrix<double>& h, const std::vector<double>& v, const std::vector<double>& z,
-                          std::vector<double>& r, std::vector<double>& size, std::vector<int>& terms) {
-    r = v;
-    std::fill(terms.begin(), terms.end(), 8);
-    for (std::size_t i = 0; i < size.size(); ++i) {
-        size[i] = std::abs(v[i]);
-    }
-    for (std::size_t j = 0; j < z.size(); ++j) {
-        for (auto e = static_cast<std::size_t>(h.start[j]); e < static_cast<std::size_t>(h.start[j + 1]); ++e) {
-            const auto i = static_cast<std::size_t>(h.row[e]);
-            const double term = h.value[e] * z[j];
-            r[i] -= term;
-            size[i] += std::abs(term);
-            ++terms[i];
-        }
-    }
-    double square = 0;
-    for (std::size_t i = 0; i < r.size(); ++i) {
-        const double bound = std::abs(r[i]) + terms[i] * 1.001 * u * size[i];
-        square += bound * bound;
-    }
-    return std::sqrt(square) * slack;
-}
-
 constexpr double good_enough = 0.02; // enters the bound as a relative loss
 constexpr int max_passes = 4;
 
@@ -136,6 +112,30 @@ double balancing_forces(const sparse::Matrix<double>& h, const std::vector<doubl
 }
 
 } // namespace
+
+double residual_of_forces(const sparse::Matrix<double>& h, const std::vector<double>& v, const std::vector<double>& z,
+                          std::vector<double>& r, std::vector<double>& size, std::vector<int>& terms) {
+    r = v;
+    std::fill(terms.begin(), terms.end(), 8);
+    for (std::size_t i = 0; i < size.size(); ++i) {
+        size[i] = std::abs(v[i]);
+    }
+    for (std::size_t j = 0; j < z.size(); ++j) {
+        for (auto e = static_cast<std::size_t>(h.start[j]); e < static_cast<std::size_t>(h.start[j + 1]); ++e) {
+            const auto i = static_cast<std::size_t>(h.row[e]);
+            const double term = h.value[e] * z[j];
+            r[i] -= term;
+            size[i] += std::abs(term);
+            ++terms[i];
+        }
+    }
+    double square = 0;
+    for (std::size_t i = 0; i < r.size(); ++i) {
+        const double bound = std::abs(r[i]) + terms[i] * 1.001 * u * size[i];
+        square += bound * bound;
+    }
+    return std::sqrt(square) * slack;
+}
 
 std::optional<ProvedExchange> carry_bound(const IsostaticStructure& before, const InverseBound& bound,
                                           const ExchangedContacts& after, const ApproximateInverse& inverse,

@@ -120,7 +120,7 @@ template <class T> auto ContactSystem<T>::turned(const std::vector<T>& x, bool t
         HeaviestSum sum(packing_.radius.size());
         for (std::size_t l = 0; l < x.size(); ++l) {
             const Contact& contact = structure_.contacts()[l];
-            if (contact.kind == ContactKind::disk_disk) {
+            if (contact.of_disks()) {
                 sum.add_turn(contact, above(a.about(x[l])) / target(packing_, contact));
             }
         }
@@ -129,7 +129,7 @@ template <class T> auto ContactSystem<T>::turned(const std::vector<T>& x, bool t
     std::vector<Bound> weight(packing_.radius.size(), Bound(0)); // sum of |f_l| / D_l at each disk
     for (std::size_t l = 0; l < x.size(); ++l) {
         const Contact& contact = structure_.contacts()[l];
-        if (contact.kind == ContactKind::disk_disk) {
+        if (contact.of_disks()) {
             const Bound w = a.about(x[l]) / target(packing_, contact);
             weight[static_cast<std::size_t>(contact.i)] += w;
             weight[static_cast<std::size_t>(contact.j)] += w;

@@ -33,7 +33,8 @@ template <class T, class Correction = std::vector<T>> class CorrectedConfigurati
     /// F_l of T9: (|x_j - x_i|^2 - D^2) / (2 D), the gap at a wall, what a held coordinate has moved. Within 8 unit D.
     [[nodiscard]] T gap_function(const Contact& contact) const {
         switch (contact.kind) {
-        case ContactKind::disk_disk: return power(contact) / (number(2) * length(contact));
+        case ContactKind::disk_disk:
+        case ContactKind::bar: return power(contact) / (number(2) * length(contact));
         case ContactKind::held: return moved(index(contact.i));
         default: return wall_gap(contact);
         }
@@ -55,7 +56,8 @@ template <class T, class Correction = std::vector<T>> class CorrectedConfigurati
     [[nodiscard]] T gap(const Contact& contact) const {
         using std::sqrt;
         switch (contact.kind) {
-        case ContactKind::disk_disk: return power(contact) / (sqrt(square(contact)) + length(contact));
+        case ContactKind::disk_disk:
+        case ContactKind::bar: return power(contact) / (sqrt(square(contact)) + length(contact));
         case ContactKind::held: return number(0);
         default: return wall_gap(contact);
         }
@@ -75,8 +77,11 @@ template <class T, class Correction = std::vector<T>> class CorrectedConfigurati
         }
         return r;
     }
-    /// R_i + R_j.
+    /// R_i + R_j, of a bar its length.
     [[nodiscard]] T length(const Contact& contact) const {
+        if (contact.kind == ContactKind::bar) {
+            return number(packing_->bar_length(contact.i, contact.j));
+        }
         return number(packing_->radius[index(contact.i)]) + number(packing_->radius[index(contact.j)]);
     }
 
@@ -89,7 +94,7 @@ template <class T, class Correction = std::vector<T>> class CorrectedConfigurati
         sparse::Matrix<T> matrix{h.rows, h.cols, h.start, h.row, {}};
         for (std::size_t l = 0; l < structure.contacts().size(); ++l) {
             const Contact& contact = structure.contacts()[l];
-            if (contact.kind != ContactKind::disk_disk) {
+            if (!contact.of_disks()) {
                 for (int e = h.start[l]; e < h.start[l + 1]; ++e) {
                     matrix.value.push_back(number(h.value[index(e)])); // +-1
                 }

@@ -59,7 +59,7 @@ sparse::Matrix<mpz_class> ExactForces::scaled(const Packing& packing, const Isos
         const Contact& contact = structure.contacts()[l];
         std::vector<mpz_class> integers;
         const Separation separation(contact, packing.layout());
-        const bool pair = contact.kind == ContactKind::disk_disk;
+        const bool pair = contact.of_disks();
         mpz_class sum = pair ? 0 : 1;
         if (pair) {
             const auto d =

@@ -52,7 +52,8 @@ std::array<std::size_t, 2> grains_of(const Contact& c, std::size_t disks) {
     const auto i = static_cast<std::size_t>(c.i);
     const auto j = static_cast<std::size_t>(c.j);
     switch (c.kind) {
-    case ContactKind::disk_disk: return {i, j};
+    case ContactKind::disk_disk:
+    case ContactKind::bar: return {i, j};
     case ContactKind::lower_wall: return {i, disks + 2 * j};
     case ContactKind::upper_wall: return {i, disks + 2 * j + 1};
     case ContactKind::held: break;
@@ -148,7 +149,7 @@ std::vector<Contact> moving_alike(const Packing& packing, const IsostaticStructu
     const auto grains = grains_of(pair, disks);
     body[grains[0]].emplace();
     double turn = 0;
-    if (pair.kind == ContactKind::disk_disk) {
+    if (pair.of_disks()) {
         const Seen second = Seen().across(packing, v, pair, 1);
         const auto& [x, w] = second;
         turn = (x[0] * w[1] - x[1] * w[0]) / (x[0] * x[0] + x[1] * x[1]);
@@ -172,7 +173,7 @@ std::vector<Contact> moving_alike(const Packing& packing, const IsostaticStructu
             }
             const auto [i, j] = grains_of(c, disks);
             Seen other; // of a wall nothing is asked
-            if (c.kind != ContactKind::disk_disk) {
+            if (!c.of_disks()) {
                 if (!body[i] || turns) {
                     continue;
                 }
@@ -226,7 +227,7 @@ FirstOrder::FirstOrder(const Packing& packing, const IsostaticStructure& structu
         double sum = 0;
         if (c.kind != ContactKind::held) {
             sum = rho[static_cast<std::size_t>(c.i)];
-            if (c.kind == ContactKind::disk_disk) {
+            if (c.of_disks()) {
                 sum += rho[static_cast<std::size_t>(c.j)];
             }
         }
@@ -278,7 +279,7 @@ Enclosure FirstOrder::gap_rate(const Contact& contact, const Velocity& velocity)
     }
     const double weight = separation_weight(contact);
     double turned = 0; // the normal of the true vertex is another one
-    if (contact.kind == ContactKind::disk_disk) {
+    if (contact.of_disks()) {
         double square = 0;
         for (const double r : separation(packing_->layout(), velocity.v, contact)) {
             square += r * r;
@@ -335,7 +336,7 @@ FirstOrder::LoadChange FirstOrder::load_change(const std::vector<Enclosure>& f0,
     LoadChange on{std::vector<double>(v.size(), 0.0), std::vector<double>(v.size(), 0.0)};
     for (std::size_t l = 0; l < contacts.size(); ++l) {
         const Contact& c = contacts[l];
-        if (c.kind != ContactKind::disk_disk) {
+        if (!c.of_disks()) {
             continue; // normals of walls do not turn
         }
         const auto x = separation(packing_->layout(), packing_->q, c);

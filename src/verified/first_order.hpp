@@ -6,7 +6,7 @@
 #include "verified/configuration.hpp"
 
 #include <isostat/core/verdict.hpp>
-#include <isostat/packing/packing.hpp>
+#include <isostat/packing/load.hpp>
 
 #include <optional>
 #include <vector>

@@ -100,9 +100,12 @@ Constraints constraints(const Packing& packing, const std::vector<Contact>& cont
         const Separation separation(contacts[l], packing.layout());
         Constraint found;
         switch (contacts[l].kind) {
-        case ContactKind::disk_disk: {
+        case ContactKind::disk_disk:
+        case ContactKind::bar: {
             const auto j = static_cast<std::size_t>(contacts[l].j);
-            const Pair d = exact_sum(scale * radius[i], scale * radius[j]);
+            const Pair d = contacts[l].kind == ContactKind::bar
+                               ? Pair{scale * packing.bar_length(contacts[l].i, contacts[l].j)}
+                               : exact_sum(scale * radius[i], scale * radius[j]);
             const auto distance = distance_of(separation, contacts[l], at, minus);
             found = between_disks(std::span(distance).first(packing.axes()), d);
             ratio = std::max(ratio, std::abs(found.f) * (1 / d.sum));

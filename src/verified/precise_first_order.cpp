@@ -31,7 +31,7 @@ PreciseInterval gap_rate(const EnclosedVertex<Real>& vertex, const DofMap& dofs,
     };
     const UpperBound unknown = separation_weight(pair) * motion.bound;
     const Layout layout = vertex.at().packing().layout();
-    if (pair.kind != ContactKind::disk_disk) {
+    if (!pair.of_disks()) {
         const Real v = component(layout.of_disk(pair.i) + static_cast<std::size_t>(pair.j));
         const std::size_t wall = layout.of_length(static_cast<std::size_t>(pair.j));
         const Real rate = pair.kind == ContactKind::lower_wall ? v : component(wall) - v;
@@ -64,7 +64,7 @@ PreciseInterval gap_rate(const EnclosedVertex<Real>& vertex, const DofMap& dofs,
 PreciseInterval turning(const EnclosedVertex<Real>& vertex, const DofMap& dofs, const BoundedVector<Real>& motion,
                         const Contact& pair) {
     const Arithmetic<Real>& a = vertex.at().arithmetic();
-    if (pair.kind != ContactKind::disk_disk) {
+    if (!pair.of_disks()) {
         return PreciseInterval(a.bits());
     }
     const auto enclosed = [&](const Real& x, const UpperBound& radius) {

@@ -14,9 +14,9 @@
 
 namespace isostat {
 
-/// Sum of the radii of a contact: the length that scales the rounding of its gap.
+/// Sum of the radii of a contact, the length of a bar: the length D that scales the rounding of the gap.
 inline double target(const Packing& packing, const Contact& contact) {
-    return touching_distance(packing.radius, contact);
+    return zero_distance(packing, contact);
 }
 
 /// Products of such doubles, and what rounding leaves of them, keep all digits (V0).
@@ -87,7 +87,7 @@ class HeaviestSum {
 inline double lipschitz_in_cell(const Packing& packing, const std::vector<Contact>& contacts) {
     HeaviestSum sum(packing.radius.size());
     for (const Contact& contact : contacts) {
-        if (contact.kind == ContactKind::disk_disk) {
+        if (contact.of_disks()) {
             const double part = separation_weight_square(contact) / target(packing, contact);
             sum.add(contact, part * part, contact.image.is_here() ? 0.0 : part * part);
         }
@@ -104,7 +104,7 @@ inline double lipschitz(const Packing& packing, const std::vector<Contact>& cont
     std::vector<int> count(packing.radius.size(), 0);
     double smallest = std::numeric_limits<double>::infinity();
     for (const Contact& contact : contacts) {
-        if (contact.kind == ContactKind::disk_disk) {
+        if (contact.of_disks()) {
             ++count[static_cast<std::size_t>(contact.i)];
             ++count[static_cast<std::size_t>(contact.j)];
             smallest = std::min(smallest, target(packing, contact));
@@ -142,7 +142,7 @@ inline double turn_of_forces(const Packing& packing, const std::vector<Contact>&
     if (packing.cell.any()) {
         HeaviestSum heaviest(packing.radius.size());
         for (std::size_t l = 0; l < contacts.size(); ++l) {
-            if (contacts[l].kind == ContactKind::disk_disk) {
+            if (contacts[l].of_disks()) {
                 heaviest.add_turn(contacts[l], std::abs(x[l]) / target(packing, contacts[l]));
             }
         }
@@ -151,7 +151,7 @@ inline double turn_of_forces(const Packing& packing, const std::vector<Contact>&
     std::vector<double> sum(packing.radius.size(), 0.0);
     for (std::size_t l = 0; l < contacts.size(); ++l) {
         const Contact& contact = contacts[l];
-        if (contact.kind == ContactKind::disk_disk) {
+        if (contact.of_disks()) {
             const double part = std::abs(x[l]) / target(packing, contact);
             sum[static_cast<std::size_t>(contact.i)] += part;
             sum[static_cast<std::size_t>(contact.j)] += part;

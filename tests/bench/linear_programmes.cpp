@@ -6,7 +6,7 @@
 //
 // bench/highs_chain.py runs both and compares with scipy's HiGHS on the same programmes.
 
-#include <isostat/packing/packing.hpp>
+#include <isostat/packing/load.hpp>
 #include <isostat/preparation/preparation.hpp>
 
 #include <fmt/format.h>

@@ -3,9 +3,12 @@
 #include "support/test.hpp"
 
 #include <isostat/certificate/certify.hpp>
-#include <isostat/packing/packing.hpp>
+#include <isostat/packing/load.hpp>
 
+#include <array>
 #include <cmath>
+#include <optional>
+#include <tuple>
 
 using isostat::CellInspection;
 using isostat::Certification;
@@ -60,6 +63,34 @@ void check_end(const State& state, const isostat::LoadEndClaim& end, const Json&
 const std::vector<std::string> packings{"box_uniform_30_1",    "box_bidisperse_30_1", "box_jitter_30_1",
                                         "slab_uniform_30_1",   "ortho_uniform_30_1",  "tri_uniform_30_1",
                                         "tri_bidisperse_60_1", "ortho_jitter_100_1",  "box_bidisperse_100_1"};
+
+struct Lattice {
+    std::vector<std::array<double, 3>> site; ///< in the unit that makes all of them doubles
+    double side, radius;                     ///< the radius rounded: a gap of 0 has no double but in the first one
+};
+const Lattice simple_cubic{
+    {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {2, 2, 0}, {0, 0, 2}, {2, 0, 2}, {0, 2, 2}, {2, 2, 2}}, 4, 1};
+const Lattice body_centred{{{0, 0, 0}, {1, 1, 1}}, 2, std::sqrt(3.0) / 2};
+const Lattice face_centred{{{0, 0, 0}, {0, 1, 1}, {1, 0, 1}, {1, 1, 0}}, 2, std::sqrt(2.0) / 2};
+
+/// In the contacts of nearest neighbours, which are equally far apart: rows are theirs.
+State state_of(const Lattice& lattice) {
+    State state;
+    isostat::Packing& p = state.packing;
+    p.dimension = p.cell.dimension = state.load.dimension = 3;
+    p.walls = isostat::Walls::none();
+    p.cell.repeat();
+    for (const auto& site : lattice.site) {
+        p.radius.push_back(lattice.radius);
+        p.q.insert(p.q.end(), site.begin(), site.end());
+    }
+    p.q.insert(p.q.end(), {lattice.side, lattice.side, lattice.side, 0, 0, 0});
+    state.contacts = isostat::near_pairs(p, 0.05).pairs;
+    state.load.loaded_axis = 2;
+    state.load.stress.fill(1);
+    state.load.refer_to(p);
+    return state;
+}
 
 } // namespace
 
@@ -184,43 +215,42 @@ BOOST_AUTO_TEST_CASE(cells_of_spheres_are_counted_and_judged) {
 }
 
 BOOST_AUTO_TEST_CASE(lattices_have_their_counts_in_four_kinds_of_cell) {
-    struct Lattice {
-        std::vector<std::array<double, 3>> site; ///< in the unit that makes all of them doubles
-        double side, radius;
-        std::array<std::array<int, 4>, 4> expected; ///< N_f, N, h, k: fixed, isotropic, orthorhombic, triclinic
-    };
-    // Simple cubic 2 x 2 x 2 with radius 1; body-centred and face-centred: no doubles, so by pairs alone.
-    const Lattice cubic{{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {2, 2, 0}, {0, 0, 2}, {2, 0, 2}, {0, 2, 2}, {2, 2, 2}},
-                        4,
-                        1,
-                        {{{21, 24, 12, 9}, {22, 24, 11, 9}, {24, 24, 9, 9}, {27, 24, 9, 12}}}};
-    const Lattice centred{{{0, 0, 0}, {1, 1, 1}}, 2, 0.875, {{{3, 8, 5, 0}, {4, 8, 4, 0}, {6, 8, 4, 2}, {9, 8, 1, 2}}}};
-    const Lattice faces{{{0, 0, 0}, {0, 1, 1}, {1, 0, 1}, {1, 1, 0}},
-                        2,
-                        0.71,
-                        {{{9, 24, 15, 0}, {10, 24, 14, 0}, {12, 24, 12, 0}, {15, 24, 9, 0}}}};
-    for (const Lattice& lattice : {cubic, centred, faces}) {
-        State state;
-        isostat::Packing& p = state.packing;
-        p.dimension = p.cell.dimension = 3;
-        p.walls = isostat::Walls::none();
-        p.cell.repeat();
-        for (const auto& site : lattice.site) {
-            p.radius.push_back(lattice.radius);
-            p.q.insert(p.q.end(), site.begin(), site.end());
-        }
-        p.q.insert(p.q.end(), {lattice.side, lattice.side, lattice.side, 0, 0, 0});
-        const auto pairs = isostat::near_pairs(p, 0.05).pairs; // nearest neighbours, equally far apart: rows are theirs
-        const auto counts = isostat::count_strains(p, pairs);
+    // N_f, N, h, k: fixed, isotropic, orthorhombic, triclinic.
+    using Counts = std::array<std::array<int, 4>, 4>;
+    for (const auto& [lattice, expected] :
+         {std::pair{simple_cubic, Counts{{{21, 24, 12, 9}, {22, 24, 11, 9}, {24, 24, 9, 9}, {27, 24, 9, 12}}}},
+          std::pair{body_centred, Counts{{{3, 8, 5, 0}, {4, 8, 4, 0}, {6, 8, 4, 2}, {9, 8, 1, 2}}}},
+          std::pair{face_centred, Counts{{{9, 24, 15, 0}, {10, 24, 14, 0}, {12, 24, 12, 0}, {15, 24, 9, 0}}}}}) {
+        const State state = state_of(lattice);
+        const auto counts = isostat::count_strains(state.packing, state.contacts);
         for (std::size_t k = 0; k < 4; ++k) {
             BOOST_TEST_CONTEXT(lattice.site.size() << " sites, " << isostat::to_string(isostat::strains[k])) {
-                BOOST_TEST(counts[k].dof_count == lattice.expected[k][0]);
-                BOOST_TEST(counts[k].contact_count == lattice.expected[k][1]);
-                BOOST_TEST(counts[k].hyperstaticity == lattice.expected[k][2]);
-                BOOST_TEST(counts[k].mechanisms == lattice.expected[k][3]);
+                BOOST_TEST(counts[k].dof_count == expected[k][0]);
+                BOOST_TEST(counts[k].contact_count == expected[k][1]);
+                BOOST_TEST(counts[k].hyperstaticity == expected[k][2]);
+                BOOST_TEST(counts[k].mechanisms == expected[k][3]);
                 BOOST_TEST((counts[k].rank_exact == Verdict::proved));
             }
         }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(lattices_in_doubles_are_jammed_if_their_contacts_close) {
+    // Collectively, strictly (proofs/cells.md, C14). The rows of the simple cubic one slide: doubles do not tell that.
+    using Answer = std::optional<Verdict>;
+    for (const auto& [lattice, collective, strict] :
+         {std::tuple{simple_cubic, Answer{}, Answer{Verdict::refuted}},
+          std::tuple{body_centred, Answer{Verdict::proved}, Answer{Verdict::refuted}},
+          std::tuple{face_centred, Answer{Verdict::proved}, Answer{Verdict::proved}}}) {
+        const State state = state_of(lattice);
+        const CellInspection seen = isostat::inspect_cell(state, certify(state));
+        const auto verdict = [](const isostat::JammingAnswer& answer) {
+            BOOST_TEST((answer.verdict == Verdict::undecided));
+            return answer.if_closed ? Answer(answer.if_closed->verdict) : Answer{};
+        };
+        BOOST_TEST_INFO_SCOPE(lattice.site.size() << " sites");
+        BOOST_TEST((verdict(seen.collective) == collective));
+        BOOST_TEST((verdict(seen.strict) == strict));
     }
 }
 

@@ -83,7 +83,9 @@ inline void walk(const Json& root, const Json::json_pointer& at, const std::stri
     } else if (value.is_array()) {
         const bool named = value.size() <= 3 && !std::all_of(value.begin(), value.end(),
                                                              [](const Json& part) { return part.is_structured(); });
-        if (!value.empty()) {
+        // A bar among the contacts says again what "bars" say: without the entry the file is read as before.
+        const bool bar = !value.empty() && value.back().is_array() && !value.back().empty() && value.back()[0] == "bar";
+        if (!value.empty() && !bar) {
             add(field, "shorter", [&](Json& copy) { copy[at].erase(value.size() - 1); });
         }
         for (std::size_t k = 0; k < value.size(); ++k) {

@@ -27,6 +27,7 @@ BOOST_AUTO_TEST_CASE(help_of_every_subcommand_has_an_example) {
 
 BOOST_AUTO_TEST_CASE(wrong_use_is_64) {
     says(run({}), 64, {"Subcommands:", "inspect"});
+    BOOST_TEST(run({}).out == run({"--help"}).out); // line by line
     expect(run({"fly"}), 64, {"'fly' is no command", "--help"});
     expect(run({"runn", "scene.toml"}), 64, {"did you mean 'run'?"});
     expect(run({"ceritfy"}), 64, {"did you mean 'certify'?"});

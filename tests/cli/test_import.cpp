@@ -1,7 +1,7 @@
 // isostat import and isostat export, as a user runs them.
 #include "cli/program.hpp"
 
-#include <isostat/io/foreign.hpp>
+#include <isostat/foreign/foreign.hpp>
 #include <isostat/io/state_file.hpp>
 
 #include <nlohmann/json.hpp>
@@ -169,7 +169,7 @@ BOOST_AUTO_TEST_CASE(what_no_vertex_is_near_is_refused_and_nothing_is_written) {
     expect(import_text(folder, lattice, {"--box", "0:6,0:6", "--moved", moved}), 1, {"isostatic at no threshold"});
     BOOST_TEST(!fs::exists(moved));
     expect(import_text(folder, soft.table(), {"--box", soft.box, "--stress", "1"}), 64, {"--stress", "S1,S2"});
-    expect(import_text(folder, soft.table(), {"--box", soft.box, "--walls", "fixed"}), 64, {"--walls", "box"});
+    expect(import_text(folder, soft.table(), {"--box", soft.box, "--walls", "none"}), 64, {"--walls", "box"});
     expect(import_text(folder, state_text(soft.state), {}), 65, {"is a state of this program", "--jitter"});
 }
 
@@ -206,6 +206,15 @@ BOOST_AUTO_TEST_CASE(crafted_packings_keep_their_contacts_or_are_refused) {
     expect(run({"import", crafted_files + "two_disks.toml", "-o", out, "--jitter", "1e-6"}), 65,
            {"crafted", "--jitter"});
     BOOST_TEST(!fs::exists(out));
+}
+
+BOOST_AUTO_TEST_CASE(a_vertex_text_says_its_walls_and_none_that_is_refuted_is_written) {
+    const scratch::Folder folder;
+    const std::string from = scratch::data("vertex100.txt"), out = folder.at("out.json");
+    for (const auto& [option, value] : {std::pair{"--cell", "fixed"}, {"--walls", "fixed"}}) {
+        expect(run({"import", from, "-o", out, option, value}), 65, {"vertex text", option});
+        BOOST_TEST(!std::filesystem::exists(out));
+    }
 }
 
 BOOST_AUTO_TEST_CASE(what_is_exported_comes_back_as_the_same_vertex) {

@@ -1,7 +1,7 @@
 // What the digits of a file leave open is not called proved.
 #include "cli/program.hpp"
 
-#include <isostat/io/foreign.hpp>
+#include <isostat/foreign/foreign.hpp>
 #include <isostat/io/state_file.hpp>
 
 #include <nlohmann/json.hpp>

@@ -51,6 +51,69 @@ std::string& contact_row(Copy& copy, std::size_t row) {
 
 BOOST_AUTO_TEST_SUITE(compare_series)
 
+/// Both stresses and all forces of frame k are 2^k times those of the series: rigid grains do not know the difference.
+BOOST_AUTO_TEST_CASE(frames_whose_stresses_all_vary_are_placed_by_their_ratio) {
+    Copy copy(9);
+    const auto scaled = [](const std::string& number, double factor) {
+        return fmt::format("{}", std::stod(number) * factor);
+    };
+    for (std::size_t k = 0; k < copy.table.size(); ++k) {
+        series::Lines row = series::words_of(copy.table[k], ',');
+        const double factor = std::ldexp(1.0, static_cast<int>(k) - 1);
+        for (std::size_t column = 5; k > 0 && column < row.size(); ++column) {
+            row[column] = scaled(row[column], factor);
+        }
+        row.push_back(k == 0 ? "sigma1" : fmt::format("{}", factor));
+        copy.table[k] = series::joined(row, ',');
+    }
+    const auto scale_forces = [&](series::Lines& dump, const std::vector<std::size_t>& columns) {
+        for (std::size_t k = 0; k < 9; ++k) {
+            for (std::size_t at = Copy::line(dump, k, 0); at < dump.size() && dump[at].find("ITEM") != 0; ++at) {
+                for (const std::size_t column : columns) {
+                    const std::string old = series::words_of(dump[at])[column];
+                    dump[at] = Copy::field(dump[at], column, scaled(old, std::ldexp(1.0, static_cast<int>(k))));
+                }
+            }
+        }
+    };
+    const auto columns_of = [](const series::Lines& dump, const series::Lines& names) {
+        const series::Lines header = series::words_of(dump[Copy::line(dump, 0, 0) - 1]);
+        std::vector<std::size_t> out;
+        for (const std::string& name : names) {
+            out.push_back(static_cast<std::size_t>(std::find(header.begin(), header.end(), name) - header.begin()) - 2);
+        }
+        return out;
+    };
+    scale_forces(copy.disks, columns_of(copy.disks, {"f_wl[2]", "f_wr[2]", "f_wb[3]", "f_wt[3]"}));
+    scale_forces(copy.contacts, columns_of(copy.contacts, {"force"}));
+    const std::string law = "kind = \"linear\"\nstiffness = 1e5";
+    copy.manifest = scratch::replaced(copy.manifest, law, "kind = \"none\"");
+    const std::string varying = scratch::replaced(copy.manifest, "sigma1 = 1.0\n", "");
+    Copy plain(9);
+    plain.manifest = copy.manifest;
+    copy.manifest = varying;
+    const compare::CompareOptions options{.start = {}, .bundle = 4, .local = true};
+    const Comparison expected = plain.compare(options), found = copy.compare(options);
+    BOOST_TEST(found.status == expected.status);
+    BOOST_TEST_REQUIRE(found.frames.size() == expected.frames.size());
+    for (std::size_t k = 0; k < found.frames.size(); ++k) {
+        const compare::FrameResult &f = found.frames[k], &e = expected.frames[k];
+        BOOST_TEST((f.status == e.status), k << ": " << compare::to_string(f.status) << ": " << f.reason);
+        BOOST_TEST((f.stress == e.stress && f.expected == e.expected && f.found == e.found && f.node == e.node));
+        BOOST_TEST(f.local == e.local);
+    }
+    BOOST_TEST_REQUIRE(found.departure.has_value());
+    BOOST_TEST(
+        (found.departure->to == expected.departure->to && found.departure->reason == expected.departure->reason));
+    copy.table[2].resize(copy.table[2].rfind(',') + 1);
+    copy.table[2] += "-1";
+    expect_bad_input([&] { (void)copy.compare(); }, {"frames.csv:3", "sigma1", "a positive number"});
+    for (std::string& row : copy.table) {
+        row.resize(row.rfind(','));
+    }
+    expect_bad_input([&] { (void)copy.compare(); }, {"no column 'sigma1'", "[load]"});
+}
+
 BOOST_AUTO_TEST_CASE(frames_of_a_loading_have_their_statuses_and_the_departure_its_reason) {
     const Comparison result = Copy(9).compare();
     const std::vector<std::string> expected{"same", "same", "same", "early", "same", "other", "soft", "moving", "soft"};

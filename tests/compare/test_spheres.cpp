@@ -42,14 +42,19 @@ Packing overlapping(const State& state, const std::vector<double>& overlaps) {
 /// Tables of frames; spheres of a cell are wrapped, and a triclinic cell is described by other tilts in each frame.
 class SphereSeries {
   public:
-    SphereSeries(const std::string& name, const std::vector<double>& loads, ForceLaw law) : law_(law) {
+    SphereSeries(const std::string& name, const std::vector<double>& loads, ForceLaw law, const StressRates& path = {})
+        : law_(law), path_(path != StressRates{}) {
         State state = test::on_its_lengths(test::state_of_spheres(test::read_spheres(name)));
         snap_to_grid(state.packing);
         periodic_ = state.packing.cell.any();
         tilted_ = state.packing.cell.shears();
         load = state.load;
+        if (path_) {
+            state.load.follow(path);
+        }
         frames = periodic_ ? "timestep,sigma3,left,bottom,back,right,top,front,tilt_xy,tilt_xz,tilt_yz\n"
                            : "timestep,sigma3,left,bottom,back,right,top,front\n";
+        frames = path_ ? scratch::replaced(frames, "sigma3", "sigma1,sigma2,sigma3") : frames;
         RunCounters counters;
         RunObserver nobody;
         for (const double at : loads) {
@@ -76,12 +81,12 @@ class SphereSeries {
                        fmt::format("format = \"isostat-series 1\"\n[files]\ndisks = \"spheres.csv\"\ncontacts = "
                                    "\"contacts.csv\"\nframes = \"frames.csv\"\n[columns]\ncontact_i = "
                                    "\"i\"\ncontact_j = \"j\"\ncontact_force = \"f\"\n{}{}[law]\nkind = "
-                                   "\"{}\"\nstiffness = {}\n[load]\nsigma1 = {}\nsigma2 = {}\nreference_length = "
-                                   "[{}, {}, {}]\n",
+                                   "\"{}\"\nstiffness = {}\n[load]\n{}reference_length = [{}, {}, {}]\n",
                                    periodic_ ? "[cell]\n" : "", tilted_ ? "kind = \"tilted\"\n" : "",
-                                   law_names[static_cast<std::size_t>(law_)], stiffness_, load.stress[0],
-                                   load.stress[1], load.reference_length[0], load.reference_length[1],
-                                   load.reference_length[2]));
+                                   law_names[static_cast<std::size_t>(law_)], stiffness_,
+                                   path_ ? std::string()
+                                         : fmt::format("sigma1 = {}\nsigma2 = {}\n", load.stress[0], load.stress[1]),
+                                   load.reference_length[0], load.reference_length[1], load.reference_length[2]));
         compare::SeriesReader reader(*folder_ / "series.toml");
         return compare::compare(reader, {.start = {}, .bundle = 2});
     }
@@ -120,8 +125,10 @@ class SphereSeries {
     }
 
     void write_frame(const State& state, const Packing& packing) {
-        frames += fmt::format("{},{},0,0,0,{},{},{}", step_, state.load.loaded_stress(), packing.length(0),
-                              packing.length(1), packing.length(2));
+        const PerAxis<double>& stress = state.load.stress;
+        frames += fmt::format("{},{}{},0,0,0,{},{},{}", step_,
+                              path_ ? fmt::format("{},{},", stress[0], stress[1]) : std::string(), stress[2],
+                              packing.length(0), packing.length(1), packing.length(2));
         const std::array<double, 3> flips{0, 1, -1}; // periods along y, and twice as many along x
         const double flip = tilted_ ? flips.at(static_cast<std::size_t>(step_ / 100)) : 0;
         if (periodic_) {
@@ -149,7 +156,7 @@ class SphereSeries {
     ForceLaw law_;
     double stiffness_ = sphere_stiffness.at(static_cast<std::size_t>(law_));
     long step_ = 0;
-    bool periodic_ = false, tilted_ = false;
+    bool path_, periodic_ = false, tilted_ = false;
     std::shared_ptr<scratch::Folder> folder_ = std::make_shared<scratch::Folder>(); // copies write to the same
 };
 
@@ -201,6 +208,32 @@ BOOST_AUTO_TEST_CASE(frames_of_spheres_that_contradict_themselves_are_named) {
     series.contacts = contacts;
     series.frames = scratch::replaced(series.frames, "100,1.1,", "100,1.12,");
     expect_file("front wall");
+}
+
+/// sigma1 and sigma2 fall as sigma3 rises: a path in stress space.
+BOOST_AUTO_TEST_CASE(frames_of_a_run_in_which_all_stresses_change_are_the_same_or_named) {
+    const State start = test::on_its_lengths(test::state_of_spheres(test::read_spheres("box_uniform_30_1")));
+    const PerAxis<double>& s = start.load.stress;
+    SphereSeries series("box_uniform_30_1", {0, 0.03, 0.08}, ForceLaw::linear, {-s[0], -s[1], 2 * s[2]});
+    const Comparison result = series.compare();
+    BOOST_TEST(result.status == 0);
+    BOOST_TEST_REQUIRE(result.frames.size() == 3U);
+    for (const compare::FrameResult& frame : result.frames) {
+        BOOST_TEST((frame.status == FrameStatus::same), compare::to_string(frame.status) << ": " << frame.reason);
+    }
+    BOOST_TEST(result.frames.back().expected > 0); // it rearranged
+    BOOST_TEST(result.frames.back().stress == s[2] / s[0] * 1.16 / 0.92, boost::test_tools::tolerance(1e-12));
+    // The same frames under the stresses of another one, and in another proportion.
+    const std::string frames = series.frames;
+    const auto row = frames.find("\n200,") + 1;
+    const std::string last = frames.substr(row), sigma1 = last.substr(4, last.find(',', 4) - 4);
+    series.frames = frames.substr(0, row) + "200,1.5" + last.substr(4 + sigma1.size());
+    BOOST_CHECK_EXCEPTION((void)series.compare(), Error, [](const Error& error) {
+        return std::string(error.what()).find("in the proportion to sigma1") != std::string::npos;
+    });
+    series.frames =
+        frames.substr(0, row) + fmt::format("200,{},{},{}", s[0], s[1], s[2]) + last.substr(last.find(",0,0,0,"));
+    BOOST_TEST((series.compare().frames.back().status == FrameStatus::file));
 }
 
 BOOST_AUTO_TEST_CASE(stresses_of_three_axes_are_those_of_the_manifest_or_refused) {

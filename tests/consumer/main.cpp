@@ -20,6 +20,14 @@ int main() {
     }
     std::printf("%d contacts, isostatic equilibrium: %s, table of %zu bytes\n", inspection.value().record.contact_count,
                 std::string(to_string(inspection.value().record.verdict)).c_str(), csv_text(state.packing).size());
+    const SparseColumns h = contact_matrix(state);
+    const auto motion = mechanism(state, state.contacts.front());
+    const auto arc = first_arc(state, +1);
+    if (!motion.ok() || static_cast<int>(motion.value().size()) != h.rows || !arc.ok()) {
+        return 1;
+    }
+    std::printf("%d x %d contact matrix, an arc opens %s and closes %s\n", h.rows, h.columns,
+                to_string(arc.value().opened).c_str(), to_string(arc.value().closed).c_str());
     std::fesetround(FE_UPWARD);
     try {
         (void)inspect_vertex(state);

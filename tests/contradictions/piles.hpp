@@ -255,7 +255,8 @@ inline void load_for(State& state, const Truth& truth, const std::vector<double>
         const auto j = static_cast<std::size_t>(c.j);
         const Real f = forces[l];
         switch (c.kind) {
-        case ContactKind::disk_disk: {
+        case ContactKind::disk_disk:
+        case ContactKind::bar: {
             const auto r = truth.between(c);
             const Real d = sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
             for (std::size_t a = 0; a < axes; ++a) {

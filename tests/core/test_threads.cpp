@@ -1,5 +1,6 @@
 // Work in pieces on several threads.
 
+#include "core/parallel.hpp"
 #include "core/work.hpp"
 #include "support/test.hpp"
 #include "support/threads.hpp"

@@ -3,12 +3,13 @@
 
 #include "support/test.hpp"
 
-/// Paths of those of disks, or of spheres, sorted.
-inline std::vector<std::string> packing_files(bool spheres = false) {
+/// Paths of those of disks, of spheres, or of clumps of either, sorted.
+inline std::vector<std::string> packing_files(bool spheres = false, bool clumps = false) {
     std::vector<std::string> paths;
     for (const auto& entry : std::filesystem::directory_iterator(std::string(ISOSTAT_EXAMPLES) + "/packings")) {
-        const bool of_spheres = entry.path().filename().string().starts_with("spheres_");
-        if (entry.path().extension() == ".toml" && of_spheres == spheres) {
+        const std::string name = entry.path().filename().string();
+        const bool of_spheres = name.starts_with("spheres_"), of_clumps = name.starts_with("clump_");
+        if (entry.path().extension() == ".toml" && of_spheres == spheres && of_clumps == clumps) {
             paths.push_back(entry.path().string());
         }
     }

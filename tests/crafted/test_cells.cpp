@@ -7,8 +7,11 @@
 #include <isostat/contact/state.hpp>
 #include <isostat/crafted/exact_packing.hpp>
 #include <isostat/io/state_file.hpp>
+#include <isostat/rigidity/counting.hpp>
 
 #include <Eigen/Dense>
+
+#include <random>
 
 BOOST_AUTO_TEST_SUITE(crafted_cells)
 
@@ -292,6 +295,148 @@ BOOST_AUTO_TEST_CASE(a_state_is_jammed_as_the_exact_packing_where_own_images_tou
         BOOST_TEST((seen.collective.verdict == exact.jamming->collective));
         BOOST_TEST((seen.strict.verdict == rows.strict), seen.strict.reason);
         BOOST_TEST(same(*exact.strains, seen.all));
+    }
+}
+
+/// The doubles of an exact packing, in its contacts, the cell at rest.
+isostat::State in_doubles(const ExactPacking& packing) {
+    isostat::State state;
+    state.packing = approximate(packing);
+    state.packing.cell.keeps_shape = false;
+    state.packing.cell.move(false, false);
+    state.contacts = exact_contacts(packing).value();
+    state.load.stress = {1, 1};
+    state.load.refer_to(state.packing);
+    return state;
+}
+
+/// The smallest force of the self-stress with the largest entropy, in dense matrices; 0 where none is found.
+double smallest_self_stress(isostat::State state) {
+    const std::vector<int> rattlers = isostat::rattlers_by_coordination(state.packing, state.contacts);
+    const auto rattles = [&](int i) { return std::binary_search(rattlers.begin(), rattlers.end(), i); };
+    std::erase_if(state.contacts, [&](const Contact& c) { return rattles(c.i) || rattles(c.j); });
+    const isostat::DofMap dofs(isostat::without_disks(state.packing, rattlers));
+    Eigen::MatrixXd h = Eigen::MatrixXd::Zero(dofs.dof_count(), static_cast<Eigen::Index>(state.contacts.size()));
+    for (Eigen::Index l = 0; l < h.cols(); ++l) {
+        const auto gradient = isostat::gap_gradient(state.packing, state.contacts[static_cast<std::size_t>(l)]);
+        for (std::size_t k = 0; k < static_cast<std::size_t>(gradient.count); ++k) {
+            if (const int dof = dofs.dof_of(static_cast<std::size_t>(gradient.coordinate[k])); dof >= 0) {
+                h(dof, l) -= gradient.value[k];
+            }
+        }
+    }
+    Eigen::VectorXd f = Eigen::VectorXd::Ones(h.cols()), v = Eigen::VectorXd::Zero(h.rows());
+    for (int step = 0; step < 60; ++step) {
+        const Eigen::VectorXd change = (h * f.asDiagonal() * h.transpose()).ldlt().solve(h * f);
+        v += change / std::max(1.0, (h.transpose() * change).cwiseAbs().maxCoeff());
+        f = (-(h.transpose() * v)).array().exp();
+    }
+    const Eigen::Index rank = Eigen::FullPivLU<Eigen::MatrixXd>(h).setThreshold(1e-9).rank();
+    return rank == h.rows() && (h * f).norm() < 1e-9 ? f.minCoeff() : 0;
+}
+
+struct Lattice {
+    const char* file;
+    bool collective, strict; ///< told in doubles
+};
+
+const std::vector<Lattice> lattices{{"packings/cell_hexagonal_largest.toml", true, true},
+                                    {"packings/cell_hexagonal_saddle.toml", false, true},
+                                    {"packings/cell_hexagonal_row_and_rattler.toml", false, false},
+                                    {"packings/cell_square_lattice_2.toml", false, true},
+                                    {"packings/cell_triangular_lattice_6.toml", true, true},
+                                    {"24_honey.toml", true, true},
+                                    {"24_honey2.toml", true, true},
+                                    {"24_kagome.toml", false, true},
+                                    {"24_square.toml", false, true}};
+
+ExactPacking packing_of(const Lattice& lattice) {
+    const std::string file = lattice.file;
+    return read_packing(
+               (file[0] == '2' ? std::string(ISOSTAT_TEST_DATA) + "/field/" : ISOSTAT_EXAMPLES + std::string("/")) +
+               file)
+        .packing;
+}
+
+BOOST_AUTO_TEST_CASE(lattices_in_doubles_are_jammed_if_their_contacts_close) {
+    // h > 0: doubles do not tell by themselves, and what they tell on this condition is so in exact numbers.
+    for (const Lattice& lattice : lattices) {
+        const ExactPacking packing = packing_of(lattice);
+        const Inspection exact = inspected(packing);
+        const isostat::State state = in_doubles(packing);
+        const isostat::CellInspection seen = isostat::inspect_cell(state, isostat::certify(state));
+        BOOST_TEST_INFO_SCOPE(lattice.file);
+        BOOST_TEST((seen.collective.verdict == Verdict::undecided));
+        BOOST_TEST((seen.strict.verdict == Verdict::undecided));
+        BOOST_TEST(seen.collective.if_closed.has_value() == lattice.collective);
+        BOOST_TEST(seen.strict.if_closed.has_value() == lattice.strict);
+        if (seen.collective.if_closed) {
+            BOOST_TEST((seen.collective.if_closed->verdict == exact.jamming->collective));
+            BOOST_TEST(seen.local.if_closed.has_value() == (exact.jamming->collective == Verdict::proved));
+        }
+        if (seen.strict.if_closed) {
+            BOOST_TEST((seen.strict.if_closed->verdict == *exact.jamming->strict));
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(forces_stay_positive_at_every_place_that_is_spoken_of) {
+    std::mt19937_64 random(7);
+    for (const Lattice& lattice : lattices) {
+        isostat::State state = in_doubles(packing_of(lattice));
+        const auto told = isostat::inspect_cell(state, isostat::certify(state)).collective.if_closed;
+        if (!told || told->verdict != Verdict::proved) {
+            continue;
+        }
+        BOOST_TEST_INFO_SCOPE(lattice.file);
+        BOOST_TEST(smallest_self_stress(state) > 0.1);
+        const std::vector<double> stored = state.packing.q;
+        for (int place = 0; place < 5; ++place) {
+            Eigen::VectorXd change(static_cast<Eigen::Index>(stored.size()));
+            for (double& c : change) {
+                c = static_cast<double>(random() >> 11U) * 0x1p-52 - 1;
+            }
+            change *= told->within / change.norm();
+            for (std::size_t k = 0; k < stored.size(); ++k) {
+                state.packing.q[k] = stored[k] + change[static_cast<Eigen::Index>(k)];
+            }
+            BOOST_TEST(smallest_self_stress(state) > 0);
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(what_is_not_near_or_overlaps_is_not_spoken_of) {
+    const isostat::State state = in_doubles(example("cell_triangular_lattice_6.toml"));
+    const auto told = [](const isostat::State& s) {
+        return isostat::inspect_cell(s, isostat::certify(s)).collective.if_closed;
+    };
+    BOOST_REQUIRE(told(state).has_value());
+    BOOST_TEST(told(state)->within > 0);
+    BOOST_TEST(told(state)->within <= 1e-3 * state.packing.min_radius());
+    isostat::State small = state; // a gap of the list is open by more than the proof spans
+    for (double& radius : small.packing.radius) {
+        radius *= 0.999;
+    }
+    BOOST_TEST(!told(small).has_value());
+    isostat::State unlisted = state; // a pair that is not listed overlaps
+    for (double& radius : unlisted.packing.radius) {
+        radius *= 1 + 1e-5;
+    }
+    unlisted.packing.radius[0] *= 1.01;
+    std::erase_if(unlisted.contacts, [](const Contact& c) { return c.i == 0 || c.j == 0; });
+    BOOST_TEST(!told(unlisted).has_value());
+}
+
+BOOST_AUTO_TEST_CASE(a_rattler_in_a_cell_plays_no_part_in_what_is_so_if_contacts_close) {
+    isostat::State state = in_doubles(example("cell_triangular_lattice_6.toml"));
+    state.packing.radius[1] *= 0.5;
+    int left = 2; // contacts of the rattler, which are open
+    std::erase_if(state.contacts, [&](const Contact& c) { return (c.i == 1 || c.j == 1) && left-- <= 0; });
+    for (const int pin : {0, 1}) {
+        state.packing.cell.pin = pin;
+        const auto seen = isostat::inspect_cell(state, isostat::certify(state));
+        BOOST_REQUIRE(seen.collective.if_closed.has_value());
+        BOOST_TEST((seen.collective.if_closed->verdict == Verdict::proved));
     }
 }
 

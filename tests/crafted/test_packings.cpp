@@ -13,7 +13,9 @@ BOOST_AUTO_TEST_CASE(every_example_packing_has_the_answers_it_carries) {
     BOOST_TEST(paths.size() >= 25u);
     const std::vector<std::string> spheres = packing_files(true);
     BOOST_TEST(spheres.size() >= 8u);
+    const std::vector<std::string> clumps = packing_files(false, true);
     paths.insert(paths.end(), spheres.begin(), spheres.end());
+    paths.insert(paths.end(), clumps.begin(), clumps.end());
     for (const std::string& path : paths) {
         BOOST_TEST_INFO_SCOPE(path);
         const PackingFile file = read_packing(path);

@@ -57,6 +57,7 @@ program::Outcome snapped(const std::string& contacts, const std::string& columns
 std::vector<std::string> in_square(const char* walls, const char* radius) {
     return {"--columns", "-,x,y", "--radius", radius, "--walls", walls, "--box=-0.5:0.5,-0.5:0.5"};
 }
+constexpr const char* radius_of_7 = "0.174457630187009438959427204500";
 constexpr const char* radius_of_10 = "0.148204322565228798668007362743";
 constexpr const char* radius_of_13 = "0.133993513499008491414263236065";
 constexpr const char* radius_of_19 = "0.112265437570936304737847917535";
@@ -109,9 +110,44 @@ BOOST_AUTO_TEST_CASE(kind_4_circles_in_a_square) {
         BOOST_TEST(found["box"]["k"] == 0);
         BOOST_TEST(found["box"]["jammed"]["collective"]["verdict"] == "proved");
     }
-    more = in_square("fixed", radius_of_10);
-    more.insert(more.end(), {"-o", folder.at("fixed.json")});
-    expect(in_field("import", "04_square10.txt", more), 64, {"--walls is 'fixed'", "square"});
+}
+
+BOOST_AUTO_TEST_CASE(kind_4_import_into_walls_that_stay_writes_the_list_and_inspect_says_whether_it_is_jammed) {
+    const scratch::Folder folder;
+    const std::string state = folder.at("fixed.json"), moved = folder.at("moved.csv");
+    auto more = in_square("fixed", radius_of_7);
+    more.insert(more.end(), {"-o", state, "--moved", moved});
+    says(in_field("import", "04_square7.txt", more), 0,
+         {"7 disks, 1 rattlers by coordination, 14 contacts", "written"});
+    BOOST_TEST(contains(scratch::read(moved), ",0,1\n")); // the rattler, which has not moved
+    const auto seven = json_of(run({"inspect", state, "--json"}), 1)["box"];
+    BOOST_TEST(seven["grains"] == 6);
+    BOOST_TEST(seven["h"] == 2);
+    BOOST_TEST(seven["k"] == 0);
+    BOOST_TEST(seven["jammed"]["collective"]["if_contacts_close"]["verdict"] == "proved");
+    for (const auto& [file, radius, grains, h] : {std::tuple{"04_square10.txt", radius_of_10, 10, 1},
+                                                  {"04_square13.txt", radius_of_13, 12, 1},
+                                                  {"04_square19.txt", radius_of_19, 17, 3}}) {
+        more = in_square("fixed", radius);
+        more.insert(more.end(), {"-o", state, "--json"});
+        const auto written = json_of(in_field("import", file, more));
+        BOOST_TEST(written["verdict"].is_null());
+        BOOST_TEST(written["load"].is_null());
+        const auto box = json_of(run({"inspect", state, "--json"}), 1)["box"];
+        BOOST_TEST(box["grains"] == grains);
+        BOOST_TEST(box["h"] == h);
+        const auto& answer = box["jammed"]["collective"];
+        BOOST_TEST(answer["verdict"] == (h == 1 ? "proved" : "undecided")); // h = 1: the size of the square closes it
+        BOOST_TEST(answer.contains("if_contacts_close") == (h > 1));
+        if (h > 1) {
+            BOOST_TEST(answer["if_contacts_close"]["verdict"] == "proved");
+        }
+    }
+    for (const auto& [option, value] : {std::pair{"--contacts", "nearest"}, {"--jitter", "1e-9"}}) {
+        more = in_square("fixed", radius_of_10);
+        more.insert(more.end(), {"-o", state, option, value});
+        expect(in_field("import", "04_square10.txt", more), 64, {option, "in walls or a cell that stays"});
+    }
 }
 
 BOOST_AUTO_TEST_CASE(kind_4_a_fixed_square_counts_no_rattlers_and_exact_numbers_prove_it_jammed) {
@@ -122,6 +158,14 @@ BOOST_AUTO_TEST_CASE(kind_4_a_fixed_square_counts_no_rattlers_and_exact_numbers_
     BOOST_TEST(found["box"]["k"] == 0);
     BOOST_TEST(found["box"]["jammed"]["collective"]["verdict"] == "undecided");
     BOOST_TEST(contains(found["box"]["jammed"]["collective"]["reason"], "exact numbers"));
+    const auto& closed = found["box"]["jammed"]["collective"]["if_contacts_close"];
+    BOOST_TEST(closed["verdict"] == "proved");
+    BOOST_TEST(closed["contacts"] == 14);
+    BOOST_TEST(closed["within"].get<double>() > 1e-5);
+    BOOST_TEST(closed["within"].get<double>() < 2e-4);
+    says(in_field("inspect", "04_square7_fixed.json"), 1,
+         {"jammed collectively      undecided: h = 2", "  if contacts close      proved, of each packing within 0.0001",
+          "in which the 14 contacts all close; whether there is one is not asked"});
     const auto exact = json_of(in_field("inspect", "04_square7_exact.toml", {"--json"}));
     BOOST_TEST(exact["jammed"]["collective"] == "proved");
     BOOST_TEST(exact["jammed"]["strict"].is_null());
@@ -146,6 +190,7 @@ BOOST_AUTO_TEST_CASE(kind_4_a_square_whose_walls_stay_is_jammed_by_its_size) {
     scratch::write(folder / "loose.json", state.dump());
     const auto loose = nlohmann::json::parse(run({"inspect", folder.at("loose.json"), "--json"}).out);
     BOOST_TEST(loose["box"]["jammed"]["collective"]["verdict"] == "undecided");
+    BOOST_TEST(loose["box"]["jammed"]["collective"]["if_contacts_close"]["verdict"] == "refuted");
 }
 
 BOOST_AUTO_TEST_CASE(kind_5_gaps_and_forces_below_the_digits_are_not_told_from_0) {
@@ -158,12 +203,39 @@ BOOST_AUTO_TEST_CASE(kind_5_gaps_and_forces_below_the_digits_are_not_told_from_0
     says(in_field("import", "05_torus_n7_c1.xyz", {"--cell", "isotropic", "-o", state}), 2,
          {"8 gaps", "with these gaps closed N = 21 and h = 8"});
     const auto found = json_of(run({"inspect", state, "--json"}), 2);
-    BOOST_TEST(found["cell"]["jammed"]["strict"]["verdict"] == "undecided");
+    // Of the doubles it is no answer; with the 8 gaps closed it is the triangular lattice.
+    for (const char* kind : {"local", "collective", "strict"}) {
+        const auto& answer = found["cell"]["jammed"][kind];
+        BOOST_TEST(answer["verdict"] == "undecided", kind);
+        BOOST_TEST(answer["if_contacts_close"]["verdict"] == "proved", kind);
+        BOOST_TEST(answer["if_contacts_close"]["contacts"] == 21, kind);
+    }
     // A copy with other radii says so, in import and in inspect.
     const std::string copy = folder.at("copy.json");
     says(in_field("import", "05_torus3_triangular.xyz", {"--cell", "isotropic", "--jitter", "1e-9", "-o", copy}), 0,
          {"this is a copy with other radii"});
     says(run({"inspect", copy}), 0, {"copy                     of", "may be others of the file"});
+}
+
+BOOST_AUTO_TEST_CASE(kind_5_a_lattice_in_a_cell_that_stays_is_jammed_if_its_contacts_close) {
+    const scratch::Folder folder;
+    const std::string state = folder.at("lattice.json");
+    for (const auto& [file, contacts, strict] : {std::tuple{"05_torus3_triangular.xyz", 9, "proved"},
+                                                 {"05_torus_n7_c1.xyz", 21, "proved"},
+                                                 {"05_torus_n8_c2.xyz", 16, "refuted"},
+                                                 {"05_torus11.xyz", 22, "refuted"}}) {
+        BOOST_TEST_INFO_SCOPE(file);
+        says(in_field("import", file, {"--cell", "fixed", "--threshold", "1e-6", "-o", state}), 0,
+             {"written", "inspect says whether"});
+        const auto found = json_of(run({"inspect", state, "--json"}), 1)["cell"];
+        BOOST_TEST(found["moves"].empty());
+        for (const auto& [kind, verdict] : {std::pair{"collective", "proved"}, {"strict", strict}}) {
+            const auto& answer = found["jammed"][kind];
+            BOOST_TEST(answer["verdict"] == "undecided");
+            BOOST_TEST(answer["if_contacts_close"]["verdict"] == verdict);
+            BOOST_TEST(answer["if_contacts_close"]["contacts"] == contacts);
+        }
+    }
 }
 
 BOOST_AUTO_TEST_CASE(kind_5_published_contact_counts_on_the_hexagonal_torus) {
@@ -432,6 +504,13 @@ BOOST_AUTO_TEST_CASE(kind_28_a_manifest_to_begin_with) {
                                      "kind = \"none\"", "kind = \"linear\"\nstiffness = 1"));
     const auto found = json_of(run({"compare", series, "--bundle", "0", "--json"}));
     BOOST_TEST(found["counts"]["same"] == 2);
+    // Without sigma1 in the manifest each frame has its own.
+    const std::string one = scratch::read(series);
+    scratch::write(folder / "series.toml", scratch::replaced(one, "sigma1 = 0.001", ""));
+    expect(run({"compare", series, "--bundle", "0"}), 65, {"no column 'sigma1'"});
+    scratch::write(folder / "series.frames.csv", "timestep,sigma1,sigma2\n0,0.001,0.001\n100,0.001,0.001\n");
+    says(run({"compare", series, "--bundle", "0"}), 0, {"sigma2 is over sigma1"});
+    scratch::write(folder / "series.toml", one);
     expect(run({"compare", series, "--init", folder.at("disks.dump")}), 64, {"series.toml exists"});
     scratch::write(folder / "other.txt", "mine");
     expect(run({"compare", folder.at("other.txt"), "--init", folder.at("disks.dump")}), 64,

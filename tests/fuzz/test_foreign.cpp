@@ -4,7 +4,8 @@
 #include "support/scratch.hpp"
 
 #include <isostat/compare/compare.hpp>
-#include <isostat/io/foreign.hpp>
+#include <isostat/foreign/foreign.hpp>
+#include <isostat/io/state_file.hpp>
 
 #include <cctype>
 

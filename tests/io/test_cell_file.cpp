@@ -5,7 +5,7 @@
 #include "support/scratch.hpp"
 
 #include <isostat/crafted/plateau.hpp>
-#include <isostat/io/foreign.hpp>
+#include <isostat/foreign/foreign.hpp>
 #include <isostat/io/state_file.hpp>
 
 using namespace isostat;

@@ -19,7 +19,8 @@ inline int gap_minus_bound_sign(const Packing& packing, const Contact& contact, 
     case ContactKind::upper_wall:
         return sgn(mpq_class(packing.length(contact.j)) - mpq_class(packing.q[2 * i + j]) -
                    mpq_class(packing.radius[i]) - mpq_class(bound));
-    case ContactKind::disk_disk: {
+    case ContactKind::disk_disk:
+    case ContactKind::bar: {
         const mpq_class x = mpq_class(packing.q[2 * i]) - mpq_class(packing.q[2 * j]);
         const mpq_class y = mpq_class(packing.q[2 * i + 1]) - mpq_class(packing.q[2 * j + 1]);
         const mpq_class d = mpq_class(packing.radius[i]) + mpq_class(packing.radius[j]) + mpq_class(bound);

@@ -201,7 +201,8 @@ template <class Real> template <class Visit> void TruthIn<Real>::gradient(const 
     const auto i = static_cast<std::size_t>(c.i);
     const auto j = static_cast<std::size_t>(c.j);
     switch (c.kind) {
-    case ContactKind::disk_disk: {
+    case ContactKind::disk_disk:
+    case ContactKind::bar: {
         const auto r = between(c);
         const Real d = norm(r);
         for (std::size_t a = 0; a < axes(); ++a) {
@@ -233,9 +234,8 @@ template <class Real> template <class Visit> void TruthIn<Real>::gradient(const 
 template <class Real> Real TruthIn<Real>::gap(const Contact& c) const {
     const auto i = static_cast<std::size_t>(c.i);
     switch (c.kind) {
-    case ContactKind::disk_disk: {
-        return norm(between(c)) - (radius(c.i) + radius(c.j));
-    }
+    case ContactKind::disk_disk: return norm(between(c)) - (radius(c.i) + radius(c.j));
+    case ContactKind::bar: return norm(between(c)) - Real(state_->packing.bar_length(c.i, c.j));
     case ContactKind::lower_wall: return q[of_disk(c.i) + static_cast<std::size_t>(c.j)] - radius(c.i);
     case ContactKind::upper_wall: return q[wall(c.j)] - q[of_disk(c.i) + static_cast<std::size_t>(c.j)] - radius(c.i);
     case ContactKind::held: break;

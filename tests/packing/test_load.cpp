@@ -1,7 +1,7 @@
 #include "oracle/packings.hpp"
 #include "support/test.hpp"
 
-#include <isostat/packing/packing.hpp>
+#include <isostat/packing/load.hpp>
 
 #include <gmpxx.h>
 

@@ -145,6 +145,12 @@ class Mechanics(Folder):
         self.assertEqual(seen.grains, 94)
         box = isostat.jamming(two_disks())
         self.assertEqual((box.verdicts, box.grains, box.counts["box"].dofs), ({"collective": Verdict.PROVED}, 2, 4))  # walls stay
+        self.assertEqual(box.if_closed, {})
+        square = isostat.jamming(isostat.State.read(project / "tests/data/field/04_square7_fixed.json"))
+        self.assertIs(square.verdicts["collective"], Verdict.UNDECIDED)  # of doubles, by themselves
+        closed = square.if_closed["collective"]
+        self.assertEqual((closed.verdict, closed.contacts), (Verdict.PROVED, 14))
+        self.assertTrue(1e-5 < closed.within < 2e-4)
         with self.assertRaisesRegex(isostat.BadInput, "expected a cell"):
             isostat.jamming(two_disks(fixed=[0]))
 

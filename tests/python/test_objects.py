@@ -41,6 +41,7 @@ class Objects(Folder):
             isostat.snap(state): "vertex, h = 0, k = 0",
             generic: "2 of 2 proved isostatic",
             isostat.jamming(isostat.State.read(project / "examples/cells/tilted-100.json")): "strict: proved",
+            isostat.jamming(isostat.State.read(project / "tests/data/field/04_square7_fixed.json")).if_closed["collective"]: "proved if 14 contacts close",
             steps[0]: "number 0, 0 arcs, sigma2 = 1 in [",
             steps[1]: "step 1, limit: (",
             run: "completed, in ",

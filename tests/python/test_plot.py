@@ -78,6 +78,15 @@ class Pictures(unittest.TestCase):
     def test_two_disks_have_six_lines(self):
         self.assertEqual(len(lines_of(isostat.plot.packing(two_disks(), np.ones(6)))), 6)
 
+    def test_forces_of_packings_are_pooled_over_their_own_means(self):
+        # Over the means 2 and 20: 0.5, 1, 1.5 and 0.5, 1.5; without force: 0.
+        (steps,) = isostat.plot.force_distribution([1, 2, 0, 3], [10, 30, 0]).patches
+        data = steps.get_data()
+        np.testing.assert_array_equal(data.edges, np.arange(8) / 4)
+        np.testing.assert_allclose(data.values, [0, 0, 1.6, 0, 0.8, 0, 1.6], rtol=1e-15)
+        with self.assertRaises(isostat.Error):
+            isostat.plot.force_distribution([0, 0])
+
 
 if __name__ == "__main__":
     unittest.main()

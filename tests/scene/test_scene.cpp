@@ -194,21 +194,23 @@ BOOST_AUTO_TEST_CASE(spheres_take_the_place_of_disks) {
 }
 
 BOOST_AUTO_TEST_CASE(a_table_of_the_cell_takes_the_walls_away) {
-    BOOST_TEST((parse(head).preparation.cell == PreparedCell::none));
-    BOOST_TEST((parse(head + "[cell]\n").preparation.cell == PreparedCell::rectangular));
-    const Scene tilted = parse(head + "[cell]\nkind = \"tilted\"\n");
+    BOOST_TEST((parse_scene_text(head).preparation.cell == PreparedCell::none));
+    BOOST_TEST((parse_scene_text(head + "[cell]\n").preparation.cell == PreparedCell::rectangular));
+    const Scene tilted = parse_scene_text(head + "[cell]\nkind = \"tilted\"\n");
     BOOST_TEST((tilted.preparation.cell == PreparedCell::tilted));
     BOOST_TEST(value_of(tilted, "cell", "kind") == "\"tilted\"");
-    BOOST_TEST((parse(head + "[cell]\nkind = \"isotropic\"\n").preparation.cell == PreparedCell::isotropic));
-    refuses(head + "[cell]\nkind = \"isotropic\"\n[[programme]]\ndo = \"up\"\nequilibria = 1\n",
-            {"isotropic", "[[programme]]", "no contact ever opens"});
-    refuses(head + "[cell]\nkind = \"cubic\"\n", {"s.toml:4:", "kind", "cubic", "rectangular"});
-    refuses(head + "[cell]\nwalls = 2\n", {"s.toml:4:", "walls"});
-    refuses("[packing]\nfile = \"v.txt\"\n[cell]\n", {"s.toml:3:", "[cell] is of a preparation"});
-    refuses("[packing]\ndisks = 8193\n[cell]\n", {"s.toml:3:", "8193 disks", "at most 8192"});
-    BOOST_TEST((parse(head + "[cell]\n[load]\nkind = \"true\"\n").preparation.load == LoadKind::true_stress));
-    refuses(head + "[cell]\nkind = \"tilted\"\n[load]\nkind = \"true\"\n", {"s.toml:6:", "kind", "tilt", "nominal"});
-    BOOST_TEST((parse(head + "[cell]\n[run]\nties = \"choose\"\n").run.ties == TiePolicy::choose));
+    BOOST_TEST((parse_scene_text(head + "[cell]\nkind = \"isotropic\"\n").preparation.cell == PreparedCell::isotropic));
+    refuses_scene(head + "[cell]\nkind = \"isotropic\"\n[[programme]]\ndo = \"up\"\nequilibria = 1\n",
+                  {"isotropic", "[[programme]]", "no contact ever opens"});
+    refuses_scene(head + "[cell]\nkind = \"cubic\"\n", {"s.toml:4:", "kind", "cubic", "rectangular"});
+    refuses_scene(head + "[cell]\nwalls = 2\n", {"s.toml:4:", "walls"});
+    refuses_scene("[packing]\nfile = \"v.txt\"\n[cell]\n", {"s.toml:3:", "[cell] is of a preparation"});
+    refuses_scene("[packing]\ndisks = 8193\n[cell]\n", {"s.toml:3:", "8193 disks", "at most 8192"});
+    BOOST_TEST(
+        (parse_scene_text(head + "[cell]\n[load]\nkind = \"true\"\n").preparation.load == LoadKind::true_stress));
+    refuses_scene(head + "[cell]\nkind = \"tilted\"\n[load]\nkind = \"true\"\n",
+                  {"s.toml:6:", "kind", "tilt", "nominal"});
+    BOOST_TEST((parse_scene_text(head + "[cell]\n[run]\nties = \"choose\"\n").run.ties == TiePolicy::choose));
 }
 
 BOOST_AUTO_TEST_CASE(a_law_has_its_own_keys_and_no_others) {

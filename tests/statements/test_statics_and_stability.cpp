@@ -6,7 +6,7 @@
 #include "support/test.hpp"
 
 #include <isostat/crafted/exact_packing.hpp>
-#include <isostat/packing/packing.hpp>
+#include <isostat/packing/load.hpp>
 #include <isostat/preparation/preparation.hpp>
 
 using namespace isostat;

@@ -28,9 +28,11 @@ inline std::string settings(const RunOptions& options) {
     return isostat::json::Json{{"run", run}}.dump();
 }
 
-/// Every state is stored. The run counts as completed, whatever ended its last segment: that is returned.
+/// Every state is stored, and the start where arcs may lead from it to equilibrium 0. The run counts as completed,
+/// whatever ended its last segment: that is returned.
 inline isostat::SegmentOutcome into(const std::filesystem::path& folder, isostat::State state,
-                                    const std::vector<Segment>& segments, const RunOptions& options = {}) {
+                                    const std::vector<Segment>& segments, const RunOptions& options = {},
+                                    bool with_start = false) {
     isostat::RunHeader header;
     header.program = "test";
     header.settings = settings(options);
@@ -38,6 +40,9 @@ inline isostat::SegmentOutcome into(const std::filesystem::path& folder, isostat
     header.states_every = 1;
     isostat::RunCounters counters;
     isostat::RunDirectory directory(folder, header, isostat::RunDirectory::Mode::fresh, counters);
+    if (with_start) {
+        directory.store_start(state);
+    }
     isostat::StateCertifier certifier(folder, "test", counters, directory);
     const bool certified = options.certify >= isostat::CertifyLevel::states;
     isostat::RunObserver& observer = certified ? static_cast<isostat::RunObserver&>(certifier) : directory;

@@ -140,7 +140,8 @@ inline Disguised quarter_turned(const State& start) {
     state.load.loaded_axis = 0;
     const auto turn = [](const Contact& c) {
         switch (c.kind) {
-        case ContactKind::disk_disk: return c;
+        case ContactKind::disk_disk:
+        case ContactKind::bar: return c;
         case ContactKind::held: return Contact{c.kind, c.i ^ 1, 0};
         case ContactKind::lower_wall:
             return Contact{c.j == 0 ? ContactKind::lower_wall : ContactKind::upper_wall, c.i, 1 - c.j};

@@ -20,7 +20,8 @@ struct CertifyOptions {
     Rung highest = Rung::multiprecision;
 };
 
-/// How many finite forces at the true vertex are proved to be what. All 0 when no true vertex was found.
+/// How many finite forces of contacts at the true vertex are proved to be what; bars and held coordinates do not count.
+/// All 0 when no true vertex was found.
 struct ForceSigns {
     int positive = 0;
     int structural_zero = 0; ///< exactly 0
@@ -32,7 +33,8 @@ struct ForceSigns {
 struct Certification {
     int dimension = 2; ///< of the grains
     CertificateClaims claims;
-    /// `proved`: every claim is there, so the true vertex is an isostatic, stable equilibrium without overlap.
+    /// `proved`: every claim is there, so the true vertex is an isostatic, stable equilibrium without overlap; or the
+    /// one of a minimum is (`MinimumClaim`): an equilibrium that is stable and not isostatic.
     /// `refuted`: one of them is proved to be wrong (`refuted` says which). `undecided`: neither.
     Verdict verdict = Verdict::undecided;
     std::vector<std::string> refuted; ///< one sentence each; they are among `claims.undecided` too
@@ -70,10 +72,43 @@ struct Certification {
 /// pairs and point: proofs/definition.md. Lengths or
 /// loads beyond 1e-100 and 1e100: no claim. Deterministic. Cost: a rank proof, two
 /// factorisations, a candidate list and ten solves in the usual case; each climb adds some solves.
+///
+/// Clumps: bars are rows of either sign that never open; N_f, N and rank are counted without them. Coordinates may be
+/// held where the load acts on none of them, by the pattern: k is their number, each is a free motion (a rattler, or a
+/// body that turns about the one member through which it is held), and all claims speak of the place where they are
+/// held; the minimum is strict but for these motions (proofs/clumps.md).
 Certification certify(const State& state, const CertifyOptions& options = {});
 
+/// Of a packing with bars: holds the coordinates that leave no mechanism, where the list has no held one and is short
+/// of contacts (h = 0). Other states are returned as they are. Cost: a rank.
+State with_free_motions_held(State state);
+
+/// What is known of a state with mechanisms. Coordinates are held until the structure is isostatic (or already in the
+/// state); when every force is positive and the multipliers of the held coordinates cannot be told from 0, the state is
+/// an equilibrium *as far as the stored numbers say*, and `stable` tells what the potential does along the mechanism
+/// (k = 1; statement T8).
+struct MechanismInspection {
+    EquilibriumRecord record;                   ///< `record.verdict` is `refuted`: not isostatic
+    std::vector<Contact> contacts;              ///< those of the state, then the held coordinates
+    std::vector<double> forces;                 ///< f0, one per entry of `contacts`
+    std::vector<unsigned char> structural_zero; ///< 1: f0 vanishes for every load on the walls
+    std::vector<int> rattlers;                  ///< disks without a force-carrying contact
+    /// refuted: the potential has a maximum along the mechanism, the equilibrium is not stable; proved: an equilibrium
+    /// next to the stored place is a strict local minimum; undecided: not shown.
+    Verdict stable = Verdict::undecided;
+    Enclosure second_order; ///< d2W/ds2 along the mechanism (k = 1, dead loads), s = the fastest coordinate
+    /// `stable` is proved: how far the minimum is from the stored configuration, at most, and a lower bound of d2W on
+    /// the held coordinates (U8).
+    double away = 0, curvature = 0;
+    std::string remark; ///< when not an equilibrium: which contact and by how much
+};
+/// \pre h = 0 in `counting`, of this state. Failure: `not_isostatic` when the completed structure is not proved
+/// regular, `undecided` when no bound of the inverse or no true vertex near the stored one was proved.
+Result<MechanismInspection> inspect_mechanism(const State& state, const Counting& counting);
+
 /// The answers of `certify` about the state as it is given, with the numbers that people ask for. With fewer contacts
-/// than degrees of freedom (h = 0, k > 0), or with held coordinates, those of `inspect_mechanism`.
+/// than degrees of freedom (h = 0, k > 0), or with held coordinates, those of `inspect_mechanism`. Of clumps free
+/// motions are to be held first (`with_free_motions_held`).
 struct Inspection {
     Certification truth;
     Counting counting; ///< N_f, N, rank, h, k
@@ -84,7 +119,8 @@ struct Inspection {
     std::vector<Contact> contacts;              ///< those of the state, then the held coordinates
     std::vector<double> forces;                 ///< f0, one per entry of `contacts`
     std::vector<unsigned char> structural_zero; ///< 1: f0 vanishes for every load on the walls
-    std::vector<int> rattlers;                  ///< disks without a force-carrying contact
+    std::vector<int> rattlers;                  ///< disks without a force-carrying contact; members of such bodies
+    std::vector<int> rotational_rattlers;       ///< first members of bodies that bear forces at one member only
     bool equilibrium = false;                   ///< `record.verdict` is `proved`
     /// proved: strict local minimum of the potential of the load (isostatic equilibrium); refuted: it has a maximum
     /// along the mechanism; undecided: neither was shown.
@@ -103,10 +139,20 @@ Result<Inspection> inspect_vertex(const State& state);
 /// no true vertex near the given place was. Cost: as `certify`.
 Result<std::vector<Interval>> forces_at(State state, double sigma);
 
+/// Of every packing whose grains, and cell or box, are within `within` of the stored coordinates (2-norm), with
+/// whatever radii, in which the listed contacts all close: `proved`, each is jammed; `refuted`, each in which no other
+/// pair touches is not (proofs/cells.md, C14). Whether there is such a packing is not asked: doubles alone do not tell.
+struct JammedIfClosed {
+    Verdict verdict = Verdict::undecided;
+    int contacts = 0; ///< those of the list, without those of rattlers by coordination
+    double within = 0;
+};
+
 /// Whether a packing is jammed, and the words why.
 struct JammingAnswer {
     Verdict verdict = Verdict::undecided;
     std::string reason;
+    std::optional<JammedIfClosed> if_closed = {}; ///< where `verdict` is undecided
 };
 
 /// Counts of the stored coordinates, in the order of `strains`; the rest speaks of the true vertex.

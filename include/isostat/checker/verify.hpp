@@ -31,7 +31,8 @@ struct ClaimCheck {
 struct Verification {
     std::vector<ClaimCheck> checks;
     /// Refuted when a claim is; else undecided when a claim is undecided or absent; else proved: then the state has a
-    /// true vertex nearby that is an isostatic equilibrium without overlap and a strict local minimum.
+    /// true vertex nearby that is an isostatic equilibrium without overlap and a strict local minimum. Where `minimum`
+    /// is claimed absent claims do not count: an equilibrium as `MinimumClaim` says, which is not isostatic.
     Verdict verdict = Verdict::undecided;
 };
 

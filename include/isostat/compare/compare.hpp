@@ -3,9 +3,9 @@
 /// A series of frames of soft grains (manifest "isostat-series 1" and the files it names) against the exact trajectory
 /// of rigid ones.
 
-#include <isostat/compare/snap.hpp>
 #include <isostat/contact/state.hpp>
-#include <isostat/packing/packing.hpp>
+#include <isostat/packing/load.hpp>
+#include <isostat/snap/snap.hpp>
 #include <isostat/statics/rules.hpp>
 
 #include <array>
@@ -18,10 +18,6 @@
 #include <vector>
 
 namespace isostat::compare {
-
-/// - linear: force = stiffness x overlap; - hertz: stiffness x overlap^(3/2) x sqrt(R_i R_j / (R_i + R_j)), at a wall
-/// sqrt(R_i); - none: not stated, forces are taken as they are.
-enum class ForceLaw : unsigned char { linear, hertz, none };
 
 /// A contact as the files say it. `row`: "FILE:LINE" where it was read.
 struct FileContact {
@@ -42,6 +38,7 @@ struct Frame {
     std::string note;                  ///< empty, or how the cell of the file was described anew
     std::vector<double> velocity;      ///< of the disks, in any unit of time; empty: not in the files
     double rounding = 0;               ///< so far are gaps known by the digits of the files
+    double scale = 1;                  ///< sigma_1 of a series with `Series::several`
 };
 
 /// What the manifest says of every frame.
@@ -49,13 +46,17 @@ struct Series {
     std::string title, program;
     int dimension = 2; ///< 3: spheres
     ForceLaw law = ForceLaw::none;
-    double stiffness = 0;     ///< 0: no law
+    double stiffness = 0; ///< 0: no law
+    /// All stresses vary, those of the axes but the last in proportion. The true vertex of a list supports a load if
+    /// and only if it supports every positive multiple (forces are linear in it), so frames are placed by sigma_d /
+    /// sigma_1 on an exact run with sigma_1 = 1.
+    bool several = false;
     bool listed = false;      ///< contacts between disks come from a file; else they are the pairs that overlap
     bool wall_forces = false; ///< of each grain, from columns; else walls that one overlaps, with the force of the law
     double rest = 1e-3;       ///< largest unbalanced force of a frame at rest, in mean forces
-    double agreement = 1e-3;  ///< largest |force - stiffness overlap| of a frame that is understood, in mean forces
-    /// 0: another law; soft limits are predicted for linear contacts only.
-    [[nodiscard]] double linear_stiffness() const { return law == ForceLaw::linear ? stiffness : 0; }
+    double agreement = force_agreement;
+    /// 0: another law, or a sigma_1 that varies; soft limits are predicted for linear contacts under one sigma_1 only.
+    [[nodiscard]] double linear_stiffness() const { return law == ForceLaw::linear && !several ? stiffness : 0; }
 };
 
 /// The frames of a series, one after another: one is in memory at a time. Disks are matched by id, in the order of the
@@ -102,7 +103,7 @@ const char* to_string(FrameStatus status);
 struct FrameResult {
     int frame = 0;
     long timestep = 0;
-    double stress = 0; ///< the loaded one
+    double stress = 0; ///< the loaded one; over sigma_1 with `Series::several`
     double unbalanced = 0;
     int listed = 0, overlapping = 0, twice = 0, missing_rows = 0;
     Counting counting; ///< of the list without rattlers, at the soft place

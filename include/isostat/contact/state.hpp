@@ -5,7 +5,7 @@
 
 #include <isostat/core/contact.hpp>
 #include <isostat/core/verdict.hpp>
-#include <isostat/packing/packing.hpp>
+#include <isostat/packing/load.hpp>
 
 #include <array>
 #include <optional>
@@ -30,7 +30,8 @@ struct GapGradient {
     std::array<double, most> value{};
 };
 
-/// Gap h: distance of the surfaces, >= 0 in an admissible packing. Held: 0.
+/// Gap h: distance of the surfaces, >= 0 in an admissible packing. Of a bar: distance of the centres less its length.
+/// Held: 0.
 /// Error: at most 4 ulp of the distance of the centres beyond the exactly rounded operations, for coordinates on the
 /// grid.
 double gap(const Packing& packing, const Contact& contact);
@@ -57,8 +58,9 @@ struct RadiusPerturbation {
     std::vector<std::pair<Contact, Enclosure>> zero;
 };
 
-/// A vertex: a packing together with N_f contacts (held coordinates included, normally none) whose gaps are 0 to
-/// rounding. The contact list is part of the state: it is never found again from a gap threshold.
+/// A vertex: a packing together with N_f contacts (bars and held coordinates included, normally none) whose gaps are 0
+/// to rounding. All bars of the packing are in the list. The contact list is part of the state: it is never found again
+/// from a gap threshold.
 struct State {
     Packing packing;
     Load load;

@@ -56,9 +56,10 @@ using DiskId = Id<struct DiskTag>;
 /// A position in a contact list, and the column of that contact in H.
 using ContactId = Id<struct ContactTag>;
 
-/// What touches what. `held` is not a contact: it is a coordinate kept at its value from where the power of
-/// the load turned (proofs/stability.md, S3).
-enum class ContactKind : std::uint8_t { disk_disk, lower_wall, upper_wall, held };
+/// What touches what. Two kinds are no contacts: `bar` keeps two members of one body at a distance (`Packing::bars`),
+/// whatever the sign of its force; `held` keeps a coordinate at its value, from where the power of the load turned
+/// (proofs/stability.md, S3) or where a free motion begins (proofs/clumps.md).
+enum class ContactKind : std::uint8_t { disk_disk, bar, lower_wall, upper_wall, held };
 
 /// Which image of a disk in a periodic cell: m_a periods further along the period vector a. All 0 in a box.
 struct Image {
@@ -77,6 +78,7 @@ struct Image {
 /// One contact, or one candidate.
 /// - disk_disk: disk i and the image of disk j, i < j; or i = j and an image that comes after {0, 0, 0} in the order:
 ///   (i, j, m) and (j, i, -m) are one contact, (i, j, m) and (i, j, m') are two;
+/// - bar: disks i < j, two members of one body;
 /// - lower_wall, upper_wall: disk i and the wall of axis j;
 /// - held: coordinate index i, j = 0.
 struct Contact {
@@ -87,6 +89,10 @@ struct Contact {
     constexpr Contact() = default;
     constexpr Contact(ContactKind what, int first, int second, Image of_second = {})
         : kind(what), image(of_second), i(first), j(second) {}
+    /// Between two disks: j is one.
+    [[nodiscard]] constexpr bool of_disks() const { return kind <= ContactKind::bar; }
+    /// The row of a contact: its force is not negative, and it may open.
+    [[nodiscard]] constexpr bool is_unilateral() const { return kind != ContactKind::bar && kind != ContactKind::held; }
     friend constexpr bool operator==(const Contact& a, const Contact& b) {
         return a.i == b.i && a.j == b.j && a.kind == b.kind && a.image == b.image;
     }

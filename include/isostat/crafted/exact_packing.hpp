@@ -7,7 +7,7 @@
 #include <isostat/core/result.hpp>
 #include <isostat/core/verdict.hpp>
 #include <isostat/exact/number.hpp>
-#include <isostat/packing/packing.hpp>
+#include <isostat/packing/load.hpp>
 #include <isostat/rigidity/counting.hpp>
 
 #include <array>
@@ -33,6 +33,7 @@ struct ExactPacking {
     std::vector<Number> radius;
     std::vector<PerAxis<Number>> centre;
     std::vector<unsigned char> fixed; ///< empty, or n flags
+    std::vector<Bar> bars;            ///< as in `Packing`; here their lengths are those that the centres have
     Walls walls = Walls::none();
     Cell cell;
     PerAxis<Number> length{}; ///< positions of the upper walls that exist, and periods
@@ -62,17 +63,22 @@ Packing approximate(const ExactPacking& packing);
 /// disks, a fixed disk and a fixed wall, a disk and its own image in a cell that does not move) may touch without being
 /// contacts, but not overlap (proofs/definition.md). `overlap` names the first overlapping pair with its
 /// squared-distance defect. In a cell: pairs with every image (proofs/cells.md, C3). Pairs are those that the grid
-/// finds in the rounded packing; throws `Error(bad_input)` where it does. Cost: O(n) pairs for a compact packing.
+/// finds in the rounded packing; throws `Error(bad_input)` where it does. The bars come behind the contacts. Cost: O(n)
+/// pairs for a compact packing.
 Result<std::vector<Contact>> exact_contacts(const ExactPacking& packing);
 
 /// r = x_j - x_i + A m. \pre two disks
 PerAxis<Number> exact_separation(const ExactPacking& packing, const Contact& pair);
 
 /// The contact matrix H in the field, rows = degrees of freedom, unit normals: at a contact the distance of the centres
-/// is R_i + R_j, so the normal needs no root. H f = F_ext as in `contact_matrix`. \pre contacts come from
+/// is R_i + R_j, so the normal needs no root. The column of a bar has x_j - x_i for it: its forces are divided by its
+/// length. H f = F_ext as in `contact_matrix`. \pre contacts come from
 /// `exact_contacts`
 exact::NumberMatrix exact_contact_matrix(const ExactPacking& packing, const DofMap& dofs,
                                          const std::vector<Contact>& contacts);
+
+/// What the normal of two disks is x_j - x_i over: R_i + R_j, of a bar 1.
+Number scale_of_row(const ExactPacking& packing, const Contact& pair);
 
 /// Counts of the same with the radii as coordinates that move: a row more for each grain, with 1 (of its own image 2).
 Counting count_with_radii(const ExactPacking& packing, const std::vector<Contact>& contacts);
@@ -99,6 +105,9 @@ struct ExpectedEntry {
 ///     y = "1/2*sqrt(3)"
 ///     r = "1/3"
 ///     fixed = true                                 # optional
+///
+///     bodies = [[0, 1], [2, 3, 5]]                 # optional (above tables): members of rigid bodies, which may
+///     overlap
 ///
 ///     [box]                                        # optional; without it there are no walls
 ///     length = ["3 + 2*sqrt(2)", 4]                # positions of the upper walls ("none" allowed when absent)
@@ -141,8 +150,9 @@ PackingFile read_packing(const std::string& path);
 /// - `held`: 0 is in the interior of the convex hull of the normals that are left;
 /// - `bridge`: 0 is inside the hull of the normals that are left, which do not span the space: two opposite normals, in
 /// space also some in a plane. It can carry forces along them and is free to first order across;
-/// - `rattler`: no contact is left: no force >= 0 can be in equilibrium on it; - `fixed`, `loaded`.
-enum class DiskHold { held, bridge, rattler, fixed, loaded };
+/// - `rattler`: no contact is left: no force >= 0 can be in equilibrium on it; - `fixed`, `loaded`; - `member`: of a
+///   body, not judged.
+enum class DiskHold { held, bridge, rattler, fixed, loaded, member };
 
 /// What the load meets.
 /// - `positive`: some equilibrium has every force > 0; - `with_zeros`: some equilibrium has every force >= 0, none has
@@ -186,10 +196,12 @@ struct InspectionLimits {
     long long programme_cells = 20000; ///< (rows + 1) * columns beyond which no system of inequalities is solved
 };
 
-/// All in exact arithmetic. N_f + h = N + k.
+/// All in exact arithmetic. N_f + h = N + k. Of clumps N_f, N and all ranks are those of rigid bodies
+/// (proofs/clumps.md, U1): bars do not count. Forces and self-stresses have their entries, of any sign, behind those of
+/// contacts.
 struct Inspection {
     int dof_count = 0;             ///< N_f
-    std::vector<Contact> contacts; ///< N of them; every other gap was proved positive
+    std::vector<Contact> contacts; ///< N of them, then the bars; every other gap was proved positive
     int rank = 0;                  ///< proved lower bound of the rank of H; the rank when `rank_exact` is proved
     Verdict rank_exact = Verdict::undecided;
     int hyperstaticity = 0; ///< h = N - rank: exact or an upper bound, as `rank`
@@ -208,7 +220,7 @@ struct Inspection {
     /// Where every axis is periodic: the same counts for each way to strain the cell, whatever moves of this one, with
     /// every pair that touches as a contact.
     std::optional<StrainCounts> strains;
-    std::optional<Jamming> jamming; ///< there too, of `inspect` (not `inspect_contacts`)
+    std::optional<Jamming> jamming; ///< there too, of `inspect` (not `inspect_contacts`), and without bars
 
     Verdict bases_exact = Verdict::undecided;       ///< `proved`: the two bases are complete and verified in the field
     std::vector<std::vector<Number>> self_stresses; ///< h vectors of N forces (unit normals)
@@ -235,9 +247,12 @@ struct Inspection {
     /// Local minimum of the potential of the dead load, strict up to common rigid motions. `proved`: some equilibrium
     /// has all forces > 0 and there is no internal mechanism. `refuted`: no equilibrium with forces >= 0; or h = 0, and
     /// some mechanism opens at second order a contact that carries force (T8; a straight motion along a mechanism never
-    /// overlaps and does no work). `undecided` otherwise, for instance with rattlers.
+    /// overlaps and does no work). `undecided` otherwise, for instance with rattlers; of clumps nothing is refuted
+    /// where h > 0, as a straight motion changes bars.
     Verdict stable = Verdict::undecided;
 
+    /// N.
+    [[nodiscard]] int contact_count() const { return static_cast<int>(contacts.size()) - bar_count(contacts); }
     /// Internal mechanisms: k minus the common rigid motions.
     [[nodiscard]] int internal_mechanisms() const { return mechanisms - rigid_motions; }
     /// "isostatic", "hyperstatic", "hypostatic" or "hyperstatic and hypostatic", from h and the internal mechanisms;

@@ -158,7 +158,7 @@ enum class OneSign {
     none     ///< every combination that is not zero has components of both signs
 };
 
-/// What the span of `vectors` (all of size `size`) contains; `combination` is such a vector (empty for `none`). An
+/// What the span of `vectors` has in its first `size` components; `combination` is such a vector (empty: `none`). An
 /// empty list spans 0: none. Gordan's and Stiemke's alternatives, each answer with its certificate checked.
 struct OneSignAnswer {
     OneSign kind = OneSign::none;

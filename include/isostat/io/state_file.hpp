@@ -39,8 +39,9 @@ void write_packing(const std::filesystem::path& path, const Packing& packing, co
 /// count contacts: see `check_start`. A state with a periodic cell is refused: most of the program takes boxes only.
 StateFile parse_state(const std::string& text, const std::string& source);
 
-/// Spheres are refused by what takes disks only, which says so (`require_plane`).
-enum class Dimensions : unsigned char { two, any };
+/// Spheres are refused by what takes disks only, which says so (`require_plane`), and clumps by what takes single
+/// grains only (`require_single_grains`): `any_clumps` takes all.
+enum class Dimensions : unsigned char { two, any, any_clumps };
 
 /// The same, periodic cells too. Further messages: walls along a periodic axis, images in a box or more than 3 periods
 /// away, periods that are not positive, disks that overlap their own images, loads that do not sum to zero along a
@@ -81,8 +82,9 @@ struct VertexClaim {
 /// Forces at the true vertex under the load of the state, compressive positive, one per contact in the state's order.
 /// Those listed in `structural_zeros` are exactly 0 there for combinatorial reasons: some set of degrees of freedom
 /// without finite load is touched by exactly as many contacts, all of them listed. Their infinitesimal forces (per unit
-/// of eps, same order as the list) decide. All finite forces that are not structural zeros, and all infinitesimal
-/// forces listed, are claimed to lie in intervals above 0.
+/// of eps, same order as the list) decide. All finite forces of contacts that are no structural zeros, and all their
+/// infinitesimal ones listed, are claimed to lie in intervals above 0; bars and held coordinates are structural zeros
+/// or bear any force.
 struct ForcesClaim {
     std::vector<Interval> finite;
     std::vector<int> structural_zeros; ///< increasing positions in the contact list
@@ -115,6 +117,16 @@ struct LoadIntervalClaim {
     Rung rung = Rung::double_bound;
 };
 
+/// Of clumps with mechanisms that the load reaches. Next to the stored configuration, no coordinate farther from it
+/// than `away`, there is an equilibrium: the listed contacts and bars are closed, all contacts bear positive forces, no
+/// held coordinate bears a multiplier, and no other pair touches. It is a strict local minimum of the potential of the
+/// load, but for motions that change no force: d2W is at least `curvature` times |dc|^2 there, c the coordinates that
+/// are held and that the load reaches (statement U8).
+struct MinimumClaim {
+    double away = 0;
+    double curvature = 0;
+};
+
 /// The claims of a certificate. An absent claim was not proved; `undecided` says why. When all are there, the true
 /// vertex is an isostatic equilibrium without overlap, and a strict local minimum of the potential of the load
 /// (`stable`; statement T8: all forces positive and no mechanism).
@@ -125,7 +137,8 @@ struct CertificateClaims {
     std::optional<GapsClaim> gaps;
     std::optional<LoadIntervalClaim> load_interval;
     bool stable = false;
-    std::vector<std::string> undecided; ///< one sentence per claim that is absent
+    std::optional<MinimumClaim> minimum; ///< in the place of all others: h = 0, and k is not 0
+    std::vector<std::string> undecided;  ///< one sentence per claim that is absent
 };
 
 /// A certificate: claims about one state.
@@ -157,5 +170,9 @@ Certificate read_certificate(const std::filesystem::path& path);
 
 /// Writes `certificate_text` atomically. Throws `Error(cannot_write)`.
 void write_certificate(const std::filesystem::path& path, const Certificate& certificate);
+
+/// The format of a text, or empty: "state", "vertex", "packing" are those of this program (`read_state`,
+/// `crafted::read_packing`), the others those of `read_foreign`. From the content only.
+std::string recognise_format(const std::string& text);
 
 } // namespace isostat

@@ -14,6 +14,19 @@
 
 namespace isostat {
 
+/// Compressed columns, row indices sorted in each: what `Eigen::Map<Eigen::SparseMatrix<double>>` and scipy take.
+struct SparseColumns {
+    int rows = 0, columns = 0;
+    std::vector<int> start;    ///< columns + 1
+    std::vector<int> row;      ///< one per entry
+    std::vector<double> value; ///< one per entry
+};
+
+/// H (N_f x N), column l minus the gradient of gap l on the degrees of freedom, in the order of `DofMap`: H f = F_ext,
+/// and H^T v are the rates at which the gaps close. Each entry has a relative error of at most 4u (u = 2^-53) for
+/// coordinates on the grid; a component that is 0 here is stored as 0. Any number of contacts. Cost: linear.
+SparseColumns contact_matrix(const State& state);
+
 /// N_f + h = N + k for the exact contact matrix of the stored configuration.
 /// `rank` is the rank mod 2^61 - 1. It is a proved *lower* bound of the true rank (T4); when it equals min(N, N_f) it
 /// is the rank, `rank_exact` is `proved`, and h = N - rank, k = N_f - rank are exact. Otherwise `rank_exact` is
@@ -28,9 +41,14 @@ struct Counting {
     std::vector<int> free_dofs; ///< k degrees of freedom that, when held, leave no mechanism (rank N_f is then proved)
 };
 
-/// Any number of contacts, walls, fixed disks. Cost: an exact rank when the matrix is square and regular mod p; else
-/// also an elimination in natural column order, O(n^2) for packings: meant for inspection, not for the path.
+/// Any number of contacts, walls, fixed disks. Bars do not count: each takes one from N_f, N and rank, so that a clump
+/// has 3 degrees of freedom in the plane; h and k are those of the whole list, bars being independent. Cost: an exact
+/// rank when the matrix is square and regular mod p; else also an elimination in natural column order, O(n^2) for
+/// packings: meant for inspection, not for the path.
 Counting count_contacts(const Packing& packing, const std::vector<Contact>& contacts);
+
+/// How many of a list are bars.
+int bar_count(const std::vector<Contact>& contacts);
 
 /// How the cell may strain, A -> (1 + E) A, with all disks moving as they like:
 /// - `none`: a fixed cell; - `isotropic`: E = e 1, the shape is kept (a pressure); - `diagonal`: E has d entries;

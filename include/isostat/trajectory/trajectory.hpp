@@ -94,24 +94,19 @@ void require_followed(const State& state, const std::string& source);
 SegmentOutcome run_segment(State& state, const Segment& segment, int segment_number, const RunOptions& options,
                            RunCounters& counters, RunObserver& observer);
 
-/// What is known of a state with mechanisms. Coordinates are held until the structure is isostatic (or already in the
-/// state); when every force is positive and the multipliers of the held coordinates cannot be told from 0, the state is
-/// an equilibrium *as far as the stored numbers say*, and `stable` tells what the potential does along the mechanism
-/// (k = 1; statement T8).
-struct MechanismInspection {
-    EquilibriumRecord record;                   ///< `record.verdict` is `refuted`: not isostatic
-    std::vector<Contact> contacts;              ///< those of the state, then the held coordinates
-    std::vector<double> forces;                 ///< f0, one per entry of `contacts`
-    std::vector<unsigned char> structural_zero; ///< 1: f0 vanishes for every load on the walls
-    std::vector<int> rattlers;                  ///< disks without a force-carrying contact
-    /// refuted: the potential has a maximum along the mechanism, the equilibrium is not stable; undecided: not shown.
-    Verdict stable = Verdict::undecided;
-    Enclosure second_order; ///< d2W/ds2 along the mechanism (k = 1, dead loads), s = the fastest coordinate
-    std::string remark;     ///< when not an equilibrium: which contact and by how much
-};
-/// \pre h = 0 in `counting`, of this state. Failure: `not_isostatic` when the completed structure is not proved
-/// regular, `undecided` when no bound of the inverse or no true vertex near the stored one was proved.
-Result<MechanismInspection> inspect_mechanism(const State& state, const Counting& counting);
+/// The first arc of the rearrangement that ends what the state supports when its load changes (`direction` +1: up, -1:
+/// down): the contact opened, the way of the one mechanism that is left, the contact met, recorded and proved as in a
+/// run. Of a state that is no equilibrium: of the rearrangement at its own load. `options.stop` is not used. Failure:
+/// that of a run that ends before an arc is made; `no_limit` where nothing opens. Throws as `run_segment`
+/// does. Cost: the proofs of the state, and of an arc.
+Result<ArcRecord> first_arc(State state, int direction, RunOptions options = {});
+
+/// The mechanism of a state without one of its contacts: velocities of the degrees of freedom (`DofMap`), the gap of
+/// `opened` grows at rate 1, the others stay closed at first order. That there is one, and no other, is proved (exact
+/// rank, of the stored coordinates); the velocities are solved for in double, and their error is not bounded. Failure:
+/// `not_isostatic` where N != N_f, or the rank is deficient. Throws `Error(bad_input)` where `opened` is no contact of
+/// the state. Cost: an exact rank and a factorisation.
+Result<std::vector<double>> mechanism(const State& state, const Contact& opened);
 
 /// What a segment of the programme does to the stress ratio sigma_2 / sigma_1 (shear / sigma_2 where the tilt is
 /// loaded, t / p_0 on a path).

@@ -1,4 +1,4 @@
-"""Quasi-static mechanics of rigid frictionless disks, with proofs.
+"""Quasi-static mechanics of rigid frictionless disks and spheres, with proofs.
 
 Arrays are numpy arrays; those of `State` and `Packing` look into the library's memory and are read-only.
 Contacts are pairs of integers (i, j): two disks, or a disk and a wall (-1 left, -2 bottom, -3 right,
@@ -22,6 +22,7 @@ from ._core import (
     ExactPacking,
     Genericity,
     Inspection,
+    JammedIfClosed,
     Jamming,
     Number,
     Packing,

@@ -40,6 +40,7 @@ class Packing:
     length: Final[Floats]
     radii: Final[Floats]
     fixed: Final[Flags]
+    bars: Final[list[tuple[int, int, float]]]
     walls: Final[Walls]
     periodic: Final[tuple[bool, bool]]
     tilt: Final[Optional[float]]
@@ -66,6 +67,7 @@ class State:
         infinitesimal: Optional[Floats] = ...,
         disk_force: Optional[Floats] = ...,
         fixed: Iterable[int] = ...,
+        bars: Iterable[tuple[int, int, float]] = ...,
     ) -> State: ...
     def text(self) -> str: ...
     def write(self, path: Path) -> None: ...
@@ -76,6 +78,7 @@ class State:
     radii: Final[Floats]
     length: Final[Floats]
     fixed: Final[Flags]
+    bars: Final[list[tuple[int, int, float]]]
     walls: Final[Walls]
     periodic: Final[tuple[bool, bool]]
     contacts: Final[Integers]
@@ -121,6 +124,7 @@ class Certificate:
     smallest_gap: Final[Optional[tuple[float, Optional[Pair]]]]
     low: Final[Optional[tuple[tuple[float, float], Pair]]]
     high: Final[Optional[tuple[tuple[float, float], Pair]]]
+    minimum: Final[Optional[tuple[float, float]]]
     stable: Final[bool]
     def text(self) -> str: ...
     def write(self, path: Path) -> None: ...
@@ -132,6 +136,7 @@ class Inspection:
     force_intervals: Final[Floats]
     structural_zero: Final[Flags]
     rattlers: Final[Integers]
+    rotational_rattlers: Final[Integers]
     verdict: Final[Verdict]
     stable: Final[Verdict]
     second_order: Final[tuple[float, float]]
@@ -292,9 +297,15 @@ class ExactInspection:
         self, count: int = ...
     ) -> tuple[Verdict, list[tuple[Floats, float]], list[tuple[Floats, float]]]: ...
 
+class JammedIfClosed:
+    verdict: Final[Verdict]
+    contacts: Final[int]
+    within: Final[float]
+
 class Jamming:
     verdicts: Final[dict[str, Verdict]]
     reasons: Final[dict[str, str]]
+    if_closed: Final[dict[str, JammedIfClosed]]
     counts: Final[dict[str, Counting]]
     backbone: Final[dict[str, Counting]]
     grains: Final[int]
@@ -395,6 +406,7 @@ def read_packing(
     radius: str = ...,
     diameter: str = ...,
     dimension: Optional[int] = ...,
+    bodies: str = ...,
 ) -> Packing: ...
 class Snap:
     outcome: Final[str]

@@ -33,13 +33,14 @@ _words: dict[type, Callable[[Any], str]] = {
     _core.Packing: lambda p: f"{_grains(p)}, {_box(p)}",
     _core.State: _state,
     _core.Certificate: lambda c: (
-        f"isostatic, stable equilibrium without overlap: {c.verdict}; of {_grains(c.state)}, {len(c.undecided)} claims absent"
+        f"{'' if c.minimum is None else 'not '}isostatic, stable equilibrium without overlap: {c.verdict}; of {_grains(c.state)}, {len(c.undecided)} claims absent"
     ),
     _core.Inspection: lambda s: (
         f"isostatic equilibrium: {s.verdict}, stable: {s.stable}; h = {s.counting.h}, k = {s.counting.k}, "
         f"{len(s.rattlers)} rattlers, sigma2 = {s.sigma2:.9g} in {_interval(s.sigma2_low, s.sigma2_high)}"
     ),
     _core.Jamming: lambda j: ", ".join(f"{what}: {verdict}" for what, verdict in j.verdicts.items()),
+    _core.JammedIfClosed: lambda j: f"{j.verdict} if {j.contacts} contacts close within {j.within:.2g}",
     _core.Arc: lambda a: f"step {a.step}, {a.kind}: {a.opened} opens, {a.closed} closes",
     _core.Equilibrium: lambda e: (
         f"number {e.number}, {e.arcs} arcs, sigma2 = {e.sigma2:.9g} in {_interval(e.sigma2_low, e.sigma2_high)}, {e.verdict}"

@@ -58,6 +58,7 @@ def from_arrays(
     infinitesimal: np.ndarray | None = None,
     disk_force: np.ndarray | None = None,
     fixed: Iterable[int] = (),
+    bars: Iterable[tuple[int, int, float]] = (),
     periodic: Sequence[bool] | None = None,
     moves: Sequence[str] = (),
     tilt: float | Sequence[float] = 0.0,
@@ -88,6 +89,8 @@ def from_arrays(
     disk_force : (n, d) float, optional
         External forces on disks; stress x length.
     fixed : numbers of disks that cannot move
+    bars : rows (i, j, length), optional
+        Clumps: the centres of two members of one body stay at this distance; ``inspect``, ``certify`` and `Run` take them.
     periodic : (d,) flags, optional
         Axes that repeat, with `length` as their periods: a cell.
     moves : of a cell, which of ``"x"``, ``"y"``, ``"xy"`` (of spheres ``"z"``, ``"xz"``, ``"yz"`` too) are degrees of
@@ -130,6 +133,8 @@ def from_arrays(
             content[name] = np.asarray(value, dtype=float).tolist()
     if held := [index(disk) for disk in fixed]:
         content["fixed"] = held
+    if rows := [[index(i), index(j), float(length_of_bar)] for i, j, length_of_bar in bars]:
+        content["bars"] = rows
     if any(repeats):
         content["cell"] = {
             "axes": ["periodic" if again else "walls" for again in repeats],

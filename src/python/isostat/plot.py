@@ -32,7 +32,7 @@ def _lines(state: State) -> tuple[np.ndarray, np.ndarray]:
 
     From centre to centre, or to the wall. A contact with an image is drawn twice, through either border of the cell.
     """
-    numbers = np.flatnonzero(state.contacts[:, 1] != -9)
+    numbers = np.flatnonzero(state.contacts[:, 1] > -9)  # no held coordinates, no bars
     contacts, shifts = state.contacts[numbers], _shifts(state, state.images[numbers])
     first = state.positions[contacts[:, 0]]
     second = first.copy()
@@ -306,6 +306,33 @@ def increments(run: Records, quantity: str = "strain", ax: Optional[Axes] = None
     names = _curve(run)[2]
     ax.set_xlabel(f"{quantity} increment {names['strain step' if quantity == 'strain' else 'ratio step']}")
     ax.set_ylabel("share at least as large")
+    return ax
+
+
+def force_distribution(*forces: np.ndarray, ax: Optional[Axes] = None) -> Axes:
+    """P(f / <f>) of the contacts that carry a force, in bins of 1/4: densities that integrate to 1.
+
+    Parameters
+    ----------
+    *forces : arrays
+        One for each packing (`isostat.inspect(state).forces`); each is divided by its own mean. Numbers that are 0 or
+        below, of contacts without force, are left out.
+    ax : matplotlib axes, optional
+
+    Returns
+    -------
+    matplotlib axes
+    """
+    ax = _axes(ax)
+    carrying = [np.asarray(of, float)[np.asarray(of) > 0] for of in forces]
+    scaled = np.concatenate([of / of.mean() for of in carrying if of.size] or [np.empty(0)])
+    if not scaled.size:
+        raise BadInput("no force is positive: expected the forces of a packing at least")
+    edges = np.arange(0, np.floor(scaled.max() / 0.25) + 2) * 0.25
+    ax.stairs(np.histogram(scaled, edges, density=True)[0], edges, linewidth=1.2)
+    ax.set_yscale("log")
+    ax.set_xlabel("$f / \\langle f \\rangle$")
+    ax.set_ylabel("$P(f / \\langle f \\rangle)$")
     return ax
 
 

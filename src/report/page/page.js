@@ -137,6 +137,8 @@ function imageOf(j) {
   return [k << 24 >> 24, k << 16 >> 24];
 }
 
+/// Of a disk the first member of its body, which stands for the body.
+const bodyOf = (i) => run.packing.body ? run.packing.body[i] : i;
 function rattlersOf(equilibrium) {
   const frame = film.frameOf.get(equilibrium), flags = new Uint8Array(run.packing.radii.length);
   const forces = frame === undefined ? undefined : film.forces[recorded.force[frame]], list = forces && contactsOf(equilibrium);
@@ -144,10 +146,10 @@ function rattlersOf(equilibrium) {
   flags.fill(1);
   for (let l = 0; l < forces.length; ++l) {
     if (forces[l] === 0) continue;
-    flags[list[2 * l]] = 0;
-    if (list[2 * l + 1] >= 0) flags[diskOf(list[2 * l + 1])] = 0;
+    flags[bodyOf(list[2 * l])] = 0;
+    if (list[2 * l + 1] >= 0) flags[bodyOf(diskOf(list[2 * l + 1]))] = 0;
   }
-  return flags;
+  return flags.map((_, i) => flags[bodyOf(i)]);
 }
 
 const wallNames = { "-1": "left", "-2": "bottom", "-3": "right", "-4": "top" };

@@ -5,7 +5,7 @@
 
 #include "contact/candidates.hpp"
 
-#include <isostat/packing/packing.hpp>
+#include <isostat/packing/load.hpp>
 
 #include <vector>
 

@@ -1,0 +1,281 @@
+#!/usr/bin/env python3
+"""Jammed packings of clumps (unions of disks) in a box under equal stresses, as state files of Isostat, in double precision.
+
+    prepare.py trimer --seed 3 -o trimer.json           a packing of 20 trimers
+    prepare.py trimer --seed 3 --saddle -o saddle.json  an equilibrium of trimers that is a saddle of the potential
+    prepare.py --from FILE -o state.json                a packing in a file of format "bodies-1"
+    prepare.py --table 10                               what ten packings of each kind count; no files
+
+The penalty energy L_x + L_y + (stiffness / 2) sum overlap^2 is minimised for growing stiffness; the overlaps that are left say which
+contacts bear force, and Newton's method closes these. Nothing is proved here: that is what `isostat inspect` is for."""
+import argparse
+import itertools
+import json
+import math
+import os
+import sys
+import time
+from decimal import Context, Decimal
+from typing import Any, Iterator
+
+import numpy as np
+from scipy.linalg import LinAlgError, cho_factor, cho_solve
+
+from clumps import LEAST_FORCE, LEAST_GAP, WALLS, Clumps, Counts, Failed, Packing, Vector, counted, equilibrium
+
+KINDS = {"dimer": 2, "dimer2": 2, "trimer": 3}
+STIFFNESSES = [10.0**e for e in range(1, 6)]
+ATTEMPTS = 30  # packings tried for one seed
+SADDLE = -1e-6  # a second variation below this value is negative beyond doubt
+
+
+def bodies(kind: str, count: int, rng: np.random.Generator) -> Clumps:
+    """Members that overlap or just touch; sizes, distances and, for "dimer2", ratios of radii vary from body to body."""
+    place: list[list[float]] = []
+    radius: list[float] = []
+    for _ in range(count):
+        large, spread = rng.uniform(1, 1.5), rng.uniform(0.5, 1)
+        small = large * (rng.uniform(0.5, 0.9) if kind == "dimer2" else 1)
+        half = spread * (large + small) / 2
+        if kind == "trimer":
+            place += [[-half, -half / math.sqrt(3)], [half, -half / math.sqrt(3)], [0, 2 * half / math.sqrt(3)]]
+            radius += [large, large, large]
+        else:
+            place += [[-half, 0], [half, 0]]
+            radius += [large, small]
+    return Clumps(np.repeat(np.arange(count), KINDS[kind]), np.array(place), np.array(radius))
+
+
+def scattered(clumps: Clumps, rng: np.random.Generator) -> Vector:
+    """Places on a wide grid in random order, turned at random."""
+    cell = 2 * (np.hypot(*clumps.place.T) + clumps.radius).max()
+    wide = math.ceil(math.sqrt(clumps.count))
+    slot = rng.permutation(wide * wide)[: clumps.count]
+    q = np.zeros(3 * clumps.count + 2)
+    q[0:-2:3] = (slot % wide + 0.5) * cell
+    q[1:-2:3] = (slot // wide + 0.5) * cell
+    q[2:-2:3] = rng.uniform(0, 2 * np.pi, clumps.count)
+    q[-2:] = wide * cell
+    return q
+
+
+def softly(clumps: Clumps, q: Vector, stiffness: float) -> Vector:
+    """A minimum of the penalty energy, by Newton's method with a damping that keeps the form positive definite."""
+    everything, damping = clumps.candidates, 1.0
+
+    def energy(at: Vector) -> tuple[float, Vector]:
+        gap = clumps.gaps(at, everything)[0]
+        return float(clumps.load @ at + stiffness / 2 * (np.minimum(gap, 0) ** 2).sum()), gap
+
+    value, gap = energy(q)
+    for _ in range(2000):
+        touching = everything[gap < 0]
+        force = -stiffness * gap[gap < 0]
+        rows = clumps.rows(q, touching, clumps.gaps(q, touching)[1])
+        gradient = clumps.load - rows.T @ force
+        if abs(gradient).max() < 1e-8:
+            return q
+        form = stiffness * rows.T @ rows - clumps.second(q, touching, force)
+        while damping < 1e12:
+            try:
+                step = -cho_solve(cho_factor(form + damping * np.eye(len(q))), gradient)
+            except LinAlgError:
+                damping *= 4
+                continue
+            after, gap = energy(q + step)
+            if abs(step).max() < 0.5 and after <= value + 1e-15 * abs(value):
+                break
+            damping *= 4
+        else:
+            break
+        q, value, damping = q + step, after, max(damping / 5, 1e-10)
+    raise Failed("the penalty energy has no minimum that was found")
+
+
+def jammed(kind: str, count: int, rng: np.random.Generator) -> tuple[Packing, Counts]:
+    """The equilibrium next to a minimum of the penalty energy."""
+    clumps = bodies(kind, count, rng)
+    q = scattered(clumps, rng)
+    for stiffness in STIFFNESSES:
+        q = softly(clumps, q, stiffness)
+    force = -STIFFNESSES[-1] * clumps.gaps(q, clumps.candidates)[0]
+    bears = force > LEAST_FORCE
+    return equilibrium(clumps, q, clumps.candidates[bears], force[bears])
+
+
+def saddles(packing: Packing) -> Iterator[tuple[Packing, Counts]]:
+    """Equilibria next to this one with one contact less. While that contact opens and all others stay closed, W rises until its force
+    would be 0: there W has a maximum along this motion."""
+    for drop in np.argsort(packing.force):
+        keep = np.arange(len(packing.contacts)) != drop
+        try:
+            found, counts = equilibrium(packing.clumps, packing.q, packing.contacts[keep], packing.force[keep])
+        except Failed:
+            continue
+        if counts.variation.min(initial=0) < SADDLE:
+            yield found, counts
+
+
+def prepared(kind: str, count: int, seed: int, saddle: bool) -> tuple[Packing, Counts, int]:
+    """The first attempt that succeeds, and its number; says why others did not."""
+    for attempt in range(1, ATTEMPTS + 1):
+        try:
+            packing, counts = jammed(kind, count, np.random.default_rng([seed, attempt]))
+            if saddle:
+                return *next(saddles(packing)), attempt
+            if counts.variation.min(initial=0) > SADDLE:
+                return packing, counts, attempt
+            reason = f"a saddle, W'' = {counts.variation[0]:.2g}"
+        except Failed as failed:
+            reason = str(failed)
+        except StopIteration:
+            reason = "no saddle with one contact less"
+        print(f"{kind}, seed {seed}, attempt {attempt} is left: {reason}", file=sys.stderr)
+    raise Failed(f"{kind}, seed {seed}: none of {ATTEMPTS} attempts succeeded")
+
+
+def contact(number: dict[tuple[int, int], int], what: str, b: int, k: int, c: int, d: Any) -> tuple[int, int]:
+    """["pair", body, member, body, member] or ["wall", body, member, axis, side] as two indices."""
+    if what == "wall":
+        return number[b, k], -1 - range(2)[c] - 2 * ("lower", "upper").index(d)
+    if what != "pair" or not b < c:
+        raise ValueError(f"contact {[what, b, k, c, d]}")
+    return number[b, k], number[c, d]
+
+
+def bodies_of(content: dict[str, Any]) -> Packing:
+    """The packing of a file of format "bodies-1"."""
+    members = [np.array(rows, dtype=float).reshape(-1, 3) for rows in content["members"]]
+    for b, rows in enumerate(members):
+        if not (len(rows) == 2 or len(rows) == 3 and abs(np.linalg.det(np.column_stack([rows[:, :2], np.ones(3)]))) > 1e-9):
+            raise ValueError(f"body {b}: expected two members, or three that are not collinear")
+    every = np.concatenate(members)
+    clumps = Clumps(np.repeat(np.arange(len(members)), list(map(len, members))), every[:, :2], every[:, 2])
+    clumps.load[-2:] = np.array(content["loads"], dtype=float)
+    places = np.array(content["bodies"], dtype=float).reshape(3 * clumps.count)
+    q = np.concatenate([places, np.array(content["lengths"], dtype=float).reshape(2)])
+    number = {place: i for i, place in enumerate((b, k) for b, rows in enumerate(members) for k in range(len(rows)))}
+    contacts = np.array([contact(number, *row) for row in content["contacts"]])
+    force = np.array(content["forces"], dtype=float).reshape(len(contacts))
+    if not (all(np.isfinite(numbers).all() for numbers in (q, every, force, clumps.load)) and (clumps.radius > 0).all()):
+        raise ValueError("expected finite numbers and positive radii")
+    return Packing(clumps, q, force, contacts)
+
+
+def converted(path: str) -> tuple[Packing, Counts]:
+    """The packing of a file; says where its counts are those that the file expects."""
+    try:
+        with open(path, encoding="utf-8") as file:
+            content = json.load(file)
+        if content["format"] != "bodies-1":
+            raise ValueError(f"its format is {content['format']!r}")
+        if content["sectors"] is not None:
+            raise Failed(f"{path}: bodies bounded by arcs (ovals): a state of clumps holds unions of disks")
+        packing, expected = bodies_of(content), dict(content["expected"])
+    except (LookupError, TypeError, ValueError, RecursionError) as error:
+        raise Failed(f'{path}: not a file of format "bodies-1": {error!r}') from None
+    if abs(packing.clumps.gaps(packing.q, packing.contacts)[0]).max() > 1e-12 or packing.least_other_gap() < LEAST_GAP:
+        raise Failed(f"{path}: a contact is open, or another pair overlaps")
+    counts = counted(packing)
+    for name, value in counts.named().items():
+        same = "as the file says" if expected.get(name) == value else f"but the file says {expected.get(name)!r}"
+        print(f"{name} = {value}, {same}", file=sys.stderr)
+    return packing, counts
+
+
+def bars(clumps: Clumps) -> list[list[Any]]:
+    """The pairs of members of one body, with their distance in its frame, rounded once: 2 K - 3 pairs for K = 2, 3 members."""
+    exact = Context(prec=60)
+
+    def apart(i: int, j: int) -> float:
+        x, y = (exact.subtract(Decimal(float(a)), Decimal(float(b))) for a, b in zip(clumps.place[i], clumps.place[j]))
+        return float(exact.sqrt(exact.add(exact.multiply(x, x), exact.multiply(y, y))))
+
+    members = (np.flatnonzero(clumps.body == b).tolist() for b in range(clumps.count))
+    return [[i, j, apart(i, j)] for body in members for i, j in itertools.combinations(body, 2)]
+
+
+def state(packing: Packing, origin: dict[str, Any]) -> str:
+    """The text of a state file, a row a line. The bars are no contacts: the reader adds them."""
+    clumps = packing.clumps
+    load = "dead forces on the right and the top wall: W = L_x + L_y, so the stresses refer to a box of lengths 1"
+    head: dict[str, Any] = {"format": "isostat-state", "version": 2}
+    head["provenance"] = {"program": "examples/clumps/prepare.py", **origin, "load": load}
+    head["load"] = {"kind": "nominal", "stress": clumps.load[-2:].tolist(), "reference_length": [1, 1]}
+    head["length"] = packing.q[-2:].tolist()
+    rows: dict[str, list[Any]] = {"disks": np.column_stack([clumps.centres(packing.q), clumps.radius]).tolist(), "bars": bars(clumps)}
+    rows["contacts"] = [[int(i), int(j) if j >= 0 else WALLS[-1 - j]] for i, j in packing.contacts]
+    parts = [f'  "{key}": {json.dumps(value, allow_nan=False)}' for key, value in head.items()]
+    parts += [f'  "{key}": [\n    ' + ",\n    ".join(map(json.dumps, value)) + "\n  ]" for key, value in rows.items()]
+    return "{\n" + ",\n".join(parts) + "\n}\n"
+
+
+COLUMNS = "| kind | seed | N_f | N | h | k | rotational rattlers | doubled pairs | least W'' | least force | least other gap | seconds |"
+
+
+def line(kind: str, seed: Any, packing: Packing, counts: Counts, seconds: float) -> str:
+    least = f"{counts.variation[0]:.1e}" if len(counts.variation) else "-"
+    cells = [kind, seed, counts.dof, counts.contacts, counts.hyperstaticity, counts.hypostaticity, len(counts.rotational)]
+    cells += [counts.doubled, least, f"{packing.force.min():.1e}", f"{packing.least_other_gap():.1e}", f"{seconds:.1f}"]
+    return f"| {' | '.join(map(str, cells))} |"
+
+
+def table(kinds: list[str], count: int, seeds: int, saddle: bool) -> None:
+    print(COLUMNS)
+    print("|---" * COLUMNS.count(" | ") + "|---|")
+    for kind in kinds:
+        for seed in range(1, seeds + 1):
+            start = time.process_time()
+            try:
+                packing, counts, _ = prepared(kind, count, seed, saddle)
+            except Failed as failed:
+                print(failed, file=sys.stderr)
+                continue
+            print(line(kind, seed, packing, counts, time.process_time() - start), flush=True)
+
+
+def arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("kind", nargs="?", choices=list(KINDS), help="dimer: equal members; dimer2: unequal ones; trimer: an equilateral triangle")
+    parser.add_argument("-n", type=int, default=20, help="bodies (20)")
+    parser.add_argument("--seed", type=int, default=1, help="of the random numbers (1)")
+    parser.add_argument("--saddle", action="store_true", help="an equilibrium with a contact less, where W has no minimum")
+    parser.add_argument("--from", dest="source", metavar="FILE", help='a packing of format "bodies-1"')
+    parser.add_argument("--table", type=int, metavar="N", help="count in seeds 1 to N, of all kinds unless one is given")
+    parser.add_argument("-o", dest="output", metavar="FILE", help="where the state goes; a file that is there stays (standard output)")
+    given = parser.parse_args()
+    if sum([given.table is not None, given.source is not None, given.kind is not None and given.table is None]) != 1:
+        parser.error("expected a kind, --from FILE or --table N")
+    if given.n < 1 or given.seed < 0:
+        parser.error("expected at least one body, and a seed that is not negative")
+    return given
+
+
+def main() -> None:
+    given = arguments()
+    if given.table is not None:
+        table([given.kind] if given.kind else list(KINDS), given.n, given.table, given.saddle)
+        return
+    if given.source is not None:
+        packing, counts = converted(given.source)
+        origin = {"file": os.path.basename(given.source)}
+    else:
+        packing, counts, attempt = prepared(given.kind, given.n, given.seed, given.saddle)
+        origin = {"kind": given.kind, "bodies": given.n, "seed": given.seed, "attempt": attempt, "saddle": given.saddle}
+        print(COLUMNS, line(given.kind, given.seed, packing, counts, time.process_time()), sep="\n", file=sys.stderr)
+    text = state(packing, origin)
+    if given.output is None:
+        print(text, end="")
+    else:
+        try:
+            with open(given.output, "x", encoding="utf-8") as file:
+                file.write(text)
+        except FileExistsError:
+            raise Failed(f"{given.output} is there already and stays as it is") from None
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except (Failed, OSError) as failed:
+        sys.exit(f"prepare.py: {failed}")

@@ -1,0 +1,259 @@
+#include "answers/genericity.hpp"
+
+#include "contact/names.hpp"
+#include "io/files.hpp"
+#include "io/text.hpp"
+#include "io/vertex_text.hpp"
+#include "packing/words.hpp"
+
+#include <isostat/core/error.hpp>
+#include <isostat/crafted/exact_packing.hpp>
+#include <isostat/io/state_file.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+namespace isostat::answers {
+
+using crafted::Genericity;
+using crafted::GenericitySample;
+using json::Json;
+using json::or_null;
+using text::say;
+
+namespace {
+
+/// Smallest, median, largest of a figure over the proved samples.
+template <class Get> std::array<double, 3> spread(const Genericity& result, Get get) {
+    std::vector<double> values;
+    for (const GenericitySample& sample : result.samples) {
+        if (!sample.failure) {
+            values.push_back(get(sample));
+        }
+    }
+    if (values.empty()) {
+        return {HUGE_VAL, HUGE_VAL, HUGE_VAL};
+    }
+    std::sort(values.begin(), values.end());
+    return {values.front(), values[values.size() / 2], values.back()};
+}
+
+std::string list_text(const std::vector<Contact>& list, const std::vector<Contact>& original, int dimension) {
+    std::string missing, added;
+    int lost = 0, gained = 0;
+    constexpr int most = 8;
+    for (const Contact& c : original) {
+        if (!std::binary_search(list.begin(), list.end(), c) && ++lost <= most) {
+            missing += " " + to_string(c, dimension);
+        }
+    }
+    for (const Contact& c : list) {
+        if (!std::binary_search(original.begin(), original.end(), c) && ++gained <= most) {
+            added += " " + to_string(c, dimension);
+        }
+    }
+    return fmt::format("without{}{}, with{}{}", lost == 0 ? " nothing less" : missing,
+                       lost > most ? fmt::format(" and {} more", lost - most) : "",
+                       gained == 0 ? " nothing new" : added,
+                       gained > most ? fmt::format(" and {} more", gained - most) : "");
+}
+
+Json sample_json(const GenericitySample& sample) {
+    Json out;
+    out["seed"] = sample.seed;
+    if (sample.failure) {
+        out["failure"] = to_string(sample.failure->kind);
+        out["reason"] = sample.failure->message();
+        return out;
+    }
+    out["h"] = 0;
+    out["k"] = 0;
+    out["N"] = sample.contacts.size();
+    out["carrying"] = sample.carrying.size();
+    out["rattlers"] = sample.rattlers;
+    out["min_force"] = or_null(sample.min_force);
+    out["min_gap"] = or_null(sample.min_gap);
+    out["sigma_min"] = or_null(sample.sigma_min);
+    out["rung"] = to_string(sample.rung);
+    out["within_original"] = sample.within_original;
+    return out;
+}
+
+/// The most frequent contact lists of one size.
+void print_lists(std::string& out, const GenericityAnswer& a, const Genericity& result, double size) {
+    for (std::size_t k = 0;
+         k < result.lists.size() && k < a.lists && result.lists[k].samples > std::max(1, a.options.samples / 20); ++k) {
+        say(out, "size {:.0e}: {} samples {}\n", size, result.lists[k].samples,
+            list_text(result.lists[k].contacts, a.original.contacts, a.original.packing.dimension));
+    }
+}
+
+/// Why samples of one size failed: how many of each kind, and the first of them.
+void print_failures(std::string& out, const Genericity& result, double size) {
+    std::map<std::string, std::pair<int, std::string>> reasons;
+    for (const GenericitySample& sample : result.samples) {
+        if (sample.failure) {
+            auto& reason = reasons[to_string(sample.failure->kind)];
+            if (reason.first++ == 0) {
+                reason.second = fmt::format("seed {}: {}", sample.seed, sample.failure->message());
+            }
+        }
+    }
+    for (const auto& [kind, reason] : reasons) {
+        say(out, "size {:.0e}: {} times {}, first {}\n", size, reason.first, kind, reason.second);
+    }
+}
+
+} // namespace
+
+GenericityOriginal read_original(const std::string& file) {
+    const std::string text = read_text(file);
+    const std::string format = recognise_format(text);
+    GenericityOriginal out;
+    if (format == "packing") {
+        const crafted::PackingFile crafted = crafted::parse_packing(text, file);
+        const auto inspection = crafted::inspect(crafted.packing);
+        if (!inspection.ok()) {
+            throw Error(ErrorKind::bad_input, fmt::format("{}: {}", file, inspection.failure().message()));
+        }
+        out.packing = crafted::approximate(crafted.packing);
+        require_single_grains(out.packing, file, "genericity");
+        out.contacts = inspection.value().contacts;
+        out.hyperstaticity = inspection.value().hyperstaticity;
+        out.mechanisms = inspection.value().mechanisms;
+        out.with_radii = inspection.value().with_radii;
+        out.exact = inspection.value().rank_exact;
+        out.title = "exact contacts of the crafted packing";
+    } else if (format == "state" || format == "vertex") {
+        State state =
+            format == "state" ? parse_any_state(text, file, Dimensions::any).state : parse_vertex_text(text, file);
+        const Counting counting = count_contacts(state.packing, state.contacts);
+        out.hyperstaticity = counting.hyperstaticity;
+        out.mechanisms = counting.mechanisms;
+        out.with_radii = crafted::count_with_radii(crafted::exact_copy(state.packing), state.contacts);
+        out.exact = counting.rank_exact;
+        out.packing = std::move(state.packing);
+        out.contacts = std::move(state.contacts);
+        out.title = "contacts of the state, stored coordinates";
+    } else {
+        throw Error(
+            ErrorKind::bad_input,
+            fmt::format("{}: not a file of this program: expected a crafted packing (TOML), a state or a vertex "
+                        "text; isostat import makes a state of a packing of another program",
+                        file));
+    }
+    return out;
+}
+
+std::string head_text(const GenericityAnswer& a) {
+    std::string out;
+    const char* bound = a.original.exact == Verdict::proved ? "=" : "<=";
+    say(out, "{}: {} {}s, N = {} ({}), h {} {}, k {} {}, rank with radii {} {}\n", a.file,
+        a.original.packing.disk_count(), grain_word(a.original.packing.dimension), a.original.contacts.size(),
+        a.original.title, bound, a.original.hyperstaticity, bound, a.original.mechanisms,
+        a.original.with_radii.rank_exact == Verdict::proved ? "=" : ">=", a.original.with_radii.rank);
+    say(out, "radius times 1 + size u, u uniform in [-1, 1){}{}; {} samples, seeds {} to {}\n\n",
+        a.options.keep_equal ? ", the same u for equal radii" : "",
+        a.options.tilt ? "; tilt plus size u times the first period" : "", a.options.samples, a.options.seed,
+        a.options.seed + static_cast<std::uint64_t>(a.options.samples) - 1);
+    say(out, "{:>8} {:>7} {:>5} {:>9} {:>6} | {:>6} {:>7} {:>9} {:>8} | {:>9} {:>9} {:>9} {:>9} {:>9} | {}\n", "size",
+        "h=k=0", "tie", "undecided", "failed", "lists", "largest", "within", "rattlers", "min force", "median",
+        "min gap", "median", "min sigma", "arithmetic");
+    return out;
+}
+
+std::string row_text(const Genericity& result, double size) {
+    const auto force = spread(result, [](const GenericitySample& s) { return s.min_force; });
+    const auto gap = spread(result, [](const GenericitySample& s) { return s.min_gap; });
+    const auto sigma = spread(result, [](const GenericitySample& s) { return s.sigma_min; });
+    const auto rattlers = spread(result, [](const GenericitySample& s) { return s.rattlers; });
+    std::string used;
+    for (const auto& [rung, count] : result.rungs()) {
+        used += fmt::format("{}{} {}", used.empty() ? "" : ", ", rung, count);
+    }
+    if (result.proved == 0) {
+        return text::filled("{:>8.1e} {:>7} {:>5} {:>9} {:>6}\n", size, 0, result.ties, result.undecided,
+                            result.failed);
+    }
+    return text::filled(
+        "{:>8.1e} {:>7} {:>5} {:>9} {:>6} | {:>6} {:>7} {:>9} {:>8} | {:>9.2e} {:>9.2e} {:>9.2e} {:>9.2e} "
+        "{:>9.2e} | {}\n",
+        size, result.proved, result.ties, result.undecided, result.failed, result.lists.size(),
+        result.lists.front().samples, result.within(), fmt::format("{}..{}", rattlers[0], rattlers[2]), force[0],
+        force[1], gap[0], gap[1], sigma[0], used);
+}
+
+std::string closing_text(const GenericityAnswer& a, const std::vector<Genericity>& results,
+                         std::span<const double> sizes) {
+    std::string out = text::filled(
+        "\nh=k=0: proved of the true vertex, with every force > 0 and every other gap > 0; tie: more gaps are 0 "
+        "than "
+        "N_f, to double-double;\nlists: distinct networks of force-carrying contacts, and samples in the most "
+        "frequent; within: the force "
+        "network is part of the unperturbed contacts;\nmargins: proved lower bounds, smallest and median over "
+        "the samples.\n");
+    for (std::size_t s = 0; s < results.size(); ++s) {
+        print_lists(out, a, results[s], sizes[s]);
+        print_failures(out, results[s], sizes[s]);
+    }
+    return out;
+}
+
+Json to_json(const GenericityAnswer& a, const Genericity& result, double size) {
+    Json out;
+    out["size"] = size;
+    out["proved_isostatic"] = result.proved;
+    out["ties"] = result.ties;
+    out["undecided"] = result.undecided;
+    out["failed"] = result.failed;
+    out["within_original"] = result.within();
+    out["rungs"] = result.rungs();
+    out["distinct_networks"] = result.lists.size();
+    Json lists = Json::array();
+    for (std::size_t k = 0; k < result.lists.size() && k < a.lists; ++k) {
+        lists.push_back({{"samples", result.lists[k].samples},
+                         {"contacts", contact_names(result.lists[k].contacts, a.original.packing.dimension)}});
+    }
+    out["networks"] = std::move(lists);
+    Json samples = Json::array();
+    for (const GenericitySample& sample : result.samples) {
+        samples.push_back(sample_json(sample));
+    }
+    out["samples"] = std::move(samples);
+    return out;
+}
+
+void add_genericity(Json& out, const GenericityAnswer& a, Json results) {
+    out["file"] = a.file;
+    out["seed"] = a.options.seed;
+    out["samples"] = a.options.samples;
+    out["stress"] = or_null(a.options.stress);
+    out["keep_equal"] = a.options.keep_equal;
+    out["tilt"] = a.options.tilt;
+    out["original"] = {{"N", a.original.contacts.size()},
+                       {"h", a.original.hyperstaticity},
+                       {"k", a.original.mechanisms},
+                       {"rank_exact", to_string(a.original.exact)},
+                       {"rank_with_radii", a.original.with_radii.rank},
+                       {"rank_with_radii_exact", to_string(a.original.with_radii.rank_exact)}};
+    out["sizes"] = std::move(results);
+}
+
+std::string csv_rows(const Genericity& result, double size) {
+    std::string out;
+    for (const GenericitySample& s : result.samples) {
+        const bool ok = !s.failure;
+        out += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", size, s.seed,
+                           ok ? "proved" : to_string(s.failure->kind), ok ? "0" : "", ok ? "0" : "",
+                           ok ? std::to_string(s.carrying.size()) : "", ok ? std::to_string(s.rattlers) : "",
+                           ok ? fmt::format("{}", s.min_force) : "", ok ? fmt::format("{}", s.min_gap) : "",
+                           ok ? fmt::format("{}", s.sigma_min) : "", ok ? (s.within_original ? "1" : "0") : "");
+    }
+    return out;
+}
+
+} // namespace isostat::answers

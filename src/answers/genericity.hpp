@@ -1,0 +1,52 @@
+#pragma once
+/// \file
+/// What `genericity` answers.
+
+#include "crafted/genericity.hpp"
+#include "io/json.hpp"
+
+#include <isostat/packing/packing.hpp>
+#include <isostat/rigidity/counting.hpp>
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace isostat::answers {
+
+/// The unperturbed packing: its contacts, and what is known of h and k.
+struct GenericityOriginal {
+    Packing packing;
+    std::vector<Contact> contacts;
+    int hyperstaticity = 0;
+    int mechanisms = 0;
+    Counting with_radii;
+    Verdict exact = Verdict::undecided;
+    std::string title;
+};
+
+/// Of a crafted packing, a state or a vertex text. Throws `Error(bad_input)`.
+GenericityOriginal read_original(const std::string& file);
+
+struct GenericityAnswer {
+    std::string file; ///< its name
+    GenericityOriginal original;
+    crafted::GenericityOptions options;
+    std::size_t lists = 0; ///< at most so many of each size are told
+};
+
+/// Text: its head, a row for each size, and the most frequent lists and the failures of all.
+std::string head_text(const GenericityAnswer& answer);
+std::string row_text(const crafted::Genericity& result, double size);
+std::string closing_text(const GenericityAnswer& answer, const std::vector<crafted::Genericity>& results,
+                         std::span<const double> sizes);
+
+/// JSON: one size, and all of them.
+json::Json to_json(const GenericityAnswer& answer, const crafted::Genericity& result, double size);
+void add_genericity(json::Json& object, const GenericityAnswer& answer, json::Json results);
+
+inline constexpr const char* genericity_head =
+    "size,seed,result,h,k,carrying,rattlers,min_force,min_gap,sigma_min,within_original\n";
+std::string csv_rows(const crafted::Genericity& result, double size);
+
+} // namespace isostat::answers

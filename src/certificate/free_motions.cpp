@@ -1,0 +1,60 @@
+// Which coordinates to hold where contacts leave free motions.
+#include "rigidity/isostatic.hpp"
+
+#include <isostat/certificate/certify.hpp>
+
+#include <Eigen/OrderingMethods>
+#include <Eigen/QR>
+#include <Eigen/SparseCore>
+#include <Eigen/SparseQR>
+
+#include <algorithm>
+
+namespace isostat {
+
+namespace {
+
+using Sparse = Eigen::SparseMatrix<double>;
+
+/// k degrees of freedom that move far in the motions that keep all contacts: the rows of an orthonormal basis of these
+/// that a factorisation with pivots takes first. A guess: whether the list with them is regular is proved later.
+std::vector<int> farthest_moving(const Packing& packing, const std::vector<Contact>& contacts, int k) {
+    const DofMap dofs(packing);
+    const sparse::Matrix<double> h = contact_matrix(packing, dofs, contacts);
+    const Eigen::Map<const Sparse> matrix(h.rows, h.cols, static_cast<Eigen::Index>(h.row.size()), h.start.data(),
+                                          h.row.data(), h.value.data());
+    const Eigen::SparseQR<Sparse, Eigen::COLAMDOrdering<int>> qr(matrix);
+    if (qr.info() != Eigen::Success || qr.rank() != h.cols) {
+        return {};
+    }
+    Eigen::MatrixXd motions = Eigen::MatrixXd::Zero(h.rows, k);
+    motions.bottomRows(k).setIdentity();
+    motions = qr.matrixQ() * motions;
+    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> pivots(motions.transpose());
+    const auto& order = pivots.colsPermutation().indices();
+    std::vector<int> rows(order.data(), order.data() + k);
+    std::sort(rows.begin(), rows.end());
+    return rows;
+}
+
+} // namespace
+
+State with_free_motions_held(State state) {
+    const bool held = std::any_of(state.contacts.begin(), state.contacts.end(),
+                                  [](const Contact& c) { return c.kind == ContactKind::held; });
+    if (state.packing.bars.empty() || held) {
+        return state;
+    }
+    const Counting counting = count_contacts(state.packing, state.contacts);
+    if (counting.hyperstaticity > 0 || counting.mechanisms == 0) {
+        return state;
+    }
+    std::vector<int> rows = farthest_moving(state.packing, state.contacts, counting.mechanisms);
+    const DofMap dofs(state.packing);
+    for (const int dof : rows.empty() ? counting.free_dofs : rows) {
+        state.contacts.push_back({ContactKind::held, dofs.coordinate_of(dof), 0});
+    }
+    return state;
+}
+
+} // namespace isostat

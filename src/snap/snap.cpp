@@ -1,0 +1,270 @@
+#include "certificate/subject.hpp"
+#include "contact/contact_set.hpp"
+#include "core/words.hpp"
+#include "crafted/peeling.hpp"
+#include "rigidity/isostatic.hpp"
+#include "snap/backbone.hpp"
+#include "snap/room.hpp"
+#include "verified/to_vertex.hpp"
+
+#include <isostat/snap/snap.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <random>
+#include <vector>
+
+namespace isostat::compare {
+
+namespace {
+
+/// A vertex is looked for within this distance, in smallest radii: farther away grains are not nearly rigid.
+constexpr double nearest_vertex = 0.1;
+constexpr double up = 1 + 0x1p-49; // of a difference and a sum, each rounded
+
+/// Disks and contacts of the list alone.
+void take_backbone(const SoftState& soft, Snap& out) {
+    std::vector<int> number(soft.packing.radius.size(), -1);
+    out.rattlers = untouched(soft.packing.disk_count(), soft.contacts);
+    for (int i = 0; i < soft.packing.disk_count(); ++i) {
+        if (!std::binary_search(out.rattlers.begin(), out.rattlers.end(), i)) {
+            number[static_cast<std::size_t>(i)] = static_cast<int>(out.disks.size());
+            out.disks.push_back(i);
+        }
+    }
+    out.backbone.packing = of_disks(soft.packing, out.disks);
+    const Packing& packing = out.backbone.packing;
+    for (Contact c : soft.contacts) {
+        c.i = number[static_cast<std::size_t>(c.i)];
+        c.j = c.of_disks() ? number[static_cast<std::size_t>(c.j)] : c.j;
+        out.backbone.contacts.push_back(c);
+    }
+    out.backbone.load = soft.load;
+    out.backbone.load.disk_force.clear();
+    // Where several forces vanish together for structural reasons, the end of the interval needs them.
+    out.backbone.load.infinitesimal = generic_infinitesimal(packing.radius, 1, packing.dimension);
+    balance(out.backbone.load.infinitesimal, packing.cell);
+    if (packing.dimension != plane) { // a sphere may bear forces in a plane alone, and rest on a wall beside
+        out.backbone.load.infinitesimal = resting_loads(packing, out.backbone.contacts, 1);
+    }
+}
+
+/// In names of the whole packing.
+std::string renamed(const Snap& snap, const Contact& c) {
+    const auto disk = [&](int i) { return snap.disks[static_cast<std::size_t>(i)]; };
+    return to_string(Contact{c.kind, disk(c.i), c.of_disks() ? disk(c.j) : c.j, c.image}, snap.packing.dimension);
+}
+
+/// The first force that is proved negative, or empty.
+std::string negative_force(const Snap& snap) {
+    const std::vector<Interval>& f = snap.truth.finite;
+    for (std::size_t l = 0; l < f.size(); ++l) {
+        if (f[l].upper < 0) {
+            return fmt::format("the force of {} is {:.3g} at the vertex of the list",
+                               renamed(snap, snap.backbone.contacts[l]), f[l].upper);
+        }
+    }
+    return "";
+}
+
+/// The deepest overlap of the backbone at the vertex, or empty.
+std::string overlapping_pair(const Snap& snap) {
+    const double allowance = snap.truth.claims.vertex ? 3 * snap.truth.claims.vertex->radius : 0; // contacts touch
+    Admissibility worst = certify_admissible(snap.backbone.packing, allowance);
+    return worst.verdict == Verdict::refuted ? fmt::format("{} overlap by {:.3g} at the vertex of the list",
+                                                           renamed(snap, worst.worst), -worst.worst_gap)
+                                             : "";
+}
+
+void measure_moves(const SoftState& soft, Snap& out) {
+    const double radius = out.truth.claims.vertex->radius;
+    const std::vector<double>& q = out.backbone.packing.q;
+    const auto way = [&](std::size_t here, std::size_t there) {
+        return (std::abs(q[here] - soft.packing.q[there]) + radius) * up;
+    };
+    out.moved.assign(soft.packing.radius.size(), 0);
+    out.distance = 0;
+    const std::size_t d = soft.packing.axes();
+    for (std::size_t b = 0; b < out.disks.size(); ++b) {
+        const auto i = static_cast<std::size_t>(out.disks[b]);
+        out.moved[i] = distance_above(d, [&](std::size_t a) { return way(d * b + a, d * i + a); });
+        out.distance = std::max(out.distance, out.moved[i]);
+        std::copy_n(&q[d * b], d, &out.packing.q[d * i]);
+    }
+    const std::size_t n = soft.packing.length_at(0), m = out.backbone.packing.length_at(0);
+    out.walls = 0;
+    for (std::size_t k = 0; m + k < q.size(); ++k) { // walls, or periods and tilt
+        out.walls = std::max(out.walls, way(m + k, n + k));
+        out.packing.q[n + k] = q[m + k];
+    }
+    out.packing.cell = soft.packing.cell;
+    if (soft.packing.cell.any()) { // the disk that stays where it is carries a force
+        out.packing.cell.pin = out.disks[static_cast<std::size_t>(out.backbone.packing.cell.pin)];
+    }
+}
+
+void judge(Snap& out) {
+    const CertificateClaims& claims = out.truth.claims;
+    const std::string negative = negative_force(out);
+    const std::string overlap = negative.empty() ? overlapping_pair(out) : "";
+    if (out.truth.verdict == Verdict::refuted) {
+        out.outcome = SnapOutcome::refuted;
+        out.reason = !negative.empty() ? negative : !overlap.empty() ? overlap : out.truth.refuted.front();
+    } else if (claims.counting && claims.vertex && claims.forces && claims.gaps) {
+        out.outcome = SnapOutcome::vertex; // the interval of the load is another question
+    } else {
+        out.reason = claims.undecided.empty() ? "the vertex is not proved" : claims.undecided.front();
+    }
+}
+
+/// Of a vertex with rattlers.
+void judge_room(Snap& out) {
+    if (const std::string failed = make_room(out); !failed.empty()) {
+        const std::string none = without_room(out);
+        out.outcome = none.empty() ? SnapOutcome::undecided : SnapOutcome::refuted;
+        out.reason = none.empty() ? failed : none;
+    }
+}
+
+} // namespace
+
+Packing of_disks(const Packing& packing, const std::vector<int>& disks) {
+    Packing out;
+    out.dimension = packing.dimension;
+    out.walls = packing.walls;
+    out.cell = packing.cell;
+    for (const int disk : disks) {
+        const auto i = static_cast<std::size_t>(disk);
+        out.radius.push_back(packing.radius[i]);
+        const double* const x = &packing.q[packing.axes() * i];
+        out.q.insert(out.q.end(), x, x + packing.axes());
+    }
+    out.q.insert(out.q.end(), packing.q.begin() + static_cast<std::ptrdiff_t>(packing.length_at(0)), packing.q.end());
+    const auto pin = std::find(disks.begin(), disks.end(), packing.cell.pin);
+    out.cell.pin = pin == disks.end() ? 0 : static_cast<int>(pin - disks.begin());
+    return out;
+}
+
+const char* to_string(SnapOutcome outcome) {
+    static constexpr std::array words{"vertex", "hyperstatic", "moving", "refuted", "undecided"};
+    return word_of(outcome, words);
+}
+
+State backbone_of(const State& state, const std::vector<Contact>& carrying) {
+    Snap out;
+    take_backbone({state.packing, carrying, state.load}, out);
+    return std::move(out.backbone);
+}
+
+std::vector<Contact> able_to_carry(const Packing& packing, std::vector<Contact> contacts) {
+    std::erase_if(contacts, [](const Contact& c) { return c.kind == ContactKind::held; });
+    const crafted::Peeling peeling = crafted::peel(packing, contacts);
+    const int all = static_cast<int>(contacts.size());
+    const auto loaded = [&](int i) { return peeling.disk_from[static_cast<std::size_t>(i)] <= all; };
+    std::vector<Contact> out;
+    for (std::size_t l = 0; l < contacts.size(); ++l) {
+        const Contact& c = contacts[l];
+        const bool holds = loaded(c.i) && (!c.of_disks() || loaded(c.j));
+        if (peeling.contact_from[l] <= all || holds) {
+            out.push_back(c);
+        }
+    }
+    return out;
+}
+
+std::vector<double> resting_loads(const Packing& packing, const std::vector<Contact>& contacts, std::uint64_t seed) {
+    std::vector<double> out(packing.length_at(0), 0);
+    if (contacts.empty()) {
+        return out;
+    }
+    std::mt19937_64 random(seed);
+    const double unit = packing.min_radius() * packing.min_radius();
+    for (const Contact& contact : contacts) {
+        const double force = unit * (1 + static_cast<double>(random() >> 11U) * 0x1p-53);
+        const GapGradient gradient = gap_gradient(packing, contact);
+        for (std::size_t k = 0; k < static_cast<std::size_t>(gradient.count); ++k) {
+            if (const auto at = static_cast<std::size_t>(gradient.coordinate[k]); at < out.size()) {
+                out[at] -= force * gradient.value[k];
+            }
+        }
+    }
+    balance(out, packing.cell);
+    return out;
+}
+
+Snap snap(const SoftState& soft) {
+    Snap out;
+    out.packing = soft.packing;
+    take_backbone(soft, out);
+    out.counting = count_contacts(out.backbone.packing, out.backbone.contacts);
+    const Counting& c = out.counting;
+    if (c.mechanisms > 0 || c.hyperstaticity > 0) {
+        // h is exact, or an upper bound: k = 0 makes the rank N_f, and h = N - N_f.
+        out.outcome = c.mechanisms > 0 ? SnapOutcome::moving : SnapOutcome::hyperstatic;
+        out.reason = fmt::format("the list has N_f = {}, N = {}, rank {}, h = {}, k = {}", c.dof_count, c.contact_count,
+                                 c.rank, c.hyperstaticity, c.mechanisms);
+        return out;
+    }
+    Packing& packing = out.backbone.packing;
+    long steps = 0;
+    if (const auto failure = to_vertex(packing, out.backbone.contacts, steps, nearest_vertex * packing.min_radius())) {
+        out.reason = failure->message(packing.dimension);
+        return out;
+    }
+    if (packing.cell.keeps_shape) {
+        snap_to_grid(packing); // the vertex has the period along x that is stored
+    }
+    out.truth = certify(out.backbone);
+    judge(out);
+    if (out.truth.claims.vertex) {
+        measure_moves(soft, out);
+    }
+    if (out.outcome == SnapOutcome::vertex) {
+        judge_room(out);
+    }
+    return out;
+}
+
+namespace {
+
+/// All of them where nothing is known of zeros.
+std::vector<Contact> without_zeros(const State& state, const std::vector<unsigned char>& zero) {
+    const bool known = zero.size() == state.contacts.size();
+    std::vector<Contact> out = known ? unmarked(state.contacts, zero) : state.contacts;
+    std::sort(out.begin(), out.end());
+    return out;
+}
+
+} // namespace
+
+std::vector<Contact> carrying(const State& state, const Certification& truth) {
+    return without_zeros(state, truth.structural_zero);
+}
+
+std::vector<Contact> carrying(const State& equilibrium) {
+    const auto structure = IsostaticStructure::prove(equilibrium.packing, equilibrium.contacts);
+    return without_zeros(equilibrium,
+                         structure.ok() ? Subject(equilibrium, structure.value()).zero : std::vector<unsigned char>());
+}
+
+std::string names_of(const std::vector<Contact>& contacts, int dimension) {
+    constexpr std::size_t most = 8;
+    std::string text;
+    for (std::size_t k = 0; k < std::min(most, contacts.size()); ++k) {
+        text += " " + to_string(contacts[k], dimension);
+    }
+    return contacts.empty()         ? " none"
+           : contacts.size() > most ? fmt::format("{} and {} more", text, contacts.size() - most)
+                                    : text;
+}
+
+std::vector<Contact> without(const std::vector<Contact>& a, const std::vector<Contact>& b) {
+    std::vector<Contact> out;
+    std::set_difference(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(out));
+    return out;
+}
+
+} // namespace isostat::compare

@@ -1,0 +1,297 @@
+// States of clumps: closed forms, and packings by an independent program.
+#include "certificate/averages.hpp"
+#include "oracle/truth.hpp"
+#include "packing/bodies.hpp"
+#include "support/clumps.hpp"
+#include "support/test.hpp"
+
+#include <isostat/certificate/certify.hpp>
+#include <isostat/core/error.hpp>
+
+#include <cmath>
+
+using namespace isostat;
+using namespace isostat::test;
+
+namespace {
+
+bool lies_within(const Interval& interval, double value) {
+    return interval.lower <= value && value <= interval.upper && interval.upper - interval.lower < 1e-11;
+}
+
+Inspection inspected(const State& state) {
+    auto result = inspect_vertex(with_free_motions_held(state));
+    BOOST_TEST_REQUIRE(result.ok(), (result.ok() ? "" : result.failure().message()));
+    return result.value();
+}
+
+const std::vector<std::string> unions{"dimer_20_1",  "dimer_20_2",  "dimer_20_3",  "dimer2_20_1", "dimer2_20_2",
+                                      "dimer2_20_3", "trimer_20_1", "trimer_20_2", "trimer_20_3"};
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(certificate)
+
+BOOST_AUTO_TEST_CASE(a_dimer_that_lies_has_the_forces_of_the_closed_form_and_one_limit) {
+    const Certification truth = certify(lying_dimer(12, 12));
+    BOOST_TEST((truth.verdict == Verdict::proved));
+    BOOST_TEST(truth.counting.dof_count == 5);
+    BOOST_TEST(truth.counting.contact_count == 5);
+    const std::vector<double> expected{12, 7, 5, 12, 12, 13}; // tan phi = 5/12; the bar bears a thrust of 12 / cos phi
+    BOOST_TEST_REQUIRE(truth.finite.size() == expected.size());
+    for (std::size_t l = 0; l < expected.size(); ++l) {
+        BOOST_TEST(lies_within(truth.finite[l], expected[l]),
+                   "force " << l << " in [" << truth.finite[l].lower << ", " << truth.finite[l].upper << "]");
+    }
+    BOOST_TEST(lies_within(truth.claims.load_interval->low.stress, 5));
+    BOOST_TEST((truth.claims.load_interval->low.opens == Contact{ContactKind::lower_wall, 0, 1}));
+    BOOST_TEST(truth.claims.load_interval->high.unbounded);
+    BOOST_TEST(truth.signs.positive == 5);
+}
+
+BOOST_AUTO_TEST_CASE(dimers_in_space_and_in_a_channel_have_the_forces_of_the_closed_form) {
+    struct Expected {
+        State state;
+        int dofs;
+        std::vector<double> forces;
+        double low;
+        Contact opens;
+    };
+    const std::vector<Expected> all{
+        {lying_dimer_in_space(), 8, {7, 7, 4, 6, 10, 4, 6, 10, 11}, 6, {ContactKind::lower_wall, 0, 2}},
+        {row_of_dimers(), 4, {15, 6, 14, 20, 13}, 14, {ContactKind::lower_wall, 0, 1}}};
+    for (const Expected& expected : all) {
+        const Certification truth = certify(expected.state);
+        BOOST_TEST((truth.verdict == Verdict::proved),
+                   (truth.claims.undecided.empty() ? "" : truth.claims.undecided[0]));
+        BOOST_TEST(truth.counting.dof_count == expected.dofs);
+        BOOST_TEST(truth.counting.contact_count == expected.dofs);
+        BOOST_TEST_REQUIRE(truth.finite.size() == expected.forces.size());
+        for (std::size_t l = 0; l < expected.forces.size(); ++l) {
+            const Interval& f = truth.finite[l]; // lengths such as 2.8 are rounded: some 1e-15
+            BOOST_TEST((f.lower - 1e-12 < expected.forces[l] && expected.forces[l] < f.upper + 1e-12));
+        }
+        BOOST_TEST(std::abs(truth.claims.load_interval->low.stress.lower - expected.low) < 1e-11);
+        BOOST_TEST((truth.claims.load_interval->low.opens == expected.opens));
+    }
+}
+
+BOOST_AUTO_TEST_CASE(below_that_limit_the_lying_dimer_is_refuted) {
+    const Certification truth = certify(lying_dimer(12, 4.9));
+    BOOST_TEST((truth.verdict == Verdict::refuted));
+    BOOST_TEST(truth.signs.negative == 1);
+}
+
+BOOST_AUTO_TEST_CASE(a_bar_under_tension_is_no_traction_of_a_contact) {
+    // The large member is pulled to the left, the small one to the right; the walls are away.
+    const State state = clumps_of(R"({"format": "isostat-state", "version": 2, "length": [9, 9],
+        "walls": {"lower": ["absent", "fixed"], "upper": ["absent", "absent"]}, "load": {"reference_length": [1, 1]},
+        "disks": [[1, 1, 1], [3, 1, 1], [5, 1, 0.5]], "bars": [[0, 1, 2]], "fixed": [2],
+        "disk_force": [[-1, -1], [3, -1], [0, 0]], "contacts": [[0, "bottom"], [1, "bottom"]]})");
+    State pulled = state;
+    pulled.packing.q[4] = 4.5;
+    pulled.contacts.insert(pulled.contacts.begin(), isostat::pair_of(1, 2));
+    const Certification truth = certify(pulled);
+    BOOST_TEST((truth.claims.forces.has_value()));
+    BOOST_TEST_REQUIRE(truth.finite.size() == 4U);
+    BOOST_TEST(lies_within(truth.finite[3], -1)); // the bar
+    BOOST_TEST(lies_within(truth.finite[0], 2));
+    BOOST_TEST(truth.signs.negative == 0);
+    BOOST_TEST(truth.claims.stable);
+}
+
+BOOST_AUTO_TEST_CASE(a_body_held_at_one_member_is_a_rotational_rattler_by_counting) {
+    const Inspection inspection = inspected(disk_with_a_dangling_member());
+    BOOST_TEST(inspection.equilibrium);
+    BOOST_TEST((inspection.stable == Verdict::proved));
+    BOOST_TEST(inspection.counting.dof_count == 5);
+    BOOST_TEST(inspection.counting.contact_count == 4);
+    BOOST_TEST(inspection.counting.mechanisms == 1);
+    BOOST_TEST(inspection.rotational_rattlers == std::vector<int>{0}, boost::test_tools::per_element());
+    BOOST_TEST(inspection.rattlers.empty());
+}
+
+/// Beyond 1e100 no bound counts: nothing is claimed, and nothing is refuted.
+BOOST_AUTO_TEST_CASE(a_clump_of_lengths_beyond_the_bounds_is_undecided) {
+    State state = with_free_motions_held(disk_with_a_dangling_member());
+    for (std::vector<double>* const lengths : {&state.packing.q, &state.packing.radius}) {
+        for (double& x : *lengths) {
+            x *= 0x1p400;
+        }
+    }
+    state.packing.bars[0].length *= 0x1p400;
+    BOOST_TEST((certify(state).verdict == Verdict::undecided));
+    const auto result = inspect_vertex(state);
+    BOOST_TEST((result.ok() ? result.value().record.verdict == Verdict::undecided
+                            : result.failure().kind == isostat::FailureKind::undecided));
+}
+
+BOOST_AUTO_TEST_CASE(what_is_held_so_that_the_list_is_not_regular_is_counted_by_nobody) {
+    State state = disk_with_a_dangling_member();
+    state.contacts.push_back({ContactKind::held, 0, 0}); // x of the disk, which two walls hold
+    const Certification truth = certify(state);
+    BOOST_TEST((truth.verdict == Verdict::undecided));
+    BOOST_TEST(!truth.claims.counting);
+}
+
+BOOST_AUTO_TEST_CASE(a_force_on_the_dangling_member_makes_its_motion_no_free_one) {
+    State state = disk_with_a_dangling_member();
+    state.load.disk_force = {0, 0, 1e-3, 0};
+    const State held = with_free_motions_held(state);
+    const Certification truth = certify(held);
+    BOOST_TEST((truth.verdict == Verdict::undecided));
+    BOOST_TEST(!truth.claims.counting);
+    const Inspection inspection = inspected(state);
+    BOOST_TEST(!inspection.equilibrium);
+    BOOST_TEST((inspection.stable == Verdict::undecided));
+}
+
+BOOST_AUTO_TEST_CASE(a_dimer_across_a_box_is_balanced_where_the_potential_has_a_maximum) {
+    const Inspection inspection = inspected(dimer_across(3, 4));
+    BOOST_TEST(!inspection.equilibrium);
+    BOOST_TEST(inspection.counting.mechanisms == 1);
+    BOOST_TEST((inspection.stable == Verdict::refuted), inspection.remark);
+    BOOST_TEST(inspection.second_order.negative());
+}
+
+/// N = 2, N_f = 3: hypostatic, and a minimum, which hangs below the place where the force points away from the corner.
+BOOST_AUTO_TEST_CASE(a_disk_in_a_corner_under_an_eccentric_load_has_a_minimum_that_is_proved) {
+    const Inspection hanging = inspected(disk_in_a_corner());
+    BOOST_TEST(hanging.counting.mechanisms == 1);
+    BOOST_TEST((hanging.stable == Verdict::proved), hanging.remark);
+    BOOST_TEST(std::abs(hanging.second_order.value - 12.5) <= hanging.second_order.radius);
+    BOOST_TEST(hanging.remark.find("W'' >= 12.4") != std::string::npos, hanging.remark);
+    BOOST_TEST(hanging.rotational_rattlers.empty()); // the load turns it
+    BOOST_TEST((inspected(disk_in_a_corner(std::acos(-1))).stable == Verdict::refuted));
+    // Stored beside the minimum, which is at most as far as said, and that far.
+    const Inspection beside = inspected(disk_in_a_corner(0x1p-20));
+    BOOST_TEST((beside.stable == Verdict::proved), beside.remark);
+    const double away = std::stod(beside.remark.substr(beside.remark.find("within ") + 7));
+    BOOST_TEST(away > 0.625 * 0x1p-20);
+    BOOST_TEST(away < 0x1p-18);
+    BOOST_TEST((inspected(disk_in_a_corner(0.5)).stable == Verdict::undecided));
+    // The member touches the bottom before it hangs.
+    State before = disk_in_a_corner(-0x1p-20);
+    before.packing.radius[1] = 0.5 + 0x1p-23;
+    BOOST_TEST((inspected(before).stable == Verdict::undecided));
+}
+
+BOOST_AUTO_TEST_CASE(several_mechanisms_have_a_minimum_together_or_none) {
+    const State two = two_disks_in_a_corner();
+    const Inspection hanging = inspected(two);
+    BOOST_TEST(hanging.counting.mechanisms == 2);
+    BOOST_TEST((hanging.stable == Verdict::proved), hanging.remark);
+    for (const std::size_t member : {1U, 3U}) { // one of them stands on its head
+        State turned = two;
+        for (const std::size_t a : {0U, 1U}) {
+            turned.packing.q[2 * member + a] = 2 * two.packing.q[2 * member - 2 + a] - two.packing.q[2 * member + a];
+        }
+        BOOST_TEST((inspected(turned).stable == Verdict::refuted));
+    }
+    State touching = two; // a pair that touches beside the contacts leaves no way
+    touching.contacts.erase(
+        std::find(touching.contacts.begin(), touching.contacts.end(), Contact{ContactKind::disk_disk, 0, 2}));
+    BOOST_TEST((inspected(touching).stable != Verdict::proved));
+}
+
+/// The row of such a bar is 0 along x where it is level with what it hangs from. The motion is no free one.
+BOOST_AUTO_TEST_CASE(what_is_level_with_the_load_only_where_it_is_held_is_no_free_motion) {
+    const Inspection hanging = inspected(pendulums(-1, -2));
+    BOOST_TEST(hanging.counting.mechanisms == 2);
+    BOOST_TEST(!hanging.truth.claims.stable);
+    BOOST_TEST((hanging.stable == Verdict::proved), hanging.remark);
+    BOOST_TEST(hanging.remark.find("strict local minimum") != std::string::npos, hanging.remark);
+    BOOST_TEST(hanging.rotational_rattlers.empty());
+    for (const auto& [first, second] : {std::pair(-1.0, 2.0), std::pair(1.0, -2.0), std::pair(1.0, 2.0)}) {
+        const Inspection standing = inspected(pendulums(first, second));
+        BOOST_TEST(!standing.truth.claims.counting);
+        BOOST_TEST((standing.stable == Verdict::refuted), standing.remark);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_dimer_across_a_box_under_another_load_moves) {
+    const Inspection inspection = inspected(dimer_across(3, 4.1));
+    BOOST_TEST(!inspection.equilibrium);
+    BOOST_TEST(inspection.remark.find("mechanism moves") != std::string::npos, inspection.remark);
+}
+
+BOOST_AUTO_TEST_CASE(equal_members_lying_flat_have_a_self_stress) {
+    const State flat = clumps_of(R"({"format": "isostat-state", "version": 2, "length": [4, 2],
+        "disks": [[1, 1, 1], [3, 1, 1]], "bars": [[0, 1, 2]],
+        "contacts": [[0, "left"], [0, "bottom"], [1, "bottom"], [1, "right"], [0, "top"], [1, "top"]]})");
+    const isostat::Counting counting = certify(flat).counting;
+    BOOST_TEST(counting.dof_count == 5);
+    BOOST_TEST(counting.contact_count == 6);
+    BOOST_TEST(counting.hyperstaticity == 1);
+    BOOST_TEST(counting.mechanisms == 0);
+}
+
+BOOST_AUTO_TEST_CASE(members_on_one_line_are_refused_until_one_is_off_the_line) {
+    const char* const text = R"({{"format": "isostat-state", "version": 2, "length": [6, 2],
+        "disks": [[1, 1, 1], [3, 1, 1], [5, 1, 1]{}], "bars": {},
+        "contacts": [[0, "left"], [0, "bottom"], [1, "bottom"], [2, "bottom"], [2, "right"], [0, "top"], [1, "top"], [2, "top"]]}})";
+    const State line = clumps_of(fmt::format(fmt::runtime(text), "", "[[0, 1, 2], [0, 2, 4], [1, 2, 2]]"));
+    BOOST_CHECK_THROW(certify(line), Error);
+    const State made_rigid = clumps_of(fmt::format(
+        fmt::runtime(text), ", [1, 1.5, 0.25]",
+        R"([[0, 1, 2], [0, 3, 0.5], [1, 3, "0x1.07e0f66afed07p+1"], [0, 2, 4], [2, 3, "0x1.01fe03f61bad0p+2"]])"));
+    const isostat::Counting counting = certify(made_rigid).counting;
+    BOOST_TEST(counting.dof_count == 5);
+    BOOST_TEST(counting.contact_count == 8);
+    BOOST_TEST(counting.hyperstaticity ==
+               3); // three on the bottom and three under the lid: 3 + 3 - 2, less one for the lid
+    BOOST_TEST(counting.mechanisms == 0);
+}
+
+/// Counts, rattlers, stability of bodies in a box by an independent program.
+BOOST_AUTO_TEST_CASE(unions_of_an_independent_program_are_proved_with_its_counts) {
+    for (const std::string& name : unions) {
+        const State state = clumps(name);
+        const auto expected = nlohmann::json::parse(state.provenance)["expected"];
+        const Inspection inspection = inspected(state);
+        BOOST_TEST_CONTEXT(name) {
+            BOOST_TEST(inspection.equilibrium, inspection.remark);
+            BOOST_TEST((inspection.stable == Verdict::proved));
+            const isostat::Bodies bodies(state.packing);
+            int rattlers = 0;
+            for (const int i : inspection.rattlers) {
+                rattlers += bodies.of(i) == i ? 1 : 0;
+            }
+            BOOST_TEST(rattlers == static_cast<int>(expected["rattlers"].size()));
+            BOOST_TEST(inspection.rotational_rattlers.size() == expected["rotational_rattlers"].size());
+            BOOST_TEST(inspection.counting.contact_count == expected["N"].get<int>());
+            BOOST_TEST(inspection.counting.dof_count - 3 * rattlers == expected["N_f_of_loaded_bodies"].get<int>());
+            BOOST_TEST(inspection.counting.hyperstaticity == expected["h"].get<int>());
+            BOOST_TEST(inspection.counting.mechanisms - 3 * rattlers == expected["k"].get<int>());
+            BOOST_TEST(inspection.record.min_gap <= expected["smallest_other_gap"].get<double>() + 1e-12);
+            BOOST_TEST(inspection.record.min_gap > expected["smallest_other_gap"].get<double>() - 1e-9);
+        }
+    }
+}
+
+/// Newton's method and elimination in 200 digits, which share nothing with the program.
+BOOST_AUTO_TEST_CASE(intervals_of_the_forces_of_clumps_hold_those_of_200_digits) {
+    for (const char* const name : {"dimer_20_1", "dimer2_20_2", "trimer_20_1"}) {
+        const State state = with_free_motions_held(clumps(name));
+        const Certification truth = certify(state);
+        const isostat::oracle::Truth digits(state);
+        BOOST_TEST_CONTEXT(name) {
+            BOOST_TEST_REQUIRE(digits.known, digits.why);
+            for (std::size_t l = 0; l < state.contacts.size(); ++l) {
+                const isostat::oracle::Real& f = digits.force[l];
+                BOOST_TEST((isostat::oracle::Real(truth.finite[l].lower) <= f + 1e-60 &&
+                            f - 1e-60 <= isostat::oracle::Real(truth.finite[l].upper)),
+                           isostat::to_string(state.contacts[l]));
+            }
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(the_stress_of_clumps_is_that_of_the_walls) {
+    const State state = clumps("trimer_20_1");
+    const isostat::ForceAverages mean = isostat::force_averages(state, certify(state));
+    BOOST_TEST(std::abs(mean.stress[0][0] * state.packing.length(1) - 1) < 1e-9);
+    BOOST_TEST(std::abs(mean.stress[1][1] * state.packing.length(0) - 1) < 1e-9);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

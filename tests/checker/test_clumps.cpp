@@ -1,0 +1,299 @@
+// Certificates of clumps: bars and held coordinates, and what a forger makes of them.
+#include "checker/evidence.hpp"
+#include "checker/gaps.hpp"
+#include "support/clumps.hpp"
+#include "support/test.hpp"
+
+#include <isostat/certificate/certify.hpp>
+#include <isostat/checker/verify.hpp>
+
+#include <cmath>
+#include <functional>
+#include <utility>
+
+using namespace isostat;
+using isostat::test::clumps;
+using isostat::test::clumps_of;
+using isostat::test::dimer_across;
+using isostat::test::disk_in_a_corner;
+using isostat::test::disk_with_a_dangling_member;
+using isostat::test::lying_dimer;
+using isostat::test::lying_dimer_in_space;
+using isostat::test::pendulums;
+using isostat::test::row_of_dimers;
+using isostat::test::sphere_in_a_corner;
+using isostat::test::two_disks_in_a_corner;
+
+namespace {
+
+Certificate of_clumps(const State& state) {
+    Certificate made;
+    made.state = with_free_motions_held(state);
+    made.input = "state";
+    made.input_hash = isostat::sha256("state");
+    made.program = "certify";
+    made.claims = certify(made.state).claims;
+    return made;
+}
+
+Verification read_and_verified(const Certificate& certificate,
+                               CheckerArithmetic arithmetic = CheckerArithmetic::automatic) {
+    return verify(parse_certificate(certificate_text(certificate), "certificate"), arithmetic);
+}
+
+Verdict verdict_on(const Verification& verification, const std::string& claim) {
+    for (const ClaimCheck& check : verification.checks) {
+        if (check.claim == claim) {
+            return check.verdict;
+        }
+    }
+    return Verdict::undecided;
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(checker)
+
+BOOST_AUTO_TEST_CASE(what_is_certified_of_clumps_verifies) {
+    for (const char* const name : {"dimer_20_1", "dimer2_20_2", "trimer_20_1", "trimer_20_3"}) {
+        BOOST_TEST_CONTEXT(name) {
+            BOOST_TEST((read_and_verified(of_clumps(clumps(name))).verdict == Verdict::proved));
+        }
+    }
+    for (const State& state :
+         {lying_dimer(12, 12), disk_with_a_dangling_member(), lying_dimer_in_space(), row_of_dimers()}) {
+        const Certificate certificate = of_clumps(state);
+        for (const CheckerArithmetic arithmetic : {CheckerArithmetic::singular_value, CheckerArithmetic::fixed64,
+                                                   CheckerArithmetic::gmp, CheckerArithmetic::rational}) {
+            BOOST_TEST((read_and_verified(certificate, arithmetic).verdict == Verdict::proved));
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(forged_certificates_of_clumps_do_not_verify) {
+    struct ClumpForgery {
+        const char* claim;
+        std::function<void(Certificate&)> forge;
+    };
+    const Certificate sound = of_clumps(clumps("dimer2_20_2")); // a rattler, three rotational rattlers
+    const auto bar =
+        static_cast<std::size_t>(std::find_if(sound.state.contacts.begin(), sound.state.contacts.end(),
+                                              [](const Contact& c) { return c.kind == ContactKind::bar; }) -
+                                 sound.state.contacts.begin());
+    const std::vector<ClumpForgery> forgeries{
+        {"counting", [](Certificate& c) { ++c.claims.counting->hypostaticity; }},
+        {"counting",
+         [](Certificate& c) { // as if the bars were contacts
+             c.claims.counting->dof_count += 20;
+             c.claims.counting->contact_count += 20;
+             c.claims.counting->rank += 20;
+         }},
+        {"counting",
+         [](Certificate& c) { // as if what is held were contacts
+             c.claims.counting->contact_count += c.claims.counting->hypostaticity;
+             c.claims.counting->rank += c.claims.counting->hypostaticity;
+             c.claims.counting->hypostaticity = 0;
+         }},
+        {"forces",
+         [bar](Certificate& c) {
+             std::swap(c.claims.forces->finite[bar].lower, c.claims.forces->finite[bar].upper);
+             c.claims.forces->finite[bar].lower = -c.claims.forces->finite[bar].lower;
+             c.claims.forces->finite[bar].upper = -c.claims.forces->finite[bar].upper;
+         }},
+        {"forces",
+         [](Certificate& c) { // a held coordinate is no structural zero
+             c.claims.forces->structural_zeros.pop_back();
+             c.claims.forces->infinitesimal.pop_back();
+             c.claims.forces->finite.back() = {-1e-9, 1e-9};
+         }},
+        {"forces",
+         [](Certificate& c) { // and the multipliers that they have are claimed
+             c.state.load.infinitesimal.assign(80, 0.01);
+             for (isostat::Interval& f : c.claims.forces->infinitesimal) {
+                 f = {-1e3, 1e3};
+             }
+         }},
+        {"forces", [](Certificate& c) { c.state.load.disk_force.assign(80, 1e-3); }},
+        {"vertex", [](Certificate& c) { c.state.packing.bars[3].length *= 1 + 1e-6; }},
+        {"gaps", [](Certificate& c) { c.claims.gaps->smallest *= 2; }},
+        {"gaps", [](Certificate& c) { c.claims.gaps->where = isostat::pair_of(0, 1); }}, // members of one body
+        {"load_interval",
+         [](Certificate& c) {
+             c.claims.load_interval->high.stress.lower += 0.1;
+             c.claims.load_interval->high.stress.upper += 0.1;
+         }},
+        {"load_interval", [bar](Certificate& c) { c.claims.load_interval->low.opens = c.state.contacts[bar]; }},
+    };
+    BOOST_TEST((read_and_verified(sound).verdict == Verdict::proved));
+    for (std::size_t k = 0; k < forgeries.size(); ++k) {
+        Certificate forged = sound;
+        forgeries[k].forge(forged);
+        BOOST_TEST_CONTEXT("forgery " << k) {
+            const Verification found = read_and_verified(forged);
+            BOOST_TEST((found.verdict != Verdict::proved));
+            BOOST_TEST((verdict_on(found, forgeries[k].claim) != Verdict::proved));
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_held_coordinate_that_bears_the_load_is_no_equilibrium) {
+    Certificate certificate = of_clumps(dimer_across(3, 4.1));
+    BOOST_TEST(!certificate.claims.forces);
+    // The claims of the same list with the load along the bar: there the force on what is held is 0, not by counting.
+    Certificate balanced = of_clumps(dimer_across(3, 4));
+    for (Certificate* const forged : {&certificate, &balanced}) {
+        forged->claims.counting = isostat::CountingClaim{5, 4, 4, 0, 1};
+        forged->claims.vertex = isostat::VertexClaim{1e-9, 1e-6};
+        forged->claims.forces =
+            isostat::ForcesClaim{{{2.9, 3.1}, {3.9, 4.1}, {2.9, 3.1}, {3.9, 4.2}, {-10, 10}, {-1, 1}}, {}, {}};
+        forged->claims.stable = true;
+        const Verification found = read_and_verified(*forged);
+        BOOST_TEST((verdict_on(found, "counting") == Verdict::proved));
+        BOOST_TEST((verdict_on(found, "vertex") == Verdict::proved));
+        BOOST_TEST((verdict_on(found, "forces") != Verdict::proved));
+        BOOST_TEST((verdict_on(found, "stable") != Verdict::proved));
+    }
+    BOOST_TEST((verdict_on(read_and_verified(certificate), "forces") == Verdict::refuted));
+}
+
+/// Not isostatic: the potential has a minimum along mechanisms, and one claim stands in the place of all others.
+BOOST_AUTO_TEST_CASE(a_minimum_along_mechanisms_is_certified_and_verified) {
+    for (const State& state : {disk_in_a_corner(), disk_in_a_corner(0x1p-30), two_disks_in_a_corner(),
+                               sphere_in_a_corner(), pendulums(-5, -8)}) {
+        const Certificate certificate = of_clumps(state);
+        BOOST_REQUIRE(certificate.claims.minimum.has_value());
+        BOOST_TEST(!certificate.claims.counting.has_value());
+        const Verification verification = read_and_verified(certificate);
+        BOOST_TEST((verification.verdict == Verdict::proved));
+        BOOST_TEST((verdict_on(verification, "minimum") == Verdict::proved), verification.checks.back().detail);
+        const auto& numbers = verification.checks.back().numbers;
+        BOOST_REQUIRE(numbers.size() == 2U);
+        BOOST_TEST(numbers[1].second >= certificate.claims.minimum->curvature);
+        BOOST_TEST(numbers[1].second < 12.5); // 25/8 per radian squared; of the sphere 49/8, and more per coordinate
+    }
+    for (const State& state : {disk_in_a_corner(std::acos(-1)), disk_in_a_corner(0.5), dimer_across(3, 4)}) {
+        BOOST_TEST(!of_clumps(state).claims.minimum.has_value());
+    }
+}
+
+/// Claims of free motions, where a bar is level with what it hangs from at the held place alone.
+BOOST_AUTO_TEST_CASE(what_is_level_where_it_is_held_is_no_free_motion_for_the_checker) {
+    for (const double second : {-2.0, 2.0}) {
+        Certificate forged = of_clumps(pendulums(-1, second));
+        forged.claims = CertificateClaims{};
+        forged.claims.counting = CountingClaim{2, 0, 0, 0, 2, Rung::exact};
+        forged.claims.vertex = VertexClaim{1e-12, 1e-11, Rung::double_bound};
+        ForcesClaim forces;
+        for (const Contact& contact : forged.state.contacts) {
+            const bool held = contact.kind == ContactKind::held;
+            forces.finite.push_back(held ? Interval{0, 0} : Interval{-4, 4});
+            if (held) {
+                forces.structural_zeros.push_back(static_cast<int>(forces.finite.size()) - 1);
+                forces.infinitesimal.push_back({0, 0});
+            }
+        }
+        forged.claims.forces = forces;
+        forged.claims.gaps = GapsClaim{4, {ContactKind::disk_disk, 1, 3}, Rung::double_bound};
+        forged.claims.load_interval = LoadIntervalClaim{};
+        forged.claims.load_interval->low.unbounded = forged.claims.load_interval->high.unbounded = true;
+        forged.claims.stable = true;
+        const Verification verification = read_and_verified(forged);
+        BOOST_TEST((verdict_on(verification, "forces") != Verdict::proved));
+        BOOST_TEST((verdict_on(verification, "stable") != Verdict::proved));
+    }
+}
+
+BOOST_AUTO_TEST_CASE(forged_minima_do_not_verify) {
+    const Certificate right = of_clumps(disk_in_a_corner(0x1p-20));
+    BOOST_TEST((read_and_verified(right).verdict == Verdict::proved));
+    const std::vector<std::pair<const char*, std::function<void(Certificate&)>>> forgeries{
+        {"nearer than it is", [](Certificate& c) { c.claims.minimum->away = 0x1p-22; }},
+        {"steeper than it is", [](Certificate& c) { c.claims.minimum->curvature = 12.6; }},
+        {"turned by half a radian", [](Certificate& c) { c.state.packing.q[2] = 1.3; }},
+        {"a force that pulls off the wall",
+         [](Certificate& c) {
+             c.state.load.disk_force = {0, 0, 3, 4};
+         }},
+        {"a torque", [](Certificate& c) { c.state.load.disk_force[2] = -3.5; }},
+        {"another arm", [](Certificate& c) { c.state.packing.bars[0].length = 0.7; }},
+        {"infinitesimal loads",
+         [](Certificate& c) {
+             c.state.load.infinitesimal = {0, 0, 1, 0};
+         }},
+        {"true stresses", [](Certificate& c) { c.state.load.kind = LoadKind::true_stress; }},
+        {"a contact left out", [](Certificate& c) { c.state.contacts.erase(c.state.contacts.begin()); }},
+        {"a wrong count", [](Certificate& c) { c.claims.counting = CountingClaim{3, 3, 3, 0, 0, Rung::exact}; }}};
+    for (const auto& [what, forge] : forgeries) {
+        Certificate forged = right;
+        forge(forged);
+        BOOST_TEST((verify(forged).verdict != Verdict::proved), what);
+    }
+    // On its head: where the prover found a minimum below.
+    Certificate turned = of_clumps(disk_in_a_corner(std::acos(-1)));
+    turned.claims.minimum = MinimumClaim{1, 1e-3};
+    BOOST_TEST((read_and_verified(turned).verdict != Verdict::proved));
+    // Too far from where it would hang; where the left wall would have to pull.
+    for (const double angle : {0.5, 0x1p-9}) {
+        Certificate far = of_clumps(disk_in_a_corner(angle));
+        far.claims.minimum = MinimumClaim{1, 1e-3};
+        BOOST_TEST((read_and_verified(far).verdict == Verdict::undecided));
+    }
+    Certificate pulled = of_clumps(disk_in_a_corner());
+    pulled.state.packing.q[2] = 1.375;
+    pulled.state.load.disk_force[2] = 3;
+    BOOST_TEST((verify(pulled).verdict == Verdict::undecided));
+    // An isostatic state has no mechanism along which there could be one.
+    Certificate isostatic = of_clumps(lying_dimer(12, 12));
+    isostatic.claims.minimum = MinimumClaim{1, 1e-3};
+    BOOST_TEST((verify(isostatic).verdict == Verdict::undecided));
+    // Two that hang above each other touch: no way is left.
+    State near = disk_in_a_corner();
+    near.packing.walls.upper[0] = WallKind::fixed;
+    near.packing.length(0) = 2 + 0x1p-30;
+    BOOST_TEST((read_and_verified(of_clumps(near)).verdict == Verdict::proved));
+    near.packing.length(0) = 2;
+    Certificate touching = of_clumps(near);
+    BOOST_TEST(!touching.claims.minimum.has_value());
+    touching.claims.minimum = MinimumClaim{1, 1e-3};
+    BOOST_TEST((verify(touching).verdict != Verdict::proved));
+}
+
+BOOST_AUTO_TEST_CASE(without_bars_nothing_may_be_held) {
+    Certificate certificate = of_clumps(disk_with_a_dangling_member());
+    State& state = certificate.state;
+    state.packing.bars.clear();
+    std::erase_if(state.contacts, [](const Contact& c) { return c.kind == ContactKind::bar; });
+    certificate.claims.forces.reset();
+    BOOST_TEST((read_and_verified(certificate).verdict != Verdict::proved));
+}
+
+BOOST_AUTO_TEST_CASE(at_no_stress_the_interval_of_what_is_held_is_refuted) {
+    // The lid presses on a dangling member alone: at sigma_2 = 0 nothing turns it, at any other stress it turns.
+    const State state = clumps_of(R"({"format": "isostat-state", "version": 2, "length": [2, 3],
+        "load": {"stress": [1, 0], "reference_length": [1, 1]}, "disks": [[1, 1, 1], [1.375, 2.5, 0.5]],
+        "bars": [[0, 1, "0x1.8bd171a07e38ap0"]],
+        "contacts": [[0, "left"], [0, "right"], [0, "bottom"], [1, "top"]]})");
+    Certificate certificate = of_clumps(state);
+    BOOST_TEST(!certificate.claims.load_interval);
+    certificate.claims.load_interval = isostat::LoadIntervalClaim{{true, {}, {}}, {true, {}, {}}};
+    certificate.claims.counting = isostat::CountingClaim{5, 4, 4, 0, 1};
+    certificate.claims.vertex = isostat::VertexClaim{1e-9, 1e-6};
+    const Verification found = read_and_verified(certificate);
+    BOOST_TEST((verdict_on(found, "load_interval") == Verdict::refuted));
+}
+
+BOOST_AUTO_TEST_CASE(states_whose_bars_differ_are_different_states) {
+    const State state = clumps("trimer_20_1");
+    State other = state;
+    BOOST_TEST(isostat::state_difference(state, other).empty());
+    other.packing.bars[7].length = std::nextafter(other.packing.bars[7].length, 10);
+    BOOST_TEST(isostat::state_difference(state, other) == "a bar");
+}
+
+BOOST_AUTO_TEST_CASE(members_of_one_body_are_no_pair_for_the_checker) {
+    const State state = clumps("trimer_20_1");
+    BOOST_TEST(!isostat::checker::is_free_pair(state, isostat::pair_of(0, 2)));
+    BOOST_TEST(isostat::checker::is_free_pair(state, isostat::pair_of(0, 3)));
+}
+
+BOOST_AUTO_TEST_SUITE_END()

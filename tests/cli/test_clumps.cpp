@@ -1,0 +1,95 @@
+// Commands and states of clumps: what they answer, and who refuses them.
+#include "cli/program.hpp"
+#include "support/clumps.hpp"
+
+#include <isostat/io/state_file.hpp>
+
+using namespace program;
+
+BOOST_AUTO_TEST_SUITE(cli)
+
+BOOST_AUTO_TEST_CASE(clumps_are_inspected_certified_verified_and_drawn) {
+    const scratch::Folder folder;
+    const std::string state = std::string(ISOSTAT_TEST_DATA) + "/clumps/dimer2_20_2.json";
+    const std::string certificate = folder.at("certificate.json");
+    says(run({"inspect", state}), 0,
+         {"40 in 20 bodies", "mechanisms k             6", "1 bodies without force, 3 more",
+          "isostatic equilibrium    proved"});
+    says(run({"certify", state, "-o", certificate}), 0, {"k = 6", "but for motions that change no force"});
+    says(run({"verify", certificate, "--input", state}), 0, {"equilibrium    proved"});
+    isostat::State other = isostat::test::clumps("dimer2_20_2");
+    other.packing.bars[0].length *= 1 + 0x1p-50;
+    isostat::write_state(folder.at("other.json"), other);
+    says(run({"verify", certificate, "--input", folder.at("other.json")}), 1, {"a bar of the state"});
+    expect(run({"report", std::string(ISOSTAT_TEST_DATA) + "/clumps/dimer_20_1.json", "-o", folder.at("report")}), 0);
+    const std::string picture = scratch::read(folder / "report/forces_dimer_20_1.svg");
+    BOOST_TEST(contains(picture, "class=\"force\""));
+    BOOST_TEST(!contains(picture, "class=\"traction\"")); // bars under tension are no contacts
+}
+
+BOOST_AUTO_TEST_CASE(a_run_of_clumps_goes_on_where_it_was_stopped_and_is_verified_and_reported) {
+    const scratch::Folder folder;
+    isostat::State state = isostat::test::lying_dimer(12, 12);
+    state.load.refer_to(state.packing);
+    state.load.stress = {12 / 2.0, 12 / 2.875};
+    isostat::write_state(folder.at("dimer.json"), state);
+    const std::string loop =
+        "[packing]\nfile = \"dimer.json\"\n[[programme]]\nname = \"rises\"\ndo = \"down\"\nequilibria = 1\n"
+        "[[programme]]\nname = \"lies\"\ndo = \"up\"\nequilibria = 1\n[run]\nmax_strain = 2\n";
+    scratch::write(folder / "loop.toml", loop);
+    expect(run({"run", folder.at("loop.toml"), "-o", folder.at("out")}), 0);
+    expect(run({"run", folder.at("loop.toml"), "-o", folder.at("out"), "--resume"}), 0);
+    expect(run({"report", folder.at("out"), "-o", folder.at("report")}), 0);
+    expect(run({"report", folder.at("out"), "-o", folder.at("page"), "--html"}), 0);
+    BOOST_TEST(scratch::read(folder / "page/trajectory.html").find(R"("body":[0,0])") != std::string::npos);
+    says(run({"verify", folder.at("out")}), 0, {"ends proved", "3 of 3 proved"});
+}
+
+BOOST_AUTO_TEST_CASE(clumps_of_another_program_are_imported_with_the_counts_that_they_had) {
+    const scratch::Folder folder;
+    const std::string table = folder.at("grains.csv"), state = folder.at("imported.json");
+    for (const auto& [name, digits, k] :
+         {std::tuple{"dimer2_20_2", 17, 6}, std::tuple{"dimer2_20_2", 8, 6}, std::tuple{"trimer_20_1", 8, 0}}) {
+        BOOST_TEST_INFO_SCOPE(name << " with " << digits << " digits");
+        const isostat::Packing packing = isostat::test::clumps(name).packing;
+        const int members = packing.disk_count() / 20;
+        std::string text = "id,x,y,r,body\n";
+        for (int i = 0; i < packing.disk_count(); ++i) {
+            const isostat::DiskId disk(i);
+            text +=
+                fmt::format("{},{:.{}g},{:.{}g},{:.{}g},{}\n", i, packing.coordinate(disk, 0), digits,
+                            packing.coordinate(disk, 1), digits, packing.radius[disk.index()], digits, 1 + i / members);
+        }
+        scratch::write(table, text);
+        const std::string box =
+            fmt::format("0:{:.{}g},0:{:.{}g}", packing.length(0), digits, packing.length(1), digits);
+        says(run({"import", table, "-o", state, "--box", box}), 0, {"proved"});
+        says(run({"inspect", state}), 0, {fmt::format("mechanisms k             {}", k), "equilibrium    proved"});
+        const isostat::Packing imported = isostat::test::clumps_of(scratch::read(state)).packing;
+        BOOST_REQUIRE(imported.bars.size() == packing.bars.size());
+        for (std::size_t b = 0; b < imported.bars.size(); ++b) {
+            BOOST_TEST(imported.bars[b].i == packing.bars[b].i);
+            BOOST_TEST(std::abs(imported.bars[b].length - packing.bars[b].length) < std::pow(10, 3 - digits));
+        }
+        expect(run({"import", table, "-o", state, "--box", box, "--bodies", "none"}), 65, {"--bodies COLUMN"});
+        expect(run({"plateau", table}), 65, {"clumps", "--bodies none"});
+    }
+}
+
+BOOST_AUTO_TEST_CASE(what_takes_single_grains_names_clumps) {
+    const scratch::Folder folder;
+    const std::string state = std::string(ISOSTAT_TEST_DATA) + "/clumps/dimer_20_3.json";
+    for (const std::vector<std::string>& command :
+         std::vector<std::vector<std::string>>{{"snap", state, "-o", folder.at("snapped.json")},
+                                               {"plateau", state},
+                                               {"genericity", state},
+                                               {"import", state, "-o", folder.at("imported.json")},
+                                               {"export", state, "-o", folder.at("grains.csv")},
+                                               {"export", state, "-o", folder.at("grains.data")}}) {
+        expect(run(command), 65, {"dimer_20_3.json", "clumps"});
+    }
+    BOOST_TEST(!std::filesystem::exists(folder / "grains.csv"));
+    BOOST_TEST(!std::filesystem::exists(folder / "imported.json"));
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,106 @@
+// `verify --coq` without Coq: what is proved with it is for proofs/coq/check_equilibria.sh.
+#include "cli/program.hpp"
+#include "support/crafted.hpp"
+#include "support/spheres.hpp"
+
+#include <isostat/io/state_file.hpp>
+
+#include <nlohmann/json.hpp>
+
+using namespace program;
+
+BOOST_AUTO_TEST_SUITE(cli)
+
+namespace {
+
+/// A certificate of the state, and what `verify --coq` says of it where Python is there and Coq is not.
+struct WithoutCoq {
+    scratch::Folder folder;
+    std::string path;
+
+    WithoutCoq() {
+        std::filesystem::create_directory(folder / "bin");
+        std::filesystem::create_symlink("/usr/bin/python3", folder / "bin/python3");
+        path = "PATH=" + quoted(folder.at("bin")) + " ";
+    }
+    [[nodiscard]] std::string certificate(const isostat::State& state, const std::string& name) const {
+        isostat::write_state(folder.at("state.json"), state);
+        run({"certify", folder.at("state.json"), "-o", folder.at(name)});
+        return folder.at(name);
+    }
+    [[nodiscard]] Outcome verify(const std::vector<std::string>& files) const {
+        std::vector<std::string> arguments{"verify", "--coq"};
+        arguments.insert(arguments.end(), files.begin(), files.end());
+        return run(arguments, path);
+    }
+};
+
+/// The line of Coq, undecided for this reason; where no example program was built (sanitizers) there is none to write
+/// for Coq, and that is the reason.
+std::string undecided_because(const std::string& reason) {
+    const std::filesystem::path writer = "examples/example_equilibrium_certificate";
+    const bool built = std::filesystem::exists(std::filesystem::path(ISOSTAT_PROGRAM).parent_path() / writer);
+    return "coq            undecided " + (built ? reason : "not asked: ");
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_CASE(without_coq_nothing_is_said_to_be_proved_by_it) {
+    const WithoutCoq here;
+    const std::string file = here.certificate(crafted::two_disks(1, 2, 1, 1), "two.json");
+    const std::string missing = undecided_because("Coq is not installed (Debian packages coq, ");
+    const Outcome one = says(here.verify({file}), 2, {"stable         proved", missing, "equilibrium    undecided"});
+    BOOST_TEST(!contains(one.out, "coq            proved"));
+    for (const char* const name : {"pegs", "slot"}) { // fixed disks and walls are covered
+        run({"certify", std::string(ISOSTAT_TEST_DATA) + "/coq/" + name + ".json", "-o", here.folder.at(name)});
+        says(here.verify({here.folder.at(name)}), 2, {"stable         proved", missing});
+    }
+    says(run({"verify", file}), 0, {"equilibrium    proved"});
+    says(run({"verify", "--coq", file}, "PATH=/nowhere "), 2, {undecided_because("no answer from ")});
+    expect(run({"verify", file, "--coq-limit", "3"}), 64, {"--coq"});
+    expect(run({"verify", here.folder.at("bin"), "--coq"}), 64, {"--coq"});
+}
+
+BOOST_AUTO_TEST_CASE(packings_that_the_checker_in_coq_does_not_cover_are_named) {
+    const WithoutCoq here;
+    isostat::State true_stress = crafted::two_disks(1, 2, 1, 1);
+    true_stress.load.kind = isostat::LoadKind::true_stress;
+    // As a contact the bar of touching members would bear the same thrust: another packing, with the same numbers.
+    isostat::State touching_dimer = crafted::two_disks(1, 2, 1, 1);
+    touching_dimer.packing.bars = {{0, 1, 3}};
+    touching_dimer.contacts[static_cast<std::size_t>(
+        std::find(touching_dimer.contacts.begin(), touching_dimer.contacts.end(), crafted::pair(0, 1)) -
+        touching_dimer.contacts.begin())] = {isostat::ContactKind::bar, 0, 1};
+    const std::string cell = here.folder.at("cell.json");
+    run({"certify", std::string(ISOSTAT_EXAMPLES) + "/cells/tilted-100.json", "-o", cell});
+    const std::vector<std::pair<std::string, std::string>> cases{
+        {cell, "periodic cells"},
+        {here.certificate(isostat::test::state_of_spheres(isostat::test::read_spheres("box_uniform_30_1")), "spheres"),
+         "spheres"},
+        {here.certificate(touching_dimer, "clumps"), "clumps"},
+        {here.certificate(true_stress, "true"), "true stresses"},
+    };
+    for (const auto& [file, words] : cases) {
+        const Outcome outcome = here.verify({file});
+        BOOST_TEST(outcome.status != 0);
+        BOOST_TEST(contains(outcome.out, undecided_because("the checker in Coq does not cover " + words)),
+                   words << ": " << outcome.out << outcome.err);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(several_certificates_are_verified_one_after_the_other) {
+    const WithoutCoq here;
+    const std::string good = here.certificate(crafted::two_disks(1, 2, 1, 1), "good");
+    isostat::Certificate forged = isostat::read_certificate(good);
+    forged.claims.gaps->smallest *= 2;
+    isostat::write_certificate(here.folder.at("forged"), forged);
+    expect(run({"verify", good, good}), 0);
+    expect(run({"verify", good, here.folder.at("nothing")}), 65, {"nothing"});
+    says(run({"verify", here.folder.at("forged"), good}), 1, {"equilibrium    refuted", "equilibrium    proved"});
+    const auto answer = json_of(run({"verify", good, good, "--json"}));
+    BOOST_TEST(answer["certificates"][1]["verdict"] == "proved");
+    BOOST_TEST(answer["verdict"] == "proved");
+    expect(run({"verify", good, good, "--input", good}), 64, {"--input"});
+}
+
+BOOST_AUTO_TEST_SUITE_END()

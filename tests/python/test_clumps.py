@@ -1,0 +1,136 @@
+"""examples/clumps: its packings are equilibria, judged from the state files alone: gaps of the disks that are written, derivatives of
+them by differences in motions that keep every bar."""
+
+import collections
+import contextlib
+import io
+import itertools
+import json
+import math
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import numpy as np
+
+folder = pathlib.Path(__file__).parents[2] / "examples/clumps"
+sys.path.insert(0, str(folder))
+
+import prepare  # noqa: E402
+
+
+class Written:
+    """A state file: disks, the bodies that its bars make of them, contacts."""
+
+    def __init__(self, text):
+        state = json.loads(text)
+        self.disks, self.length, self.bars = np.array(state["disks"]), np.array(state["length"]), state["bars"]
+        self.contacts = [tuple(row) for row in state["contacts"]]
+        self.body = np.arange(len(self.disks))
+        for i, j, _ in self.bars:
+            self.body[self.body == self.body[j]] = self.body[i]
+        self.bodies = sorted(set(self.body))
+
+    def gap(self, disks, length, contact):
+        (x, y, r), other = disks[contact[0]], contact[1]
+        if isinstance(other, str):
+            return {"left": x, "bottom": y, "right": length[0] - x, "top": length[1] - y}[other] - r
+        return math.dist((x, y), disks[other, :2]) - r - disks[other, 2]
+
+    def gaps(self, motion):
+        """Of the contacts after a motion: two translations and an angle for each body, then L_x, L_y."""
+        disks = self.disks.copy()
+        for b, (x, y, turn) in zip(self.bodies, motion[:-2].reshape(-1, 3)):
+            centre = self.disks[self.body == b, :2].mean(axis=0)
+            by = np.array([[math.cos(turn), math.sin(turn)], [-math.sin(turn), math.cos(turn)]])
+            disks[self.body == b, :2] = (self.disks[self.body == b, :2] - centre) @ by + centre + (x, y)
+        return np.array([self.gap(disks, self.length + motion[-2:], contact) for contact in self.contacts])
+
+    def derivatives(self):
+        step = 1e-5
+        return np.array([(self.gaps(step * unit) - self.gaps(-step * unit)) / (2 * step) for unit in np.eye(3 * len(self.bodies) + 2)]).T
+
+    def others(self):
+        pairs = ((i, j) for i, j in itertools.combinations(range(len(self.disks)), 2) if self.body[i] != self.body[j])
+        walls = itertools.product(range(len(self.disks)), ("left", "bottom", "right", "top"))
+        return [self.gap(self.disks, self.length, c) for c in itertools.chain(pairs, walls) if c not in set(self.contacts)]
+
+
+def prepared(*arguments):
+    command = [sys.executable, "-B", str(folder / "prepare.py"), *arguments]
+    return subprocess.run(command, capture_output=True, text=True, check=False)
+
+
+class Clumps(unittest.TestCase):
+    def test_packings_are_isostatic_up_to_rotational_rattlers(self):
+        for kind, members in prepare.KINDS.items():
+            text = prepared(kind, "-n", "12", "--seed", "7").stdout
+            self.assertEqual(json.loads(text)["provenance"]["attempt"], 1)
+            state = Written(text)
+            self.assertEqual(len(state.disks), 12 * members)
+            self.assertEqual(len(state.bars), 12 * (2 * members - 3))
+            for i, j, distance in state.bars:
+                self.assertLess(abs(math.dist(state.disks[i, :2], state.disks[j, :2]) - distance), 2e-14)
+            self.assertLess(abs(state.gaps(np.zeros(38))).max(), 1e-14)
+            self.assertGreater(min(state.others()), 1e-4)
+            rows = state.derivatives()
+            force = np.linalg.lstsq(rows.T, np.eye(38)[36] + np.eye(38)[37], rcond=None)[0]
+            self.assertLess(abs(rows.T @ force - np.eye(38)[36] - np.eye(38)[37]).max(), 1e-8)
+            self.assertGreater(force.min(), 1e-6)
+            rank = int((np.linalg.svd(rows)[1] > 1e-7).sum())
+            bear = collections.defaultdict(set)
+            for disk in (i for contact in state.contacts for i in contact if not isinstance(i, str)):
+                bear[state.body[disk]].add(disk)
+            self.assertEqual(len(state.contacts), rank)
+            self.assertEqual(3 * len(bear) + 2 - rank, sum(len(disks) == 1 for disks in bear.values()))
+
+    def test_a_saddle_falls_along_its_mechanism(self):
+        with contextlib.redirect_stderr(io.StringIO()):
+            packing, counts, _ = prepare.prepared("trimer", 8, 2, True)
+        state = Written(prepare.state(packing, {}))
+        rows = state.derivatives()
+        values, right = np.linalg.svd(rows)[1:]
+        self.assertEqual((counts.hypostaticity, counts.rotational, counts.rattlers), (1, [], []))
+        self.assertEqual(sum(values > 1e-7), len(state.contacts))
+        mechanism, back = right[len(state.contacts)], np.linalg.pinv(rows)
+
+        def potential(way):
+            motion = way * mechanism
+            for _ in range(20):
+                motion = motion - back @ state.gaps(motion)
+            return motion[-2:].sum()
+
+        second = (potential(1e-3) - 2 * potential(0) + potential(-1e-3)) / 1e-6
+        self.assertLess(counts.variation[0], -1e-3)
+        self.assertLess(abs(second / counts.variation[0] - 1), 1e-3)
+
+    def test_files_are_converted_or_refused_in_words(self):
+        one = [["-1", "0", "1"], ["0.8", "0", "0.5"]]
+        walls = [["wall", 0, 0, 0, "lower"], ["wall", 0, 1, 0, "upper"], ["wall", 0, 0, 1, "lower"], ["wall", 0, 0, 1, "upper"]]
+        content = {"format": "bodies-1", "members": [one], "sectors": None, "bodies": [["2", "1", "0"]], "lengths": ["3.3", "2"],
+                   "loads": ["1", "1"], "contacts": walls, "forces": ["1"] * 4, "expected": {"N": 4, "h": 1}}
+        altered = {"arcs": {"sectors": [1]}, "finite": {"lengths": ["nan", "2"]}, "a contact is open": {"lengths": ["4.4", "2"]},
+                   "collinear": {"members": [[*one, ["3", "0", "1"]]]}, "KeyError": {"contacts": [["pair", 0, 0, 1, 0]]}}
+        with tempfile.TemporaryDirectory() as where:
+            path, out = pathlib.Path(where, "bodies.json"), pathlib.Path(where, "state.json")
+            path.write_text(json.dumps(content))
+            answer = prepared("--from", str(path), "-o", str(out))
+            self.assertEqual(answer.returncode, 0)
+            self.assertIn("N = 4, as the file says\n", answer.stderr)
+            self.assertIn("h = 0, but the file says 1\n", answer.stderr)
+            state = json.loads(out.read_text())
+            self.assertEqual(state["bars"], [[0, 1, 1.8]])
+            self.assertEqual(state["disks"], [[1, 1, 1], [2.8, 1, 0.5]])
+            self.assertEqual(state["contacts"], [[0, "left"], [1, "right"], [0, "bottom"], [0, "top"]])
+            self.assertIn("stays as it is", prepared("--from", str(path), "-o", str(out)).stderr)
+            for word, change in altered.items():
+                path.write_text(json.dumps({**content, **change}))
+                answer = prepared("--from", str(path))
+                self.assertEqual((answer.returncode, answer.stdout), (1, ""))
+                self.assertIn(word, answer.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,118 @@
+#pragma once
+/// \file
+/// Packings of clumps: closed forms, and those of an independent program (tests/data/clumps/README.md).
+
+#include <isostat/io/state_file.hpp>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <fstream>
+#include <string>
+
+namespace isostat::test {
+
+/// What the independent program counted stands in the provenance.
+inline State clumps(const std::string& name) {
+    return read_any_state(std::string(ISOSTAT_TEST_DATA) + "/clumps/" + name + ".json", Dimensions::any_clumps).state;
+}
+
+inline State clumps_of(const std::string& text) {
+    return parse_any_state(text, "clumps", Dimensions::any_clumps).state;
+}
+
+/// Several forces vanish together where a body rises: the infinitesimal loads say which contact opens.
+inline State with_infinitesimal(State state) {
+    state.load.infinitesimal = generic_infinitesimal(state.packing.radius, 1, state.packing.dimension);
+    return state;
+}
+
+/// Two unequal members lie on the bottom, the larger one at the left wall and under the lid: with sin phi = (R - r) / l
+/// the forces are F_1 at the sides, F_2 at the lid, F_1 tan phi below the small member, F_2 - F_1 tan phi below the
+/// large one, - F_1 / cos phi in the bar (a thrust). At l = 13/8, R - r = 5/8 the cosine is 12/13.
+inline State lying_dimer(double f1, double f2) {
+    return clumps_of(fmt::format(R"({{"format": "isostat-state", "version": 2,
+        "load": {{"stress": [{}, {}], "reference_length": [1, 1]}}, "disks": [[1, 1, 1], [2.5, 0.375, 0.375]],
+        "length": [2.875, 2], "bars": [[0, 1, 1.625]],
+        "contacts": [[0, "left"], [0, "bottom"], [1, "bottom"], [1, "right"], [0, "top"]]}})",
+                                 f1, f2));
+}
+
+/// A disk between four walls with a member inside that touches nothing: it turns about the centre of the disk.
+inline State disk_with_a_dangling_member() {
+    return clumps_of(R"({"format": "isostat-state", "version": 2, "length": [2, 2],
+        "disks": [[1, 1, 1], [1.25, 1.5, 0.25]], "bars": [[0, 1, "0x1.1e3779b97f4a8p-1"]],
+        "contacts": [[0, "left"], [0, "right"], [0, "bottom"], [0, "top"]]})");
+}
+
+/// A disk of radius 1 in the corner of two walls, under the force (-3, -4) on a small member at an arm of 5/8: turned
+/// by pi at `angle` 0, it hangs in the direction of the force. W'' = 25/8 per radian squared, 12.5 per x of the member.
+inline State disk_in_a_corner(double angle = 0) {
+    const double x = -0.375 * std::cos(angle) + 0.5 * std::sin(angle);
+    const double y = -0.375 * std::sin(angle) - 0.5 * std::cos(angle);
+    return clumps_of(fmt::format(R"({{"format": "isostat-state", "version": 2, "length": [10, 10],
+        "walls": {{"lower": ["fixed", "fixed"], "upper": ["absent", "absent"]}}, "disk_force": [[0, 0], [-3, -4]],
+        "load": {{"stress": [0, 0], "reference_length": [10, 10]}}, "bars": [[0, 1, 0.625]],
+        "disks": [[1, 1, 1], [{:.17g}, {:.17g}, 0.0625]], "contacts": [[0, "left"], [0, "bottom"]]}})",
+                                 1 + x, 1 + y));
+}
+
+/// A sphere in the corner of three walls, 2-3-6-7: it hangs in the direction of its load, about two axes.
+inline State sphere_in_a_corner() {
+    return clumps_of(R"({"format": "isostat-state", "version": 2, "dimension": 3, "length": [10, 10, 10],
+        "walls": {"lower": ["fixed", "fixed", "fixed"], "upper": ["absent", "absent", "absent"]},
+        "disk_force": [[0, 0, 0], [-2, -3, -6]], "bars": [[0, 1, 0.875]],
+        "load": {"stress": [0, 0, 0], "reference_length": [10, 10, 10]},
+        "disks": [[1, 1, 1, 1], [0.75, 0.625, 0.25, 0.0625]],
+        "contacts": [[0, "left"], [0, "bottom"], [0, "back"]]})");
+}
+
+/// Two bodies that turn about fixed members, below which or above which they stand, level with them: forces along y on
+/// the free members. A negative one hangs, a positive one stands on its head. W'' = |F| per x squared.
+inline State pendulums(double first, double second) {
+    return clumps_of(fmt::format(R"({{"format": "isostat-state", "version": 2, "length": [10, 10], "fixed": [0, 2],
+        "walls": {{"lower": ["absent", "absent"], "upper": ["absent", "absent"]}}, "bars": [[0, 1, 1], [2, 3, 1]],
+        "load": {{"stress": [0, 0], "reference_length": [10, 10]}},
+        "disk_force": [[0, 0], [0, {}], [0, 0], [0, {}]], "contacts": [],
+        "disks": [[2, 5, 0.25], [2, 4, 0.25], [7, 5, 0.25], [7, 4, 0.25]]}})",
+                                 first, second));
+}
+
+/// Beside it on the bottom the same disk once more, which leans against the first one: k = 2.
+inline State two_disks_in_a_corner() {
+    return clumps_of(R"({"format": "isostat-state", "version": 2, "length": [10, 10],
+        "walls": {"lower": ["fixed", "fixed"], "upper": ["absent", "absent"]},
+        "disk_force": [[0, 0], [-3, -4], [0, 0], [-3, -4]],
+        "load": {"stress": [0, 0], "reference_length": [10, 10]}, "bars": [[0, 1, 0.625], [2, 3, 0.625]],
+        "disks": [[1, 1, 1], [0.625, 0.5, 0.0625], [3, 1, 1], [2.625, 0.5, 0.0625]],
+        "contacts": [[0, "left"], [0, "bottom"], [0, 2], [2, "bottom"]]})");
+}
+
+/// Equal members in opposite corners of a box, 3-4-5: in balance where the load is along the bar, and W has a maximum
+/// as the dimer turns: W'' = - 25 F / 5 along the angle.
+inline State dimer_across(double f1, double f2) {
+    return clumps_of(fmt::format(R"({{"format": "isostat-state", "version": 2, "length": [5, 6],
+        "load": {{"stress": [{}, {}], "reference_length": [1, 1]}}, "disks": [[1, 1, 1], [4, 5, 1]],
+        "bars": [[0, 1, 5]], "contacts": [[0, "left"], [0, "bottom"], [1, "right"], [1, "top"]]}})",
+                                 f1, f2));
+}
+
+/// The lying dimer in space, R - r = 6, l = 11, 7 along x: tan = 6/7 towards the bottom and towards the back.
+inline State lying_dimer_in_space() {
+    return clumps_of(R"({"format": "isostat-state", "version": 2, "dimension": 3, "length": [15, 14, 14],
+        "load": {"stress": [7, 10, 10], "reference_length": [1, 1, 1]}, "disks": [[7, 7, 7, 7], [14, 1, 1, 1]],
+        "bars": [[0, 1, 11]], "contacts": [[0, "left"], [1, "right"], [0, "bottom"], [1, "bottom"], [0, "top"],
+        [0, "back"], [1, "back"], [0, "front"]]})");
+}
+
+/// Dimers in a row that lie on the bottom of a channel, one in each period: the small member touches the large one of
+/// the next dimer (tan 3/4; 5/12 along the bar).
+inline State row_of_dimers() {
+    return clumps_of(R"({"format": "isostat-state", "version": 2, "length": [2.8, 2],
+        "cell": {"axes": ["periodic", "walls"], "moves": ["x"], "tilt": [0], "pin": 0},
+        "load": {"stress": [12, 20], "reference_length": [1, 1]}, "disks": [[1, 1, 1], [2.8, 0.25, 0.25]],
+        "bars": [[0, 1, 1.95]], "contacts": [[0, 1, [-1, 0]], [0, "bottom"], [1, "bottom"], [0, "top"]]})");
+}
+
+} // namespace isostat::test

@@ -1,9 +1,9 @@
-"""Unions of disks in a box: gaps, their first and second derivatives, equilibria of rigid bodies, and what is counted of them.
+"""Unions of disks, and convex bodies bounded by arcs, in a box: gaps, their first and second derivatives, equilibria of rigid bodies, and what is counted of them.
 
 A body has the coordinates (X, Y, angle); the lengths L_x, L_y of the box are the last two. A contact is a pair (i, j) of members, i < j,
 or (i, -1 - w) with w the position in WALLS. Where G is the matrix of the gaps' derivatives, an equilibrium is a place where the gaps of
 its contacts are 0 and G^T f = dW/dq, W the potential of the load on L_x and L_y. Everything is in double precision."""
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,14 +30,23 @@ def turned(vectors: Matrix) -> Matrix:
 
 @dataclass
 class Clumps:
-    """Bodies: member k is a disk of radius[k] at place[k] in the frame of body[k]."""
+    """Bodies: member k is a disk of radius[k] at place[k] in the frame of body[k]. The members of a ring, counterclockwise, are the circles
+    of arcs that bound a body; two neighbours touch from within, where the arcs meet."""
 
     body: Indices
     place: Matrix
     radius: Vector
+    rings: list[list[int]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         self.count = int(self.body[-1]) + 1
+        self.middle, self.half = np.zeros(len(self.body)), np.full(len(self.body), np.inf)  # of the sectors of normals
+        for ring in self.rings:
+            ends = np.roll(ring, -1)
+            joint = (self.place[ring] - self.place[ends]) * np.sign(self.radius[ends] - self.radius[ring])[:, None]
+            end = np.unwrap(np.arctan2(joint[:, 1], joint[:, 0]))
+            self.half[ring] = (end - np.roll(end, 1)) % (2 * np.pi) / 2
+            self.middle[ring] = end - self.half[ring]
         first, second = np.triu_indices(len(self.body), 1)
         others = self.body[first] != self.body[second]
         walls = [(i, -1 - w) for i in range(len(self.body)) for w in range(4)]
@@ -67,6 +76,30 @@ class Clumps:
         reach = np.maximum(outward @ np.diag(q[-2:]), 0).sum(axis=1) - (outward * centre[i]).sum(axis=1)
         gap = np.where(wall, reach, distance - self.radius[other]) - self.radius[i]
         return gap, normal, np.where(wall, 0, 1 / distance)
+
+    def distances(self, q: Vector) -> Vector:
+        """Gaps of the candidates. Of two bodies bounded by arcs, or of one and a wall, that of the members whose normals are in their
+        sectors, the largest one if there are several; all others are infinite."""
+        gap, normal, _ = self.gaps(q, self.candidates)
+        if not self.rings:
+            return gap
+        angle = q[2 : 3 * self.count : 3][self.body]
+
+        def faces(member: Indices, n: Matrix) -> NDArray[np.bool_]:
+            off = np.arctan2(n[:, 1], n[:, 0]) - angle[member] - self.middle[member]
+            return abs((off + np.pi) % (2 * np.pi) - np.pi) <= self.half[member] + 1e-9
+
+        i, j = self.candidates.T
+        facing = faces(i, normal) & ((j < 0) | faces(np.maximum(j, 0), -normal))
+        key = np.where(j < 0, self.count + j + 4, self.body[np.maximum(j, 0)]) + (self.count + 4) * self.body[i]
+        union = ~np.isin(np.arange(len(self.body)), np.concatenate(self.rings).astype(int))
+        alone = union[i] & ((j < 0) | union[np.maximum(j, 0)])
+        key = np.where(alone, -1 - np.arange(len(key)), key)
+        order = np.lexsort((-gap, ~facing, key))
+        first = order[np.unique(key[order], return_index=True)[1]]
+        distance = np.full(len(gap), np.inf)
+        distance[first] = np.where(facing[first], gap[first], np.inf)
+        return distance
 
     def rows(self, q: Vector, contacts: Indices, direction: Matrix) -> Matrix:
         """The component of the relative velocity of each contact along its direction, as rows over the coordinates."""
@@ -130,20 +163,24 @@ class Packing:
             bear[self.clumps.body[member]].add(int(member))
         return bear
 
-    def others(self) -> Indices:
-        """The pairs that are no contacts."""
+    def others(self) -> NDArray[np.bool_]:
+        """Which candidates are no contacts."""
         known = set(map(tuple, self.contacts))
-        return np.array([pair for pair in self.clumps.candidates if tuple(pair) not in known])
+        return np.array([tuple(pair) not in known for pair in self.clumps.candidates])
 
     def least_other_gap(self) -> float:
-        return float(self.clumps.gaps(self.q, self.others())[0].min())
+        return float(self.clumps.distances(self.q)[self.others()].min())
+
+    def inside_sectors(self) -> bool:
+        """Every contact is of the members that are nearest."""
+        return int((abs(self.clumps.distances(self.q)[~self.others()]) < LEAST_GAP).sum()) == len(self.contacts)
 
     def settle(self) -> None:
         """Bodies that bear no force move, and bodies held through one member turn about it, until they keep clear of others."""
         loose = [(b, next(iter(bear), None)) for b, bear in enumerate(self.members_that_bear()) if len(bear) < 2]
-        others = self.others()
-        sides = np.where(others >= 0, self.clumps.body[np.maximum(others, 0)], -1)
-        near = others[(self.clumps.gaps(self.q, others)[0] < 1) & np.isin(sides, [b for b, _ in loose]).any(axis=1)]
+        pairs = self.clumps.candidates
+        sides = np.where(pairs >= 0, self.clumps.body[np.maximum(pairs, 0)], -1)
+        near = self.others() & (self.clumps.gaps(self.q, pairs)[0] < 1) & np.isin(sides, [b for b, _ in loose]).any(axis=1)
 
         def moved(motion: Vector) -> Vector:
             q = self.q.copy()
@@ -156,10 +193,10 @@ class Packing:
             return q
 
         for margin in (1e-2, 1e-3, 1e-4):
-            if self.clumps.gaps(self.q, near)[0].min(initial=1) > margin / 10:
+            if self.clumps.distances(self.q)[near].min(initial=1) > margin / 10:
                 return
             start = np.zeros(3 * len(loose))
-            found = minimize(lambda z: (np.minimum(self.clumps.gaps(moved(z), near)[0] / margin - 1, 0) ** 2).sum(), start)
+            found = minimize(lambda z: (np.minimum(self.clumps.distances(moved(z))[near] / margin - 1, 0) ** 2).sum(), start)
             self.q = moved(found.x)
 
 
@@ -221,6 +258,8 @@ def equilibrium(clumps: Clumps, q: Vector, contacts: Indices, force: Vector) -> 
     if packing.force.min() < LEAST_FORCE:
         raise Failed(f"a contact bears the force {packing.force.min():.1e}")
     packing.settle()
+    if not packing.inside_sectors():
+        raise Failed("a contact is not inside the arcs of its members")
     if packing.least_other_gap() < LEAST_GAP:
         raise Failed(f"a pair that bears no force has the gap {packing.least_other_gap():.1e}")
     return packing, counted(packing)

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Jammed packings of clumps (unions of disks) in a box under equal stresses, as state files of Isostat, in double precision.
+"""Jammed packings of clumps (unions of disks) and of ovals (four arcs) in a box under equal stresses, as state files of Isostat, in double precision.
 
     prepare.py trimer --seed 3 -o trimer.json           a packing of 20 trimers
+    prepare.py oval --aspect 1.4 -n 16 -o oval.json     a packing of 16 ovals
     prepare.py trimer --seed 3 --saddle -o saddle.json  an equilibrium of trimers that is a saddle of the potential
     prepare.py --from FILE -o state.json                a packing in a file of format "bodies-1"
     prepare.py --table 10                               what ten packings of each kind count; no files
@@ -21,16 +22,44 @@ from typing import Any, Iterator
 import numpy as np
 from scipy.linalg import LinAlgError, cho_factor, cho_solve
 
-from clumps import LEAST_FORCE, LEAST_GAP, WALLS, Clumps, Counts, Failed, Packing, Vector, counted, equilibrium
+from clumps import LEAST_FORCE, LEAST_GAP, WALLS, Clumps, Counts, Failed, Matrix, Packing, Vector, closed, counted, equilibrium
 
-KINDS = {"dimer": 2, "dimer2": 2, "trimer": 3}
+KINDS = {"dimer": 2, "dimer2": 2, "trimer": 3, "oval": 4}
+RING = [0, 1, 2, 3]  # right cap, upper flank, left cap, lower flank
+GRID = 2.0**-44  # radii are multiples of this: their differences are not rounded
 STIFFNESSES = [10.0**e for e in range(1, 6)]
 ATTEMPTS = 30  # packings tried for one seed
 SADDLE = -1e-6  # a second variation below this value is negative beyond doubt
 
 
-def bodies(kind: str, count: int, rng: np.random.Generator) -> Clumps:
+def rings(count: int) -> list[list[int]]:
+    return [[4 * b + k for k in RING] for b in range(count)]
+
+
+def oval(cap: float, flank: float, half: float) -> tuple[list[list[float]], list[float]]:
+    """Caps at (+-half, 0), and flanks whose circles they touch from within."""
+    cap, flank = round(cap / GRID) * GRID, round(flank / GRID) * GRID
+    off = math.sqrt((flank - cap) ** 2 - half**2)
+    return [[half, 0], [0, -off], [-half, 0], [0, off]], [cap, flank, cap, flank]
+
+
+def ovals(count: int, aspect: float, rng: np.random.Generator) -> Clumps:
+    """Half widths from 1 to 1.5; the caps are a tenth sharper than those of an ellipse."""
+    place, radius = [], []
+    for _ in range(count):
+        width = rng.uniform(1, 1.5)
+        cap = 0.9 * width / aspect
+        half = aspect * width - cap
+        four, radii = oval(cap, (half**2 + width**2 - cap**2) / (2 * (width - cap)), half)
+        place += four
+        radius += radii
+    return Clumps(np.repeat(np.arange(count), 4), np.array(place), np.array(radius), rings(count))
+
+
+def bodies(kind: str, count: int, aspect: float, rng: np.random.Generator) -> Clumps:
     """Members that overlap or just touch; sizes, distances and, for "dimer2", ratios of radii vary from body to body."""
+    if kind == "oval":
+        return ovals(count, aspect, rng)
     place: list[list[float]] = []
     radius: list[float] = []
     for _ in range(count):
@@ -64,7 +93,7 @@ def softly(clumps: Clumps, q: Vector, stiffness: float) -> Vector:
     everything, damping = clumps.candidates, 1.0
 
     def energy(at: Vector) -> tuple[float, Vector]:
-        gap = clumps.gaps(at, everything)[0]
+        gap = clumps.distances(at)
         return float(clumps.load @ at + stiffness / 2 * (np.minimum(gap, 0) ** 2).sum()), gap
 
     value, gap = energy(q)
@@ -92,13 +121,13 @@ def softly(clumps: Clumps, q: Vector, stiffness: float) -> Vector:
     raise Failed("the penalty energy has no minimum that was found")
 
 
-def jammed(kind: str, count: int, rng: np.random.Generator) -> tuple[Packing, Counts]:
+def jammed(kind: str, count: int, rng: np.random.Generator, aspect: float) -> tuple[Packing, Counts]:
     """The equilibrium next to a minimum of the penalty energy."""
-    clumps = bodies(kind, count, rng)
+    clumps = bodies(kind, count, aspect, rng)
     q = scattered(clumps, rng)
     for stiffness in STIFFNESSES:
         q = softly(clumps, q, stiffness)
-    force = -STIFFNESSES[-1] * clumps.gaps(q, clumps.candidates)[0]
+    force = -STIFFNESSES[-1] * clumps.distances(q)
     bears = force > LEAST_FORCE
     return equilibrium(clumps, q, clumps.candidates[bears], force[bears])
 
@@ -116,11 +145,11 @@ def saddles(packing: Packing) -> Iterator[tuple[Packing, Counts]]:
             yield found, counts
 
 
-def prepared(kind: str, count: int, seed: int, saddle: bool) -> tuple[Packing, Counts, int]:
+def prepared(kind: str, count: int, seed: int, saddle: bool, aspect: float = 1.4) -> tuple[Packing, Counts, int]:
     """The first attempt that succeeds, and its number; says why others did not."""
     for attempt in range(1, ATTEMPTS + 1):
         try:
-            packing, counts = jammed(kind, count, np.random.default_rng([seed, attempt]))
+            packing, counts = jammed(kind, count, np.random.default_rng([seed, attempt]), aspect)
             if saddle:
                 return *next(saddles(packing)), attempt
             if counts.variation.min(initial=0) > SADDLE:
@@ -146,15 +175,43 @@ def contact(number: dict[tuple[int, int], int], what: str, b: int, k: int, c: in
 def bodies_of(content: dict[str, Any]) -> Packing:
     """The packing of a file of format "bodies-1"."""
     members = [np.array(rows, dtype=float).reshape(-1, 3) for rows in content["members"]]
+    if content["sectors"] is not None:
+        return ovals_of(content, members)
     for b, rows in enumerate(members):
         if not (len(rows) == 2 or len(rows) == 3 and abs(np.linalg.det(np.column_stack([rows[:, :2], np.ones(3)]))) > 1e-9):
             raise ValueError(f"body {b}: expected two members, or three that are not collinear")
     every = np.concatenate(members)
-    clumps = Clumps(np.repeat(np.arange(len(members)), list(map(len, members))), every[:, :2], every[:, 2])
+    return placed(content, Clumps(np.repeat(np.arange(len(members)), list(map(len, members))), every[:, :2], every[:, 2]), members)
+
+
+def ovals_of(content: dict[str, Any], members: list[Matrix]) -> Packing:
+    """Of ovals: radii are rounded to the grid, and the contacts closed again."""
+    place, radius, sorted_members = [], [], []
+    for b, rows in enumerate(members):
+        if not len(rows) == len(content["sectors"][b]) == 4:
+            raise ValueError(f"body {b}: expected an oval of four arcs")
+        around = np.argsort([math.atan2(float(y), float(x)) % (2 * math.pi) for x, y, _ in content["sectors"][b]])
+        right, up, left, _ = (rows[k] for k in around)
+        four, radii = oval(right[2], up[2], right[0])
+        if abs(rows[around] - np.column_stack([four, radii])).max() > 1e-12 or abs(right[0] + left[0]) > 1e-12:
+            raise ValueError(f"body {b}: expected an oval of four arcs")
+        place += four
+        radius += radii
+        sorted_members.append(around)
+    clumps = Clumps(np.repeat(np.arange(len(members)), 4), np.array(place), np.array(radius), rings(len(members)))
+    packing = placed(content, clumps, members, sorted_members)
+    packing.q, packing.force = closed(clumps, packing.q, packing.contacts, packing.force)
+    return packing
+
+
+def placed(content: dict[str, Any], clumps: Clumps, members: list[Matrix], order: Any = None) -> Packing:
+    """`order`: which member of the file comes first, second ... in a body; nothing: as in the file."""
+    every = np.column_stack([clumps.place, clumps.radius])
     clumps.load[-2:] = np.array(content["loads"], dtype=float)
     places = np.array(content["bodies"], dtype=float).reshape(3 * clumps.count)
     q = np.concatenate([places, np.array(content["lengths"], dtype=float).reshape(2)])
-    number = {place: i for i, place in enumerate((b, k) for b, rows in enumerate(members) for k in range(len(rows)))}
+    places_of = (order[b] if order else range(len(rows)) for b, rows in enumerate(members))
+    number = {place: i for i, place in enumerate((b, int(k)) for b, of in enumerate(places_of) for k in of)}
     contacts = np.array([contact(number, *row) for row in content["contacts"]])
     force = np.array(content["forces"], dtype=float).reshape(len(contacts))
     if not (all(np.isfinite(numbers).all() for numbers in (q, every, force, clumps.load)) and (clumps.radius > 0).all()):
@@ -169,8 +226,6 @@ def converted(path: str) -> tuple[Packing, Counts]:
             content = json.load(file)
         if content["format"] != "bodies-1":
             raise ValueError(f"its format is {content['format']!r}")
-        if content["sectors"] is not None:
-            raise Failed(f"{path}: bodies bounded by arcs (ovals): a state of clumps holds unions of disks")
         packing, expected = bodies_of(content), dict(content["expected"])
     except (LookupError, TypeError, ValueError, RecursionError) as error:
         raise Failed(f'{path}: not a file of format "bodies-1": {error!r}') from None
@@ -184,13 +239,17 @@ def converted(path: str) -> tuple[Packing, Counts]:
 
 
 def bars(clumps: Clumps) -> list[list[Any]]:
-    """The pairs of members of one body, with their distance in its frame, rounded once: 2 K - 3 pairs for K = 2, 3 members."""
+    """The pairs of members of one body, with their distance in its frame, rounded once: 2 K - 3 pairs for K = 2, 3 members. Of an oval
+    its neighbours, with the difference of their radii, and the caps."""
     exact = Context(prec=60)
 
     def apart(i: int, j: int) -> float:
         x, y = (exact.subtract(Decimal(float(a)), Decimal(float(b))) for a, b in zip(clumps.place[i], clumps.place[j]))
         return float(exact.sqrt(exact.add(exact.multiply(x, x), exact.multiply(y, y))))
 
+    if clumps.rings:
+        sides = [[min(pair), max(pair), abs(clumps.radius[pair[0]] - clumps.radius[pair[1]])] for r in clumps.rings for pair in zip(r, r[1:] + r[:1])]
+        return sorted(sides + [[r[0], r[2], apart(r[0], r[2])] for r in clumps.rings])
     members = (np.flatnonzero(clumps.body == b).tolist() for b in range(clumps.count))
     return [[i, j, apart(i, j)] for body in members for i, j in itertools.combinations(body, 2)]
 
@@ -204,6 +263,8 @@ def state(packing: Packing, origin: dict[str, Any]) -> str:
     head["load"] = {"kind": "nominal", "stress": clumps.load[-2:].tolist(), "reference_length": [1, 1]}
     head["length"] = packing.q[-2:].tolist()
     rows: dict[str, list[Any]] = {"disks": np.column_stack([clumps.centres(packing.q), clumps.radius]).tolist(), "bars": bars(clumps)}
+    if clumps.rings:
+        rows["arcs"] = clumps.rings
     rows["contacts"] = [[int(i), int(j) if j >= 0 else WALLS[-1 - j]] for i, j in packing.contacts]
     parts = [f'  "{key}": {json.dumps(value, allow_nan=False)}' for key, value in head.items()]
     parts += [f'  "{key}": [\n    ' + ",\n    ".join(map(json.dumps, value)) + "\n  ]" for key, value in rows.items()]
@@ -220,14 +281,14 @@ def line(kind: str, seed: Any, packing: Packing, counts: Counts, seconds: float)
     return f"| {' | '.join(map(str, cells))} |"
 
 
-def table(kinds: list[str], count: int, seeds: int, saddle: bool) -> None:
+def table(kinds: list[str], count: int, aspect: float, seeds: int, saddle: bool) -> None:
     print(COLUMNS)
     print("|---" * COLUMNS.count(" | ") + "|---|")
     for kind in kinds:
         for seed in range(1, seeds + 1):
             start = time.process_time()
             try:
-                packing, counts, _ = prepared(kind, count, seed, saddle)
+                packing, counts, _ = prepared(kind, count, seed, saddle, aspect)
             except Failed as failed:
                 print(failed, file=sys.stderr)
                 continue
@@ -236,8 +297,9 @@ def table(kinds: list[str], count: int, seeds: int, saddle: bool) -> None:
 
 def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("kind", nargs="?", choices=list(KINDS), help="dimer: equal members; dimer2: unequal ones; trimer: an equilateral triangle")
+    parser.add_argument("kind", nargs="?", choices=list(KINDS), help="dimer: equal members; dimer2: unequal ones; trimer: an equilateral triangle; oval: four arcs")
     parser.add_argument("-n", type=int, default=20, help="bodies (20)")
+    parser.add_argument("--aspect", type=float, default=1.4, help="length over width of the ovals (1.4)")
     parser.add_argument("--seed", type=int, default=1, help="of the random numbers (1)")
     parser.add_argument("--saddle", action="store_true", help="an equilibrium with a contact less, where W has no minimum")
     parser.add_argument("--from", dest="source", metavar="FILE", help='a packing of format "bodies-1"')
@@ -246,21 +308,21 @@ def arguments() -> argparse.Namespace:
     given = parser.parse_args()
     if sum([given.table is not None, given.source is not None, given.kind is not None and given.table is None]) != 1:
         parser.error("expected a kind, --from FILE or --table N")
-    if given.n < 1 or given.seed < 0:
-        parser.error("expected at least one body, and a seed that is not negative")
+    if given.n < 1 or given.seed < 0 or not 1.01 <= given.aspect <= 5:
+        parser.error("expected at least one body, a seed that is not negative, and an aspect from 1.01 to 5")
     return given
 
 
 def main() -> None:
     given = arguments()
     if given.table is not None:
-        table([given.kind] if given.kind else list(KINDS), given.n, given.table, given.saddle)
+        table([given.kind] if given.kind else list(KINDS), given.n, given.aspect, given.table, given.saddle)
         return
     if given.source is not None:
         packing, counts = converted(given.source)
         origin = {"file": os.path.basename(given.source)}
     else:
-        packing, counts, attempt = prepared(given.kind, given.n, given.seed, given.saddle)
+        packing, counts, attempt = prepared(given.kind, given.n, given.seed, given.saddle, given.aspect)
         origin = {"kind": given.kind, "bodies": given.n, "seed": given.seed, "attempt": attempt, "saddle": given.saddle}
         print(COLUMNS, line(given.kind, given.seed, packing, counts, time.process_time()), sep="\n", file=sys.stderr)
     text = state(packing, origin)

@@ -129,6 +129,27 @@ int rattling_bodies(const Packing& packing, const std::vector<int>& rattlers) {
     return static_cast<int>(std::count_if(rattlers.begin(), rattlers.end(), [&](int i) { return bodies.of(i) == i; }));
 }
 
+void print_yielding(std::string& out, const Inspection& inspection, const Load& load) {
+    if (!inspection.yielding) {
+        return;
+    }
+    const Yielding& y = *inspection.yielding;
+    std::string rates;
+    for (std::size_t a = 0; a < static_cast<std::size_t>(inspection.truth.dimension); ++a) {
+        const Enclosure& rate = y.length_rate[a];
+        rates += fmt::format("{}L{} by {}", a == 0 ? "" : ", ", axis_names[a],
+                             with_bound(rate.value - rate.radius, rate.value + rate.radius));
+    }
+    say(out, "yields                   {} per unit of {}\n", rates, load.stress_name());
+    for (const auto& [where, event] : {std::pair{"rising", &y.up}, {"falling", &y.down}}) {
+        if (event->contact.i >= 0) {
+            say(out, "  under {:<7}          at these rates {} {} first, near {:.6g} (not proved)\n", where,
+                to_string(event->contact, inspection.truth.dimension), event->opens ? "opens" : "closes",
+                event->stress);
+        }
+    }
+}
+
 void print_inspection(std::string& out, const State& state, const Inspection& inspection) {
     const EquilibriumRecord& r = inspection.record;
     if (state.packing.bars.empty()) {
@@ -166,6 +187,7 @@ void print_inspection(std::string& out, const State& state, const Inspection& in
     say(out, "isostatic equilibrium    {}{}{}\n", to_string(r.verdict), inspection.remark.empty() ? "" : ": ",
         inspection.remark);
     say(out, "stable                   {}\n", to_string(inspection.stable));
+    print_yielding(out, inspection, state.load);
 }
 
 Json counting_json(const std::string& file, const State& state, const Counting& c) {
@@ -236,6 +258,20 @@ void add_inspection(Json& object, const State& state, const Inspection& inspecti
     object["verdict"] = to_string(r.verdict);
     object["stable"] = to_string(inspection.stable);
     object["remark"] = inspection.remark;
+    if (inspection.yielding) {
+        const Yielding& y = *inspection.yielding;
+        const auto event = [&](const Yielding::Event& e) {
+            return e.contact.i < 0 ? Json()
+                                   : Json{{"contact", to_string(e.contact, inspection.truth.dimension)},
+                                          {"what", e.opens ? "opens" : "closes"},
+                                          {"stress", or_null(e.stress)}};
+        };
+        Json rates = Json::array();
+        for (std::size_t a = 0; a < static_cast<std::size_t>(inspection.truth.dimension); ++a) {
+            rates.push_back({or_null(y.length_rate[a].value), or_null(y.length_rate[a].radius)});
+        }
+        object["yielding"] = {{"length_rates", rates}, {"up", event(y.up)}, {"down", event(y.down)}};
+    }
 }
 
 Json tensor_json(const ForceAverages::Tensor& tensor, std::size_t axes) {

@@ -1,6 +1,7 @@
 #include "certificate/exact_counting.hpp"
 #include "certificate/finite_forces.hpp"
 #include "certificate/reach.hpp"
+#include "certificate/sectors.hpp"
 #include "certificate/true_vertex.hpp"
 #include "contact/candidates.hpp"
 #include "contact/images.hpp"
@@ -450,16 +451,24 @@ bool Prover::prove_gaps() {
                            farthest_image));
         return false;
     }
+    const ArcBodies arcs(centre_->packing);
     std::string doubtful;
     do {
+        if (const auto joint = beyond_sectors(arcs, state_.contacts, vertex_->distance())) {
+            doubtful = *joint;
+            continue;
+        }
         // Pairs that are not listed: their gap changes by at most so much times the distance to the true vertex.
         const double weight = far_weight(centre_->packing, pairs.reach);
         GapsClaim claim{(pairs.reach - weight * vertex_->distance()) * (1 - 0x1p-50), Contact(), vertex_->rung()};
+        claim.smallest = arcs.below(claim.smallest);
         Interval nearest{infinity, infinity};
         std::vector<Interval> gaps;
         doubtful.clear();
         for (const Contact& pair : pairs.near) {
-            const Interval h = gaps.emplace_back(vertex_->gap(pair));
+            Interval h = vertex_->gap(pair);
+            h.lower = arcs.below(h.lower);
+            gaps.push_back(h);
             if (h.upper < 0) {
                 refute("gaps", fmt::format("{} overlap: the gap is in {}", named(pair), shown(h)));
                 return false;

@@ -179,6 +179,7 @@ Result<Inspection> inspect_vertex(const State& state) {
         inspection.rattlers = std::move(mechanism.rattlers);
         inspection.stable = mechanism.stable;
         inspection.second_order = mechanism.second_order;
+        inspection.yielding = mechanism.yielding;
         inspection.remark = std::move(mechanism.remark);
         if (clumps) {
             inspection.rattlers.clear();

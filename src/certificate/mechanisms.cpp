@@ -1,5 +1,8 @@
 #include "certificate/held_minimum.hpp"
+#include "certificate/sectors.hpp"
+#include "contact/other_pairs.hpp"
 #include "contact/separation.hpp"
+#include "core/decimal.hpp"
 #include "core/roundoff.hpp"
 #include "motion/arc.hpp"
 #include "trajectory/record.hpp"
@@ -20,12 +23,11 @@ namespace {
 
 using roundoff::u;
 
-/// d2W/ds2 = -sum f_l |u_t|^2 / d_l along the mechanism that moves the held coordinate in column `slot` at unit rate:
-/// with the kept gaps at rest, grad W = sum f_l grad h_l and grad h_l . q'' = -|u_t|^2 / d_l. At the true vertex.
-Enclosure curvature_of_potential(const Vertex& vertex, const std::vector<double>& forces, std::size_t slot,
+/// d2W/ds2 = -sum f_l |u_t|^2 / d_l along a mechanism, s its fastest coordinate: with the kept gaps at rest, grad W =
+/// sum f_l grad h_l and grad h_l . q'' = -|u_t|^2 / d_l. At the true vertex.
+Enclosure curvature_of_potential(const Vertex& vertex, const std::vector<double>& forces, const HeldMotion& motion,
                                  double sigma) {
     const auto& contacts = vertex.structure.contacts();
-    const HeldMotion motion = motion_of(vertex, slot);
     double largest = 0;
     for (const double x : motion.v) {
         largest = std::max(largest, std::abs(x));
@@ -132,10 +134,8 @@ std::vector<std::size_t> judge_forces(MechanismInspection& inspection, Vertex& v
     }
     const std::size_t most = state.packing.bars.empty() ? 1 : acting.size(); // of clumps any one of several
     if (positive && at_rest && !acting.empty() && acting.size() <= most && inspection.remark.empty()) {
-        Enclosure second = curvature_of_potential(vertex, inspection.forces, acting[0], sigma);
-        for (std::size_t a = 1; a < acting.size() && !second.negative(); ++a) {
-            second = curvature_of_potential(vertex, inspection.forces, acting[a], sigma);
-        }
+        const HeldMotion least = least_curved(vertex, inspection.forces, acting);
+        const Enclosure second = curvature_of_potential(vertex, inspection.forces, least, sigma);
         if (state.load.kind == LoadKind::nominal) {
             inspection.second_order = second;
         }
@@ -152,7 +152,7 @@ std::vector<std::size_t> judge_forces(MechanismInspection& inspection, Vertex& v
 
 /// The potential has a minimum along what is held (U8). \pre the nearest gap is recorded
 void judge_minimum(MechanismInspection& inspection, const Vertex& vertex, const Load& load,
-                   const std::vector<std::size_t>& acting) {
+                   const std::vector<std::size_t>& acting, const std::vector<Contact>& candidates) {
     const EquilibriumRecord& record = inspection.record;
     const bool dead = load.kind == LoadKind::nominal && load.infinitesimal.empty();
     const auto minimum = acting.empty() || !dead ? std::nullopt
@@ -162,9 +162,13 @@ void judge_minimum(MechanismInspection& inspection, const Vertex& vertex, const 
         inspection.stable = Verdict::proved;
         inspection.away = minimum->away;
         inspection.curvature = minimum->curvature;
-        inspection.remark = fmt::format("equilibrium with {} mechanism(s), a strict local minimum within {:.1e} of the "
-                                        "stored place: W'' >= {:.6g} along every one",
-                                        acting.size(), minimum->away, minimum->curvature);
+        inspection.yielding =
+            yielding_at(vertex, load.loaded_stress(), acting, *minimum,
+                        without(candidates, vertex.structure.contacts(), vertex.packing.disk_count()));
+        inspection.remark =
+            fmt::format("equilibrium with {} mechanism(s), a strict local minimum within {} of the "
+                        "stored place: W'' >= {} along every one",
+                        acting.size(), rounded_up(minimum->away, 2), rounded_down(minimum->curvature, 6));
     }
 }
 
@@ -190,7 +194,10 @@ Result<MechanismInspection> inspect_mechanism(const State& state, const Counting
     CandidateList candidates = find_candidates(state.packing, candidate_fraction);
     KeptCandidates kept;
     auto gaps = vertex.check_gaps(candidates, kept);
-    if (!gaps.ok()) {
+    const auto joint = beyond_sectors(ArcBodies(state.packing), state.contacts, vertex.enclosure.distance());
+    if (joint) {
+        inspection.remark = *joint;
+    } else if (!gaps.ok()) {
         inspection.remark = gaps.failure().message(state.packing.dimension);
     } else if (gaps.value().negative) {
         inspection.remark = fmt::format("{} overlap", to_string(*gaps.value().negative, state.packing.dimension));
@@ -214,11 +221,11 @@ Result<MechanismInspection> inspect_mechanism(const State& state, const Counting
     record.backbone = carrying_contacts(vertex);
     record.gap_residual = vertex.enclosure.max_gap;
     record.sigma_min_bound = vertex.inverse.sigma_min;
-    if (gaps.ok() && !gaps.value().negative) {
+    if (gaps.ok() && !gaps.value().negative && !joint) {
         if (auto failure = record_smallest_gap(record, vertex, vertex.enclosure, candidates)) {
             return *failure;
         }
-        judge_minimum(inspection, vertex, state.load, acting);
+        judge_minimum(inspection, vertex, state.load, acting, candidates.contacts);
     }
     return inspection;
 }

@@ -94,7 +94,7 @@ std::optional<Packing> on_grid(Packing packing, const std::vector<Contact>& cont
 double far_weight(const Packing& packing, double reach) {
     constexpr double root2 = 1.4143;
     if (!packing.cell.any()) {
-        return root2;
+        return packing.arcs.empty() ? root2 : 2; // U9
     }
     double extent = 0; // of the centres
     for (std::size_t a = 0; a < packing.axes(); ++a) {

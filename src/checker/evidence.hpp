@@ -15,8 +15,8 @@ namespace isostat::checker {
 
 struct Evidence {
     /// `near`: factors of the matrix at a configuration close by, or nothing; with `automatic` only. `digits`: those
-    /// of the problem; forces get as many more. `around`: everything holds at every vertex of the list whose held
-    /// coordinates are no farther than that from their stored values (K27).
+    /// of the problem; forces get as many more. `around`: everything holds at every vertex of the list with other
+    /// values of the held coordinates which, to first order, move no coordinate farther than that (K28).
     Evidence(const State& checked, CheckerArithmetic arithmetic, bool held_allowed = false,
              std::shared_ptr<const Solver> near = {}, int digits = usual_digits, const Rational& around = 0);
 

@@ -1,5 +1,6 @@
 #include "checker/gaps.hpp"
 
+#include "checker/arcs.hpp"
 #include "checker/images.hpp"
 
 #include <algorithm>
@@ -89,13 +90,14 @@ struct Approximation {
     }
 };
 
-/// The gap at the true vertex, exact up to the radius of its enclosure: the root is taken of an integer.
-Range exact_gap(const Problem& problem, const TrueVertex& vertex, const Contact& pair) {
+/// The gap at the true vertex, exact up to the radius of its enclosure and what is `open` of arcs: the root is taken of
+/// an integer.
+Range exact_gap(const Problem& problem, const TrueVertex& vertex, const Contact& pair, const Rational& open) {
     const auto i = static_cast<std::size_t>(pair.i);
     const auto j = static_cast<std::size_t>(pair.j);
     const std::vector<Integer>& q = vertex.middle;
     const Row row(pair, problem.layout);
-    const Range blur = Range::around(0, 2 * std::max(2, row.spread()) * vertex.radius);
+    const Range blur = Range::around(0, 2 * std::max(2, row.spread()) * vertex.radius + open);
     if (pair.of_disks()) {
         const Integer root = sqrt(row.square(q, problem.layout.axes()));
         const Integer distance = problem.radius[i] + problem.radius[j];
@@ -111,7 +113,8 @@ Range exact_gap(const Problem& problem, const TrueVertex& vertex, const Contact&
 class Collector {
   public:
     Collector(const State& state, const Approximation& at)
-        : state_(state), layout_(state.packing.layout()), at_(at), body_(bodies_of(state.packing)) {
+        : state_(state), layout_(state.packing.layout()), at_(at), body_(bodies_of(state.packing)),
+          arcs_(state.packing, at.q, at.radius) {
         contacts_.insert(state.contacts.begin(), state.contacts.end());
     }
     /// Pairs with an approximate gap above this are certainly not the nearest.
@@ -119,7 +122,7 @@ class Collector {
     void offer(const Contact& pair) {
         const double gap = at_.gap(pair, layout_);
         if (gap > limit() || !exists_and_moves(state_.packing, pair) || contacts_.contains(pair) ||
-            are_members(body_, pair)) {
+            are_members(body_, pair) || !arcs_.contains(pair)) {
             return;
         }
         best_ = std::min(best_, gap);
@@ -141,6 +144,7 @@ class Collector {
     Layout layout_;
     const Approximation& at_;
     std::vector<int> body_;
+    NearestArcs arcs_;
     std::set<Contact> contacts_;
     std::vector<std::pair<double, Contact>> near_;
     double best_ = std::numeric_limits<double>::infinity();
@@ -306,9 +310,10 @@ std::vector<Gap> smallest_gaps(const Problem& problem, const State& state, const
     if (!nearest) {
         return {{Contact{ContactKind::disk_disk, -1, -1}, Range::around(0, power_of_two(2000))}};
     }
+    const Rational open = arc_blur(state.packing);
     std::vector<Gap> gaps;
     for (const Contact& pair : *nearest) {
-        gaps.push_back({pair, exact_gap(problem, vertex, pair)});
+        gaps.push_back({pair, exact_gap(problem, vertex, pair, open)});
     }
     return gaps;
 }

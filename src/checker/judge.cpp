@@ -1,5 +1,6 @@
 // One function per claim: its proof again, by other means; and the order in which they are asked. Those about forces
 // and about the load have their own files.
+#include "checker/arcs.hpp"
 #include "checker/evidence.hpp"
 #include "checker/gaps.hpp"
 
@@ -113,6 +114,9 @@ ClaimCheck judge_gaps(const Evidence& evidence, const GapsClaim& claim) {
         return pair->i < 0
                    ? answer(check, Verdict::undecided, too_far)
                    : answer(check, Verdict::refuted, fmt::format("{} overlap, and cannot move", evidence.named(*pair)));
+    }
+    if (const std::string unfit = unfit_arcs(evidence.problem, evidence.state, evidence.vertex); !unfit.empty()) {
+        return answer(check, Verdict::undecided, unfit);
     }
     const std::vector<Gap> near = smallest_gaps(evidence.problem, evidence.state, evidence.vertex);
     if (near.empty()) {

@@ -1,4 +1,5 @@
-// The claim of a minimum along mechanisms whose coordinates are held (K27).
+// The claim of a minimum along mechanisms whose coordinates are held (K28).
+#include "checker/arcs.hpp"
 #include "checker/bounds.hpp"
 #include "checker/first_order.hpp"
 #include "checker/gaps.hpp"
@@ -44,6 +45,9 @@ std::string not_positive(const Evidence& e) {
         if (e.state.contacts[l].is_unilateral() && !e.forces[l].positive()) {
             return fmt::format("the force of {} is in {}", e.name(l), shown(e.forces[l]));
         }
+    }
+    if (const std::string unfit = unfit_arcs(e.problem, e.state, e.vertex); !unfit.empty()) {
+        return unfit;
     }
     for (const Gap& gap : smallest_gaps(e.problem, e.state, e.vertex)) {
         if (gap.pair.i < 0 || !gap.value.positive()) {
@@ -134,11 +138,22 @@ double least_eigenvalue(const Form& form) {
     return next_below(least / stretch);
 }
 
-/// How far the vertices whose held coordinates are within `around` are from the stored configuration; infinity: they
-/// are not proved.
-double away_above(const Evidence& e, double around) {
-    const Evidence wide(e.state, CheckerArithmetic::automatic, true, e.solver, usual_digits, Rational(around));
-    return wide.vertex.found ? rounded_up(wide.vertex.moved_most) : std::numeric_limits<double>::infinity();
+/// The most that a coordinate moves to first order where the held ones do by 1 in the 2-norm.
+double swing_above(const Evidence& e, const std::vector<std::size_t>& acting) {
+    const Velocities velocities(e);
+    std::vector<double> square(e.problem.dof_of.size(), 0.0);
+    for (const std::size_t l : acting) {
+        const Velocities::Solution motion = velocities.opening(l, 1);
+        for (std::size_t k = 0; k < square.size(); ++k) {
+            const double most = e.problem.dof_of[k] < 0 ? 0 : rounded_up(abs(motion.middle[k]) + motion.radius);
+            square[k] = sum_above(square[k], product_above(most, most));
+        }
+    }
+    return root_above(*std::max_element(square.begin(), square.end()));
+}
+
+Evidence evidence_around(const Evidence& e, double swing, double reach) {
+    return Evidence(e.state, CheckerArithmetic::rows, true, {}, usual_digits, Rational(product_above(swing, reach)));
 }
 
 } // namespace
@@ -157,30 +172,36 @@ ClaimCheck judge_minimum(const Evidence& e, const MinimumClaim& claim) {
     }
     const std::vector<std::size_t> acting = acting_rows(e);
     const double multiplier = multiplier_above(e, acting);
-    std::string why = "no coordinate is held that the load reaches";
-    for (double share = 0x1p-3; share > 0x1p-40 && !acting.empty(); share *= 0x1p-3) {
-        const double reach = share * e.state.packing.min_radius();
-        const Evidence wide(e.state, CheckerArithmetic::automatic, true, e.solver, usual_digits, Rational(reach));
-        if (!wide.vertex.found) {
-            why = "no vertices around the stored place are proved";
-            continue;
-        }
-        if (why = not_positive(wide); !why.empty()) {
-            continue;
-        }
-        const double curvature = least_eigenvalue(second_variation(wide, acting));
-        why = fmt::format("d2W is at least {:.6g} times |dc|^2, claimed {:.6g}; multipliers up to {:.3g}", curvature,
-                          claim.curvature, multiplier);
-        if (!(curvature >= claim.curvature) || !(product_above(4, multiplier) < next_below(curvature * reach))) {
-            continue;
-        }
-        const double away = away_above(e, next_above(multiplier / curvature));
-        check.numbers = {{"away", away}, {"curvature", curvature}};
-        return answer(check, away <= claim.away ? Verdict::proved : Verdict::undecided,
-                      fmt::format("a strict local minimum within {:.3g} per coordinate (claimed {:.3g}): {}", away,
-                                  claim.away, why));
+    // The narrower, the sharper all enclosures; below this the multipliers might move the minimum out.
+    const double reach = std::max(0x1p-40 * e.state.packing.min_radius(), 4.01 * multiplier / claim.curvature);
+    if (acting.empty() || !(claim.curvature > 0) || !(reach < 0.125 * e.state.packing.min_radius())) {
+        return answer(check, Verdict::undecided,
+                      acting.empty() ? "no coordinate is held that the load reaches"
+                                     : fmt::format("multipliers up to {:.3g} are too large for a curvature of {:.6g}",
+                                                   multiplier, claim.curvature));
     }
-    return answer(check, Verdict::undecided, why);
+    const double swing = swing_above(e, acting);
+    const Evidence wide = evidence_around(e, swing, reach);
+    if (!wide.vertex.found) {
+        return answer(check, Verdict::undecided, "no vertices around the stored place are proved");
+    }
+    if (const std::string why = not_positive(wide); !why.empty()) {
+        return answer(check, Verdict::undecided, why);
+    }
+    const double curvature = least_eigenvalue(second_variation(wide, acting));
+    const std::string found =
+        fmt::format("d2W is at least {:.6g} times |dc|^2, claimed {:.6g}; multipliers up to {:.3g}", curvature,
+                    claim.curvature, multiplier);
+    if (!(curvature >= claim.curvature) || !(product_above(4, multiplier) < next_below(curvature * reach))) {
+        return answer(check, Verdict::undecided, found);
+    }
+    const Evidence nearer = evidence_around(e, swing, next_above(multiplier / curvature));
+    const double away =
+        nearer.vertex.found ? rounded_up(nearer.vertex.moved_most) : std::numeric_limits<double>::infinity();
+    check.numbers = {{"away", away}, {"curvature", curvature}};
+    return answer(check, away <= claim.away ? Verdict::proved : Verdict::undecided,
+                  fmt::format("a strict local minimum within {:.3g} per coordinate (claimed {:.3g}): {}", away,
+                              claim.away, found));
 }
 
 } // namespace isostat::checker

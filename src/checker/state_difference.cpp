@@ -23,6 +23,7 @@ std::string state_difference(const State& a, const State& b) {
         {"the cell", a.packing.cell == b.packing.cell},
         {"the list of fixed disks", a.packing.fixed == b.packing.fixed},
         {"a bar", a.packing.bars == b.packing.bars},
+        {"a body bounded by arcs", a.packing.arcs == b.packing.arcs},
         {"the list of contacts", a.contacts == b.contacts},
         {"the kind of the load", a.load.kind == b.load.kind},
         {"a stress", a.load.stress == b.load.stress},

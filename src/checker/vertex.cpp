@@ -43,6 +43,12 @@ Integer largest_move(const Problem& problem, const std::vector<Integer>& q) {
 
 } // namespace
 
+namespace {
+
+const Rational around_error(1, 16); // |R A v| <= (1 + |I - R A|) |v|
+
+} // namespace
+
 TrueVertex find_vertex(const Problem& problem, const Solver& solver, const InverseBound& inverse,
                        const Rational& around) {
     TrueVertex vertex;
@@ -52,11 +58,11 @@ TrueVertex find_vertex(const Problem& problem, const Solver& solver, const Inver
         starts.insert(starts.begin(), improved(problem, solver));
     }
     for (const std::vector<Integer>& start : starts) {
-        Rational largest = Rational(largest_of(problem.twice_residuals(start)));
-        largest += 2 * Rational(problem.weight()) * around * power_of_two(-problem.fine);
+        const Rational largest = Rational(largest_of(problem.twice_residuals(start)));
         const Rational moved = problem.length(largest_move(problem, start));
         const Rational error = inverse.residual_row + slope * moved;
-        const Rational step = inverse.row_sum * largest * power_of_two(2 * problem.fine - 1);
+        const Rational step =
+            inverse.row_sum * largest * power_of_two(2 * problem.fine - 1) + (1 + around_error) * around;
         const Rational room = 1 - error;
         if (room <= 0) {
             continue;
@@ -69,7 +75,8 @@ TrueVertex find_vertex(const Problem& problem, const Solver& solver, const Inver
         vertex.column_residual =
             inverse.residual_column + inverse.column_sum_max * Rational(problem.column_curvature()) * vertex.moved_most;
         // K4 with radius 2 step / room: a row residual below 1 on all of the cube is 2 slope step < room^2.
-        vertex.found = vertex.row_residual < 1 && vertex.column_residual < 1;
+        vertex.found = vertex.row_residual < 1 && vertex.column_residual < 1 &&
+                       (around == 0 || vertex.row_residual < around_error);
         if (vertex.found) {
             return vertex;
         }

@@ -20,7 +20,7 @@ int certify(const CertifyArguments& arguments) {
     certificate.input = input.filename().string();
     certificate.input_hash = sha256(read_text(input));
     certificate.program = program_name();
-    StateFile file = read_any_state(input, Dimensions::any_clumps);
+    StateFile file = read_any_state(input, Dimensions::any_bodies);
     file.state = with_free_motions_held(std::move(file.state));
     certificate.state = file.state;
     Certification result = isostat::certify(certificate.state);

@@ -21,7 +21,7 @@ int inspect(const InspectArguments& arguments) {
     if (!arguments.contacts.empty()) {
         check_output(arguments.contacts, contact_table_mark, {arguments.file});
     }
-    StateFile file = read_any_state(arguments.file, Dimensions::any_clumps);
+    StateFile file = read_any_state(arguments.file, Dimensions::any_bodies);
     file.state = with_free_motions_held(std::move(file.state));
     if (arguments.at) {
         file.state.load.set_loaded_stress(*arguments.at);

@@ -30,7 +30,7 @@ ClaimCheck check_input(const Certificate& certificate, const std::string& input)
     check.claimed = true;
     const std::string hash = sha256(read_text(input));
     const std::string difference = state_difference(
-        with_free_motions_held(read_any_state(input, Dimensions::any_clumps).state), certificate.state);
+        with_free_motions_held(read_any_state(input, Dimensions::any_bodies).state), certificate.state);
     const bool same = hash == certificate.input_hash;
     check.verdict = same && difference.empty() ? Verdict::proved : Verdict::refuted;
     check.detail = !difference.empty()

@@ -5,6 +5,7 @@
 #include "contact/near_pairs.hpp"
 #include "contact/separation.hpp"
 #include "core/work.hpp"
+#include "packing/arc_bodies.hpp"
 
 #include <isostat/core/machine.hpp>
 
@@ -18,8 +19,14 @@ namespace isostat {
 
 namespace {
 
-/// Calls visit(contact) for every disk and every wall that is there.
-template <class Visit> void for_each_wall_contact(const Packing& packing, Visit visit) {
+/// Calls visit(contact) for every disk and every wall that is there; of arcs for those nearest to it.
+template <class Visit> void for_each_wall_contact(const Packing& packing, Visit visit_any) {
+    const ArcBodies arcs(packing);
+    const auto visit = [&](const Contact& contact) {
+        if (arcs.is_nearest(contact)) {
+            visit_any(contact);
+        }
+    };
     for (int i = 0; i < packing.disk_count(); ++i) {
         for (int a = 0; a < packing.dimension; ++a) {
             if (packing.walls.lower[static_cast<std::size_t>(a)] != WallKind::absent) {

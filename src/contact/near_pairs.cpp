@@ -5,6 +5,7 @@
 #include "contact/pair_list.hpp"
 #include "contact/regular_edges_in_space.hpp"
 #include "contact/separation.hpp"
+#include "packing/arc_bodies.hpp"
 #include "packing/bodies.hpp"
 
 #include <algorithm>
@@ -135,7 +136,7 @@ std::vector<Contact> pairs_within(const Packing& packing, double reach, int most
         std::sort(pairs.begin(), pairs.end());
         pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
     }
-    without_own_members(pairs, packing);
+    without_hidden_pairs(pairs, packing);
     return pairs;
 }
 
@@ -166,19 +167,21 @@ NearPairs near_disks(const Packing& packing, double reach, const std::shared_ptr
 
 } // namespace
 
-void without_own_members(std::vector<Contact>& pairs, const Packing& packing) {
+void without_hidden_pairs(std::vector<Contact>& pairs, const Packing& packing) {
     if (packing.bars.empty()) {
         return;
     }
     const Bodies bodies(packing);
+    const ArcBodies arcs(packing);
     std::erase_if(pairs, [&](const Contact& pair) {
-        return pair.of_disks() && pair.image.is_here() && bodies.of(pair.i) == bodies.of(pair.j);
+        const bool own = pair.of_disks() && pair.image.is_here() && bodies.of(pair.i) == bodies.of(pair.j);
+        return own || !arcs.is_nearest(pair);
     });
 }
 
 NearPairs near_pairs(const Packing& packing, double reach, const std::shared_ptr<const RegularTriangulation>& from) {
     NearPairs near = near_disks(packing, reach, from);
-    without_own_members(near.pairs, packing);
+    without_hidden_pairs(near.pairs, packing);
     return near;
 }
 

@@ -41,7 +41,8 @@ std::optional<std::vector<Contact>> near_edges_in_space(const Packing& packing, 
 std::vector<Contact> pairs_within(const Packing& packing, double reach,
                                   int most_per_disk = std::numeric_limits<int>::max());
 
-/// Leaves out pairs of members of one body; a member and an image of another one are a pair.
-void without_own_members(std::vector<Contact>& pairs, const Packing& packing);
+/// Leaves out pairs of members of one body (a member and an image of another one are a pair), and of bodies bounded by
+/// arcs all members but the nearest two (`ArcBodies::is_nearest`).
+void without_hidden_pairs(std::vector<Contact>& pairs, const Packing& packing);
 
 } // namespace isostat

@@ -31,7 +31,7 @@ std::vector<Contact> all_pairs(const Packing& packing) {
         }
     }
     std::erase_if(pairs, [&packing](const Contact& pair) { return !can_move(packing, pair); });
-    without_own_members(pairs, packing);
+    without_hidden_pairs(pairs, packing);
     return pairs;
 }
 

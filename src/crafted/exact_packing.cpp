@@ -123,7 +123,7 @@ std::vector<Contact> nearest_pairs(const Packing& rounded) {
             all.push_back(pair_of(i, j));
         }
     }
-    without_own_members(all, rounded);
+    without_hidden_pairs(all, rounded);
     return all;
 }
 

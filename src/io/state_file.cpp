@@ -3,6 +3,7 @@
 #include "io/state_json.hpp"
 #include "io/text.hpp"
 #include "io/vertex_text.hpp"
+#include "packing/arc_bodies.hpp"
 #include "packing/pressed_sides.hpp"
 #include "packing/unbalanced.hpp"
 #include "packing/words.hpp"
@@ -180,6 +181,15 @@ Packing packing_of(const Field& document) {
         }
         std::sort(packing.bars.begin(), packing.bars.end());
     }
+    if (document.has("arcs")) {
+        const Field arcs = document.at("arcs");
+        for (std::size_t b = 0; b < arcs.size(); ++b) {
+            std::vector<int>& ring = packing.arcs.emplace_back();
+            for (std::size_t k = 0; k < arcs.at(b).size(); ++k) {
+                ring.push_back(arcs.at(b).at(k).integer(0, packing.disk_count() - 1));
+            }
+        }
+    }
     return packing;
 }
 
@@ -342,7 +352,8 @@ StateFile json::state_from_json(const Field& document, const std::string& source
         document.at("version").fail("1 or 2, the versions that this program reads");
     }
     document.only({"format", "version", "dimension", "equilibrium", "provenance", "load", "walls", "length", "cell",
-                   "disks", "fixed", "bars", "disk_force", "infinitesimal", "perturbation", "contacts", "forces"});
+                   "disks", "fixed", "bars", "arcs", "disk_force", "infinitesimal", "perturbation", "contacts",
+                   "forces"});
     StateFile file;
     State& state = file.state;
     state.packing = packing_of(document);
@@ -391,7 +402,10 @@ StateFile of_box(StateFile file, const std::string& source) {
 StateFile parse_any_state(const std::string& text, const std::string& source, Dimensions dimensions) {
     const json::Json parsed = Field::parse(text, source);
     StateFile file = json::state_from_json(Field(parsed, source), source);
-    if (dimensions != Dimensions::any_clumps) {
+    if (dimensions != Dimensions::any_bodies) {
+        require_no_arcs(file.state.packing, source, "this command");
+    }
+    if (dimensions < Dimensions::any_clumps) {
         require_single_grains(file.state.packing, source, "this command");
     }
     if (dimensions == Dimensions::two) {

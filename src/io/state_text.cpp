@@ -151,6 +151,7 @@ std::string state_text(const State& state, std::span<const double> forces) {
         rows.push_back(Json::array({bar.i, bar.j, finite(bar.length, "bars (length)")}));
     }
     append_member(text, "bars", rows);
+    append_member(text, "arcs", {packing.arcs.begin(), packing.arcs.end()});
     append_member(text, "disk_force", vectors(state.load.disk_force, packing.axes(), "disk_force"));
     append_member(text, "infinitesimal", vectors(state.load.infinitesimal, packing.axes(), "infinitesimal"));
     if (state.perturbation) {

@@ -1,5 +1,6 @@
 #include "packing/bodies.hpp"
 
+#include "packing/arc_bodies.hpp"
 #include "packing/words.hpp"
 
 #include <isostat/core/error.hpp>
@@ -175,14 +176,16 @@ std::vector<Arc> outer_arcs(const Packing& packing, const std::vector<int>& body
     return outer;
 }
 
-/// Half of the integral of x dy - y dx along the boundary of the union.
+/// Half of the integral of x dy - y dx along the boundary: of the union, or the arcs of the body.
 double area_of_union(const Packing& packing, const std::vector<int>& body) {
+    const ArcBodies arcs(packing);
     double area = 0;
     for (const int i : body) {
         const double r = packing.radius[static_cast<std::size_t>(i)];
         const double x = packing.coordinate(DiskId(i), 0);
         const double y = packing.coordinate(DiskId(i), 1);
-        for (const auto& [from, to] : outer_arcs(packing, body, i)) {
+        const auto sector = arcs.angles(i);
+        for (const auto& [from, to] : sector ? std::vector<Arc>{*sector} : outer_arcs(packing, body, i)) {
             area +=
                 0.5 * r * (r * (to - from) + x * (std::sin(to) - std::sin(from)) - y * (std::cos(to) - std::cos(from)));
         }

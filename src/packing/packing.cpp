@@ -1,3 +1,4 @@
+#include "packing/arc_bodies.hpp"
 #include "packing/bodies.hpp"
 #include "packing/words.hpp"
 
@@ -246,10 +247,12 @@ void validate(const Packing& packing, const std::string& source) {
         }
     }
     validate_bars(packing, source);
+    validate_arcs(packing, source);
     if (packing.cell.any()) {
         validate_cell(packing, source);
         validate_own_images(packing, source);
     }
+    const ArcBodies arcs(packing);
     for (std::size_t a = 0; a < packing.axes(); ++a) {
         if (packing.walls.upper[a] == WallKind::absent) {
             continue;
@@ -263,8 +266,8 @@ void validate(const Packing& packing, const std::string& source) {
             continue;
         }
         for (std::size_t i = 0; i < packing.radius.size(); ++i) {
-            // 2R > L beyond one rounding of L: the disk cannot fit, whatever the configuration.
-            if (2 * packing.radius[i] > length * (1 + 1e-9)) {
+            // 2R > L beyond one rounding of L: the disk cannot fit, whatever the configuration; an arc of it may.
+            if (!arcs.angles(static_cast<int>(i)) && 2 * packing.radius[i] > length * (1 + 1e-9)) {
                 bad(fmt::format("{} {} of diameter {} is larger than the box: its length along {} is {}", grain, i,
                                 2 * packing.radius[i], axis_names[a], length));
             }

@@ -32,7 +32,7 @@ Certified certify_file(const std::filesystem::path& path) {
     Certificate certificate;
     certificate.input = path.filename().string();
     certificate.input_hash = sha256(read_text(path));
-    certificate.state = with_free_motions_held(read_any_state(path, Dimensions::any_clumps).state);
+    certificate.state = with_free_motions_held(read_any_state(path, Dimensions::any_bodies).state);
     return certified(std::move(certificate));
 }
 
@@ -194,6 +194,17 @@ void bind_inspection(py::module_& module) {
         .def_property_readonly(
             "second_order", [](const Seen& self) { return self.second_order; },
             "(value, bound): second derivative of the potential along the mechanism (k = 1).")
+        .def_property_readonly(
+            "length_rates",
+            [](const Seen& self) {
+                py::list rates;
+                for (std::size_t a = 0; self.yielding && a < static_cast<std::size_t>(self.truth.dimension); ++a) {
+                    rates.append(self.yielding->length_rate[a]);
+                }
+                return rates;
+            },
+            "(value, bound) per axis: change of the length per unit of the loaded stress, where the potential has a "
+            "minimum along mechanisms; else empty.")
         .def_property_readonly(
             "remark", [](const Seen& self) { return self.remark; },
             "Where it is no equilibrium: which contact, and by how much.")

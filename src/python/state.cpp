@@ -80,6 +80,16 @@ template <class Bound, class Of> void bind_grains(Bound& bound, const Of& of) {
             },
             "(i, j, length): two members of a clump and the distance of their centres; empty without clumps.")
         .def_property_readonly(
+            "arcs",
+            [of](const py::object& self) {
+                py::list rows;
+                for (const std::vector<int>& ring : of(self).arcs) {
+                    rows.append(py::tuple(py::cast(ring)));
+                }
+                return rows;
+            },
+            "Bodies bounded by arcs: their members, counterclockwise; empty where all bodies are unions of disks.")
+        .def_property_readonly(
             "walls", [of](const py::object& self) { return walls_dict(of(self).walls, of(self).dimension); },
             "{\"lower\": (left, bottom), \"upper\": (right, top)}, of spheres (left, bottom, back), (right, top, "
             "front), each \"absent\", \"fixed\" or \"movable\".")
@@ -335,7 +345,7 @@ void bind_load(StateClass& state) {
             [](const PyState& self, double stress) {
                 State changed = self.state;
                 changed.load.set_loaded_stress(stress);
-                return parse_any_state(state_text(changed), "State", Dimensions::any_clumps);
+                return parse_any_state(state_text(changed), "State", Dimensions::any_bodies);
             },
             py::arg("stress"), "The same state where what the programme changes has this value.");
 }
@@ -343,13 +353,13 @@ void bind_load(StateClass& state) {
 void bind_files(StateClass& state) {
     state
         .def_static(
-            "read", [](const std::filesystem::path& path) { return read_any_state(path, Dimensions::any_clumps); },
+            "read", [](const std::filesystem::path& path) { return read_any_state(path, Dimensions::any_bodies); },
             py::arg("path"), py::call_guard<py::gil_scoped_release>(),
             "Reads a state file or a plain vertex text. Raises BadInput with file, field, value.")
         .def_static(
             "parse",
             [](const std::string& text, const std::string& source) {
-                return parse_any_state(text, source, Dimensions::any_clumps);
+                return parse_any_state(text, source, Dimensions::any_bodies);
             },
             py::arg("text"), py::arg("source") = "State", py::call_guard<py::gil_scoped_release>(),
             "Reads a state from the text of a file; `source` begins messages.")
@@ -363,7 +373,7 @@ void bind_files(StateClass& state) {
         .def("__len__", [](const PyState& self) { return self.state.packing.disk_count(); })
         .def(py::pickle([](const PyState& self) { return py::make_tuple(state_text(self.state, self.forces)); },
                         [](const py::tuple& text) {
-                            return parse_any_state(text[0].cast<std::string>(), "State", Dimensions::any_clumps);
+                            return parse_any_state(text[0].cast<std::string>(), "State", Dimensions::any_bodies);
                         }));
 }
 
@@ -414,7 +424,7 @@ void bind_state_class(py::module_& module) {
                 changed.load.path.reset();
                 std::copy(stress.begin(), stress.end(), changed.load.stress.begin());
                 changed.load.shear[0] = shear.value_or(changed.load.shear[0]);
-                return parse_any_state(state_text(changed), "State", Dimensions::any_clumps);
+                return parse_any_state(state_text(changed), "State", Dimensions::any_bodies);
             },
             py::arg("stress"), py::arg("shear") = py::none(),
             "The same state under other stresses, one per axis, and another shear stress on a tilt xy that moves.");

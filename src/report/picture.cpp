@@ -1,6 +1,7 @@
 #include "report/picture.hpp"
 
 #include "io/text.hpp"
+#include "packing/arc_bodies.hpp"
 #include "packing/bodies.hpp"
 #include "packing/cell_wrap.hpp"
 
@@ -12,6 +13,7 @@
 #include <cmath>
 #include <cstdint>
 #include <iterator>
+#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -92,6 +94,21 @@ struct Frame {
     Point low, high;
 };
 
+/// The largest coordinate of what a disk shows: of an arc at its ends, or where its normal is along the axis.
+double farthest(const ArcBodies& arcs, const Packing& packing, int disk, int axis) {
+    const double at = packing.coordinate(DiskId(disk), axis);
+    const double radius = packing.radius[static_cast<std::size_t>(disk)];
+    const auto sector = arcs.angles(disk);
+    if (!sector) {
+        return at + radius;
+    }
+    const double along = axis * std::numbers::pi / 2;
+    const double turned = along < (*sector)[0] ? along + 2 * std::numbers::pi : along;
+    return at +
+           radius *
+               (turned <= (*sector)[1] ? 1 : std::max(std::cos((*sector)[0] - along), std::cos((*sector)[1] - along)));
+}
+
 Frame frame_of(const State& state) {
     Frame frame;
     if (state.packing.cell.any()) {
@@ -106,13 +123,13 @@ Frame frame_of(const State& state) {
         }
         return frame;
     }
+    const ArcBodies arcs(state.packing);
     const auto extent = [&](int axis) {
         double most = state.packing.walls.upper[static_cast<std::size_t>(axis)] == WallKind::absent
                           ? 0
                           : state.packing.length(axis);
         for (int i = 0; i < state.packing.disk_count(); ++i) {
-            most = std::max(most, state.packing.coordinate(DiskId(i), axis) +
-                                      state.packing.radius[static_cast<std::size_t>(i)]);
+            most = std::max(most, farthest(arcs, state.packing, i, axis));
         }
         return most > 0 ? most : 1;
     };
@@ -137,6 +154,12 @@ class Canvas {
     void circle(Point at, double radius, const char* style) {
         add(R"(<circle cx="{:.3f}" cy="{:.3f}" r="{:.3f}" class="{}"/>)", x(at), y(at), radius * scale_, style);
     }
+    /// Where a curve of arcs begins, its arcs, and its end.
+    void begin(Point at) { add(R"(<path d="M {:.3f} {:.3f})", x(at), y(at)); }
+    void arc_to(Point at, double radius) {
+        add("A {0:.3f} {0:.3f} 0 0 0 {1:.3f} {2:.3f}", radius * scale_, x(at), y(at));
+    }
+    void end(const char* style) { add(R"(Z" class="{}"/>)", style); }
     void line(Point from, Point to, double width, const char* style) {
         add(R"(<line x1="{:.3f}" y1="{:.3f}" x2="{:.3f}" y2="{:.3f}" stroke-width="{:.3f}" class="{}"/>)", x(from),
             y(from), x(to), y(to), width, style);
@@ -195,8 +218,23 @@ void draw_cell(Canvas& canvas, const Packing& packing) {
 void draw_disks(Canvas& canvas, const State& state, const std::vector<unsigned char>& rattler) {
     const Packing& packing = state.packing;
     constexpr int around = 1; // images: the disks were put into the cell
+    const ArcBodies arcs(packing);
+    for (const std::vector<int>& ring : packing.arcs) {
+        const auto point = [&](int member, double angle) {
+            const double r = packing.radius[static_cast<std::size_t>(member)];
+            return centre(state, member) + Point{r * std::cos(angle), r * std::sin(angle)};
+        };
+        canvas.begin(point(ring.front(), (*arcs.angles(ring.front()))[0]));
+        for (const int member : ring) {
+            canvas.arc_to(point(member, (*arcs.angles(member))[1]), packing.radius[static_cast<std::size_t>(member)]);
+        }
+        canvas.end(rattler[static_cast<std::size_t>(ring.front())] != 0 ? "rattler" : "disk");
+    }
     for (int i = 0; i < packing.disk_count(); ++i) {
         const auto s = static_cast<std::size_t>(i);
+        if (arcs.angles(i)) {
+            continue;
+        }
         for (int m = -around; m <= around; ++m) {
             for (int p = -around; p <= around; ++p) {
                 const bool here = m == 0 && p == 0;
@@ -212,17 +250,40 @@ void draw_disks(Canvas& canvas, const State& state, const std::vector<unsigned c
     }
 }
 
+/// How far from the centre of an arc a force is drawn: as deep in the body as the smallest circle reaches. 0: no arc.
+double arc_depth(const Packing& packing, const ArcBodies& arcs, int disk) {
+    if (!arcs.angles(disk)) {
+        return 0;
+    }
+    const auto ring = std::find_if(packing.arcs.begin(), packing.arcs.end(), [disk](const std::vector<int>& members) {
+        return std::find(members.begin(), members.end(), disk) != members.end();
+    });
+    double smallest = HUGE_VAL;
+    for (const int member : *ring) {
+        smallest = std::min(smallest, packing.radius[static_cast<std::size_t>(member)]);
+    }
+    return packing.radius[static_cast<std::size_t>(disk)] - smallest;
+}
+
 /// Width of the line of a force 1.
 double width_of_force(const Canvas& canvas, const State& state, std::span<const double> forces) {
     constexpr double width_at_mean = 0.2; // of the mean radius
     double radius = 0;
-    for (const double r : state.packing.radius) {
-        radius += r / static_cast<double>(state.packing.radius.size());
+    const ArcBodies arcs(state.packing);
+    for (int i = 0; i < state.packing.disk_count(); ++i) {
+        radius += (state.packing.radius[static_cast<std::size_t>(i)] - arc_depth(state.packing, arcs, i)) /
+                  static_cast<double>(state.packing.radius.size());
     }
     return width_at_mean * radius * canvas.scale() / mean_force(forces);
 }
 
+Point towards(Point from, Point to, double length) {
+    const double distance = std::hypot(to.x - from.x, to.y - from.y);
+    return {from.x + (to.x - from.x) * length / distance, from.y + (to.y - from.y) * length / distance};
+}
+
 void draw_contacts(Canvas& canvas, const State& state, std::span<const double> forces) {
+    const ArcBodies arcs(state.packing);
     constexpr double hairline = 0.4;
     const double unit = width_of_force(canvas, state, forces);
     for (std::size_t l = 0; l < state.contacts.size(); ++l) {
@@ -232,10 +293,20 @@ void draw_contacts(Canvas& canvas, const State& state, std::span<const double> f
         }
         const double force = forces.empty() ? 0 : forces[l];
         const bool pair = contact.of_disks();
-        const Point end = pair ? second_centre(state, contact) : foot(state, contact).value_or(Point{});
+        if (contact.kind == ContactKind::bar && arcs.angles(contact.i)) {
+            continue;
+        }
+        Point end = pair ? second_centre(state, contact) : foot(state, contact).value_or(Point{});
+        Point start = centre(state, contact.i);
+        if (const double shift = arc_depth(state.packing, arcs, contact.i); shift > 0) {
+            start = towards(start, end, shift);
+        }
+        if (const double shift = pair ? arc_depth(state.packing, arcs, contact.j) : 0; shift > 0) {
+            end = towards(end, start, shift);
+        }
         const char* const style = force == 0 ? "contact" : force < 0 ? "traction" : pair ? "force" : "force wall";
         const double width = force == 0 ? hairline : std::abs(force) * unit;
-        canvas.line(centre(state, contact.i), end, width, style);
+        canvas.line(start, end, width, style);
         if (!contact.image.is_here()) { // from the other side too
             canvas.line(centre(state, contact.i) - (end - centre(state, contact.j)), centre(state, contact.j), width,
                         style);

@@ -51,7 +51,7 @@ class Writer {
     }
     /// With its forces, if the state is an equilibrium; bars are drawn without.
     StateFile read(const fs::path& path) {
-        StateFile file = read_any_state(path, Dimensions::any_clumps);
+        StateFile file = read_any_state(path, Dimensions::any_bodies);
         if (file.forces.empty()) {
             file.state = with_free_motions_held(std::move(file.state));
             file.forces = solve_forces(file.state, path);
@@ -298,7 +298,7 @@ ReportResult report_run(const fs::path& directory, const fs::path& output, const
 
 ReportResult report_state(const fs::path& state, const fs::path& output, const ReportOptions& options) {
     const std::string name = "forces_" + state.stem().string();
-    if (options.html && read_any_state(state, Dimensions::any_clumps).state.packing.dimension == plane) {
+    if (options.html && read_any_state(state, Dimensions::any_bodies).state.packing.dimension == plane) {
         throw Error(ErrorKind::usage, fmt::format("{}: --html of one state is a view of spheres: this file is of "
                                                   "disks, and without --html {}.svg shows them",
                                                   state.string(), name));

@@ -1,5 +1,6 @@
 #include "certificate/state_certifier.hpp"
 #include "io/json.hpp"
+#include "packing/arc_bodies.hpp"
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/core/error.hpp>
@@ -152,6 +153,7 @@ State start_of_scene(State state, const Scene& scene, const std::string& source)
         }
     }
     require_followed(state, source);
+    require_no_arcs(state.packing, source, "a run");
     if (!state.packing.bars.empty()) {
         state = clumps_at_rest(std::move(state), scene, source);
     }

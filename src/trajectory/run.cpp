@@ -1,5 +1,6 @@
 #include "contact/words.hpp"
 #include "core/roundoff.hpp"
+#include "packing/arc_bodies.hpp"
 #include "trajectory/limit_attempts.hpp"
 #include "trajectory/segment_start.hpp"
 #include "trajectory/steering.hpp"
@@ -313,6 +314,7 @@ SegmentOutcome run_segment(State& state, const Segment& segment, int segment_num
                            RunCounters& counters, RunObserver& observer) {
     require_floating_point();
     require_followed(state, "state");
+    require_no_arcs(state.packing, "state", "a run");
     require_no_ties_of_clumps(state, options);
     if (options.certify == CertifyLevel::arcs && state.load.path) { // the power of an arc takes stresses as stored
         throw Error(ErrorKind::bad_input, "state: several stresses change together, and certify is arcs: expected "

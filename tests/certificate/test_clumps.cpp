@@ -269,6 +269,68 @@ BOOST_AUTO_TEST_CASE(unions_of_an_independent_program_are_proved_with_its_counts
     }
 }
 
+/// The caps of an oval between four walls turn by nothing but the load: a minimum up to F_1 / F_2 = 4/3.
+BOOST_AUTO_TEST_CASE(an_oval_between_four_walls_rests_up_to_the_ratio_of_its_arms) {
+    const auto inspection = inspect_mechanism(
+        oval_in_a_box(1, 1), count_contacts(oval_in_a_box(1, 1).packing, oval_in_a_box(1, 1).contacts));
+    BOOST_REQUIRE(inspection.ok());
+    BOOST_TEST((inspection.value().stable == Verdict::proved), inspection.value().remark);
+    BOOST_TEST(inspection.value().record.dof_count == 5);
+    BOOST_TEST(inspection.value().record.contact_count == 4);
+    BOOST_TEST(inspection.value().record.mechanisms == 1);
+    BOOST_TEST(inspection.value().curvature <
+               2.0 / 9); // 2 per radian squared: of a cap, that moves by 3, or of a flank
+    BOOST_TEST(inspection.value().curvature > 0.124);
+    const auto stable = [](double f1, double f2, double angle = 0) {
+        return inspected(oval_in_a_box(f1, f2, angle)).stable;
+    };
+    BOOST_TEST((stable(3.99, 3) == Verdict::proved));
+    BOOST_TEST((stable(4.01, 3) == Verdict::refuted));
+    BOOST_TEST((stable(4, 3) == Verdict::undecided));
+    BOOST_TEST((stable(1, 1, 0x1p-40) == Verdict::proved)); // a minimum is near
+    BOOST_TEST((stable(1, 1, 0.1) != Verdict::proved));
+}
+
+/// A force g upwards on the right cap turns the oval: tan theta = 3 g / (8 F_2 - 6 F_1 - 4 g), here 5/12 with g = 5/28.
+BOOST_AUTO_TEST_CASE(a_turned_oval_yields_at_the_rate_of_its_closed_form) {
+    State state = oval_in_a_box(1, 1, std::atan2(5, 12));
+    state.load.disk_force = {0, 5.0 / 28, 0, 0, 0, 0, 0, 0};
+    const Inspection inspection = inspected(state);
+    BOOST_TEST_REQUIRE((inspection.stable == Verdict::proved), inspection.remark);
+    BOOST_TEST_REQUIRE(inspection.yielding.has_value());
+    const double turning = 144.0 / 169 * -70 / 27; // of the angle, per unit of F_2
+    const auto& rate = inspection.yielding->length_rate;
+    BOOST_TEST(std::abs(rate[0].value + 6 * 5.0 / 13 * turning) <= rate[0].radius);
+    BOOST_TEST(std::abs(rate[1].value - 8 * 5.0 / 13 * turning) <= rate[1].radius);
+    BOOST_TEST(rate[1].radius < 1e-6);
+    // The forces of the walls are F_1 on both sides, F_2 on the lid and F_2 - g on the bottom.
+    BOOST_TEST((inspection.yielding->down.contact == Contact{ContactKind::lower_wall, 3, 1}));
+    BOOST_TEST(inspection.yielding->down.opens);
+    BOOST_TEST(std::abs(inspection.yielding->down.stress - 5.0 / 28) < 1e-9);
+    BOOST_TEST((inspection.yielding->up.contact.i == -1)); // it turns back between the walls
+}
+
+/// The circles of the flanks reach beyond the oval: what they touch there the oval does not.
+BOOST_AUTO_TEST_CASE(a_contact_at_a_joint_or_beyond_is_no_contact_of_arcs) {
+    const double joint = std::atan2(4, 3);
+    State at_joint = oval_in_a_box(1, 1, joint); // the wall is level with a joint: cap and flank touch it both
+    const auto inspection = inspected(at_joint);
+    BOOST_TEST((inspection.stable != Verdict::proved));
+    // Turned by a load to near where the flank ends, tan theta = 3/4 at g = 1/4, and stored beside the minimum.
+    const auto turned = [](double g, double beside) {
+        State state = oval_in_a_box(1, 1, std::atan(3 * g / (2 - 4 * g)) - beside);
+        state.load.disk_force = {0, g, 0, 0, 0, 0, 0, 0};
+        return inspected(state).stable;
+    };
+    BOOST_TEST((turned(0.25 - 1e-8, 0) == Verdict::proved));
+    BOOST_TEST((turned(0.25 - 1e-3, 1e-7) == Verdict::proved));
+    BOOST_TEST((turned(0.25 - 1e-8, 1e-7) != Verdict::proved)); // the joint is as near as the minimum may be
+    const auto beyond = inspected(circle_of_an_oval_in_a_corner());
+    BOOST_TEST((beyond.stable != Verdict::proved));
+    BOOST_TEST(beyond.remark.find("not inside the arcs") != std::string::npos, beyond.remark);
+    BOOST_TEST(!certify(with_free_motions_held(circle_of_an_oval_in_a_corner())).claims.minimum.has_value());
+}
+
 /// Newton's method and elimination in 200 digits, which share nothing with the program.
 BOOST_AUTO_TEST_CASE(intervals_of_the_forces_of_clumps_hold_those_of_200_digits) {
     for (const char* const name : {"dimer_20_1", "dimer2_20_2", "trimer_20_1"}) {
@@ -283,6 +345,26 @@ BOOST_AUTO_TEST_CASE(intervals_of_the_forces_of_clumps_hold_those_of_200_digits)
                             f - 1e-60 <= isostat::oracle::Real(truth.finite[l].upper)),
                            isostat::to_string(state.contacts[l]));
             }
+        }
+    }
+}
+
+/// N below N_f, and one mechanism for each contact that is missing: W'' is positive along all of them.
+BOOST_AUTO_TEST_CASE(ovals_of_an_independent_program_rest_in_strict_minima_with_its_counts) {
+    for (const char* const name :
+         {"oval_1.1_16_1", "oval_1.1_16_2", "oval_1.1_16_3", "oval_1.4_16_1", "oval_1.4_16_2"}) {
+        const State state = clumps(name);
+        const auto expected = nlohmann::json::parse(state.provenance)["expected"];
+        const Inspection inspection = inspected(state);
+        BOOST_TEST_CONTEXT(name) {
+            BOOST_TEST((inspection.stable == Verdict::proved), inspection.remark);
+            const int rattlers = static_cast<int>(expected["rattlers"].size());
+            BOOST_TEST(static_cast<int>(inspection.rattlers.size()) == 4 * rattlers); // members
+            BOOST_TEST(inspection.counting.contact_count == expected["N"].get<int>());
+            BOOST_TEST(inspection.counting.dof_count - 3 * rattlers == expected["N_f_of_loaded_bodies"].get<int>());
+            BOOST_TEST(inspection.counting.hyperstaticity == 0);
+            BOOST_TEST(inspection.counting.mechanisms - 3 * rattlers == expected["k"].get<int>());
+            BOOST_TEST(std::abs(inspection.record.min_gap - expected["smallest_other_gap"].get<double>()) < 1e-9);
         }
     }
 }

@@ -12,6 +12,7 @@
 #include <utility>
 
 using namespace isostat;
+using isostat::test::circle_of_an_oval_in_a_corner;
 using isostat::test::clumps;
 using isostat::test::clumps_of;
 using isostat::test::dimer_across;
@@ -19,6 +20,7 @@ using isostat::test::disk_in_a_corner;
 using isostat::test::disk_with_a_dangling_member;
 using isostat::test::lying_dimer;
 using isostat::test::lying_dimer_in_space;
+using isostat::test::oval_in_a_box;
 using isostat::test::pendulums;
 using isostat::test::row_of_dimers;
 using isostat::test::sphere_in_a_corner;
@@ -201,6 +203,68 @@ BOOST_AUTO_TEST_CASE(what_is_level_where_it_is_held_is_no_free_motion_for_the_ch
         BOOST_TEST((verdict_on(verification, "forces") != Verdict::proved));
         BOOST_TEST((verdict_on(verification, "stable") != Verdict::proved));
     }
+}
+
+BOOST_AUTO_TEST_CASE(minima_of_ovals_are_certified_and_verified) {
+    for (const char* const name : {"oval_1.1_16_1", "oval_1.4_16_1", "oval_1.4_16_2"}) {
+        const Certificate certificate = of_clumps(clumps(name));
+        BOOST_REQUIRE(certificate.claims.minimum.has_value());
+        const Verification verification = read_and_verified(certificate);
+        BOOST_TEST((verification.verdict == Verdict::proved), verification.checks.back().detail);
+    }
+    const Certificate alone = of_clumps(oval_in_a_box(1, 1));
+    BOOST_REQUIRE(alone.claims.minimum.has_value());
+    const Verification verification = read_and_verified(alone);
+    BOOST_TEST((verification.verdict == Verdict::proved), verification.checks.back().detail);
+}
+
+BOOST_AUTO_TEST_CASE(forged_minima_of_ovals_do_not_verify) {
+    const Certificate right = of_clumps(oval_in_a_box(1, 1));
+    BOOST_TEST((verify(right).verdict == Verdict::proved));
+    const std::vector<std::pair<const char*, std::function<void(Certificate&)>>> forgeries{
+        {"no arcs: circles that overlap the walls", [](Certificate& c) { c.state.packing.arcs.clear(); }},
+        {"clockwise",
+         [](Certificate& c) {
+             c.state.packing.arcs[0] = {3, 2, 1, 0};
+         }},
+        {"arcs that cross",
+         [](Certificate& c) {
+             c.state.packing.arcs[0] = {0, 2, 1, 3};
+         }},
+        {"a bar that is not the difference of the radii",
+         [](Certificate& c) { c.state.packing.bars[0].length = std::nextafter(5.0, 6.0); }},
+        {"a load that turns it", [](Certificate& c) { c.state.load.stress[0] = 1.5; }},
+        {"steeper than it is", [](Certificate& c) { c.claims.minimum->curvature = 2; }},
+        {"a fixed disk beside it", [](Certificate& c) {
+             c.state.packing.fixed = {0, 1, 0, 0};
+         }}};
+    for (const auto& [what, forge] : forgeries) {
+        Certificate forged = right;
+        forge(forged);
+        BOOST_TEST((verify(forged).verdict != Verdict::proved), what);
+    }
+    // What the circle of a flank touches beyond its arc.
+    Certificate beyond = of_clumps(circle_of_an_oval_in_a_corner());
+    beyond.claims.minimum = MinimumClaim{1, 1e-3};
+    BOOST_TEST((verify(beyond).verdict != Verdict::proved));
+    // At a joint, and a hair beside it on either side.
+    const double joint = std::atan2(4, 3);
+    for (const double off : {0.0, 0x1p-50, -0x1p-50}) {
+        Certificate there = of_clumps(oval_in_a_box(1, 1, joint + off));
+        there.claims.minimum = MinimumClaim{1, 1e-3};
+        BOOST_TEST((verify(there).verdict != Verdict::proved));
+    }
+}
+
+/// Straight flanks on each other: bodies that touch, and members that overlap by both heights.
+BOOST_AUTO_TEST_CASE(the_smallest_gap_of_ovals_is_that_of_their_nearest_arcs) {
+    State state = clumps("oval_1.4_16_2");
+    const Certificate certificate = of_clumps(state);
+    const isostat::checker::Evidence evidence(certificate.state, CheckerArithmetic::automatic, true);
+    const auto gaps = isostat::checker::smallest_gaps(evidence.problem, certificate.state, evidence.vertex);
+    BOOST_TEST_REQUIRE(!gaps.empty());
+    const auto expected = nlohmann::json::parse(state.provenance)["expected"]["smallest_other_gap"].get<double>();
+    BOOST_TEST(std::abs(gaps.front().value.lower.get_d() - expected) < 1e-9);
 }
 
 BOOST_AUTO_TEST_CASE(forged_minima_do_not_verify) {

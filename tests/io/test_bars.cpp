@@ -47,6 +47,25 @@ BOOST_AUTO_TEST_CASE(bars_that_a_state_cannot_have_are_refused) {
     refused("[]", R"([["bar", 0, 1]])");
 }
 
+BOOST_AUTO_TEST_CASE(bodies_bounded_by_arcs_come_back_and_are_taken_only_where_they_are_asked_for) {
+    const State state = isostat::test::oval_in_a_box(1, 1);
+    BOOST_TEST((state.packing.arcs == std::vector<std::vector<int>>{{0, 1, 2, 3}}));
+    const std::string text = isostat::state_text(state);
+    BOOST_TEST((isostat::test::clumps_of(text).packing.arcs == state.packing.arcs));
+    for (const Dimensions taken : {Dimensions::two, Dimensions::any, Dimensions::any_clumps}) {
+        BOOST_CHECK_THROW((void)isostat::parse_any_state(text, "ovals", taken), Error);
+    }
+    for (const char* const other : {"[[0, 1, 2]]", "[[0, 1, 2, 4]]", "[[0, 1, 2, 2.5]]", "[0, 1, 2, 3]",
+                                    "[[3, 2, 1, 0]]", "{}", "[[0, 1, 2, -1]]"}) {
+        std::string spoilt = text;
+        const std::size_t begin = spoilt.find("\"arcs\": [") + 8;
+        const std::size_t end = spoilt.find("]\n  ]", begin) + 5;
+        spoilt.replace(begin, end - begin, other);
+        BOOST_CHECK_THROW((void)isostat::test::clumps_of(spoilt), Error);
+        BOOST_TEST_INFO(other);
+    }
+}
+
 BOOST_AUTO_TEST_CASE(what_takes_single_grains_refuses_clumps) {
     const std::string text = state_with("[[0, 1, 2]]", "[]");
     BOOST_CHECK_THROW((void)isostat::parse_any_state(text, "clumps", Dimensions::any), Error);

@@ -97,6 +97,31 @@ class Bodies(Folder):
         self.assertEqual(isostat.verify(made).verdict, isostat.Verdict.PROVED)
         self.assertIsNone(isostat.certify(lying()).minimum)
 
+    def test_an_oval_between_four_walls(self):
+        state = isostat.State.from_arrays(
+            [[7, 2], [4, -2], [1, 2], [4, 6]],
+            [1, 6, 1, 6],
+            [8, 4],
+            [(2, "left"), (0, "right"), (3, "bottom"), (1, "top")],
+            reference_length=[1, 1],
+            bars=[(0, 1, 5), (0, 2, 6), (0, 3, 5), (1, 2, 5), (2, 3, 5)],
+            arcs=[(0, 1, 2, 3)],
+        )
+        self.assertEqual(state.arcs, [(0, 1, 2, 3)])
+        self.assertEqual(isostat.State.parse(state.text()).arcs, state.arcs)
+        self.assertEqual(isostat.inspect(state).stable, isostat.Verdict.PROVED)
+        rates = isostat.inspect(state).length_rates
+        self.assertEqual(len(rates), 2)
+        self.assertLess(abs(rates[1][0]), 1e-9)  # upright it does not yield
+        made = isostat.certify(state)
+        self.assertEqual(isostat.verify(made).verdict, isostat.Verdict.PROVED)
+        with self.assertRaisesRegex(isostat.Error, "arcs"):
+            isostat.Run({"programme": [{"do": "up", "equilibria": 1}]}, self.folder / "oval", start=state).play()
+        axes = isostat.plot.packing(state)
+        low, high = axes.dataLim.min, axes.dataLim.max
+        self.assertLess(abs(high[0] - low[0] - 8), 1)  # the oval, not its circles
+        self.assertLess(abs(high[1] - low[1] - 4), 1)
+
     def test_bars_are_drawn_as_no_contacts(self):
         axes = isostat.plot.packing(lying(), isostat.inspect(lying()).forces)
         self.assertTrue(axes.collections)

@@ -15,11 +15,11 @@ namespace isostat::test {
 
 /// What the independent program counted stands in the provenance.
 inline State clumps(const std::string& name) {
-    return read_any_state(std::string(ISOSTAT_TEST_DATA) + "/clumps/" + name + ".json", Dimensions::any_clumps).state;
+    return read_any_state(std::string(ISOSTAT_TEST_DATA) + "/clumps/" + name + ".json", Dimensions::any_bodies).state;
 }
 
 inline State clumps_of(const std::string& text) {
-    return parse_any_state(text, "clumps", Dimensions::any_clumps).state;
+    return parse_any_state(text, "clumps", Dimensions::any_bodies).state;
 }
 
 /// Several forces vanish together where a body rises: the infinitesimal loads say which contact opens.
@@ -77,6 +77,38 @@ inline State pendulums(double first, double second) {
         "disk_force": [[0, 0], [0, {}], [0, 0], [0, {}]], "contacts": [],
         "disks": [[2, 5, 0.25], [2, 4, 0.25], [7, 5, 0.25], [7, 4, 0.25]]}})",
                                  first, second));
+}
+
+/// An oval between four walls, turned by `angle`: caps of radius 1 at a distance of 3 from the middle, flanks of radius
+/// 6 with centres at a distance of 4, 3-4-5. Half lengths 4 and 2; W'' = 2 (4 F_2 - 3 F_1) per radian squared, a
+/// sixteenth of that per x of a flank. Members: right cap, upper flank, left cap, lower flank.
+inline State oval_in_a_box(double f1, double f2, double angle = 0) {
+    const double c = std::cos(angle);
+    const double s = std::sin(angle);
+    const double x = 1 + 3 * c; // of the middle
+    const double y = 6 - 4 * c;
+    return clumps_of(fmt::format(R"({{"format": "isostat-state", "version": 2, "length": [{:.17g}, {:.17g}],
+        "load": {{"stress": [{:.17g}, {:.17g}], "reference_length": [1, 1]}},
+        "disks": [[{:.17g}, {:.17g}, 1], [{:.17g}, {:.17g}, 6], [{:.17g}, {:.17g}, 1], [{:.17g}, {:.17g}, 6]],
+        "bars": [[0, 1, 5], [0, 2, 6], [0, 3, 5], [1, 2, 5], [2, 3, 5]], "arcs": [[0, 1, 2, 3]],
+        "contacts": [[2, "left"], [0, "right"], [3, "bottom"], [1, "top"]]}})",
+                                 2 * x, 2 * y, f1, f2, x + 3 * c, y + 3 * s, x + 4 * s, y - 4 * c, x - 3 * c, y - 3 * s,
+                                 x - 4 * s, y + 4 * c));
+}
+
+/// The circle of one flank lies in the corner of two walls, beyond the arc, and a force on the other flank would keep
+/// it there, as the disk above. The oval itself touches nothing: its caps are 0.05 from the walls.
+inline State circle_of_an_oval_in_a_corner() {
+    const double h = std::sqrt(0.5);
+    const double middle = 6 - 4 * h;
+    return clumps_of(fmt::format(R"({{"format": "isostat-state", "version": 2, "length": [20, 20],
+        "walls": {{"lower": ["fixed", "fixed"], "upper": ["absent", "absent"]}},
+        "load": {{"stress": [0, 0], "reference_length": [20, 20]}},
+        "disk_force": [[0, 0], [-1, -1], [0, 0], [0, 0]],
+        "disks": [[{:.17g}, {:.17g}, 1], [{:.17g}, {:.17g}, 6], [{:.17g}, {:.17g}, 1], [6, 6, 6]],
+        "bars": [[0, 1, 5], [0, 2, 6], [0, 3, 5], [1, 2, 5], [2, 3, 5]], "arcs": [[0, 1, 2, 3]],
+        "contacts": [[3, "left"], [3, "bottom"]]}})",
+                                 middle + 3 * h, middle - 3 * h, 6 - 8 * h, 6 - 8 * h, middle - 3 * h, middle + 3 * h));
 }
 
 /// Beside it on the bottom the same disk once more, which leans against the first one: k = 2.

@@ -87,6 +87,20 @@ State with_free_motions_held(State state);
 /// state); when every force is positive and the multipliers of the held coordinates cannot be told from 0, the state is
 /// an equilibrium *as far as the stored numbers say*, and `stable` tells what the potential does along the mechanism
 /// (k = 1; statement T8).
+/// How an equilibrium with mechanisms follows the loaded stress while its contacts stay as they are (proofs/clumps.md,
+/// U10): it moves continuously towards the load.
+struct Yielding {
+    PerAxis<Enclosure> length_rate{}; ///< dL_a per unit of the loaded stress
+    /// Where the stress rises, and where it falls: what happens first if forces and gaps went on changing at the rates
+    /// that they have, in double. Not proved, and not where it will happen. Contact i = -1: nothing.
+    struct Event {
+        Contact contact{ContactKind::disk_disk, -1, -1};
+        bool opens = false; ///< the force vanishes; else the gap closes
+        double stress = 0;
+    };
+    Event up, down;
+};
+
 struct MechanismInspection {
     EquilibriumRecord record;                   ///< `record.verdict` is `refuted`: not isostatic
     std::vector<Contact> contacts;              ///< those of the state, then the held coordinates
@@ -100,7 +114,8 @@ struct MechanismInspection {
     /// `stable` is proved: how far the minimum is from the stored configuration, at most, and a lower bound of d2W on
     /// the held coordinates (U8).
     double away = 0, curvature = 0;
-    std::string remark; ///< when not an equilibrium: which contact and by how much
+    std::optional<Yielding> yielding; ///< where `stable` is proved
+    std::string remark;               ///< when not an equilibrium: which contact and by how much
 };
 /// \pre h = 0 in `counting`, of this state. Failure: `not_isostatic` when the completed structure is not proved
 /// regular, `undecided` when no bound of the inverse or no true vertex near the stored one was proved.
@@ -125,8 +140,9 @@ struct Inspection {
     /// proved: strict local minimum of the potential of the load (isostatic equilibrium); refuted: it has a maximum
     /// along the mechanism; undecided: neither was shown.
     Verdict stable = Verdict::undecided;
-    Enclosure second_order; ///< as in `MechanismInspection`
-    std::string remark;     ///< when not an equilibrium: which contact and by how much
+    Enclosure second_order;           ///< as in `MechanismInspection`
+    std::optional<Yielding> yielding; ///< as there
+    std::string remark;               ///< when not an equilibrium: which contact and by how much
 };
 
 /// Failure: `not_isostatic` when h > 0, or when the rank is not proved (the message gives N_f, N, rank, h, k),

@@ -40,8 +40,8 @@ void write_packing(const std::filesystem::path& path, const Packing& packing, co
 StateFile parse_state(const std::string& text, const std::string& source);
 
 /// Spheres are refused by what takes disks only, which says so (`require_plane`), and clumps by what takes single
-/// grains only (`require_single_grains`): `any_clumps` takes all.
-enum class Dimensions : unsigned char { two, any, any_clumps };
+/// grains only (`require_single_grains`): `any_clumps` takes unions of disks, `any_bodies` those bounded by arcs too.
+enum class Dimensions : unsigned char { two, any, any_clumps, any_bodies };
 
 /// The same, periodic cells too. Further messages: walls along a periodic axis, images in a box or more than 3 periods
 /// away, periods that are not positive, disks that overlap their own images, loads that do not sum to zero along a

@@ -108,6 +108,10 @@ struct Packing {
     /// Clumps: what bars connect is one rigid body, a union of disks. Sorted; a body of K members has as many bars as
     /// make it rigid and no more (in the plane 2K - 3). Members of one body are no pair: they may overlap.
     std::vector<Bar> bars;
+    /// Of bodies bounded by arcs their members, in the order in which the arcs follow each other, counterclockwise.
+    /// Two neighbours have a bar of the length |R_i - R_j|, without rounding: their circles touch from within, in the
+    /// joint of the arcs. Only in the plane, in boxes, and of members that are not fixed.
+    std::vector<std::vector<int>> arcs;
 
     [[nodiscard]] int disk_count() const { return static_cast<int>(radius.size()); }
     [[nodiscard]] Layout layout() const { return {dimension, disk_count()}; }
@@ -140,7 +144,7 @@ struct Packing {
     [[nodiscard]] double min_radius() const;
     [[nodiscard]] double max_radius() const;
     /// Sum of the grains' areas (d = 2) or volumes (d = 3) over the product of the lengths, the size of box and cell;
-    /// of a body what its union takes; NaN where more than two spheres of one overlap.
+    /// of a body what its union, or its boundary, takes; NaN where more than two spheres of one overlap.
     [[nodiscard]] double solid_fraction() const;
     /// The same without some grains: rattlers.
     [[nodiscard]] double solid_fraction_without(std::span<const int> grains) const;

@@ -41,6 +41,7 @@ class Packing:
     radii: Final[Floats]
     fixed: Final[Flags]
     bars: Final[list[tuple[int, int, float]]]
+    arcs: Final[list[tuple[int, ...]]]
     walls: Final[Walls]
     periodic: Final[tuple[bool, bool]]
     tilt: Final[Optional[float]]
@@ -68,6 +69,7 @@ class State:
         disk_force: Optional[Floats] = ...,
         fixed: Iterable[int] = ...,
         bars: Iterable[tuple[int, int, float]] = ...,
+        arcs: Iterable[Iterable[int]] = ...,
     ) -> State: ...
     def text(self) -> str: ...
     def write(self, path: Path) -> None: ...
@@ -79,6 +81,7 @@ class State:
     length: Final[Floats]
     fixed: Final[Flags]
     bars: Final[list[tuple[int, int, float]]]
+    arcs: Final[list[tuple[int, ...]]]
     walls: Final[Walls]
     periodic: Final[tuple[bool, bool]]
     contacts: Final[Integers]
@@ -140,6 +143,7 @@ class Inspection:
     verdict: Final[Verdict]
     stable: Final[Verdict]
     second_order: Final[tuple[float, float]]
+    length_rates: Final[list[tuple[float, float]]]
     remark: Final[str]
     sigma2: Final[float]
     sigma2_low: Final[float]

@@ -59,6 +59,7 @@ def from_arrays(
     disk_force: np.ndarray | None = None,
     fixed: Iterable[int] = (),
     bars: Iterable[tuple[int, int, float]] = (),
+    arcs: Iterable[Iterable[int]] = (),
     periodic: Sequence[bool] | None = None,
     moves: Sequence[str] = (),
     tilt: float | Sequence[float] = 0.0,
@@ -91,6 +92,8 @@ def from_arrays(
     fixed : numbers of disks that cannot move
     bars : rows (i, j, length), optional
         Clumps: the centres of two members of one body stay at this distance; ``inspect``, ``certify`` and `Run` take them.
+    arcs : members of bodies bounded by arcs, counterclockwise, optional
+        Neighbours have a bar of exactly the difference of their radii; ``inspect`` and ``certify`` take such bodies.
     periodic : (d,) flags, optional
         Axes that repeat, with `length` as their periods: a cell.
     moves : of a cell, which of ``"x"``, ``"y"``, ``"xy"`` (of spheres ``"z"``, ``"xz"``, ``"yz"`` too) are degrees of
@@ -135,6 +138,8 @@ def from_arrays(
         content["fixed"] = held
     if rows := [[index(i), index(j), float(length_of_bar)] for i, j, length_of_bar in bars]:
         content["bars"] = rows
+    if rings := [[index(member) for member in ring] for ring in arcs]:
+        content["arcs"] = rings
     if any(repeats):
         content["cell"] = {
             "axes": ["periodic" if again else "walls" for again in repeats],

@@ -6,7 +6,7 @@ from typing import Optional
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.collections import EllipseCollection, LineCollection
+from matplotlib.collections import EllipseCollection, LineCollection, PolyCollection
 
 from ._core import Packing, State
 from ._records import Records
@@ -81,6 +81,23 @@ def _images(state: State) -> tuple[np.ndarray, np.ndarray]:
     return disks, state.positions[disks] + _shifts(state, np.column_stack(periods))
 
 
+def _outline(packing: State | Packing, ring: tuple[int, ...]) -> np.ndarray:
+    """Points on the arcs that bound a body."""
+    at, radii = packing.positions[list(ring)], packing.radii[list(ring)]
+    joint = (at - np.roll(at, -1, axis=0)) * np.sign(np.roll(radii, -1) - radii)[:, None]
+    end = np.unwrap(np.arctan2(joint[:, 1], joint[:, 0]))
+    begin = end - (end - np.roll(end, 1)) % (2 * np.pi)
+    angle = begin[:, None] + (end - begin)[:, None] * np.linspace(0, 1, 24)
+    outward = np.stack((np.cos(angle), np.sin(angle)), axis=2)
+    return (at[:, None] + radii[:, None, None] * outward).reshape(-1, 2)
+
+
+def _draw_arcs(packing: State | Packing, holding: np.ndarray, ax: Axes) -> None:
+    outlines = [_outline(packing, ring) for ring in packing.arcs]
+    colours = ["#d9d9d9" if holding[list(ring)].any() else "#deebf7" for ring in packing.arcs]
+    ax.add_collection(PolyCollection(outlines, facecolors=colours, edgecolors="0.35", linewidths=0.4, zorder=1))
+
+
 def _draw_disks(
     packing: State | Packing, disks: np.ndarray, places: np.ndarray, holding: np.ndarray, ax: Axes, alpha: float = 1
 ) -> None:
@@ -139,7 +156,9 @@ def packing(
         if not isinstance(state, State):
             raise BadInput("forces: expected a State, whose contacts carry them")
         holding = _draw_forces(state, forces, ax)
-    disks, places = np.arange(len(state)), state.positions
+    whole = ~np.isin(np.arange(len(state)), [member for ring in state.arcs for member in ring])
+    disks, places = np.flatnonzero(whole), state.positions[whole]
+    _draw_arcs(state, holding, ax)
     _draw_disks(state, disks, places, holding, ax)
     if isinstance(state, State):
         images, there = _images(state)
@@ -159,7 +178,8 @@ def packing(
             zorder=3,
         )
     sizes = state.radii[disks][:, None]
-    _draw_walls(state, (places - sizes).min(axis=0), (places + sizes).max(axis=0), ax)
+    drawn = np.concatenate([places - sizes, places + sizes, *(_outline(state, ring) for ring in state.arcs)])
+    _draw_walls(state, drawn.min(axis=0), drawn.max(axis=0), ax)
     ax.set_aspect("equal")
     ax.set_axis_off()
     return ax

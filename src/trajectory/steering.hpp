@@ -40,7 +40,7 @@ inline PowerLoad power_load(const Load& load, const Opening& opening, ArcKind ki
 struct SteeredEnd {
     Packing packing;
     std::vector<Contact> contacts;
-    ZeroHolds zero; ///< holds whose multipliers are 0 at this end
+    ZeroHolds zero;                                            ///< holds whose multipliers are 0 at this end
     std::shared_ptr<const RegularTriangulation> triangulation; ///< triangulation of a nearby configuration
 };
 

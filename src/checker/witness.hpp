@@ -24,7 +24,7 @@ struct Witness {
 class Witnesses {
   public:
     Witnesses() = default;
-    /// Notes where the line of each arc begins; a file that is not there has none. Throws `Error(bad_input)`.
+    /// Notes where the line of each arc begins; a missing file has no lines. Throws `Error(bad_input)`.
     explicit Witnesses(std::filesystem::path file);
     /// The witness of the arc with this step; nothing: no line, or an empty one. Throws `Error(bad_input)`.
     [[nodiscard]] std::optional<Witness> of(long step) const;

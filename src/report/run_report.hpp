@@ -9,7 +9,7 @@
 
 namespace isostat {
 
-/// What to make.
+/// What a report has to contain.
 struct ReportOptions {
     bool pictures = true;                                     ///< force pictures (SVG), data and scripts of the charts
     bool charts = true;                                       ///< call gnuplot on the scripts (SVG and PNG)
@@ -17,14 +17,14 @@ struct ReportOptions {
     bool pdf = false;                                         ///< charts as PDF too
     bool contacts = false;                                    ///< contacts_*.csv of each state: `contact_table`
     bool html = false;                                        ///< of a run: trajectory.html
-    std::function<void(std::size_t, std::size_t)> progress{}; ///< of the page: arcs gone through, and of the run
+    std::function<void(std::size_t, std::size_t)> progress{}; ///< of the page: arcs processed, arcs of the run
 };
 
-/// What was made.
+/// What a report made.
 struct ReportResult {
     std::string text;                         ///< tables, for a terminal (of a run also in report.txt)
     std::vector<std::filesystem::path> files; ///< pictures, data and scripts, in the order in which they were written
-    std::vector<std::string> notes;           ///< what was not made, and why
+    std::vector<std::string> notes;           ///< what was not made, and the reason
 };
 
 /// Report of the folder of a run, finished or not, into `output`:
@@ -38,13 +38,13 @@ struct ReportResult {
 ReportResult report_run(const std::filesystem::path& directory, const std::filesystem::path& output,
                         const ReportOptions& options);
 
-/// Force picture, and VTK file when asked for, of one state. Forces are those of the file, or else solved for here.
+/// Force picture, and VTK file if asked for, of one state. Forces are those of the file, or else solved for here.
 ReportResult report_state(const std::filesystem::path& state, const std::filesystem::path& output,
                           const ReportOptions& options);
 
-/// P(f / <f>) of the force-carrying contacts of all samples of an ensemble together, each over its own mean force: of
-/// their first and of their last equilibria, in bins of 1/4. force_distribution.dat, .gp and what gnuplot makes of
-/// them. Forces are those of the files, as computed.
+/// P(f / <f>) of the force-carrying contacts of all samples of an ensemble together, each over the mean force of its
+/// sample: once for the first equilibria and once for the last ones, in bins of 1/4. Writes force_distribution.dat, .gp
+/// and the charts of gnuplot. Forces are those of the files, as computed.
 ReportResult report_forces(const std::vector<std::filesystem::path>& runs, const std::filesystem::path& output,
                            const ReportOptions& options);
 

@@ -64,7 +64,7 @@ struct RunVerification {
     /// refuted: `wrong` is the first record that does not follow from the records before. undecided: no record was
     /// found wrong, and `undecided` lists what could not be checked. proved: every equilibrium and both ends of every
     /// arc were proved to be as recorded; at level `arcs` the motion between them too; at other levels the motion is
-    /// only sampled: see `words`.
+    /// only followed in double: see `words`.
     Verdict verdict = Verdict::undecided;
     bool finished = true; ///< false: the run goes on, or was killed; then nothing else is checked
     std::string wrong;    ///< file, record, and its defect

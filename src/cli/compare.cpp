@@ -82,7 +82,7 @@ void print_frames(const compare::Comparison& comparison) {
     }
 }
 
-/// How many frames are where the exact run leads from the frame before.
+/// Prints how many frames are where the exact run from the previous frame ends.
 void print_local(const std::vector<compare::FrameResult>& frames) {
     int asked = 0, same = 0;
     for (const compare::FrameResult& f : frames) {
@@ -102,7 +102,7 @@ void print_bundle(const compare::Bundle& bundle) {
         bundle.members.size(), bundle.nodes.size(), bundle.common);
 }
 
-/// The loads on both sides of the departure, and the limits of the exact run between them.
+/// Prints the loads on both sides of the departure, and the limits of the exact run between them.
 void print_loads(const compare::Comparison& comparison, const compare::Departure& departure) {
     const auto load = [&](int number) {
         const auto at = std::find_if(comparison.frames.begin(), comparison.frames.end(),

@@ -35,7 +35,7 @@ State start_of(const std::string& reference) {
     return read_any_state(std::filesystem::is_directory(path) ? path / state_name(0) : path, Dimensions::any).state;
 }
 
-/// A manifest for a file of frames beside it or below.
+/// Writes a manifest for a file of frames in its folder or below.
 void begin_manifest(const CompareArguments& a) {
     const std::filesystem::path manifest = a.series, folder = manifest.parent_path();
     const std::filesystem::path disks = std::filesystem::path(a.init).lexically_proximate(folder);

@@ -27,8 +27,8 @@ double length_of(const Packing& packing, const PerAxis<double>& x) {
     return packing.dimension == plane ? std::hypot(x[0], x[1]) : std::hypot(x[0], x[1], x[2]);
 }
 
-/// The strain E = dA A_0^-1 of a change dA of the cell, upper triangular; 0 along axes with walls. And a bound of
-/// |A_0^-1|.
+/// The strain E = dA A_0^-1 of a change dA of the cell, upper triangular; 0 along axes with
+/// walls. And a bound of |A_0^-1|.
 struct Strain {
     PerAxis<PerAxis<double>> e{};
     double inverse = 0;

@@ -79,9 +79,9 @@ class SampleFolders {
 };
 
 /// Files:
-/// - ensemble.json: program, command, scene, seeds, status; at the end also the number of samples of each status and
-/// the
-///   reason of every one that did not complete;
+/// - ensemble.json: program, command, scene, seeds, status;
+///   at the end also the number of samples of each status
+///   and the reason of every sample that did not complete;
 /// - samples/seed_000001/: the folder of a run (see `RunDirectory`) with scene.toml, the scene with this seed, and
 ///   log.txt, what the process printed; `isostat run scene.toml` alone makes the same run;
 /// - equilibria.csv: those of all samples, columns `seed` and those of a run without its last one, the time;

@@ -91,7 +91,7 @@ Result<Arc> follow_arc(const ArcOrigin& origin, const PowerLoad& power, Candidat
 bool renew_candidates(CandidateList& candidates, const Packing& at);
 
 /// An arc whose tangent, curvature and candidates at the start are computed: the part that can run
-/// beside other work on the same vertex. `follow` then does what `follow_arc` does. Objects that the
+/// in parallel with other work on the same vertex. `follow` then does what `follow_arc` does. Objects that the
 /// origin and the constructor refer to must outlive it. The candidates are made anew only when
 /// `renew_candidates` would do so. `open`: candidates that are not contacts of the structure, if the
 /// caller has them (`Arc::open` of the previous arc). Cost: about half the solves of a short arc.

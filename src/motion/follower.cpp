@@ -450,7 +450,7 @@ Arc Follower::finish(CurvePoint end, ArcEnd kind, const Contact& closed, double 
     for (std::size_t k = start_.length_at(0); start_.cell.any() && k < end.at.q.size(); ++k) {
         if (chord_.dofs().dof_of(k) < 0) {
             end.at.q[k] =
-                start_.q[k]; // what does not move of a cell is not rounded: the vertex says if it is off the grid
+                start_.q[k]; // fixed coordinates of a cell are not rounded: the vertex reports one off the grid
         }
     }
     for (std::size_t k = 0; k < end.at.q.size(); ++k) {

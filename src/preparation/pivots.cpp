@@ -31,8 +31,8 @@ using Force = std::pair<double, double>;
 /// How the signs of gaps and forces are found.
 enum class Signs {
     as_computed, ///< mostly right beyond their bounds too: radii that differ by 1e-13 are told apart
-    told,        ///< what the bound does not tell from 0 counts as 0: in symmetric patches pairs touch without being
-          ///< contacts and forces vanish together, and what rounding leaves there would exchange contacts for ever
+    told,        ///< a value within its bound of 0 counts as 0: in symmetric patches pairs touch without being
+                 ///< contacts and forces vanish together, and rounding there would exchange contacts for ever
 };
 
 double value_of(const Enclosure& x, Signs signs) {

@@ -56,8 +56,8 @@ class SoftDynamics {
     SoftMeasures compress(double pressure, double rate, long max_steps);
     /// Damped dynamics with adaptive step (velocities turned towards the forces, stopped when they work against them:
     /// Bitzek et al., Phys. Rev. Lett. 97, 170201) until residual and pressure error are below `tolerance` (in patches:
-    /// 100 `tolerance` for the pressure, which the linear programmes do not need). A wall has the mass n / 3 of what it
-    /// drags.
+    /// 100 `tolerance` for the pressure, which the linear programmes do not need). A wall has
+    /// the mass n / 3 of what it drags.
     SoftMeasures relax(double pressure, double tolerance, long max_steps);
 
   private:

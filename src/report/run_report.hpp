@@ -31,14 +31,14 @@ struct ReportResult {
 /// - staircase: sigma2/sigma1 against eps2 (paper, figure 2); cycles: the segments that start from an earlier
 /// equilibrium (figure 3);
 /// - stress_increments, strain_increments: their distributions, linear and logarithmic (figures 4 and 5);
-/// - trajectory.html, when asked for: `run_page`;
+/// - trajectory.html, when requested: `run_page`;
 /// - force pictures of the stored states: the first, the last, and those that segments start from.
 /// Each chart is a data file (.dat), a gnuplot script (.gp), and .svg and .png when gnuplot is there; otherwise a note
 /// says so. Throws `Error(bad_input)` when the folder holds no run, `Error(cannot_write)`.
 ReportResult report_run(const std::filesystem::path& directory, const std::filesystem::path& output,
                         const ReportOptions& options);
 
-/// Force picture, and VTK file if asked for, of one state. Forces are those of the file, or else solved for here.
+/// Force picture, and VTK file if requested, of one state. Forces are those of the file, or else solved for here.
 ReportResult report_state(const std::filesystem::path& state, const std::filesystem::path& output,
                           const ReportOptions& options);
 

@@ -39,12 +39,12 @@ Increments stress_increments(const std::vector<EquilibriumRow>& rows);
 /// |eps_2' - eps_2| of every rearrangement (paper, figure 5). Loading and unloading are the directions of sigma_2.
 Increments strain_increments(const std::vector<EquilibriumRow>& rows);
 
-/// Points (x, share of the values that are >= x) of the complementary distribution, x increasing: no bins, no free
-/// parameter.
+/// Points (x, share of the values that are >= x) of the complementary distribution, x
+/// increasing: no bins, no free parameter.
 std::vector<std::pair<double, double>> complementary_distribution(std::vector<double> values);
 
-/// Histogram density: `bins` equal bins over [low, high], (centre, density); densities integrate to the share of values
-/// inside.
+/// Histogram density: `bins` equal bins over [low, high], (centre, density); densities integrate
+/// to the share of values inside.
 std::vector<std::pair<double, double>> histogram(const std::vector<double>& values, double low, double high, int bins);
 
 /// The path from the start to equilibrium `number`, both included, in order.

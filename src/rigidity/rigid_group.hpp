@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Grains that move as one body, told by counting (proofs/degenerate.md, R1): private to the rooms on the right.
+/// Grains that move as one body, found by counting (proofs/degenerate.md, R1): private to the rooms on the right.
 
 #include <isostat/contact/state.hpp>
 #include <isostat/packing/load.hpp>

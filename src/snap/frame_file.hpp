@@ -31,8 +31,8 @@ class FrameFile {
 
     /// The next frame; nothing at the end of the file.
     std::optional<FileFrame> next();
-    /// The frame of this time step; frames before it are skipped. Throws when there is none, and when time steps do not
-    /// grow on the way to this one.
+    /// The frame of this time step; frames before it are skipped. Throws when no frame has it, and when time steps do
+    /// not grow up to this one.
     FileFrame at(long timestep);
     /// The column, which must exist; where its name comes twice in the frame the values agree.
     [[nodiscard]] std::size_t column(const FileFrame& frame, const std::string& name) const;

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Quantities that the rounding of the imported file leaves undecided. Proofs speak of the doubles of the state; they
-/// hold for the packing that the file was written from if no gap and no force is that small.
+/// Quantities that the rounding of the imported file leaves undecided. Proofs hold for the doubles of the state, and
+/// for the packing that the file was written from if no gap and no force is that small.
 
 #include <isostat/certificate/certify.hpp>
 

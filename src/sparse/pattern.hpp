@@ -32,8 +32,8 @@ class Ordering {
 
     [[nodiscard]] bool structurally_regular() const { return structural_rank_ == n_; }
     [[nodiscard]] int structural_rank() const { return structural_rank_; }
-    /// Position k of the permuted matrix holds row `row_order()[k]`, column `column_order()[k]`; these two are
-    /// matched.
+    /// Position k of the permuted matrix holds row `row_order()[k]`, column
+    /// `column_order()[k]`; these two are matched.
     [[nodiscard]] const std::vector<int>& row_order() const { return row_order_; }
     [[nodiscard]] const std::vector<int>& column_order() const { return column_order_; }
     /// Block b is the range [block_start()[b], block_start()[b+1]) of positions.

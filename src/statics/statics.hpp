@@ -31,8 +31,8 @@ struct StaticsHints {
 
 /// f_l(sigma) = f_l(sigma_0) + (sigma - sigma_0) * unit_l, plus eps * infinitesimal_l, sigma_0 the present loaded
 /// stress (paper: alpha_l sigma_1 + beta_l (sigma_2 - sigma_1), unit_l = beta_l), for the exact matrix of the stored
-/// configuration and eps > 0 infinitesimal. sigma is the loaded stress (sigma_2). Forces: stress x length; positive in
-/// compression.
+/// configuration and eps > 0 infinitesimal. sigma is the loaded stress (sigma_2). Forces: stress x
+/// length; positive in compression.
 class Statics {
 
   public:

@@ -40,13 +40,13 @@ struct FirstOrderVertex {
 
 struct ArcProposal;
 
-/// Configuration, proved structure, factors, bounds and statics of one vertex. Not movable: the parts refer to each
-/// other.
+/// Configuration, proved structure, factors, bounds and statics of one vertex. Not movable:
+/// the parts refer to each other.
 class Vertex {
   public:
     /// Proves the rank, factorises, bounds the inverse, solves the statics and encloses the true vertex.
-    /// Failures: `not_isostatic`; `undecided` when no bound of the inverse or no true vertex near the stored one was
-    /// proved.
+    /// Failures: `not_isostatic`; `undecided` when no bound of the inverse or no true vertex
+    /// near the stored one was proved.
     static Result<std::unique_ptr<Vertex>> make(Packing packing, std::vector<Contact> contacts, const Load& load,
                                                 InverseBoundCache& cache, LadderOptions options = {});
     /// The same in two steps: the unproved data that a motion from the vertex needs, then the proofs.

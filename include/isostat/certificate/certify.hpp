@@ -75,7 +75,7 @@ struct Certification {
 ///
 /// Clumps: bars are rows of either sign that never open; N_f, N and rank are counted without them. Coordinates may be
 /// held where the load acts on none of them, by the pattern: k is their number, each is a free motion (a rattler, or a
-/// body that turns about the one member through which it is held), and all claims speak of the place where they are
+/// body that turns about the one member through which it is held), and all claims hold for the place where they are
 /// held; the minimum is strict but for these motions (proofs/clumps.md).
 Certification certify(const State& state, const CertifyOptions& options = {});
 
@@ -155,7 +155,7 @@ struct JammingAnswer {
     std::optional<JammedIfClosed> if_closed = {}; ///< when `verdict` is undecided
 };
 
-/// `counts` are of the stored coordinates, in the order of `strains`; the rest speaks of the true vertex.
+/// `counts` are of the stored coordinates, in the order of `strains`; the other members are of the true vertex.
 ///
 /// *Backbone*: disks and contacts with finite force, when the forces are known. On it (proofs/cells.md, C6 and C7):
 /// - locally jammed: no disk of the backbone can move alone while the others stay;

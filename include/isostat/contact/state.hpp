@@ -32,18 +32,18 @@ struct GapGradient {
 
 /// Gap h: distance of the surfaces, >= 0 in an admissible packing. For a bar the distance of the centres minus its
 /// length, for a held coordinate 0.
-/// Error: at most 4 ulp of the distance of the centres beyond the exactly rounded operations, for coordinates on the
-/// grid.
+/// Error: at most 4 ulp of the distance of the centres beyond the exactly rounded
+/// operations, for coordinates on the grid.
 double gap(const Packing& packing, const Contact& contact);
 
 /// Gradient of the gap. Each component has relative error <= 4u (u = 2^-53) for coordinates on the grid.
 GapGradient gap_gradient(const Packing& packing, const Contact& contact);
 
-/// Second derivative of the gap along a velocity v (on coordinates): |tangential relative velocity|^2 / distance; 0 for
-/// walls.
+/// Second derivative of the gap along a velocity v (on coordinates): |tangential relative
+/// velocity|^2 / distance; 0 for walls.
 double gap_curvature(const Packing& packing, const Contact& contact, const double* v);
 
-/// What a run under `ties = "choose"` adds to a state: it speaks of the grains with radii R_i + eps rho_i, eps > 0
+/// What a run under `ties = "choose"` adds to a state: it describes the grains with radii R_i + eps rho_i, eps > 0
 /// smaller than every positive number (proofs/perturbation.md).
 struct RadiusPerturbation {
     unsigned long long seed = 0;

@@ -129,8 +129,8 @@ struct ExpectedEntry {
 ///
 /// Spheres: `spheres` with rows x, y, z, r and [[sphere]] with a z in place of `disks` and [[disk]]; then everything
 /// per axis has three entries, `tilt` three in the order xy, xz, yz, `moves` those names, and [load] `sphere` in place
-/// of `disk`. A TOML float is read from its source text, so `0.1` is one tenth; strings take the form of
-/// `Number::parse`.
+/// of `disk`. A TOML float is read from its source text, so `0.1` is one tenth; strings
+/// take the form of `Number::parse`.
 struct PackingFile {
     std::string title;
     ExactPacking packing;
@@ -284,8 +284,8 @@ std::string to_json(const Inspection& inspection, const ExactPacking& packing);
 /// rigid_motions, generic_rank, special, verdict, contacts = ["0-1", "0-left", ..], forces = [["0-1", "1/2"], ..] (any
 /// subset; they must be unique), strains = [["isotropic", N_f, N, h, k], ..], rattlers = [3], bridges, without_force,
 /// jammed_collectively, jammed_strictly, one_sign, support, second_order, stable, rank_with_radii, ranges = [["top
-/// wall", least, most], ..] (any subset; "none": no end). Throws `Error(bad_input)` with file and line for an unknown
-/// key.
+/// wall", least, most], ..] (any subset; "none": no end). Throws `Error(bad_input)` with
+/// file and line for an unknown key.
 std::vector<std::string> check_expected(const Inspection& inspection, const PackingFile& file,
                                         const std::string& source);
 

@@ -43,7 +43,7 @@ struct PlateauStep {
 /// contact that makes the range begin, and of the one that ends it.
 struct PlateauRange {
     double first = 0;
-    double last = 0;    ///< the largest threshold asked for when the range is `open`
+    double last = 0;    ///< the largest requested threshold when the range is `open`
     bool open = false;  ///< the range goes on beyond the largest threshold
     int contacts = 0;   ///< N of the backbone at `first`
     int rattlers = 0;   ///< at `first`
@@ -59,7 +59,7 @@ struct PlateauHeadline {
 };
 
 struct Plateau {
-    std::vector<PlateauStep> steps; ///< one per threshold asked for, increasing
+    std::vector<PlateauStep> steps; ///< one per requested threshold, increasing
     /// Where the backbone is isostatic, proved at *every* threshold up to the largest one, not only at those of
     /// `steps`: h only grows with the contacts, so one rank at the largest list with h = 0 proves all smaller ones, and
     /// there k = N_f - N is a count.

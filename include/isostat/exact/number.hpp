@@ -40,8 +40,8 @@ class Number {
     /// `sqrt(3)/2`. Under the root: one non-negative number or quotient of two. Spaces may stand between the tokens.
     /// Throws `Error(bad_input)` with the text, the position (from 1) and what was expected there, for anything else:
     /// nested roots, other functions, parentheses, trailing text, inf and nan, division by zero, exponents beyond
-    /// +-10000, and a radicand from which no square-free part can be found (a factor above 10^18 left after the small
-    /// primes).
+    /// +-10000, and a radicand from which no square-free part can be found (a factor above
+    /// 10^18 left after the small primes).
     static Number parse(std::string_view text);
 
     [[nodiscard]] bool is_zero() const { return terms_ == nullptr; }
@@ -142,8 +142,8 @@ struct Feasibility {
 };
 
 /// `rows[i]` is row i of A (all of size `cols`). First phase of the primal simplex method with Bland's rule (it ends),
-/// dense, in exact arithmetic. Cost: pivots * rows * (rows + cols) exact operations; for some ten rows and a hundred
-/// columns.
+/// dense, in exact arithmetic. Cost: pivots * rows * (rows + cols) exact operations; for some
+/// ten rows and a hundred columns.
 Feasibility feasible_point(const std::vector<std::vector<Number>>& rows, const std::vector<Number>& b, int cols);
 
 /// The smallest cost z over all z >= 0 with A z = b; nothing when there is no such z. Checked by a solution of the

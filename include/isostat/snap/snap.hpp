@@ -31,7 +31,7 @@ struct SoftState {
 };
 
 /// - vertex: all proved: the list has a true vertex near the soft place, isostatic, with positive forces under the load
-///   and without overlap, and every rattler fits beside it;
+///   and without overlap, and every rattler has room there;
 /// - hyperstatic: h > 0, more contacts than rigid grains of generic radii can close; - moving: k > 0, the grains can
 ///   move with all listed contacts closed;
 /// - refuted: proved: the true vertex of the list has a negative force, an overlap, or a rattler that overlaps a grain
@@ -67,7 +67,7 @@ struct Snap {
 /// Newton's method on the gaps of the list from the soft place, then `certify` where it ends: the
 /// vertex is enclosed there and not at the soft place, and `distance` is the Newton displacement +
 /// radius. Rattlers that overlap at the vertex are pushed apart; their new gaps are proved
-/// positive. A vertex farther than a tenth of the smallest radius is refused. The proofs speak of
+/// positive. A vertex farther than a tenth of the smallest radius is refused. The proofs hold for
 /// the doubles of `soft` exactly as given. Cost: that of `certify` and of three to six rank proofs.
 Snap snap(const SoftState& soft);
 

@@ -300,7 +300,7 @@ class Walk {
         return {false, before > 0 ? before / (before - after) : 1, {}};
     }
 
-    /// Of two ends near each other, the one whose displacement agrees with the record.
+    /// Chooses of two ends near each other the one whose displacement agrees with the record.
     [[nodiscard]] Followed nearer(Followed there) const {
         const auto off = [this](const Followed& end) {
             return end.end ? std::abs(displacement(*end.end) - motion_.displacement)

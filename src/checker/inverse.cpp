@@ -324,7 +324,7 @@ Rational root(unsigned long value) {
     return Rational(sqrt(shifted_left(Integer(value), 40)) + 1) * power_of_two(-20);
 }
 
-/// From the smallest singular value, when R is the inverse.
+/// Bounds the inverse by the smallest singular value, when R is the inverse.
 InverseBound bound_by_singular_value(const Problem& problem) {
     const std::optional<Rational> sigma = smallest_singular_value(problem);
     if (!sigma) {

@@ -34,9 +34,9 @@ std::optional<std::vector<Contact>> list_before(std::vector<Contact> list, const
 /// The beginning of an arc according to its record, computed in double; nothing: something is unusual.
 std::optional<Opening> opening_of(const ArcStart& from, const EventRecord& event);
 
-/// From the opening to the end that the record names; where this is not found, again with steps a sixteenth as long,
-/// then with a sixteenth of these. `slowly`: only with the last, and shorter ones near the end. \pre `event.closed`
-/// names a contact of the packing.
+/// Follows an arc from the opening to the end that the record names; if this is not found, again with steps a sixteenth
+/// as long, then with a sixteenth of these. `slowly`: only with the last, and shorter ones near the end. \pre
+/// `event.closed` names a contact of the packing.
 Followed follow(const ArcStart& from, const EventRecord& event, const Opening& opening, bool slowly = false);
 
 } // namespace isostat::checker

@@ -516,7 +516,7 @@ class Replay {
         return std::move(arrival.open);
     }
 
-    /// In small steps where the usual ones find no end.
+    /// Arrives at the end of an arc, in small steps when the usual steps find no end.
     Objections arrive_somehow(Place& next, const EventRecord& event, const Change& change) {
         Objections open = arrive(next, event, change, false);
         return next.state ? open : arrive(next, event, change, true);

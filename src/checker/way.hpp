@@ -22,10 +22,10 @@ struct Way {
 /// An objection when the witness does not fit the arc.
 Objections end_of(const Place& from, const Contact& closed, const Way& way, State& end);
 
-/// Empty result: from the true vertex of `from` the kept contacts define one curve on the side on which the opened
-/// contact opens; it reaches the true vertex of `to`; strictly between the two every other gap is positive, and so is
-/// the power of the load, except on a hundredth of the first piece at a limit and of the last piece before a power
-/// turn. Otherwise the unproved part, which is never a refutation.
+/// Empty result: it is proved that from the true vertex of `from` the kept contacts define one curve on the side on
+/// which the opened contact opens; it reaches the true vertex of `to`; strictly between the two every other gap is
+/// positive, and so is the power of the load, except on a hundredth of the first piece at a limit and of the last piece
+/// before a power turn. Otherwise the unproved part, which is never a refutation.
 Objections prove_way(const Place& from, const Place& to, const Way& way);
 
 /// Empty result: the curve of the kept contacts leads from the true vertex of `from` to that of `to`, and before it

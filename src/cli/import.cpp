@@ -65,7 +65,7 @@ Load load_of(const ImportArguments& a, const Packing& packing) {
     return load;
 }
 
-/// For spheres and clumps: the contacts are the gaps within the rounding, or those up to a threshold.
+/// True for spheres and clumps: the contacts are the gaps within the rounding, or those up to a threshold.
 bool by_digits(const Packing& packing) {
     return packing.dimension != plane || !packing.bars.empty();
 }
@@ -76,7 +76,7 @@ bool as_listed(const ImportArguments& a, const Packing& packing) {
     return by_digits(packing) || a.foreign.walls == "fixed" || a.cell == "fixed";
 }
 
-/// With the contacts of `plateau` (`by_digits`: gaps within the rounding), of a threshold or of a list.
+/// Imports with the contacts of `plateau` (`by_digits`: gaps within the rounding), of a threshold or of a list.
 Imported from_list(const ImportArguments& a, const ForeignPacking& file) {
     const bool digits = by_digits(file.packing);
     if (a.jitter != 0 || (digits ? !a.contacts.empty() : a.contacts == "nearest")) {

@@ -20,8 +20,8 @@ class RegularTriangulation {
   public:
     using Shared = std::shared_ptr<const RegularTriangulation>;
 
-    /// By CGAL, from disks in spatial order: O(n log n). Null when a disk is hidden or equal to another. \pre squares
-    /// of lengths neither over- nor underflow, n > 0.
+    /// Built by CGAL from disks in spatial order: O(n log n). Null when a disk is hidden or equal to another. \pre
+    /// squares of lengths neither over- nor underflow, n > 0.
     static Shared build(const Packing& packing);
 
     /// A regular triangulation of the disks of `packing`, wherever they are: `from` with a few edges flipped (or `from`

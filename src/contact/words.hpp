@@ -50,8 +50,8 @@ inline std::string in_text(const Failure& failure, int dimension = 2) {
 template <class... Values>
 using FormatOfWords = fmt::format_string<decltype(in_text(std::declval<const std::type_identity_t<Values>&>()))...>;
 
-/// As fmt::format. The words name contacts that are `named`, and what other words and failures among the arguments
-/// name. The arguments are copied; a character array must be a literal.
+/// Formats as fmt::format does. The words name contacts that are `named`, and what other words and failures among the
+/// arguments name. The arguments are copied; a character array must be a literal.
 template <class... Values> Words words(FormatOfWords<Values...> format, Values... values) {
     Words made([text = fmt::string_view(format), values...]([[maybe_unused]] int dimension) -> std::string {
         return fmt::format(fmt::runtime(text), in_text(values, dimension)...);

@@ -15,12 +15,12 @@ struct Peeling {
     std::vector<int> disk_from;    ///< disk i is no rattler exactly when m >= disk_from[i]; 0 for fixed disks
 };
 
-/// By removing the contacts from the last to the first; each removal compares only the two neighbours in angle. Every
-/// sign is decided. Throws `Error(bad_input)` when two disks of a contact have the same centre. Cost O(N log N) beside
+/// Removes the contacts from the last to the first; each removal compares only the two neighbours in angle. Every sign
+/// is decided. Throws `Error(bad_input)` when two disks of a contact have the same centre. Cost O(N log N) without
 /// near-parallel normals, which are decided in rationals. For spheres: `peel_in_space`.
 Peeling peel(const Packing& packing, const std::vector<Contact>& contacts);
 
-/// For spheres: by planes through a centre that leave every contact of the sphere on one side, each sign decided by
+/// Peels spheres by planes through a centre that leave every contact of the sphere on one side, each sign decided by
 /// intervals or in rationals. Cost: for a sphere with z contacts O(z^3) signs for every contact that it loses.
 Peeling peel_in_space(const Packing& packing, const std::vector<Contact>& contacts);
 

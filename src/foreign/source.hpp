@@ -20,7 +20,7 @@ constexpr long most_disks = 100'000'000;
 
 enum class Boundary { open, periodic, unknown };
 
-/// For three axes if the file has them, because the rows decide whether these are disks or spheres.
+/// The box of a file, for three axes if the file has them: the rows decide whether these are disks or spheres.
 struct Bounds {
     std::optional<PerAxis<std::array<double, 2>>> box; ///< low and high
     PerTilt<double> tilt{};                            ///< A_ab, a < b

@@ -12,7 +12,7 @@ namespace isostat {
 /// A configuration whose contact matrix (moving grains only) was proved regular, factorised and bounded.
 class ArcCentre {
   public:
-    /// Nothing when a step fails.
+    /// Null when a step fails.
     static std::unique_ptr<ArcCentre> make(Packing packing, std::vector<Contact> contacts, InverseBoundCache& cache);
     /// The vertex itself as a centre; only its coordinates are copied.
     static std::unique_ptr<ArcCentre> of(const ArcVertex& vertex);

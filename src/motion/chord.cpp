@@ -107,7 +107,7 @@ bool Chord::iterate(Packing& at, const Contact& row, bool accelerated) {
     return false;
 }
 
-/// With factors of a point on the curve: of two roots that a nearly singular list has the iteration converges to the
+/// Uses factors of a point on the curve: of two roots that a nearly singular list has the iteration converges to the
 /// one on that branch, or to none.
 bool Chord::iterate_precisely(Packing& at, const Contact& row) {
     constexpr double converged = 1e-19; // of a radius; coordinates are rounded to doubles afterwards

@@ -20,7 +20,7 @@ struct CentreLine {
     double length;
 };
 
-/// Nothing for other contacts, and where squares under- or overflow: then the functions of the room contact are used.
+/// Empty for other contacts, and where squares under- or overflow: then the functions of the room contact are used.
 inline std::optional<CentreLine> centre_line(const Packing& at, const Contact& contact) {
     if (!contact.of_disks()) {
         return std::nullopt;

@@ -63,7 +63,7 @@ class InteriorDescent {
     InteriorDescent(const InteriorDescent&) = delete;
     InteriorDescent& operator=(const InteriorDescent&) = delete;
 
-    /// From x = 0; updates `point`. Cost: a factorisation, some solves.
+    /// Takes a step from x = 0 and updates `point`. Cost: a factorisation, some solves.
     InteriorStep step(const BoxedProgramme& programme, InteriorPoint& point);
 
   private:

@@ -14,7 +14,7 @@ struct PivotLimits {
     const std::atomic<bool>* stop = nullptr;
 };
 
-/// From a basis that is wrong only below the tolerances of a linear solver (forces and gaps near 1e-9, wrong
+/// Pivots from a basis that is wrong only below the tolerances of a linear solver (forces and gaps near 1e-9, wrong
 /// infinitesimal loads) to the vertex. At the true vertex of the present contacts (Newton, then a correction in
 /// double-double, so that gaps and forces far below the rounding of a length have signs): a negative gap is closed
 /// (dual simplex: the contact whose force reaches 0 first, lexicographically in (f0, f1), is left); else the most

@@ -60,7 +60,7 @@ class ContactProgramme {
     /// as slacks.
     ProgrammeStep solve(const Packing& packing, double eps);
 
-    /// For large packings, before the first programme: an interior-point method for the true problem, the gaps
+    /// Runs an interior-point method for the true problem, before the first programme of large packings, with gaps
     /// linearised anew at every step. A sequence of programmes takes programmes times iterations or pivots, because
     /// each vertex moves the relaxing contacts only a little; here the contacts move continuously while the products
     /// slack x force fall. Moves `packing`. Outcome `optimal`: `contacts` may be tried (when `bounds` is 0 they are as

@@ -31,8 +31,8 @@ struct Untold {
     [[nodiscard]] std::string words() const;
 };
 
-/// From sixteen copies whose gaps are off by the rounding, with random signs: quantities smaller than twice their
-/// largest change. Diagnosis, not a bound. Nothing without a true vertex or with a rounding of 0.
+/// Computes from sixteen copies with gaps changed by the rounding, with random signs, the quantities smaller than twice
+/// their largest change. A diagnosis, no bound. Empty without a true vertex or with a rounding of 0.
 Untold untold_by(double rounding, const State& state, const Certification& truth);
 
 /// The verdict on the packing: undecided where a quantity is; what is proved of the doubles becomes the reason.

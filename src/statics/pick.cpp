@@ -109,7 +109,7 @@ class OpeningContest final : public Contest {
     std::vector<EqualForce> equal_; ///< forces equal to that of the current best
 };
 
-/// For rules that compare no numbers: the position of the opening contact among `count` contacts sorted by name.
+/// The position of the opening contact among `count` contacts sorted by name, for rules that compare no numbers.
 std::optional<std::size_t> rule_place(OpeningRule rule, std::size_t count, std::uint64_t random_bits) {
     return rule == OpeningRule::random        ? std::optional<std::size_t>(random_bits % count)
            : rule == OpeningRule::least_index ? std::optional<std::size_t>(0)

@@ -133,7 +133,7 @@ PreciseInterval decrease_between(const PreciseVertex& from, const PreciseVertex&
     return sum;
 }
 
-/// In MPFR, until the sign is known; `rough` if this gives no sign.
+/// Computes in MPFR until the sign is known; returns `rough` if this gives no sign.
 Enclosure precise_decrease(const Vertex& from, const Vertex& to, const Load& load, bool infinitesimal,
                            const Enclosure& rough) {
     PreciseVertex a(from.packing, from.structure, from.factorisation, from.inverse);

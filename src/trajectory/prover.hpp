@@ -78,7 +78,7 @@ class Prover {
     /// Drops earlier data except a list of candidates that is complete at the packing, so that what follows does not
     /// depend on the past and a resumed run goes the same way. `near`: see `find_candidates`.
     void start_at(const Packing& packing, const std::shared_ptr<const RegularTriangulation>& near = nullptr);
-    /// For steering that starts from the vertices of this prover and runs on its thread.
+    /// The list for steering that starts from the vertices of this prover and runs on its thread.
     [[nodiscard]] CandidateList& candidates() { return candidates_; }
 
     /// A vertex without data of earlier proofs: full exact elimination, fresh factors and bound.
@@ -129,7 +129,7 @@ class ProofChain {
   public:
     ProofChain(Prover& prover, std::shared_ptr<const Vertex> from, const Opening& opening, const LimitLoad& at)
         : prover_(prover), from_(std::move(from)), due_(opening), at_(at) {}
-    /// Nothing when the arc is not proved.
+    /// Empty when the arc is not proved.
     std::optional<ArcProof> prove(ArcProposal& arc);
     /// The proof of the arc that ended the chain, as far as it went.
     [[nodiscard]] std::optional<ArcProof>& refused() { return refused_; }

@@ -125,7 +125,7 @@ Result<std::unique_ptr<Vertex>> Vertex::exchanged(const Vertex& from, ArcProposa
     return make(arc.end, std::move(contacts), load, cache, options); // this gives the reason for a failure
 }
 
-/// Nothing when no bound was proved in doubles.
+/// Null when no bound was proved in doubles.
 Result<std::unique_ptr<Vertex>> Vertex::prove(const Vertex& from, ArcProposal& arc, const Load& load,
                                               InverseBoundCache& cache, LadderOptions options) {
     std::vector<double> mechanism(static_cast<std::size_t>(from.structure.size()), 0.0);

@@ -26,7 +26,7 @@ class BlockCholesky {
     [[nodiscard]] double work() const;
 
   private:
-    /// By columns: element 2 c + r is (row r, column c) of the block.
+    /// Stored by columns: element 2 c + r is (row r, column c) of the block.
     struct alignas(32) Block {
         std::array<double, 4> value{};
     };

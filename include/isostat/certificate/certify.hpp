@@ -79,8 +79,8 @@ struct Certification {
 /// held; the minimum is strict but for these motions (proofs/clumps.md).
 Certification certify(const State& state, const CertifyOptions& options = {});
 
-/// Of a packing with bars and too few contacts (h = 0) the list of which holds no coordinate: holds coordinates until
-/// no mechanism is left. Other states are returned unchanged. Cost: a rank.
+/// Holds coordinates of a packing with bars until no mechanism is left, when its list holds none and has too few
+/// contacts (h = 0). Other states are returned unchanged. Cost: a rank.
 State with_free_motions_held(State state);
 
 /// What is known of a state with mechanisms. Coordinates are held until the structure is isostatic (or the state holds

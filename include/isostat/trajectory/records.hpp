@@ -180,7 +180,7 @@ struct Tally {
     std::array<long, decision_kinds> perturbed{};
     long choices = 0;           ///< ties in records of arcs that first-order terms left open and the rule chose
     double smallest_margin = 0; ///< smallest |quantity| / bound over the decided ones (0: none yet)
-    /// By kind: decisions on the rungs combinatorial, double, double-double, mpfr, exact.
+    /// decisions of each kind on the rungs combinatorial, double, double-double, mpfr, exact
     std::array<std::array<long, 5>, decision_kinds> by_kind{};
     std::array<double, decision_kinds> smallest_margin_of{}; ///< 0: none yet
 

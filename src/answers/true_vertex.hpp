@@ -17,7 +17,7 @@ void print_claims(std::string& out, const Certification& certification, const st
 /// One end of the supported interval with its bound, and what opens there.
 std::string end_text(const LoadEndClaim& end, int dimension);
 
-/// The same for programs; null where a claim is absent.
+/// The claims of `print_claims` for programs; null where a claim is absent.
 json::Json claims_json(const Certification& certification, const std::vector<Contact>& contacts);
 
 /// What is proved of the true vertex near a stored configuration, in the words of `inspect`.

@@ -44,7 +44,7 @@ double per_coordinate(const Packing& packing) {
     return packing.dimension == plane ? 1.5 : 1.75;
 }
 
-/// The same between all images of disks; nothing: there are too many images.
+/// The pairs within `reach` among all images of disks; empty: there are too many images.
 std::optional<std::vector<Contact>> near_pairs_in_cell(const Packing& packing, const std::vector<double>& q,
                                                        double reach) {
     const CellImages images(packing, q);
@@ -361,7 +361,7 @@ class Walk {
         });
     }
 
-    /// The same where the contacts are nearly singular, from the start of the last step: the first of two places.
+    /// Arrives where the contacts are nearly singular, from the start of the last step, at the first of two places.
     [[nodiscard]] Followed arrive_slowly() const {
         return end_near(q_, [this](System& end, std::vector<double>& at) {
             return end.newton_in_quadruple(at) &&

@@ -262,7 +262,7 @@ std::optional<std::vector<Contact>> GapCourses::near_disks(const Tube& tube, con
     return pairs;
 }
 
-/// The same in a cell, for all images; nothing: there are too many.
+/// The near pairs in a cell, for all images; empty: there are too many.
 std::optional<std::vector<Contact>> GapCourses::near_images(const Tube& tube, const std::vector<double>& way) const {
     const Packing& packing = moving_.state.packing;
     const std::vector<double>& q = tube.centre();

@@ -28,7 +28,7 @@ class Lookahead {
     void look_ahead(const Place& from, std::size_t event);
     /// The arc of a record. A result from `look_ahead` is used if it has the same opening and the same vertex.
     Arrival arrive(const Place& from, std::size_t event, const Opening& opening, const ExactLoad& load);
-    /// The same with steps a sixteenth as long, and shorter ones near the end.
+    /// As `arrive`, with steps a sixteenth as long, and shorter ones near the end.
     Arrival arrive_slowly(const Place& from, std::size_t event, const Opening& opening, const ExactLoad& load);
     /// To be called when the replay continues from another state.
     void forget() { ahead_.clear(); }

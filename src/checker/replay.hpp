@@ -23,9 +23,9 @@ using Objections = std::optional<Objection>;
 /// Relative size of the agreement of recorded numbers without a bound, which were computed in double. Bounds of a
 /// length, a strain or the potential may not be larger.
 inline constexpr double record_tolerance = 1e-9;
-/// The same for the strain at the end of an arc.
+/// Such a tolerance for the strain at the end of an arc.
 inline constexpr double arc_strain_tolerance = 1e-6;
-/// The same for bounds of forces and of ends of intervals, which grow with the condition number of the structure.
+/// Such a tolerance for bounds of forces and of ends of intervals, which grow with the condition number.
 inline constexpr double force_tolerance = 1e-3;
 /// A power turn is located in double: the power there, and the rate of the held coordinate, agree up to this.
 inline constexpr double turn_tolerance = 1e-6;
@@ -53,7 +53,7 @@ Objections check_said(const std::string& what, const Bounded& said, const Range&
 /// The largest magnitude.
 double largest_force(const std::vector<Range>& forces);
 
-/// The same for a number that may be recorded without a bound (NaN): then undecided.
+/// As `compare`, for a number that may be recorded without a bound (NaN): then undecided.
 Objections compare_if_bounded(const std::string& name, const Bounded& said, const Range& found, double loosest);
 
 /// A vertex at a load. The state is not copied, because the evidence refers to it. Forces are those at the exact load.
@@ -119,7 +119,7 @@ Objections check_limit(const Place& place, const EventRecord& event, double boun
                        ExactLoad& at_limit);
 /// An end of the supported interval, at which contact `opened` opens.
 Objections check_load_end(const Place& place, const Bounded& stress, std::size_t opened, int direction);
-/// The same in a run that settles ties at first order. `said`: recorded ties; null: no record.
+/// As `check_load_end`, in a run that settles ties at first order. `said`: recorded ties; null: no record.
 Objections check_limit_at(const Place& place, const Bounded& stress, std::size_t opened, ExactLoad& at_limit,
                           const std::vector<TieRecord>* said);
 Objections check_rule(const Place& place, const EventRecord& event, std::size_t opened, const RunRecords& run);

@@ -100,7 +100,7 @@ std::optional<Objections> check_meant(const std::optional<Contact>& columns, con
     return found;
 }
 
-/// The same for contacts.
+/// Calls `check_meant` for the contacts of a place.
 template <class Check>
 std::optional<Objections> check_meant(const std::optional<Contact>& columns, const Place& place, const Check& check) {
     return check_meant(

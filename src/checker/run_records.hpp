@@ -63,7 +63,7 @@ RunRecords read_records(const std::filesystem::path& directory, LastLine last = 
 /// "12-40", "12-40(0,-1)" (an image), "3-left", "held x of grain 4" (the walls are the grain after the last disk), in
 /// the one spelling of records in this dimension; nothing for other text.
 std::optional<Contact> contact_spelt(std::string_view name, int dimension);
-/// The same for a contact that the packing can have.
+/// As `contact_spelt`, for a contact that the packing can have.
 std::optional<Contact> contact_named(std::string_view name, const Packing& packing);
 
 /// The two columns of a contact in equilibria.csv; nothing for "none". They do not name the image: see `may_be`.

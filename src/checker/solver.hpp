@@ -20,7 +20,7 @@ class Solver {
     [[nodiscard]] bool usable() const { return factors_ != nullptr; }
     /// About the size of the largest entry, as a length.
     [[nodiscard]] int exponent() const { return exponent_; }
-    /// The same in units of the problem's `fine`.
+    /// `exponent` relative to the problem's `fine`.
     [[nodiscard]] long scale(const Problem& problem) const { return exponent_ - problem.fine; }
     /// (A / 2^exponent)^-1 b: b per contact, result per degree of freedom. Several threads may call it. \pre usable
     [[nodiscard]] Eigen::MatrixXd solve(Eigen::MatrixXd b) const;

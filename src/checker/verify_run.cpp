@@ -158,7 +158,7 @@ class Replay {
         }
     }
 
-    /// The same at the exact load of a stored state.
+    /// Makes `here_` the vertex at the exact load of a stored state.
     void go_to_stored(State state, const std::string& where) {
         const ExactLoad load = meant_load(state);
         go_to(std::move(state), where, load);
@@ -522,13 +522,13 @@ class Replay {
         return next.state ? open : arrive(next, event, change, true);
     }
 
-    /// The same in small steps, if these find an end.
+    /// Arrives in small steps, if these find an end.
     Objections arrive_slowly(Place& next, const EventRecord& event, const Change& change) {
         Objections open = arrive(next, event, change, true);
         return next.state ? open : arrive(next, event, change, false);
     }
 
-    /// The same, at a vertex that is proved to be the end of the arc if this end agrees with the record.
+    /// Arrives at a vertex that is proved to be the end of the arc if this end agrees with the record.
     Objections arrive_certainly(Place& next, const EventRecord& event, const Change& change) {
         const Witness none{};
         const Way way{change.position, change.direction, change.rattles, change.from_zero, event.stress, none};

@@ -52,7 +52,7 @@ class Follower {
     Objections begin();
     /// Joins the tube around q, in which a row falls or grows as here, at s on this tube.
     bool join_near(const std::vector<double>& q, double s, int row);
-    /// The same at another configuration before `reach`.
+    /// Joins such a tube at another configuration before `reach`.
     bool join_on_the_way(double reach);
     Objections chain();
     Objections arrive(const Bounds& place);

@@ -52,7 +52,7 @@ CLI::Option* option(CLI::App& command, const char* name, T& value, const char* w
     CLI::Option* made = command.add_option(name, value, words);
     return type == nullptr ? made : made->type_name(type);
 }
-/// The same, with values that `allowed` accepts.
+/// An option or argument with values that `allowed` accepts.
 template <class T, std::derived_from<CLI::Validator> Check>
 CLI::Option* option(CLI::App& command, const char* name, T& value, const char* words, const Check& allowed,
                     const char* type = nullptr) {

@@ -20,7 +20,7 @@ struct Path {
 
 /// The run from `state` to each of the loads in turn.
 Path follow(State state, const std::vector<double>& loads, const RunOptions& options);
-/// The same, then three equilibria more in the last direction; soft limits are added when `stiffness` > 0. \p arcs:
+/// As `follow`, then three equilibria more in the last direction; soft limits are added when `stiffness` > 0. \p arcs:
 /// null, or receives all arcs.
 Path follow_beyond(State state, const std::vector<double>& loads, const RunOptions& options, double stiffness,
                    NearestArcs* arcs);

@@ -15,7 +15,7 @@ namespace isostat {
 /// At most this many periods along each axis are between a disk and an
 /// image in a pair, so that differences are exact (proofs/cells.md, C2).
 inline constexpr int farthest_image = 3;
-/// The same for contacts of a vertex during a run, whose matrix has exact multiples of normals (C10).
+/// The limit for contacts of a vertex during a run, whose matrix has exact multiples of normals (C10).
 inline constexpr int farthest_contact = 2;
 
 /// Whether the offset is more than `most` periods along some axis.

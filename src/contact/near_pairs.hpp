@@ -33,7 +33,7 @@ NearPairs near_pairs(const Packing& packing, double reach,
 std::optional<std::vector<Contact>> near_edges(const Packing& packing, double reach,
                                                const RegularTriangulation& triangulation);
 
-/// The same for spheres, from a triangulation made for this call. Empty also where a sphere is hidden.
+/// As `near_edges`, for spheres, with a triangulation made for this call. Empty also where a sphere is hidden.
 std::optional<std::vector<Contact>> near_edges_in_space(const Packing& packing, double reach);
 
 /// The same pairs from the grid: complete without any hypothesis. Throws `Error(bad_input)` when there are more than

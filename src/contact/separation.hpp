@@ -175,7 +175,7 @@ template <class Radii> inline auto touching_distance(const Radii& radius, const 
     return Number(0);
 }
 
-/// The same in double, and the length of a bar: where the row of any contact has its zero.
+/// `touching_distance` in double, and the length of a bar: where the row of any contact has its zero.
 inline double zero_distance(const Packing& packing, const Contact& contact) {
     return contact.kind == ContactKind::bar ? packing.bar_length(contact.i, contact.j)
                                             : touching_distance(packing.radius, contact);

@@ -16,7 +16,7 @@ inline constexpr std::uint64_t mersenne61 = (std::uint64_t{1} << 61) - 1;
 /// The residue of a finite double, exactly: m * 2^e mod p. A ring homomorphism from the dyadic rationals.
 std::uint64_t residue(double value);
 
-/// The same mod 2^31 - 1: a smaller field, cheaper words, and a chance of about n / 2^31 of a false deficiency.
+/// For residues mod 2^31 - 1: a smaller field, cheaper words, and a chance of about n / 2^31 of a false deficiency.
 inline constexpr std::uint32_t mersenne31 = (std::uint32_t{1} << 31) - 1;
 std::uint32_t residue31(double value);
 
@@ -41,7 +41,7 @@ std::uint64_t inverse(std::uint64_t a);
 /// the factor L, is kept per thread.
 int rank(const sparse::Matrix<std::uint64_t>& matrix, const sparse::Ordering& ordering);
 
-/// The same over the field with p = 2^31 - 1: a full rank is the same proof, a deficient one weak evidence (n / 2^31).
+/// The rank in the field with p = 2^31 - 1: a full rank is the same proof, a deficient one weak evidence (n / 2^31).
 int rank(const sparse::Matrix<std::uint32_t>& matrix, const sparse::Ordering& ordering);
 
 /// The rank mod p, exactly, of any matrix: a lower bound of the rank over Q, as above. Columns are eliminated in a

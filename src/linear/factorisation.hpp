@@ -33,12 +33,12 @@ class Factorisation {
 
     /// Solves H f = F in place for `count` right-hand sides stored one after the other (size N_f each).
     void solve_forces(std::span<double> rhs, int count = 1) const;
-    /// The same for one right-hand side, from a guess of the solution, to a relative accuracy that is estimated from
-    /// the rate of convergence: takes fewer passes with reused factors.
+    /// Solves for one right-hand side from a guess of the solution, to a relative accuracy that is estimated from the
+    /// rate of convergence: takes fewer passes with reused factors.
     void solve_forces_from(std::span<double> rhs, std::span<const double> guess, double accuracy) const;
-    /// The same, ending as soon as `enough` returns true for the present forces and their largest error, as estimated
-    /// (infinity without an estimate, as after the first pass). Called after each pass with reused factors. Returns the
-    /// estimate; 0 when the forces are converged to rounding.
+    /// As `solve_forces_from`, ending as soon as `enough` returns true for the present forces and their largest error,
+    /// as estimated (infinity without an estimate, as after the first pass). Called after each pass with reused
+    /// factors. Returns the estimate; 0 when the forces are converged to rounding.
     double solve_forces_until(std::span<double> rhs, std::span<const double> guess,
                               const std::function<bool(std::span<const double>, double)>& enough) const;
     /// Solves G v = dV in place: velocities with given approach velocities.

@@ -28,7 +28,7 @@ class ContactPattern {
     ContactPattern(const Packing& packing, const IsostaticStructure& structure, bool perturbed = false)
         : ContactPattern(packing, structure.dofs(), structure.contacts(), structure.matrix(), structure.matching(),
                          perturbed) {}
-    /// The same from the parts of a structure, which must outlive it.
+    /// Uses the parts of a structure, which must outlive the pattern.
     ContactPattern(const Packing& packing, const DofMap& dofs, const std::vector<Contact>& contacts,
                    const sparse::Matrix<double>& matrix, const std::vector<int>& matching, bool perturbed = false);
 
@@ -36,8 +36,8 @@ class ContactPattern {
     /// `reached`: the answer for a load on some of these rows (none of a disk), if known.
     [[nodiscard]] std::vector<unsigned char> carrying(std::span<const int> rows,
                                                       std::vector<unsigned char> reached = {}) const;
-    /// The same for the remaining forces after the force of `opens` was brought to 0 by a load on `rows`: 0 means that
-    /// both forces vanish together (D3). All 1 when `opens` does not depend on that load.
+    /// `carrying` for the remaining forces after the force of `opens` was brought to 0 by a load on `rows`: 0 means
+    /// that both forces vanish together (D3). All 1 when `opens` does not depend on that load.
     [[nodiscard]] std::vector<unsigned char> carrying_without(ContactId opens, std::span<const int> rows,
                                                               std::span<const int> other_rows) const;
 

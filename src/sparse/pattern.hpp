@@ -56,8 +56,8 @@ class Ordering {
 std::vector<unsigned char> structural_nonzeros(std::span<const int> start, std::span<const int> row,
                                                const Ordering& ordering, std::span<const int> loaded_rows);
 
-/// The same from the matching alone (`matched[r]` = column matched to row r): a fifth of the cost of an `Ordering`.
-/// `reached`: the result for some of the rows, if known; then only what the other rows reach besides is searched.
+/// Uses the matching alone (`matched[r]` = column matched to row r): a fifth of the cost of an `Ordering`. `reached`:
+/// the result for some of the rows, if known; then only what the other rows reach in addition is searched.
 std::vector<unsigned char> structural_nonzeros(std::span<const int> start, std::span<const int> row,
                                                std::span<const int> matched, std::span<const int> loaded_rows,
                                                std::vector<unsigned char> reached = {});

@@ -86,7 +86,7 @@ struct ZeroHolds {
 Result<OpeningDecision> decide_opening(Statics& statics, double sigma, OpeningRule rule, const ZeroHolds& zero,
                                        std::uint64_t random_bits, PerturbedStatics* perturbed = nullptr);
 
-/// The same with at most one hold: `fresh_hold`, if it is valid.
+/// `decide_opening` with at most one hold: `fresh_hold`, if it is valid.
 inline Result<OpeningDecision> decide_opening(Statics& statics, double sigma, OpeningRule rule, ContactId fresh_hold,
                                               std::uint64_t random_bits, PerturbedStatics* perturbed = nullptr) {
     return decide_opening(statics, sigma, rule, fresh_hold.valid() ? ZeroHolds{fresh_hold, {}} : ZeroHolds{},

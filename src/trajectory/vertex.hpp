@@ -49,7 +49,7 @@ class Vertex {
     /// near the stored one was proved.
     static Result<std::unique_ptr<Vertex>> make(Packing packing, std::vector<Contact> contacts, const Load& load,
                                                 InverseBoundCache& cache, LadderOptions options = {});
-    /// The same in two steps: the unproved data that a motion from the vertex needs, then the proofs.
+    /// `make` in two steps: the unproved data that a motion from the vertex needs, then the proofs.
     struct Beginning {
         Packing packing;
         RankProof rank;

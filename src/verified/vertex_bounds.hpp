@@ -23,7 +23,7 @@ inline double target(const Packing& packing, const Contact& contact) {
 inline bool in_range_of_products(double size) {
     return size > 1e-100 && size < 1e100;
 }
-/// The same for all lengths of a packing.
+/// Whether this holds for all lengths of a packing.
 inline bool in_range_of_products(const Packing& packing) {
     const auto longer = [](double a, double b) { return std::abs(a) < std::abs(b); };
     return in_range_of_products(packing.min_radius()) &&

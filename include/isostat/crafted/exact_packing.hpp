@@ -142,7 +142,7 @@ struct PackingFile {
 /// disks wider than a period or far outside the cell. Overlaps are found by `exact_contacts`, not here.
 PackingFile parse_packing(const std::string& text, const std::string& source);
 
-/// The same from a file. Throws `Error(bad_input)` when it cannot be read.
+/// As `parse_packing`, from a file. Throws `Error(bad_input)` when the file cannot be read.
 PackingFile read_packing(const std::string& path);
 
 /// How the positions of its contact normals hold a grain (no counting of contacts): contacts that can carry no force

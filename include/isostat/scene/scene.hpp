@@ -52,7 +52,7 @@ struct Scene {
 /// the known ones, settings that exclude each other, programmes that contradict themselves (`check_programme`).
 /// Relative file names in a scene are relative to the folder of the scene.
 Scene read_scene(const std::filesystem::path& path);
-/// The same from text; `source` starts the messages, relative names are relative to `folder`.
+/// Reads a scene from text; `source` starts the messages, relative names are relative to `folder`.
 Scene parse_scene(const std::string& text, const std::string& source, const std::filesystem::path& folder);
 
 /// Refuses, with `Error(bad_input)`, a programme that no packing can carry out: a segment with

@@ -77,7 +77,7 @@ Snap snap(const SoftState& soft);
 /// contacts that then carry a force are not those of the list (the message names the difference).
 Result<State> with_resting_rattlers(const Snap& snap, std::uint64_t seed);
 
-/// The same with given infinitesimal loads, which determine where the rattlers rest.
+/// `with_resting_rattlers` with given infinitesimal loads, which determine where the rattlers rest.
 Result<State> with_resting_rattlers(const Snap& snap, std::vector<double> infinitesimal);
 
 /// The vertex downhill of the soft place whatever its contacts (`find_vertex`), under the load of the soft state, and
@@ -92,7 +92,7 @@ Result<Exchanged> exchange(const SoftState& soft, std::uint64_t seed);
 
 /// The contacts of a certified state that carry a finite force, sorted.
 std::vector<Contact> carrying(const State& state, const Certification& truth);
-/// The same for a state known to be an equilibrium: by its structural zeros. Cost: a rank, no bound.
+/// These contacts for a state known to be an equilibrium, by its structural zeros. Cost: a rank, no bound.
 std::vector<Contact> carrying(const State& equilibrium);
 
 /// The contacts of a vertex that carry a force, with the numbers of the whole packing.

@@ -14,9 +14,9 @@
 namespace isostat::checker {
 
 struct Evidence {
-    /// `near`: factors of the matrix at a nearby configuration, or null; with `automatic` only. `digits`: those of the
-    /// problem; forces get as many more. `around`: all proofs then hold at every vertex of the list whose held
-    /// coordinates are within `around` of their stored values (K27).
+    /// `near`: factors of the matrix at a configuration close by, or nothing; with `automatic` only. `digits`: those
+    /// of the problem; forces get as many more. `around`: everything holds at every vertex of the list whose held
+    /// coordinates are no farther than that from their stored values (K27).
     Evidence(const State& checked, CheckerArithmetic arithmetic, bool held_allowed = false,
              std::shared_ptr<const Solver> near = {}, int digits = usual_digits, const Rational& around = 0);
 

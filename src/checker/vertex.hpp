@@ -18,8 +18,8 @@ struct TrueVertex {
     Rational column_residual; ///< bound of |I - R A(q*)|_1, below 1
 };
 
-/// `around`: every system whose held coordinates are within `around` of their stored values has one zero within
-/// `radius` of `middle` (K27).
+/// `around`: the zeros of all systems whose held coordinates are no farther than that from their stored values are
+/// within `radius` of `middle`, one of each (K27).
 TrueVertex find_vertex(const Problem& problem, const Solver& solver, const InverseBound& inverse,
                        const Rational& around = 0);
 

@@ -41,7 +41,7 @@ std::optional<std::vector<Contact>> near_edges_in_space(const Packing& packing, 
 std::vector<Contact> pairs_within(const Packing& packing, double reach,
                                   int most_per_disk = std::numeric_limits<int>::max());
 
-/// Leaves out pairs of members of one body; a member and an image of another member are a pair.
+/// Leaves out pairs of members of one body; a member and an image of another one are a pair.
 void without_own_members(std::vector<Contact>& pairs, const Packing& packing);
 
 } // namespace isostat

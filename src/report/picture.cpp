@@ -194,7 +194,7 @@ void draw_cell(Canvas& canvas, const Packing& packing) {
 /// Draws the disks, and in a cell their images; the images outside the cell are fainter.
 void draw_disks(Canvas& canvas, const State& state, const std::vector<unsigned char>& rattler) {
     const Packing& packing = state.packing;
-    constexpr int around = 1; // periods; the disks were put into the cell
+    constexpr int around = 1; // images: the disks were put into the cell
     for (int i = 0; i < packing.disk_count(); ++i) {
         const auto s = static_cast<std::size_t>(i);
         for (int m = -around; m <= around; ++m) {
@@ -212,7 +212,7 @@ void draw_disks(Canvas& canvas, const State& state, const std::vector<unsigned c
     }
 }
 
-/// Width of the line of a unit force.
+/// Width of the line of a force 1.
 double width_of_force(const Canvas& canvas, const State& state, std::span<const double> forces) {
     constexpr double width_at_mean = 0.2; // of the mean radius
     double radius = 0;
@@ -236,7 +236,7 @@ void draw_contacts(Canvas& canvas, const State& state, std::span<const double> f
         const char* const style = force == 0 ? "contact" : force < 0 ? "traction" : pair ? "force" : "force wall";
         const double width = force == 0 ? hairline : std::abs(force) * unit;
         canvas.line(centre(state, contact.i), end, width, style);
-        if (!contact.image.is_here()) { // drawn from the second disk too
+        if (!contact.image.is_here()) { // from the other side too
             canvas.line(centre(state, contact.i) - (end - centre(state, contact.j)), centre(state, contact.j), width,
                         style);
         }

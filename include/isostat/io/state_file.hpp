@@ -39,13 +39,13 @@ void write_packing(const std::filesystem::path& path, const Packing& packing, co
 /// checked here: see `check_start`. A periodic cell is refused, because most of the program takes boxes only.
 StateFile parse_state(const std::string& text, const std::string& source);
 
-/// What a caller accepts: `two` refuses spheres (`require_plane`), `two` and `any` refuse clumps
-/// (`require_single_grains`); `any_clumps` accepts all states.
+/// Spheres are refused by what takes disks only, which says so (`require_plane`), and clumps by what takes single
+/// grains only (`require_single_grains`): `any_clumps` takes all.
 enum class Dimensions : unsigned char { two, any, any_clumps };
 
-/// As `parse_state`, and accepts periodic cells. Further messages: walls along a periodic axis, images in a box or more
-/// than 3 periods away, periods that are not positive, disks that overlap their own images, loads that do not sum to
-/// zero along a periodic axis.
+/// The same, periodic cells too. Further messages: walls along a periodic axis, images in a box or more than 3 periods
+/// away, periods that are not positive, disks that overlap their own images, loads that do not sum to zero along a
+/// periodic axis.
 StateFile parse_any_state(const std::string& text, const std::string& source, Dimensions dimensions = Dimensions::two);
 
 /// Reads a state file or, recognised by its first character, a vertex text (`vertex_text.hpp`).

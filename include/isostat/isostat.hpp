@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// The whole library for its users: every public header. Each of them can be included alone; include/README.md says
-/// what is in which.
+/// Every public header of the library. Each can be
+/// included alone; include/README.md says what each holds.
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/checker/verify.hpp>

@@ -35,12 +35,12 @@ std::vector<std::string> moving(const Cell& cell) {
     return names;
 }
 
-/// In the order xy, xz, yz.
+/// The tilts in the order xy, xz, yz.
 std::span<const double> tilts_of(const Packing& packing) {
     return std::span(packing.q).subspan(packing.length_at(packing.axes()), packing.tilts());
 }
 
-/// A number that is only bounded is marked.
+/// The text of a count, marked when it is only a bound.
 std::string marked(int value, const Counting& c) {
     return fmt::format("{}{}", c.rank_exact == Verdict::proved ? "" : "<=", value);
 }

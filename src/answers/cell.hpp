@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What `inspect` says of a periodic cell.
+/// The output of `inspect` for a periodic cell.
 
 #include "certificate/jammed_box.hpp"
 #include "io/json.hpp"
@@ -19,7 +19,7 @@ json::Json strains_json(const StrainCounts& counts);
 void print_box(std::string& out, const Packing& packing, const BoxInspection& box);
 json::Json box_json(const BoxInspection& box);
 
-/// The counts side by side, the words of jamming, and the count of contacts that elastic moduli need.
+/// Prints the counts side by side, the words of jamming, and the count of contacts that elastic moduli need.
 void print_cell(std::string& out, const CellInspection& cell);
 json::Json cell_json(const Packing& packing, const CellInspection& cell);
 

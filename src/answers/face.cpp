@@ -16,7 +16,7 @@ using text::say;
 
 namespace {
 
-/// Names of what a run noted.
+/// The names of the contacts that a run recorded.
 std::vector<std::string> names_of(const std::vector<std::pair<Contact, Enclosure>>& noted, int dimension) {
     std::vector<std::string> names;
     for (const auto& [contact, term] : noted) {

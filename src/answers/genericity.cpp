@@ -27,7 +27,7 @@ using text::say;
 
 namespace {
 
-/// Smallest, median, largest of a figure over the proved samples.
+/// Smallest, median and largest value of a quantity over the proved samples.
 template <class Get> std::array<double, 3> spread(const Genericity& result, Get get) {
     std::vector<double> values;
     for (const GenericitySample& sample : result.samples) {
@@ -83,7 +83,7 @@ Json sample_json(const GenericitySample& sample) {
     return out;
 }
 
-/// The most frequent contact lists of one size.
+/// Prints the most frequent contact lists of one size.
 void print_lists(std::string& out, const GenericityAnswer& a, const Genericity& result, double size) {
     for (std::size_t k = 0;
          k < result.lists.size() && k < a.lists && result.lists[k].samples > std::max(1, a.options.samples / 20); ++k) {
@@ -92,7 +92,7 @@ void print_lists(std::string& out, const GenericityAnswer& a, const Genericity& 
     }
 }
 
-/// Why samples of one size failed: how many of each kind, and the first of them.
+/// Prints why samples of one size failed: the number of each kind, and its first reason.
 void print_failures(std::string& out, const Genericity& result, double size) {
     std::map<std::string, std::pair<int, std::string>> reasons;
     for (const GenericitySample& sample : result.samples) {

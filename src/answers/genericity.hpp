@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What `genericity` answers.
+/// The output of `genericity`.
 
 #include "crafted/genericity.hpp"
 #include "io/json.hpp"
@@ -14,7 +14,7 @@
 
 namespace isostat::answers {
 
-/// The unperturbed packing: its contacts, and what is known of h and k.
+/// The unperturbed packing: its contacts, and bounds of h and k.
 struct GenericityOriginal {
     Packing packing;
     std::vector<Contact> contacts;
@@ -25,14 +25,14 @@ struct GenericityOriginal {
     std::string title;
 };
 
-/// Of a crafted packing, a state or a vertex text. Throws `Error(bad_input)`.
+/// Reads a crafted packing, a state or a vertex text. Throws `Error(bad_input)`.
 GenericityOriginal read_original(const std::string& file);
 
 struct GenericityAnswer {
     std::string file; ///< its name
     GenericityOriginal original;
     crafted::GenericityOptions options;
-    std::size_t lists = 0; ///< at most so many of each size are told
+    std::size_t lists = 0; ///< largest number of lists shown for each size
 };
 
 /// Text: its head, a row for each size, and the most frequent lists and the failures of all.

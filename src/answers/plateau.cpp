@@ -24,7 +24,7 @@ using json::Json;
 using json::or_null;
 using text::say;
 
-/// The backbone of the widest range, or at the largest threshold.
+/// The backbone of the widest range; without such a range, at the largest threshold.
 std::vector<Contact> shown_backbone(const Packing& packing, const crafted::Plateau& plateau, double& threshold) {
     threshold = plateau.widest ? plateau.widest->range.first : threshold;
     return crafted::backbone_at(packing, threshold);
@@ -45,7 +45,7 @@ void print_strains(std::string& out, const Packing& packing, const crafted::Plat
     say(out, "jammed                   undecided: that asks for forces; counts alone do not tell\n");
 }
 
-/// The pair or wall with the smallest gap; empty where none is near.
+/// The pair or wall with the smallest gap; empty when no pair is near.
 std::string deepest_of(const Packing& packing) {
     std::string out;
     double smallest = HUGE_VAL;
@@ -65,7 +65,7 @@ std::string word(Verdict verdict) {
     return std::string(to_string(verdict));
 }
 
-/// A bound is marked: h and k are exact only where the rank is.
+/// The text of a count, marked when it is a bound: h and k are exact only when the rank is.
 std::string bound(int value, const PlateauCounts& counts) {
     return fmt::format("{}{}", counts.rank_exact == Verdict::proved ? "" : "<=", value);
 }
@@ -101,7 +101,7 @@ std::string noise_text(const crafted::Told& told, double rounding) {
                      told.noise == 1 ? "is" : "are");
 }
 
-/// Where there is none, as far as the rounding of gaps leaves it open.
+/// Names the thresholds without self-stress, as far as the rounding of gaps decides them.
 std::string self_stress_text(const crafted::Plateau& plateau) {
     const double end = plateau.no_self_stress_below;
     if (plateau.no_self_stress_open) {
@@ -112,7 +112,7 @@ std::string self_stress_text(const crafted::Plateau& plateau) {
                : fmt::format("below {:.17g}, proved", end);
 }
 
-/// What the packing says: the widest range.
+/// Prints the main result, the widest range.
 void print_headline(std::string& out, const crafted::Plateau& plateau, const crafted::Told& told,
                     const std::array<double, 2>& thresholds) {
     const std::string none = fmt::format("at no threshold of [{:.6g}, {:.6g}]", thresholds[0], thresholds[1]);

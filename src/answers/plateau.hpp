@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What `plateau` answers.
+/// The output of `plateau`.
 
 #include "crafted/told_ranges.hpp"
 #include "io/json.hpp"

@@ -36,7 +36,7 @@ std::span<const double> stresses_of(const State& state) {
     return std::span(state.load.stress).first(state.packing.axes());
 }
 
-/// Of the axes, and of the tilts where they move.
+/// The rates of the axes, and of the tilts where these move.
 std::span<const double> of_path(const State& state, const StressRates& all) {
     const Packing& packing = state.packing;
     return std::span(all).first(packing.axes() + (packing.cell.shears() ? packing.tilts() : 0));
@@ -85,7 +85,7 @@ void print_counting(std::string& out, const State& state, const Counting& c) {
     say(out, "mechanisms k             {}\n", c.mechanisms);
 }
 
-/// The smallest finite force that is no structural zero lies in it.
+/// Contains the smallest finite force that is no structural zero.
 Interval smallest_force(const Inspection& inspection) {
     Interval smallest{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
     for (std::size_t l = 0; l < inspection.structural_zero.size(); ++l) {
@@ -114,7 +114,7 @@ void print_forces(std::string& out, const Inspection& inspection, int dimension)
     }
 }
 
-/// Without held coordinates, which stand in the place of a contact.
+/// Number of contacts with a force, without the held coordinates of the list.
 int carrying_count(const Inspection& inspection) {
     int held = 0;
     for (std::size_t l = 0; l < inspection.structural_zero.size(); ++l) {
@@ -123,7 +123,7 @@ int carrying_count(const Inspection& inspection) {
     return inspection.record.backbone - held;
 }
 
-/// Of the disks that rattle the first members.
+/// Counts rattling bodies by their first members.
 int rattling_bodies(const Packing& packing, const std::vector<int>& rattlers) {
     const Bodies bodies(packing);
     return static_cast<int>(std::count_if(rattlers.begin(), rattlers.end(), [&](int i) { return bodies.of(i) == i; }));
@@ -230,7 +230,7 @@ void add_inspection(Json& object, const State& state, const Inspection& inspecti
         const auto& interval = inspection.truth.claims.load_interval;
         Json opens = Json::array();
         object["interval_decided"] = interval.has_value();
-        object["supported_interval"] = {or_null(r.stress_low), or_null(r.stress_high)}; // middles of the next two
+        object["supported_interval"] = {or_null(r.stress_low), or_null(r.stress_high)}; // midpoints of the ends below
         for (const auto& [key, end] :
              {std::pair{"interval_low", &LoadIntervalClaim::low}, {"interval_high", &LoadIntervalClaim::high}}) {
             const LoadEndClaim* const known = interval && !((*interval).*end).unbounded ? &((*interval).*end) : nullptr;
@@ -292,7 +292,7 @@ std::string tensor_text(const ForceAverages::Tensor& tensor, std::size_t axes) {
     return text;
 }
 
-/// The finite forces are known.
+/// Whether the finite forces are known.
 bool has_forces(const State& state, const Certification& truth) {
     return !state.contacts.empty() && truth.finite.size() == state.contacts.size();
 }
@@ -322,7 +322,7 @@ void add_averages(Json& object, const State& state, const Certification& truth, 
     }
 }
 
-/// The smallest ones, of a structure that is proved regular.
+/// The smallest singular values of a structure that is proved regular.
 std::vector<double> singular_values_of(std::optional<int> wanted, const State& state) {
     constexpr int of_spheres = 10;
     const int count = wanted.value_or(state.packing.dimension == plane ? 0 : of_spheres);
@@ -333,7 +333,7 @@ std::vector<double> singular_values_of(std::optional<int> wanted, const State& s
     return structure.ok() ? smallest_singular_values(structure.value(), count) : std::vector<double>();
 }
 
-/// The forces one by one.
+/// Prints each force.
 void print_forces_at(std::string& out, const State& state, const Certification& truth) {
     for (std::size_t l = 0; l < truth.finite.size(); ++l) {
         say(out, "force {:<18} {}\n", to_string(state.contacts[l], state.packing.dimension),
@@ -350,7 +350,7 @@ Json forces_json(const State& state, const Certification& truth) {
     return out;
 }
 
-/// Nothing: the forces, or the rattlers, are not known.
+/// Empty when the forces or the rattlers are not known.
 std::optional<Coordination> coordination_of(const StateAnswer& answer) {
     const State& state = answer.file.state;
     return answer.result.ok() && has_forces(state, answer.truth)
@@ -430,7 +430,7 @@ StateAnswer answer_of(const StateFile& file, std::optional<int> singular_values)
     const State& state = file.state;
     Result<Inspection> result = inspect_vertex(state);
     Certification truth = result.ok() ? result.value().truth : certify(state);
-    const bool clumps = !state.packing.bars.empty(); // strains of their cells are not counted
+    const bool clumps = !state.packing.bars.empty(); // strains of cells with clumps are not counted
     auto cell = state.packing.cell.all() && !clumps ? std::optional(inspect_cell(state, truth)) : std::nullopt;
     compare::Untold untold = compare::untold_by(compare::imported_rounding(state), state, truth);
     if (result.ok()) {
@@ -438,7 +438,7 @@ StateAnswer answer_of(const StateFile& file, std::optional<int> singular_values)
     }
     if (cell) {
         withhold(untold, *cell);
-        if (untold.any()) { // and where what is open closes
+        if (untold.any()) { // adds the result with the undecided gaps closed
             std::vector<Contact> closed = state.contacts;
             closed.insert(closed.end(), untold.gaps.begin(), untold.gaps.end());
             add_if_closed(state.packing, closed, *cell);

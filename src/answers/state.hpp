@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Everything that `inspect` answers of a state.
+/// The output of `inspect` for a state.
 
 #include "certificate/jammed_box.hpp"
 #include "io/json.hpp"
@@ -23,15 +23,15 @@ struct StateAnswer {
     std::optional<CellInspection> cell;
     std::optional<BoxInspection> box;
     compare::Untold untold;
-    std::vector<double> singular_values; ///< the smallest ones, of a structure that is proved regular
+    std::vector<double> singular_values; ///< the smallest ones, for a structure proved regular
 
     [[nodiscard]] bool refuted() const { return !result.ok() && result.failure().kind == FailureKind::not_isostatic; }
 };
 
-/// \p singular_values: how many are asked for; none: ten of spheres, 0 of disks. \pre the file outlives the answer
+/// \p singular_values: how many; absent: ten for spheres, 0 for disks. \pre the file outlives the answer
 StateAnswer answer_of(const StateFile& file, std::optional<int> singular_values);
 
-/// \p each_force: the forces one by one too.
+/// \p each_force: prints every force too.
 std::string to_text(const StateAnswer& answer, bool each_force);
 /// \p file: its name.
 json::Json to_json(const StateAnswer& answer, const std::string& file);

@@ -22,7 +22,7 @@ void line(std::string& out, const char* claim, const std::string& text, const st
     say(out, "{:<14} {:<88} {}\n", claim, text, rung);
 }
 
-/// Smallest lower end, and the largest width, of the intervals that are not structural zeros.
+/// The smallest lower end and the largest width of the intervals that are not structural zeros.
 std::pair<double, double> smallest_and_widest(const ForcesClaim& forces, const std::vector<Contact>& contacts) {
     double smallest = std::numeric_limits<double>::infinity();
     double widest = 0;
@@ -56,7 +56,7 @@ std::string signs_text(const ForceSigns& s) {
     return text + (s.undecided > 0 ? fmt::format(", {} undecided", s.undecided) : "");
 }
 
-/// Forces that a state file holds against the proved ones: how far apart at most, and where.
+/// Compares the forces of a state file with the proved forces: the largest difference, and its contact.
 struct FileForces {
     double difference = 0;
     Contact where;

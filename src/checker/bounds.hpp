@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Intervals of doubles, every operation rounded outwards by one step: what is computed with them contains the exact
-/// result, whatever the rounding mode.
+/// Intervals of doubles; every operation rounds outwards by one step,
+/// so that results contain the exact results in any rounding mode.
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 
 namespace isostat::checker {
 
-inline constexpr double root_of_two = 1.4142135623730952; ///< above it
+inline constexpr double root_of_two = 1.4142135623730952; ///< above the square root of 2
 
 inline double next_below(double x) {
     return std::nextafter(x, -std::numeric_limits<double>::infinity());
@@ -18,7 +18,7 @@ inline double next_above(double x) {
     return std::nextafter(x, std::numeric_limits<double>::infinity());
 }
 
-/// All numbers from lower to upper. An operation that meets NaN or overflows ends with an interval that contains all.
+/// All numbers from lower to upper. An operation that meets NaN or overflows gives an interval of all numbers.
 struct Bounds {
     double lower = 0;
     double upper = 0;

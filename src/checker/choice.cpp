@@ -8,7 +8,7 @@ namespace isostat::checker {
 
 namespace {
 
-/// One of them is proved to come before all others.
+/// One of the members is proved to come before all others.
 bool loads_order(const std::vector<std::size_t>& members, const ChoiceRule& rule) {
     return std::any_of(members.begin(), members.end(), [&](std::size_t a) {
         return std::all_of(members.begin(), members.end(),

@@ -8,28 +8,28 @@
 
 namespace isostat::checker {
 
-/// How a run orders contacts that it finds tied.
+/// How a run orders contacts that are tied.
 struct ChoiceRule {
     std::string what;                       ///< "opening" or "limit"
     std::function<bool(std::size_t)> tied;  ///< not told apart from the chosen contact in the base
-    std::function<Range(std::size_t)> load; ///< the infinitesimal loads take the smallest
+    std::function<Range(std::size_t)> load; ///< the smallest load opens first by the infinitesimal loads
 };
 
-/// The record of a choice of one contact against another; null: there is none.
+/// The record of a choice of one contact against another; null: no record.
 const TieRecord* recorded_choice(const std::vector<TieRecord>& ties, const std::string& what, const std::string& chosen,
                                  const std::string& against);
 
-/// What the records say of the choice of that contact: that the others are not refuted to be tied with it in the base
-/// (`check_ties` asks the same at first order), and that the rule takes it. Never that they are equal.
+/// Checks a recorded choice of a contact: the other contacts are not refuted to be tied with it in the base
+/// (`check_ties` checks the same at first order), and the rule takes it. Never proves that the contacts are tied.
 Objections check_choice(const Place& place, const std::vector<TieRecord>& ties, std::size_t chosen,
                         const ChoiceRule& rule);
 
-/// An exchange of the list before `opened` opens, where a pair that touches would overlap at second order, or rests
-/// (C3, C5; K23): `place` has the list before it.
+/// Checks an exchange of the list before `opened` opens, where a touching pair would overlap at second order, or rests
+/// (C3, C5; K23): `place` has the list before the exchange.
 Objections check_exchange(const Place& place, const TieRecord& tie, std::size_t opened);
 
-/// A pair that is taken to keep touching when `opened` opens (C4; K25): neither rate nor second derivative of its gap
-/// is told from 0.
+/// Checks a pair that is assumed to keep touching when `opened` opens (C4; K25): neither the rate nor the second
+/// derivative of its gap can be told from 0.
 Objections check_rest(const Place& place, const TieRecord& tie, std::size_t opened, int direction);
 
 } // namespace isostat::checker

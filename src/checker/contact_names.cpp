@@ -49,7 +49,7 @@ std::optional<Contact> contact_with(int i, std::string_view rest, int dimension)
     Image image;
     const bool pair = take(rest, j) && j >= 0;
     const bool here = rest.empty();
-    constexpr auto farthest = std::numeric_limits<std::int8_t>::max(); // what has an opposite
+    constexpr auto farthest = std::numeric_limits<std::int8_t>::max(); // larger values have no opposite
     bool there = !here;
     for (std::size_t a = 0; a < static_cast<std::size_t>(dimension) && there; ++a) {
         there = take_word(rest, a == 0 ? "(" : ",") && take(rest, image.m[a]) && image.m[a] >= -farthest;

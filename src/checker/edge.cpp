@@ -13,7 +13,7 @@ bool is_wall(const Contact& c) {
     return c.kind == ContactKind::lower_wall || c.kind == ContactKind::upper_wall;
 }
 
-/// The sphere of `wall` touches the two walls, and so does what the contact presses that sphere with.
+/// The sphere of `wall` touches the two walls, and so does the other sphere of the contact.
 bool with_a_sphere_there(const std::vector<Contact>& contacts, const Contact& c, const Contact& wall,
                          const Contact& other) {
     const auto touches = [&](Contact at) {

@@ -27,10 +27,10 @@ class Matrix {
     std::vector<Integer> values_;
 };
 
-/// The rank.
+/// The rank of a matrix, exact.
 int rank(Matrix a);
 
-/// The adjugate of a square matrix and its determinant; when that is 0 the matrix returned means nothing.
+/// The adjugate of a square matrix and its determinant; with determinant 0 the returned matrix has no meaning.
 Matrix inverse_times_determinant(const Matrix& a, Integer& determinant);
 
 } // namespace isostat::checker

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Everything that the checker proves of a state by itself, before it looks at a claim, and words for it.
+/// Everything that the checker proves of a state before it reads a claim, and words for it.
 
 #include "checker/forces.hpp"
 
@@ -26,20 +26,20 @@ struct Evidence {
     std::optional<int> rank; ///< of the stored matrix
     InverseBound inverse;
     TrueVertex vertex;
-    // At the true vertex, when it was found:
+    // At the true vertex, if it was found:
     Forces finite_load;
     Forces unit_load;
     std::vector<Range> forces; ///< under the load of the state
-    /// Forces per unit of the loaded stress, and per unit of eps: computed when first asked for, by one thread.
+    /// Forces per unit of the loaded stress, and per unit of eps: computed on first use, by one thread.
     [[nodiscard]] const std::vector<Range>& slopes() const;
     [[nodiscard]] const std::vector<Range>& infinitesimal() const;
-    std::shared_ptr<const Solver> solver; ///< when square
+    std::shared_ptr<const Solver> solver; ///< filled when the matrix is square
 
     [[nodiscard]] std::string name(std::size_t contact) const { return named(state.contacts[contact]); }
     [[nodiscard]] std::string named(const Contact& contact) const {
         return to_string(contact, state.packing.dimension);
     }
-    /// How many of the list are of a kind; and whether some row is of no contact.
+    /// How many rows are of one kind; and whether some row is no contact.
     [[nodiscard]] int count(ContactKind kind) const;
     [[nodiscard]] bool has_other_rows() const { return count(ContactKind::bar) + count(ContactKind::held) > 0; }
     [[nodiscard]] std::string why_no_inverse() const;
@@ -53,26 +53,26 @@ struct Evidence {
 /// Positions of the ranges that contain 0.
 std::vector<int> having_zero(const std::vector<Range>& ranges);
 
-/// Refuted wins over undecided, undecided over proved.
+/// The verdict on two statements together: refuted before undecided, undecided before proved.
 Verdict both(Verdict a, Verdict b);
 
-/// A claimed interval against a proved range of the same number.
+/// The verdict on a claimed interval from a proved range of the same number.
 Verdict lies_in(const Range& value, const Interval& claimed);
 
 /// "[lower, upper]" with all digits, rounded outwards.
 std::string shown(const Range& range);
 std::string shown(const Interval& interval);
 
-/// The check with an answer.
+/// Fills the answer into the check of a claim.
 ClaimCheck answer(ClaimCheck check, Verdict verdict, const std::string& detail);
 
-/// The answers to all claims, from evidence of their state.
+/// The answers about all claims, from the evidence of their state.
 Verification judge(const CertificateClaims& claims, const Evidence& evidence);
-/// Parts of it with a file of their own; the claims are there.
+/// Parts of `judge` in files of their own, for claims that are present.
 ClaimCheck judge_forces(const Evidence& evidence, const ForcesClaim& claim);
 ClaimCheck judge_load_interval(const Evidence& evidence, const LoadIntervalClaim& claim);
 ClaimCheck judge_minimum(const Evidence& evidence, const MinimumClaim& claim);
-/// One end of the interval; direction 1 is the upper one. `text`: what was found.
+/// One end of the interval; direction 1 is the upper end. `text` gets what was proved.
 Verdict judge_load_end(const Evidence& evidence, const LoadEndClaim& claim, int direction, std::string& text);
 
 } // namespace isostat::checker

@@ -8,7 +8,7 @@ Range component(const Problem& problem, const Velocities::Solution& v, std::size
     return problem.dof_of[k] >= 0 ? Range::around(v.middle[k], v.radius) : Range(Rational(0));
 }
 
-/// d of two disks, of what `at` says of the coordinates.
+/// d of two disks from the coordinates that `at` gives.
 template <class At> PerAxis<Range> separate(const Row& row, At at) {
     PerAxis<Range> d;
     for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
@@ -75,13 +75,13 @@ Velocities::Solution Velocities::solve(const std::vector<Rational>& b, const Rat
     if (largest == 0 && off == 0) {
         return result;
     }
-    // The fastest coordinate is above b / the largest entry of A: 120 bits below that are kept.
+    // The fastest coordinate is above b / the largest entry of A: 120 bits below this are kept.
     const long scale = e_.solver->scale(problem);
     const long shift =
         120 + scale + problem.fine - (largest == 0 ? 0 : bits(largest.get_num()) - bits(largest.get_den()));
     FirstMotion motion{problem, e_.vertex.middle, {}, std::vector<Integer>(problem.dof_of.size())};
     for (const Rational& rate : b) {
-        motion.target.push_back(floor_of(rate, shift - problem.fine)); // by less than one
+        motion.target.push_back(floor_of(rate, shift - problem.fine)); // off by less than one
     }
     std::vector<Integer> residual = motion.target;
     long size = bits(largest_of(residual));
@@ -114,7 +114,7 @@ Velocities::Solution Velocities::solve(const std::vector<Rational>& b, const Rat
 
 Velocities::Solution Velocities::opening(std::size_t contact, int direction) const {
     std::vector<Rational> b(static_cast<std::size_t>(e_.problem.contacts()));
-    // F is the gap times its distance of centres, or times the weight.
+    // F is the gap times the distance of the centres, or times the weight.
     b[contact] = e_.problem.force_factor(static_cast<int>(contact)) * direction;
     return solve(b);
 }
@@ -137,7 +137,7 @@ Range Velocities::gap_rate(const Contact& pair, const Solution& v) const {
     return pair.kind == ContactKind::lower_wall ? x : component(e_.problem, v, e_.problem.layout.of_length(j)) - x;
 }
 
-/// |D v|^2: what the velocity adds to F'' of a pair of disks.
+/// |D v|^2: the contribution of the velocity to F'' of a pair of disks.
 Range Velocities::turning(const Contact& pair, const Solution& v) const {
     if (!pair.of_disks()) {
         return Range(Rational(0));
@@ -214,7 +214,7 @@ std::vector<Range> FirstOrder::forces(const std::vector<Range>& f0) const {
             add(static_cast<std::size_t>(row.coordinate[k]), Range(Rational(row.sign[k])) * g * turn[row.axis[k]]);
         }
     }
-    if (e_.state.load.kind == LoadKind::true_stress) { // the force of a wall follows the other lengths
+    if (e_.state.load.kind == LoadKind::true_stress) { // the force of a wall depends on the other lengths
         const Layout& layout = e_.problem.layout;
         for (std::size_t a = 0; a < layout.axes(); ++a) {
             const Range stress(-stress_of(e_.state.load, a));

@@ -6,24 +6,24 @@
 
 namespace isostat::checker {
 
-/// Solutions of A(q*) v = b, enclosed. Lengths are real; the evidence, of a vertex that was found, must outlive it.
+/// Solutions of A(q*) v = b, enclosed. Lengths are real. The evidence must be of a found vertex and outlive the object.
 class Velocities {
   public:
     explicit Velocities(const Evidence& evidence) : e_(evidence) {}
 
     struct Solution {
-        std::vector<Rational> middle; ///< per coordinate; 0 where it does not move
-        Rational radius;              ///< of every component that moves
+        std::vector<Rational> middle; ///< per coordinate; 0 for coordinates that do not move
+        Rational radius;              ///< of every coordinate that moves
         [[nodiscard]] double fastest() const;
     };
-    /// `b` per contact: the rate of F_l, each known to `off`.
+    /// `b` per contact: the rate of F_l, each known up to `off`.
     [[nodiscard]] Solution solve(const std::vector<Rational>& b, const Rational& off = 0) const;
-    /// The motion on which the gap of a contact changes at rate `direction` and all others do not.
+    /// The motion on which the gap of one contact changes at rate `direction` and no other gap of a contact changes.
     [[nodiscard]] Solution opening(std::size_t contact, int direction) const;
     /// The rate of the gap of a pair that touches at the true vertex.
     [[nodiscard]] Range gap_rate(const Contact& pair, const Solution& v) const;
-    /// The second derivative of that gap with respect to the gap of `opened`, v = opening(opened, 1); all other
-    /// contacts stay closed (K23).
+    /// The second derivative of that gap by the gap of `opened`, v =
+    /// opening(opened, 1), while all other contacts stay closed (K23).
     [[nodiscard]] Range bend(const Contact& pair, std::size_t opened, const Solution& v) const;
 
   private:
@@ -38,7 +38,7 @@ class FirstOrder {
 
     /// First-order gap of a pair that touches at the true vertex.
     [[nodiscard]] Range gap(const Contact& pair) const;
-    /// First-order forces at a fixed stress, from the forces there.
+    /// First-order forces at a fixed stress, from the forces f0.
     [[nodiscard]] std::vector<Range> forces(const std::vector<Range>& f0) const;
     [[nodiscard]] const Velocities& velocities() const { return velocities_; }
 

@@ -14,7 +14,7 @@ namespace isostat::checker {
 
 namespace {
 
-/// Between the centres of a pair.
+/// Distance between the centres of a pair.
 double distance(const Packing& packing, const std::vector<double>& q, const Contact& c) {
     const Layout layout = packing.layout();
     PerAxis<double> d{};
@@ -39,12 +39,12 @@ double gap_at(const Packing& packing, const std::vector<double>& q, const Contac
     return (c.kind == ContactKind::lower_wall ? x : q[packing.length_at(j)] - x) - r[i];
 }
 
-/// A gap moves by at most this times the fastest coordinate for each of the two grains: above sqrt d.
+/// A gap changes by at most this factor times the fastest coordinate for each of the two grains: above sqrt d.
 double per_coordinate(const Packing& packing) {
     return packing.dimension == plane ? 1.5 : 1.75;
 }
 
-/// The same between all images of disks; nothing: there are too many.
+/// The pairs within `reach` among all images of disks; empty: there are too many images.
 std::optional<std::vector<Contact>> near_pairs_in_cell(const Packing& packing, const std::vector<double>& q,
                                                        double reach) {
     const CellImages images(packing, q);
@@ -118,7 +118,7 @@ std::optional<std::vector<Contact>> near_pairs(const Packing& packing, const std
     return pairs;
 }
 
-/// What a step meets: nothing, the end of the motion at a part of the step, or something that must not be there.
+/// The result of a step: nothing, the end of the motion at a part of the step, or another event.
 struct Met {
     bool lost = false; ///< the motion could not be computed
     std::optional<double> end;
@@ -147,7 +147,7 @@ class Walk {
         int halvings = 0;
         std::vector<double> next;
         for (long k = 0; k < steps; ++k) {
-            if (!move(step, next)) { // the way may bend too much for it
+            if (!move(step, next)) { // the curve may bend too much for this step
                 if (halvings++ == most_halvings) {
                     return {};
                 }
@@ -188,15 +188,15 @@ class Walk {
     static constexpr double near = 1e-2; ///< of the recorded displacement: an end there may be the right one
     static constexpr int most_halvings = 10;
 
-    /// An arc no longer than gaps are told from 0: there is no way to walk.
+    /// For an arc so short that gaps along it cannot be told from 0, so that there are no steps.
     [[nodiscard]] Followed arrive_at_once() const {
         Followed there = motion_.displacement <= tolerance_ ? arrive(q_, 0) : Followed();
         return there.end && displacement(*there.end) <= tolerance_ ? there : Followed();
     }
 
-    /// The next point. Contact `opened` opens in the first step; later the motion goes on in the same sense.
+    /// The next point. Contact `opened` opens in the first step; later the motion continues in the same direction.
     bool move(double step, std::vector<double>& next) {
-        constexpr double between = 0x1p-40; // accuracy of the points on the way
+        constexpr double between = 0x1p-40; // accuracy of the points between the ends
         if (!kept_.motion(q_, motion_.opened, opening_)) {
             return false;
         }
@@ -226,7 +226,7 @@ class Walk {
         double terms = 0; ///< sum of the absolute values
         double load = 0;  ///< the largest component
     };
-    /// Power of the load on a velocity.
+    /// Power of the load for a velocity.
     [[nodiscard]] double power(const std::vector<double>& q, const Eigen::VectorXd& v,
                                PowerSize* size = nullptr) const {
         const std::vector<double> load = motion_.power_load(q);
@@ -242,7 +242,7 @@ class Walk {
         return sum;
     }
 
-    /// The list of near pairs is made anew when a coordinate has moved far enough. False: it cannot be.
+    /// Makes the list of near pairs anew when a coordinate has moved far enough. False: this is impossible.
     bool list_pairs(const std::vector<double>& next) {
         double moved = listed_at_.empty() ? reach_ : 0;
         for (std::size_t c = 0; c < listed_at_.size(); ++c) {
@@ -260,7 +260,7 @@ class Walk {
         return true;
     }
 
-    /// Does the power of the load turn on the way to `next`?
+    /// Whether the power of the load changes sign before `next`.
     Met turn(const std::vector<double>& next) {
         if (!kept_.motion(next, motion_.opened, opening_)) {
             return {true, {}, {}};
@@ -271,7 +271,7 @@ class Walk {
         }
         const auto c = static_cast<std::size_t>(motion_.closed.i);
         const double way = next[c] - q_[c];
-        // The turn is within this step, or next to it as far as the power is rounded.
+        // The turn is within this step, or next to it within the rounding of the power.
         const double room = std::abs(way) + tolerance_;
         if (motion_.held_at < std::min(q_[c], next[c]) - room || motion_.held_at > std::max(q_[c], next[c]) + room) {
             return {false,
@@ -282,7 +282,7 @@ class Walk {
         return {false, std::clamp(way != 0 ? (motion_.held_at - q_[c]) / way : 0, 0.0, 1.0), {}};
     }
 
-    /// Does the contact close on the way to `next`?
+    /// Whether the contact closes before `next`.
     [[nodiscard]] Met closing(const std::vector<double>& next, bool first) const {
         constexpr double rounding = 0x1p-50; // of a velocity, whose largest component is 1
         if (powered_ && power_ < -1e-6 * power_size_.terms && power_ < -rounding * power_size_.load) {
@@ -290,7 +290,7 @@ class Walk {
         }
         const double before = kept_.value(q_, motion_.closed);
         const double after = kept_.value(next, motion_.closed);
-        // The opened contact itself, or one that touched from the start, must have opened first.
+        // The opened contact itself, or one that touched from the start, must have opened before.
         const bool from_start = first && (motion_.closed == from_.contacts[motion_.opened] ||
                                           std::find(motion_.touching.begin(), motion_.touching.end(), motion_.closed) !=
                                               motion_.touching.end());
@@ -300,7 +300,7 @@ class Walk {
         return {false, before > 0 ? before / (before - after) : 1, {}};
     }
 
-    /// Two ends may be near each other: the one that moved as far as the record says.
+    /// Chooses of two ends near each other the one whose displacement agrees with the record.
     [[nodiscard]] Followed nearer(Followed there) const {
         const auto off = [this](const Followed& end) {
             return end.end ? std::abs(displacement(*end.end) - motion_.displacement)
@@ -313,14 +313,14 @@ class Walk {
         return off(other) < off(there) ? other : there;
     }
 
-    /// For the first time so far as the record says: a gap that grazes is 0 nowhere.
+    /// Whether the recorded displacement is reached for the first time, because a grazing gap is 0 nowhere.
     bool passes(const std::vector<double>& next) {
         const bool first = !passed_ && displacement(next) >= motion_.displacement;
         passed_ = passed_ || first;
         return first;
     }
 
-    /// The gap grows again near the recorded displacement: it may have been 0 within the last steps.
+    /// Whether the gap grows again near the recorded displacement: it may have been 0 within the last steps.
     bool dips(const std::vector<double>& next) {
         const double before = kept_.value(q_, motion_.closed);
         const double after = kept_.value(next, motion_.closed);
@@ -328,7 +328,7 @@ class Walk {
         return fell && after >= before && displacement(next) >= (1 - near) * motion_.displacement;
     }
 
-    /// Another pair that overlaps at `next`, as a message; empty: none.
+    /// Another pair that overlaps at `next`, as a message; empty: no pair does.
     [[nodiscard]] std::string closed_before(const std::vector<double>& next) const {
         const auto kept = [&](const Contact& pair) {
             return pair != from_.contacts[motion_.opened] &&
@@ -361,7 +361,7 @@ class Walk {
         });
     }
 
-    /// The same where the contacts are nearly singular, from the beginning of the last step: of two places the first.
+    /// Arrives where the contacts are nearly singular, from the start of the last step, at the first of two places.
     [[nodiscard]] Followed arrive_slowly() const {
         return end_near(q_, [this](System& end, std::vector<double>& at) {
             return end.newton_in_quadruple(at) &&
@@ -379,7 +379,7 @@ class Walk {
         if (!newton(end, q)) {
             return {};
         }
-        for (const Contact& contact : contacts) { // held means held, rounding apart
+        for (const Contact& contact : contacts) { // a held coordinate keeps its value without rounding
             if (contact.kind == ContactKind::held) {
                 q[static_cast<std::size_t>(contact.i)] = end.held_value(contact);
             }
@@ -400,9 +400,9 @@ class Walk {
     const State& from_;
     const Motion& motion_;
     bool turns_;
-    bool passed_ = false; ///< the recorded displacement
-    bool falls_ = false;  ///< the gap that closes
-    double tolerance_;    ///< of gaps that are looked at, not proved
+    bool passed_ = false; ///< the recorded displacement was reached
+    bool falls_ = false;  ///< the closing gap falls
+    double tolerance_;    ///< for gaps, which are not proved here
     double reach_;
     std::vector<int> body_; ///< of each disk
     System kept_;

@@ -8,13 +8,13 @@ namespace isostat::checker {
 
 namespace {
 
-/// A length and the tilts that lean over it: what is pressed on by the lengths of all other axes.
+/// A length and the tilts of its axis: the load on each is the product of the lengths of all other axes.
 std::size_t axis_of(std::size_t place, std::size_t axes) {
     return place < axes ? place : place == axes ? 1 : 2;
 }
 
-/// Force on a length, or on a tilt, per unit of its stress, outwards negative: minus the lengths of all axes but its
-/// own. \pre of a tilt: dead loads
+/// Force on a length, or on a tilt, per unit of its stress, outwards negative: minus the product of the lengths of all
+/// other axes. \pre for a tilt: dead loads
 Range force_per_stress(const Problem& problem, const State& state, const TrueVertex& vertex, std::size_t place) {
     Range force(Rational(-1));
     for (std::size_t b = 0; b < problem.layout.axes(); ++b) {
@@ -109,7 +109,7 @@ class Balance {
     }
     [[nodiscard]] const std::vector<Integer>& sought() const { return sought_; }
 
-    /// Until the residual does not become smaller, or is what the roundings of g leave.
+    /// Refines until the residual stops falling, or is the rounding of g.
     void refine(const Solver& solver) {
         long size = bits(largest_of(residual_));
         for (int step = 0; step < most_refinements && size > rounding_; ++step) {
@@ -130,8 +130,8 @@ class Balance {
         }
     }
 
-    /// At least the residual at the true vertex (K6): entries of contacts of two disks differ by twice the radius, or
-    /// more where periods are between them.
+    /// Upper bound of the residual at the true vertex (K6): entries of contacts of two disks differ by twice the
+    /// radius, or more through periods.
     [[nodiscard]] Integer residual_at_vertex() const {
         std::vector<Integer> unsure(residual_.size());
         for (std::size_t l = 0; l < sought_.size(); ++l) {
@@ -180,10 +180,10 @@ class Balance {
     std::vector<Integer> unknown_;    ///< width of the load
     std::vector<Integer> difference_; ///< entries of the contacts of two disks, axis by axis
     Integer blur_;
-    long rounding_ = 0; ///< bits of a residual when g is off by some units
+    long rounding_ = 0; ///< bits of a residual from the rounding of g
 };
 
-/// The number of bits before the binary point of the largest magnitude in a load; nothing: it is 0.
+/// Bits before the binary point of the largest magnitude in a load; nothing: the load is 0.
 std::optional<long> size_of(const Forces& load) {
     Rational largest = 0;
     for (const Range& force : load) {
@@ -204,8 +204,8 @@ std::vector<Range> contact_forces(const Problem& problem, const Solver& solver, 
     if (!size) {
         return forces;
     }
-    // Entries of A are below 2^(scale + fine): forces per length above the largest load / that. 40 bits more than the
-    // vertex has, 120 or more, are kept below.
+    // Entries of A are below 2^(scale + fine), so forces per length are above the largest load / that. 40 bits more
+    // than the vertex has, at least 120, are kept below.
     const long shift = problem.digits + 40 + solver.scale(problem) + problem.fine - *size;
     Balance balance(problem, vertex, load, shift);
     if (solver.usable()) {

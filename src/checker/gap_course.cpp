@@ -29,7 +29,7 @@ Bounds value_of(const std::vector<Bounds>& c, const Bounds& s, int derivative) {
 
 } // namespace
 
-/// Relative position of the two grains of a pair along p(s), and how far the curve may be from it.
+/// Relative position of the two grains of a pair along p(s), and bounds of its distance from the curve.
 struct GapCourses::Motion {
     Motion(const Tube& tube, const Moving& moving, const Contact& pair)
         : wall(!pair.of_disks()), target(moving.state.packing.radius[at(pair.i)]),
@@ -124,14 +124,14 @@ bool GapCourses::walk(const Motion& motion, double from, double to, int depth, s
     }
     if (view.rate.positive()) {
         if (last == Course::falling && !motion.view(from, from).gap.positive()) {
-            return false; // it may have passed through 0 where the two meet
+            return false; // the gap may have passed through 0 where the two meet
         }
         last = Course::rising;
         return true;
     }
     if (view.rate.negative()) {
         if (last == Course::zero) {
-            return false; // it does not open
+            return false; // the contact does not open
         }
         last = Course::falling;
         return true;
@@ -169,9 +169,9 @@ double largest_entry(const std::vector<double>& x) {
     return most;
 }
 
-constexpr double more = 1 + 1e-12; // the roundings of a difference and of four sums
+constexpr double more = 1 + 1e-12; // for the roundings of a difference and of four sums
 
-/// Of the centres.
+/// Extent of the centres.
 double extent(const std::vector<double>& q, const Layout& layout) {
     PerAxis<double> low{};
     std::copy_n(q.begin(), layout.dimension, low.begin());
@@ -184,8 +184,8 @@ double extent(const std::vector<double>& q, const Layout& layout) {
     return std::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]) * more;
 }
 
-/// No singular value of the periodic part of A is below: its determinant over the product of the other two, which is
-/// at most half of the sum of all squares; of two periods the determinant over the root of that sum.
+/// Lower bound of the singular values of the periodic part of A: its determinant over the product of the other two,
+/// which is at most half of the sum of all squares; for two periods the determinant over the root of that sum.
 double least_stretch(const Packing& packing, const std::vector<double>& q) {
     double determinant = 1;
     double squares = 0;
@@ -207,7 +207,7 @@ double least_stretch(const Packing& packing, const std::vector<double>& q) {
 
 } // namespace
 
-/// How far each disk goes, and behind them walls or cell, while s stays within h of the centre.
+/// Bounds of the displacements of the disks, then of walls or cell, for s within h of the centre.
 std::vector<double> GapCourses::ways(const Tube& tube, double h) const {
     const std::size_t disks = moving_.state.packing.radius.size();
     const auto way_of = [&](std::size_t k) { // of the curve, along one coordinate
@@ -229,7 +229,7 @@ std::vector<double> GapCourses::ways(const Tube& tube, double h) const {
     return way;
 }
 
-/// Pairs of disks that may come to touch on these ways: all others keep away from each other by K19.
+/// Pairs of disks that may touch within these displacements: all other pairs stay apart by K19.
 std::optional<std::vector<Contact>> GapCourses::near_disks(const Tube& tube, const std::vector<double>& way) const {
     const Packing& packing = moving_.state.packing;
     const std::size_t disks = packing.radius.size();
@@ -262,7 +262,7 @@ std::optional<std::vector<Contact>> GapCourses::near_disks(const Tube& tube, con
     return pairs;
 }
 
-/// The same in a cell, of all images; nothing: they are too many.
+/// The near pairs in a cell, for all images; empty: there are too many.
 std::optional<std::vector<Contact>> GapCourses::near_images(const Tube& tube, const std::vector<double>& way) const {
     const Packing& packing = moving_.state.packing;
     const std::vector<double>& q = tube.centre();
@@ -299,7 +299,7 @@ std::optional<std::vector<Contact>> GapCourses::near_images(const Tube& tube, co
     return std::vector<Contact>(pairs.begin(), pairs.end());
 }
 
-/// Disks that may come to touch a wall.
+/// Pairs of a disk and a wall that may touch.
 std::vector<Contact> GapCourses::near_walls(const Tube& tube, const std::vector<double>& way) const {
     const Packing& packing = moving_.state.packing;
     const std::size_t disks = packing.radius.size();
@@ -335,7 +335,7 @@ bool GapCourses::look(const Tube& tube, double from, double to) {
         pairs->insert(pairs->end(), walls.begin(), walls.end());
         std::erase_if(*pairs, [this](const Contact& pair) { return kept_.contains(pair) || are_members(body_, pair); });
     }
-    // Each pair that is near is looked at; what was noted of pairs that are near no more is forgotten below.
+    // Tests every near pair; notes on pairs that are no longer near are dropped below.
     for (const Contact& pair : *pairs) {
         if (!look(tube, pair, from, to)) {
             return false;

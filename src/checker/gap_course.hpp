@@ -12,16 +12,16 @@
 
 namespace isostat::checker {
 
-/// How the gap of a pair was last seen; pairs that are not listed were above 0.
+/// How the gap of a pair was on the last stretch; pairs without an entry were above 0.
 enum class Course : unsigned char { zero, rising, falling };
 
 class GapCourses {
   public:
-    /// `watched`: the pairs that are looked at; nothing: every pair but the kept contacts.
+    /// `watched`: the pairs to check; nothing: every pair except the kept contacts.
     GapCourses(const Moving& moving, const std::vector<Contact>& contacts, const Contact& opened,
                std::optional<std::vector<Contact>> watched = {});
-    /// Those pairs, for s in [from, to] on a tube. False: no sign of the gap nor of its rate was
-    /// proved, `trouble()` says where.
+    /// Checks these pairs for s in [from, to] on a tube. False: neither the sign of a gap nor that of its rate was
+    /// proved; `trouble()` says where.
     bool look(const Tube& tube, double from, double to);
     [[nodiscard]] bool falls(const Contact& pair) const;
     [[nodiscard]] const std::string& trouble() const { return trouble_; }
@@ -39,7 +39,7 @@ class GapCourses {
 
     const Moving& moving_;
     std::set<Contact> kept_;
-    std::vector<int> body_; ///< of each disk
+    std::vector<int> body_; ///< body of each disk
     std::optional<std::vector<Contact>> watched_;
     std::map<Contact, Course> last_;
     std::string trouble_;

@@ -26,28 +26,28 @@ template <class Visit> void for_each_image(const Periods& range, const Visit& vi
 /// A disk, or an image of it.
 struct Placed {
     int disk = 0;
-    Image image{};       ///< from where the disk is stored
-    bool central = true; ///< the one in the cell itself: of every pair one is, but for a common period
+    Image image{};       ///< periods from where the disk is stored
+    bool central = true; ///< the place in the cell itself: in every pair, up to common periods, one place is central
     PerAxis<double> at{};
 };
 
-/// The pair that two of them are.
+/// The pair of two places.
 Contact pair_between(const Placed& one, const Placed& two);
 
-/// The cell that the sweep sees, in doubles.
+/// The cell in doubles, as the sweep uses it.
 class CellImages {
   public:
-    /// `q`: coordinates near the true vertex, of the packing's kind.
+    /// `q`: coordinates near the true vertex, with the layout of the packing.
     CellImages(const Packing& packing, const std::vector<double>& q);
     /// False: a disk is too far from the cell for its images to have names.
     [[nodiscard]] bool usable() const { return usable_; }
-    /// Bound of the sum of |m_a| over all pairs that places within a range make.
+    /// Bound of the sum of |m_a| over all pairs of places within a range.
     [[nodiscard]] int periods(const Periods& range) const;
     /// Every disk, moved into the cell by periods, and its images up to `range` periods away (0 along axes with walls),
-    /// but those that are not within `distance` of a disk in the cell along every axis.
+    /// except images that are not within `distance` of a disk in the cell along every axis.
     [[nodiscard]] std::vector<Placed> near_cell(const Periods& range, double distance) const;
-    /// So many periods suffice: a disk in the cell has no image within `distance` of a central one beyond them.
-    /// Nothing: too many for a sweep.
+    /// Sufficient periods: a disk in the cell has no image within `distance`
+    /// of a central place beyond them. Nothing: too many for a sweep.
     [[nodiscard]] std::optional<Periods> range(double distance) const;
     /// The largest height.
     [[nodiscard]] double longest() const;
@@ -55,12 +55,12 @@ class CellImages {
   private:
     const Packing& packing_;
     const std::vector<double>& q_;
-    std::vector<Periods> wraps_; ///< periods that a disk is away from the cell
+    std::vector<Periods> wraps_; ///< periods between a disk and the cell
     Periods farthest_{};         ///< largest |wrap|
-    PerAxis<double> height_{};   ///< of the cell; 0 along axes with walls
+    PerAxis<double> height_{};   ///< heights of the cell; 0 along axes with walls
     bool usable_ = true;
 
-    /// A_ab; along axes with walls, whose images are none, 1 and 0.
+    /// A_ab; along axes with walls, which have no images, 1 and 0.
     [[nodiscard]] double lattice(std::size_t a, std::size_t b) const;
     [[nodiscard]] Placed placed(std::size_t disk, const Periods& m) const;
 };

@@ -110,12 +110,12 @@ class Fixed64Rows {
           largest_shift_(125 - bits_of_count(problem.dofs())), r_(static_cast<std::size_t>(problem.dofs())),
           sums_(problem.dofs()) {}
 
-    /// |r_l| < 2^row_bits, |a| < 2^entry_bits, at most n terms and the identity: below 2^126. False: too few bits are
-    /// left for r.
+    /// |r_l| < 2^row_bits, |a| < 2^entry_bits, at most n terms
+    /// and the identity: below 2^126. False: r has too few bits.
     [[nodiscard]] bool fits() const { return row_bits_ >= 30; }
     [[nodiscard]] InverseBound bound() const { return sums_.bound(problem_, "64-bit integers"); }
 
-    /// Adds a row as the solver finds it. False: it is not finite, or its residual reaches 1.
+    /// Adds a row as the solver found it. False: the row is not finite, or its residual reaches 1.
     template <class Row> bool add(int row, const Row& x) {
         const double largest = x.template lpNorm<Eigen::Infinity>();
         if (!(largest > 0) || !x.allFinite()) {
@@ -165,7 +165,7 @@ class Fixed64Rows {
     const Problem& problem_;
     const Columns<std::int64_t>& columns_;
     long rescale_, row_bits_, largest_shift_;
-    std::vector<std::int64_t> r_; ///< the row in work
+    std::vector<std::int64_t> r_; ///< the current row
     Sums sums_;
 };
 
@@ -243,7 +243,7 @@ class GmpRows {
     }
 
   private:
-    /// Truncated by less than one part in 2^52; tiny numbers must not vanish.
+    /// Rounded down by less than one part in 2^52; tiny numbers must not vanish.
     [[nodiscard]] double up(const Integer& size) const {
         return size == 0 ? 0 : std::max(approximate(size, -shift_), 0x1p-900);
     }
@@ -319,12 +319,12 @@ InverseBound bound_rational(const Problem& problem, const Columns<Integer>& colu
     return rows.bound("exact elimination");
 }
 
-/// At least the square root, by less than 2^-20.
+/// An upper bound of the square root, by less than 2^-20.
 Rational root(unsigned long value) {
     return Rational(sqrt(shifted_left(Integer(value), 40)) + 1) * power_of_two(-20);
 }
 
-/// From the smallest singular value; R is the inverse.
+/// Bounds the inverse by the smallest singular value, when R is the inverse.
 InverseBound bound_by_singular_value(const Problem& problem) {
     const std::optional<Rational> sigma = smallest_singular_value(problem);
     if (!sigma) {

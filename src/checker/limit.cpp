@@ -13,13 +13,13 @@ namespace isostat::checker {
 
 namespace {
 
-/// Roundings of the quotient that is written as the stress at a limit.
+/// Rounding of the quotient that is recorded as the stress at a limit.
 constexpr double limit_rounding = 0x1p-50;
 
-/// What is accepted of the largest stress, where the one that a programme changes is near 0, as a shear stress is.
+/// Tolerance relative to the largest stress, where the changing stress is near 0, as a shear stress is.
 constexpr double load_tolerance = 1e-6;
 
-/// The largest bound of an end of the supported interval that is accepted.
+/// The largest accepted bound of an end of the supported interval.
 double loosest_end(const Place& place, const Bounded& stress) {
     double largest = 0;
     for (const double other : place.state->load.stress) {
@@ -29,7 +29,7 @@ double loosest_end(const Place& place, const Bounded& stress) {
                     load_tolerance * largest);
 }
 
-/// What the infinitesimal loads compare where forces vanish together: how soon each does.
+/// The key of the infinitesimal loads where forces vanish together: how soon each force vanishes.
 Range soon(const Place& place, std::size_t l) {
     const Range& slope = place.evidence->slopes()[l];
     return place.evidence->infinitesimal()[l] / (slope.negative() ? Range(Rational(0)) - slope : slope);
@@ -75,22 +75,22 @@ namespace {
 struct Limit {
     const Place& place;
     std::size_t opened;
-    const std::vector<TieRecord>* said; ///< of ties, by a record; null: there is none
+    const std::vector<TieRecord>* said; ///< recorded ties; null: no record
     std::vector<Range> there;           ///< the forces
     std::vector<Range> first;           ///< their first-order terms
     ExactLoad load;
     int direction;
 
-    /// Whether another force vanishes before, or with it: `together`.
+    /// Whether another force vanishes before that of the opening contact, or with it: `together`.
     [[nodiscard]] Objections before(std::size_t l, bool& together) const;
-    /// Whether, of forces that vanish together, the infinitesimal loads take the one that opens.
+    /// Whether the infinitesimal loads select the contact that opens among forces that vanish together.
     [[nodiscard]] Objections among(const std::vector<int>& together) const;
-    /// Ties are chosen, and this one is not told from the one that opens: a row may name any of them (C1 b); an arc
-    /// must have been chosen against this one, or against one of its class.
+    /// Ties are chosen, and this force cannot be told from that of the opening contact: a row may name either (C1 b);
+    /// an arc must have been chosen against this one, or against one of its class.
     [[nodiscard]] bool chosen_against(std::size_t l) const;
-    /// Not told from 0 at the limit, and positive before; without the one that opens.
+    /// Forces, except that of the opening contact, that cannot be told from 0 at the limit and are positive before.
     [[nodiscard]] std::vector<int> vanishing() const;
-    /// Counting says that these forces vanish together.
+    /// Whether these forces vanish together by counting.
     [[nodiscard]] bool is_class(const std::vector<int>& together) const;
 };
 
@@ -107,7 +107,7 @@ std::vector<int> Limit::vanishing() const {
 
 bool Limit::is_class(const std::vector<int>& together) const {
     const Evidence& e = *place.evidence;
-    std::vector<int> all = together; // contacts without force may hang on them: multiples too, by 0
+    std::vector<int> all = together; // contacts without force may depend on these: multiples too, by 0
     all.insert(all.end(), place.zeros.begin(), place.zeros.end());
     Forces loaded = e.finite_load;
     for (std::size_t j = 0; j < loaded.size(); ++j) {
@@ -147,7 +147,7 @@ Objections Limit::before(std::size_t l, bool& together) const {
                                e.name(l), shown(first[l]))};
     }
     if ((direction > 0) == slope.positive()) {
-        return {}; // it grows from a force that is not negative
+        return {}; // the force grows from a value that is not negative
     }
     if (chosen_against(l)) {
         return {};
@@ -173,12 +173,12 @@ Objections Limit::among(const std::vector<int>& together) const {
         const Range its = soon(place, other);
         const bool this_one = mine.upper < its.lower;
         if (place.chooses && this_one) {
-            continue; // any of them may open, and the rule takes this one (C1)
+            continue; // any of these may open, and the rule takes this one (C1)
         }
         const bool comparable = is_class(together);
         const bool earlier = comparable && its.upper < mine.lower;
         if (comparable && !earlier && said == nullptr) {
-            continue; // they vanish at one load whatever the loads are: a row may name any of them (K22)
+            continue; // these vanish at one load for any loads: a row may name any of them (K22)
         }
         if (!comparable || !this_one) {
             return Objection{earlier,
@@ -236,7 +236,7 @@ Objections check_limit_at(const Place& place, const Bounded& stress, std::size_t
 
 namespace {
 
-/// Of forces that vanish together the infinitesimal loads take the one that opens.
+/// Checks that the infinitesimal loads select the opening contact among forces that vanish together.
 Objections taken_by_loads(const Place& place, std::size_t opened, const std::vector<std::size_t>& together) {
     const Evidence& e = *place.evidence;
     for (const std::size_t l : together) {
@@ -260,13 +260,13 @@ Objections check_limit(const Place& place, const EventRecord& event, double boun
         return Objection{true,
                          fmt::format("the force at a limit is {} +- {}, not 0 +- 0", event.force, event.force_bound)};
     }
-    // The row says the same with the digits of an earlier rung.
+    // The row has the same number with the digits of an earlier rung.
     const double size = std::abs(event.stress) + std::abs(place.stress());
     const Bounded limit{event.stress, bound + limit_rounding * size};
     if (place.first) {
         return check_limit_at(place, limit, opened, at_limit, &event.ties);
     }
-    // An equilibrium that stands at the end of its interval leaves it on the side on which the force falls.
+    // An equilibrium at the end of its interval leaves it on the side on which the force falls.
     const bool up = event.stress == place.stress() ? e.slopes()[opened].negative() : event.stress > place.stress();
     const int direction = up ? 1 : -1;
     if (Objections wrong = check_load_end(place, limit, opened, direction)) {
@@ -275,7 +275,7 @@ Objections check_limit(const Place& place, const EventRecord& event, double boun
         wrong->wrong = wrong->wrong && check_load_end(place, roughly, opened, direction);
         return wrong;
     }
-    // Forces that vanish together.
+    // Forces that vanish together with that of `opened`.
     const Range step = step_to_limit(place, opened);
     std::vector<std::size_t> together;
     for (std::size_t l = 0; l < e.forces.size(); ++l) {

@@ -5,9 +5,9 @@ namespace isostat::checker {
 namespace {
 
 constexpr long digits = 512;  ///< of the terms, after the binary point
-constexpr long widest = 1024; ///< beyond, the series takes too long: 0 <= ln x <= x - 1 has to do
+constexpr long widest = 1024; ///< beyond, the series takes too long, and 0 <= ln x <= x - 1 is used
 
-/// z + z^3/3 + z^5/5 + ... without what is cut off, in units of 2^-digits. `terms`: their number.
+/// z + z^3/3 + z^5/5 + ... without the remainder, in units of 2^-digits. `terms`: their number.
 Integer series(const Integer& z, long& terms) {
     Integer sum = 0;
     Integer power = z;

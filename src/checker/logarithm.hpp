@@ -6,7 +6,7 @@
 
 namespace isostat::checker {
 
-/// Contains ln of all numbers of the range, and hardly more (K27, proofs/checker.md). \pre x.positive()
+/// A narrow range that contains ln of all numbers of the range (K27, proofs/checker.md). \pre x.positive()
 Range logarithm(const Range& x);
 
 } // namespace isostat::checker

@@ -11,7 +11,7 @@ bool Lookahead::in_order(std::size_t event) const {
 
 void Lookahead::look_ahead(const Place& from, std::size_t event) {
     if (threads() < 2 || from.state->perturbation) {
-        return; // one thread gains nothing; with ties settled at first order the next vertex depends on proofs
+        return; // one thread gains nothing; with first-order ties the next vertex depends on proofs
     }
     const auto depth = 2 * static_cast<std::size_t>(threads());
     while (ahead_.size() < depth) {
@@ -61,7 +61,7 @@ Arrival Lookahead::end_of(Arc arc) {
         arrival.open = std::move(proved.open);
         arrival.place = std::move(proved.place);
         if (!arrival.place.evidence || arrival.place.evidence->solver != arrival.followed.solver) {
-            forget(); // the arcs after it were followed with other factors than they will be
+            forget(); // the later arcs were followed with other factors than they will have
         }
     }
     return arrival;

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// The ends of arcs, followed in double and then proved. With several threads the next arcs are followed before their
-/// turn, and other threads prove their ends.
+/// The ends of arcs, followed in double and then proved. With several threads later arcs are followed early, and other
+/// threads prove their ends.
 
 #include "checker/recorded_arc.hpp"
 #include "checker/replay.hpp"
@@ -11,26 +11,26 @@
 
 namespace isostat::checker {
 
-/// Where an arc leads to.
+/// The end of an arc.
 struct Arrival {
     Followed followed;
-    Objections open; ///< to the vertex there; with followed.end only
+    Objections open; ///< objections to the vertex there; only with followed.end
     Place place;
 };
 
 class Lookahead {
   public:
-    /// The records must outlive it.
+    /// The records must outlive the object.
     explicit Lookahead(const RunRecords& records) : records_(records) {}
 
-    /// Follows arcs that come after a vertex, `event` the first of them, as if every record were right. What is wrong
-    /// or unusual is left to its turn.
+    /// Follows arcs that come after a vertex, `event` the first of them, as if every record were right. Wrong or
+    /// unusual records are left to the replay.
     void look_ahead(const Place& from, std::size_t event);
-    /// The arc of a record. What was followed ahead is taken if it began in the same way and from the same vertex.
+    /// The arc of a record. A result from `look_ahead` is used if it has the same opening and the same vertex.
     Arrival arrive(const Place& from, std::size_t event, const Opening& opening, const ExactLoad& load);
-    /// The same in steps a sixteenth as long, and shorter ones near the end.
+    /// As `arrive`, with steps a sixteenth as long, and shorter ones near the end.
     Arrival arrive_slowly(const Place& from, std::size_t event, const Opening& opening, const ExactLoad& load);
-    /// The replay goes on elsewhere.
+    /// To be called when the replay continues from another state.
     void forget() { ahead_.clear(); }
 
   private:

@@ -6,7 +6,7 @@ namespace isostat::checker {
 
 namespace {
 
-/// Factors that reduce a residual by less than this are made anew.
+/// Factors that reduce a residual by a smaller factor are made anew.
 constexpr double slow = 0.25;
 
 #ifdef __SIZEOF_FLOAT128__
@@ -140,7 +140,7 @@ bool System::newton(std::vector<double>& q, const std::optional<Way>& way, doubl
         if (!std::isfinite(size)) {
             return false;
         }
-        const bool rounded = size <= 0x1p-38 * scale; // no factors are worth while any more
+        const bool rounded = size <= 0x1p-38 * scale; // rounding: new factors would not help
         const bool smaller = size < (rounded ? 1 : slow) * last;
         const bool ends = size <= accuracy * scale || (!smaller && rounded);
         if (smaller || ends) {
@@ -168,7 +168,7 @@ double System::step_in_quadruple(const std::vector<double>& q) {
 }
 
 bool System::newton_in_quadruple(std::vector<double>& q, const std::optional<Way>& way) {
-    constexpr int most = 60; // half the way to one of two zeros that are near each other, step by step
+    constexpr int most = 60; // steps halve the distance to one of two nearby zeros
     const double scale = packing_.max_radius();
     std::vector<Quadruple> at(q.begin(), q.end());
     for (int k = 0; k < most; ++k) {

@@ -78,7 +78,7 @@ void add_rows(std::vector<Bounds>& force, const Moving& moving, const Tube& tube
     force[row] = force[row] + weight * g.back();
 }
 
-/// The terms g_l D_l(p - m) . D_l p' of contacts of two disks, as a polynomial, and what the tube adds to them.
+/// The terms g_l D_l(p - m) . D_l p' of contacts of two disks, as a polynomial, and their uncertainty from the tube.
 class Bending {
   public:
     Bending(const Moving& moving, const Tube& tube, double h) : moving_(moving), tube_(tube), h_(h) {}
@@ -130,8 +130,8 @@ class Bending {
     double ways_ = 0, rates_ = 0, largest_ = 0, at_rest_ = 0;
 };
 
-/// What true stress acts on along the tube: the product of the lengths of all axes but one, as a polynomial, and how
-/// far that of the curve may be from it.
+/// The area on which a true stress acts along the tube: the product of the lengths of all axes but one, as a
+/// polynomial, and the distance of that of the curve from it.
 class Face {
   public:
     Face(const Moving& moving, const Tube& tube, std::size_t axis, double h) : tube_(tube) {
@@ -155,8 +155,8 @@ class Face {
         gain_ = sum_above(largest(area_, h), apart_);
     }
     [[nodiscard]] const Bounds& at_centre() const { return centre_; }
-    /// Minus the stress times what the face has gained since the centre, times the rate of the own length: added to the
-    /// power; how much that leaves open. `fast`: |q'|
+    /// Adds to the power minus the stress times the change of the area since the centre, times the rate of the own
+    /// length; returns the uncertainty. `fast`: |q'|
     double add(double stress, double fast, std::vector<Bounds>& power) const {
         std::vector<Bounds> rate;
         for (const auto& a : tube_.coefficients()) {
@@ -192,11 +192,11 @@ class Face {
 
     const Tube& tube_;
     std::size_t own_ = 0;
-    std::vector<Bounds> area_{Bounds(1)}; ///< less its value at the centre
+    std::vector<Bounds> area_{Bounds(1)}; ///< minus its value at the centre
     Bounds centre_;
-    double size_ = 1;  ///< of the product of the polynomials
-    double apart_ = 0; ///< of the product of the true lengths from it
-    double gain_ = 0;  ///< of the true area since the centre
+    double size_ = 1;  ///< size of the product of the polynomials
+    double apart_ = 0; ///< distance of the product of the true lengths from it
+    double gain_ = 0;  ///< change of the true area since the centre
 };
 
 } // namespace
@@ -231,7 +231,7 @@ bool power_is_positive(const Pushing& load, const Moving& moving, const Tube& tu
             bending.add(moving.kept[l], g[l], power);
         }
     }
-    double square = 0; // of what the multipliers do not balance
+    double square = 0; // of the part that the multipliers do not balance
     for (const int k : moving.coordinates) {
         square = sum_above(square, product_above(force[at(k)].size(), force[at(k)].size()));
     }

@@ -8,10 +8,10 @@
 
 namespace isostat::checker {
 
-/// The load while the arc is followed.
+/// The load along the arc.
 struct Pushing {
     std::vector<Bounds> fixed; ///< per coordinate
-    /// True stresses: the force on the upper wall of an axis is besides minus this times the lengths of the others.
+    /// True stresses: the force on the upper wall of an axis also has minus this times the lengths of the other axes.
     PerAxis<double> pressure{};
 };
 

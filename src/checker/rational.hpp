@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Exact numbers of the checker: GMP integers, rationals, and ranges of rationals. Only quotients of ranges are
-/// rounded, outwards.
+/// Exact numbers of the checker: GMP integers, rationals, and ranges
+/// of rationals. Only quotients of ranges are rounded, outwards.
 
 #include <gmpxx.h>
 
@@ -38,7 +38,7 @@ inline Rational dyadic(const Integer& value, long exponent) {
     return result;
 }
 
-/// The largest integer that is not above value * 2^exponent.
+/// The largest integer that is at most value * 2^exponent.
 inline Integer floor_of(const Rational& value, long exponent = 0) {
     Integer result = value.get_num();
     Integer divisor = value.get_den();
@@ -47,7 +47,7 @@ inline Integer floor_of(const Rational& value, long exponent = 0) {
     mpz_fdiv_q(result.get_mpz_t(), result.get_mpz_t(), divisor.get_mpz_t());
     return result;
 }
-/// The smallest integer that is not below it.
+/// The smallest integer that is at least value * 2^exponent.
 inline Integer ceiling_of(const Rational& value, long exponent = 0) {
     return -floor_of(-value, exponent);
 }
@@ -78,8 +78,8 @@ inline double approximate(const Integer& value, long exponent) {
     return std::ldexp(mantissa, static_cast<int>(std::min<long>(std::max<long>(own + exponent, -5000), 5000)));
 }
 
-/// A double that is not below a rational, at most one step above it (or the smallest normal number, for smaller ones;
-/// or infinity).
+/// A double that is at least a rational, and at most one step above it
+/// (or the smallest normal number, for smaller rationals; or infinity).
 inline double rounded_up(const Rational& value) {
     constexpr double largest = std::numeric_limits<double>::max();
     if (value > Rational(largest)) {
@@ -98,7 +98,7 @@ inline double rounded_down(const Rational& value) {
     return -rounded_up(-value);
 }
 
-/// At least a rational, by less than 2^-250 of it: quotients become binary fractions, with which all is quicker.
+/// Above a rational by less than 2^-250 of it: a quotient becomes a binary fraction, which speeds up later operations.
 inline Rational short_above(const Rational& value) {
     if (value == 0) {
         return value;
@@ -133,7 +133,7 @@ inline Range operator*(const Range& a, const Range& b) {
     const Rational s = a.upper * b.upper;
     return {std::min(std::min(p, q), std::min(r, s)), std::max(std::max(p, q), std::max(r, s))};
 }
-/// A range that contains the quotient, and hardly more. \pre !b.has_zero()
+/// A narrow range that contains the quotient. \pre !b.has_zero()
 inline Range operator/(const Range& a, const Range& b) {
     const Range exact = a * Range(1 / b.upper, 1 / b.lower);
     return {-short_above(-exact.lower), short_above(exact.upper)};

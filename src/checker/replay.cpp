@@ -1,4 +1,4 @@
-// The vertices of a replay and which forces are negative there.
+// The vertices of a replay, and the forces that are negative there.
 #include "checker/replay.hpp"
 
 #include "checker/gaps.hpp"
@@ -15,8 +15,8 @@ namespace isostat::checker {
 
 namespace {
 
-/// Sign of all forces of one stage: those that are no structural zeros, or the infinitesimal ones of those that are.
-/// An objection where none is known to be negative, and one may be.
+/// Signs of all forces of one stage: those that are no structural zeros, or the infinitesimal forces of structural
+/// zeros. An objection where no force is proved negative, and one may be.
 Objections negative_ones(const Place& place, bool finite, Decision& decision, bool still) {
     std::vector<int>& negative = decision.candidates;
     Objections open;
@@ -32,7 +32,7 @@ Objections negative_ones(const Place& place, bool finite, Decision& decision, bo
             continue;
         }
         if (finite && contains(place.ties, l) && place.chooses && !place.is_held(l)) {
-            continue; // left at 0: it opens nothing
+            continue; // left at 0, so it opens nothing
         }
         const Range& force = contains(place.ties, l) && finite ? place.first_force[l]
                              : finite                          ? e.forces[l]
@@ -52,7 +52,7 @@ Objections negative_ones(const Place& place, bool finite, Decision& decision, bo
     return negative.empty() ? open : Objections();
 }
 
-/// First-order terms of forces, of the load and of the gaps that cannot be told from 0.
+/// Adds the first-order terms of forces, of the load and of the gaps that cannot be told from 0.
 void add_first_order(Place& place) {
     Evidence& e = *place.evidence;
     place.first = std::make_unique<FirstOrder>(e, place.state->perturbation->rho);
@@ -60,7 +60,7 @@ void add_first_order(Place& place) {
     for (std::size_t l = 0; l < e.forces.size(); ++l) {
         place.first_force[l] = place.first_force[l] + place.load.rate * e.slopes()[l];
     }
-    // What changes with the radii is no structural zero; nor is what the pattern does not make vanish.
+    // Forces that change with the radii are no structural zeros; nor are those that the pattern alone does not make 0.
     const auto structural = place.chooses ? structural_zeros(e.problem, e.finite_load) : std::nullopt;
     for (const int l : place.zeros) {
         const auto index = static_cast<std::size_t>(l);
@@ -130,7 +130,7 @@ Objections make_place(State state, Place& place, const ExactLoad& load, int fres
     if (place.state->perturbation) {
         add_first_order(place);
     }
-    if (!vanish_structurally(e.problem, place.zeros, e.finite_load)) { // the others are 0 only as far as is seen
+    if (!vanish_structurally(e.problem, place.zeros, e.finite_load)) { // the other forces only cannot be told from 0
         const auto structural = structural_zeros(e.problem, e.finite_load);
         if (!structural) {
             return Objection{false, "some forces cannot be told from 0 and are no structural zeros"};
@@ -154,14 +154,14 @@ ExactLoad meant_load(const State& state) {
     if (slope.has_zero()) {
         return {};
     }
-    // A stored load is that one rounded. One farther away is meant by no file: then the stored load is taken as it is.
+    // A stored load is the rounded exact load. If the found load is farther away, the stored load is taken as exact.
     const Range step = step_to_limit(at, l);
     const auto& stress = state.load.stress;
     const Rational room(record_tolerance * std::max({std::abs(stress[0]), std::abs(stress[1]), std::abs(stress[2])}));
     if (step.lower < -room || step.upper > room) {
         return {};
     }
-    // The rate is that of a contact that has opened: of a start it is given, like its radii.
+    // The rate is that of a contact that has opened: for a start it is given, as the radii are.
     const Enclosure& rate = state.perturbation->stress_rate;
     return {step, Range::around(Rational(rate.value), Rational(rate.radius))};
 }
@@ -198,7 +198,7 @@ Objections compare(const std::string& name, const Bounded& said, const Range& fo
     if (!std::isfinite(value) || !(bound >= 0)) {
         return Objection{true, fmt::format("{} is {} +- {}, found {}", name, value, bound, shown(found))};
     }
-    if (!(bound <= loosest)) { // true, but says nothing: the number itself may be right all the same
+    if (!(bound <= loosest)) { // the number itself may be right all the same
         const Bounded itself{value, loosest};
         return std::isfinite(loosest) && !compare(name, itself, found, loosest)
                    ? Objections()

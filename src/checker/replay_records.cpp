@@ -14,7 +14,7 @@ namespace isostat::checker {
 
 namespace {
 
-/// A recorded number against what was found, to `record_tolerance` of `size`.
+/// Compares a recorded number with the found one, up to `record_tolerance` of `size`.
 Objections compare(const std::string& name, double recorded, const Range& found, double size) {
     const Rational room = Rational(record_tolerance) * Rational(std::max(size, 1e-300));
     if (std::isfinite(recorded) && Rational(recorded) >= found.lower - room &&
@@ -24,7 +24,7 @@ Objections compare(const std::string& name, double recorded, const Range& found,
     return Objection{true, fmt::format("{} is {}, found {}", name, recorded, shown(found))};
 }
 
-/// A column with its column `_bound`.
+/// Compares a column, with its column `_bound`.
 Objections compare(const std::string& name, const EquilibriumLine& line, const Range& found, double size) {
     return compare(name, Bounded{line.at(name), line.bound(name)}, found, record_tolerance * size);
 }
@@ -36,7 +36,7 @@ Objections compare(const std::string& name, int recorded, int found) {
     return Objection{true, fmt::format("{} is {}, found {}", name, recorded, found)};
 }
 
-/// 0 without a length of reference. Behind the axes the tilts: A_ab over the length of b.
+/// 0 without a reference length. The tilts follow the axes: A_ab over the length of b.
 Range strain_of(const Place& place, int axis) {
     const Load& load = place.state->load;
     const Range over{Rational(load.strain_length(axis))};
@@ -62,7 +62,7 @@ std::set<Contact> contact_set(const State& state) {
     return {state.contacts.begin(), state.contacts.end()};
 }
 
-/// Bodies without a force, each counted at its first member.
+/// Number of bodies without a force, each counted at its first member.
 int rattlers(const Place& place) {
     const std::vector<int> body = bodies_of(place.state->packing);
     std::vector<bool> rattles(body.size());
@@ -79,8 +79,8 @@ int rattlers(const Place& place) {
     return static_cast<int>(std::count(rattles.begin(), rattles.end(), true));
 }
 
-/// A row names two disks, not the image: it is right when it is so of one of the pairs that it may mean, and wrong when
-/// it is wrong of each. Nothing: there is no such pair.
+/// A row names two disks without the image: it is right when it is right for one of the possible pairs, and wrong when
+/// it is wrong for each. Nothing: no such pair exists.
 template <class Pairs, class Pair, class Check>
 std::optional<Objections> check_meant(const std::optional<Contact>& columns, const Pairs& among, const Pair& pair_of,
                                       const Check& check) {
@@ -100,7 +100,7 @@ std::optional<Objections> check_meant(const std::optional<Contact>& columns, con
     return found;
 }
 
-/// The same of the contacts.
+/// Calls `check_meant` for the contacts of a place.
 template <class Check>
 std::optional<Objections> check_meant(const std::optional<Contact>& columns, const Place& place, const Check& check) {
     return check_meant(
@@ -164,7 +164,7 @@ Objections check_interval(const Place& place, const EquilibriumLine& line, bool 
         std::string text;
         const Verdict verdict = judge_load_end(*place.evidence, {true, {}, {}}, direction, text);
         const bool infinite = stress.value == direction * std::numeric_limits<double>::infinity() && stress.bound == 0;
-        // Where ties are chosen a slope that is not told from 0 opens nothing, as at the other ends (C1; K22).
+        // Where ties are chosen a slope that cannot be told from 0 opens nothing, as at the other ends (C1; K22).
         const bool none = verdict == Verdict::proved || (verdict == Verdict::undecided && place.chooses);
         return none && infinite
                    ? Objections()
@@ -189,14 +189,14 @@ Objections check_interval(const Place& place, const EquilibriumLine& line, bool 
     return *found;
 }
 
-/// What the record says of a pair that touches at the end; null: nothing.
+/// The recorded tie of a pair that touches at the end; null: no record.
 const TieRecord* said_of_gap(const EventRecord& event, const std::string& pair) {
     const auto tie = std::find_if(event.ties.begin(), event.ties.end(),
                                   [&](const TieRecord& t) { return t.what == "gap" && t.against == pair; });
     return tie == event.ties.end() ? nullptr : &*tie;
 }
 
-/// The way of the arc is of length O(eps): no finite motion.
+/// The arc is of length O(eps): no finite motion.
 bool is_first_order_step(const EventRecord& event) {
     return std::any_of(event.ties.begin(), event.ties.end(), [](const TieRecord& tie) { return tie.what == "step"; });
 }
@@ -206,7 +206,7 @@ Objection touches(const std::string& pair, const char* where, const Range& first
     return {first.negative(), fmt::format("{} touch at {}, first-order gap in {}", pair, where, shown(first))};
 }
 
-/// No pair overlaps. `settled`: what is to be said of pairs that touch, with their first-order gaps.
+/// No pair overlaps. `settled`: judges pairs that touch, from their first-order gaps.
 template <class Settled> Objections check_no_overlap(const Place& place, const char* where, const Settled& settled) {
     for (const Gap& gap : place.gaps()) {
         if (gap.value.has_zero() && place.first) {
@@ -226,7 +226,7 @@ template <class Settled> Objections check_no_overlap(const Place& place, const c
     return {};
 }
 
-/// The recorded power is 0 where the arc ends at a power turn.
+/// Checks that the recorded power is 0 where the arc ends at a power turn.
 Objections check_power_at_turn(const Place& to, const EventRecord& event) {
     const double room = turn_tolerance * std::max(1e-300, largest_force(to.evidence->forces));
     if (!(std::abs(event.power) <= room) || !std::isnan(event.power_bound)) {
@@ -236,9 +236,9 @@ Objections check_power_at_turn(const Place& to, const EventRecord& event) {
     return {};
 }
 
-/// The recorded power is that of the load where the arc ends at a new contact, and positive: F . v = f_c for the motion
-/// v on which the gap of the new contact c closes at the rate 1 and no other changes. By counting it may be 0 at this
-/// very place: the grain that closes the gap is level with others there.
+/// Checks that the recorded power at a new contact is that of the load, and positive: F . v = f_c for the motion v on
+/// which the gap of the new contact c closes at the rate 1 and no other changes. By counting this power may be 0 at
+/// this very place, where the grain that closes the gap is in a plane with others.
 Objections check_power_at_contact(const Place& to, const EventRecord& event, bool rattles) {
     const auto& contacts = to.state->contacts;
     const auto slot = std::find(contacts.begin(), contacts.end(), *contact_named(event.closed, to.state->packing));
@@ -258,7 +258,7 @@ Objections check_power_at_contact(const Place& to, const EventRecord& event, boo
                               force_tolerance * largest_force(forces));
 }
 
-/// By how much Phi = sum sigma_a ln L_a falls (S5 (b), stability.md). \pre true stresses, without loads on disks
+/// The decrease of Phi = sum sigma_a ln L_a (S5 (b), stability.md). \pre true stresses, without loads on disks
 Range fall_of_phi(const Place& from, const Place& to) {
     Range fall(Rational(0));
     for (int a = 0; a < to.state->packing.dimension; ++a) {
@@ -268,7 +268,7 @@ Range fall_of_phi(const Place& from, const Place& to) {
     return fall;
 }
 
-/// The recorded work is that of the finite loads, if they are dead, and the potential falls, if there is one.
+/// Checks that the recorded work is that of the finite loads, if dead, and that the potential falls, if there is one.
 Objections check_work(const Place& from, const Place& to, const EventRecord& event, bool rattles) {
     const Load& load = to.state->load;
     const bool dead = load.kind == LoadKind::nominal;
@@ -284,7 +284,7 @@ Objections check_work(const Place& from, const Place& to, const EventRecord& eve
     if (is_first_order_step(event) || !potential) {
         return {}; // no work
     }
-    // Rattlers move without any work of the finite load: then the infinitesimal one decides.
+    // On arcs of rattlers the finite load does no work, so the infinitesimal one decides.
     double unused = 0;
     const Range decides = rattles ? work(from, to, infinitesimal_load(to.evidence->problem, *to.state), unused)
                           : dead  ? done
@@ -296,7 +296,7 @@ Objections check_work(const Place& from, const Place& to, const EventRecord& eve
     return {};
 }
 
-/// By the record of the last arc, or by the stored state, the force of a contact was left at 0.
+/// The record of the last arc, or the stored state, says that the force of a contact was left at 0.
 bool is_left(const Place& place, std::size_t l) {
     const auto& radii = place.state->perturbation;
     const Contact& contact = place.state->contacts[l];
@@ -305,7 +305,7 @@ bool is_left(const Place& place, std::size_t l) {
                                  [&contact](const auto& zero) { return zero.first == contact; }));
 }
 
-/// No force is negative.
+/// Checks that no force is negative.
 Objections check_forces(const Place& place) {
     Decision decision;
     if (Objections open = decide(place, decision, !place.state->packing.bars.empty())) {
@@ -316,8 +316,8 @@ Objections check_forces(const Place& place) {
     }
     const Evidence& e = *place.evidence;
     const std::vector<Range>& forces = decision.kind == "rattler" ? e.infinitesimal() : e.forces;
-    // A force that is told from 0 here and is negative refutes the row. One that is not told from 0 does not, because
-    // the run may have told its sign with more digits.
+    // A negative force that is told from 0 here refutes the row. A force that cannot be told from 0 does not, because
+    // the run may have decided its sign with more digits.
     const auto told = [&](int l) { return !forces[static_cast<std::size_t>(l)].has_zero(); };
     const auto first = std::find_if(decision.candidates.begin(), decision.candidates.end(), told);
     const bool wrong = first != decision.candidates.end();
@@ -325,8 +325,8 @@ Objections check_forces(const Place& place) {
     const bool rattler = decision.kind == "rattler";
     const std::string found = fmt::format("no equilibrium: the {}force of {} is in {}", rattler ? "infinitesimal " : "",
                                           e.name(l), shown(forces[l]));
-    // Where the load of an axis is 0 counting makes forces vanish that the run saw near 0 only, and left at 0 by
-    // choice: an equilibrium of the finite loads, whatever infinitesimal ones do (C1).
+    // Where the load of an axis is 0 counting makes forces vanish that the run only saw near 0, and left at 0 by
+    // choice: an equilibrium of the finite loads, for any infinitesimal ones (C1).
     const bool left = rattler && is_left(place, l);
     return Objection{wrong && !left, left ? found + ", which the run left at 0" : found};
 }
@@ -353,7 +353,7 @@ Objections check_counts(const Place& place, const EquilibriumLine& line) {
     if (line.has("touching") != (place.first != nullptr)) {
         return Objection{true, "the column 'touching' belongs to runs that settle ties at first order"};
     }
-    if (line.has("touching")) { // a run may tell from 0, with more digits, what is 0 as far as is seen here
+    if (line.has("touching")) { // a run with more digits may tell from 0 what cannot be told here
         const auto found = static_cast<int>(place.touching.size());
         if (Objections other = compare("touching", line.integer("touching"), found)) {
             other->wrong = line.integer("touching") > found;
@@ -363,7 +363,7 @@ Objections check_counts(const Place& place, const EquilibriumLine& line) {
     return {};
 }
 
-/// W, and in `size` what its rounding is measured in.
+/// W, and in `size` the scale of its rounding.
 Range potential_of(const Place& place, double& size) {
     const Evidence& e = *place.evidence;
     Range potential(Rational(0));
@@ -440,7 +440,7 @@ Objections check_end(const Place& from, const Place& to, const EventRecord& even
         if (!first.positive() && !left) {
             return touches(to.named(pair), "the end of the arc", first);
         }
-        return said != nullptr ? Objections() // else a run with more digits may have told the gap from 0
+        return said != nullptr ? Objections() // without a record a run with more digits may have told the gap from 0
                                : Objection{false, fmt::format("{} touch at the end of the arc as far as is seen, and "
                                                               "the record does not name them",
                                                               to.named(pair))};
@@ -470,7 +470,7 @@ Objections check_equilibrium(const Place& place, const EquilibriumLine& line) {
     if (Objections wrong = check_forces(place)) {
         return wrong;
     }
-    // What touches was asked where the arc ended.
+    // Pairs that touch were checked where the arc ended.
     if (Objections wrong =
             check_no_overlap(place, "an equilibrium", [](const auto&, const auto&) { return Objections(); })) {
         return wrong;
@@ -490,7 +490,7 @@ Objections check_equilibrium(const Place& place, const EquilibriumLine& line) {
 
 namespace {
 
-/// First-order terms of one list of a stored state against those found, by name.
+/// Compares the first-order terms of one list of a stored state with those found, by name.
 Objections check_terms(const Place& place, const char* what, const std::vector<std::pair<Contact, Enclosure>>& said,
                        const std::vector<Gap>& found) {
     if (said.size() != found.size()) {
@@ -510,7 +510,7 @@ Objections check_terms(const Place& place, const char* what, const std::vector<s
     return {};
 }
 
-/// Of a stored state whose radii have a direction. Its exact load is that where `load_zero` vanishes, if one does.
+/// Checks a stored state whose radii have a direction. Its exact load is that where `load_zero` vanishes, if any.
 Objections check_direction(const Place& place, const RadiusPerturbation& said) {
     std::vector<Gap> zero;
     bool moves = false; // a force that vanishes at the exact load, and not at others
@@ -537,9 +537,9 @@ Objections check_direction(const Place& place, const RadiusPerturbation& said) {
                     : Objections();
 }
 
-/// The doubles of a stored state against the vertex that was reached. Where they are farther from it than doubles of a
-/// well conditioned packing, but its contacts are as closed as doubles allow, or it is the start of the run as it was
-/// given, the vertex near the stored state tells.
+/// Compares the doubles of a stored state with the vertex that was reached. Where these are farther from it than
+/// doubles of a well conditioned packing, but its contacts are as closed as doubles allow, or it is the given start of
+/// the run, the vertex near the stored state decides.
 Objections check_coordinates(const Place& place, const State& stored, bool given) {
     const double size = stored.packing.max_radius();
     Objections wrong;

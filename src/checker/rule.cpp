@@ -1,4 +1,4 @@
-// What the rule opens, and what it holds.
+// Which contact the rule opens, and which coordinate is held.
 #include "checker/choice.hpp"
 #include "checker/edge.hpp"
 #include "checker/index.hpp"
@@ -53,8 +53,8 @@ Objections check_turn(const Place& place, const EventRecord& event, bool rattles
 
 namespace {
 
-/// Order of two contacts by what the rule compares: -1 when `a` has the smaller key, 0 when it is not known.
-/// `at_first_order`: the finite forces did not tell.
+/// Order of two contacts by the key of the rule: -1 when `a` has the smaller key, 0 when unknown. `at_first_order`: the
+/// finite forces did not decide.
 int compare_keys(const Place& place, bool finite, std::size_t a, std::size_t b, bool& at_first_order) {
     const Evidence& e = *place.evidence;
     const auto key = [&](std::size_t l, bool first) {
@@ -84,8 +84,8 @@ ChoiceRule opening_choice(const Place& place, std::size_t opened, const std::str
     return {"opening", tied, load};
 }
 
-/// A held coordinate that turns back where it stands when it is released, which leaves no record (descent.md): moved by
-/// the last bits that the place of a turn is known to, its multiplier has the other sign, so the power vanished before.
+/// A released coordinate is held again at once, which leaves no record (descent.md): with the held value moved by the
+/// accuracy of the turn its multiplier has the other sign, so the power vanished before.
 bool turns_back_at_once(const Place& place, std::size_t contact, bool finite) {
     constexpr double last_bits = 0x1p-40; // of the largest radius
     if (!place.is_held(contact)) {
@@ -107,8 +107,8 @@ bool turns_back_at_once(const Place& place, std::size_t contact, bool finite) {
     return falls ? multiplier(moved).negative() : multiplier(place).negative() && multiplier(moved).positive();
 }
 
-/// Whatever the sign of one force is, it competes with more than that of what opens. A held coordinate competes with
-/// minus its magnitude.
+/// The lower bound of one force is above the upper bound of that of the opening contact, whatever its sign. A held
+/// coordinate competes with minus its magnitude.
 bool is_less_negative(const Place& place, const std::vector<Range>& forces, std::size_t one, std::size_t opened) {
     const Range& f = forces[one];
     const Range& first = forces[opened];
@@ -117,20 +117,20 @@ bool is_less_negative(const Place& place, const std::vector<Range>& forces, std:
     return most < least;
 }
 
-/// Nothing, or why the rule does not put `opened` before another contact that may open.
+/// Empty, or the reason why the rule does not put `opened` before another contact that may open.
 Objections check_order(const Place& place, const std::string& kind, std::size_t opened, std::size_t other,
                        const std::string& rule) {
     const Evidence& e = *place.evidence;
     const std::vector<Range>& forces = kind == "rattler" ? e.infinitesimal() : e.forces;
     const bool most = rule == "most_negative";
     const bool by_name = rule == "least_index";
-    bool at_first_order = false; // where a run has more digits to tell the forces apart
+    bool at_first_order = false; // a run may have more digits to tell the forces apart
     int sign = compare_keys(place, kind != "rattler", other, opened, at_first_order);
     if (by_name) {
         sign = place.state->contacts[other] < place.state->contacts[opened] ? -1 : 1;
         at_first_order = false;
     } else if (kind != "rattler" && same_at_turn(place, opened, other)) {
-        // Finite forces tell only where the turn was rounded to.
+        // Finite forces only show how the turn was rounded.
         sign = strut_order(place, other, opened).value_or(0);
     } else if (kind != "rattler" && equal_in_edge(e, e.finite_load, place.zeros, other, opened)) {
         const Range excess = e.infinitesimal()[other] - e.infinitesimal()[opened]; // S6
@@ -155,7 +155,7 @@ Objections check_order(const Place& place, const std::string& kind, std::size_t 
     return {};
 }
 
-/// The rule `random` opens that candidate, in the order of contacts: splitmix64 of the seed and the steps before.
+/// The candidate that the rule `random` opens, in the order of contacts: splitmix64 of the seed and the steps before.
 std::size_t drawn(std::uint64_t seed, long step, std::size_t candidates) {
     std::uint64_t z = seed + 0x9e3779b97f4a7c15ULL * static_cast<std::uint64_t>(step);
     z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
@@ -163,8 +163,8 @@ std::size_t drawn(std::uint64_t seed, long step, std::size_t candidates) {
     return (z ^ (z >> 31)) % candidates;
 }
 
-/// Which candidates there were is not known where holds may have been released and turned back where they stood, or
-/// radii are R_i + eps rho_i.
+/// The candidates are not known where holds may have been
+/// released and held again at once, or radii are R_i + eps rho_i.
 Objections check_draw(const Place& place, const EventRecord& event, std::size_t opened, std::uint64_t seed,
                       const std::vector<int>& candidates) {
     const auto& contacts = place.state->contacts;
@@ -207,7 +207,7 @@ Objections check_rule(const Place& place, const EventRecord& event, std::size_t 
     if (Objections wrong = check_choice(place, place.said, opened, opening_choice(place, opened, rule))) {
         return wrong;
     }
-    for (const int l : decision.open) { // what is less negative does not open, whatever its sign
+    for (const int l : decision.open) { // a less negative force does not open, whatever its sign
         const auto other = static_cast<std::size_t>(l);
         if (rule != "most_negative" || !is_less_negative(place, forces, other, opened)) {
             return Objection{false, fmt::format("the sign of the force of {} is not known: {}", e.name(other),

@@ -25,7 +25,7 @@ Objections wrong(std::string text) {
     return Objection{true, std::move(text)};
 }
 
-/// The records are those of the last checkpoint, but for arcs that led to no equilibrium when the run ended early.
+/// The records are those of the last checkpoint, except for arcs without an equilibrium when the run ended early.
 Objections check_digests(const fs::path& directory, const CheckedRecords& checked, const RunRecords& records) {
     if (!checked.damage.empty()) {
         return wrong(checked.damage);
@@ -34,7 +34,7 @@ Objections check_digests(const fs::path& directory, const CheckedRecords& checke
         const bool may_be_longer = records.status != "completed" && std::string_view(name) != "equilibria.csv";
         const auto found = checked.lines.find(name);
         if (name == witness_records && found == checked.lines.end() && !fs::exists(directory / name)) {
-            continue; // then no way is proved
+            continue; // then no motion is proved
         }
         if (found == checked.lines.end()) {
             return wrong(fmt::format("checkpoint.json: no digest of {}", name));
@@ -68,7 +68,7 @@ class Repeated {
     Objections wrong_;
 };
 
-/// Rows that the segment of the last one has made.
+/// Number of rows of the segment of the last row.
 long made_in_segment(const RunRecords& records) {
     const int segment = records.equilibria.back().integer("segment");
     return std::count_if(records.equilibria.begin() + 1, records.equilibria.end(),
@@ -102,7 +102,7 @@ Objections check_checkpoint(const CheckedRecords& checked, const RunRecords& rec
     return here.answer();
 }
 
-/// Counters but for the times, as text.
+/// Counters without the times, as text.
 std::string without_seconds(const Field& counters) {
     json::Json object = counters.value();
     for (auto& [name, part] : object.items()) {

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What can be said of the folder of a run before its records are replayed: finished or not, damaged or not.
+/// Checks of the folder of a run before its records are replayed: finished or not, damaged or not.
 
 #include "checker/replay.hpp"
 
@@ -9,15 +9,15 @@ namespace isostat::checker {
 /// run.json says that the run goes on, or was killed: its records are not complete.
 bool is_running(const std::filesystem::path& directory);
 
-/// Digests of checkpoint.json; the last state is that of the last row; what checkpoint.json and summary.json repeat of
-/// the records is there. Throws `Error(bad_input)` where one of them cannot be read.
+/// Checks the digests of checkpoint.json, that the last state is that of the last row, and that checkpoint.json and
+/// summary.json agree with the records. Throws `Error(bad_input)` where a file cannot be read.
 Objections check_folder(const std::filesystem::path& directory, const RunRecords& records);
 
-/// Files that no run writes, and those of equilibria that there are not: in words.
+/// Files that no run writes, and files of equilibria that do not exist, in words.
 std::vector<std::string> files_apart(const RunRecords& records);
 
-/// The certificate file of an equilibrium of a run of level `states` or above is of this equilibrium, and its claims
-/// are right. `line`: the row of equilibria.csv, which says whether it claims everything.
+/// Checks that the certificate file of an equilibrium, in a run of level `states` or above, is of this equilibrium and
+/// has right claims. `line`: the row of equilibria.csv, which says whether everything is claimed.
 Objections check_certificate(const RunRecords& records, const Place& place, const EquilibriumLine& line);
 
 } // namespace isostat::checker

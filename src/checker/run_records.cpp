@@ -30,7 +30,7 @@ template <class Use> void for_each_line(const std::string& text, const Use& use)
     }
 }
 
-/// One of the words that a record may have there.
+/// One of the words that a record may have in a field.
 std::string word(const Field& field, std::initializer_list<std::string_view> words) {
     if (std::find(words.begin(), words.end(), field.string()) == words.end()) {
         field.fail(fmt::format("one of {}", fmt::join(words, ", ")));
@@ -70,7 +70,7 @@ TieRecord tie_of(const Field& entry, int dimension) {
     return tie;
 }
 
-/// Whether the run calls the way of an arc proved, past everything and with a power that stays positive.
+/// Whether the run claims that the motion of an arc is proved, past all other contacts and with a positive power.
 bool claims_way(const Field& certificate) {
     const auto proved = [&certificate](const char* name) {
         return word(certificate.at(name), {"proved", "refuted", "undecided"}) == "proved";
@@ -126,7 +126,7 @@ EventRecord event_of(const std::string& line, const std::string& where, const Lo
     return event;
 }
 
-/// The two columns of a contact have its one spelling, or that of none.
+/// The two columns of a contact must be in its one spelling, or in that of no contact.
 void require_spelling(const EquilibriumLine& line, const std::string& what) {
     const int i = line.integer(what + "_i");
     const int j = line.integer(what + "_j");
@@ -182,7 +182,7 @@ RunRecords read_records(const std::filesystem::path& directory, LastLine last) {
     if (std::filesystem::exists(directory / "start.json")) {
         records.start = read_any_state(directory / "start.json", Dimensions::any_clumps).state;
     }
-    // A run that never left its start has no events: the file is empty then.
+    // A run that never left its start has no events, and an empty file.
     const std::filesystem::path events = directory / "events.jsonl";
     if (!std::filesystem::exists(events) || std::filesystem::file_size(events) > 0) {
         long choices = 0;

@@ -13,11 +13,11 @@
 
 namespace isostat::checker {
 
-/// One decision that a run settled at first order in the radii, or by its rule, as its record tells it.
+/// One decision that first-order terms in the radii settled, or the rule, as its record has it.
 struct TieRecord {
     std::string what;             ///< "force", "opening", "limit", "zero all along", "gap", "step"
     std::string contact, against; ///< `against` may be empty
-    std::string choice;           ///< "infinitesimal loads", "names", "zero"; empty: nothing was chosen
+    std::string choice;           ///< "infinitesimal loads", "names", "zero"; empty: no choice
     double first = 0, first_bound = 0;
     double other = 0, other_bound = 0;
 };
@@ -32,43 +32,43 @@ struct EventRecord {
     std::string opened, closed; ///< names of contacts, as in messages
     bool power_turn = false;
     double stress = 0, strain = 0, force = 0, power = 0, work = 0, displacement = 0;
-    double strain_bound = 0, force_bound = 0, power_bound = 0, work_bound = 0; ///< NaN: none
-    std::optional<double> held_at;                                             ///< of power turns
+    double strain_bound = 0, force_bound = 0, power_bound = 0, work_bound = 0; ///< NaN: no bound
+    std::optional<double> held_at;                                             ///< only for power turns
     std::vector<TieRecord> ties;
-    long choices = 0;       ///< among the ties, from the first line to this one
-    bool claims_way = true; ///< at level arcs; false: its own certificate leaves the way or the power open
+    long choices = 0;       ///< choices among the ties from the first line to this one
+    bool claims_way = true; ///< at level arcs; false: its own certificate leaves the motion or the power undecided
 };
 
 struct RunRecords {
     std::filesystem::path directory;
-    std::string rule;                                      ///< of run.json
-    std::optional<std::uint64_t> rule_seed;                ///< of the rule `random`
+    std::string rule;                                      ///< the rule in run.json
+    std::optional<std::uint64_t> rule_seed;                ///< seed of the rule `random`
     bool chooses = false;                                  ///< ties = "choose", and max_choices is not 0
     double max_choices = 0;                                ///< 0 where nothing is chosen
-    std::string status, reason;                            ///< the word, and what follows it
-    std::string program;                                   ///< that wrote it
-    int segments = 0;                                      ///< of the programme
-    bool certified_states = false, certified_arcs = false; ///< files that its level must have left
+    std::string status, reason;                            ///< the status, and the reason that follows it
+    std::string program;                                   ///< the program that wrote the run
+    int segments = 0;                                      ///< number of segments of the programme
+    bool certified_states = false, certified_arcs = false; ///< the level requires these files
     std::vector<EventRecord> events;
     std::vector<EquilibriumLine> equilibria;
     std::filesystem::path states;
-    std::optional<State> start; ///< start.json; may be far from the true vertex, until the first arc
-    /// The stored state of an equilibrium, with its forces, if there is one.
+    std::optional<State> start; ///< start.json, which may be far from the true vertex until the first arc
+    /// The stored state of an equilibrium, with its forces, if the file exists.
     [[nodiscard]] std::optional<StateFile> stored(int equilibrium) const;
 };
 
 /// Throws `Error(bad_input)`.
 RunRecords read_records(const std::filesystem::path& directory, LastLine last = LastLine::complete);
 
-/// "12-40", "12-40(0,-1)" (an image), "3-left", "held x of grain 4" (the walls are the grain after the last disk), each
-/// in the one spelling that records of a dimension have; nothing for anything else.
+/// "12-40", "12-40(0,-1)" (an image), "3-left", "held x of grain 4" (the walls are the grain after the last disk), in
+/// the one spelling of records in this dimension; nothing for other text.
 std::optional<Contact> contact_spelt(std::string_view name, int dimension);
-/// The same, of a packing.
+/// As `contact_spelt`, for a contact that the packing can have.
 std::optional<Contact> contact_named(std::string_view name, const Packing& packing);
 
-/// The two columns of a contact in equilibria.csv; nothing for "none". They do not name the image: `may_be`.
+/// The two columns of a contact in equilibria.csv; nothing for "none". They do not name the image: see `may_be`.
 std::optional<Contact> contact_of_columns(int i, int j, const Packing& packing);
-/// The pair of such columns, whichever image it is with.
+/// Whether the columns are those of a pair, with any image.
 bool may_be(const Contact& columns, const Contact& pair);
 
 } // namespace isostat::checker

@@ -39,7 +39,7 @@ struct Normal {
     long scale = 0;           ///< A is below 2^scale units of the problem
     std::size_t touching = 1; ///< most entries in a column or row of A
     bool usable = false;
-    std::vector<int> place; ///< of each degree of freedom
+    std::vector<int> place; ///< position of each degree of freedom
     /// The lower triangle of B column by column, rows ascending; times 2^(2 point).
     std::vector<std::size_t> start{0};
     std::vector<int> row;
@@ -101,7 +101,7 @@ struct Normal {
     };
     std::vector<std::vector<Entry>> entries_; ///< of each row
 
-    /// Towards zero, by less than one.
+    /// Rounded towards zero, by less than one.
     [[nodiscard]] std::int64_t fixed_point(const Integer& exact) const {
         if (scale <= point) {
             return shifted_left(exact, point - scale).get_si();
@@ -168,12 +168,12 @@ struct Normal {
     }
 };
 
-/// The smallest eigenvalue of B as inverse iteration sees it after a few steps: seldom much above it.
+/// An estimate of the smallest eigenvalue of B by some inverse iterations, seldom much above it.
 double smallest_eigenvalue(const Cholesky& factors, Eigen::Index n) {
     constexpr int steps = 8;
     Eigen::VectorXd x(n);
     std::uint32_t state = 1;
-    for (Eigen::Index k = 0; k < n; ++k) { // any vector will do, as long as it is always the same
+    for (Eigen::Index k = 0; k < n; ++k) { // any vector serves, but always the same one
         state = 1664525U * state + 1013904223U;
         x[k] = static_cast<double>(state) * 0x1p-32 - 0.5;
     }
@@ -220,7 +220,7 @@ std::optional<Integer> residual_norm(const Normal& b, const Factor& l, Wide shif
     const std::size_t n = b.start.size() - 1;
     std::vector<WideMagnitude> row_sum(n, 0);
     std::vector<Wide> w(n, 0);
-    // Columns k of L with an entry in row j, linked; `next_entry[k]` is where that is.
+    // Columns k of L with an entry in row j, linked; `next_entry[k]` is the position of that entry.
     std::vector<int> first(n, -1);
     std::vector<int> next(n, -1);
     std::vector<std::size_t> next_entry(n);
@@ -307,7 +307,7 @@ std::optional<Rational> smallest_singular_value(const Problem& problem) {
         if (!residual) {
             return std::nullopt;
         }
-        // sigma^2 of the rounded matrix in units of 2^-(2 point), and what rounding took from each entry of A.
+        // sigma^2 of the rounded matrix in units of 2^-(2 point), and the rounding of each entry of A.
         const Integer square = integer_of(magnitude(exact_shift)) - *residual;
         if (square <= 0) {
             continue;

@@ -9,9 +9,9 @@
 
 namespace isostat::checker {
 
-/// A length that the smallest singular value of A is not below, above 0; nothing when the factor is not good enough,
-/// which says nothing about the matrix. Cost: three sparse Cholesky factorisations of A^T A; memory O(entries of one).
-/// \pre the problem is square.
+/// A positive lower bound, as a length, of the smallest singular value of A; nothing when the factor is not accurate
+/// enough, which proves nothing about the matrix. Cost: three sparse Cholesky factorisations of A^T A; memory O(entries
+/// of one). \pre the problem is square.
 std::optional<Rational> smallest_singular_value(const Problem& problem);
 
 } // namespace isostat::checker

@@ -12,7 +12,7 @@ void add_scaled(Integer& target, double value, long shift) {
     if (!std::isfinite(value)) {
         return;
     }
-    static thread_local Integer part; // millions of these: memory is taken once
+    static thread_local Integer part; // called millions of times, so memory is allocated once
     int exponent = 0;
     part = static_cast<long>(std::ldexp(std::frexp(value, &exponent), 53));
     const long left = exponent - 53 + shift;
@@ -24,7 +24,7 @@ void add_scaled(Integer& target, double value, long shift) {
     target += part;
 }
 
-/// Of KLU, which keeps nothing of the matrix.
+/// The factors of KLU, which keeps nothing of the matrix.
 struct Solver::Factors {
     klu_common common{};
     klu_symbolic* symbolic = nullptr;
@@ -45,7 +45,7 @@ struct Solver::Factors {
     Factors(const Factors&) = delete;
     Factors& operator=(const Factors&) = delete;
 
-    /// KLU solves in a workspace of the factors: each thread brings its own.
+    /// KLU solves in a workspace of the factors, so each thread uses its own.
     template <class Solve> [[nodiscard]] Eigen::MatrixXd solved(Eigen::MatrixXd b, Solve solve) const {
         static thread_local std::vector<double> work;
         work.resize(std::max(work.size(), 4 * static_cast<std::size_t>(size))); // four right-hand sides at once

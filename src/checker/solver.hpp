@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Approximate solutions. Nothing that comes out of here is trusted: every use is followed by an exact residual.
+/// Approximate solutions. They are not trusted: an exact residual follows every use.
 
 #include "checker/problem.hpp"
 
@@ -14,26 +14,26 @@ namespace isostat::checker {
 class Solver {
   public:
     Solver(const Structure& structure, const std::vector<double>& q);
-    /// At the stored coordinates.
+    /// The matrix at the stored coordinates.
     explicit Solver(const Problem& problem);
-    /// False: the factorisation gave up (which says nothing about the matrix).
+    /// False: the factorisation failed (which proves nothing about the matrix).
     [[nodiscard]] bool usable() const { return factors_ != nullptr; }
     /// About the size of the largest entry, as a length.
     [[nodiscard]] int exponent() const { return exponent_; }
-    /// The same in units of the problem's `fine`.
+    /// `exponent` relative to the problem's `fine`.
     [[nodiscard]] long scale(const Problem& problem) const { return exponent_ - problem.fine; }
-    /// (A / 2^exponent)^-1 b: b per contact, result per degree of freedom. Any number of threads may ask. \pre usable
+    /// (A / 2^exponent)^-1 b: b per contact, result per degree of freedom. Several threads may call it. \pre usable
     [[nodiscard]] Eigen::MatrixXd solve(Eigen::MatrixXd b) const;
     /// (A / 2^exponent)^-T b: b per degree of freedom, result per contact.
     [[nodiscard]] Eigen::MatrixXd solve_transposed(Eigen::MatrixXd b) const;
 
   private:
-    struct Factors; ///< of KLU
+    struct Factors; ///< those of KLU
     int exponent_ = 0;
-    std::shared_ptr<const Factors> factors_; ///< null: it gave up
+    std::shared_ptr<const Factors> factors_; ///< null: the factorisation failed
 };
 
-/// target += value * 2^shift, rounded towards zero; nothing for what is not finite.
+/// target += value * 2^shift, rounded towards zero; nothing is added for infinity and NaN.
 void add_scaled(Integer& target, double value, long shift);
 
 } // namespace isostat::checker

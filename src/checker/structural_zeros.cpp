@@ -43,7 +43,7 @@ class Matching {
     bool perfect_ = true;
 };
 
-/// The pattern with the disk of most contacts pinned: its degrees of freedom stand for those of the pinned one (C9).
+/// The pattern with the disk of most contacts pinned: its degrees of freedom become those of the pinned disk (C9).
 std::vector<std::vector<int>> with_another_pin(const Problem& problem) {
     std::vector<std::vector<int>> contacts_of = problem.contacts_of;
     for (const Problem::Pinned& along : problem.pinned) {
@@ -64,7 +64,7 @@ bool acts_on_disks(const Problem& problem, const Forces& load) {
     return false;
 }
 
-/// As many as there are by this pattern.
+/// All structural zeros of this pattern.
 std::optional<std::vector<int>> zeros_of(const std::vector<std::vector<int>>& contacts_of, std::size_t contacts,
                                          const Forces& load) {
     const Matching matching(contacts_of, contacts);
@@ -83,7 +83,7 @@ std::optional<std::vector<int>> zeros_of(const std::vector<std::vector<int>>& co
             reached.push_back(j);
         }
     }
-    while (!reached.empty()) { // what balances a load hands it on
+    while (!reached.empty()) { // contacts that balance a load pass it on
         const auto contact = static_cast<std::size_t>(matching.contact_of(reached.back()));
         reached.pop_back();
         for (const std::size_t j : touched[contact]) {

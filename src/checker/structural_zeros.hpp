@@ -9,9 +9,9 @@
 
 namespace isostat::checker {
 
-/// Contacts whose forces are exactly 0 for every load where `load` is not 0, for all radii, by the pattern alone (K7;
-/// no entry is left out, proofs/definition.md): as many as there are. Ascending; nothing when the pattern has no
-/// perfect matching.
+/// All contacts whose forces are exactly 0, by the pattern alone, for every load that
+/// vanishes where `load` does and for all radii (K7; no entry is left out,
+/// proofs/definition.md). Ascending; nothing when the pattern has no perfect matching.
 std::optional<std::vector<int>> structural_zeros(const Problem& problem, const Forces& load);
 
 } // namespace isostat::checker

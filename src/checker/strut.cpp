@@ -9,7 +9,7 @@ namespace {
 
 using Vector = std::array<double, 2>;
 
-/// From the disk to what it touches through the contact.
+/// Direction from the disk to its partner in the contact.
 Vector outward(const State& state, const Contact& c, std::size_t disk) {
     if (!c.of_disks()) {
         Vector normal{};
@@ -25,16 +25,16 @@ Vector outward(const State& state, const Contact& c, std::size_t disk) {
     return {x / length, y / length};
 }
 
-/// The place without the disks that carry no force at the turn (S4 (c)): movable ones that just two contacts hold, the
-/// two at an angle. What they weigh, and what was put on them, rests on the others.
+/// The place without the disks that carry no force at the turn (S4 (c)): movable disks that just two contacts hold, the
+/// two at an angle. The loads on these disks are passed on to their neighbours.
 struct Bare {
     std::vector<bool> movable;     ///< disks: free, without a finite load, and not held by an earlier coordinate
     std::vector<bool> left_out;    ///< contacts
     std::vector<Vector> load;      ///< on the disks
-    std::vector<double> load_room; ///< how far that may be off
+    std::vector<double> load_room; ///< error bound of the load
     std::vector<std::vector<std::size_t>> around; ///< contacts of each disk that are not left out
 
-    /// `loose`: earlier held coordinates that tie no disk.
+    /// `loose`: earlier held coordinates that hold no disk.
     Bare(const Place& place, const std::vector<int>& loose) {
         const State& state = *place.state;
         const Problem& problem = place.evidence->problem;
@@ -70,12 +70,12 @@ struct Bare {
     }
 
   private:
-    /// Leaves out every disk that can be; false when there was none.
+    /// Leaves out every such disk; false when there was none.
     bool sweep(const State& state) {
         around.assign(movable.size(), {});
         for (std::size_t l = 0; l < state.contacts.size(); ++l) {
             const Contact& c = state.contacts[l];
-            const bool own = c.of_disks() && c.i == c.j; // it presses on the cell alone
+            const bool own = c.of_disks() && c.i == c.j; // such a contact acts on the cell alone
             if (left_out[l] || own || c.kind == ContactKind::held) {
                 continue;
             }
@@ -93,10 +93,10 @@ struct Bare {
             const Vector n = outward(state, state.contacts[two[0]], disk);
             const Vector m = outward(state, state.contacts[two[1]], disk);
             const double sine = n[0] * m[1] - n[1] * m[0];
-            if (std::abs(sine) < 1e-4) { // far above turn_tolerance: not one line at the turn either
+            if (std::abs(sine) < 1e-4) { // far above turn_tolerance: not in one line at the turn either
                 continue;
             }
-            // The disk presses on what it touches with p n and q m, its own load p n + q m.
+            // The disk exerts p n and q m on its neighbours, its own load being p n + q m.
             const Vector& g = load[disk];
             const double p = (g[0] * m[1] - g[1] * m[0]) / sine;
             const double q = (n[0] * g[1] - n[1] * g[0]) / sine;
@@ -119,8 +119,8 @@ struct Bare {
     }
 };
 
-/// The disks that hang together with `first` when the contacts a and b are cut; nothing when a wall does, or a disk
-/// that is not movable.
+/// The disks connected to `first` when the contacts a and b are
+/// cut; nothing when a wall is, or a disk that is not movable.
 std::optional<std::vector<unsigned char>> group(const State& state, const Bare& bare, int first, std::size_t a,
                                                 std::size_t b) {
     std::vector<unsigned char> inside(bare.movable.size(), 0);
@@ -176,7 +176,7 @@ bool same_at_turn(const Place& place, std::size_t a, std::size_t b) {
 
 namespace {
 
-/// S4 is of the plane, and of single grains.
+/// S4 is for the plane, and for single grains.
 bool has_struts(const Packing& packing) {
     return packing.dimension == plane && packing.bars.empty();
 }
@@ -202,8 +202,8 @@ std::vector<bool> without_force(const Place& place, const std::vector<int>& loos
     return nothing;
 }
 
-/// Earlier held coordinates whose multipliers are no larger than the places of turns are good for: released, they may
-/// turn back where they stand.
+/// Earlier held coordinates whose multipliers are within the accuracy
+/// of their turns: after a release they may be held again at once.
 std::vector<int> that_may_rest(const Place& place) {
     const std::vector<Range>& force = place.evidence->forces;
     const auto size = [&](std::size_t l) { return std::max<Rational>(abs(force[l].lower), abs(force[l].upper)); };
@@ -223,12 +223,12 @@ std::vector<int> that_may_rest(const Place& place) {
 } // namespace
 
 std::vector<bool> without_force(const Place& place) {
-    return without_force(place, place.zeros); // a hold without a finite force ties nothing in the finite loads
+    return without_force(place, place.zeros); // a hold without a finite force has no effect on the finite loads
 }
 
 bool holds_may_explain(const Place& place, std::size_t a, std::size_t b) {
     if (place.is_held(a)) {
-        return true; // what turned back where it stood is put aside, without a record
+        return true; // a hold released and held again at once is put aside, without a record
     }
     const std::vector<int> rows = that_may_rest(place);
     if (rows.empty()) {

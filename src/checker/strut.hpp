@@ -8,24 +8,24 @@
 
 namespace isostat::checker {
 
-/// Whether two forces may be the same at the power turn itself, where the multiplier of the coordinate held there is 0:
-/// by the balance of the disks between them the ends of a strut differ by no more than that multiplier, wherever the
-/// turn was rounded to. False without a coordinate held just now.
+/// Whether two forces may be equal at the exact power turn, where the multiplier of the held coordinate is 0: by the
+/// balance of the disks between them the ends of a strut differ by at most that multiplier, wherever the turn was
+/// rounded to. False without a coordinate held at the last turn.
 bool same_at_turn(const Place& place, std::size_t a, std::size_t b);
 
-/// Contacts whose force is 0 at the power turn itself (S4 (c)), whatever the forces say at the place to which it was
-/// rounded: one that alone joins movable disks without load to the rest, and the two, not in one line, that hold such
-/// a disk when others of these are left out. None in space. \pre a coordinate is held just now.
+/// Contacts whose force is 0 at the exact power turn (S4 (c)), whatever the forces are at the rounded place: one that
+/// alone joins movable disks without load to the rest, and the two, not in one line, that hold such a disk when
+/// contacts of this kind are left out. Empty in space. \pre a coordinate is held since the last turn.
 std::vector<bool> without_force(const Place& place);
 
-/// Whether contact `a` may have lost against `b` because of coordinates held earlier: `a` is one, or the multipliers of
-/// some are so small that they may have been released and turned back where they stood (of which there is no record),
-/// and the two forces differ by no more than these, or that of `a` is 0 at the present turn without them. Then the
+/// Whether contact `a` may have lost against `b` because of coordinates held earlier: `a` is one of them, or the
+/// multipliers of some are so small that they may have been released and held again at once (without a record), and the
+/// two forces differ by no more than these multipliers, or that of `a` is 0 at the present turn without them. Then the
 /// order of the two refutes nothing.
 bool holds_may_explain(const Place& place, std::size_t a, std::size_t b);
 
-/// Order of the forces of two contacts that alone hold a group of free disks, as the infinitesimal loads on the group
-/// make it: -1 when that of `a` is smaller. 0: these loads stand across the strut, up to its bend and
+/// Order of the forces of two contacts that alone hold a group of free disks, from the infinitesimal loads on the
+/// group: -1 when that of `a` is smaller. 0: these loads are perpendicular to the strut, up to its bend and
 /// `turn_tolerance`. Nothing: the two do not cut off such a group.
 std::optional<int> strut_order(const Place& place, std::size_t a, std::size_t b);
 

@@ -19,7 +19,7 @@ Objections check_said(const std::string& what, const Bounded& said, const Range&
 
 namespace {
 
-/// One pair was chosen by name to close before another, after ways that are not told apart.
+/// One pair was chosen by name to close before another, after steps whose lengths cannot be told apart.
 bool chosen_step(const Place& place, const EventRecord& event, const Contact& chosen, const Contact& other) {
     const TieRecord* tie = recorded_choice(event.ties, "step", place.named(chosen), place.named(other));
     return tie != nullptr && tie->choice == "names" && chosen < other;
@@ -45,7 +45,7 @@ std::optional<Range> first_gap(const Place& place, const std::string& name) {
     return gap == place.touching.end() ? std::nullopt : std::optional(gap->value);
 }
 
-/// First-order length of the way on which a pair that touches closes; nothing when it does not close.
+/// First-order length of the step on which a touching pair closes; nothing when it does not close.
 std::optional<Range> first_way(const Place& from, const std::string& name, std::size_t opened, int direction) {
     const auto gap = touching_pair(from, name);
     if (gap == from.touching.end()) {
@@ -56,8 +56,8 @@ std::optional<Range> first_way(const Place& from, const std::string& name, std::
     return rate.positive() ? std::optional(gap->value / rate) : std::nullopt;
 }
 
-/// At the limit where `opened` opens: first-order term of a force that is 0 all along, or of the stress at which it is
-/// 0.
+/// At the limit where `opened` opens: first-order term of a force
+/// that is 0 all along, or of the stress at which it vanishes.
 std::optional<Range> first_limit(const Place& from, const std::string& name, std::size_t opened, bool all_along) {
     const auto l = position(from, name);
     const auto& slopes = from.evidence->slopes();
@@ -72,15 +72,15 @@ std::optional<Range> first_limit(const Place& from, const std::string& name, std
     return limit_rate(first[*l], slopes[*l]);
 }
 
-/// What becomes of a force or a gap that vanishes in the base, by the sign of its first-order term (C1).
+/// How a force or a gap that vanishes in the base is treated, by the sign of its first-order term (C1).
 std::string left_as(const std::string& what, const Range& first) {
     return first.positive() ? "" : what == "gap" && first.negative() ? "watched" : "zero";
 }
 
-/// An arc whose ties are looked at.
+/// An arc whose recorded ties are checked.
 struct Arc {
-    const Place& base; ///< where it starts, with the list that was reached
-    const Place& from; ///< the same with the list that opens
+    const Place& base; ///< its start, with the list that was reached
+    const Place& from; ///< the same, with the list that opens
     const Place& to;
     const EventRecord& event;
     std::size_t opened;
@@ -116,7 +116,7 @@ struct Arc {
         return wrong;
     }
 
-    /// What is left at 0, or watched, or is told from 0, by the sign of the term: as found, and as recorded.
+    /// Checks an entry left at 0, watched, or told from 0, by the sign of its term: as found, and as recorded.
     [[nodiscard]] Objections check_left(const TieRecord& tie) const {
         const bool gap = tie.what == "gap";
         const Rational value(gap ? tie.other : tie.first);
@@ -132,7 +132,7 @@ struct Arc {
                                      tie.choice, tie.choice == found ? recorded : found)};
     }
 
-    /// What the rule chose between: first-order terms do not tell the two apart, by the record and as found.
+    /// The rule chose between two contacts that first-order terms do not separate, by the record and as found.
     [[nodiscard]] Objections check_tied(const TieRecord& tie) const {
         const Rational room = (Rational(tie.first_bound) + Rational(tie.other_bound)) * (1 + Rational(0x1p-50)) +
                               Rational(0x1p-50) * (abs(Rational(tie.first)) + abs(Rational(tie.other)));
@@ -149,7 +149,7 @@ struct Arc {
         const bool alone =
             tie.what == "force" || tie.what == "zero all along" || (tie.what == "step" && tie.against.empty());
         const bool gap = tie.what == "gap";
-        const bool ends = gap || tie.what == "step"; // they are of what ends the arc
+        const bool ends = gap || tie.what == "step"; // these end the arc
         if (alone != tie.against.empty() || (ends && tie.contact != event.closed) ||
             (gap && (tie.first != 0 || tie.first_bound != 0))) {
             return Objection{true, fmt::format("a first-order decision '{}' of {} and {}: there is no such one here",
@@ -174,8 +174,8 @@ struct Arc {
                                                                 tie.what, tie.contact, tie.choice)};
     }
 
-    /// Going back, a pair that touches at the end does not overlap; one that overlaps at first order touched all along,
-    /// or only grazes here (C1 g): else it closed before. `back`: the motion back; null: the arc has no length.
+    /// Backwards from the end, a touching pair does not overlap; one that overlaps at first order touched all along, or
+    /// only grazes here (C1 g): otherwise it closed before. `back`: the motion back; null: the arc has no length.
     [[nodiscard]] Objections check_back(const Gap& pair, const Velocities::Solution* back) const {
         const std::string name = to.named(pair.pair);
         if (back == nullptr) {
@@ -227,7 +227,7 @@ Objections check_exchange(const Place& place, const TieRecord& tie, std::size_t 
     const Range bend = velocities.bend(pair->pair, opened, motion);
     const Velocities::Solution other = velocities.opening(*leaves, +1);
     const Range share = velocities.gap_rate(pair->pair, other);
-    const bool overlaps = tie.what == "second order"; // else it rests
+    const bool overlaps = tie.what == "second order"; // otherwise the pair rests
     const Range& first = overlaps ? bend : rate;
     if (bend.positive() || (bend.negative() && !overlaps) || share.negative()) {
         return wrong(fmt::format("second derivative of its gap in {}, share in {}", shown(bend), shown(share)));
@@ -268,10 +268,10 @@ Objections check_step(const Place& place, const EventRecord& event, std::size_t 
     }
     const Velocities& velocities = place.first->velocities();
     const Velocities::Solution motion = velocities.opening(opened, direction);
-    std::vector<Gap> ways; // the one that is said to close first
+    std::vector<Gap> ways; // the recorded first one to close
     for (const Gap& gap : place.touching) {
         const Range rate = velocities.gap_rate(gap.pair, motion);
-        if (rate.negative()) { // else it opens, or stays as far as is seen
+        if (rate.negative()) { // otherwise it opens, or cannot be told to move
             const auto at = event.closed == place.named(gap.pair) ? ways.begin() : ways.end();
             ways.insert(at, {gap.pair, gap.value / (Range(Rational(0)) - rate)});
         }

@@ -34,7 +34,7 @@ double norm_above(const std::vector<double>& x) {
     return root_above(square);
 }
 
-/// A number that no singular value is below; 0: not known.
+/// Lower bound of the singular values; 0: not known.
 double least_singular_value(const Problem& problem, const Solver& solver) {
     const InverseBound inverse = bound_inverse(problem, solver, CheckerArithmetic::automatic);
     if (!inverse.found) {
@@ -143,8 +143,8 @@ double period_weight(const Contact& pair) {
 
 namespace {
 
-/// The parts of a configuration that D_l depends on: blocks of coordinates (disks, and the cell behind them) and what
-/// the norm of each is multiplied by.
+/// The parts of a configuration that D_l depends on: blocks of coordinates
+/// (disks, and the cell behind them), each with a factor for its norm.
 struct Blocks {
     std::array<std::size_t, 3> block{};
     std::array<double, 3> weight{};
@@ -225,7 +225,7 @@ std::unique_ptr<Tube> Tube::make(const Moving& moving, std::vector<double> centr
     return tube;
 }
 
-/// The derivatives of the curve as double precision finds them; nothing of them is trusted.
+/// The derivatives of the curve in double precision, which are not trusted.
 void Tube::expand() {
     const std::size_t disks = moving_.state.packing.radius.size();
     const std::size_t contacts = moving_.kept.size();
@@ -286,7 +286,7 @@ void Tube::expand() {
     }
 }
 
-/// Coefficients of every F_l along p, whatever the polynomial is.
+/// Coefficients of every F_l along p, for any polynomial p.
 void Tube::bound_residuals() {
     const Packing& packing = moving_.state.packing;
     const Layout layout = packing.layout();
@@ -383,7 +383,7 @@ double Tube::change_norm(double h) const {
 }
 
 bool Tube::holds(double h) {
-    const double left = next_below(sigma_ - change_norm(h)); // of the smallest singular value, at every p(s)
+    const double left = next_below(sigma_ - change_norm(h)); // bound of the smallest singular value, at every p(s)
     if (!(left > 0.1 * sigma_)) {
         return false;
     }
@@ -421,7 +421,7 @@ bool Tube::holds(double h) {
 bool Tube::prove() {
     double turning = change_norm(1e-6 * longest_) * 1e6 / longest_;
     double h = std::min(longest_, turning > 0 ? 0.75 * sigma_ / turning : longest_);
-    // No further than the polynomial is about as good as the centre: a wide tube leaves gaps and power open.
+    // No farther than where the polynomial is about as good as the centre, as a wide tube leaves gaps and power open.
     const auto norm = [this](std::size_t first, double s) {
         std::vector<double> values;
         for (const std::vector<double>& residual : residual_) {

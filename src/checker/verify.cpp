@@ -31,7 +31,7 @@ Verification verify(const Certificate& certificate, CheckerArithmetic arithmetic
         first = judged(evidence);
         if (arithmetic != CheckerArithmetic::automatic || evidence.inverse.singular_value == 0 ||
             !leaves_open(*first, "vertex")) {
-            // An end of the interval, or a small force, may be claimed to more digits than the usual ones tell.
+            // An end of the interval, or a small force, may be claimed to more digits than the usual ones prove.
             const bool vague = arithmetic == CheckerArithmetic::automatic &&
                                (leaves_open(*first, "load_interval") || leaves_open(*first, "forces"));
             return vague && evidence.vertex.found

@@ -21,7 +21,7 @@ namespace {
 
 using namespace checker;
 
-/// Goes through the records in order and stops at the first wrong one.
+/// Checks the records in order and stops at the first wrong one.
 class Replay {
   public:
     Replay(const RunRecords& records, RunVerification& result)
@@ -78,8 +78,8 @@ class Replay {
     [[nodiscard]] const EquilibriumLine& line_of(int number) const {
         return is_row(number) ? records_.equilibria[static_cast<std::size_t>(number)] : open_row_;
     }
-    /// Arcs after the last equilibrium lead to none. They begin at the last one whose interval ends at their load: a
-    /// programme may go back to an earlier one.
+    /// Arcs after the last equilibrium lead to no equilibrium. They begin at the last equilibrium whose interval ends
+    /// at their load, because a programme may go back to an earlier one.
     void open_row() {
         const auto arcs =
             std::count_if(records_.events.begin() + static_cast<std::ptrdiff_t>(event_), records_.events.end(),
@@ -112,8 +112,8 @@ class Replay {
         }
     }
 
-    /// How ends of arcs are looked for: in steps, in small steps where these find an end, in either, and then proved to
-    /// be on the way.
+    /// How ends of arcs are found: in steps; in small steps where these
+    /// find an end; in either, and then proved to be on the curve.
     enum class Pace : unsigned char { fast, slow, certain };
 
     /// True: proved. False: left undecided and noted, or wrong and stopped.
@@ -129,9 +129,9 @@ class Replay {
         return false;
     }
 
-    /// A check that stays open is asked again of the same vertices with more digits: what a record says may lie closer
-    /// to the end of its bound, or to 0, than the usual ones tell. Not where radii are R_i + eps rho_i: what is 0 there
-    /// as far as is seen is called so by the records.
+    /// A check that stays undecided is repeated at the same vertices with more digits: a recorded number may lie closer
+    /// to the end of its bound, or to 0, than the usual digits show. Not where radii are R_i + eps rho_i, because
+    /// records there call a quantity 0 when it cannot be told from 0.
     template <class Check> Objections asked(const Check& check, Place* next = nullptr) {
         Objections open = check();
         for (const int digits : {more_digits, most_digits}) {
@@ -147,7 +147,7 @@ class Replay {
         return open;
     }
 
-    /// `here_` becomes the vertex near a state; empty when none is proved.
+    /// Makes `here_` the vertex near a state; empty when no vertex is proved.
     void go_to(State state, const std::string& where, const ExactLoad& load) {
         Place place;
         place.chooses = records_.chooses;
@@ -158,15 +158,15 @@ class Replay {
         }
     }
 
-    /// The same at the load that its file means.
+    /// Makes `here_` the vertex at the exact load of a stored state.
     void go_to_stored(State state, const std::string& where) {
         const ExactLoad load = meant_load(state);
         go_to(std::move(state), where, load);
     }
 
-    /// What contradicts a row, or an arc towards it, is looked at again in small steps: steps in double may have led to
-    /// another vertex of the same contacts. It is believed only where every arc from the last stored state on is proved
-    /// to end where it was found to.
+    /// A contradiction to a row, or to an arc towards it, is checked again in small steps, because steps in double may
+    /// have led to another vertex of the same contacts. It counts only where every arc from the last stored state on is
+    /// proved to end where it was found to.
     void again(int number, const RunVerification& before) {
         const std::string seen = std::exchange(result_.wrong, {});
         std::vector<int> rows{number};
@@ -187,8 +187,8 @@ class Replay {
         }
     }
 
-    /// Rows once more, the last one first in the list, from the state before them that is kept. True: nothing is wrong
-    /// or undecided.
+    /// Checks rows again, the last one first in the list, from the last
+    /// kept state before them. True: nothing is wrong or undecided.
     bool replayed(const std::vector<int>& rows, Pace pace, const RunVerification& before) {
         pace_ = pace;
         here_number_ = -1;
@@ -250,8 +250,8 @@ class Replay {
         }
     }
 
-    /// Equilibrium 0 is the start as it is stored, or arcs lead to it from start.json. Of pairs that touch there the
-    /// list holds those with which these arcs end at that of the equilibrium.
+    /// Equilibrium 0 is the stored start, or arcs lead to it from start.json. The list holds those touching pairs with
+    /// which these arcs end at the list of the equilibrium.
     void begin(const EquilibriumLine& line, const std::vector<const EventRecord*>& arcs) {
         expect(line.integer("previous") == -1, line.where,
                fmt::format("previous is {}, expected -1: there is none before", line.integer("previous")));
@@ -324,13 +324,13 @@ class Replay {
         return off(0) || off(1) || (packing.dimension > plane && off(2));
     }
 
-    /// What a record says opens and closes at `here_`.
+    /// The contacts that open and close at `here_` according to a record.
     struct Change {
-        std::size_t position; ///< of what opens among the contacts
+        std::size_t position; ///< position of the opening contact in the list
         Contact closed;
-        bool rattles = false;   ///< it opens under the infinitesimal loads, and only rattlers move
+        bool rattles = false;   ///< the infinitesimal loads open it, and only rattlers move
         int direction = +1;     ///< -1: a held coordinate that falls
-        ExactLoad load{};       ///< at which it opens
+        ExactLoad load{};       ///< load at which it opens
         bool from_zero = false; ///< the power of the load grows from 0
 
         [[nodiscard]] Opening opening() const { return {position, direction, rattles}; }
@@ -391,7 +391,7 @@ class Replay {
         return true;
     }
 
-    /// Nothing: the names of the record cannot be, and the replay stops.
+    /// Nothing: the record has impossible names, and the replay stops.
     std::optional<Change> change_of(const EventRecord& event) {
         const std::optional<Contact> opened = contact_named(event.opened, here_.state->packing);
         const std::optional<Contact> closed = contact_named(event.closed, here_.state->packing);
@@ -417,7 +417,7 @@ class Replay {
         return Change{static_cast<std::size_t>(at - contacts.begin()), *closed, false, +1, here_.load};
     }
 
-    /// The list that opens in the place of the one that was reached, which stays in `base` if it is another.
+    /// Replaces the list that was reached by the one that opens; `base` keeps the former, if they differ.
     bool exchange_lists(Place& base, const EventRecord& event, const Change& change) {
         for (const TieRecord& tie : event.ties) {
             if (!exchanges_list(tie)) {
@@ -445,7 +445,7 @@ class Replay {
         return true;
     }
 
-    /// Does the limit, or the rule, open what the record says? At a limit `change` gets its exact load.
+    /// Checks that the limit, or the rule, opens the recorded contact. At a limit `change` gets its exact load.
     Objections check_opening(const EventRecord& event, Change& change) {
         if (event.kind != "limit") {
             return check_rule(here_, event, change.position, records_);
@@ -456,7 +456,7 @@ class Replay {
         return check_limit(here_, event, bound, change.position, change.load);
     }
 
-    /// A coordinate of a rattler is let go by the infinitesimal loads, as its contacts are.
+    /// The infinitesimal loads release a coordinate of a rattler, as they open its contacts.
     void find_direction(const EventRecord& event, Change& change) const {
         const Evidence& evidence = *here_.evidence;
         const bool held = here_.state->contacts[change.position].kind == ContactKind::held;
@@ -468,12 +468,12 @@ class Replay {
         change.from_zero = event.kind == "limit" || bears;
     }
 
-    /// Among the contacts at the end: what a power turn holds, or -1.
+    /// Position of the coordinate that a power turn holds, among the contacts at the end, or -1.
     static int fresh(const EventRecord& event, const Change& change) {
         return event.power_turn ? static_cast<int>(change.position) : -1;
     }
 
-    /// The end from the witness of the way. False: not proved, which is noted where the run calls the way proved.
+    /// The end from the witness of the arc. False: not proved, which is noted where the run claims a proof.
     bool prove_way_to(Place& next, const EventRecord& event, const Change& change) {
         const std::optional<Witness> witness = witnesses_.of(event.step);
         Objections missing = Objection{false, "the way is not proved: there is no witness"};
@@ -493,7 +493,7 @@ class Replay {
         return !missing;
     }
 
-    /// The end where only the list changes.
+    /// The end of an arc that only changes the list.
     Objections stay(Place& next, const EventRecord& event, const Change& change) {
         State state = *here_.state;
         state.contacts[change.position] = change.closed;
@@ -501,7 +501,7 @@ class Replay {
         return make_place(std::move(state), next, change.load, fresh(event, change));
     }
 
-    /// The end where steps in double lead.
+    /// The end found by steps in double.
     Objections arrive(Place& next, const EventRecord& event, const Change& change, bool slowly) {
         Arrival arrival = slowly ? lookahead_.arrive_slowly(here_, index_of(event), change.opening(), change.load)
                                  : lookahead_.arrive(here_, index_of(event), change.opening(), change.load);
@@ -516,19 +516,19 @@ class Replay {
         return std::move(arrival.open);
     }
 
-    /// In small steps where the others find none.
+    /// Arrives at the end of an arc, in small steps when the usual steps find no end.
     Objections arrive_somehow(Place& next, const EventRecord& event, const Change& change) {
         Objections open = arrive(next, event, change, false);
         return next.state ? open : arrive(next, event, change, true);
     }
 
-    /// The same in small steps, if these find an end.
+    /// Arrives in small steps, if these find an end.
     Objections arrive_slowly(Place& next, const EventRecord& event, const Change& change) {
         Objections open = arrive(next, event, change, true);
         return next.state ? open : arrive(next, event, change, false);
     }
 
-    /// The same, at a vertex that is proved to be where the arc ends if it ends with what the record says.
+    /// Arrives at a vertex that is proved to be the end of the arc if this end agrees with the record.
     Objections arrive_certainly(Place& next, const EventRecord& event, const Change& change) {
         const Witness none{};
         const Way way{change.position, change.direction, change.rattles, change.from_zero, event.stress, none};
@@ -545,8 +545,8 @@ class Replay {
         return missing ? missing : Objection{false, "the end was not found"};
     }
 
-    /// Is the end what the record says? `open`: what its place leaves open; `base`: where the arc starts, with the list
-    /// that was reached.
+    /// Checks that the end agrees with the record. `open`: objections to the
+    /// vertex; `base`: start of the arc, with the list that was reached.
     bool check_arrival(const Place& base, Place& next, const EventRecord& event, const Change& change,
                        Objections open) {
         if (open && !open->wrong && next.evidence && next.evidence->vertex.found && !next.first) {
@@ -568,7 +568,7 @@ class Replay {
         go_to(std::move(state), line.where, {});
     }
 
-    /// Where the replay was lost, a stored state takes it up again.
+    /// Continues at a stored state after the replay was lost.
     void resume(const EquilibriumLine& line) {
         std::optional<StateFile> file = records_.stored(line.integer("number"));
         if (file) {
@@ -588,13 +588,13 @@ class Replay {
         }
         if (here_.first && here_.ties.empty() && (here_.load.shift.lower != 0 || here_.load.shift.upper != 0)) {
             const std::vector<TieRecord> said = here_.said;
-            go_to(State(*here_.state), line.where, {}); // no force vanishes: the load is the stored one
+            go_to(State(*here_.state), line.where, {}); // no force vanishes, so the load is the stored one
             if (!here_.state) {
                 return;
             }
             here_.said = said;
         }
-        if (here_.fresh >= 0 && !here_.state->packing.bars.empty()) { // a free motion that stays: counting tells
+        if (here_.fresh >= 0 && !here_.state->packing.bars.empty()) { // a free motion that stays held, by counting
             go_to(State(*here_.state), line.where, here_.load);
             if (!here_.state) {
                 return;
@@ -616,7 +616,7 @@ class Replay {
         here_number_ = number;
     }
 
-    /// A state file, where there is one, holds the equilibrium that was reached, and its forces.
+    /// Checks that a state file, if there is one, holds the equilibrium that was reached, and its forces.
     bool same_file(const std::string& name, const EquilibriumLine& line) {
         const std::filesystem::path path = records_.directory / name;
         if (!std::filesystem::exists(path)) {
@@ -633,22 +633,22 @@ class Replay {
     RunVerification& result_;
     Witnesses witnesses_;
     std::function<void(const VerificationProgress&)> progress_;
-    int arcs_before_ = 0; ///< of the equilibria that are done
+    int arcs_before_ = 0; ///< arcs of finished equilibria
     int arcs_here_ = 0;
     Lookahead lookahead_;
-    Place here_; ///< empty: lost
+    Place here_; ///< empty: the replay is lost
     int here_number_ = -1;
-    EquilibriumLine open_row_;                ///< of arcs after the last equilibrium
-    const EquilibriumLine* before_ = nullptr; ///< where the rearrangement started
+    EquilibriumLine open_row_;                ///< row for arcs after the last equilibrium
+    const EquilibriumLine* before_ = nullptr; ///< start of the rearrangement
     std::size_t event_ = 0;
     struct Reached {
         std::optional<State> state; ///< nothing: the replay was lost
         ExactLoad load;
-        bool stored = false;         ///< it is that of the state file
+        bool stored = false;         ///< from the state file
         std::size_t first_event = 0; ///< of the rearrangement towards it
     };
     std::vector<Reached> reached_; ///< by number
-    double coarsest_ = 0;          ///< largest step of the grids of the configurations so far
+    double coarsest_ = 0;          ///< largest grid step of the configurations so far
     Pace pace_ = Pace::fast;
 };
 
@@ -658,7 +658,7 @@ RunVerification verify_run(const std::filesystem::path& directory,
                            const std::function<void(const VerificationProgress&)>& progress) {
     require_floating_point();
     RunVerification result;
-    (void)content_of(directory, run_folder); // no link leads out of it, no pipe is read
+    (void)content_of(directory, run_folder); // no link leads out of the folder, no pipe is read
     if (is_running(directory)) {
         result.finished = false;
         return result;
@@ -670,7 +670,7 @@ RunVerification verify_run(const std::filesystem::path& directory,
     } else {
         Replay(records, result).run(progress);
     }
-    if (is_running(directory)) { // taken up again while it was read
+    if (is_running(directory)) { // the run was resumed while it was read
         result = {};
         result.finished = false;
         return result;

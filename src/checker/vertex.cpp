@@ -23,7 +23,7 @@ std::vector<Integer> improved(const Problem& problem, const Solver& solver) {
         for (int l = 0; l < problem.contacts(); ++l) {
             b(l, 0) = approximate(residual[static_cast<std::size_t>(l)], -now);
         }
-        // F = residual / 2, A = 2^scale times the matrix that was factorised.
+        // F = residual / 2, A = 2^scale times the factorised matrix.
         const Eigen::MatrixXd x = solver.solve(b);
         for (int k = 0; k < problem.dofs(); ++k) {
             add_scaled(q[static_cast<std::size_t>(problem.coordinate_of[static_cast<std::size_t>(k)])], -x(k, 0),

@@ -6,8 +6,8 @@
 
 namespace isostat::checker {
 
-/// A true vertex within `radius` of `middle` (every coordinate), and nowhere else within `unique_within(...)` of the
-/// stored configuration. Lengths are real.
+/// A true vertex within `radius` of `middle` (every coordinate), the only one within `unique_within(...)` of the stored
+/// configuration. Lengths are real.
 struct TrueVertex {
     bool found = false;
     std::vector<Integer> middle; ///< in units of the problem
@@ -23,10 +23,10 @@ struct TrueVertex {
 TrueVertex find_vertex(const Problem& problem, const Solver& solver, const InverseBound& inverse,
                        const Rational& around = 0);
 
-/// No two zeros lie within `distance` of the stored configuration (every coordinate), the true vertex being one.
+/// The true vertex is the only zero within `distance` of the stored configuration (every coordinate).
 bool unique_within(const InverseBound& inverse, const TrueVertex& vertex, const Rational& distance);
 
-/// Such a distance, nearly as large as the criterion allows; infinity when there are no contacts of two disks.
+/// A distance for `unique_within`, nearly the largest; infinity when there are no contacts of two disks.
 double largest_unique_distance(const InverseBound& inverse, const TrueVertex& vertex);
 
 } // namespace isostat::checker

@@ -50,9 +50,9 @@ class Follower {
     std::unique_ptr<Tube> start();
     [[nodiscard]] std::unique_ptr<Tube> tube_at(std::vector<double> centre, int row, int direction) const;
     Objections begin();
-    /// Joins the tube around q, in which a row falls or grows as here, at s of this one.
+    /// Joins the tube around q, in which a row falls or grows as here, at s on this tube.
     bool join_near(const std::vector<double>& q, double s, int row);
-    /// The same at a place of our own choice before `reach`.
+    /// Joins such a tube at another configuration before `reach`.
     bool join_on_the_way(double reach);
     Objections chain();
     Objections arrive(const Bounds& place);
@@ -64,16 +64,16 @@ class Follower {
     const Way& way_;
     Moving moving_;
     Pushing pushing_;
-    double start_off_ = 0; ///< 2-norm of what the true start vertex is from the stored one, on what moves
+    double start_off_ = 0; ///< 2-norm of the true start vertex minus the stored one, on moving coordinates
     double end_off_ = 0;
     std::unique_ptr<GapCourses> gaps_;
     std::unique_ptr<Tube> tube_;
-    Bounds here_; ///< where on the tube the curve was met
+    Bounds here_; ///< where on the tube the curve was entered
     int pieces_ = 0;
     std::string trouble_;
 };
 
-/// What does not move is marked so.
+/// Marks what does not move.
 void Follower::let_rest() {
     Packing& packing = moving_.state.packing;
     packing.fixed.assign(packing.radius.size(), 1);
@@ -108,7 +108,7 @@ Objections Follower::set_up() {
     if (way_.witness.grains && moving_.disk_moves(start.packing.cell.pin) && start.packing.cell.any()) {
         return open("the pinned disk is among the few that are said to move");
     }
-    if (!start.packing.cell.any() || way_.witness.grains) { // in a cell all moves that can
+    if (!start.packing.cell.any() || way_.witness.grains) { // in a cell all coordinates that can move do
         let_rest();
     }
     for (std::size_t k = 0; k < moves.size(); ++k) {
@@ -147,7 +147,7 @@ Objections Follower::set_up() {
     return {};
 }
 
-/// The load of the record: bounds of the exact products.
+/// The recorded load: bounds of the exact products.
 void Follower::load() {
     Load load = from_.state->load;
     load.set_loaded_stress(way_.stress);
@@ -173,7 +173,7 @@ std::unique_ptr<Tube> Follower::tube_at(std::vector<double> centre, int row, int
     return tube && tube->prove() ? std::move(tube) : nullptr;
 }
 
-/// The fastest coordinate at the start and its direction are found with any row that serves.
+/// Finds the fastest coordinate at the start and its direction, with any suitable row.
 std::unique_ptr<Tube> Follower::start() {
     State state = moving_.state;
     state.contacts = moving_.kept;
@@ -204,7 +204,7 @@ std::unique_ptr<Tube> Follower::start() {
                                  v(fastest, 0) > 0 ? 1 : -1);
 }
 
-/// Gaps and power from `here_` to s.
+/// Proves gaps and power from `here_` to s.
 bool Follower::finish(double s, bool last) {
     ++pieces_;
     if (!gaps_->look(*tube_, here_.lower, s)) {
@@ -216,7 +216,7 @@ bool Follower::finish(double s, bool last) {
     const double end = s - (last && closed().kind == ContactKind::held ? open_share * length : 0);
     const bool power_ends = closed().kind == ContactKind::held;
     const auto proved = [&](double from) { return power_is_positive(pushing_, moving_, *tube_, from, end); };
-    // Where the force that opens is negative but small the power is proved at the start alone, by that.
+    // Where the force that opens is negative but small, this force alone proves the power at the start.
     const bool starts = pieces_ == 1 && !way_.at_limit;
     if ((power_ends || !way_.end_only) && !proved(begin) && !(starts && proved(begin + open_share * length))) {
         trouble_ = "the power of the load is not proved positive";
@@ -225,7 +225,7 @@ bool Follower::finish(double s, bool last) {
     return true;
 }
 
-/// The curve, at s on the present tube, goes on along the next one.
+/// Continues the curve along the next tube, at s on the present one.
 bool Follower::join(std::unique_ptr<Tube> next, double s) {
     if (!next) {
         return false;
@@ -271,7 +271,7 @@ Objections Follower::begin() {
         return open("the start is not proved to lie on the curve");
     }
     here_ = *begin;
-    if (opened().kind == ContactKind::held) { // released: it must move as its multiplier pushes it
+    if (opened().kind == ContactKind::held) { // a released coordinate must move in the direction of its multiplier
         const Bounds slope = tube_->slope(opened().i, here_) * static_cast<double>(way_.direction);
         if (opened().i != tube_->row() ? !slope.positive() : tube_->direction() != way_.direction) {
             return open("the coordinate that is released is not proved to move");
@@ -313,7 +313,7 @@ Objections Follower::chain() {
             return arrive(*end);
         }
         const double reach = tube_->reach() * (1 - 1e-9);
-        // The next place that the witness names: the end, last of all, with the row that is fastest here.
+        // The next configuration of the witness; after all of these the end, with the row that is fastest here.
         const bool last = hint >= hints.size();
         const std::vector<double> q = last ? to_.state->packing.q : widened(hints[hint].q);
         const auto row = at(tube_->row());
@@ -326,7 +326,7 @@ Objections Follower::chain() {
         bool joined = s > here_.upper && join_near(q, s, last ? tube_->fastest(s) : hints[hint].held);
         if (joined) {
             ++hint;
-        } else if (trouble_.empty()) { // a place of our own, on the way there
+        } else if (trouble_.empty()) { // another configuration before that one
             joined = join_on_the_way(reach);
         }
         if (!trouble_.empty()) {

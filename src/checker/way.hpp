@@ -1,13 +1,13 @@
 #pragma once
 /// \file
-/// Proof that an arc leads from one vertex to the next past nothing else (proofs/checker.md, K16 to K20).
+/// Proof that an arc leads from one vertex to the next without another event (proofs/checker.md, K16 to K20).
 
 #include "checker/replay.hpp"
 #include "checker/witness.hpp"
 
 namespace isostat::checker {
 
-/// One arc as its record and its witness tell it.
+/// One arc as its record and its witness describe it.
 struct Way {
     std::size_t opened = 0; ///< position in the contact list
     int direction = +1;     ///< -1: a held coordinate that falls
@@ -15,23 +15,23 @@ struct Way {
     bool at_limit = false;  ///< the power grows from 0
     double stress = 0;      ///< on the loaded axis
     const Witness& witness;
-    bool end_only = false; ///< of the gaps and the power only what ends the arc is watched
+    bool end_only = false; ///< of gaps and power, only the quantity that ends the arc is checked
 };
 
-/// The state in which the witness says that the arc ends: its contacts are those of `from`, the opened one replaced.
+/// The state in which the arc ends according to the witness: its contacts are those of `from`, the opened one replaced.
 /// An objection when the witness does not fit the arc.
 Objections end_of(const Place& from, const Contact& closed, const Way& way, State& end);
 
-/// Nothing: from the true vertex of `from` the kept contacts define one curve on the side on which the opened one
-/// opens; it reaches the true vertex of `to`; strictly between the two every other gap is positive, and so is the power
-/// of the load but for a hundredth of the first piece at a limit, and of the last one before a power turn. Otherwise
-/// what is not proved; it is never a refutation.
+/// Empty result: it is proved that from the true vertex of `from` the kept contacts define one curve on the side on
+/// which the opened contact opens; it reaches the true vertex of `to`; strictly between the two every other gap is
+/// positive, and so is the power of the load, except on a hundredth of the first piece at a limit and of the last piece
+/// before a power turn. Otherwise the unproved part, which is never a refutation.
 Objections prove_way(const Place& from, const Place& to, const Way& way);
 
-/// Nothing: the curve of the kept contacts leads from the true vertex of `from` to that of `to`, and before it neither
-/// the gap of the contact that closes there is 0 again nor, at a power turn, the power. An arc that ends as the record
-/// says ends there and nowhere else: what contradicts the record there refutes it. Other pairs may overlap on the way
-/// (then the record is wrong too). Otherwise what is not proved. `way.witness` may be empty.
+/// Empty result: the curve of the kept contacts leads from the true vertex of `from` to that of `to`, and before it
+/// neither the gap of the contact that closes there returns to 0 nor, at a power turn, the power vanishes. An arc that
+/// ends as recorded can then only end there, so a contradiction to the record there refutes it. Other pairs may overlap
+/// before (then the record is wrong too). Otherwise the unproved part. `way.witness` may be empty.
 Objections prove_end(const Place& from, const Place& to, Way way);
 
 } // namespace isostat::checker

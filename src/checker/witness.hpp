@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// certificates/arcs.jsonl: where the checker is told to look.
+/// certificates/arcs.jsonl: hints for the checker.
 
 #include <filesystem>
 #include <map>
@@ -10,13 +10,13 @@
 
 namespace isostat::checker {
 
-/// Coordinates are those that are degrees of freedom and move, in their order.
+/// Coordinates are the moving degrees of freedom, in their order.
 struct Witness {
     struct Centre {
         int held = 0;
         std::vector<double> q;
     };
-    std::optional<std::vector<int>> grains; ///< that move; none: all
+    std::optional<std::vector<int>> grains; ///< grains that move; absent: all
     std::vector<Centre> centres;
     std::vector<double> end;
 };
@@ -24,9 +24,9 @@ struct Witness {
 class Witnesses {
   public:
     Witnesses() = default;
-    /// Notes where the line of each arc begins; a file that is not there has none. Throws `Error(bad_input)`.
+    /// Notes where the line of each arc begins; a missing file has no lines. Throws `Error(bad_input)`.
     explicit Witnesses(std::filesystem::path file);
-    /// Of the arc with this step; nothing: there is no line, or the run had nothing to say. Throws `Error(bad_input)`.
+    /// The witness of the arc with this step; nothing: no line, or an empty one. Throws `Error(bad_input)`.
     [[nodiscard]] std::optional<Witness> of(long step) const;
 
   private:

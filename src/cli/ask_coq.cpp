@@ -19,8 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The theorems with their script, and the program that writes what they need: beside an installed program, and in a
-/// build folder.
+/// The theorems with their script, and the program that writes
+/// their input: beside an installed program, and in a build folder.
 struct CoqFiles {
     fs::path script;
     fs::path writer;
@@ -34,14 +34,14 @@ CoqFiles coq_files() {
                : CoqFiles{here / "coq/prove.py", here / "examples/example_equilibrium_certificate"};
 }
 
-/// The last line that a command prints; those before it are shown while it works.
+/// The last line that a command prints; earlier lines are shown while it works.
 std::string last_line(const std::string& command, bool quiet) {
     StatusLine line(quiet);
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> pipe(::popen(command.c_str(), "re"), ::pclose);
     if (!pipe) {
         return {};
     }
-    std::string last; // the end of a long line is no line of its own
+    std::string last; // the end of a long line is no separate line
     std::array<char, 4096> part{};
     for (bool whole = true; std::fgets(part.data(), static_cast<int>(part.size()), pipe.get()) != nullptr;) {
         last = (whole ? "" : last) + part.data();

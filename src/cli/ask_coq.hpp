@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// `verify --coq`: the checker that Coq knows to be right.
+/// `verify --coq`: the checker whose correctness is proved in Coq.
 
 #include <isostat/checker/verify.hpp>
 
@@ -8,10 +8,10 @@
 
 namespace isostat::cli {
 
-/// The claims of a certificate, proved by Coq from its own definitions (proofs/coq_checker.md): proved, or undecided
-/// with the reason, which may be that Coq is not installed or that its checker does not cover this kind of packing.
-/// `digest`: the SHA-256 of what was read of the file; nothing is proved of another content. `limit`: seconds; 0: as
-/// long as it takes.
+/// The claims of a certificate, proved by Coq from its own definitions
+/// (proofs/coq_checker.md): proved, or undecided with the reason, which may be that Coq is not
+/// installed or that its checker does not cover this kind of packing. `digest`: the SHA-256 of
+/// the content that was read; other content is not proved. `limit`: seconds; 0: no limit.
 ClaimCheck ask_coq(const std::string& certificate, const std::string& digest, double limit, bool quiet);
 
 } // namespace isostat::cli

@@ -17,7 +17,7 @@ struct Common {
     bool quiet = false;         ///< no progress, no tables
     bool json = false;          ///< one JSON object on standard output and nothing else there
     std::string command;        ///< the command line, for records
-    std::optional<int> threads; ///< of the commands that have use for several; none: all cores
+    std::optional<int> threads; ///< for commands that can use several; absent: all cores
 };
 
 struct PrepareArguments {
@@ -38,7 +38,7 @@ struct EnsembleArguments {
     std::string scene, output;
     int samples = 0;
     std::uint64_t first_seed = 1;
-    std::optional<int> jobs; ///< processes at a time (per rank under mpirun); none: one per core, under mpirun one
+    std::optional<int> jobs; ///< processes at a time (per rank under mpirun); absent: one per core, under mpirun one
     bool resume = false, force = false;
 };
 /// Independent samples of a scene, each a process `isostat run`; merges their tables. Returns 0 when all completed, 130
@@ -48,12 +48,12 @@ int ensemble(const EnsembleArguments& arguments);
 struct InspectArguments {
     Common common;
     std::string file;
-    std::optional<double> at;           ///< loaded stress instead of that of the state
+    std::optional<double> at;           ///< loaded stress, if not that of the state
     std::string contacts;               ///< table to write; empty: none
-    std::optional<int> singular_values; ///< how many; none: ten of spheres, none of disks
+    std::optional<int> singular_values; ///< how many; absent: ten for spheres, none for disks
 };
 int inspect(const InspectArguments& arguments);
-/// `inspect` of a crafted packing with exact numbers (TOML, examples/packings): prints the exact answers and compares
+/// `inspect` of a crafted packing with exact numbers (TOML, examples/packings): prints the exact results and compares
 /// them with the file's [expected]; an entry that does not hold is named and gives 1, a rank that is not proved 2.
 int inspect_packing(const InspectArguments& arguments);
 
@@ -77,34 +77,34 @@ struct ReportArguments {
     bool html = false;
     bool no_charts = false;
     bool contacts = false;
-    double stiffness = 0; ///< > 0: the table of soft limits too
+    double stiffness = 0; ///< > 0: also the table of soft limits
 };
 int report(const ReportArguments& arguments);
 
 struct VerifyArguments {
     Common common;
-    std::vector<std::string> certificates; ///< or the folder of a run
-    std::string input;                     ///< empty, or the file that the certificate speaks of
-    bool coq = false;                      ///< also through the checker that is proved in Coq
-    double coq_limit = 0;                  ///< seconds for each certificate; 0: none
+    std::vector<std::string> certificates; ///< certificates, or the folder of a run
+    std::string input;                     ///< empty, or the file that the certificate is of
+    bool coq = false;                      ///< also check with the checker that is proved in Coq
+    double coq_limit = 0;                  ///< seconds for each certificate; 0: no limit
 };
-/// Checks a certificate with code that is separate from what made it. Exit status 0 only when every claim of an
-/// equilibrium is there and proved.
+/// Checks a certificate with code that shares nothing with its maker. Exit status 0 only when every claim of an
+/// equilibrium is present and proved.
 int verify(const VerifyArguments& arguments);
 
-/// What the user states of a packing made elsewhere, as typed.
+/// What the user states about a packing of another program, as typed.
 struct ForeignArguments {
     std::string format, radius, diameter, walls, box, lattice, columns, select, fixed, style, bodies;
     std::string plane = "xy";
     std::int64_t skip = 0;
-    std::optional<std::int64_t> ids; ///< of the first row
+    std::optional<std::int64_t> ids; ///< id of the first row
     std::string frame = "last";
     std::optional<int> dimension;
-    bool spheres = false; ///< the command takes them
+    bool spheres = false; ///< the command takes spheres
     bool fixes = false;   ///< the command takes disks that cannot move
-    bool clumps = false;  ///< the command takes them
+    bool clumps = false;  ///< the command takes clumps
     bool periodic = false, not_periodic = false;
-    bool walls_unless_periodic = false; ///< `walls` were not stated
+    bool walls_unless_periodic = false; ///< the user did not state `walls`
     bool cells = false;                 ///< the command takes periodic cells
 };
 
@@ -112,63 +112,63 @@ struct PlateauArguments {
     Common common;
     std::string file, thresholds, csv;
     int rows = 40;
-    std::string strain = "isotropic"; ///< or "fixed", "diagonal", "full": what a periodic cell may do
+    std::string strain = "isotropic"; ///< or "fixed", "diagonal", "full": strains of a periodic cell
     ForeignArguments foreign;
 };
-/// Counts of a packing made elsewhere against the gap threshold. 0: isostatic somewhere, proved; 1: nowhere; 2:
-/// nowhere proved, and not everywhere refuted.
+/// Counts of a packing of another program against the gap threshold. 0: isostatic at some threshold, proved; 1: at
+/// none; 2: proved at none, and not refuted at all.
 int plateau(const PlateauArguments& arguments);
 
 struct ImportArguments {
     Common common;
     std::string file, output;
     ForeignArguments foreign;
-    std::string contacts; ///< "plateau", "nearest", or a file; none: plateau in walls, nearest in a cell
+    std::string contacts; ///< "plateau", "nearest", or a file; empty: plateau in walls, nearest in a cell
     std::string contact_columns;
     std::optional<double> threshold;
     std::string stress, load, moved;
-    std::string cell; ///< what of a cell moves: "rectangular" or "tilted"; none: as the file is
+    std::string cell; ///< what moves of a cell: "rectangular" or "tilted"; empty: as in the file
     std::uint64_t seed = 1;
     double jitter = 0;
     bool far = false; ///< disks may move by more than their radius
 };
-/// A packing made elsewhere -> the vertex next to it, as a state. 0: certified; 1: there is none with the contacts of
-/// the file; 2: undecided.
+/// A packing of another program -> the vertex next to it, as a state. 0:
+/// certified; 1: no vertex has the contacts of the file; 2: undecided.
 int import(const ImportArguments& arguments);
 
 struct SnapArguments {
     Common common;
     std::string file, output;
     ForeignArguments foreign;
-    std::string contacts, contact_columns; ///< of a dump of style local; none: the pairs that overlap
-    std::string stress, load, cell;        ///< cell: as of `ImportArguments`
-    std::string reference_length;          ///< "L1,L2", of spheres L3 too; empty: the lengths of the frame
-    double stiffness = 0;                  ///< > 0: forces of the law where the file says none
-    std::string law;                       ///< "hertz"; else linear
+    std::string contacts, contact_columns; ///< of a dump of style local; empty: the pairs that overlap
+    std::string stress, load, cell;        ///< cell: as in `ImportArguments`
+    std::string reference_length;          ///< "L1,L2", for spheres L3 too; empty: the lengths of the frame
+    double stiffness = 0;                  ///< > 0: forces of the law where the file has none
+    std::string law;                       ///< "hertz"; empty: linear
     std::uint64_t seed = 1;
     bool exchange = false;
 };
-/// A frame of soft grains -> the vertex of its list of contacts. 0: proved and written; 1: the list has none, named; 2:
-/// undecided.
+/// A frame of soft grains -> the vertex of its list of contacts. 0: proved
+/// and written; 1: the list has none, with the reason; 2: undecided.
 int snap(const SnapArguments& arguments);
 
 struct CompareArguments {
     Common common;
     std::string series, output, reference;
-    std::string init; ///< a file of frames: `series` is then written
+    std::string init; ///< a file of frames for which a manifest `series` is written
     int bundle = 16;
     std::string frames; ///< "A:B"; empty: all
     bool local = false, nearest_arc = false;
 };
-/// A series of frames against the exact run. 0: every frame at rest is the exact equilibrium; 1: one departs; 2:
-/// undecided, or none is at rest.
+/// A series of frames against the exact run. 0: every frame at rest is the exact equilibrium; 1: a frame departs; 2:
+/// undecided, or no frame is at rest.
 int compare_series(const CompareArguments& arguments);
 
 struct ExportArguments {
     Common common;
     std::string input, output, format;
 };
-/// A state, or the states of a run, as other programs read them.
+/// Writes a state, or the states of a run, in formats of other programs.
 int export_states(const ExportArguments& arguments);
 
 struct GenericityArguments {
@@ -182,7 +182,7 @@ struct GenericityArguments {
     bool keep_equal = false;
     bool tilt = false;
 };
-/// Perturbed radii: what the vertices are. 0: every sample proved isostatic; 2: some were not.
+/// Vertices with perturbed radii. 0: every sample proved isostatic; 2: some were not.
 int genericity(const GenericityArguments& arguments);
 
 /// "isostat 0.1.0".

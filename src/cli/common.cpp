@@ -57,7 +57,7 @@ Result<State> prepare_start(const Scene& scene, const std::string& command, bool
     PreparationReport report;
     Result<State> prepared = isostat::prepare(options, report);
     line.clear();
-    std::string tied; // what the run has to settle, as far as doubles know
+    std::string tied; // ties that the run has to settle, judged in double
     const bool settles = scene.run.at_first_order() && !scene.programme.empty();
     if (!prepared.ok() && prepared.failure().kind == FailureKind::tie && report.candidate && settles) {
         tied = prepared.failure().message(options.dimension);

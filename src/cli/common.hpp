@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What several subcommands share.
+/// Functions that several subcommands share.
 
 #include "cli/commands.hpp"
 #include "contact/names.hpp"
@@ -22,10 +22,10 @@ namespace isostat::cli {
 using json::Json;
 using json::or_null;
 
-/// Begins with its format ("isostat-plateau 1"), the program and the command line.
+/// A JSON document that begins with its format ("isostat-plateau 1"), the program and the command line.
 Json document(const char* format, const Common& common);
 
-/// One line on standard output.
+/// Prints an object as one line on standard output.
 void print_json(const Json& object);
 
 /// Exit status of a domain failure: 2 for ties and undecided signs, 130 when the user stopped it, 1 otherwise.
@@ -36,13 +36,13 @@ inline int status_of(Verdict verdict) {
     return static_cast<int>(verdict);
 }
 
-/// How a command takes its folder.
+/// The folder mode that the options of a command ask for.
 template <class Arguments> FolderMode mode_of(const Arguments& arguments) {
     return arguments.resume ? FolderMode::resume : arguments.force ? FolderMode::force : FolderMode::fresh;
 }
 
-/// Prepares the packing of a scene with progress on the terminal. After a failure, what was reached is in `failed`
-/// (atomically).
+/// Prepares the packing of a scene with progress on the terminal. After
+/// a failure `failed` holds the last configuration (written atomically).
 Result<State> prepare_start(const Scene& scene, const std::string& command, bool quiet,
                             const std::filesystem::path& failed);
 

@@ -35,7 +35,7 @@ State start_of(const std::string& reference) {
     return read_any_state(std::filesystem::is_directory(path) ? path / state_name(0) : path, Dimensions::any).state;
 }
 
-/// A manifest for a file of frames beside it or below.
+/// Writes a manifest for a file of frames in its folder or below.
 void begin_manifest(const CompareArguments& a) {
     const std::filesystem::path manifest = a.series, folder = manifest.parent_path();
     const std::filesystem::path disks = std::filesystem::path(a.init).lexically_proximate(folder);
@@ -82,7 +82,7 @@ void print_frames(const compare::Comparison& comparison) {
     }
 }
 
-/// How many frames are where the exact run leads from the frame before.
+/// Prints how many frames are where the exact run from the previous frame ends.
 void print_local(const std::vector<compare::FrameResult>& frames) {
     int asked = 0, same = 0;
     for (const compare::FrameResult& f : frames) {
@@ -102,7 +102,7 @@ void print_bundle(const compare::Bundle& bundle) {
         bundle.members.size(), bundle.nodes.size(), bundle.common);
 }
 
-/// The loads on both sides of the departure, and the limits of the exact run between them.
+/// Prints the loads on both sides of the departure, and the limits of the exact run between them.
 void print_loads(const compare::Comparison& comparison, const compare::Departure& departure) {
     const auto load = [&](int number) {
         const auto at = std::find_if(comparison.frames.begin(), comparison.frames.end(),

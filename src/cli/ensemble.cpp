@@ -30,7 +30,7 @@ namespace {
 
 std::unique_ptr<SampleQueue> make_queue(std::size_t count) {
 #ifdef ISOSTAT_WITH_MPI
-    // Set by mpirun and its like. Without them MPI would only start a helper process of its own.
+    // Set by mpirun and similar programs. Without these MPI would only start a helper process.
     for (const char* variable : {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK"}) {
         if (std::getenv(variable) != nullptr) { // NOLINT(concurrency-mt-unsafe): one thread
             return std::make_unique<MpiQueue>(count);
@@ -40,7 +40,7 @@ std::unique_ptr<SampleQueue> make_queue(std::size_t count) {
     return std::make_unique<LocalQueue>(count);
 }
 
-/// The last line of a log: what `isostat run` had to say.
+/// The last line of a log, which `isostat run` printed.
 std::string last_words(const std::filesystem::path& log) {
     std::string text;
     try {
@@ -54,7 +54,7 @@ std::string last_words(const std::filesystem::path& log) {
     return text.substr(text.rfind('\n') + 1);
 }
 
-/// Notes how a process ended whose run could not say so itself.
+/// Notes how a process ended if its run could not.
 void note_ending(const SampleFolders& folders, std::size_t number, const ProcessEnd& end) {
     const auto words = [&] { return last_words(folders.folder(number) / "log.txt"); };
     if (end.signal == -1) {
@@ -72,7 +72,7 @@ void note_ending(const SampleFolders& folders, std::size_t number, const Process
     }
 }
 
-/// What a person sees: a row per sample that ended, and one line that is rewritten.
+/// Progress for a person: a row per sample that ended, and one line that is rewritten.
 class Board {
   public:
     Board(const SampleFolders& folders, int workers, bool quiet)
@@ -101,7 +101,7 @@ class Board {
             sample.equilibria, sample.arcs, sample.seconds, clock_text(elapsed()), clock_text(rest()), sample.reason);
         std::fflush(stdout);
     }
-    /// A finished sample of an earlier call.
+    /// Counts a sample finished in an earlier call.
     void found() { ++found_; }
     void show() {
         const auto seed = [&](std::size_t number) { return folders_.seed(number); };
@@ -120,7 +120,7 @@ class Board {
     [[nodiscard]] double elapsed() const {
         return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
     }
-    /// All samples as long as the mean of those that ended; of the running ones half is done.
+    /// Estimate from the mean time of ended samples; running ones count as half done.
     [[nodiscard]] double rest() const {
         if (done_ == 0) {
             return -1;
@@ -141,7 +141,7 @@ class Board {
     int broken_ = 0;
 };
 
-/// Runs what this rank is given; on rank 0 `board` tells of all of them.
+/// Runs the samples of this rank; on rank 0 `board` shows those of all ranks.
 void work(const SampleFolders& folders, SampleQueue& queue, int jobs, Board* board) {
     std::set<std::size_t> mine;
     const auto command_of = [&](std::size_t number) -> std::optional<Command> {
@@ -151,7 +151,7 @@ void work(const SampleFolders& folders, SampleQueue& queue, int jobs, Board* boa
         std::vector<std::string> arguments{"run",     (folders.folder(number) / "scene.toml").string(),
                                            "-o",      folders.folder(number).string(),
                                            "--quiet", "--threads",
-                                           "1"}; // a core each
+                                           "1"}; // one core each
         if (folders.prepare(number)) {
             arguments.emplace_back("--resume");
         }
@@ -252,7 +252,7 @@ int run_and_merge(const EnsembleArguments& arguments, const EnsembleHeader& head
     }
     for (const Sample& sample : samples) {
         const bool left = sample.status == SampleStatus::interrupted || sample.status == SampleStatus::missing;
-        if (sample.status != SampleStatus::completed && !left) { // the counts tell how many are left
+        if (sample.status != SampleStatus::completed && !left) { // the counts tell how many are left out
             say(stderr, "isostat: seed {}: {}: {}\n", sample.seed, to_string(sample.status), sample.reason);
         }
     }
@@ -288,7 +288,7 @@ int ensemble(const EnsembleArguments& arguments) {
         queue->finish();
         return done;
     } catch (...) {
-        queue->stop(); // nobody waits for this rank
+        queue->stop(); // no rank waits for this one
         queue->finish();
         throw;
     }

@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What the first lines of a file in this format have.
+/// Text in the first lines of a file of this format.
 std::string mark_of(const std::string& format, int dimension) {
     return format == "xyz"   ? "\nLattice=\""
            : format == "csv" ? (dimension == plane ? "\nid,x,y,r" : "\nid,x,y,z,r")
@@ -84,7 +84,7 @@ std::string series_text(const std::vector<fs::path>& files) {
     return text;
 }
 
-/// Those of the file, or the proved ones where it has none; empty where neither is known.
+/// The forces in the file, or the proved ones if it has none; empty if neither is known.
 std::vector<double> forces_of(const StateFile& file) {
     std::vector<double> forces = file.forces;
     if (forces.empty()) {

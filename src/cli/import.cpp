@@ -29,18 +29,18 @@ namespace isostat::cli {
 
 namespace {
 
-/// What was found, or why nothing was.
+/// What was found, or the reason why nothing was.
 struct Imported : compare::NearestVertex {
     std::vector<double> from; ///< coordinates of the file
-    compare::Untold untold;   ///< by the rounding of the file
+    compare::Untold untold;   ///< undecided because of the rounding of the file
     bool load_of_file = false;
-    bool copy = false;      ///< more is untold by the jitter: the state is of a copy
-    bool as_listed = false; ///< the list is written, whatever is proved of it
-    bool held = false;      ///< nothing moves that a load could press on: no equilibrium is asked for
+    bool copy = false;      ///< also undecided because of the jitter: the state is of a copy
+    bool as_listed = false; ///< the list is written, whatever is proved
+    bool held = false;      ///< no load can act on a degree of freedom: no equilibrium is required
     [[nodiscard]] Verdict verdict() const { return withheld(untold, truth.verdict); }
 };
 
-/// Stresses and kind of load of a state, which were not stated anew.
+/// Takes over the stresses and the kind of load of a state, if not stated anew.
 void keep_load(ImportArguments& a) {
     const State state = read_any_state(a.file).state;
     if (!state.load.disk_force.empty() || state.load.loaded_axis != 1) {
@@ -65,18 +65,18 @@ Load load_of(const ImportArguments& a, const Packing& packing) {
     return load;
 }
 
-/// Spheres and clumps: their contacts are those that the digits leave open, or those at a threshold.
+/// True for spheres and clumps: the contacts are the gaps within the rounding, or those up to a threshold.
 bool by_digits(const Packing& packing) {
     return packing.dimension != plane || !packing.bars.empty();
 }
 
-/// Such grains, and disks in walls or a cell none of which moves: written in the contacts that they have, for no load
-/// determines a vertex, or no way downhill leads there.
+/// Such grains, and disks in walls or a cell none of which moves, are written with the contacts that they have, because
+/// no load determines a vertex, or no motion downhill leads to one.
 bool as_listed(const ImportArguments& a, const Packing& packing) {
     return by_digits(packing) || a.foreign.walls == "fixed" || a.cell == "fixed";
 }
 
-/// In the contacts that plateau counts (`by_digits`: those that the digits leave open), of a threshold or of a list.
+/// Imports with the contacts of `plateau` (`by_digits`: gaps within the rounding), of a threshold or of a list.
 Imported from_list(const ImportArguments& a, const ForeignPacking& file) {
     const bool digits = by_digits(file.packing);
     if (a.jitter != 0 || (digits ? !a.contacts.empty() : a.contacts == "nearest")) {
@@ -153,7 +153,7 @@ void set_cell(ImportArguments& a, bool own, Packing& packing) {
     a.contacts = !a.contacts.empty() || by_digits(packing) ? a.contacts : a.cell == "fixed" ? "plateau" : "nearest";
     const Cell before = packing.cell;
     take_cell({a.file, a.cell}, packing);
-    if (own && a.cell.empty()) { // a state says what moves
+    if (own && a.cell.empty()) { // a state says which coordinates move
         packing.cell.tilt_moves = before.tilt_moves;
         if (before.keeps_shape) {
             packing.cell.keep_shape();
@@ -162,7 +162,7 @@ void set_cell(ImportArguments& a, bool own, Packing& packing) {
     validate(packing, a.file);
 }
 
-/// What is read, with walls unless it is periodic.
+/// Reads the file, with walls unless the packing is periodic.
 ForeignPacking read_imported(ImportArguments& a, bool crafted, bool own) {
     if (!crafted && !own && a.foreign.walls.empty()) {
         a.foreign.walls = "box";
@@ -192,7 +192,7 @@ ForeignPacking read_imported(ImportArguments& a, bool crafted, bool own) {
     if (file.packing.cell.any() && !crafted) {
         set_cell(a, own, file.packing);
     } else {
-        if (!crafted) { // a crafted packing says what moves
+        if (!crafted) { // a crafted packing says which coordinates move
             take_cell({a.file, a.cell}, file.packing);
         }
         a.contacts = a.contacts.empty() && !by_digits(file.packing) ? "plateau" : a.contacts;
@@ -200,7 +200,7 @@ ForeignPacking read_imported(ImportArguments& a, bool crafted, bool own) {
     return file;
 }
 
-/// A vertex text as it is: its contacts, its load.
+/// A vertex text with its own contacts and load.
 Result<Imported> from_vertex_text(const ImportArguments& a) {
     if (!a.contacts.empty() || a.threshold || !a.stress.empty() || !a.load.empty() || !a.cell.empty() ||
         !a.foreign.walls.empty()) {
@@ -217,7 +217,7 @@ Result<Imported> from_vertex_text(const ImportArguments& a) {
     return out;
 }
 
-/// A crafted packing as it is: exact contacts, doubles next to its numbers, its load.
+/// A crafted packing with its exact contacts and load, and the doubles next to its numbers.
 Result<Imported> from_crafted(const ImportArguments& a, const std::string& text) {
     const crafted::PackingFile file = crafted::parse_packing(text, a.file);
     const auto inspection = crafted::inspect(file.packing);
@@ -267,12 +267,12 @@ Result<Imported> from_crafted(const ImportArguments& a, const std::string& text)
     return out;
 }
 
-/// Notes where a disk moved by more than a tenth of its radius. Throws `Error(bad_input)` where it is more than one and
-/// nobody asked for it: then the vertex is not that of the file.
+/// Notes where a disk moved by more than a tenth of its radius. Throws `Error(bad_input)` where it moved by more than
+/// one and the user did not allow this: then the vertex is not that of the file.
 void judge_moves(const ImportArguments& a, const Imported& found, const compare::Moves& moves,
                  std::vector<std::string>& notes) {
     constexpr double far = 0.1;
-    std::size_t disk = 0; // with a force, that moved most in its radii
+    std::size_t disk = 0; // the disk with a force that moved most, in its radii
     double radii = 0;
     for (std::size_t i = 0; i < moves.disk.size(); ++i) {
         if (const double moved = moves.disk[i] / found.state.packing.radius[i];
@@ -335,7 +335,7 @@ Json provenance_of(const ImportArguments& a, const std::string& format, const Im
     return out;
 }
 
-/// Which part of the load nobody stated.
+/// The parts of the load that the user did not state.
 std::string load_by_default(const ImportArguments& a, const Imported& found) {
     return found.load_of_file                   ? ""
            : a.stress.empty() && a.load.empty() ? " (taken by default: --stress, --load)"
@@ -413,7 +413,7 @@ void print_import_json(const ImportArguments& a, const ForeignPacking& file, con
     print_json(object);
 }
 
-/// What may help where no vertex is proved. Empty: nothing.
+/// What the user may try where no vertex is proved. Empty: no advice.
 std::string advice(const ImportArguments& a, bool crafted, const Packing& packing) {
     if (by_digits(packing)) {
         return "";
@@ -435,7 +435,7 @@ std::string advice(const ImportArguments& a, bool crafted, const Packing& packin
 /// A state of this program is imported with a jitter, a crafted packing without.
 void require_importable(const ImportArguments& a, bool own, bool crafted) {
     if (own && a.jitter == 0) {
-        (void)read_any_state(a.file); // says what is wrong where it is none
+        (void)read_any_state(a.file); // reports what is wrong with a bad file
         compare::refuse(a.file, "is a state of this program: expected a packing of another one, or --jitter");
     }
     if (crafted && a.jitter != 0) {

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 struct Kind {
     const char* words;
-    std::vector<std::string_view> commands; ///< that take it
+    std::vector<std::string_view> commands; ///< the commands that take this kind
 };
 
 const Kind scene{"a scene, which says what to compute", {"run", "plan", "prepare", "ensemble"}};
@@ -39,7 +39,7 @@ const Kind record{"a file of a run; its folder is meant", {"report", "verify", "
 const Kind folder_of_run{"the folder of a run", {"report", "verify", "export"}};
 const Kind folder_of_ensemble{"the folder of an ensemble", {"report", "verify"}};
 
-/// Rows x, y, r: the first row that is no comment names x and y, or holds numbers alone, two at least.
+/// Rows x, y, r: the first row after comments names x and y, or holds at least two numbers and nothing else.
 bool is_table(const std::string& begin) {
     static const std::regex comments(R"(^([ \t\r]*(#[^\n]*)?\n)*)");
     static const std::regex numbers(R"(^[ \t]*[-+.\d][-+.\deE]*([,;\s][ \t]*[-+.\d][-+.\deE]*)+[ \t\r]*(\n|$))");

@@ -1,4 +1,4 @@
-// The command line: what is asked for goes into plain structures, one function per subcommand does it.
+// The command line: options go into plain structures, and one function per subcommand does the work.
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/kinds.hpp"
@@ -52,13 +52,13 @@ CLI::Option* option(CLI::App& command, const char* name, T& value, const char* w
     CLI::Option* made = command.add_option(name, value, words);
     return type == nullptr ? made : made->type_name(type);
 }
-/// The same, of what `allowed` takes.
+/// An option or argument with values that `allowed` accepts.
 template <class T, std::derived_from<CLI::Validator> Check>
 CLI::Option* option(CLI::App& command, const char* name, T& value, const char* words, const Check& allowed,
                     const char* type = nullptr) {
     return option(command, name, value, words, type)->check(allowed);
 }
-/// One that must be given.
+/// A required option or argument.
 template <class T, class... More>
 void needed(CLI::App& command, const char* name, T& value, const char* words, const More&... more) {
     option(command, name, value, words, more...)->required();
@@ -110,7 +110,7 @@ struct Program {
 
   private:
     std::string line_;
-    std::vector<std::shared_ptr<void>> kept_; ///< what is asked of each command
+    std::vector<std::shared_ptr<void>> kept_; ///< the arguments of each command
 
     template <class Arguments> Arguments& keep() {
         const auto kept = std::make_shared<Arguments>();
@@ -118,7 +118,7 @@ struct Program {
         return *kept;
     }
 
-    /// What every command has, and what it does when it was chosen.
+    /// Adds the options of every command, and the function of this one.
     template <class Arguments>
     void does(CLI::App& command, Arguments& a, int (*work)(const Arguments&), bool shows_progress) {
         if (shows_progress) {
@@ -575,7 +575,7 @@ std::size_t difference(const std::string& a, const std::string& b) {
     return row.back();
 }
 
-/// Empty, or what is wrong with a first word that is no command.
+/// Empty, or the message about a first word that is no command.
 std::string wrong_command(const CLI::App& app, const std::string& word) {
     if (word.starts_with("-")) {
         return "";
@@ -599,13 +599,13 @@ std::string input_of(const CLI::App& app) {
     return files.empty() ? "" : files.front()->results().front();
 }
 
-/// Empty, or what else that file is for.
+/// Empty, or the commands that take this file.
 std::string use_of_input(const CLI::App& app) {
     const std::string file = input_of(app);
     return file.empty() ? "" : other_use(app.get_subcommands().front()->get_name(), file);
 }
 
-/// `use` stands on a line of its own.
+/// `use` is printed on a separate line.
 int complain(isostat::ErrorKind kind, const std::string& message, const std::string& use = "") {
     say(stderr, "isostat: {}\n", message);
     if (!use.empty()) {
@@ -614,8 +614,8 @@ int complain(isostat::ErrorKind kind, const std::string& message, const std::str
     return isostat::Error(kind, "").exit_status();
 }
 
-/// What CLI11 prints: the help that was asked for, or what is wrong with the command line. Where an option is missing,
-/// a file that is not there, or is for another command, is told first.
+/// Prints what CLI11 has to print: requested help, or an error of the command line. Where an option is missing, a
+/// missing file, or one for another command, is reported first.
 int explain(const CLI::App& app, const CLI::ParseError& error) {
     if (error.get_name() == "RequiredError" && !app.get_subcommands().empty()) {
         const std::string file = input_of(app), use = use_of_input(app);
@@ -658,8 +658,8 @@ int run_program(int argc, char** argv) {
     }
 }
 
-/// `work`, with what went wrong as words and an exit status. Whatever is not foreseen is 70, never a status that
-/// answers a question.
+/// Runs `work`, and turns errors into words and an exit status.
+/// Unforeseen errors give 70, never a status that is a result.
 int answered(const std::function<int()>& work) {
     using isostat::ErrorKind;
     try {
@@ -671,7 +671,7 @@ int answered(const std::function<int()>& work) {
     } catch (const std::filesystem::filesystem_error& error) {
         return complain(ErrorKind::cannot_write, error.what());
     } catch (const std::exception& error) {
-        if (std::ferror(stdout) != 0) { // `say` tells what the system said
+        if (std::ferror(stdout) != 0) { // `say` prints the reason
             return complain(ErrorKind::cannot_write, std::string("standard output: ") + error.what());
         }
         return complain(ErrorKind::internal, std::string("unexpected failure: ") + error.what());
@@ -680,7 +680,7 @@ int answered(const std::function<int()>& work) {
     }
 }
 
-/// A file that is opened later must not become what the program prints to.
+/// A file opened later must not get the descriptor of standard output.
 void open_standard_descriptors() {
     for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
         if (::fcntl(descriptor, F_GETFD) < 0) { // NOLINT(cppcoreguidelines-pro-type-vararg)
@@ -689,7 +689,7 @@ void open_standard_descriptors() {
     }
 }
 
-/// The exit status: 74 where standard output did not take all of the answer.
+/// The exit status: 74 where standard output did not take all of the output.
 int delivered(int status) {
     errno = 0;
     const bool written = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;

@@ -15,7 +15,7 @@ std::vector<const CLI::App*> commands_of(const CLI::App& app) {
     return app.get_subcommands([](const CLI::App*) { return true; });
 }
 
-/// Those that `--help` shows: positional ones first.
+/// The options that `--help` shows: positional ones first.
 std::vector<const CLI::Option*> options_of(const CLI::App& app) {
     std::vector<const CLI::Option*> options;
     for (const bool positional : {true, false}) {
@@ -29,7 +29,7 @@ std::vector<const CLI::Option*> options_of(const CLI::App& app) {
     return options;
 }
 
-/// "-o,--output", or the name of what has a place.
+/// "-o,--output", or the name of a positional argument.
 std::string name_of(const CLI::Option& option) {
     return option.get_name(option.get_positional(), true);
 }
@@ -96,7 +96,7 @@ std::string names_of(const CLI::Option& option) {
     return names;
 }
 
-/// "a b" of "TEXT:{a,b}": the words that an option takes; empty where it takes others.
+/// "a b" of "TEXT:{a,b}": the words that an option takes; empty where it takes other values.
 std::string values_of(const CLI::Option& option) {
     const std::string type = option.get_type_name();
     const std::size_t begin = type.find('{'), end = type.find('}');
@@ -108,7 +108,7 @@ std::string values_of(const CLI::Option& option) {
     return words;
 }
 
-/// The first words, and cases of `case` for the others.
+/// The first words, and cases of `case` for the following ones.
 struct Completion {
     std::string commands, options, values;
 };

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What `--help` says, for `man` and for the shell.
+/// The texts of `--help`, for `man` and for the shell.
 
 #include <CLI/CLI.hpp>
 
@@ -11,8 +11,8 @@ namespace isostat::cli {
 /// isostat(1), in the macros of man(7): every command with its options. `version`: name and version of the program.
 std::string man_page(const CLI::App& app, const std::string& version);
 
-/// Completion of commands, of their options, of the words that these take, and of file names, for "bash", "zsh",
-/// "fish".
+/// Completion of commands, of their options, of the words that
+/// options take, and of file names, for "bash", "zsh", "fish".
 std::string shell_completion(const CLI::App& app, const std::string& shell);
 
 } // namespace isostat::cli

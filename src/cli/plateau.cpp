@@ -19,7 +19,7 @@ namespace isostat::cli {
 
 namespace {
 
-/// Half a unit of the last digit of the roundest position in --box; 0 where it has none to lose.
+/// Half a unit of the last digit of the roundest position in --box; 0 for exact ones.
 double rounding_of(const std::string& box) {
     double worst = 0;
     for (const std::string& axis : parse_list(box)) {
@@ -33,7 +33,7 @@ double rounding_of(const std::string& box) {
     return worst;
 }
 
-/// What about the walls may hide the range that was looked for.
+/// Notes on walls that may hide the range.
 void note_walls(const PlateauArguments& a, const crafted::Plateau& plateau, ForeignPacking& file) {
     const double rounding = rounding_of(a.foreign.box);
     const bool wide =
@@ -87,7 +87,7 @@ int plateau(const PlateauArguments& a) {
     if (!told.backbone.empty()) {
         return done;
     }
-    // Nothing is known of the list where no range is wider than the rounding.
+    // The list is unknown where no range is wider than the rounding.
     const bool known = result.widest ? result.widest->range.told : thresholds[1] - thresholds[0] > 2 * result.rounding;
     return told.special || !known ? undecided : failed;
 }

@@ -15,7 +15,7 @@ namespace isostat::cli {
 
 namespace {
 
-/// A long computation must not end in a file that cannot be written: asks, and tries to make one beside it first.
+/// Checks before a long computation that its output, and the file of a failure next to it, can be written.
 void check_writable(const PrepareArguments& a) {
     check_output(a.output, "\"isostat-state\"", {a.scene});
     check_output(a.output + ".failed.json", "\"isostat-packing\"", {a.scene});

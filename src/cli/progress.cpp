@@ -75,11 +75,11 @@ double RunTable::remaining(double ratio) const {
             rest += *step.equilibria - done;
             continue;
         }
-        // By the part of the way in sigma2/sigma1; before it starts, as many as there are on the way to where it
-        // starts.
+        // By the share of the change in sigma2/sigma1; before the
+        // segment starts, all equilibria up to its start are counted.
         const double whole = *step.to - start_ratio_;
         const double part = current && whole != 0 ? (ratio - start_ratio_) / whole : 0;
-        constexpr double enough = 0.05; // of the way, to trust its rate
+        constexpr double enough = 0.05; // of the change, before its rate is used
         rest += part > enough
                     ? done * (1 - part) / part
                     : std::max(1, step.from.value_or(current ? start_equilibrium_ : start_equilibrium_ + made_));

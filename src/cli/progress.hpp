@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What a person sees of long work: a table of equilibria, and a line that is rewritten on a terminal.
+/// Progress of long work for a person: a table of equilibria, and a line that is rewritten on a terminal.
 
 #include <isostat/preparation/preparation.hpp>
 #include <isostat/scene/scene.hpp>
@@ -19,7 +19,7 @@ class StatusLine {
     StatusLine(const StatusLine&) = delete;
     StatusLine& operator=(const StatusLine&) = delete;
     void show(const std::string& text);
-    /// Before anything else is printed.
+    /// To be called before anything else is printed.
     void clear();
 
   private:
@@ -43,7 +43,7 @@ class RunTable final : public RunObserver {
     void end() { line_.clear(); }
 
   private:
-    /// Equilibria still to come, by the count of those segments that have one and by the ratio in those that do not.
+    /// Estimate of equilibria still to come: from their number in segments that have one, from the ratio in others.
     [[nodiscard]] double remaining(double ratio) const;
     const std::vector<ProgrammeStep>& programme_;
     bool quiet_;
@@ -54,7 +54,7 @@ class RunTable final : public RunObserver {
     int here_ = 0; ///< equilibria made by this process
     int start_equilibrium_ = 0;
     double start_ratio_ = 1;
-    std::string stress_name_, strain_name_; ///< of what is loaded
+    std::string stress_name_, strain_name_; ///< names of the loaded stress and strain
     bool header_shown_ = false;
 };
 

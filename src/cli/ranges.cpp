@@ -9,7 +9,7 @@ namespace isostat::cli::ranges {
 
 namespace {
 
-/// The word becomes the shortest one of its value, which CLI11 reads as we do.
+/// Replaces the word by the shortest one of its value, which CLI11 reads as this program does.
 template <class T>
 CLI::Validator validator(const char* kind, T low, T high, std::optional<T> (*value_in)(std::string_view, T, T)) {
     const std::string range = fmt::format("{} from {} to {}", kind, low, high);

@@ -141,7 +141,7 @@ void require_plane_unless(bool spheres, const Packing& packing, const std::strin
     }
 }
 
-/// What the doubles of a file of this program leave open of a gap.
+/// Bound of the rounding of gaps in a file of this program.
 double rounding_of(const Packing& packing) {
     double largest = packing.max_radius();
     for (const double x : packing.q) {

@@ -15,7 +15,7 @@ namespace isostat::cli {
 /// statements that make no sense, `Error(bad_input)` for the file.
 ForeignPacking read_any_packing(const std::string& file, const ForeignArguments& arguments);
 
-/// Words between commas, or whatever parts them.
+/// The words between commas, or another separator.
 std::vector<std::string> parse_list(const std::string& text, char at = ',');
 
 /// "A:B" as two finite numbers, A <= B. Throws `Error(usage)` naming the option.

@@ -64,7 +64,7 @@ std::string totals(const Member& member, const ReportResult& result) {
                        last.ratio, last.strain2, result.files.size());
 }
 
-/// One report after the other. 65 when a run cannot be read; the others are reported all the same.
+/// Makes one report after the other. 65 when a run cannot be read; the other runs are still reported.
 int report_ensemble(const ReportArguments& arguments) {
     const std::vector<Member> members = members_of(arguments.input);
     const bool quiet = arguments.common.json || arguments.common.quiet;

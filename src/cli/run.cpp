@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::array exit_statuses{done, failed, undecided, interrupted}; ///< of `RunStatus`
 
-/// The start of the run: stored one, file or preparation.
+/// The start of the run: the stored one, a file or a preparation.
 Result<State> start_of(const Scene& scene, const std::optional<State>& from_file, RunDirectory& directory,
                        const std::string& command, bool quiet) {
     if (const auto stored = directory.start()) {
@@ -40,13 +40,13 @@ Result<State> start_of(const Scene& scene, const std::optional<State>& from_file
     return prepared;
 }
 
-/// By how much `start_from_file` moved the start.
+/// The distance by which `start_from_file` moved the start.
 double moved_to_grid(const State& start) {
     const Json provenance = start.provenance.empty() ? Json::object() : Json::parse(start.provenance);
     return provenance.is_object() ? provenance.value("moved_to_grid", 0.0) : 0.0;
 }
 
-/// work.json: what this process did, added to what earlier ones did on the same run.
+/// work.json: the work of this process, added to that of earlier processes on the same run.
 void record_work(const std::filesystem::path& path) {
     Json counts = Json::object();
     if (std::filesystem::exists(path)) {
@@ -58,7 +58,7 @@ void record_work(const std::filesystem::path& path) {
     const auto work = work_done();
     for (std::size_t k = 0; k < work_kinds; ++k) {
         const char* name = to_string(static_cast<Work>(k));
-        constexpr long most = 1L << 53; // the file may say anything
+        constexpr long most = 1L << 53; // the file may hold any number
         const long said = counts.contains(name) && counts[name].is_number_integer() ? counts[name].get<long>() : 0;
         const long before = said >= 0 && said < most ? said : 0;
         counts[name] = before + work[k];
@@ -70,7 +70,7 @@ void record_work(const std::filesystem::path& path) {
     write_atomically(path, json::dumped(object, 2) + "\n");
 }
 
-/// What was asked for and neither proved nor refuted, in words; empty: nothing.
+/// Results that were requested and neither proved nor refuted, in words; empty: none.
 std::string left_open(const RunCounters& counters) {
     std::string words;
     const auto add = [&words](long count, const char* what) {
@@ -100,21 +100,21 @@ void draw(const Scene& scene, const RunDirectory& directory, bool quiet) {
     say("figures: {}\n", (directory.path() / "figures").string());
 }
 
-/// Says what is worth knowing of how a run begins.
+/// Prints notes on the start of a run.
 void announce(const std::optional<State>& from_file) {
     if (const double moved = from_file ? moved_to_grid(*from_file) : 0; moved > 0) {
         say("start: coordinates of what can move are put on a grid, each moved by at most {}\n", rounded_up(moved, 3));
     }
 }
 
-/// The last line of a run that has its say.
+/// The last line that a run prints.
 std::string last_line(const SceneEnding& ending, const RunCounters& counters) {
     return fmt::format("{}{}{}: {} arcs, {} equilibria, {}", to_string(ending.status),
                        ending.reason.empty() ? "" : ": ", ending.reason, counters.steps, counters.equilibria,
                        clock_text(counters.seconds));
 }
 
-/// What went otherwise than asked, on standard error. `open`: as `left_open` says it.
+/// Prints what was not as requested, on standard error. `open`: from `left_open`.
 void complain(const RunArguments& arguments, const SceneEnding& ending, const std::string& open) {
     if (!open.empty()) {
         say(stderr, "isostat: {}: {}\n", arguments.output, open);
@@ -138,9 +138,9 @@ int run(const RunArguments& arguments) {
     const bool quiet = arguments.common.quiet || arguments.common.json;
     std::optional<State> from_file;
     if (!scene.start.empty() && !arguments.resume) {
-        from_file = start_from_file(scene); // bad input leaves no folder behind
+        from_file = start_from_file(scene); // bad input leaves no folder
     }
-    catch_interrupts(); // until here a signal ends the program, even where a pipe as input says nothing
+    catch_interrupts(); // until here a signal ends the program, even while it waits for an input pipe
     RunCounters counters;
     RunDirectory directory(arguments.output, header_of(scene, program_name(), arguments.common.command),
                            mode_of(arguments), counters);

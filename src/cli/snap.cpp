@@ -31,7 +31,7 @@ struct Read : compare::SoftForces {
     double rounding = 0; ///< of gaps
 };
 
-/// A state says contacts and load itself.
+/// A state has its own contacts and load.
 Read from_state(const SnapArguments& a) {
     if (!a.contacts.empty() || !a.stress.empty() || !a.load.empty() || !a.reference_length.empty()) {
         throw Error(ErrorKind::usage, a.file + " is a state, which says its contacts and its load: expected none of "
@@ -46,7 +46,7 @@ Read from_state(const SnapArguments& a) {
 }
 
 Read from_foreign(const SnapArguments& a) {
-    if (!a.reference_length.empty()) { // numbers are looked at before the file
+    if (!a.reference_length.empty()) { // numbers are checked before the file is read
         (void)parse_lengths(a.reference_length, "--reference-length",
                             parse_list(a.reference_length).size() == 3 ? 3 : 2);
     }
@@ -118,7 +118,7 @@ Json json_of(const SnapArguments& a, const Read& read, const compare::Snap& snap
     return out;
 }
 
-/// The state to write, with words on what it is; nothing: there is none.
+/// The state to write, with words on it; nothing: no state.
 std::optional<State> state_of(const SnapArguments& a, const Read& read, const compare::Snap& snap, Json& report) {
     if (snap.outcome == compare::SnapOutcome::vertex) {
         auto state = compare::with_resting_rattlers(snap, a.seed);

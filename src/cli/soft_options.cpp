@@ -87,7 +87,7 @@ compare::SoftList stated_list(const std::string& file, const ForeignPacking& pac
                                                   "of columns of {}",
                                                   columns, contacts));
     }
-    const auto number = frame == "last" ? std::nullopt : std::optional(std::stol(frame)); // read once already
+    const auto number = frame == "last" ? std::nullopt : std::optional(std::stol(frame)); // was checked before
     return compare::list_by_forces(file, packing.packing, packing.ids, number, contacts,
                                    {names[0], names[1], {names.begin() + 2, names.end()}});
 }

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The only way to the terminal: what files, names and options say passes `text::shown`.
+/// The only functions that print: texts from files, names and options pass `text::shown`.
 
 #include "io/text.hpp"
 
@@ -20,7 +20,7 @@ template <class... Values> void say(fmt::format_string<Values...> format, Values
     say(stdout, format, std::forward<Values>(values)...);
 }
 
-/// Prints text of several lines; the last one ends itself.
+/// Prints text of several lines, which ends with a line break.
 inline void say_lines(const std::string& text, std::FILE* out = stdout) {
     fmt::print(out, "{}", text::shown_lines(text));
 }

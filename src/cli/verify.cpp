@@ -23,7 +23,7 @@ namespace isostat::cli {
 
 namespace {
 
-/// Whether a file has the bytes that the certificate names, and the state that it speaks of.
+/// Whether a file has the bytes that the certificate names, and the state of the certificate.
 ClaimCheck check_input(const Certificate& certificate, const std::string& input) {
     ClaimCheck check;
     check.claim = "input";
@@ -58,7 +58,7 @@ Verdict worst(Verdict a, Verdict b) {
     return a == Verdict::refuted || b == Verdict::refuted ? Verdict::refuted : std::max(a, b);
 }
 
-/// A certificate; what `--json` says of it goes into `object`.
+/// Verifies a certificate; the output of `--json` goes into `object`.
 Verdict verify_certificate(const std::string& file, const VerifyArguments& arguments, Json& object) {
     const std::string text = read_text(file);
     const Certificate certificate = parse_certificate(text, file);

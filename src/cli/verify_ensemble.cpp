@@ -27,7 +27,7 @@ long lines_of(const fs::path& file) {
     return std::count(text.begin(), text.end(), '\n');
 }
 
-/// Records of the runs: what is done of all of them, and how long the rest will take.
+/// Records of the runs: those checked so far, and an estimate of the remaining time.
 class Clock {
   public:
     explicit Clock(const std::vector<Member>& members) {
@@ -43,7 +43,7 @@ class Clock {
     [[nodiscard]] double elapsed() const {
         return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
     }
-    /// `here`: records of the member that is gone through.
+    /// `here`: records of the current member.
     [[nodiscard]] double rest(long here) const {
         const long done = done_ + here;
         return done == 0 ? -1 : elapsed() / static_cast<double>(done) * static_cast<double>(left_ - here);
@@ -58,7 +58,7 @@ class Clock {
 
 struct MemberVerification {
     RunVerification run;
-    std::string unreadable; ///< why nothing could be said
+    std::string unreadable; ///< why a run could not be checked
 };
 
 void add(RunVerification& total, const MemberVerification& member) {
@@ -108,7 +108,7 @@ MemberVerification verify_member(const Member& member, const std::function<void(
         if (error.kind() != ErrorKind::bad_input) {
             throw;
         }
-        result.unreadable = error.what(); // the others can be checked all the same
+        result.unreadable = error.what(); // the other runs are still checked
     }
     return result;
 }

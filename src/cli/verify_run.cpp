@@ -13,7 +13,7 @@ namespace isostat::cli {
 
 namespace {
 
-/// One row per equilibrium, as `run` prints them, and a line for the arcs on the way.
+/// Prints one row per equilibrium, as `run` does, and a line for the arcs between equilibria.
 class VerifyTable {
   public:
     explicit VerifyTable(bool quiet) : quiet_(quiet), line_(quiet) {}

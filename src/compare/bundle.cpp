@@ -14,10 +14,10 @@ namespace isostat::compare {
 
 namespace {
 
-/// Of a rearrangement of a member: some rules take ten times as many as others, and a member that ends says so.
+/// Arcs per rearrangement of a member: some rules take ten times as many as others, and a member records its end.
 constexpr long most_arcs = 2000;
 
-/// Where rattlers rest: towards the lower or the upper side of an axis. In the plane the last four.
+/// Where rattlers rest: at the lower or the upper side of an axis. In the plane these are the last four.
 struct Rest {
     const char* name;
     std::size_t axis;
@@ -33,11 +33,11 @@ std::span<const Rest> rests_in(int dimension) {
     return std::span(all_rests).last(2 * static_cast<std::size_t>(dimension));
 }
 
-/// Not `least_negative`: it mostly ends in a tie, after arcs that take thousands of digits.
+/// `least_negative` is left out because it mostly ends in a tie, after arcs that take thousands of digits.
 constexpr std::array rules{OpeningRule::most_negative, OpeningRule::least_index};
 
-/// The loads of `generic_infinitesimal` point to the lower side of the last axis: turned until they point where the
-/// rattlers shall rest.
+/// The loads of `generic_infinitesimal`, which point to the lower side of the last axis, turned to the side at which
+/// the rattlers are to rest.
 std::vector<double> infinitesimal_towards(const Rest& rest, const Packing& packing) {
     const std::size_t d = packing.axes(), last = d - 1;
     std::vector<double> g = generic_infinitesimal(packing.radius, 1, packing.dimension);
@@ -64,7 +64,7 @@ BundleMember member(int number, std::span<const Rest> rests) {
     return out;
 }
 
-/// Adds what one member came through.
+/// Adds the equilibria of one member to the tree.
 class Tree {
   public:
     explicit Tree(Bundle& out) : out_(out) {}
@@ -125,12 +125,12 @@ Bundle make_bundle(const State& start, const Path& path, const std::vector<doubl
     std::vector<Path> paths(static_cast<std::size_t>(count));
     paths.front() = path;
     const Snap vertex =
-        snap({start.packing, carrying(start, certify(start)), start.load}); // rattlers leave what they touch
+        snap({start.packing, carrying(start, certify(start)), start.load}); // rattlers may leave their contacts
     const std::span<const Rest> rests = rests_in(start.packing.dimension);
-    std::vector<std::optional<Result<State>>> at_rest(rests.size()); // of all rules
+    std::vector<std::optional<Result<State>>> at_rest(rests.size()); // for all rules
     parallel_pieces(std::min(rests.size(), paths.size()), [&](std::size_t rest) {
         if (rest == 0 && paths.size() <= rests.size()) {
-            return; // the exact run alone
+            return; // the exact run is the only member
         }
         at_rest[rest] = vertex.outcome == SnapOutcome::vertex
                             ? with_resting_rattlers(vertex, infinitesimal_towards(rests[rest], vertex.packing))

@@ -19,7 +19,7 @@ namespace isostat::compare {
 
 namespace {
 
-/// Which equilibrium of the path has this list: the one nearest to the expected.
+/// The equilibrium of the path with this list that is nearest to the expected one; -1: no equilibrium has it.
 int place_on(const std::vector<PathEquilibrium>& path, const std::vector<Contact>& list, int expected) {
     int best = -1;
     for (const PathEquilibrium& e : path) {
@@ -30,7 +30,7 @@ int place_on(const std::vector<PathEquilibrium>& path, const std::vector<Contact
     return best;
 }
 
-/// Where a frame stands against the exact run.
+/// Compares a frame with the exact run.
 void place(JudgedFrame& judged, const Path& path, int expected) {
     FrameResult& r = judged.result;
     r.expected = expected;
@@ -57,7 +57,7 @@ void place(JudgedFrame& judged, const Path& path, int expected) {
     }
 }
 
-/// The equilibria with this list, or that support this load, by their numbers.
+/// The numbers of the equilibria with this list (`here`), or of the other ones that support this load.
 std::string numbers_of(const std::vector<const PathEquilibrium*>& known, const std::vector<Contact>& list, double load,
                        bool here) {
     std::string text;
@@ -69,7 +69,7 @@ std::string numbers_of(const std::vector<const PathEquilibrium*>& known, const s
     return text.empty() ? " none" : text;
 }
 
-/// The vertex downhill of a frame is one, not the only one: where it is known from, and which others support the load.
+/// Adds to the reason which known equilibria have the list of the vertex downhill, and which others support the load.
 void add_others(JudgedFrame& judged, const Path& path, const Bundle& bundle) {
     if (judged.downhill.empty()) {
         return;
@@ -87,7 +87,7 @@ void add_others(JudgedFrame& judged, const Path& path, const Bundle& bundle) {
                                         numbers(true), numbers(false));
 }
 
-/// And in the bundle.
+/// Finds the frame in the bundle too.
 void place(JudgedFrame& judged, Bundle& bundle) {
     FrameResult& r = judged.result;
     r.node = r.status == FrameStatus::file || r.status == FrameStatus::moving ? -1 : node_with(bundle, judged.list);
@@ -102,7 +102,7 @@ void place(JudgedFrame& judged, Bundle& bundle) {
     }
 }
 
-/// The next frames that are asked for, at most so many.
+/// The next requested frames, at most so many.
 std::vector<Frame> read_some(SeriesReader& reader, std::size_t most, const CompareOptions& options) {
     std::vector<Frame> out;
     while (out.size() < most) {
@@ -120,7 +120,7 @@ std::vector<Frame> read_some(SeriesReader& reader, std::size_t most, const Compa
         }
         for (std::size_t a = 0; options.start && a + 1 < frame->packing.axes(); ++a) {
             const double stress = frame->load.stress[a] / frame->scale, expected = options.start->load.stress[a];
-            if (!(std::abs(stress - expected) <= 1e-9 * expected)) { // both are stated, with the digits of a file
+            if (!(std::abs(stress - expected) <= 1e-9 * expected)) { // both numbers have the digits of a file
                 throw Error(ErrorKind::bad_input,
                             fmt::format("{}: sigma{} is {}{}: expected {}, that of the start of the exact run "
                                         "(--reference)",
@@ -132,8 +132,8 @@ std::vector<Frame> read_some(SeriesReader& reader, std::size_t most, const Compa
     return out;
 }
 
-/// As many frames side by side as there are threads: their coordinates and states are in memory, of the others lists
-/// and numbers. `start`: unless there is one, the state of the first frame that has one; until then they come singly.
+/// Judges as many frames in parallel as there are threads: only their coordinates and states are in memory. `start`: if
+/// empty, set to the state of the first frame with one; until then frames are read singly.
 std::vector<JudgedFrame> judge_all(SeriesReader& reader, const CompareOptions& options, const RunOptions& run,
                                    std::optional<State>& start) {
     std::vector<JudgedFrame> judged;
@@ -165,7 +165,7 @@ int status_of(const std::vector<FrameResult>& frames) {
     };
     const auto is = [](FrameStatus status) { return [status](const FrameResult& f) { return f.status == status; }; };
     return has(at_rest_and_elsewhere)                                       ? 1
-           : has(is(FrameStatus::undecided)) || !has(is(FrameStatus::same)) ? 2 // or nothing was at rest
+           : has(is(FrameStatus::undecided)) || !has(is(FrameStatus::same)) ? 2 // or no frame is at rest
                                                                             : 0;
 }
 
@@ -198,7 +198,7 @@ Comparison compare(SeriesReader& reader, const CompareOptions& options) {
         if (series.several) {
             start->load = over(start->load, start->load.stress[0]);
         }
-        (void)snap_to_grid(start->packing); // bounds of a cell hold there
+        (void)snap_to_grid(start->packing); // the bounds of a cell hold for coordinates on the grid
         reader.begin_after(start->packing);
     }
     std::vector<JudgedFrame> judged = judge_all(reader, options, run, start);

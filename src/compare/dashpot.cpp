@@ -10,13 +10,13 @@ namespace isostat::compare {
 
 namespace {
 
-/// A wall is no faster than this times the fastest disk.
+/// The speed of a wall is at most this times the speed of the fastest disk.
 constexpr double fast_wall = 10;
-/// What the least squares may leave of the largest force of a dashpot: other programs take velocities half a step
-/// later.
+/// Largest residual of the least squares, as a share of the largest force of a dashpot, because other programs store
+/// velocities of half a step later.
 constexpr double left_over = 0.1;
 
-/// w, of one way to weigh; with `hertz` times the root of the overlap and of R_i R_j / (R_i + R_j).
+/// The weight w for one `power` of radii; with `hertz` times the root of the overlap and of R_i R_j / (R_i + R_j).
 double weight(const Packing& packing, const Contact& c, int power, bool hertz) {
     const double r = packing.radius[static_cast<std::size_t>(c.i)];
     const double s = c.of_disks() ? packing.radius[static_cast<std::size_t>(c.j)] : HUGE_VAL;
@@ -28,8 +28,8 @@ double weight(const Packing& packing, const Contact& c, int power, bool hertz) {
     return hertz ? mass * std::sqrt(std::max(0.0, -gap(packing, c)) * reduced(1)) : mass;
 }
 
-/// One row per contact: what a constant of 1 makes of the velocities of the disks, then what a speed of 1 of each
-/// coordinate beyond the disks does that moves.
+/// One row per contact: the force that a constant of 1 makes of the velocities of the disks, then the force of a speed
+/// of 1 of each coordinate beyond the disks.
 Eigen::MatrixXd equations(const Frame& frame, const std::map<Contact, double>& beyond, int power, bool hertz) {
     const Packing& packing = frame.packing;
     const std::size_t disks = packing.length_at(0);

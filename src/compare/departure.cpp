@@ -13,7 +13,7 @@ namespace isostat::compare {
 
 namespace {
 
-/// The frames and equilibria on both sides of a departure.
+/// The frames and equilibria before and after a departure.
 class Diagnosis {
   public:
     Diagnosis(const Series& series, const std::vector<JudgedFrame>& frames, const Path& path, const Bundle& bundle,
@@ -67,8 +67,8 @@ class Diagnosis {
         return false;
     }
 
-    /// The exact run ends, or what it decided depends on less than the way of the grains to a rigid vertex: every
-    /// contact that the frame has besides is open there by less.
+    /// The exact run ends, or its decision depends on less than the distance from the grains to a rigid vertex: each
+    /// contact that only the frame has is open there by less than this distance.
     bool tie() {
         const FrameResult& r = after_->result;
         if (r.expected < 0) {
@@ -89,7 +89,7 @@ class Diagnosis {
                               e.number, names_of(r.extra, series_.dimension), widest, r.distance));
     }
 
-    /// The equilibrium that both have before; null: there is none.
+    /// The equilibrium that both the run and the frame have before the departure; null: none.
     [[nodiscard]] const PathEquilibrium* common() const {
         return before_ == nullptr || before_->result.expected < 0
                    ? nullptr
@@ -99,7 +99,7 @@ class Diagnosis {
         return before_ == nullptr || after_->result.stress >= before_->result.stress ? 1 : -1;
     }
 
-    /// The limit of the structure lies on one side of the frame's load for rigid grains and on the other for soft ones.
+    /// The frame's load separates the limit of the structure for rigid grains from the limit for soft grains.
     bool stiffness() {
         const Counting& counting = after_->result.counting;
         if (after_->result.status == FrameStatus::soft && counting.hyperstaticity > 0) {
@@ -144,18 +144,18 @@ class Diagnosis {
                               limits));
     }
 
-    /// The common equilibrium at the load of the frame before.
+    /// The common equilibrium at the load of the previous frame.
     [[nodiscard]] State at(const PathEquilibrium& e) const {
         State state = e.state;
         state.load.stress[static_cast<std::size_t>(state.load.loaded_axis)] = before_->result.stress;
         return state;
     }
 
-    /// Members of the bundle that stand where the frame is, at its load.
+    /// Some members of the bundle are at the equilibrium of the frame, at its load.
     bool choice() {
         const FrameStatus status = after_->result.status;
         if (status == FrameStatus::undecided || status == FrameStatus::refuted) {
-            return false; // the same list may be that of a member: the frame itself was not shown to be there
+            return false; // a member may have the same list, but the frame was not proved to be at that equilibrium
         }
         int here = 0, ended = 0;
         std::set<int> nodes;

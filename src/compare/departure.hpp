@@ -7,7 +7,7 @@
 
 namespace isostat::compare {
 
-/// Of the first frame that is not `same` (frames in motion alone are no departure). None: there is no such frame.
+/// The departure at the first frame that is not `same` (frames in motion do not count). Nothing: no such frame.
 std::optional<Departure> find_departure(const Series& series, const std::vector<JudgedFrame>& frames, const Path& path,
                                         const Bundle& bundle, const CompareOptions& options);
 

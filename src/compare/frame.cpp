@@ -50,7 +50,7 @@ void add_vertex(const Snap& snap, const Frame& frame, FrameResult& out) {
     out.true_strain = strains_of(snap.backbone.packing, frame.load);
 }
 
-/// The errors of forces on a list with h > 0, and against the vertex downhill.
+/// The errors of the forces on a list with h > 0, and their differences from the vertex downhill.
 void split(const SoftState& soft, const Reading& reading, const Snap& snapped, const Exchanged* downhill,
            FrameResult& out) {
     const bool surplus = out.counting.hyperstaticity > 0;
@@ -65,7 +65,7 @@ void split(const SoftState& soft, const Reading& reading, const Snap& snapped, c
     }
 }
 
-/// A list that is no equilibrium: the vertex downhill instead.
+/// Finds the vertex downhill of a list that is no equilibrium.
 void try_exchange(const SoftState& soft, const Reading& reading, const Snap& snapped, JudgedFrame& out) {
     FrameResult& r = out.result;
     r.status = snapped.outcome == SnapOutcome::refuted ? FrameStatus::refuted : FrameStatus::undecided;

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Each frame against the exact run from the frame before: a score that a first departure does not spoil.
+/// Each frame against the exact run from the previous frame: a score on which an earlier departure has no effect.
 
 #include "compare/frame.hpp"
 
@@ -8,8 +8,8 @@
 
 namespace isostat::compare {
 
-/// Sets `local` of every frame at rest, from number `first` on, whose frame before has a state. The exact run starts
-/// there and ends at the load of the frame; frames are independent and go to the threads of `set_threads`. Cost: a
+/// Sets `local` of every frame at rest, from number `first` on, whose previous frame has a state. The exact run starts
+/// there and ends at the load of the frame; frames are independent and use the threads of `set_threads`. Cost: a
 /// rearrangement or two per frame.
 void compare_with_frame_before(std::vector<JudgedFrame>& frames, std::size_t first, const RunOptions& options);
 

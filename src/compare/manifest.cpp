@@ -158,7 +158,7 @@ Manifest read_manifest(const std::filesystem::path& path) {
     Section files = section("files");
     read_files(files, path.parent_path(), out);
     Section load = section("load");
-    read_load(load, out); // says whether there are disks or spheres
+    read_load(load, out); // decides whether the grains are disks or spheres
     Section columns = section("columns");
     read_columns(columns, source, out);
     Section cell = section("cell");

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The manifest of a series, as it stands.
+/// The manifest of a series as read.
 
 #include <isostat/compare/compare.hpp>
 
@@ -14,23 +14,23 @@ struct Manifest {
     std::string disks, contacts, frames; ///< paths; `contacts` may be empty
     std::string contact_i, contact_j;
     std::vector<std::string> contact_force;  ///< one column, or those of a vector
-    std::vector<std::string> wall_force;     ///< as `wall_names`: columns of `disks`, or none
+    std::vector<std::string> wall_force;     ///< as `wall_names`: columns of `disks`, or empty
     std::string size;                        ///< column of the sizes
-    bool diameters = false;                  ///< they are diameters
+    bool diameters = false;                  ///< the sizes are diameters
     std::string select_column, select_value; ///< disks with this value; empty: all
     double length_factor = 1, force_factor = 1;
     LoadKind load = LoadKind::nominal;
-    PerAxis<double> stress{}; ///< but that of the last axis, which the frames have (`several`: 0, they have all)
+    PerAxis<double> stress{}; ///< except on the last axis, where the frames have it (`several`: 0, the frames have all)
     PerAxis<double> reference_length{};
     bool periodic = false; ///< frames of a periodic cell: the bounds of the dump are its periods
     bool tilted = false;   ///< its tilts move, under no shear stress
 
     [[nodiscard]] std::size_t axes() const { return static_cast<std::size_t>(series.dimension); }
-    /// Of the walls: the lower ones, axis by axis, then the upper ones.
+    /// Names of the walls: the lower ones, axis by axis, then the upper ones.
     [[nodiscard]] std::vector<std::string> wall_names() const;
-    /// The contact of a grain with wall `wall` of these.
+    /// The contact of a grain with number `wall` of these.
     [[nodiscard]] Contact with_wall(int grain, std::size_t wall) const;
-    /// The reference lengths of the other axes, multiplied: a nominal stress presses on that.
+    /// The product of the reference lengths of the other axes, on which a nominal stress acts.
     [[nodiscard]] double reference_area(std::size_t axis) const;
 };
 

@@ -14,14 +14,14 @@ namespace isostat::compare {
 namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-constexpr int further = 3; ///< equilibria after the last load: frames may be early
+constexpr int further = 3; ///< equilibria after the last load, because frames may be early
 
-/// Of frames it is that of the last axis.
+/// The loaded stress; for frames that of the last axis.
 double loaded(const State& state) {
     return state.load.loaded_stress();
 }
 
-/// Keeps the equilibria with their lists; those that only another load made are the same one.
+/// Keeps the equilibria with their lists; an equilibrium without arcs is the previous one at another load.
 class Collector final : public RunObserver {
   public:
     Collector(std::vector<PathEquilibrium>& out, NearestArcs* arcs) : out_(out), arcs_(arcs) {}
@@ -53,7 +53,7 @@ class Collector final : public RunObserver {
         highs_.push_back(record.opens_high);
         lows_.push_back(record.opens_low);
     }
-    /// The contact that opens at the end ahead.
+    /// The contact that opens at the end in the direction of the load.
     [[nodiscard]] const Contact& opens(std::size_t k, int direction) const {
         return direction > 0 ? highs_[k] : lows_[k];
     }
@@ -80,7 +80,7 @@ void predict(PathEquilibrium& e, int direction, double stiffness) {
 
 namespace {
 
-/// The run along the loads, segment by segment.
+/// Runs along the loads, segment by segment.
 class Follower {
   public:
     Follower(State state, const RunOptions& options, NearestArcs* arcs)
@@ -111,7 +111,7 @@ class Follower {
         if (path.end.empty()) {
             Segment on;
             on.equilibria = further;
-            (void)advance(on); // as far as it goes
+            (void)advance(on); // until the run ends
         }
     }
     void predict_limits(double stiffness) {

@@ -1,4 +1,4 @@
-// Frames of a series, matched by time step.
+// Reads the frames of a series, matched by time step.
 #include "compare/manifest.hpp"
 #include "io/digits.hpp"
 #include "io/files.hpp"
@@ -27,8 +27,8 @@ namespace {
 using foreign::Boundary;
 using foreign::FrameHeader;
 
-/// Which wall a field of a file of contacts means: its name, or -1 left, -2 bottom, -3 right, -4 top, of spheres -5
-/// back, -6 front.
+/// The wall that a field of a file of contacts names: by its name, or -1
+/// left, -2 bottom, -3 right, -4 top; for spheres also -5 back, -6 front.
 std::optional<std::size_t> wall_of(std::string_view field, const Manifest& manifest) {
     const std::vector<std::string> names = manifest.wall_names();
     const std::size_t d = manifest.axes();
@@ -42,16 +42,16 @@ std::optional<std::size_t> wall_of(std::string_view field, const Manifest& manif
     return std::nullopt;
 }
 
-/// Where the walls of a frame are, or the sides of its cell.
+/// Positions of the walls of a frame, or of the sides of its cell.
 struct Sides {
-    bool stated = false; ///< else the file of disks says so
+    bool stated = false; ///< otherwise the file of disks states them
     PerAxis<double> low{}, high{};
     PerTilt<double> tilt{}; ///< of a cell
     Digits digits;
     [[nodiscard]] double length(std::size_t axis) const { return high[axis] - low[axis]; }
 };
 
-/// The table of frames.
+/// Reads the table of frames.
 class FrameTable {
   public:
     explicit FrameTable(const Manifest& manifest)
@@ -93,7 +93,7 @@ class FrameTable {
         }
     }
 
-    /// The next frame without its disks: sides and load. Nothing at the end.
+    /// The next frame without its disks, with sides and load; empty at the end.
     std::optional<Frame> next(Sides& sides) {
         if (lines_.only_blanks()) {
             return std::nullopt;
@@ -119,7 +119,7 @@ class FrameTable {
 
   private:
     [[nodiscard]] int find(const std::string& name) const { return foreign::find_column(names_, name); }
-    /// The axis whose stress the frames have.
+    /// The axis whose stress is in the frames.
     [[nodiscard]] std::size_t last() const { return manifest_.axes() - 1; }
     [[nodiscard]] std::size_t tilts() const { return Layout{manifest_.series.dimension}.tilts(); }
     [[nodiscard]] static std::string stress_column(std::size_t axis) { return fmt::format("sigma{}", axis + 1); }
@@ -186,7 +186,7 @@ class FrameTable {
         return load;
     }
 
-    /// The stresses of the axes but the last: in all frames in the proportion of the first one.
+    /// The stresses of all axes but the last, in the proportion of the first frame.
     [[nodiscard]] PerAxis<double> lateral_of(const TextLine& line) {
         PerAxis<double> out{};
         for (std::size_t axis = 0; axis < last(); ++axis) {
@@ -199,12 +199,12 @@ class FrameTable {
         }
         proportion_ = count_ == 1 ? out : proportion_;
         for (std::size_t axis = 1; axis < last(); ++axis) {
-            out[axis] = out[0] * (proportion_[axis] / proportion_[0]); // `check_stress` says whether that is in the row
+            out[axis] = out[0] * (proportion_[axis] / proportion_[0]); // `check_stress` compares it with the row
         }
         return out;
     }
 
-    /// The stresses that the frames do not change are those of the manifest, to the digits that a file has.
+    /// Checks that stresses constant over the frames are those of the manifest, to the digits of a file.
     void check_stress(const TextLine& line, std::size_t axis, const Load& load) const {
         const std::string name = stress_column(axis);
         const int at = find(name);
@@ -224,7 +224,7 @@ class FrameTable {
         }
     }
 
-    /// A force on a wall must be that of the load, to the digits that a file has.
+    /// Checks that a force on a wall is that of the load, to the digits of a file.
     void check_force(const TextLine& line, std::size_t axis, const Load& load) const {
         const std::string name = force_column(axis);
         const int at = find(name);
@@ -250,19 +250,19 @@ class FrameTable {
         return digits.rounding();
     }
 
-    static constexpr double known = 1e-9; ///< of a force or a stress that is stated twice
+    static constexpr double known = 1e-9; ///< tolerance of a force or a stress that is stated twice
     const Manifest& manifest_;
     std::string text_;
     TextLines lines_;
     std::vector<std::string> names_;
     std::string where_;
-    bool sides_ = true; ///< it has them
+    bool sides_ = true; ///< the table states them
     PerAxis<double> proportion_{};
     int count_ = 0;
     long last_ = -1; ///< time step
 };
 
-/// Disks of the frames: those of the first one, by id.
+/// Reads the disks of the frames, which are those of the first frame, by id.
 class Disks {
   public:
     explicit Disks(const Manifest& manifest) : manifest_(manifest), dump_(manifest.disks, "ATOMS") {}
@@ -330,7 +330,7 @@ class Disks {
 
   private:
     [[nodiscard]] const char* grain() const { return grain_word(manifest_.series.dimension); }
-    /// The columns of a vector.
+    /// The columns of the components of a vector.
     [[nodiscard]] std::vector<std::size_t> columns_of(const FileFrame& rows, const PerAxis<const char*>& names) const {
         std::vector<std::size_t> out;
         for (std::size_t a = 0; a < manifest_.axes(); ++a) {
@@ -355,7 +355,7 @@ class Disks {
         }
         return by_id;
     }
-    /// Of disks z is the same, or differs by so little that no gap would be another double.
+    /// Checks for disks that z is constant, or varies by so little that no gap is another double.
     void require_a_plane(const FileFrame& rows, const std::map<long, const TextLine*>& by_id, std::size_t size) const {
         const int z = foreign::find_column(rows.header.names, "z");
         for (const auto& [number, row] : by_id) {
@@ -372,7 +372,7 @@ class Disks {
             }
         }
     }
-    /// All grains of the first frame are there; velocities are known of all or of none.
+    /// Checks that all grains of the first frame are present, and that all have velocities or none has.
     void check_all(Frame& frame, const std::string& place) const {
         if (frame.ids.size() < ids_.size()) {
             throw Error(ErrorKind::bad_input, fmt::format("{0}: no {1} {2}: expected the {1}s of the first frame",
@@ -383,7 +383,7 @@ class Disks {
         }
         validate(frame.packing, place);
     }
-    /// The frame, for what the next one is compared with.
+    /// Keeps the frame for comparisons with the next one.
     void keep(Frame& frame) {
         if (frame.number == 0) {
             ids_ = frame.ids;
@@ -394,7 +394,7 @@ class Disks {
         }
         last_ = frame.packing;
     }
-    /// The columns vx, vy (and vz), or none.
+    /// The columns vx, vy (and vz); empty when the file has none.
     [[nodiscard]] std::vector<std::size_t> speeds_of(const FileFrame& rows) const {
         constexpr PerAxis<const char*> speeds{"vx", "vy", "vz"};
         const bool all =
@@ -402,7 +402,7 @@ class Disks {
                         [&](const char* name) { return foreign::find_column(rows.header.names, name) >= 0; });
         return all ? columns_of(rows, speeds) : std::vector<std::size_t>();
     }
-    /// Of the dimension, in walls or a cell.
+    /// Sets the dimension, and walls or a cell.
     void begin(Packing& packing) const {
         packing.dimension = packing.cell.dimension = manifest_.series.dimension;
         packing.walls = manifest_.periodic ? Walls::none() : Walls::box(packing.dimension);
@@ -411,7 +411,7 @@ class Disks {
             packing.cell.move(true, manifest_.tilted);
         }
     }
-    /// The bounds of a dump are the cell.
+    /// The bounds of a dump as the cell.
     [[nodiscard]] Sides sides_of(const FrameHeader& header) const {
         Sides sides;
         for (std::size_t a = 0; a < manifest_.axes(); ++a) {
@@ -425,7 +425,7 @@ class Disks {
         return sides;
     }
 
-    /// Walls, or every axis periodic: as the manifest says. A cell is stated once.
+    /// Checks that the file has walls, or all axes periodic, as the manifest states, and that the cell is stated once.
     void check_boundaries(const FileFrame& rows, const Sides& sides) const {
         const FrameHeader& header = rows.header;
         if (header.leaves_the_plane() && manifest_.series.dimension == plane) {
@@ -461,8 +461,8 @@ class Disks {
         }
     }
 
-    /// Other programs flip a box that is sheared far, by whole periods: each tilt next to the one before. The periods
-    /// along z are turned back first, as those along y change their tilt along x.
+    /// Other programs flip a strongly sheared box by whole periods: each tilt is moved next to the tilt of the previous
+    /// frame. The periods along z are turned back first, because those along y change their tilt along x.
     void unflip(Frame& frame, Sides& sides) {
         const Cell& cell = frame.packing.cell;
         const PerTilt<double> in_file = sides.tilt;
@@ -492,8 +492,8 @@ class Disks {
         flipped_ = periods;
     }
 
-    /// Other programs wrap grains that leave the cell. Each is put where it has moved least since the frame before,
-    /// relative to the first one: contacts keep their images.
+    /// Other programs wrap grains that leave the cell. Each grain is put where its motion since the previous frame,
+    /// relative to the first grain, is smallest, so that contacts keep their images.
     void unwrap(Packing& packing) const {
         const std::size_t d = packing.axes();
         const auto fractions = [d](const Packing& p, std::size_t i) {
@@ -519,7 +519,7 @@ class Disks {
         }
     }
 
-    /// Forces of walls that are not 0, positive when they press the disk inwards.
+    /// Adds the wall forces that are not 0, positive when they press the disk inwards.
     void add_walls(Frame& frame, const TextLine& row, const FileFrame& rows, int disk) {
         if (!manifest_.series.wall_forces) {
             return;
@@ -538,10 +538,10 @@ class Disks {
     FrameFile dump_;
     std::vector<long> ids_;
     Packing first_, last_;
-    PerTilt<double> flipped_{}; ///< periods between the tilts of the file and those of the frames
+    PerTilt<double> flipped_{}; ///< number of periods between the tilts of the file and those of the frames
 };
 
-/// Rows of the file of contacts. A contact that comes twice stays twice: `compare` names it.
+/// Reads the rows of the file of contacts. A contact that occurs twice is kept twice, and `compare` names it.
 void read_contacts(const Manifest& manifest, FrameFile& dump, Frame& frame) {
     const FileFrame rows = dump.at(frame.timestep);
     const std::size_t first = dump.column(rows, manifest.contact_i), second = dump.column(rows, manifest.contact_j);
@@ -564,11 +564,11 @@ void read_contacts(const Manifest& manifest, FrameFile& dump, Frame& frame) {
         return static_cast<int>(found - frame.ids.begin());
     };
     PairImages images(frame.packing);
-    const std::size_t walls = frame.contacts.size(); // of columns of the disks
+    const std::size_t walls = frame.contacts.size(); // those from columns of the disks
     std::vector<VectorForce> vectors;
     for (const TextLine& row : rows.rows) {
         FileContact contact;
-        double sign = 1; // of a vector
+        double sign = 1; // factor of a vector
         const auto one = wall_of(row.field(first), manifest), other = wall_of(row.field(second), manifest);
         if (one.has_value() != other.has_value() && !manifest.periodic) {
             contact.contact = one ? manifest.with_wall(disk(row, second, manifest.contact_j), *one)

@@ -18,16 +18,16 @@ namespace isostat::compare {
 
 namespace {
 
-/// Deeper overlaps, in smallest radii, are no packing of nearly rigid disks.
+/// Overlaps deeper than this, in smallest radii, do not belong to a packing of nearly rigid disks.
 constexpr double deepest = 0.1;
-/// Of frames in motion, 100 disks in LAMMPS: the dashpots were 0.15 to 0.25 of the largest force left.
+/// Measured on frames in motion, 100 disks in LAMMPS: dashpots were 0.15 to 0.25 of the largest residual force.
 constexpr double a_few = 10;
-/// Where the frame has no velocities. Of frames in slow motion with much drag the forces of the law left 3 % of what
-/// those of the files do; at rest, beside wrong forces of 5 %, less than 1e-4.
+/// For frames without velocities. In slow motion with much drag the residual forces of the law were 3 % of those of the
+/// files; at rest, with wrong forces of 5 %, less than 1e-4.
 constexpr double in_motion = 3e-3;
-/// Of what is left on a wall, a disk has less than this: the wall is not what moves.
+/// When each disk's residual force is below this share of a wall's, the wall does not move.
 constexpr double wall_alone = 1e-3;
-/// The same of two disks and the others.
+/// The same share for two disks and the other disks.
 constexpr double disk_alone = 1e-3;
 
 class Reader {
@@ -93,7 +93,7 @@ class Reader {
         return c.of_disks() || where == frame_.row ? where : where + ", " + frame_.row;
     }
     [[nodiscard]] static bool is_wall(const Contact& c) { return !c.of_disks(); }
-    /// The files list contacts of its kind.
+    /// Whether the files list contacts of this kind.
     [[nodiscard]] bool has_rows(const Contact& c) const { return is_wall(c) ? walls_listed_ : series_.listed; }
 
     void take_rows() {
@@ -103,13 +103,13 @@ class Reader {
                 ++out_.twice;
                 contradict(fmt::format("{}: {} come twice (first in {})", c.row, name(c.contact), row->second));
             } else if (c.force != 0) {
-                force_.emplace(c.contact, c.force); // negative: a dashpot, or nonsense
+                force_.emplace(c.contact, c.force); // a negative force is that of a dashpot, or an error
                 beyond_.emplace(c.contact, c.force - expected(c.contact));
             }
         }
     }
 
-    /// Those that the files do not list, because they list no contacts of that kind.
+    /// Adds the overlaps of kinds of contacts that the files do not list.
     void add_overlaps() {
         for (const Contact& c : overlaps_) {
             if (!has_rows(c) && row_.emplace(c, frame_.row).second) {
@@ -171,7 +171,7 @@ class Reader {
         }
     }
 
-    /// Where most forces of the files are not those of the law.
+    /// Describes a factor when most forces of the files differ from those of the law.
     [[nodiscard]] std::string units_words() const {
         std::vector<double> said, exact;
         int off = 0;
@@ -183,8 +183,8 @@ class Reader {
         return off > 0 ? "; " + units_of(said, exact, out_.mean).words(series_.agreement) : "";
     }
 
-    /// What a dashpot adds is no larger than what is left to accelerate the grains, times a few. In motion neither the
-    /// forces of the files nor those of the law balance, or not as those of a frame at rest.
+    /// A dashpot adds at most a few times the residual force that accelerates the grains. In motion the residual forces
+    /// are larger than those of a frame at rest, with the forces of the files and with those of the law.
     [[nodiscard]] bool may_be_dashpots(double largest) const {
         const double less = std::min(left_, left_by_law_), more = std::max(left_, left_by_law_);
         const bool moving = less > series_.rest * out_.mean || (frame_.velocity.empty() && less > in_motion * more);
@@ -200,7 +200,7 @@ class Reader {
         }
     }
 
-    /// Overlaps that would carry a force and have no row.
+    /// Names overlaps that would carry a force by the law and have no row.
     void check_missing() {
         for (const Contact& c : overlaps_) {
             const bool law = series_.law != ForceLaw::none;
@@ -213,16 +213,16 @@ class Reader {
         }
     }
 
-    /// By the law.
+    /// The force by the law.
     [[nodiscard]] double expected(const Contact& c) const { return law_.force(frame_.packing, c); }
     [[nodiscard]] double unknown(const Contact& c) const { return law_.rounding(frame_.packing, c, rounding_); }
 
-    /// The largest forces that are left on a disk, and on the upper walls.
+    /// The largest residual forces on a disk, on the upper walls and on a tilt.
     struct Left {
         double disks = 0;
-        std::vector<double> disk; ///< each
+        std::vector<double> disk; ///< of each disk
         PerAxis<double> walls{};
-        double tilt = 0; ///< of a cell whose tilts move
+        double tilt = 0; ///< of a cell with moving tilts
         [[nodiscard]] double largest() const { return std::max({disks, walls[0], walls[1], walls[2], tilt}); }
     };
     [[nodiscard]] Left left_by(const std::map<Contact, double>& forces) const {
@@ -252,7 +252,7 @@ class Reader {
         return out;
     }
 
-    /// What rounding may leave of the forces that are not in the files, on the grain with the most of them.
+    /// Bound of the residual from rounding in forces that are not in the files, on the grain where it is largest.
     [[nodiscard]] double blurred_by_law() const {
         std::map<int, double> at; // disks, and walls from -1 down
         double most = 0;
@@ -268,8 +268,8 @@ class Reader {
         return most;
     }
 
-    /// A wall that moves takes disks along. Where they all balance and it does not, the load is that of another frame,
-    /// or the wall drifts slowly along a mechanism.
+    /// A moving wall drags disks along. When all disks balance and the wall does not, the load belongs to another
+    /// frame, or the wall drifts slowly along a mechanism.
     void check_load(const Left& left, double blur) {
         for (std::size_t axis = 0; axis < frame_.packing.axes(); ++axis) {
             if (left.walls[axis] > series_.rest * out_.mean + blur && left.disks < wall_alone * left.walls[axis]) {
@@ -285,7 +285,7 @@ class Reader {
         }
     }
 
-    /// What moves takes its neighbours along, too.
+    /// A moving disk drags its neighbours along too.
     void check_disks(const Left& left) {
         std::string names;
         int off = 0;
@@ -345,13 +345,13 @@ class Reader {
     const Frame& frame_;
     ContactLaw law_;
     Reading out_;
-    bool walls_listed_ = false;         ///< else they are those that a disk overlaps
-    double rounding_ = 0;               ///< of an overlap, as a length
-    double left_ = 0, left_by_law_ = 0; ///< largest force left, by the files and by the overlaps
-    double noise_ = 0;                  ///< smaller forces count for none
+    bool walls_listed_ = false;         ///< otherwise the contacts of walls are the overlaps
+    double rounding_ = 0;               ///< error of an overlap, as a length
+    double left_ = 0, left_by_law_ = 0; ///< largest residual force, by the files and by the overlaps
+    double noise_ = 0;                  ///< smaller forces count as zero
     std::vector<Contact> overlaps_;
     std::map<Contact, double> force_;
-    std::map<Contact, double> beyond_; ///< of the contacts of the files, what is beyond the force of the law
+    std::map<Contact, double> beyond_; ///< for each contact of the files, the force less that of the law
     std::map<Contact, std::string> row_;
 };
 

@@ -23,7 +23,7 @@ namespace {
 using json::Json;
 using json::or_null;
 
-/// One column: its name and its value.
+/// One column with its name and its value.
 template <class Row> struct Column {
     std::string name;
     std::function<Json(const Row&)> value;
@@ -37,7 +37,7 @@ Json names(const std::vector<Contact>& contacts, int dimension) {
     return text;
 }
 
-/// sigma2, eps2; of spheres sigma3, eps3.
+/// sigma2, eps2; for spheres sigma3, eps3.
 std::string loaded(const std::string& name, int dimension) {
     return name + std::to_string(dimension);
 }
@@ -131,7 +131,7 @@ std::vector<Column<BundleMember>> of_members() {
             {"end", [](const M& m) { return m.end; }}};
 }
 
-/// "nan" for null.
+/// The text of a value, "nan" for null.
 std::string cell(const Json& value) {
     if (value.is_null()) {
         return "nan";
@@ -174,16 +174,16 @@ template <class Row> Json objects(const std::vector<Column<Row>>& columns, const
     return out;
 }
 
-/// On the logarithmic axis.
+/// Whether an error has a point on the logarithmic axis.
 bool shown(double error) {
     return error > 0 && std::isfinite(error);
 }
 
-/// Data of the figure in blocks. gnuplot does not count one without a line: such a block is left out, and nothing is
-/// drawn of it.
+/// Data of the figure in blocks. gnuplot does not count a block
+/// without lines, so that such a block is left out, with its curve.
 class Blocks {
   public:
-    /// Its clause of `plot`; nothing where it has no line. {} in `clause`: the file and the block.
+    /// Adds a block and returns its clause of `plot`; empty without lines. {} in `clause`: the file and the block.
     std::string add(const std::string& title, const std::string& lines, const std::string& clause) {
         if (lines.empty()) {
             return {};
@@ -223,7 +223,7 @@ std::string staircase(const std::vector<PathEquilibrium>& path) {
     return text;
 }
 
-/// Against the strain: supported loads of the bundle, the exact run, the frames.
+/// Curves over the strain: supported loads of the bundle, the exact run, the frames.
 std::string path_panel(const Comparison& comparison, Blocks& blocks) {
     const std::string bundle = lines_of(comparison.bundle.nodes, [](const BundleNode& node) {
         const PathEquilibrium& e = node.equilibrium;
@@ -244,7 +244,7 @@ std::string path_panel(const Comparison& comparison, Blocks& blocks) {
                             "{} with points pt 6 lc \"#c55a11\" title \"frames\"")});
 }
 
-/// Against the load: exact limits, the status of each frame.
+/// Curves over the load: exact limits, and the status of each frame.
 std::string status_panel(const Comparison& comparison, Blocks& blocks) {
     const std::string limits =
         lines_of(comparison.path, [](const PathEquilibrium& e) { return fmt::format("{}\n", e.stress); });
@@ -258,7 +258,7 @@ std::string status_panel(const Comparison& comparison, Blocks& blocks) {
                     "{} with points pt 7 ps 0.7 lc \"#c55a11\"")});
 }
 
-/// Errors of the forces that have a point.
+/// The errors of the forces that have points on the axis.
 std::string errors_panel(const Comparison& comparison, Blocks& blocks) {
     struct Curve {
         const char* name;
@@ -355,7 +355,7 @@ std::string comparison_json(const Series& series, const Comparison& comparison) 
     out["made_by"] = series.program;
     out["stiffness"] = series.law != ForceLaw::none ? Json(series.stiffness) : Json();
     if (series.several) {
-        out["over_sigma1"] = true; // what is called sigma2, of spheres sigma3
+        out["over_sigma1"] = true; // the values named sigma2, for spheres sigma3
     }
     std::array<int, frame_statuses> counts{};
     for (const FrameResult& f : comparison.frames) {

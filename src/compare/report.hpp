@@ -19,7 +19,7 @@ std::vector<std::string> member_columns();
 
 std::string frames_csv(const Comparison& comparison);
 std::string path_csv(const Comparison& comparison);
-/// Nodes of the bundle and its members.
+/// Tables of the nodes of the bundle and of its members.
 std::string bundle_csv(const Comparison& comparison);
 std::string members_csv(const Comparison& comparison);
 /// One object: frames, path, counts, departure, status. null where a number was not found.

@@ -24,7 +24,7 @@ struct Row {
     double exact = NAN, soft = NAN, needed = NAN;
 };
 
-/// Both ends of one equilibrium that are finite.
+/// Adds a row for each finite end of one equilibrium.
 void add_rows(std::vector<Row>& rows, const EquilibriumRow& equilibrium, const State& state, double stiffness) {
     if (!std::isfinite(equilibrium.stress_high) || !(equilibrium.stress_low > 0)) {
         return;

@@ -12,7 +12,7 @@ namespace {
 
 using roundoff::infinity;
 
-/// The smallest and the largest of the numbers it is shown.
+/// The smallest and the largest of the numbers added so far.
 struct Extent {
     double low = infinity;
     double high = -infinity;
@@ -27,13 +27,13 @@ double length_of(const Packing& packing, const PerAxis<double>& x) {
     return packing.dimension == plane ? std::hypot(x[0], x[1]) : std::hypot(x[0], x[1], x[2]);
 }
 
-/// The strain E = dA A_0^-1 of a change dA of the cell, upper triangular; 0 along axes with walls. And a bound of
-/// |A_0^-1|.
+/// The strain E = dA A_0^-1 of a change dA of the cell, upper triangular; 0 along axes with
+/// walls. And a bound of |A_0^-1|.
 struct Strain {
     PerAxis<PerAxis<double>> e{};
     double inverse = 0;
 
-    /// `moved(k)`: dA as `Packing::q` has it.
+    /// `moved(k)`: the change of coordinate k of `Packing::q`.
     template <class Moved> Strain(const std::vector<double>& reference, const Packing& packing, const Moved& moved) {
         const auto& periodic = packing.cell.periodic;
         PerAxis<PerAxis<double>> inverted{};
@@ -69,7 +69,7 @@ struct Strain {
     }
 };
 
-constexpr double rounding = 0x1p-46; // of two dozen operations on lengths, times strains up to 4
+constexpr double rounding = 0x1p-46; // for two dozen operations on lengths, times strains up to 4
 
 /// The left-hand side of C8 for a displacement, without its roundings: moved(k) of coordinate k.
 struct Used {
@@ -135,7 +135,7 @@ CellDrift cell_drift(const CandidateList& list, const Packing& packing) {
     }
     const Used left(list, packing, [&](std::size_t k) { return packing.q[k] - list.reference[k]; });
     const double size = std::max(largest(list.reference), largest(packing.q));
-    const bool small = left.strain < 1; // else the bound of C8 says nothing
+    const bool small = left.strain < 1; // otherwise C8 does not apply
     return {small ? left.used + rounding * size : infinity, left.rate};
 }
 

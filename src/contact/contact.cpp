@@ -24,7 +24,7 @@ double plain_norm(const PerAxis<double>& d) {
     return std::sqrt(square);
 }
 
-/// "(1,-1)", or nothing.
+/// "(1,-1)", or empty.
 std::string image_text(const Image& image, int dimension) {
     std::string text;
     for (std::size_t a = 0; a < static_cast<std::size_t>(dimension) && !image.is_here(); ++a) {
@@ -33,13 +33,13 @@ std::string image_text(const Image& image, int dimension) {
     return text.empty() ? text : text + ")";
 }
 
-/// No square of a component that matters under- or overflows.
+/// No square of a relevant component under- or overflows.
 bool in_range(double norm) {
     return norm > 0x1p-450 && norm < 0x1p500;
 }
 
-/// Multiplies d by a power of two, exactly, so that its largest component is in [1/2, 1); returns the exponent that
-/// goes back.
+/// Multiplies d by a power of two, exactly, so that its largest
+/// component is in [1/2, 1); returns the exponent that undoes this.
 int normalise(PerAxis<double>& d) {
     double largest = 0;
     for (const double c : d) {
@@ -105,7 +105,7 @@ double gap(const Packing& packing, const Contact& contact) {
 }
 
 GapGradient gap_gradient(const Packing& packing, const Contact& contact) {
-    PerAxis<double> normal; // but for the sign; of a wall 1
+    PerAxis<double> normal; // without the sign; 1 for a wall
     normal.fill(1);
     if (contact.of_disks()) {
         normal = direction(separation(packing.layout(), packing.q, contact));

@@ -5,7 +5,7 @@
 namespace isostat {
 
 ContactSet::ContactSet(const std::vector<Contact>& contacts, int disk_count) {
-    // A held coordinate's first index is a coordinate: it is never asked for, and left out.
+    // Held coordinates are left out, because their first index is no disk.
     start_.assign(static_cast<std::size_t>(disk_count) + 2, 0);
     const auto counted = [](const Contact& contact) { return contact.kind != ContactKind::held; };
     for (const Contact& contact : contacts) {

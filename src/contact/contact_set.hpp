@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Fast membership in a contact list, and parts of one.
+/// Fast membership in a contact list, and sublists.
 
 #include <isostat/contact/state.hpp>
 
@@ -8,8 +8,8 @@
 
 namespace isostat {
 
-/// The contacts of a list bucketed by their first index: `contains` looks at the few contacts of one disk. Made in
-/// O(N).
+/// The contacts of a list in buckets by their first index: `contains`
+/// compares only with the contacts of one disk. Cost to make: O(N).
 class ContactSet {
   public:
     ContactSet(const std::vector<Contact>& contacts, int disk_count);
@@ -28,7 +28,7 @@ class ContactSet {
     std::vector<Contact> members_;
 };
 
-/// Those without a mark: of the contacts of a state those that carry a force, where structural zeros are marked.
+/// The contacts without a mark: if structural zeros are marked, those that carry a force.
 std::vector<Contact> unmarked(const std::vector<Contact>& contacts, const std::vector<unsigned char>& marks);
 
 } // namespace isostat

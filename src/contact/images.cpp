@@ -64,8 +64,8 @@ Range range_of(double s, double margin) {
     return {static_cast<int>(std::ceil(-margin - s)), static_cast<int>(std::floor(1 + margin - s))};
 }
 
-/// So many periods apart may disks be whose gap is below `reach`. The rounding of s and of the heights moves an image
-/// by far less than a hundredth of it.
+/// Largest distance, in periods, of disks with a gap below `reach`. The rounding of s and of the heights moves an image
+/// by far less than a hundredth of this margin.
 PerAxis<double> margin_of(const Packing& packing, double reach) {
     const double near = 1.01 * (2 * packing.max_radius() + reach);
     const PerAxis<double> height = heights(packing);

@@ -19,7 +19,7 @@ inline std::vector<std::string> contact_names(const std::vector<Contact>& contac
     return names;
 }
 
-/// Of the N_f degrees of freedom, in their order: "x of disk 3", "top wall", ...
+/// Names of the N_f degrees of freedom, in their order: "x of disk 3", "top wall", ...
 inline std::vector<std::string> dof_names(const Packing& packing) {
     const DofMap dofs(packing);
     std::vector<std::string> names;

@@ -18,12 +18,12 @@ namespace isostat {
 
 namespace {
 
-// Constants of proofs/contact_candidates.md, section "Rounded weights". Disks shrunk by the common shift 0.002 R_min^2
-// of their weights have exactly the power diagram of the rounded weights; an edge may overlap by half of what that
-// shift allows.
+// Constants of proofs/contact_candidates.md, section "Rounded weights". Disks shrunk
+// by the common shift 0.002 R_min^2 of their weights have exactly the power diagram
+// of the rounded weights; an edge may overlap by half of what this shift allows.
 constexpr double edge_overlap = 0.0005; // times R_min^2 (1/R_i + 1/R_j)
-constexpr double largest_reach = 0.825; // times R_min; T6 allows 0.828: room for the rounding of images
-constexpr double largest_ratio = 1e5;   // beyond it the rounding of R_max^2 is not small against the shift
+constexpr double largest_reach = 0.825; // times R_min; T6 allows 0.828, the rest is for rounding of images
+constexpr double largest_ratio = 1e5;   // beyond it the rounding of R_max^2 is not small compared with the shift
 
 /// Gaps with a bound of their rounding: 8 u times the lengths that enter, for any coordinates.
 class Gaps {
@@ -132,7 +132,7 @@ std::vector<Contact> pairs_within(const Packing& packing, double reach, int most
             }
         }
     }
-    if (repeats) { // a pair and what it is moved to by a period
+    if (repeats) { // a pair and its copy moved by a period
         std::sort(pairs.begin(), pairs.end());
         pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
     }

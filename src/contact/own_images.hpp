@@ -9,7 +9,7 @@
 namespace isostat {
 
 /// A disk and an own image at gap 0, exactly, between which no part of the cell moves (`can_move`). Such a pair is no
-/// contact of a list, and none that a load presses; it closes all the same under the other strains of the cell.
+/// contact of a list and bears no load, but the other strains of the cell can close it.
 std::vector<Contact> touching_own_images(const Packing& packing);
 
 } // namespace isostat

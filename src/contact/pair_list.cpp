@@ -16,7 +16,7 @@ namespace isostat {
 
 namespace {
 
-/// All disks but sqrt(n) at most are not larger: one large disk among small ones would make the cells of a grid large.
+/// At most sqrt(n) disks are larger than this: one large disk among small ones would make the cells of a grid large.
 double common_radius(std::vector<double> radius) {
     constexpr double comparable = 4;
     const std::size_t n = radius.size();
@@ -31,7 +31,7 @@ double common_radius(std::vector<double> radius) {
     return radius[rank];
 }
 
-/// Cells of a bounding box, disks sorted by cell; those larger than `common` are apart. A disk is found again from its
+/// Cells of a bounding box, disks sorted by cell; disks larger than `common` are kept apart. A disk is found from its
 /// own cell number, so rounding cannot lose it; pairs within one cell width are in adjacent cells up to rounding, which
 /// the margin in the width covers.
 class Grid {
@@ -65,7 +65,7 @@ class Grid {
     }
 
     /// Calls `visit(j)` for the disks that may be near i: those of its cell and of the cells around it, and the large
-    /// ones; of a large one, for all.
+    /// ones; for a large i all disks.
     template <class Visit> void around(std::size_t i, const Visit& visit) const {
         std::for_each(large_.begin(), large_.end(), visit);
         if (cell_of_[i] == apart) {
@@ -84,10 +84,10 @@ class Grid {
   private:
     static constexpr int apart = -1;
 
-    /// Sets counts and steps; the lowest coordinates.
+    /// Sets counts and steps; returns the lowest coordinates.
     PerAxis<double> divide(const std::vector<double>& x, double width) {
         const std::size_t n = cell_of_.size();
-        // More cells than disks cost memory and find nothing.
+        // More cells than disks cost memory without benefit.
         const double most = std::ceil(std::pow(static_cast<double>(n), 1.0 / static_cast<double>(axes_))) + 1;
         PerAxis<double> lowest{};
         std::size_t cells = 1;
@@ -125,7 +125,7 @@ class Grid {
     std::vector<int> start_, member_, cell_of_, large_;
 };
 
-/// Whether the gap of two disks is below the reach, or beyond it by rounding.
+/// Whether the gap of two disks is below the reach, or above it only by rounding.
 class Near {
   public:
     Near(int dimension, const std::vector<double>& x, const std::vector<double>& radius, double reach)
@@ -133,7 +133,7 @@ class Near {
           plain_(lengths_are_plain(x, radius)) {}
 
     bool operator()(int i, int j) const {
-        constexpr double up = 1 + 0x1p-46; // above what any rounding of the gap adds
+        constexpr double up = 1 + 0x1p-46; // covers any rounding of the gap
         const Contact pair{ContactKind::disk_disk, i, j};
         const double range = (touching_distance(radius_, pair) + reach_) * up;
         const Separation separation(pair, layout_);

@@ -27,7 +27,7 @@ std::optional<std::vector<std::pair<int, int>>> regular_edges_in_space(const Pac
         spheres.emplace_back(Kernel::Weighted_point_3(Kernel::Point_3(x[0], x[1], x[2]), radius * radius), i);
     }
     const Triangulation triangulation(spheres.begin(), spheres.end()); // sorts them in space
-    if (triangulation.number_of_vertices() != spheres.size()) {        // without the hidden ones and copies of others
+    if (triangulation.number_of_vertices() != spheres.size()) {        // without hidden spheres and copies
         return std::nullopt;
     }
     std::vector<std::pair<int, int>> edges;

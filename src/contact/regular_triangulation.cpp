@@ -18,8 +18,8 @@ namespace {
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Disk = Kernel::Weighted_point_2;
 
-/// The disks, and after them the four far outside, counter-clockwise: at least 3 R_max from every centre along each
-/// axis, whatever is rounded.
+/// The disks, and after them the four outer ones, counter-clockwise: at
+/// least 3 R_max from every centre along each axis in spite of rounding.
 std::vector<Disk> weighted_points(const Packing& packing) {
     std::vector<Disk> points;
     points.reserve(packing.radius.size() + 4);
@@ -57,7 +57,7 @@ RegularTriangulation::Shared RegularTriangulation::build(const Packing& packing)
         points.emplace_back(disk, static_cast<int>(points.size()));
     }
     const Triangulation triangulation(points.begin(), points.end()); // sorts them in space
-    if (triangulation.number_of_vertices() != points.size()) { // the hidden ones and copies of others are not counted
+    if (triangulation.number_of_vertices() != points.size()) {       // hidden disks and copies are not counted
         return nullptr;
     }
     for (const auto face : triangulation.all_face_handles()) {
@@ -87,7 +87,7 @@ class RegularTriangulation::Mover {
     Mover(const RegularTriangulation& from, const Packing& packing)
         : faces_(&from.faces_), points_(weighted_points(packing)) {}
 
-    /// The faces whose edges are in doubt. False: a face has turned over.
+    /// Finds the faces with doubtful edges. False: a face has turned over.
     bool find_doubtful() {
         for (std::size_t f = 0; f < faces_->size(); ++f) {
             const Face& face = (*faces_)[f];
@@ -105,7 +105,7 @@ class RegularTriangulation::Mover {
     }
     [[nodiscard]] bool any_doubtful() const { return !doubtful_.empty(); }
 
-    /// Every edge whose last test is not known to have succeeded is one of a face in `doubtful_`. False: stuck.
+    /// Every edge whose last test did not succeed is one of a face in `doubtful_`. False: no flip is possible.
     bool flip(std::vector<Face>& faces) {
         faces_ = &faces;
         while (!doubtful_.empty()) {
@@ -133,7 +133,7 @@ class RegularTriangulation::Mover {
     [[nodiscard]] bool counter_clockwise(int a, int b, int c) const {
         return orientation_(point(a).point(), point(b).point(), point(c).point()) == CGAL::LEFT_TURN;
     }
-    /// The vertex of the face beyond edge k, where that face has the edge.
+    /// The vertex of the neighbouring face opposite to edge k.
     [[nodiscard]] std::size_t mirror(const Face& face, std::size_t k) const {
         const Face& other = (*faces_)[static_cast<std::size_t>(face.neighbour[k])];
         std::size_t m = 0;
@@ -142,7 +142,7 @@ class RegularTriangulation::Mover {
         }
         return m;
     }
-    /// Whether the lifted point beyond edge k is not below the plane of the face. \pre there is one.
+    /// Whether the lifted point beyond edge k is not below the plane of the face. \pre such a point exists.
     [[nodiscard]] bool regular(const Face& face, std::size_t k) const {
         const int beyond = (*faces_)[static_cast<std::size_t>(face.neighbour[k])].vertex[mirror(face, k)];
         return side_(point(face.vertex[0]), point(face.vertex[1]), point(face.vertex[2]), point(beyond)) !=

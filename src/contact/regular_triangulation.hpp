@@ -12,21 +12,21 @@ namespace isostat {
 
 class RegularTriangulation;
 
-/// Faces of a regular triangulation of n disks with weights fl(R^2) and of four more disks, as small as the smallest,
-/// at the corners of a rectangle far around them: its hull is that rectangle, whatever the packing
-/// (proofs/contact_candidates.md, section "Four disks far outside"). No disk is hidden. Never changed once it is made,
-/// so that threads and lists can share it.
+/// Faces of a regular triangulation of n disks with weights fl(R^2) and of four more disks, as
+/// small as the smallest, at the corners of a rectangle far around them, which is then the hull
+/// for any packing (proofs/contact_candidates.md, section "Four disks far outside"). No disk is
+/// hidden. Never changed after its construction, so that threads and lists can share it.
 class RegularTriangulation {
   public:
     using Shared = std::shared_ptr<const RegularTriangulation>;
 
-    /// By CGAL, from disks in spatial order: O(n log n). Null when a disk is hidden or equal to another. \pre squares
-    /// of lengths neither over- nor underflow, n > 0.
+    /// Built by CGAL from disks in spatial order: O(n log n). Null when a disk is hidden or equal to another. \pre
+    /// squares of lengths neither over- nor underflow, n > 0.
     static Shared build(const Packing& packing);
 
-    /// A regular triangulation of the disks of `packing`, wherever they are: `from` with a few edges flipped (none: it
-    /// is `from` itself), proved regular edge by edge with exact predicates. Null when flips do not lead there: a face
-    /// has turned over, or an edge that is not regular cannot be flipped. O(n). \pre as `build`.
+    /// A regular triangulation of the disks of `packing`, wherever they are: `from` with a few edges flipped (or `from`
+    /// itself), proved regular edge by edge with exact predicates. Null when flips cannot give one: a face has turned
+    /// over, or an edge that is not regular cannot be flipped. O(n). \pre as `build`.
     static Shared carry(const Shared& from, const Packing& packing);
 
     /// Calls visit(i, j), i < j, for every edge between two disks of the packing.
@@ -52,7 +52,7 @@ class RegularTriangulation {
     };
     class Mover;
 
-    int disks_ = 0; ///< vertices from here on are the four outer ones
+    int disks_ = 0; ///< vertices from here on are the four outer disks
     std::vector<Face> faces_;
 };
 

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// How the grains of a contact stand to each other: the one place that forms r = x_j - x_i + A m.
+/// Relative positions of the grains of a contact: the only code that forms r = x_j - x_i + A m.
 
 #include <isostat/contact/state.hpp>
 
@@ -13,15 +13,15 @@ namespace isostat {
 
 /// The separation of two grains as a function of the coordinates: r = x_j - x_i + A m of a disk and the image of
 /// another; x_i of a disk and a lower wall, L - x_i of a disk and an upper one, along the axis of the wall. It is
-/// linear in the coordinates, with coefficients -1 and +1, and m_a on those of the cell: of a velocity it is the
-/// relative velocity, of a derivative its derivative.
+/// linear in the coordinates, with coefficients -1 and +1, and m_a on those of the cell: applied to velocities it gives
+/// relative velocities, applied to derivatives the derivative of r.
 ///
-/// Arithmetic: at(k) is what stands at coordinate k (as in `Packing::q`), minus(a, b) the difference of two such, a
-/// value. In double r is exact where the coordinates are on the grid; without an image it is else correctly rounded.
+/// Arithmetic: at(k) is the number for coordinate k (as in `Packing::q`), minus(a, b) a difference of two. In double r
+/// is exact where the coordinates are on the grid; elsewhere r without an image is correctly rounded.
 /// In the plane the third component of r is 0.
 class Separation {
   public:
-    /// \pre of a contact through an image or with a wall: `layout` says how many disks there are
+    /// \pre of a contact through an image or with a wall: `layout` has the number of disks
     Separation(const Contact& contact, const Layout& layout)
         : kind_(contact.kind), image_(contact.image), i_(contact.i), j_(contact.j), layout_(layout) {}
 
@@ -35,7 +35,7 @@ class Separation {
         }
         return r;
     }
-    /// x_j - x_i alone: r where there is no image.
+    /// x_j - x_i alone, which is r without an image.
     template <class At, class Minus> [[nodiscard]] auto of_centres(At at, Minus minus) const {
         const std::size_t i = layout_.of_disk(i_);
         const std::size_t j = layout_.of_disk(j_);
@@ -45,14 +45,14 @@ class Separation {
                 return minus(at(j + 2), at(i + 2));
             }
             if constexpr (std::is_convertible_v<int, Number>) {
-                return 0; // said, as an interval of CGAL that nobody sets is not 0
+                return 0; // explicit, because a default interval of CGAL is not 0
             } else {
                 return Number{};
             }
         };
         return PerAxis<Number>{minus(at(j), at(i)), minus(at(j + 1), at(i + 1)), third()};
     }
-    /// r += A m, of what `at` says of the coordinates of the cell.
+    /// r += A m, with the values of `at` for the coordinates of the cell.
     template <class Number, class At, class Minus> void add_periods(PerAxis<Number>& r, At at, Minus minus) const {
         for_each_period([&](std::size_t coordinate, std::size_t axis, int m) {
             const Number period = at(coordinate);
@@ -74,8 +74,8 @@ class Separation {
     }
 
     /// Calls visit(coordinate, component, coefficient) for every coordinate that the gap depends on, in ascending
-    /// order: the coefficient is the derivative of that component of r (of a held coordinate: 0, +1): -1 or +1, of the
-    /// cell m_a. A disk and its own image depend on the cell alone. \pre i <= j
+    /// order: the coefficient is the derivative of that component of r (of a held coordinate: 0, +1): -1 or +1, and m_a
+    /// for coordinates of the cell. A disk and its own image depend on the cell alone. \pre i <= j
     template <class Visit> void for_each_coordinate(Visit visit) const {
         const auto axis = static_cast<std::size_t>(j_);
         const std::size_t x = layout_.of_disk(i_);
@@ -102,8 +102,8 @@ class Separation {
     }
 
     /// The column of H (minus the gradient of the gap): visit(dof, entry) in ascending order. `normal`: the unit normal
-    /// from disk to disk, or any multiple of it, in any arithmetic; not read for other contacts, whose entries are -1
-    /// and +1. On the rows of the cell they are multiplied by -m_a, by sums of up to three.
+    /// from disk to disk, or any multiple of it, in any arithmetic; unused for other contacts, whose entries are -1 and
+    /// +1. On the rows of the cell the normal is multiplied by -m_a, by sums of up to three.
     template <class Number, class Visit>
     void for_each_entry(const DofMap& dofs, const PerAxis<Number>& normal, Visit visit) const {
         for_each_coordinate([&](std::size_t coordinate, std::size_t component, int sign) {
@@ -141,7 +141,7 @@ class Separation {
     Layout layout_;
 };
 
-/// The unit vector along d, whatever the length: defined in contact.cpp.
+/// The unit vector along d, for any length: defined in contact.cpp.
 PerAxis<double> direction(PerAxis<double> d);
 
 /// r of two disks for a vector on all coordinates, of numbers of any kind. \pre two disks
@@ -152,7 +152,7 @@ template <class Vector> inline auto separation(const Layout& layout, const Vecto
     return Separation(pair, layout).of_disks(at, minus);
 }
 
-/// The same from a wall. \pre a disk and a wall
+/// Separation from a wall. \pre a disk and a wall
 template <class Vector> inline auto wall_distance(const Layout& layout, const Vector& x, const Contact& contact) {
     using Number = std::remove_cvref_t<decltype(x[0])>;
     return Separation(contact, layout)
@@ -161,7 +161,7 @@ template <class Vector> inline auto wall_distance(const Layout& layout, const Ve
 }
 
 /// Separation at which the grains touch: R_i + R_j, R_i at a wall, 0 for a held coordinate. `radius`: a number of any
-/// kind for each disk. \pre no bar
+/// type for each disk. \pre no bar
 template <class Radii> inline auto touching_distance(const Radii& radius, const Contact& contact) {
     using Number = std::remove_cvref_t<decltype(radius[0])>;
     switch (contact.kind) {
@@ -175,7 +175,7 @@ template <class Radii> inline auto touching_distance(const Radii& radius, const 
     return Number(0);
 }
 
-/// The same in double, of a bar its length: where the row of any contact has its zero.
+/// `touching_distance` in double, and the length of a bar: where the row of any contact has its zero.
 inline double zero_distance(const Packing& packing, const Contact& contact) {
     return contact.kind == ContactKind::bar ? packing.bar_length(contact.i, contact.j)
                                             : touching_distance(packing.radius, contact);

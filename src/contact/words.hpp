@@ -13,7 +13,7 @@
 
 namespace isostat {
 
-/// A contact within words.
+/// A contact as an argument of words.
 struct Named {
     Contact contact;
 };
@@ -21,7 +21,7 @@ inline Named named(const Contact& contact) {
     return {contact};
 }
 
-/// What words name is found among their arguments.
+/// Collects the contacts that words name from their arguments.
 template <class Value> void collect_names(Words& /*words*/, const Value& /*value*/) {}
 inline void collect_names(Words& words, const Named& name) {
     words.contacts.push_back(name.contact);
@@ -33,7 +33,7 @@ inline void collect_names(Words& words, const Failure& inner) {
     words.name(inner.words);
 }
 
-/// What stands for an argument in the text.
+/// The text of an argument.
 template <class Value> const Value& in_text(const Value& value, int /*dimension*/ = 2) {
     return value;
 }
@@ -50,8 +50,8 @@ inline std::string in_text(const Failure& failure, int dimension = 2) {
 template <class... Values>
 using FormatOfWords = fmt::format_string<decltype(in_text(std::declval<const std::type_identity_t<Values>&>()))...>;
 
-/// As fmt::format. Contacts that are `named`, other words and failures among the arguments are what it names. The
-/// arguments are copied; a character array must be a literal.
+/// Formats as fmt::format does. The words name contacts that are `named`, and what other words and failures among the
+/// arguments name. The arguments are copied; a character array must be a literal.
 template <class... Values> Words words(FormatOfWords<Values...> format, Values... values) {
     Words made([text = fmt::string_view(format), values...]([[maybe_unused]] int dimension) -> std::string {
         return fmt::format(fmt::runtime(text), in_text(values, dimension)...);

@@ -37,12 +37,12 @@ std::string rounded_down(double value, int digits) {
 }
 
 std::string with_bound(double lower, double upper) {
-    constexpr int enough = 17; // tells every double
+    constexpr int enough = 17; // so many digits distinguish all doubles
     const double middle = 0.5 * lower + 0.5 * upper;
     for (int digits = 12;; ++digits) {
         const std::string shown = fmt::format("{:.{}g}", middle, digits);
         const double value = std::strtod(shown.c_str(), nullptr);
-        // The text itself is off its double by half a unit of the last place.
+        // The text itself differs from its double by up to half a unit of the last place.
         const double off = std::abs(value) * 0x1p-53;
         const double bound = (std::max(upper - value, value - lower) + off) * (1 + 0x1p-50);
         if (digits == enough || bound <= 0.75 * (upper - lower)) {

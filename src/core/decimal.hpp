@@ -6,11 +6,11 @@
 
 namespace isostat {
 
-/// Decimal number with that many digits that is not below (not above) the value.
+/// Decimal number with this many digits that is at least (at most) the value.
 std::string rounded_up(double value, int digits);
 std::string rounded_down(double value, int digits);
 
-/// "value +- bound" of an interval: what is printed contains it. 12 digits, or more where the interval is narrower.
+/// "value +- bound", which contains the interval. 12 digits, or more where the interval is narrower.
 std::string with_bound(double lower, double upper);
 
 } // namespace isostat

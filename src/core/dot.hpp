@@ -20,8 +20,8 @@ inline double euclidean_norm(std::span<const double> x) {
     return std::sqrt(sum);
 }
 
-/// a . b in double, relative to |a| . |b| within n u. Four sums at a time: a single one would wait for each addition.
-/// The order is fixed: the same bits everywhere.
+/// a . b in double, relative to |a| . |b| within n u. Four sums at a time, because a single sum would wait for each
+/// addition. The order of additions is fixed, so the bits are the same everywhere.
 inline double dot(std::span<const double> a, std::span<const double> b) {
     assert(a.size() == b.size());
     std::array<double, 4> sum{};
@@ -37,8 +37,8 @@ inline double dot(std::span<const double> a, std::span<const double> b) {
     return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
-/// max |x_i|, 0 without components, NaN where one is none: what is compared with it then fails. Several maxima at a
-/// time, as above.
+/// max |x_i|; 0 without components; NaN when a component is NaN, so that comparisons with the result fail. Several
+/// maxima at a time, as in `dot`.
 inline double largest(std::span<const double> x) {
     constexpr std::size_t lanes = 8;
     std::array<double, lanes> most{};

@@ -1,4 +1,4 @@
-// Not in the header: a user's compiler may have other flags.
+// These functions are not in the header because a user's compiler may have other flags.
 #include <isostat/core/verdict.hpp>
 
 namespace isostat {

@@ -8,12 +8,12 @@ namespace isostat {
 
 namespace {
 
-// volatile: the operations are carried out when asked, not by the compiler.
+// The variables are volatile so that the processor executes the operations and not the compiler.
 
 bool rounds_to_nearest() {
     const volatile double one = 1;
     const volatile double half_ulp = 0x1p-53;
-    const volatile double above_half_ulp = 0x1p-53 + 0x1p-78; // a sum in extended precision would round twice, to 1
+    const volatile double above_half_ulp = 0x1p-53 + 0x1p-78; // extended precision would round this sum twice, to 1
     const volatile double down = one + half_ulp;
     const volatile double up = one + above_half_ulp;
     return down == 1 && up == 1 + 0x1p-52;

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Several cores for independent pieces of work. The number of threads decides who computes a piece, never what the
-/// pieces are nor the order in which their results are put together: results have the same bits for any number.
+/// Several cores for independent pieces of work. The number of threads decides which thread computes a piece, not the
+/// pieces nor the order in which results are combined: results have the same bits for any number.
 
 #include <cstddef>
 #include <functional>
@@ -13,33 +13,33 @@ namespace isostat {
 
 /// work(0), ..., work(pieces - 1), each exactly once, in any order and on any thread; returns when all are done. The
 /// pieces must not touch each other's results. An exception of a piece is thrown again here, after the others have
-/// ended (that of the lowest piece that threw; later ones may not have been begun). Called from within a piece, or
-/// while another thread's call is under way, it does all the work itself. Cost beyond the work: none with one thread or
-/// one piece, else about a microsecond; the threads wait busily for some 50 microseconds after a call, then sleep.
+/// ended (that of the lowest piece that threw; later pieces may not have been begun). A call from within a piece, or
+/// while another thread's call is under way, does all the work itself. Cost beyond the work: none with one thread or
+/// one piece, else about a microsecond; threads wait busily for some 50 microseconds after a call, then sleep.
 void parallel_pieces(std::size_t pieces, const std::function<void(std::size_t)>& work);
 
-/// One piece of work beside what the caller goes on with. A thread that has nothing else to do begins it; `finish` does
-/// it where none has, so that with one thread it is done there and then. What the work reads must not change until
-/// then, and nothing else may read what it writes. Begun or not, its results have the same bits.
+/// One piece of work that may run while the caller continues. An idle thread begins it; if no thread did, `finish` does
+/// the work, so that with one thread it is done in that call. Until then its input must not change, and no other code
+/// may read its results. Its results have the same bits in either case.
 class Task {
   public:
-    Task() = default; ///< nothing to do
+    Task() = default; ///< no work
     explicit Task(std::function<void()> work);
     Task(Task&&) noexcept;
-    /// As if the one before ended.
+    /// Ends the present task as its destructor does.
     Task& operator=(Task&&) noexcept;
-    /// Waits for work that was begun; work that was not is never done.
+    /// Waits for work that was begun; work that was not begun is never done.
     ~Task();
 
-    /// Does the work in this thread unless another has begun it. `finish` is still due: what the work threw and counted
-    /// waits for it.
+    /// Does the work in this thread unless another has begun it. `finish` must still be called, because it throws what
+    /// the work threw and adds what it counted.
     void begin_here();
-    /// Returns when the work is done; throws what it threw. Afterwards there is nothing to do.
+    /// Returns when the work is done; throws what it threw. Afterwards the task has no work.
     void finish();
-    /// There is work that `finish` was not called for.
+    /// The task has work for which `finish` was not called.
     [[nodiscard]] bool pending() const { return state_ != nullptr; }
-    /// Another thread does it, or will as soon as it is free, and has not ended: time to go on with something else.
-    /// False too where `finish` would do the work itself: with one thread, or within a piece.
+    /// Another thread does the work, or will as soon as it is free, and has not ended: the caller may do something else
+    /// meanwhile. False too where `finish` would do the work itself: with one thread, or within a piece.
     [[nodiscard]] bool underway() const;
 
   private:
@@ -48,7 +48,7 @@ class Task {
     std::shared_ptr<State> state_;
 };
 
-/// A value that a task makes.
+/// A value that a task computes.
 template <class Value> class Future {
   public:
     Future() = default;

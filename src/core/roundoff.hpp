@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Numbers that error bounds are made with.
+/// Constants of error bounds.
 
 #include <limits>
 
@@ -13,13 +13,13 @@ inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
 inline constexpr double root2 = 1.4142135623731; ///< above the square root of 2
 
-/// Relative error of an entry of a contact matrix in units of u (V0, proofs/bounds.md): the squares of as many
-/// components are added as there are axes.
+/// Relative error of an entry of a contact matrix in units of u (V0, proofs/bounds.md): it grows with the number of
+/// axes, because the square of the distance has so many terms.
 constexpr double entry_units(int dimension) {
     return dimension == 2 ? 5.01 : 5.51;
 }
 
-/// Relative error of a sum of n products of doubles, of their absolute values: gamma_n = n u / (1 - n u).
+/// Error of a sum of n products of doubles, relative to the sum of their absolute values: gamma_n = n u / (1 - n u).
 constexpr double gamma(double terms) {
     return terms * u / (1 - terms * u);
 }

@@ -12,12 +12,12 @@ namespace isostat {
 
 template <std::size_t N> using EnumWords = std::array<const char*, N>;
 
-/// \pre there is a word for each value.
+/// \pre `words` has a word for each value.
 template <class Enum, std::size_t N> constexpr const char* word_of(Enum value, const EnumWords<N>& words) {
     return words[static_cast<std::size_t>(value)];
 }
 
-/// Nothing: it is none of the words.
+/// The value of a word; nothing: `word` is not in `words`.
 template <class Enum, std::size_t N>
 constexpr std::optional<Enum> value_of(std::string_view word, const EnumWords<N>& words) {
     for (std::size_t k = 0; k < N; ++k) {

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What the program did, counted: the evidence that a scene pays only for what it needs.
+/// Counts of the work that the program did: the evidence that a scene pays only for what it needs.
 
 #include <array>
 #include <cstddef>
@@ -8,13 +8,13 @@
 
 namespace isostat {
 
-/// Kinds of work, in the order of the rooms. Each is counted where it begins.
+/// Kinds of work, in the order of the rooms. Each piece of work is counted when it begins.
 enum class Work : std::uint8_t {
     dynamics_steps,     ///< steps of the damped dynamics
-    linear_programmes,  ///< solved by Clp
-    candidate_searches, ///< by triangulation or sweep: complete candidates
+    linear_programmes,  ///< linear programmes solved by Clp
+    candidate_searches, ///< searches for complete candidates, by triangulation or sweep
     overlap_proofs,     ///< certificates of non-overlap
-    rank_proofs,        ///< contact matrices sent to the prime field
+    rank_proofs,        ///< ranks computed in the prime field
     factorisations,     ///< KLU
     inverse_bounds,     ///< proofs of a bound of the inverse
     double_double,      ///< climbs to double-double
@@ -33,15 +33,15 @@ inline constexpr std::size_t work_kinds = static_cast<std::size_t>(Work::count);
 /// "dynamics_steps", ...: the word used in records.
 const char* to_string(Work kind);
 
-/// Adds to the counter of this process. Cost: one relaxed atomic addition; nothing reads it during a computation, so
-/// results cannot depend on it.
+/// Adds to the counter of this process. Cost: one relaxed atomic addition; no computation reads the counters, so
+/// results cannot depend on them.
 void count_work(Work kind, long amount = 1);
 
-/// From now on this thread counts there, and not for the process (null: again for the process). Returns where it
-/// counted. Tasks use it: work that nobody waited for is not counted, so that counters do not depend on threads.
+/// From now on this thread counts in `counts` (null: in the process). Returns the previous place. Used by tasks: work
+/// without a waiting caller is not counted, so that counters do not depend on threads.
 std::array<long, work_kinds>* count_work_in(std::array<long, work_kinds>* counts);
 
-/// Since the start of the process, in the order of `Work`.
+/// Counts since the start of the process, in the order of `Work`.
 std::array<long, work_kinds> work_done();
 
 } // namespace isostat

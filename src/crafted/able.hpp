@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Which of the directions out of a grain can belong to forces >= 0 in equilibrium on it: private to the room.
+/// Which of the contact directions of a grain can carry forces >= 0 in equilibrium on it: private to the room.
 
 #include <isostat/core/contact.hpp>
 
@@ -17,12 +17,12 @@ template <class Number> Number dot(const PerAxis<Number>& a, const PerAxis<Numbe
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// The directions that a combination with positive factors that is 0 can contain. Those beside a plane through 0 that
-/// leaves every direction on one side are none of them; a cone that no such plane bounds is the space that its
-/// directions span, and then all are (a facet of a cone is spanned by two of its directions, or in a plane by one).
-/// In the plane the third components are 0.
+/// The directions that occur in some combination with positive factors that is 0. A direction off a plane through 0
+/// that leaves every direction on one side cannot occur; a cone that no such plane bounds is the space that its
+/// directions span, and then all directions occur (a facet of a cone is spanned by two of its directions, or in a plane
+/// by one). In the plane the third components are 0.
 template <class Direction, class Signs> std::vector<Direction> able(std::vector<Direction> left, const Signs& signs) {
-    /// Takes away those that are not 0 by `sign_of`, if the others are on one side: whether any were.
+    /// Removes the directions with sign other than 0 if all of these are on one side; whether there were any.
     const auto cut = [&left](auto sign_of) {
         std::vector<int> sign;
         std::transform(left.begin(), left.end(), std::back_inserter(sign), sign_of);
@@ -46,7 +46,7 @@ template <class Direction, class Signs> std::vector<Direction> able(std::vector<
                 }
             }
         }
-        for (std::size_t a = 0; a < left.size(); ++a) { // no plane: all in one, or all directions are able
+        for (std::size_t a = 0; a < left.size(); ++a) { // no plane found: all directions are in one plane, or all occur
             for (std::size_t b = 0; b < left.size(); ++b) {
                 const Direction along = left[a], beside = left[b];
                 if (cut([&](const Direction& d) { // the component across `along` in the plane of the two

@@ -15,7 +15,7 @@ namespace isostat::crafted {
 namespace {
 
 using roundoff::u;
-/// Room for the rounding of the bounds themselves.
+/// Factor that covers the rounding of the bounds themselves.
 constexpr double upwards = 1 + 1e-9;
 
 double norm(const std::vector<double>& x) {
@@ -30,7 +30,7 @@ class Encloser {
   public:
     Encloser(const ExactPacking& packing, const Inspection& inspection) : inspection_(inspection) {
         stored_ = approximate(packing);
-        // Conversion moves each coordinate by at most half a grid step.
+        // Conversion to doubles moves each coordinate by at most half a grid step.
         const double moved = grid_step(stored_);
         for (const Contact& contact : inspection.contacts) {
             double distance = std::numeric_limits<double>::infinity();
@@ -96,7 +96,7 @@ class Encloser {
     }
 
   private:
-    /// Forces of the independent contacts that balance a unit force in the free one; the multipliers of the held
+    /// Forces of the independent contacts that balance a unit force in the free contact; the multipliers of the held
     /// degrees of freedom are 0 because the column of the free contact depends on the others (the rank is proved).
     [[nodiscard]] EnclosedVector self_stress(const Centre& at, const std::vector<int>& columns, int free) const {
         const IsostaticStructure& structure = at.structure;
@@ -106,7 +106,7 @@ class Encloser {
         for (std::size_t k = 0; k < static_cast<std::size_t>(g.count); ++k) {
             const int dof = structure.dofs().dof_of(static_cast<std::size_t>(g.coordinate[k]));
             if (dof >= 0) {
-                right[static_cast<std::size_t>(dof)] = g.value[k]; // minus the column
+                right[static_cast<std::size_t>(dof)] = g.value[k]; // minus the column of the free contact
             }
         }
         const ForceSolution solution = solve_forces(structure, at.factorisation, at.inverse, right);
@@ -118,15 +118,15 @@ class Encloser {
             out.value[static_cast<std::size_t>(columns[k])] = solution.value[k];
         }
         const double size = norm(solution.value) + solution.bound * std::sqrt(static_cast<double>(structure.size()));
-        const double right_error = column_error_[l] + 16 * u; // of the normal, and of its rounding
+        const double right_error = column_error_[l] + 16 * u; // errors of the normal, and of its rounding
         out.radius = (solution.bound + (right_error + change_ * size) / sigma_) * upwards;
         return out;
     }
 
-    /// Velocity that keeps all gaps and is 1 in the held degree of freedom number `row` of the structure.
+    /// Velocity that keeps all gaps constant and is 1 in the held degree of freedom number `row` of the structure.
     [[nodiscard]] EnclosedVector motion(const Centre& at, std::size_t row, int free) const {
         std::vector<double> v(static_cast<std::size_t>(at.structure.size()), 0.0);
-        v[row] = -1; // approach velocities; the column of a held coordinate is -1
+        v[row] = -1; // approach velocities: the column of a held coordinate is -1
         at.factorisation.solve_velocities(v);
         const auto& matrix = at.structure.matrix();
         double residual = 0;
@@ -139,7 +139,7 @@ class Encloser {
                 sum += term;
                 size += std::abs(term);
             }
-            // Entries are good to 4 u, products and up to four sums to 5 u more.
+            // An entry errs by at most 4 u; products and up to four sums add 5 u.
             const double bound = std::abs(sum) + 16 * u * size;
             residual += bound * bound;
         }
@@ -153,14 +153,14 @@ class Encloser {
     const Inspection& inspection_;
     Packing stored_;
     std::vector<double> column_error_; ///< |exact - stored unit-normal column|
-    double change_ = 0;                ///< the same of the matrix
+    double change_ = 0;                ///< |exact - stored| for the matrix
     double sigma_ = 0;
 };
 
 } // namespace
 
 EnclosedBases enclose_bases(const ExactPacking& packing, const Inspection& inspection, int count) {
-    // The bound of a column is that of two disks without a period between them.
+    // The bound of a column holds for two disks without a period between them.
     if (inspection.rank_exact != Verdict::proved || packing.cell.any()) {
         return {};
     }

@@ -14,9 +14,9 @@ using Json = nlohmann::ordered_json;
 
 constexpr int vectors_in_json = 10;
 constexpr int vectors_in_text = 3;
-constexpr std::size_t longest = 60; ///< components of a vector on the terminal
+constexpr std::size_t longest = 60; ///< components of a vector shown on the terminal
 
-/// Components that are not 0 to the bound.
+/// The components that the bound distinguishes from 0.
 std::vector<std::size_t> visible(const EnclosedVector& vector) {
     std::vector<std::size_t> out;
     for (std::size_t k = 0; k < vector.value.size(); ++k) {

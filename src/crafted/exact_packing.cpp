@@ -33,7 +33,7 @@ Words describe(const ExactPacking& packing, int i) {
 struct Touching {
     Touching(const ExactPacking& exact, const Packing& rounded) : packing(exact), dofs(rounded) {}
 
-    /// A pair or a disk and a wall with this excess over touching, in the sign of the gap.
+    /// Adds a pair, or a disk and a wall, when `excess` is 0; `excess` has the sign of the gap.
     std::optional<Failure> take(const Contact& contact, const Number& excess) {
         if (excess.sign() < 0) {
             return overlap(contact, excess);
@@ -101,8 +101,8 @@ std::optional<Failure> take_walls(Touching& touching) {
     return std::nullopt;
 }
 
-/// Rounding to doubles changes a gap by less than this: of each coordinate half a unit of the last place, of an image
-/// less than 100 times that for each period.
+/// Upper bound of the change of a gap by rounding to doubles: half a unit of the last place of each coordinate, and for
+/// an image less than 100 times that per period.
 double lost_by_rounding(const Packing& rounded) {
     double largest = rounded.max_radius();
     for (const double x : rounded.q) {
@@ -111,7 +111,7 @@ double lost_by_rounding(const Packing& rounded) {
     return 0x1p-40 * largest;
 }
 
-/// Those whose gap may be 0. All, where the range of doubles is too small for that question.
+/// The pairs whose gap may be 0, or all pairs where that is out of the range of doubles.
 std::vector<Contact> nearest_pairs(const Packing& rounded) {
     const double lost = lost_by_rounding(rounded);
     if (rounded.cell.any() || (lost > 0x1p-1000 && lost < 0x1p900)) {

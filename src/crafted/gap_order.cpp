@@ -20,8 +20,8 @@ namespace {
 using Integer = boost::multiprecision::number<boost::multiprecision::gmp_int, boost::multiprecision::et_off>;
 
 using roundoff::u;
-/// Rounding of a gap from the lengths that enter (four operations and hypot, below 1 ulp), with room for the rounding
-/// of the bound itself and of the comparison.
+/// Relative rounding of a gap computed from lengths (four operations and hypot, below 1 ulp), with a margin for the
+/// rounding of the bound itself and of the comparison.
 constexpr double relative_bound = 16 * u;
 constexpr int mantissa_bits = 53;
 
@@ -49,13 +49,13 @@ int sign(const Integer& x) {
     return x.sign();
 }
 
-/// Sign of sqrt(a) - sqrt(b) - c for a, b >= 0: compare squares of sides that are known not to be negative, twice.
+/// Sign of sqrt(a) - sqrt(b) - c for a, b >= 0, by comparing squares of sides that are known not to be negative, twice.
 int root_sign(const Integer& a, const Integer& b, const Integer& c) {
     const Integer cc = c * c;
     if (c < 0 && b < cc) {
         return 1; // sqrt(b) + c < 0 <= sqrt(a)
     }
-    const Integer rest = a - b - cc; // sign of rest - 2 c sqrt(b)
+    const Integer rest = a - b - cc; // the sign is that of rest - 2 c sqrt(b)
     const int left = sign(rest);
     const int right = b == 0 ? 0 : sign(c);
     if (left != right) {
@@ -74,7 +74,7 @@ struct GapOrder::Exact {
         const auto mantissa = static_cast<long long>(std::ldexp(std::frexp(x, &e), mantissa_bits));
         e -= mantissa_bits + unit;
         Integer out = mantissa;
-        return e >= 0 ? out << e : out >> -e; // the shift to the right drops zeros only
+        return e >= 0 ? out << e : out >> -e; // the right shift drops only zeros
     }
 
     [[nodiscard]] Root root(const Packing& packing, const Contact& contact, int unit) const {
@@ -140,7 +140,7 @@ int GapOrder::compare(const Item& a, double threshold) const {
 }
 
 double GapOrder::threshold_of(const Item& a) const {
-    // Bisection over the doubles in their order: near a gap of 0 there are very many of them.
+    // Bisection over the doubles in their order, because very many doubles are near a gap of 0.
     const auto rank = [](double x) {
         const auto bits = std::bit_cast<std::int64_t>(x);
         return bits >= 0 ? bits : std::numeric_limits<std::int64_t>::min() - bits;
@@ -150,7 +150,7 @@ double GapOrder::threshold_of(const Item& a) const {
     };
     std::int64_t below = rank(a.gap - 2 * a.error) - 1; // a double below the gap
     std::int64_t above = rank(a.gap + 2 * a.error) + 1; // a double above it
-    // Two doubles of different sign may be farther apart than 2^63.
+    // Two doubles of different sign may be farther apart than 2^63 in this order.
     for (auto middle = std::midpoint(below, above); middle != below && middle != above;
          middle = std::midpoint(below, above)) {
         (compare(a, value(middle)) > 0 ? below : above) = middle;

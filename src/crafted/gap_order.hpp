@@ -20,7 +20,7 @@ class GapOrder {
     GapOrder(const GapOrder&) = delete;
     GapOrder& operator=(const GapOrder&) = delete;
 
-    /// A candidate with its rounded gap, and a bound of that rounding.
+    /// A candidate with its rounded gap, and a bound of the rounding.
     struct Item {
         Contact contact;
         double gap = 0;
@@ -32,7 +32,7 @@ class GapOrder {
     [[nodiscard]] int compare(const Item& a, const Item& b) const;
     /// Sign of gap(a) - threshold. \pre finite
     [[nodiscard]] int compare(const Item& a, double threshold) const;
-    /// The smallest double that is not below the gap.
+    /// The smallest double that is at least the gap.
     [[nodiscard]] double threshold_of(const Item& a) const;
 
   private:

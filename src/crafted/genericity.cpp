@@ -19,12 +19,12 @@ namespace isostat::crafted {
 
 namespace {
 
-/// The most by which tilts that move by L_a shorten a vector of the lattice of length 1: the norm of D A^-1.
+/// Largest shortening of a lattice vector of length 1 by tilts that move by L_a: the norm of D A^-1.
 double shear(const Packing& packing) {
     double square = 0;
     for (std::size_t b = 1; b < packing.axes(); ++b) {
         for (std::size_t a = 0; a < b; ++a) {
-            const bool over = b == 2 && a == 0; // through y
+            const bool over = b == 2 && a == 0; // through the period of y
             const double lean = over ? std::abs(packing.lattice(1, 2)) / packing.lattice(1, 1) : 0;
             const double entry = packing.lattice(a, a) / packing.lattice(b, b) * (1 + lean);
             square += entry * entry;
@@ -68,11 +68,11 @@ void check(const Packing& packing, const GenericityOptions& options) {
             "a positive number");
 }
 
-/// The radii, and the tilt if it is asked for.
+/// Perturbs the radii, and the tilt if that is requested.
 void perturb(Packing& packing, const GenericityOptions& options, std::uint64_t seed) {
     std::mt19937_64 random(seed);
     const auto change = [&] { return options.size * (static_cast<double>(random() >> 11) * 0x1p-52 - 1); };
-    std::map<double, double> factor_of; // of a class of equal radii
+    std::map<double, double> factor_of; // one factor for each class of equal radii
     for (double& r : packing.radius) {
         const auto known = factor_of.find(r);
         double factor = known == factor_of.end() ? 0 : known->second;
@@ -90,7 +90,7 @@ void perturb(Packing& packing, const GenericityOptions& options, std::uint64_t s
         }
     }
     if (packing.cell.any()) {
-        // Everything farther apart, so that no disk overlaps its own image.
+        // All disks move apart, so that no disk overlaps its own image.
         const double shorter = options.tilt ? options.size * shear(packing) : 0;
         for (double& x : packing.q) {
             x *= (1 + options.size) / (1 - shorter);
@@ -98,7 +98,7 @@ void perturb(Packing& packing, const GenericityOptions& options, std::uint64_t s
     }
 }
 
-/// The claims of the certificate in figures; the reason when one that makes an isostatic equilibrium is missing.
+/// Fills in the claims of the certificate, or the reason when a claim of an isostatic equilibrium is missing.
 void fill(GenericitySample& sample, const State& state, const Certification& certified) {
     const CertificateClaims& claims = certified.claims;
     if (!claims.counting || !claims.vertex || !claims.forces || !claims.gaps || !claims.stable ||
@@ -107,7 +107,7 @@ void fill(GenericitySample& sample, const State& state, const Certification& cer
         for (const std::string& reason : claims.undecided) {
             why += (why == "no certificate" ? ": " : "; ") + reason;
         }
-        // find_vertex speaks of the stored coordinates; the true vertex may have a force of the other sign.
+        // find_vertex proves signs for the stored coordinates; a force at the true vertex may have the other sign.
         sample.failure =
             Failure{certified.verdict == Verdict::refuted ? FailureKind::not_converged : FailureKind::undecided, why};
         return;
@@ -128,7 +128,7 @@ void fill(GenericitySample& sample, const State& state, const Certification& cer
     sample.rung = std::max({claims.vertex->rung, claims.forces->rung, claims.gaps->rung});
 }
 
-/// One sample, with the contacts of the unperturbed packing sorted.
+/// One sample, from the sorted contacts of the unperturbed packing.
 GenericitySample sampled(const Packing& packing, const std::vector<Contact>& original, const GenericityOptions& options,
                          std::uint64_t seed) {
     GenericitySample sample;
@@ -177,7 +177,7 @@ Genericity genericity(const Packing& given, const std::vector<Contact>& original
     Packing packing = given;
     const auto moves = [](const auto& flags) { return std::find(flags.begin(), flags.end(), true) != flags.end(); };
     if (packing.cell.all() && !moves(packing.cell.period_moves) && !moves(packing.cell.tilt_moves)) {
-        packing.cell.keep_shape(); // other radii need another size
+        packing.cell.keep_shape(); // other radii require another size of the cell
     }
     check(packing, options);
     Genericity out;

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What becomes of a crafted packing when its radii, or its radii and the tilt of its cell, are perturbed. A cell of
+/// The vertices of a crafted packing after its radii, or its radii and the tilt of its cell, are perturbed. A cell of
 /// which nothing moves keeps its shape: its size is free.
 
 #include <isostat/contact/state.hpp>
@@ -24,34 +24,33 @@ struct GenericityOptions {
     std::uint64_t seed =
         1; ///< sample s draws its u from a 64-bit Mersenne twister seeded with seed + s: it can be repeated alone
     double stress = 1; ///< isotropic
-    /// Disks of equal radius get the same u and stay equal: the theorem on generic radii (T7) then says nothing.
+    /// Disks of equal radius get the same u and stay equal: the theorem on generic radii (T7) then does not apply.
     bool keep_equal = false;
-    /// The tilt of a cell is perturbed too: the first period times size * u is added to it, with another u of the same
-    /// stream. Where it does not move it is a datum of the packing, as the radii are (T7p).
+    /// The tilt of a cell is perturbed too: the first period times size * u is added to the tilt, with another u of the
+    /// same stream. A tilt that does not move is a datum of the packing, as the radii are (T7p).
     bool tilt = false;
 };
 
-/// One perturbed packing, taken downhill to its vertex by `find_vertex`; everything is proved by `certify`, of the true
-/// vertex.
+/// One perturbed packing, taken downhill to its vertex by
+/// `find_vertex`; `certify` proves everything about the true vertex.
 struct GenericitySample {
     std::uint64_t seed = 0;
-    /// No proved vertex, and why; the rest is then empty. `tie`: more gaps than N_f are 0 as far as double-double
-    /// arithmetic can tell, so that h > 0 is likely, and not proved. `undecided`: some sign is beyond 100 digits or has
-    /// no bound. Others: no vertex was found.
+    /// Filled, with the reason, when no vertex is proved; the rest is then empty. `tie`: more gaps than N_f cannot be
+    /// told from 0 in double-double arithmetic, so that h > 0 is likely, and not proved. `undecided`: some sign is
+    /// beyond 100 digits or has no bound. Others: no vertex was found.
     std::optional<Failure> failure;
     std::vector<Contact> contacts; ///< N = N_f of them, rank proved, every other gap proved positive: h = k = 0
-    std::vector<Contact> carrying; ///< those that carry a force of the applied stress: N_f - d rattlers of them
+    std::vector<Contact> carrying; ///< contacts that carry a force of the applied stress: N_f - d rattlers
     int rattlers = 0;
-    double min_force = 0;   ///< proved lower bound of the smallest backbone force
-    double min_gap = 0;     ///< proved lower bound of the smallest gap of a pair that is not a contact
-    double sigma_min = 0;   ///< proved lower bound of the smallest singular value at the true vertex
-    Rung rung = Rung::none; ///< the highest arithmetic that a sign needed
-    bool within_original =
-        false; ///< every contact that carries force is one of the exact contacts of the unperturbed packing
+    double min_force = 0;         ///< proved lower bound of the smallest backbone force
+    double min_gap = 0;           ///< proved lower bound of the smallest gap of a pair that is not a contact
+    double sigma_min = 0;         ///< proved lower bound of the smallest singular value at the true vertex
+    Rung rung = Rung::none;       ///< the highest arithmetic that a sign needed
+    bool within_original = false; ///< every contact that carries force is an exact contact of the unperturbed packing
 };
 
-/// A network of force-carrying contacts and how many samples ended in it, most frequent first. (On which contacts the
-/// rattlers lie depends on the infinitesimal loads, which are drawn anew for every sample.)
+/// A network of force-carrying contacts and the number of samples with it, most frequent first. (The other contacts of
+/// rattlers depend on the infinitesimal loads, which are drawn anew for every sample.)
 struct ContactListCount {
     std::vector<Contact> contacts;
     int samples = 0;
@@ -63,17 +62,17 @@ struct Genericity {
     int proved = 0;    ///< samples with a proved isostatic vertex: h = k = 0
     int ties = 0;      ///< failures `tie`
     int undecided = 0; ///< failures `undecided`
-    int failed = 0;    ///< the others
+    int failed = 0;    ///< other failures
     /// Samples whose force network is part of the unperturbed contacts.
     [[nodiscard]] int within() const;
-    /// Proved samples by the arithmetic that they needed.
+    /// Numbers of proved samples by the arithmetic that they needed.
     [[nodiscard]] std::map<std::string, int> rungs() const;
 };
 
 /// \p packing has along each axis a fixed lower and a movable upper wall or a period that moves, and no fixed disk
 /// (throws `Error(bad_input)` otherwise, and for options out of range); \p original are its contacts. The samples are
-/// independent; only proved vertices count. A failure says nothing of the perturbed packing's vertex but that it was
-/// not proved. Cost: one `find_vertex` and one `certify` per sample.
+/// independent; only proved vertices count. From a failure nothing follows for the vertex of the perturbed packing.
+/// Cost: one `find_vertex` and one `certify` per sample.
 Genericity genericity(const Packing& packing, const std::vector<Contact>& original, const GenericityOptions& options);
 
 } // namespace isostat::crafted

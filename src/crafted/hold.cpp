@@ -24,8 +24,8 @@ struct ExactSigns {
     }
 };
 
-/// 0 is a combination of the directions with positive factors: it is in the interior of their convex hull where they
-/// span the space.
+/// Whether the directions span the space. Because 0 is a combination of them with positive factors, 0 is then in the
+/// interior of their convex hull.
 bool span_all(const std::vector<ContactDirection>& arms, int dimension) {
     exact::NumberMatrix matrix;
     matrix.rows = dimension;
@@ -86,7 +86,7 @@ void judge_holds(Inspection& inspection, const ExactPacking& packing) {
         const int side = contact.kind == ContactKind::lower_wall ? -1 : 1;
         arms[i].push_back({l, {}});
         arms[i].back().normal[j] = Number(side);
-        // A movable wall under no force carries none: all its normals point the same way.
+        // A movable wall without load carries no force, because all its normals have the same direction.
         if (side > 0 && packing.walls.upper[j] == WallKind::movable && packing.load &&
             packing.load->wall[j].is_zero()) {
             inspection.carrying[l] = 0;

@@ -10,10 +10,10 @@
 
 namespace isostat::crafted {
 
-/// h of the first m contacts of a list, m = 0 .. M: it only grows. Ranks are computed where that leaves it open.
+/// h of the first m contacts of a list, m = 0 .. M: it only grows. Ranks are computed where this leaves h open.
 class Hyperstaticity {
   public:
-    /// `contacts[m]`: how many of the first m candidates count; `compute(m)`: their rank; `most`: what no rank exceeds.
+    /// `contacts[m]`: contacts among the first m candidates; `compute(m)`: their rank; `most`: bound of all ranks.
     Hyperstaticity(std::vector<int> contacts, int most, std::function<int(int)> compute)
         : contacts_(std::move(contacts)), most_(most), compute_(std::move(compute)), known_(contacts_.size(), -1) {
         known_[0] = 0;
@@ -30,7 +30,7 @@ class Hyperstaticity {
             while (above < known_.size() && known_[above] < 0) {
                 ++above;
             }
-            // The rank grows too: equal values on both sides leave nothing between them.
+            // The rank never falls either, so equal values on both sides determine the values between.
             const int low = contacts_[below] - known_[below];
             if (low == most_ || (above < known_.size() && contacts_[above] - known_[above] == low)) {
                 known_[k] = contacts_[k] - low;
@@ -44,7 +44,7 @@ class Hyperstaticity {
         return known_[k];
     }
 
-    /// The same for every one of `lists` (sorted), in the order that leaves the most to monotony.
+    /// h for every one of `lists` (sorted), in the order that needs the fewest ranks.
     void at_all(const std::vector<int>& lists) {
         if (!lists.empty()) {
             at(lists.back());
@@ -59,11 +59,11 @@ class Hyperstaticity {
         if (outside == in) {
             return 0;
         }
-        if (at(*(outside - 1)) == 0) { // as it should be: one rank settles everything
+        if (at(*(outside - 1)) == 0) { // the usual case: one rank decides everything
             return *(outside - 1);
         }
         --outside;
-        // Everything before `in` has h = 0, `outside` has not.
+        // h = 0 up to `in`, and h > 0 at `outside`.
         while (in != outside) {
             const auto middle = in + (outside - in) / 2;
             (at(*middle) == 0 ? in : outside) = at(*middle) == 0 ? middle + 1 : middle;
@@ -87,7 +87,7 @@ class Hyperstaticity {
     std::vector<int> contacts_;
     int most_;
     std::function<int(int)> compute_;
-    std::vector<int> known_; ///< -1: not yet
+    std::vector<int> known_; ///< -1: not computed yet
     int computed_ = 0;
 };
 

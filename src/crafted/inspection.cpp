@@ -15,12 +15,12 @@ namespace isostat::crafted {
 
 namespace {
 
-/// The contact matrix of the same contact graph with the disks, and the periods and tilt of a cell, at random integers;
-/// columns scaled by the distance.
+/// The contact matrix of the same contact graph for random integer coordinates of the disks, and of the periods and
+/// tilt of a cell; columns are scaled by the distance.
 exact::NumberMatrix generic_matrix(const ExactPacking& packing, const DofMap& dofs,
                                    const std::vector<Contact>& contacts) {
     ExactPacking random = packing;
-    std::uint64_t state = 0x9e3779b97f4a7c15u; // splitmix64: the same points at every call
+    std::uint64_t state = 0x9e3779b97f4a7c15u; // splitmix64, which gives the same points at every call
     const auto next = [&] {
         std::uint64_t z = state += 0x9e3779b97f4a7c15u;
         z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
@@ -44,7 +44,7 @@ exact::NumberMatrix generic_matrix(const ExactPacking& packing, const DofMap& do
     return exact_contact_matrix(random, dofs, contacts);
 }
 
-/// Counts for each way to strain the cell, of all pairs that touch.
+/// The counts of all touching pairs, for each way to strain the cell.
 StrainCounts exact_strains(const ExactPacking& packing, const std::vector<Contact>& touching) {
     const Packing rounded = approximate(packing);
     StrainCounts counts;
@@ -56,7 +56,7 @@ StrainCounts exact_strains(const ExactPacking& packing, const std::vector<Contac
     return counts;
 }
 
-/// The same packing, with a cell of which everything moves.
+/// The same packing with a cell whose coordinates all move.
 ExactPacking loose_cell(ExactPacking packing) {
     packing.cell.move(true, true);
     return packing;
@@ -96,8 +96,8 @@ class Inspector {
     }
 
   private:
-    [[nodiscard]] std::size_t contact_count() const { return out_.contacts.size(); } // with bars
-    /// Without those of bars, whose sign is free.
+    [[nodiscard]] std::size_t contact_count() const { return out_.contacts.size(); } // counts the bars too
+    /// The forces without those of bars, whose sign is free.
     [[nodiscard]] std::vector<Number> unilateral(const std::vector<Number>& forces) const {
         return {forces.begin(), forces.begin() + static_cast<std::ptrdiff_t>(unilateral_)};
     }
@@ -113,7 +113,7 @@ class Inspector {
         return column;
     }
 
-    /// The contacts, the load, and a unit of it on each length and tilt that moves.
+    /// The columns of the contacts, of the load, and of a unit load on each length and tilt that moves.
     [[nodiscard]] exact::NumberMatrix with_loads() const {
         exact::NumberMatrix out = matrix_;
         if (packing_.load) {
@@ -127,7 +127,7 @@ class Inspector {
         return out;
     }
 
-    /// Sorts the kernel of that matrix: self-stresses, forces that balance the load, and a unit of it.
+    /// Sorts the kernel of that matrix into self-stresses, forces that balance the load, and forces of each unit load.
     void take_basis(const exact::Kernel& kernel, const exact::NumberMatrix& augmented) {
         const std::size_t n = contact_count();
         for (std::size_t k = 0; k < kernel.basis.size(); ++k) {
@@ -192,7 +192,7 @@ class Inspector {
         }
     }
 
-    /// The range of every force on a length or a tilt whose change is balanced.
+    /// Finds the range of every force on a length or a tilt whose change can be balanced.
     void judge_ranges() {
         if (!balanced_ || !affordable(out_.self_stresses.size() + 2, contact_count())) {
             return;
@@ -231,7 +231,7 @@ class Inspector {
         if (!affordable(out_.self_stresses.size() + 1, contact_count() + 1)) {
             return;
         }
-        // f = f0 + S c > 0 is t f0 + S c > 0 with t > 0: one more component for t, before those of bars.
+        // f = f0 + S c > 0 is t f0 + S c > 0 with t > 0: one more component for t, before the components of bars.
         std::vector<std::vector<Number>> span = out_.self_stresses;
         span.push_back(out_.forces);
         for (auto& vector : span) {
@@ -270,13 +270,13 @@ class Inspector {
         std::erase_if(out_.without_force, [this](int i) { return packing_.is_fixed(i); });
     }
 
-    /// f_l vanishes for given columns exactly when the load lies in the span of the others.
+    /// A force f_l vanishes for given columns exactly when the load is in the span of the other columns.
     void judge_zeros() {
         exact::NumberMatrix generic = generic_matrix(packing_, dofs_, out_.contacts);
         generic.column.push_back(load_column());
         const int n = static_cast<int>(contact_count());
         if (out_.generic_rank < n || exact::rank_bound(generic).rank > n) {
-            return; // generic coordinates do not balance this load: nothing to compare with
+            return; // generic coordinates do not balance this load, so no zero is structural
         }
         out_.structural_zero.assign(contact_count(), 0);
         for (std::size_t l = 0; l < contact_count(); ++l) {
@@ -316,12 +316,12 @@ class Inspector {
     DofMap dofs_;
     exact::NumberMatrix matrix_;
     Inspection out_;
-    std::size_t unilateral_ = 0;                             // contacts that are no bars
+    std::size_t unilateral_ = 0;                             // number of contacts that are no bars
     std::vector<std::pair<int, std::vector<Number>>> units_; // forces that balance an inward unit at this dof
     bool balanced_ = false; // some forces balance the load, and `forces` holds them (without contacts it is empty)
 };
 
-/// Fixed walls on all sides, and no disk is fixed.
+/// Whether all walls are fixed and no disk is.
 bool walls_stay(const ExactPacking& packing) {
     bool stay = !packing.cell.any() && std::find(packing.fixed.begin(), packing.fixed.end(), 1) == packing.fixed.end();
     for (std::size_t a = 0; a < packing.axes(); ++a) {

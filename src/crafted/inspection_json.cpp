@@ -21,7 +21,7 @@ Json entries(const std::vector<Number>& vector, const std::vector<std::string>& 
     return out;
 }
 
-/// What only a periodic cell has.
+/// Adds the entries that only a periodic cell has.
 void add_cell(const Inspection& inspection, Json& out) {
     if (inspection.strains) {
         for (std::size_t k = 0; k < strains.size(); ++k) {
@@ -60,7 +60,7 @@ Json ranges_json(const Inspection& inspection, const std::vector<std::string>& c
     return out;
 }
 
-/// Names of what has a flag, or has none.
+/// The names whose flag is set, or is not set, as `set` requires.
 template <class Flags> Json flagged(const std::vector<std::string>& names, const Flags& flags, bool set) {
     Json out = Json::array();
     for (std::size_t l = 0; l < flags.size(); ++l) {

@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t longest_list = 60;
 
-/// "12-40, 3-left": the first ones and how many more.
+/// "12-40, 3-left": the first names and the number of the others.
 template <class Range, class Text> std::string joined(const Range& range, Text text) {
     std::string out;
     std::size_t count = 0;
@@ -79,7 +79,7 @@ const char* to_string(exact::OneSign sign) {
 
 namespace {
 
-/// The table, a part of it a function.
+/// The table, with a function for each of its parts.
 class InspectionTable {
   public:
     InspectionTable(const Inspection& inspection, const ExactPacking& packing)
@@ -179,7 +179,7 @@ class InspectionTable {
         line("stable", packing_.load ? std::string(to_string(inspection_.stable)) : "no load");
     }
 
-    /// "force on top wall from 2/5 (opens 0-bottom) to 2 (opens 1-left)".
+    /// "force on top wall from 2/5 (no force in 0-bottom) to 2 (no force in 1-left)".
     [[nodiscard]] std::string range_text(const LoadRange& range) const {
         const auto end = [&](const std::optional<Number>& force, const std::vector<int>& zero, const char* none) {
             if (!force) {
@@ -214,7 +214,7 @@ class InspectionTable {
     std::string out_;
 };
 
-/// What a file expects against what was found.
+/// Compares the values that a file expects with the values found.
 class Comparison {
   public:
     Comparison(const Inspection& inspection, const ExactPacking& packing, const std::string& source)
@@ -253,7 +253,7 @@ class Comparison {
         return verdict ? std::string(to_string(*verdict)) : "no cell whose axes all repeat";
     }
     static std::map<std::string, std::string> words(const Inspection& inspection) {
-        // A count that is only a bound matches nothing.
+        // A count that is only a bound equals no expected value.
         const auto count = [&](int value) {
             return inspection.rank_exact == Verdict::proved ? std::to_string(value) : "undecided";
         };
@@ -297,7 +297,7 @@ class Comparison {
         }
     }
 
-    /// The list that a key names; nothing: the key names none.
+    /// The list that a key names; empty when the key names no list.
     [[nodiscard]] std::optional<std::vector<std::string>> list(const std::string& key) const {
         std::vector<std::string> found;
         const auto numbers = [&](const std::vector<int>& disks) {

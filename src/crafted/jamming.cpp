@@ -22,7 +22,7 @@ ExactPacking without_rattlers(const ExactPacking& packing, const std::vector<Dis
     return out;
 }
 
-/// Some motion keeps every gap (`mechanisms`), or opens some and closes none (no `positive` forces).
+/// Refuted when a motion keeps every gap (`mechanisms`) or opens some and closes none (no `positive` forces).
 Verdict jammed(const Inspection& seen, bool decided, bool positive) {
     if (seen.rank_exact == Verdict::proved && seen.mechanisms > 0) {
         return Verdict::refuted;
@@ -54,7 +54,7 @@ Jamming judge_jamming(const ExactPacking& packing, const std::vector<DiskHold>& 
     if (!packing.cell.any()) {
         return out;
     }
-    rest.load.emplace(); // a pressure of 1: minus the derivative of the volume
+    rest.load.emplace(); // a pressure of 1, so that the load is minus the derivative of the volume
     for (std::size_t a = 0; a < rest.axes(); ++a) {
         rest.load->wall[a] = 1;
         for (std::size_t b = 0; b < rest.axes(); ++b) {

@@ -6,14 +6,14 @@ namespace {
 
 using Vectors = std::vector<std::vector<Number>>;
 
-/// Largest t, by the dual: least f y with y >= 0, change y = -1, stresses y = 0. Nothing: t grows without end.
+/// The largest t, by the dual: least f y with y >= 0, change y = -1, stresses y = 0. Empty: t is not bounded.
 std::optional<Number> largest(const std::vector<Number>& forces, const Vectors& rows) {
     std::vector<Number> b(rows.size());
     b[0] = -1;
     return exact::least(rows, b, forces);
 }
 
-/// Contacts without force at f + t change.
+/// The contacts whose force vanishes at f + t change.
 std::vector<int> zeros(const std::vector<Number>& forces, const std::vector<Number>& change, const Number& t) {
     std::vector<int> out;
     for (std::size_t l = 0; l < forces.size(); ++l) {
@@ -28,10 +28,10 @@ std::vector<int> zeros(const std::vector<Number>& forces, const std::vector<Numb
 
 std::optional<LoadRange> load_range(const std::vector<Number>& forces, const std::vector<Number>& change,
                                     const Vectors& stresses) {
-    // Farkas: no t is supported exactly where some y >= 0 has f y = -1, change y = 0 and stresses y = 0.
+    // Farkas: no t is supported exactly when some y >= 0 has f y = -1, change y = 0 and stresses y = 0.
     Vectors rows{change};
     rows.insert(rows.end(), stresses.begin(), stresses.end());
-    for (std::vector<Number>& row : rows) { // forces behind have any sign
+    for (std::vector<Number>& row : rows) { // the forces after these may have any sign
         row.resize(forces.size());
     }
     Vectors all = rows;

@@ -20,7 +20,7 @@ namespace isostat::crafted {
 
 namespace {
 
-/// The lines of a document, addressed as toml++ does: line and column from 1, columns in code points.
+/// The lines of a document, numbered as in toml++: line and column from 1, columns in code points.
 class Source {
   public:
     explicit Source(const std::string& text) {
@@ -29,7 +29,7 @@ class Source {
             lines_.push_back(line);
         }
     }
-    /// Text of a region on one line.
+    /// The text of a region within one line.
     [[nodiscard]] std::string slice(const toml::source_region& region) const {
         if (region.begin.line == 0 || region.begin.line > lines_.size() || region.end.line != region.begin.line) {
             return {};
@@ -115,7 +115,7 @@ class Reader {
         return *node;
     }
 
-    /// What a node holds, of one type; `wanted` is that in words.
+    /// The value of a node as one type; `wanted` describes this type.
     template <class Value>
     [[nodiscard]] const auto& typed(const toml::node& node, const std::string& key, const char* wanted) const {
         const auto* value = node.as<Value>();
@@ -178,7 +178,7 @@ class Reader {
         return static_cast<int>(node.as_integer()->get());
     }
 
-    /// Which axis, or which tilt, a word of `cell.moves` names; -1: none.
+    /// Index of the axis or tilt that a word of `cell.moves` names; -1: no such name.
     template <class Names>
     [[nodiscard]] static int place(const Names& names, std::size_t count, std::string_view word) {
         const auto end = names.begin() + static_cast<std::ptrdiff_t>(count);
@@ -192,7 +192,7 @@ class Reader {
         out_.packing.fixed.push_back(fixed ? 1 : 0);
     }
 
-    /// The centres and radii: the short form, then the long one.
+    /// Reads the centres and radii: the short form, then the long form.
     void grains() {
         const std::string one = grain(), all = one + "s";
         const std::size_t d = out_.packing.axes();
@@ -228,8 +228,8 @@ class Reader {
     }
     [[nodiscard]] std::string grain() const { return grain_word(out_.packing.dimension()); }
 
-    /// What stands at the tilts: one number in the plane, in space those of xy, xz, yz. Where a tilt is no coordinate
-    /// that `may` be another one, 0 is `expected`.
+    /// Reads the tilts: one number in the plane, in space the numbers of xy, xz, yz. Where `may` is false the tilt is
+    /// no coordinate, and 0 is `expected`.
     template <class May>
     [[nodiscard]] PerTilt<Number> tilts(const toml::node& node, const std::string& key, May may,
                                         const char* expected) const {
@@ -244,7 +244,7 @@ class Reader {
         }
         return out;
     }
-    /// Both axes of a tilt repeat.
+    /// Whether both axes of a tilt are periodic.
     [[nodiscard]] bool leans(std::size_t tilt) const {
         const auto& periodic = out_.packing.cell.periodic;
         return periodic[tilt == 2 ? 1 : 0] && periodic[tilt == 0 ? 1 : 2];
@@ -263,7 +263,7 @@ class Reader {
              may_move ? "\"absent\", \"fixed\" or \"movable\"" : "\"absent\" or \"fixed\"");
     }
 
-    /// Which axes repeat, and what moves of the cell.
+    /// Reads which axes are periodic, and which coordinates of the cell move.
     void cell() {
         const toml::node* node = root_.get("cell");
         if (node == nullptr) {
@@ -316,7 +316,7 @@ class Reader {
         flag = true;
     }
 
-    /// No disk is wider than a period vector, or so far away that its images would not be found.
+    /// Checks that no disk is wider than a period vector, or so far away that its images would not be found.
     void fits(const toml::array& period) const {
         const ExactPacking& packing = out_.packing;
         for (std::size_t i = 0; i < packing.radius.size(); ++i) {
@@ -381,7 +381,7 @@ class Reader {
         }
     }
 
-    /// The bars of the rigid bodies.
+    /// Reads the bars of the rigid bodies.
     void bodies() {
         const toml::node* node = root_.get("bodies");
         if (node == nullptr) {
@@ -470,7 +470,7 @@ class Reader {
         return out;
     }
 
-    /// A single value of `[expected]` as text: strings as they are, numbers exactly.
+    /// A single value of `[expected]` as text: a string unchanged, a number exactly.
     [[nodiscard]] std::string word(const toml::node& node, const std::string& key) const {
         if (node.is_boolean()) {
             return boolean(node, key) ? "true" : "false";

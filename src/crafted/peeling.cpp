@@ -18,15 +18,15 @@ namespace {
 
 using exact::Number;
 
-/// Difference of two stored points: rounded, whether it is exact, and exact on demand.
+/// Difference of two stored points: the rounded difference, whether this is exact, and the exact one on request.
 struct StoredNormal {
     std::array<double, 2> d{};
     std::array<double, 2> from{}, to{};
-    bool exact = true; ///< d is the difference
-    /// Of a disk and an image, where it is no difference of two doubles.
+    bool exact = true; ///< d is the exact difference
+    /// The difference of a disk and an image, which is no difference of two doubles.
     std::shared_ptr<const std::array<Number, 2>> of_image;
 
-    /// d has the sign of the number, and is within 1 ulp of it.
+    /// Rounds r: d has the sign of r and is within 1 ulp of r.
     explicit StoredNormal(const std::array<Number, 2>& r) : of_image(std::make_shared<std::array<Number, 2>>(r)) {
         for (std::size_t k = 0; k < 2; ++k) {
             d[k] = r[k].to_double();
@@ -49,9 +49,9 @@ struct StoredNormal {
 
 constexpr double no_underflow = 0x1p-900; ///< products above this have an exact rounding error
 
-/// Sign of a b - c d, where the factors may stand for differences.
+/// Sign of a b - c d; `factors` says whether the factors are exact or stand for differences.
 template <class Exact> int difference_of_products(double a, double b, double c, double d, bool factors, Exact exact) {
-    // A rounded difference has the sign of the difference, and is 0 only with it.
+    // A rounded difference has the sign of the difference, and is 0 only if the difference is.
     const auto sign = [](double x) { return (x > 0 ? 1 : 0) - (x < 0 ? 1 : 0); };
     const int left = sign(a) * sign(b), right = sign(c) * sign(d);
     if (left != right) {
@@ -68,7 +68,7 @@ template <class Exact> int difference_of_products(double a, double b, double c, 
         if (std::abs(p - q) > 0x1p-49 * size) {
             return p > q ? 1 : -1;
         }
-        // Rounding keeps the order: only equal products need their errors, which fma gives exactly.
+        // Rounding keeps the order, so only equal products need their errors, which fma gives exactly.
         if (factors && std::min(std::abs(p), std::abs(q)) > no_underflow) {
             const double e = std::fma(a, b, -p);
             const double f = std::fma(c, d, -q);
@@ -87,7 +87,7 @@ int dot_sign(const StoredNormal& a, const StoredNormal& b) {
                                   [&] { return a.number(0) * b.number(0) + a.number(1) * b.number(1); });
 }
 
-/// 0: angle in [0, pi), 1: in [pi, 2 pi). The sign of a rounded difference is that of the difference.
+/// 0 for an angle in [0, pi), 1 in [pi, 2 pi). The sign of a rounded difference is that of the difference.
 int half(const StoredNormal& a) {
     return a.d[1] > 0 || (a.d[1] == 0 && a.d[0] > 0) ? 0 : 1;
 }
@@ -97,7 +97,7 @@ struct Arm {
     StoredNormal normal;
 };
 
-/// The arms of one disk by angle, as a ring.
+/// The contacts of one disk ordered by angle, as a ring of arms.
 class Ring {
   public:
     void add(int contact, const StoredNormal& normal) { arms_.push_back({contact, normal}); }
@@ -121,7 +121,7 @@ class Ring {
         }
     }
 
-    /// The arm after the widest opening, when some opening is pi or more (or there is one arm only); -1 otherwise.
+    /// The arm after the widest opening when an opening is at least pi (or there is one arm only); otherwise -1.
     [[nodiscard]] int wide_opening() const {
         int last = -1;
         for (std::size_t k = 0; k < arms_.size(); ++k) {
@@ -132,7 +132,7 @@ class Ring {
         return last;
     }
 
-    /// Whether the way from arm a, counterclockwise, to its follower b is pi or more.
+    /// Whether the angle from arm a, counterclockwise, to its follower b is at least pi.
     [[nodiscard]] bool opens(std::size_t a, std::size_t b) const {
         if (a == b) {
             return true;
@@ -144,7 +144,7 @@ class Ring {
         if (dot_sign(arms_[a].normal, arms_[b].normal) < 0) {
             return true;
         }
-        // Same direction: the way is 0, except from the last to the first when all arms point there.
+        // Equal directions: the angle is 0, except from the last arm to the first when all arms have this direction.
         return a >= b && std::all_of(arms_.begin(), arms_.end(), [&](const Arm& arm) {
                    const auto k = static_cast<std::size_t>(&arm - arms_.data());
                    return alive_[k] == 0 ||
@@ -207,7 +207,7 @@ class Peeler {
         }
         settle();
         for (int l = now_; l-- > 0;) {
-            now_ = l; // the list is shorter by one: what fails from here on needs more than l contacts
+            now_ = l; // the list has one contact less: what fails from here on needs more than l contacts
             drop(l);
             settle();
         }
@@ -256,7 +256,7 @@ class Peeler {
         rings_[static_cast<std::size_t>(contact.j)].add(l, StoredNormal({-r[0], -r[1]}));
     }
 
-    /// The contact carries no longer with `now_` contacts, and still did with one more.
+    /// Removes a contact that carried a force with `now_` + 1 contacts and cannot with `now_`.
     void drop(int l) {
         if (carrying_[static_cast<std::size_t>(l)] == 0) {
             return;
@@ -302,8 +302,8 @@ class Peeler {
             hold_[disk] = Hold::held;
             return;
         }
-        // All normals lie in the half-plane that the opening leaves. Only its border, when both sides of it are there,
-        // can carry.
+        // All normals are in the half-plane that the opening leaves. Therefore only its border carries forces, and only
+        // when arms point in both directions of the border.
         bool bridge = false;
         if (any) {
             const auto b = static_cast<std::size_t>(after);

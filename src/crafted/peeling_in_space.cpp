@@ -16,10 +16,10 @@ namespace isostat::crafted {
 
 namespace {
 
-/// A direction out of a sphere, not normalised: towards the other centre, or towards a wall.
+/// A direction from a sphere, not normalised, to the other centre or to a wall.
 struct Direction {
     int contact;
-    bool reversed; ///< out of the second sphere of the pair
+    bool reversed; ///< from the second sphere of the pair
 
     template <class Number>
     [[nodiscard]] PerAxis<Number> in(const Packing& packing, const std::vector<Contact>& all) const {
@@ -38,12 +38,12 @@ struct Direction {
     }
 };
 
-/// Signs of expressions in directions: intervals, then rationals.
+/// Signs of expressions in directions, by intervals and then by rationals.
 class Signs {
   public:
     Signs(const Packing& packing, const std::vector<Contact>& contacts) : packing_(packing), contacts_(contacts) {}
 
-    /// sign of `expression(directions)`, the directions in the arithmetic that tells.
+    /// Sign of `expression(directions)`, in the first arithmetic that decides it.
     template <std::size_t Count, class Expression>
     [[nodiscard]] int of(const std::array<Direction, Count>& directions, Expression expression) const {
         using Interval = CGAL::Interval_nt<false>;
@@ -143,9 +143,9 @@ class SpacePeeler {
     const Packing& packing_;
     const std::vector<Contact>& contacts_;
     Signs signs_;
-    std::vector<std::vector<Direction>> around_; ///< each sphere
+    std::vector<std::vector<Direction>> around_; ///< the directions of each sphere
     std::vector<std::size_t> waiting_;
-    int now_; ///< what fails from here on needs more contacts than these
+    int now_; ///< number of contacts: what fails from here on needs more
     Peeling out_;
 };
 

@@ -26,8 +26,8 @@ namespace isostat::crafted {
 
 namespace {
 
-constexpr double largest_length = 1e100;   // squares neither overflow
-constexpr double smallest_length = 1e-100; // nor underflow
+constexpr double largest_length = 1e100;   // the squares do not overflow
+constexpr double smallest_length = 1e-100; // the squares do not underflow
 
 class Sequence {
   public:
@@ -72,10 +72,10 @@ class Sequence {
     }
 
     [[nodiscard]] int size() const { return static_cast<int>(items_.size()); }
-    /// Numbers of candidates between two different gaps, 0 first.
+    /// Numbers of candidates at which a list ends, because the next gap is larger; 0 first.
     [[nodiscard]] const std::vector<int>& ends() const { return ends_; }
 
-    /// Candidates at gap <= threshold: always one of `ends`.
+    /// Number of candidates with gap <= threshold, always one of `ends`.
     [[nodiscard]] int below(double threshold) const {
         const auto end = std::partition_point(items_.begin(), items_.end(), [&](const GapOrder::Item& item) {
             return order_.compare(item, threshold) <= 0;
@@ -87,7 +87,7 @@ class Sequence {
     [[nodiscard]] double threshold_of(int m) const {
         return order_.threshold_of(items_[static_cast<std::size_t>(m) - 1]);
     }
-    /// The one at which the first candidate beyond them is.
+    /// The smallest double at which the next candidate is a contact too.
     [[nodiscard]] double threshold_after(int m) const {
         return order_.threshold_of(items_[static_cast<std::size_t>(m)]);
     }
@@ -103,7 +103,7 @@ class Sequence {
         return out;
     }
 
-    /// One step per list; `thresholds` has one entry per list.
+    /// One step per list; `thresholds` has one threshold per list.
     [[nodiscard]] std::vector<PlateauStep> steps(const std::vector<int>& lists, const std::vector<double>& thresholds) {
         backbone_stress_->at_all(lists);
         all_stress_->at_all(lists);
@@ -122,7 +122,7 @@ class Sequence {
         return out;
     }
 
-    /// Of thresholds from \p first on; none: all.
+    /// Finds the ranges of thresholds from \p first on, or of all thresholds when it is empty.
     void find_ranges(Plateau& out, std::optional<double> first) {
         out.rounding = rounding_ = std::max(out.rounding, 0x1p-52 * packing_.max_radius());
         lowest_ = first;
@@ -130,7 +130,7 @@ class Sequence {
             start_ =
                 static_cast<std::size_t>(std::lower_bound(ends_.begin(), ends_.end(), below(*first)) - ends_.begin());
         }
-        // h >= N - N_f + rigid motions, and h only grows.
+        // h >= N - N_f + rigid motions, and h does not decrease.
         const auto most = [&](auto counts) {
             const auto first = std::find_if(ends_.begin(), ends_.end(), [&](int m) { return excess(counts(m)) > 0; });
             return first == ends_.end() ? size() : *first - 1;
@@ -145,7 +145,7 @@ class Sequence {
         };
         add_ranges(out.ranges, [&](int m) { return m <= unstressed && balanced(m); });
         add_ranges(out.special, [&](int m) { return m > unstressed && balanced(m); });
-        // All disks: N is the number of candidates, so one list only can be isostatic.
+        // For all disks N is the number of candidates, so that only one list can be isostatic.
         const PlateauCounts whole = all_counts(0);
         const int wanted = whole.dof_count - whole.rigid_motions;
         if (std::binary_search(ends_.begin(), ends_.end(), wanted) && wanted > 0 && all_stress_->at(wanted) == 0) {
@@ -156,7 +156,7 @@ class Sequence {
     [[nodiscard]] int ranks_computed() const { return backbone_stress_->computed() + all_stress_->computed(); }
 
   private:
-    /// Where every axis is periodic, what moves of the cell is its strain.
+    /// Where every axis is periodic, the strain replaces the moving coordinates of the cell.
     static Packing at_rest(Packing packing) {
         if (packing.cell.all()) {
             packing.cell.keeps_shape = false;
@@ -193,7 +193,7 @@ class Sequence {
     }
 
     void find_candidates() {
-        // Wider than the rounding of the search.
+        // The reach exceeds the rounding of the search.
         const double reach = std::max(largest_, 0.0) + 1e-9 * (2 * packing_.max_radius() + std::max(largest_, 0.0));
         for (const Contact& pair : pairs_within(packing_, reach, most_pairs_per_disk)) {
             if (!packing_.is_fixed(DiskId(pair.i)) || !packing_.is_fixed(DiskId(pair.j))) {
@@ -251,7 +251,7 @@ class Sequence {
         }
         all_dofs_ = DofMap(packing_).dof_count() + cell_coordinates();
     }
-    /// What the cell adds to the degrees of freedom of the disks: its strains.
+    /// Number of degrees of freedom that the strains of the cell add to those of the disks.
     [[nodiscard]] int cell_coordinates() const {
         return packing_.cell.all() ? strain_count(strain_, packing_.cell.dimension) : 0;
     }
@@ -281,7 +281,7 @@ class Sequence {
                              [this](std::size_t k) { return exact::Number::from_double(packing_.q[k]); });
     }
 
-    /// N - N_f, rigid motions apart.
+    /// N - (N_f - rigid motions).
     static int excess(const PlateauCounts& c) { return c.contact_count - (c.dof_count - c.rigid_motions); }
 
     void find_widest(Plateau& out) {
@@ -320,7 +320,7 @@ class Sequence {
         }
     }
 
-    /// A rattler has no degree of freedom left: it is held fixed, and touches nothing.
+    /// The packing whose rattlers are fixed and so have no degree of freedom.
     [[nodiscard]] Packing without_rattlers(int m) const {
         Packing rest = packing_;
         rest.fixed.resize(rest.radius.size(), 0);
@@ -332,7 +332,7 @@ class Sequence {
         return rest;
     }
 
-    /// Maximal runs of ends that `holds` takes.
+    /// Adds the maximal runs of ends for which `holds` is true.
     template <class Holds> void add_ranges(std::vector<PlateauRange>& out, Holds holds) const {
         for (std::size_t e = start_; e < ends_.size(); ++e) {
             if (!holds(ends_[e]) || ends_[e] == 0) {
@@ -345,7 +345,7 @@ class Sequence {
             out.push_back(range_of(begin, e));
         }
     }
-    /// From one of the ends to another.
+    /// The range of thresholds from one of the ends to another.
     [[nodiscard]] PlateauRange range_of(std::size_t begin, std::size_t end) const {
         const int m = ends_[begin];
         PlateauRange range;
@@ -373,13 +373,13 @@ class Sequence {
     int moving_ = 0;                              ///< walls, and the period of a channel
     int all_dofs_ = 0;
     double rounding_ = 0;          ///< of gaps
-    std::optional<double> lowest_; ///< threshold; none: ranges begin where a gap does
-    std::size_t start_ = 0;        ///< of the ends, at it
+    std::optional<double> lowest_; ///< threshold; empty: ranges begin at a gap
+    std::size_t start_ = 0;        ///< index in `ends_` of the first list
     int last_of_widest_ = 0;
     std::unique_ptr<Hyperstaticity> backbone_stress_, all_stress_;
 };
 
-/// About `rows` of the `ends` in [begin, end): see `plateau`.
+/// Chooses about `rows` of the `ends` in [begin, end), see `plateau`.
 std::set<int> thinned(const Sequence& sequence, int begin, int end, int rows, const Plateau& found) {
     std::vector<int> inside;
     for (const int m : sequence.ends()) {
@@ -394,7 +394,7 @@ std::set<int> thinned(const Sequence& sequence, int begin, int end, int rows, co
     const int half = std::max(rows / 2, 1);
     const auto positive =
         std::find_if(inside.begin(), inside.end(), [&](int m) { return sequence.threshold_of(m) > 0; });
-    // Overlaps: all of them at once, which is what a soft packing means by its contacts.
+    // All overlaps count as one list, because the contacts of a soft packing are its overlaps.
     const auto start = positive == inside.begin() || positive == inside.end() ? inside.begin() : positive - 1;
     const auto last = inside.end() - 1 - start;
     for (int k = 0; k < half; ++k) {

@@ -11,7 +11,7 @@ namespace {
 using exact::Number;
 using Row = std::array<Number, most_axes + most_tilts>; ///< translations, then turns in the planes of two axes
 
-/// The rows added so far: how many of them are independent.
+/// Rows, and the number of independent ones among those added so far.
 class Span {
   public:
     void add(Row row) {
@@ -37,7 +37,7 @@ class Span {
     std::vector<std::pair<std::size_t, Row>> rows_;
 };
 
-/// What walls and periods leave to a common motion. A movable wall goes along with a translation, not with a turn.
+/// The common motions that walls and periods allow. A movable wall follows a translation, and prevents a rotation.
 class Freedom {
   public:
     explicit Freedom(const Packing& packing) : axes_(packing.axes()) {
@@ -51,7 +51,7 @@ class Freedom {
         const auto open = std::count(open_.begin(), open_.end(), true);
         return static_cast<int>(std::count(moves_.begin(), moves_.end(), true) + open * (open - 1) / 2);
     }
-    /// How a point moves along each axis.
+    /// The motion of a point along each axis.
     [[nodiscard]] PerAxis<Row> of(const PerAxis<Number>& x) const {
         PerAxis<Row> out;
         for (std::size_t b = 0; b < axes_; ++b) {
@@ -94,7 +94,7 @@ int rigid_motions(const Packing& packing, const std::function<bool(int)>& takes_
         }
         return span.rank();
     };
-    const int taken = add_all(true); // what fixed grains take away
+    const int taken = add_all(true); // number of motions that fixed grains prevent
     return add_all(false) - taken;
 }
 

@@ -8,10 +8,10 @@
 
 namespace isostat::crafted {
 
-/// Dimension of the common rigid motions of the grains that take part: those that neither a fixed grain nor a wall
-/// takes away and that move some grain. Of spheres without walls 6, of collinear ones 5, of one 3. Along periodic axes
-/// a grain is pinned. `at`: what stands at a coordinate, exactly. Where walls and periods leave nothing, `at` is not
-/// asked. Cost O(1), unless the grains are on one line.
+/// Dimension of the common rigid motions of the grains that take part: those that no fixed grain and no wall prevents
+/// and that move some grain. For spheres without walls 6, for collinear ones 5, for one 3. Along periodic axes a grain
+/// is pinned. `at`: the exact value of a coordinate, unused where walls and periods prevent all motions. Cost O(1),
+/// unless the grains are on one line.
 int rigid_motions(const Packing& packing, const std::function<bool(int)>& takes_part,
                   const std::function<exact::Number(std::size_t)>& at);
 

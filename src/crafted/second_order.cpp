@@ -19,7 +19,7 @@ Inertia inertia(std::vector<std::vector<Number>> a) {
             pivot = a[left[s]][left[s]].is_zero() ? pivot : s;
         }
         if (pivot == left.size()) {
-            // No square on the diagonal: x_i x_j becomes one by adding row and column j to i.
+            // No diagonal entry is left: adding row and column j to i turns x_i x_j into a square.
             std::size_t s = 0, t = 0;
             bool found = false;
             for (std::size_t u = 0; u < left.size() && !found; ++u) {
@@ -96,18 +96,18 @@ SecondOrder second_order_test(const Inspection& inspection, const ExactPacking& 
     for (const auto& stress : inspection.self_stresses) {
         const Inertia counts = inertia(stress_form(packing, dofs, inspection.contacts, stress, inspection.motions));
         if (counts.positive == internal || counts.negative == internal) {
-            return SecondOrder::rigid; // definite on the motions modulo rigid ones: this self-stress pairs to non-zero
-                                       // with each of them
+            return SecondOrder::rigid; // definite on the motions modulo rigid ones: this
+                                       // self-stress does not vanish on any of these motions
         }
         all_vanish = all_vanish && counts.positive == 0 && counts.negative == 0;
     }
-    // A mechanism v extends exactly when every self-stress pairs to zero with its curvature. With one self-stress an
-    // indefinite or degenerate form has such a v; with none, or all forms zero, every v does.
+    // A mechanism v extends exactly when every self-stress vanishes on its curvature. With one self-stress an
+    // indefinite or degenerate form has such a v; without self-stress, or with all forms zero, every v is one.
     if (all_vanish || inspection.self_stresses.size() == 1) {
         return SecondOrder::flexes;
     }
-    // One mechanism whose form vanishes for every stress was covered; one whose form does not is definite, hence
-    // covered too.
+    // With one mechanism the test ends above: a form that vanishes for every
+    // stress was covered, and a form that does not vanish is definite.
     return SecondOrder::undecided;
 }
 

@@ -10,7 +10,7 @@ struct Inertia {
     int positive = 0, negative = 0, zero = 0;
 };
 
-/// By congruence in the field, exact.
+/// Computed by congruence in the field, exactly.
 Inertia inertia(std::vector<std::vector<Number>> symmetric);
 
 /// Q_ab = sum over disk-disk contacts of f_l (dv_a . dv_b) / (R_i + R_j), dv = relative velocity: the work of forces f

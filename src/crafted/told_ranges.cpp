@@ -6,7 +6,7 @@ namespace isostat::crafted {
 
 namespace {
 
-/// Of two ranges one is a part of the other.
+/// Whether two ranges begin at the same list or overlap.
 bool meet(const PlateauRange& a, const PlateauRange& b) {
     return a.candidates == b.candidates || std::max(a.first, b.first) < std::min(a.last, b.last);
 }
@@ -15,7 +15,7 @@ bool meet(const PlateauRange& a, const PlateauRange& b) {
 
 Told told_of(const Plateau& plateau) {
     Told out;
-    const auto in_widest = [&plateau](const PlateauRange& range) { // there is none where no contact can carry
+    const auto in_widest = [&plateau](const PlateauRange& range) { // no range is the widest where no contact can carry
         return plateau.widest && meet(range, plateau.widest->range);
     };
     for (const PlateauRange& range : plateau.ranges) {

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What a plateau says of a packing: of its isostatic ranges, those that count.
+/// The isostatic ranges of a plateau that are worth reporting.
 
 #include <isostat/crafted/plateau.hpp>
 
@@ -8,11 +8,11 @@
 
 namespace isostat::crafted {
 
-/// What counts of the isostatic ranges.
+/// The isostatic ranges worth reporting.
 struct Told {
-    std::vector<PlateauRange> backbone, all; ///< in the widest range: the answer
-    std::vector<PlateauRange> elsewhere;     ///< of the backbone, less wide
-    int noise = 0;                           ///< of the backbone, less wide than the rounding: so many are left out
+    std::vector<PlateauRange> backbone, all; ///< inside the widest range: the result
+    std::vector<PlateauRange> elsewhere;     ///< other ranges of the backbone
+    int noise = 0;                           ///< ranges of the backbone left out as narrower than the rounding
     bool special = false;                    ///< the widest range has N = N_f and no full rank
 };
 Told told_of(const Plateau& plateau);

@@ -20,7 +20,7 @@ using json::Json;
 
 namespace {
 
-/// The complete lines of a table without its header.
+/// Calls `use` for each complete line of a table after its header.
 template <class Use> void for_each_row(const std::string& text, const Use& use) {
     for (std::size_t begin = 0, end = text.find('\n'); end != std::string::npos;
          begin = end + 1, end = text.find('\n', begin)) {
@@ -31,7 +31,7 @@ template <class Use> void for_each_row(const std::string& text, const Use& use) 
     }
 }
 
-/// That of a run without its last column, the time.
+/// The header of a run's table with the seed in front and without the last column, the time.
 std::string with_seeds(const std::string& header) {
     return "# seed," + header.substr(2, header.rfind(',') - 2) + "\n";
 }
@@ -98,7 +98,7 @@ void EnsembleDirectory::write_header(const std::string& status, const std::vecto
     object["status"] = status;
     object["scene_file"] = header.scene.string();
     object["scene"] = header.scene_text;
-    object["first_seed"] = std::to_string(header.first_seed); // text: 64 bits do not fit the numbers of every reader
+    object["first_seed"] = std::to_string(header.first_seed); // text: 64 bits exceed some readers' numbers
     object["samples"] = header.samples;
     if (!samples.empty()) {
         Json counts = Json::object();
@@ -128,7 +128,7 @@ std::vector<Sample> EnsembleDirectory::merge() const {
         if (one.equilibria > 0) {
             const fs::path file = samples_.folder(number) / "equilibria.csv";
             const std::string text = read_text(file);
-            if (equilibria.empty()) { // one scene, one kind of cell
+            if (equilibria.empty()) { // all samples have the same columns
                 equilibria = with_seeds(text.substr(0, text.find('\n')));
             }
             append_equilibria(equilibria, one.seed, text);

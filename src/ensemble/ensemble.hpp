@@ -24,10 +24,10 @@ struct EnsembleHeader {
     int samples = 1; ///< seeds first_seed ... first_seed + samples - 1
 };
 
-/// Samples of an ensemble.
+/// Largest number of samples of an ensemble.
 inline constexpr int most_samples = 1'000'000;
 
-/// What became of a sample.
+/// The state of a sample.
 /// - completed, failed (at its load: a result), undecided: as the run says;
 /// - interrupted: by Ctrl-C, SIGTERM or the end of the program; goes on with resume;
 /// - crashed: killed by another signal, or it ended without saying how; goes on from its last checkpoint with resume;
@@ -42,34 +42,34 @@ const char* to_string(SampleStatus status);
 struct Sample {
     std::uint64_t seed = 0;
     SampleStatus status = SampleStatus::missing;
-    std::string reason; ///< of every status but completed and missing
+    std::string reason; ///< for every status except completed and missing
     int equilibria = 0; ///< rows of its equilibria.csv
-    int proved = 0;     ///< of them proved
+    int proved = 0;     ///< proved rows among them
     long arcs = 0;
-    double seconds = 0; ///< of the trajectory; 0 when no summary was written
+    double seconds = 0; ///< time of the trajectory; 0 when no summary was written
 
-    /// A result: resume leaves it alone.
+    /// The sample has a result, which resume keeps.
     [[nodiscard]] bool finished() const {
         return status == SampleStatus::completed || status == SampleStatus::failed || status == SampleStatus::undecided;
     }
 };
 
-/// The folders of the samples, for any rank.
+/// The folders of the samples, used by any rank.
 class SampleFolders {
   public:
     SampleFolders(std::filesystem::path directory, EnsembleHeader header);
     [[nodiscard]] const EnsembleHeader& header() const { return header_; }
     [[nodiscard]] const std::filesystem::path& path() const { return directory_; }
-    /// Of sample `number` = 0 ... samples - 1: its seed, its folder (samples/seed_...), the text of its scene (see
-    /// `with_seed`; throws `Error(bad_input)`).
+    /// Seed, folder (samples/seed_...) and text of the scene (see `with_seed`; throws `Error(bad_input)`) of sample
+    /// `number` = 0 ... samples - 1.
     [[nodiscard]] std::uint64_t seed(std::size_t number) const { return header_.first_seed + number; }
     [[nodiscard]] std::filesystem::path folder(std::size_t number) const;
     [[nodiscard]] std::string scene(std::size_t number) const;
-    /// What its files say now. A run of another scene, or one whose files cannot be read, is `refused`.
+    /// The sample according to its files. A run of another scene, or one whose files cannot be read, is `refused`.
     [[nodiscard]] Sample sample(std::size_t number) const;
-    /// Makes its folder and scene.toml and forgets a note. True when there is a run to resume.
+    /// Makes the folder and scene.toml of a sample and removes a note. True when there is a run to resume.
     [[nodiscard]] bool prepare(std::size_t number) const;
-    /// Notes, in sample.json, why it ended when its run could not say so itself.
+    /// Writes to sample.json why a sample ended when its run could not.
     void note(std::size_t number, SampleStatus status, const std::string& reason) const;
 
   private:
@@ -79,9 +79,9 @@ class SampleFolders {
 };
 
 /// Files:
-/// - ensemble.json: program, command, scene, seeds, status; at the end also the number of samples of each status and
-/// the
-///   reason of every one that did not complete;
+/// - ensemble.json: program, command, scene, seeds, status;
+///   at the end also the number of samples of each status
+///   and the reason of every sample that did not complete;
 /// - samples/seed_000001/: the folder of a run (see `RunDirectory`) with scene.toml, the scene with this seed, and
 ///   log.txt, what the process printed; `isostat run scene.toml` alone makes the same run;
 /// - equilibria.csv: those of all samples, columns `seed` and those of a run without its last one, the time;
@@ -89,12 +89,12 @@ class SampleFolders {
 ///   stress_increment, strain_increment`: see `RearrangementRow`; nan where there is no increment;
 /// - samples.csv: one row per sample: `seed, status, equilibria, proved, arcs, seconds`, status as the number of
 ///   `SampleStatus`.
-/// The tables are sorted by seed and contain no time but the last column of samples.csv: how many processes or ranks
-/// worked, and in which order, leaves no trace. Throws `Error(cannot_write)` when a file cannot be written.
+/// The tables are sorted by seed and contain no time but the last column of samples.csv: they do not depend on the
+/// number of processes or ranks, nor on their order. Throws `Error(cannot_write)` when a file cannot be written.
 class EnsembleDirectory {
   public:
     /// resume: finished samples stay; also `Error(bad_input)` for one of another scene, first seed or program version.
-    /// The number of samples may differ: more are added; those beyond are kept, not merged.
+    /// The number of samples may differ: more samples are added; samples beyond it are kept, not merged.
     using Mode = FolderMode;
     /// Makes the folder if needed and locks it: `Error(cannot_write)` when a running program holds it. A scene that has
     /// no samples (`with_seed`) is refused here, before anything is deleted or computed.

@@ -16,9 +16,9 @@ namespace isostat {
 
 namespace {
 
-constexpr int not_started = 127; // exit status of a child whose program could not be started, as in shells
+constexpr int not_started = 127; // exit status, as in shells, of a child whose program could not be started
 
-/// What the child does between fork and exec: only calls that are safe there.
+/// The child between fork and exec, with only calls that are safe there.
 [[noreturn]] void become(const char* program, char* const* arguments, int log, pid_t parent) {
     ::setpgid(0, 0);
     ::prctl(PR_SET_PDEATHSIG, SIGTERM);
@@ -60,7 +60,7 @@ pid_t start(const Command& command) {
     return child;
 }
 
-/// -1: still running.
+/// Id of the child when it has ended; 0: still running.
 pid_t ended(ProcessEnd& ending, pid_t which) {
     int status = 0;
     const pid_t pid = ::waitpid(which, &status, WNOHANG);

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Who does which sample: one process that knows them all, or several ranks that ask the first one.
+/// Which process runs which sample: one process takes all, or several ranks ask rank 0.
 
 #include <cstddef>
 #include <functional>
@@ -8,22 +8,22 @@
 
 namespace isostat {
 
-/// Gives out the numbers 0 ... count - 1, each of them once over all ranks, and hears what became of them.
+/// Hands out the numbers 0 ... count - 1, each of them once over all ranks, and is told when they are finished.
 class SampleQueue {
   public:
     virtual ~SampleQueue() = default;
     /// Rank 0 hands out, reports and merges.
     [[nodiscard]] virtual int rank() const = 0;
     [[nodiscard]] virtual int ranks() const = 0;
-    /// The next number for this rank; none when all are given out (or `stop` was called).
+    /// The next number for this rank; nothing when all are handed out (or `stop` was called).
     virtual std::optional<std::size_t> next() = 0;
-    /// This rank has finished with a number that it was given. Rank 0 hears of it through `on_done`.
+    /// This rank has finished a number. Rank 0 learns of it through `on_done`.
     virtual void done(std::size_t number) = 0;
-    /// To be called often while waiting: rank 0 answers the others here.
+    /// To be called often while waiting, because rank 0 replies to the others here.
     virtual void idle() {}
-    /// No more numbers for anybody (rank 0) or for this rank (others).
+    /// No more numbers for any rank (on rank 0) or for this rank (on others).
     virtual void stop() = 0;
-    /// Returns when every rank has called it; rank 0 goes on answering until then.
+    /// Returns when every rank has called it; rank 0 replies until then.
     virtual void finish() {}
 
     std::function<void(std::size_t)> on_done; ///< on rank 0: called for the numbers of all ranks

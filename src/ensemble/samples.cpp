@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::array status_words{"completed", "failed", "undecided", "interrupted", "crashed", "refused", "missing"};
 
-/// "failed: the reason" of a run.json.
+/// Reads "failed: the reason" of a run.json.
 void read_status(Sample& sample, const std::string& words) {
     const std::size_t colon = words.find(": ");
     const std::string word = words.substr(0, colon);
@@ -52,7 +52,7 @@ Sample SampleFolders::sample(std::size_t number) const {
     sample.seed = seed(number);
     try {
         read(sample, number);
-    } catch (const Error& error) { // a file that something else has damaged: this sample's loss only
+    } catch (const Error& error) { // a file was damaged, which affects only this sample
         sample.status = SampleStatus::refused;
         sample.reason = error.what();
     }

@@ -31,7 +31,7 @@ bool Elimination<Field>::append(std::span<const int> rows, std::span<const Value
         reach(rows[e]);
         work_[static_cast<std::size_t>(rows[e])] = values[e];
     }
-    for (std::size_t t = reached_.size(); t-- > 0;) { // the search ends first where nothing follows
+    for (std::size_t t = reached_.size(); t-- > 0;) { // each node before the nodes that it changes
         const auto s = static_cast<std::size_t>(reached_[t]);
         act(nodes_[s], low_[s]);
     }
@@ -80,7 +80,7 @@ template <class Field> void Elimination<Field>::reach(int row) {
     }
 }
 
-/// The search meets a pivot: whether its node is new to the column in work, and then it is put on the stack.
+/// Visits a pivot in the search: whether its node is new to the current column; a new node is put on the stack.
 template <class Field> bool Elimination<Field>::enter(int pivot) {
     const int node = node_of_[static_cast<std::size_t>(pivot)];
     const auto s = static_cast<std::size_t>(node);
@@ -95,7 +95,7 @@ template <class Field> bool Elimination<Field>::enter(int pivot) {
     return true;
 }
 
-/// Subtracts from the column in work what makes its rows at `Columns` successive pivots of the node vanish.
+/// Subtracts what makes the pivot rows of `Columns` successive columns of the node vanish in the current column.
 template <class Field>
 template <std::size_t Columns>
 void Elimination<Field>::act_together(const Node& node, int column) {
@@ -107,7 +107,7 @@ void Elimination<Field>::act_together(const Node& node, int column) {
     }
     for (std::size_t k = 0; k < Columns; ++k) {
         const auto pivot = static_cast<std::size_t>(node.first + column) + k;
-        // What the first of these columns do to the pivot rows of the others.
+        // Applies the earlier ones of these columns to the pivot row of column k.
         Word entry = std::exchange(work_[static_cast<std::size_t>(row_of_[pivot])], 0);
         for (std::size_t b = 0; b < k; ++b) {
             entry = Field::template add_products<1>(entry, {l[b]}, {factor[b]}, column + static_cast<int>(k) - 1);
@@ -159,7 +159,7 @@ template <class Field> int Elimination<Field>::choose_pivot(int preferred, std::
     return chosen;
 }
 
-/// Makes the column in work a column of L: of the last node when the rows agree, otherwise of a new one.
+/// Makes the current column a column of L: of the last node when the rows agree, otherwise of a new node.
 template <class Field> void Elimination<Field>::store(int pivot_row) {
     const auto r = static_cast<std::size_t>(pivot_row);
     state_[r] = pivots_;
@@ -168,9 +168,9 @@ template <class Field> void Elimination<Field>::store(int pivot_row) {
     if (below_.size() > 1) {
         pending_.emplace_back(static_cast<std::size_t>(pivots_), Field::canonical(work_[r]));
     } else {
-        reciprocal_.back() = 1; // acts on nothing
+        reciprocal_.back() = 1; // this column changes no row
     }
-    // A reached node has all its rows in `below_`; as many rows means the same rows.
+    // A reached node has all its rows in `below_`, so an equal number of rows means equal rows.
     const bool same_rows =
         !nodes_.empty() && node_mark_.back() == column_ &&
         static_cast<int>(below_.size()) == nodes_.back().end - nodes_.back().begin - nodes_.back().width + 1;
@@ -185,7 +185,7 @@ template <class Field> void Elimination<Field>::store(int pivot_row) {
         int* next_row = rows_.data() + begin;
         Value* next_value = column_values(pivots_);
         for (const int row : below_) {
-            if (row != pivot_row) { // zeros stay too: pruning and supernodes rely on the structural pattern
+            if (row != pivot_row) { // zeros are stored: pruning and supernodes rely on the structural pattern
                 *next_row++ = row;
                 *next_value++ = Field::canonical(work_[static_cast<std::size_t>(row)]);
             }
@@ -210,8 +210,8 @@ template <class Field> void Elimination<Field>::join(Node& node, int pivot_row) 
     }
 }
 
-/// Symmetric pruning: when a node acted on this column and has the new pivot row, later searches from it may stop at
-/// the rows that are pivotal by now: the others are reached through the new pivot.
+/// Symmetric pruning: when a node acted on this column and has the new pivot row, later searches from the node may stop
+/// at its rows that are pivotal by now, because its other rows are reached through the new pivot.
 template <class Field> void Elimination<Field>::prune(int pivot_row) {
     for (const int reached : reached_) {
         Node& node = nodes_[static_cast<std::size_t>(reached)];
@@ -246,12 +246,12 @@ template <class Field> void Elimination<Field>::exchange_rows(const Node& node, 
     }
 }
 
-/// Reciprocals of all pivots found since the last call, with a single inversion: the product of all is inverted and
-/// taken apart.
+/// Computes the reciprocals of all pivots found since the last call with a single inversion: that of their product,
+/// from which each reciprocal follows.
 template <class Field> void Elimination<Field>::invert_pending() {
     Value all = 1;
     for (const auto& [pivot, value] : pending_) {
-        reciprocal_[pivot] = all; // product of the pivots before, for the way back
+        reciprocal_[pivot] = all; // product of the earlier pivots, used on the way back
         all = Field::multiply(all, value);
     }
     all = Field::inverse(all);

@@ -12,20 +12,20 @@ namespace isostat::exact {
 
 /// Gilbert-Peierls elimination: columns one after the other, each by a depth-first search for the columns of L that act
 /// on it (with symmetric pruning) and by those actions. Successive columns of L with the same rows form a supernode:
-/// one search step, one row list, and four of them act at once with a single reduction. Rows are labelled 0 ... rows
-/// - 1. The object is a workspace that may be used again.
+/// one search step, one row list, and four of them act at once with a single reduction. Rows are labelled 0 ... rows -
+/// 1. The object is a workspace for repeated use.
 template <class Field> class Elimination {
   public:
     using Value = typename Field::Value;
     using Word = typename Field::Word;
 
-    /// Forgets everything and expects columns with rows below `rows`.
+    /// Clears the workspace for columns with rows below `rows`.
     void start(std::size_t rows);
 
     /// Eliminates the next column, whose entries `rows[e]`, `values[e]` (residues, no row twice) are given. Returns
     /// whether it is independent of the columns before. The pivot is row `preferred` when its value is not zero,
-    /// otherwise the candidate with the smallest `weight` (the first candidate when that is empty). \pre preferred >= 0
-    /// or weight given, sizes fit `start`.
+    /// otherwise the candidate with the smallest `weight` (the first candidate when `weight` is empty). \pre preferred
+    /// >= 0 or weight given, sizes fit `start`.
     bool append(std::span<const int> rows, std::span<const Value> values, int preferred,
                 std::span<const int> weight = {});
 
@@ -40,7 +40,7 @@ template <class Field> class Elimination {
     struct Node {
         int first, width;
         int begin, end;
-        int search_end; ///< the depth-first search looks at rows [begin + width - 1, search_end)
+        int search_end; ///< the depth-first search reads rows [begin + width - 1, search_end)
         bool pruned;
     };
     struct Frame {

@@ -20,8 +20,8 @@ Number dot(const Row& a, const Row& b) {
     return sum;
 }
 
-/// Columns: the z, one artificial per row, the right-hand side. The cost row holds reduced costs, and minus the
-/// objective at the end.
+/// The columns are the z, one artificial per row, and the right-hand side. The cost row holds reduced costs, and minus
+/// the objective at its end.
 class Tableau {
   public:
     Tableau(const std::vector<Row>& rows, const Row& b, int cols)
@@ -40,7 +40,7 @@ class Tableau {
             }
             line[cols_ + i] = 1;
             basis_[i] = cols_ + i;
-            // Cost 1 for each artificial, priced out: the cost row is minus the sum of the rows.
+            // Each artificial has cost 1. Priced out, the cost row is minus the sum of the rows.
             for (std::size_t c = 0; c < line.size(); ++c) {
                 if (c != cols_ + i) {
                     cost_[c] -= line[c];
@@ -50,12 +50,12 @@ class Tableau {
         }
     }
 
-    /// Towards the least cost, from a point that is feasible for it.
+    /// Pivots to the least cost, from a feasible point.
     void solve() {
         for (;;) {
             std::size_t enter = 0;
             while (enter < cols_ && cost_[enter].sign() >= 0) {
-                ++enter; // Bland: the first column that improves
+                ++enter; // Bland's rule: the first column that lowers the cost
             }
             if (enter == cols_) {
                 return;
@@ -77,7 +77,7 @@ class Tableau {
         }
     }
 
-    /// The second phase. Artificials that are left at 0 go out, or their rows are 0 and stay so.
+    /// The second phase. Artificials that remain at 0 leave the basis, unless their rows are 0 and remain 0.
     void solve_for(const Row& cost) {
         for (std::size_t i = 0; i < line_.size(); ++i) {
             std::size_t enter = 0;

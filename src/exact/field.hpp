@@ -16,7 +16,7 @@ namespace isostat::exact {
 
 __extension__ using Wide = unsigned __int128;
 
-/// `Value` holds residues; `Word` holds anything congruent to one. All words that the functions return are below
+/// `Value` holds residues; `Word` holds any number congruent to one. All words that the functions return are below
 /// 2^64, so that nothing overflows as long as the preconditions hold.
 template <int Bits> struct Field {
     static_assert(Bits == 61 || Bits == 31);
@@ -74,7 +74,7 @@ template <int Bits> struct Field {
         Word s = 1;
         Word negative = 0;
         for (Word d = u - v; d != 0; d = u - v) {
-            const Word swap = u > v ? ~Word{0} : 0; // then v is kept, the difference replaces u
+            const Word swap = u > v ? ~Word{0} : 0; // then v is kept, and the difference replaces u
             const int zeros = std::countr_zero(d);
             const Word sum = r + s;
             r = (r ^ ((r ^ s) & swap)) << zeros;

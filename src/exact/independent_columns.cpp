@@ -11,7 +11,7 @@ namespace isostat::exact {
 
 namespace {
 
-/// Left-looking elimination mod p, a column after the other.
+/// Left-looking elimination mod p, column by column.
 class ColumnElimination {
   public:
     explicit ColumnElimination(const sparse::Matrix<std::uint64_t>& matrix)
@@ -23,7 +23,7 @@ class ColumnElimination {
         }
     }
 
-    /// True: the column is independent of those that came before.
+    /// True when the column is independent of the columns added before.
     bool add(int column) {
         const auto begin = static_cast<std::size_t>(matrix_.start[static_cast<std::size_t>(column)]);
         const auto end = static_cast<std::size_t>(matrix_.start[static_cast<std::size_t>(column) + 1]);
@@ -47,7 +47,7 @@ class ColumnElimination {
     [[nodiscard]] std::size_t rank() const { return row_of_pivot_.size(); }
 
   private:
-    /// A row of the column in work that may not be 0.
+    /// Marks a row of the current column that may not be 0.
     void touch(int r) {
         const auto i = static_cast<std::size_t>(r);
         if (seen_[i] == 0) {
@@ -75,7 +75,7 @@ class ColumnElimination {
         }
     }
 
-    /// Of the rows without pivot that are not 0, the one with the fewest entries; -1: there is none.
+    /// The row without pivot, not 0 in the current column, that has the fewest entries; -1: there is none.
     [[nodiscard]] int lightest_row() const {
         int chosen = -1;
         for (const int r : touched_) {
@@ -108,9 +108,9 @@ class ColumnElimination {
     std::vector<int> pivot_of_row_;
     std::vector<int> row_of_pivot_;
     std::vector<int> row_weight_;                                        ///< entries of each row
-    std::vector<std::uint64_t> x_;                                       ///< the column in work
-    std::vector<unsigned char> seen_;                                    ///< rows of it
-    std::vector<int> touched_;                                           ///< the same as a list
+    std::vector<std::uint64_t> x_;                                       ///< the current column
+    std::vector<unsigned char> seen_;                                    ///< its rows, as flags
+    std::vector<int> touched_;                                           ///< its rows, as a list
     std::priority_queue<int, std::vector<int>, std::greater<>> pending_; ///< pivots to apply, in order
 };
 

@@ -69,8 +69,8 @@ Echelon echelon(const NumberMatrix& matrix, const Reduction& reduction, unsigned
     return out;
 }
 
-/// The fraction n / d with |n|, d <= sqrt(modulus / 2) that is congruent to `residue`, if there is one (it is then
-/// unique).
+/// The fraction n / d with |n|, d <= sqrt(modulus / 2) that is
+/// congruent to `residue`, if one exists; there is at most one.
 std::optional<mpq_class> reconstruct(const mpz_class& residue, const mpz_class& modulus) {
     const mpz_class bound = ::sqrt(mpz_class(modulus / 2));
     mpz_class r0 = modulus, r1 = residue, t0 = 0, t1 = 1;
@@ -91,7 +91,7 @@ std::optional<mpq_class> reconstruct(const mpz_class& residue, const mpz_class& 
     return out;
 }
 
-/// Gathers the kernel mod p over primes and sign choices, and lifts it.
+/// Collects the kernel mod p over primes and choices of signs, and lifts it to exact numbers.
 class Lifting {
   public:
     Lifting(const NumberMatrix& matrix, const KernelLimits& limits)
@@ -103,7 +103,7 @@ class Lifting {
         for (int index = 0; index < limits_.primes; ++index) {
             const Reduction reduction = Reduction::suitable(entries_, below);
             below = reduction.field().prime();
-            if (reduction.root_count() > 6) { // 64 sign choices: beyond that the lower bound is all that is given
+            if (reduction.root_count() > 6) { // more than 64 choices of signs: only the lower bound is given
                 const Echelon image = echelon(matrix_, reduction, 0);
                 out_.pivots = image.pivots;
                 break;
@@ -136,8 +136,8 @@ class Lifting {
         return out;
     }
 
-    /// True pivots are those of the highest rank and, among these, the lexicographically first: a prime can only lose
-    /// some.
+    /// The true pivots have the highest rank, and are lexicographically
+    /// first among such: a prime can only lose pivots.
     static bool better(const std::vector<int>& a, const std::vector<int>& b) {
         return a.size() != b.size() ? a.size() > b.size() : a < b;
     }
@@ -148,7 +148,7 @@ class Lifting {
         for (unsigned signs = 0; signs < choices; ++signs) {
             images.push_back(echelon(matrix_, reduction, signs));
             if (images.back().pivots != images.front().pivots) {
-                // An unlucky prime; the better of the two ranks is still a proved lower bound.
+                // One of the two primes is unlucky; the better of the two ranks is a proved lower bound in any case.
                 if (better(images.back().pivots, images.front().pivots)) {
                     std::swap(images.front(), images.back());
                 }
@@ -177,8 +177,8 @@ class Lifting {
         coefficient_.clear();
     }
 
-    /// Coefficients on the products of roots: value(signs) = sum over subsets S of c_S prod_{i in S} (+-root_i),
-    /// inverted by characters.
+    /// Coefficients of the products of roots, by inverting value(signs) = sum over subsets S of c_S prod_{i in S}
+    /// (+-root_i) with characters.
     void combine(const Reduction& reduction, const std::vector<Echelon>& images) {
         const PrimeField& field = reduction.field();
         const auto choices = static_cast<unsigned>(images.size());
@@ -266,7 +266,7 @@ class Lifting {
     std::vector<const Number*> entries_;
     Kernel out_;
     bool known_ = false;
-    int used_ = 0; // primes in modulus_
+    int used_ = 0; // number of primes in modulus_
     mpz_class modulus_ = 1;
     std::vector<mpz_class> coefficient_;
 };
@@ -302,7 +302,7 @@ RankBound rank_bound(const NumberMatrix& matrix) {
     const PrimeField& field = reduction.field();
     const auto rows = static_cast<std::size_t>(matrix.rows);
     using Entries = std::vector<std::pair<int, std::uint64_t>>;
-    std::vector<Entries> pivot(rows); // by leading row, leading value 1
+    std::vector<Entries> pivot(rows); // by leading row, with leading value 1
     std::vector<std::uint64_t> work(rows, 0);
     RankBound out{0, field.prime(), {}, {}};
     const int full = std::min(matrix.rows, matrix.cols());

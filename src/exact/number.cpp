@@ -45,7 +45,7 @@ Interval bounds(const std::vector<Term>& list, unsigned long bits) {
     return sum;
 }
 
-/// (u, v) with x = u + v sqrt(b), neither with a radicand that shares a factor with b.
+/// Returns (u, v) with x = u + v sqrt(b), where no radicand of u and v shares a factor with b.
 /// \pre b divides each radicand or is coprime to it.
 std::pair<Number, Number> split(const std::vector<Term>& list, const mpz_class& b) {
     std::vector<Term> without, with;
@@ -170,7 +170,7 @@ int Number::sign() const {
     if (up || down) {
         return up ? 1 : -1;
     }
-    for (unsigned long bits = 64;; bits *= 2) { // ends: the number is not zero
+    for (unsigned long bits = 64;; bits *= 2) { // ends because the number is not zero
         const Interval interval = bounds(list, bits);
         if (interval.lower > 0) {
             return 1;
@@ -187,7 +187,7 @@ Enclosure Number::enclosure() const {
         return {0, 0};
     }
     Interval interval;
-    // Until the width is below 2^-60 of the value; ends because the number is not zero.
+    // Refines until the width is below 2^-60 of the value, which ends because the number is not zero.
     for (unsigned long bits = 128;; bits *= 2) {
         interval = bounds(list, bits);
         const mpq_class width = (interval.upper - interval.lower) * mpq_class(mpz_class(1) << 60);
@@ -291,7 +291,7 @@ Number Number::inverse() const {
     }
     const mpz_class b = coprime_base(square_free).front();
     const auto [u, v] = split(list, b);
-    // The norm u^2 - b v^2 has one independent radicand less, and is not zero: sqrt(b) is not in the field of u and v.
+    // The norm u^2 - b v^2 has one independent radicand less; it is not 0: sqrt(b) is not in the field of u and v.
     const Number norm = u * u - make_rational(mpq_class(b)) * v * v;
     return (u - v * make_number({{b, 1}})) * norm.inverse();
 }
@@ -309,7 +309,7 @@ Number sqrt(const Number& rational) {
         throw Error(ErrorKind::bad_input, "square root of the negative number " + q.get_str() +
                                               "; expected a non-negative rational under the root");
     }
-    // Numerator and denominator are coprime: factored apart, which is cheaper.
+    // Numerator and denominator are coprime, so that each is factored by itself, which is cheaper.
     const auto [a, c] = square_free_part(q.get_num());
     const auto [b, d] = square_free_part(q.get_den());
     mpq_class coefficient(a, b * d);

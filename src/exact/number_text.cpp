@@ -29,8 +29,8 @@ mpz_class power(unsigned long base, long exponent) {
     return out;
 }
 
-/// Recursive descent over: sum = [sign] product { sign product }; product = factor { (* | /) factor };
-/// factor = number | sqrt ( number [/ number] ).
+/// Recursive descent for the grammar sum = [sign] product { sign product }; product = factor { (* | /) factor }; factor
+/// = number | sqrt ( number [/ number] ).
 class Reader {
   public:
     explicit Reader(std::string_view text) : text_(text) {}
@@ -159,7 +159,7 @@ class Reader {
             ++at_;
             exponent = signed_integer();
         }
-        // Fraction digits count 4 bits each in a hex float, whose exponent is binary.
+        // A fraction digit counts 4 bits in a hex float, whose exponent is binary.
         const long shift = exponent - (hex ? 4 * fraction : fraction);
         const mpz_class factor = power(hex ? 2 : 10, shift < 0 ? -shift : shift);
         mpq_class value = shift < 0 ? mpq_class(digits, factor) : mpq_class(digits * factor);
@@ -188,7 +188,7 @@ class Reader {
         return negative ? -value : value;
     }
 
-    /// The next character after spaces, '\0' at the end.
+    /// The next character after spaces, or '\0' at the end.
     char peek() {
         while (at_ < text_.size() && (text_[at_] == ' ' || text_[at_] == '\t')) {
             ++at_;

@@ -31,7 +31,7 @@ int block_rank(const sparse::Matrix<typename Field::Value>& matrix, const sparse
         for (auto e = static_cast<std::size_t>(matrix.start[column]);
              e < static_cast<std::size_t>(matrix.start[column + 1]); ++e) {
             const int i = position[static_cast<std::size_t>(matrix.row[e])];
-            assert(i < last); // an entry below the blocks: the ordering is of another pattern, and proves nothing here
+            assert(i < last); // an entry below the blocks: the ordering is of another pattern, and proves no rank
             if (i >= first) {
                 rows.push_back(i - first);
                 values.push_back(matrix.value[e]);
@@ -42,7 +42,7 @@ int block_rank(const sparse::Matrix<typename Field::Value>& matrix, const sparse
     return elimination.rank();
 }
 
-/// Column order of little fill for any choice of pivot rows.
+/// A column order with little fill for any choice of pivot rows.
 std::vector<int> colamd_order(const sparse::Matrix<std::uint64_t>& matrix) {
     std::vector<int> order(matrix.start.begin(), matrix.start.end());
     const std::size_t length = colamd_recommended(matrix.entries(), matrix.rows, matrix.cols);
@@ -59,7 +59,7 @@ std::vector<int> colamd_order(const sparse::Matrix<std::uint64_t>& matrix) {
     return order;
 }
 
-/// Nested dissection of the columns that share a row; rows of very many entries, as those of a cell, are not looked at.
+/// Nested dissection of the columns that share a row; rows of very many entries, as those of a cell, are left out.
 std::vector<int> dissected(const sparse::Matrix<std::uint64_t>& matrix) {
     const auto columns = static_cast<std::size_t>(matrix.cols);
     std::vector<std::vector<int>> columns_of(static_cast<std::size_t>(matrix.rows));
@@ -88,7 +88,7 @@ int rank_in_blocks(const sparse::Matrix<typename Field::Value>& matrix, const sp
     for (std::size_t k = 0; k < position.size(); ++k) {
         position[static_cast<std::size_t>(ordering.row_order()[k])] = static_cast<int>(k);
     }
-    // Kept between calls: a run proves the rank of ten thousands of matrices of the same size.
+    // It is kept between calls because a run proves the rank of ten thousands of matrices of the same size.
     thread_local Elimination<Field> elimination;
     int total = 0;
     for (std::size_t b = 0; b + 1 < block_start.size(); ++b) {
@@ -125,7 +125,7 @@ std::vector<int> ranks_of_first_rows(const sparse::Matrix<std::uint64_t>& matrix
     }
     Elimination<Field<61>> elimination;
     elimination.start(weight.size());
-    constexpr int many = 2500; // A^T A has some 22 entries per column: METIS takes as long as is saved at 1500
+    constexpr int many = 2500; // A^T A has some 22 entries per column: at 1500 METIS takes the time that it saves
     const bool dissect = matrix.rows >= many && sparse::worth_dissection(matrix.rows, matrix.entries());
     for (const int column : dissect ? dissected(matrix) : colamd_order(matrix)) {
         const auto begin = static_cast<std::size_t>(matrix.start[static_cast<std::size_t>(column)]);

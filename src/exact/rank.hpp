@@ -16,7 +16,7 @@ inline constexpr std::uint64_t mersenne61 = (std::uint64_t{1} << 61) - 1;
 /// The residue of a finite double, exactly: m * 2^e mod p. A ring homomorphism from the dyadic rationals.
 std::uint64_t residue(double value);
 
-/// The same mod 2^31 - 1: a smaller field, cheaper words, and a chance of about n / 2^31 of a false deficiency.
+/// For residues mod 2^31 - 1: a smaller field, cheaper words, and a chance of about n / 2^31 of a false deficiency.
 inline constexpr std::uint32_t mersenne31 = (std::uint32_t{1} << 31) - 1;
 std::uint32_t residue31(double value);
 
@@ -41,16 +41,16 @@ std::uint64_t inverse(std::uint64_t a);
 /// the factor L, is kept per thread.
 int rank(const sparse::Matrix<std::uint64_t>& matrix, const sparse::Ordering& ordering);
 
-/// The same over the field with p = 2^31 - 1: a full rank is the same proof, a deficient one means little (n / 2^31).
+/// The rank in the field with p = 2^31 - 1: a full rank is the same proof, a deficient one weak evidence (n / 2^31).
 int rank(const sparse::Matrix<std::uint32_t>& matrix, const sparse::Ordering& ordering);
 
 /// The rank mod p, exactly, of any matrix: a lower bound of the rank over Q, as above. Columns are eliminated in a
 /// COLAMD order, of many spheres in one by nested dissection; pivots are the candidate rows with the fewest entries in
-/// `matrix`. \pre rows are not repeated in a column. Cost: 1.3 to 1.6 times the other.
+/// `matrix`. \pre rows are not repeated in a column. Cost: 1.3 to 1.6 times that with an ordering.
 int rank(const sparse::Matrix<std::uint64_t>& matrix);
 
-/// The same of the first `ends[k]` rows for every k, in one elimination: a pivot is sought in later rows only where the
-/// rest of its column is 0 in the earlier ones. \pre `ends` ascends to the number of rows
+/// The ranks of the first `ends[k]` rows for every k, in one elimination: a pivot is taken from later rows only where
+/// the rest of its column is 0 in the earlier rows. \pre `ends` ascends to the number of rows
 std::vector<int> ranks_of_first_rows(const sparse::Matrix<std::uint64_t>& matrix, std::span<const int> ends);
 
 } // namespace isostat::exact

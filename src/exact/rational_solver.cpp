@@ -34,7 +34,7 @@ SparseLu<Modular<Bits>> factorise(const sparse::Matrix<mpz_class>& a, const spar
     return {Modular<Bits>(), reduced, order};
 }
 
-/// r -= A x or A^T x.
+/// r -= A x, or r -= A^T x when `transposed`.
 void subtract_product(const sparse::Matrix<mpz_class>& a, bool transposed, const std::vector<unsigned long>& x,
                       std::vector<mpz_class>& r) {
     for (std::size_t j = 0; j < static_cast<std::size_t>(a.cols); ++j) {
@@ -49,7 +49,7 @@ void subtract_product(const sparse::Matrix<mpz_class>& a, bool transposed, const
     }
 }
 
-/// sum of digit[k] p^k over [first, last), by halves; `power[s]` = p^(2^s).
+/// Sum of digit[k] p^k over [first, last), computed by halves; `power[s]` = p^(2^s).
 mpz_class combine(const std::vector<std::vector<unsigned long>>& digits, std::size_t unknown, std::size_t first,
                   std::size_t last, const std::vector<mpz_class>& power) {
     if (last - first == 1) {
@@ -66,8 +66,8 @@ mpz_class combine(const std::vector<std::vector<unsigned long>>& digits, std::si
     return high;
 }
 
-/// n / d = x mod m with |n|, d <= bound, by the extended Euclidean algorithm stopped half way; false when there is
-/// none.
+/// Finds n / d = x mod m with |n|, d <= bound, by the extended Euclidean
+/// algorithm stopped half way; false when no such fraction exists.
 bool reconstruct(const mpz_class& x, const mpz_class& m, const mpz_class& bound, mpz_class& n, mpz_class& d) {
     mpz_class r0 = m;
     mpz_class r1 = x;
@@ -87,7 +87,7 @@ bool reconstruct(const mpz_class& x, const mpz_class& m, const mpz_class& bound,
     return d != 0 && d <= bound;
 }
 
-/// The vector of rationals with one denominator that is congruent to x mod m and small; false when there is none.
+/// The small vector of rationals with one denominator that is congruent to x mod m; false when there is none.
 bool reconstruct(const std::vector<mpz_class>& x, const mpz_class& m, RationalVector& out) {
     const mpz_class bound = sqrt(mpz_class(m / 2));
     const mpz_class half = m / 2;
@@ -143,8 +143,8 @@ RationalVector lift(const SparseLu<Modular<Bits>>& lu, const sparse::Matrix<mpz_
     std::vector<std::vector<unsigned long>> digits;
     RationalVector out;
     std::vector<typename Modular<Bits>::Value> digit(n);
-    // Ends: once the modulus exceeds twice the square of the numbers of Cramer's rule, the reconstruction is the
-    // answer.
+    // The loop ends: once the modulus exceeds twice the square of the
+    // numbers of Cramer's rule, the reconstruction is the solution.
     for (std::size_t done = 0, next = 2;; next += std::max<std::size_t>(2, next / 2)) {
         digits.clear();
         for (; done < next; ++done) {

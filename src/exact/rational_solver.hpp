@@ -18,7 +18,7 @@ struct RationalVector {
 };
 
 /// A x = b over the rationals (Dixon: solve mod p, divide the residual by p, repeat; then rational reconstruction).
-/// Every answer is *verified*: A numerator = denominator b over the integers, and A is regular because it is regular
+/// Every solution is *verified*: A numerator = denominator b over the integers, and A is regular because it is regular
 /// mod p (statement T4), so x is the solution whatever the primes did.
 class RationalSolver {
   public:
@@ -29,11 +29,11 @@ class RationalSolver {
     RationalSolver(RationalSolver&&) noexcept;
     RationalSolver& operator=(RationalSolver&&) noexcept;
 
-    /// Proved regular. False: singular mod both primes, and nothing can be solved.
+    /// Proved regular. False: singular mod both primes, so that `solve` gives nothing.
     [[nodiscard]] bool regular() const;
 
-    /// x with A x = b, or A^T x = b. None only when the matrix is not `regular`. Cost: the answer has up to n log2 |A|
-    /// bits in numerator and denominator; 2 n log2|A| / 61 sparse products and solves mod p.
+    /// x with A x = b, or A^T x = b. Nothing only when the matrix is not `regular`. Cost: the solution has up to n log2
+    /// |A| bits in numerator and denominator; 2 n log2|A| / 61 sparse products and solves mod p.
     [[nodiscard]] std::optional<RationalVector> solve(const std::vector<mpz_class>& b, bool transposed = false) const;
 
   private:

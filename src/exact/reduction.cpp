@@ -12,7 +12,7 @@ namespace {
 __extension__ using Wide = unsigned __int128;
 static_assert(sizeof(unsigned long) == 8, "GMP's unsigned long carries a residue");
 
-/// GMP 6.2 documents a Baillie-PSW test from 24 repetitions on; it has no counterexample below 2^64.
+/// GMP 6.2 documents a Baillie-PSW test from 24 repetitions on, which has no counterexample below 2^64.
 bool is_prime(std::uint64_t candidate) {
     return mpz_probab_prime_p(mpz_class(candidate).get_mpz_t(), 25) != 0;
 }
@@ -64,7 +64,7 @@ Reduction Reduction::suitable(const std::vector<const Number*>& numbers, std::ui
         }
         Reduction out(candidate);
         for (const mpz_class& b : base) {
-            // p = 3 mod 4: the root of a square is its power (p + 1) / 4; the check refuses what is not a square.
+            // p = 3 mod 4: the root of a square is its power (p + 1) / 4; the check refuses a number that is no square.
             const std::uint64_t image = mpz_fdiv_ui(b.get_mpz_t(), candidate);
             const std::uint64_t root = out.field_.power(image, (candidate + 1) / 4);
             if (image == 0 || out.field_.multiply(root, root) != image) {

@@ -10,7 +10,7 @@
 
 namespace isostat::exact {
 
-/// Primes are sought downwards from here.
+/// The search for primes goes downwards from here.
 inline constexpr std::uint64_t largest_prime_bound = std::uint64_t{1} << 61;
 
 /// Sums, products and powers mod a prime below 2^61.
@@ -45,7 +45,7 @@ class Reduction {
     static Reduction suitable(const std::vector<const Number*>& numbers, std::uint64_t below = largest_prime_bound);
 
     [[nodiscard]] const PrimeField& field() const { return field_; }
-    /// k: how many independent square roots; 2^k sign choices.
+    /// k, the number of independent square roots; there are 2^k sign choices.
     [[nodiscard]] int root_count() const { return static_cast<int>(base_.size()); }
     /// The pairwise coprime b_i, decimal.
     [[nodiscard]] const std::vector<std::string>& base() const { return base_; }

@@ -24,7 +24,7 @@ template <class Arithmetic> class SparseLu {
         factorise(matrix, ordering.row_order());
     }
 
-    /// False: a column without a non-zero pivot; then nothing may be solved.
+    /// False: a column has no non-zero pivot, and the solves must not be called.
     [[nodiscard]] bool regular() const { return regular_; }
 
     /// A x = b in place: b by rows of A, x by columns.
@@ -144,7 +144,7 @@ template <class Arithmetic> class SparseLu {
             return false;
         }
         if (of_preferred >= 0.1 * best) {
-            pivot = preferred; // less fill
+            pivot = preferred; // gives less fill
         }
         const Value reciprocal = arithmetic_.reciprocal(work[pivot]);
         step_of_[pivot] = row_of_.size();

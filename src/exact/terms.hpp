@@ -26,11 +26,11 @@ struct Terms {
 Number make_number(std::vector<Term> list);
 Number make_rational(const mpq_class& value);
 
-/// square * square_free = value, square_free without a square factor: (root of the square part, square-free part). \pre
-/// value > 0 Throws `Error(bad_input)` when a factor that may hide a square is left after trial division.
+/// square * square_free = value, square_free without a square factor: returns (root of the square part, square-free
+/// part). \pre value > 0. Throws `Error(bad_input)` when a factor that may hide a square is left after trial division.
 std::pair<mpz_class, mpz_class> square_free_part(mpz_class value);
 
-/// Pairwise coprime integers above 1 of which every given square-free integer above 1 is a product.
+/// Pairwise coprime integers above 1 whose products give every one of the square-free integers above 1.
 std::vector<mpz_class> coprime_base(const std::vector<mpz_class>& square_free);
 
 } // namespace isostat::exact

@@ -15,14 +15,14 @@ namespace isostat::foreign {
 
 namespace {
 
-/// Moves a member by periods to the image nearest to the first one of its body. By how much that rounds a coordinate.
+/// Moves a member by periods to the image nearest to the first of its body; returns the rounding of a coordinate.
 double put_beside(Packing& packing, int first, int member, const std::string& source) {
-    constexpr double told = 0.375; // periods: at half a one another image is as near
+    constexpr double told = 0.375; // periods; at half a period another image is as near
     double worst = 0;
     const std::size_t d = packing.axes();
     double* const x = &packing.q[d * static_cast<std::size_t>(member)];
     const double* const from = &packing.q[d * static_cast<std::size_t>(first)];
-    for (std::size_t a = d; a-- > 0;) { // a step along a period moves the coordinates before it too
+    for (std::size_t a = d; a-- > 0;) { // a step along a period also moves the coordinates before it
         const double periods = packing.cell.periodic[a] ? std::round((x[a] - from[a]) / packing.lattice(a, a)) : 0;
         for (std::size_t b = 0; b <= a && periods != 0; ++b) {
             const double before = x[b];
@@ -66,7 +66,7 @@ void add_bodies(ForeignPacking& out, const std::vector<long>& ids, const std::st
         }
     }
     out.rounding += rounding_of_gaps(moved, 0, 0, {packing.dimension});
-    constexpr double roundoff = 64; // grid steps: of distances, in double
+    constexpr double roundoff = 64; // grid steps, for distances in double
     packing.bars = bars_of_bodies(packing, bodies, source, std::max(out.rounding, roundoff * grid_step(packing)));
     out.notes.push_back(
         fmt::format("{} rigid bodies of several {}s; what has a number of its own, 0 or -1 is by itself", bodies.size(),

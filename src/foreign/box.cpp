@@ -1,4 +1,4 @@
-// Walls and cells of packings of other programs.
+// Walls and cells in packings of other programs.
 #include "foreign/box.hpp"
 
 #include "packing/cell_wrap.hpp"
@@ -22,8 +22,8 @@ namespace {
     throw Error(ErrorKind::bad_input, source + ": " + message);
 }
 
-/// A box that was stated has as many sides as there are axes. Of a file without one it is the cell where the axes are
-/// periodic, as stated; else it says where the walls are.
+/// A stated box must have as many sides as there are axes. For a file without a box it is the cell when the axes are
+/// periodic, as stated; otherwise it gives the places of the walls.
 void take_box(Raw& raw, std::size_t axes, const std::string& source, ForeignOptions& options) {
     if (options.box.empty()) {
         return;
@@ -44,7 +44,7 @@ void take_box(Raw& raw, std::size_t axes, const std::string& source, ForeignOpti
     }
 }
 
-/// The cell of a file without one: lengths and tilts, or period vectors.
+/// Takes the stated cell of a file without one: lengths and tilts, or period vectors.
 void take_lattice(Raw& raw, std::size_t axes, const std::string& source, const ForeignOptions& options) {
     const std::vector<double>& stated = options.lattice;
     if (stated.empty()) {
@@ -122,7 +122,7 @@ void check_boundaries(Raw& raw, std::size_t axes, const std::string& source, con
     }
 }
 
-/// x - origin; the rounding of the difference (Knuth's, exact) goes to `worst` if it is larger.
+/// x - origin; raises `worst` to the rounding of this difference, which is exact (Knuth).
 double shifted(double x, double origin, double& worst) {
     const double d = x - origin;
     const double moved = x - d;
@@ -130,12 +130,12 @@ double shifted(double x, double origin, double& worst) {
     return d;
 }
 
-/// Low and high of an axis, as stated or in the file.
+/// The low and high side of an axis, as stated or in the file.
 std::array<double, 2> sides_of(const Raw& raw, const ForeignOptions& options, std::size_t a) {
     return options.box.empty() ? raw.box.value()[a] : std::array{options.box[2 * a], options.box[2 * a + 1]};
 }
 
-/// The walls of one axis, where they were asked for.
+/// Adds the walls of one axis, if these were requested.
 void add_wall_pair(ForeignPacking& out, std::size_t a, const Raw& raw, const std::string& source,
                    const ForeignOptions& options, double& worst) {
     Packing& packing = out.packing;
@@ -166,8 +166,8 @@ void add_wall_pair(ForeignPacking& out, std::size_t a, const Raw& raw, const std
     packing.walls.upper[a] = moves ? WallKind::movable : WallKind::fixed;
 }
 
-/// Turns the packing until the period vectors are written as those of a cell: each entry below the diagonal by a
-/// rotation, which moves no distance by more than some 2^-50 of it. By how much that rounds a coordinate.
+/// Turns the packing until the period vectors have the form of a cell: each entry below the diagonal becomes 0 by a
+/// rotation, which changes a distance by at most about 2^-50 of it. Returns the rounding of a coordinate.
 double turn(Packing& packing, PerAxis<PerAxis<double>> vectors, std::vector<std::string>& notes) {
     const std::size_t d = packing.axes(), n = packing.radius.size();
     double largest = 0;
@@ -204,7 +204,7 @@ double turn(Packing& packing, PerAxis<PerAxis<double>> vectors, std::vector<std:
         }
     }
     notes.emplace_back("the cell is turned, its first vector along x and the second one in the plane of x and y");
-    return 0x1p-48 * largest; // up to three rotations and a mirror, each rounds by less than 2^-50
+    return 0x1p-48 * largest; // up to three rotations and a mirror, which each round by less than 2^-50
 }
 
 void note_cell(ForeignPacking& out, const ForeignOptions& options) {
@@ -223,8 +223,8 @@ void note_cell(ForeignPacking& out, const ForeignOptions& options) {
                                     tilts.size() == 1 ? "" : "s xy, xz, yz", fmt::join(tilts, ", ")));
 }
 
-/// Periodic axes: the cell of the file, which does not move, with its lower corner at 0 and the disks in it. By how
-/// much that rounds a coordinate.
+/// Takes the cell of the file for the periodic axes, which does not move, with its lower corner at 0 and the disks
+/// inside. Returns the rounding of a coordinate.
 double add_cell(ForeignPacking& out, const Raw& raw, const std::string& source, const ForeignOptions& options) {
     Packing& packing = out.packing;
     const std::size_t d = packing.axes();
@@ -280,7 +280,7 @@ double add_cell(ForeignPacking& out, const Raw& raw, const std::string& source, 
     return worst;
 }
 
-/// By how much the shift to them rounds a coordinate.
+/// Adds the walls; returns how much the shift to them rounds a coordinate.
 double add_walls(ForeignPacking& out, const Raw& raw, const std::string& source, const ForeignOptions& options) {
     Packing& packing = out.packing;
     if (options.walls == ForeignWalls::none) {

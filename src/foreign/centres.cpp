@@ -1,5 +1,5 @@
-// Equal grains: dimension, number, diameter, the period vectors (one a row) or none, centres. CALiPPSO and programs of
-// Lubachevsky and Stillinger write it without vectors, TJ (Torquato and Jiao) with them.
+// Equal grains: dimension, number, diameter, the period vectors (one per row) or none, centres. CALiPPSO and programs
+// of Lubachevsky and Stillinger write this without vectors, TJ (Torquato and Jiao) with vectors.
 #include "foreign/source.hpp"
 
 #include <isostat/core/error.hpp>

@@ -27,7 +27,7 @@ using foreign::Raw;
     throw Error(ErrorKind::bad_input, source + ": " + message);
 }
 
-/// The plane of the disks becomes that of x and y.
+/// Permutes the axes so that the plane of the disks is that of x and y.
 void take_plane(Raw& raw, const std::string& plane, const std::string& source) {
     if (plane == "xy") {
         return;
@@ -58,14 +58,14 @@ void take_plane(Raw& raw, const std::string& plane, const std::string& source) {
         permuted(box);
         const Digits digits = raw.sides[0];
         permuted(raw.sides);
-        raw.sides[0].see(digits); // tilts are among them
+        raw.sides[0].see(digits); // these include the tilts
         raw.take_vectors(*raw.vectors, {box[0][0], box[1][0], box[2][0]});
         raw.box = box;
     }
     raw.notes.push_back(fmt::format("the plane of {} is taken for that of the disks", plane));
 }
 
-/// Coordinates in units of the box: lengths.
+/// Converts coordinates in units of the box to lengths.
 void multiply_out(Raw& raw, const std::string& source) {
     if (!raw.box) {
         refuse(source, "scaled coordinates, and the file has no bounds of a box: expected some");
@@ -86,7 +86,7 @@ void multiply_out(Raw& raw, const std::string& source) {
     raw.notes.emplace_back("scaled coordinates were multiplied out in double: rounded at 2^-52 of the box");
 }
 
-/// What other programs write and is not read, by how it begins: what it is, and what to do.
+/// For formats that are not read, recognised by their first characters: the name and the remedy.
 std::string not_read(std::string_view text) {
     struct Known {
         std::string_view begin;
@@ -123,7 +123,7 @@ std::string not_read(std::string_view text) {
                : "";
 }
 
-/// Without its first lines.
+/// The text after its first lines.
 std::string_view after_lines(std::string_view text, long lines) {
     for (long k = 0; k < lines && !text.empty(); ++k) {
         text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
@@ -131,8 +131,8 @@ std::string_view after_lines(std::string_view text, long lines) {
     return text;
 }
 
-/// Disks where z is the same, or differs by so little that no gap of two disks, sqrt(d^2 + z^2), is another double:
-/// `rounding` is by how much.
+/// The dimension: disks if z is constant, or varies by so little that no gap of two disks, sqrt(d^2 + z^2), is another
+/// double; `rounding` is the change of a gap.
 int dimension_of(Raw& raw, const std::string& source, const ForeignOptions& options, double& rounding) {
     const std::optional<int> stated = options.dimension ? options.dimension : raw.dimension;
     if (stated.value_or(2) != raw.dimension.value_or(stated.value_or(2))) {
@@ -160,7 +160,7 @@ int dimension_of(Raw& raw, const std::string& source, const ForeignOptions& opti
     if (dimension == 2 && off(farthest) > 0) {
         raw.notes.push_back(
             fmt::format("z differs by up to {:.2g}, which changes no gap: taken for a plane", off(farthest)));
-        rounding = off(farthest) * off(farthest) / radius; // of two disks, 2 off
+        rounding = off(farthest) * off(farthest) / radius; // two disks differ by up to 2 off
     }
     if (dimension == 2 && raw.leaves_the_plane()) {
         throw Error(ErrorKind::bad_input, fmt::format("{}: expected a cell in the plane of the disks",
@@ -179,7 +179,7 @@ int dimension_of(Raw& raw, const std::string& source, const ForeignOptions& opti
     return dimension;
 }
 
-/// Not `validate`: disks of any size may overlap, and reach beyond the walls.
+/// `validate` is not used, because disks of any size may overlap and may be beyond the walls.
 void check_range(const Packing& packing, const std::string& source) {
     for (std::size_t i = 0; i < packing.radius.size(); ++i) {
         if (!(packing.radius[i] >= shortest_length && packing.radius[i] <= longest_length)) {
@@ -194,7 +194,7 @@ void check_range(const Packing& packing, const std::string& source) {
     }
 }
 
-/// What multiplying out scaled coordinates rounds, and (`factor`) what it makes of their digits.
+/// The rounding of multiplying out scaled coordinates, and the `factor` of their digits.
 struct Scaling {
     double factor = 1, rounding = 0;
 };
@@ -217,7 +217,7 @@ Scaling scaling_of(const Raw& raw, std::size_t axes) {
     return out;
 }
 
-/// \p moved: the rounding of a coordinate that came with the walls or the cell.
+/// The rounding of a gap. \p moved: the rounding of a coordinate by the shift to the walls or the cell.
 double rounding_of(const Raw& raw, const ForeignPacking& found, const ForeignOptions& options, double moved) {
     const Packing& packing = found.packing;
     const bool walls = !(packing.walls == Walls::none());
@@ -237,7 +237,7 @@ double rounding_of(const Raw& raw, const ForeignPacking& found, const ForeignOpt
     const bool tilted =
         raw.vectors || std::any_of(raw.tilt.begin(), raw.tilt.end(), [](double tilt) { return tilt != 0; });
     const Scaling scaling = scaling_of(raw, packing.axes());
-    // Coordinates of a packing have as many digits as they were given: fewer than radii have were cut off.
+    // All coordinates have as many digits as given; where that is fewer than radii have, digits were cut off.
     return rounding_of_gaps(places.rounding() * scaling.factor + scaling.rounding + moved, side, size,
                             {packing.dimension, packing.cell.any() && tilted});
 }

@@ -27,19 +27,19 @@ std::string comment_of(std::string_view line) {
     return at == std::string_view::npos ? "" : std::string(without_blanks(line.substr(at + 1)));
 }
 
-/// `names`: "|one|two|".
+/// Whether a name is among `names`, written "|one|two|".
 bool is_among(std::string_view names, const std::string& name) {
     return name.find('|') == std::string::npos && names.find("|" + name + "|") != std::string_view::npos;
 }
 
-/// Sections that may stand beside Atoms; all of them are skipped.
+/// Whether a section may accompany Atoms; all such sections are skipped.
 bool is_section(const std::string& name) {
     constexpr std::string_view names = "|Velocities|Masses|Ellipsoids|Lines|Triangles|Bodies|Bonds|Angles|Dihedrals|"
                                        "Impropers|Atom Type Labels|";
     return is_among(names, name) || name.ends_with(" Coeffs") || name.ends_with(" Labels");
 }
 
-/// "12 atoms", "0 1 xlo xhi": the numbers and the words after them.
+/// The numbers of a header line such as "12 atoms" or "0 1 xlo xhi", and the words after them.
 struct HeaderLine {
     TextLine line;
     std::size_t numbers = 0;
@@ -67,9 +67,9 @@ struct DataHeader {
     long atoms = -1;
     Bounds box;
     PerAxis<std::optional<std::array<double, 2>>> bounds;
-    PerAxis<PerAxis<double>> vectors{}; ///< general triclinic
+    PerAxis<PerAxis<double>> vectors{}; ///< of a general triclinic box
     PerAxis<double> origin{};
-    std::set<std::string> seen; ///< keywords
+    std::set<std::string> seen; ///< keywords read so far
 
     void take(const HeaderLine& header) {
         const TextLine& line = header.line;
@@ -113,7 +113,7 @@ struct DataHeader {
     }
 };
 
-/// Atom styles and their columns, as read_data of LAMMPS reads them.
+/// An atom style and its columns, as read_data of LAMMPS reads them.
 struct Style {
     std::string_view name, columns;
 };
@@ -126,7 +126,7 @@ constexpr std::array<Style, 8> styles{{{"sphere", "id type diameter density x y 
                                        {"molecular", "id molecule type x y z"},
                                        {"full", "id molecule type q x y z"}}};
 
-/// Of hybrid styles id, type and place come first, then what else each has.
+/// The columns of a style; hybrid styles have id, type and place first, then the further columns of each style.
 std::vector<std::string> columns_of_style(const TextLines& lines, const std::string& text) {
     const TextLine words(text, lines.number(), &lines.source());
     const bool hybrid = words.size() > 1 && words.field(0) == "hybrid";
@@ -249,7 +249,7 @@ Raw read_lammps_data(const std::string& text, const std::string& source, const F
         header.box.box = {*header.bounds[0], *header.bounds[1], header.bounds[2].value_or(none)};
     }
     if (header.box.box) {
-        header.box.boundary = raw.boundary; // image flags told
+        header.box.boundary = raw.boundary; // image flags showed the periodic axes
         static_cast<Bounds&>(raw) = header.box;
     }
     return raw;

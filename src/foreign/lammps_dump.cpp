@@ -1,4 +1,4 @@
-// The header of LAMMPS dumps of styles custom and local.
+// Reads the header of LAMMPS dumps of styles custom and local.
 #include "foreign/source.hpp"
 
 #include <fmt/format.h>
@@ -11,7 +11,7 @@ namespace isostat::foreign {
 
 namespace {
 
-/// General triclinic: the period vectors, each with a coordinate of the origin.
+/// Reads a general triclinic box: the period vectors, each with a coordinate of the origin.
 void read_general_bounds(TextLines& lines, FrameHeader& frame) {
     PerAxis<PerAxis<double>> vectors{};
     PerAxis<double> origin{};
@@ -37,7 +37,7 @@ void read_bounds(TextLines& lines, std::string_view flags_text, FrameHeader& fra
             general = true;
         } else if (code.size() == 2 && code.find_first_not_of("pfsm") == std::string_view::npos) {
             codes.push_back(code);
-        } else if (code != "xx" && code != "yy" && code != "zz") { // some programs write the words of the manual
+        } else if (code != "xx" && code != "yy" && code != "zz") { // some programs write the placeholders of the manual
             flags.fail(code, "boundary", "two of the letters p f s m, for instance ff");
         }
     }

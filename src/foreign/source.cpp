@@ -17,7 +17,7 @@ namespace isostat::foreign {
 
 namespace {
 
-/// "x" of "X", "x (m)", "pos_x" and "Points:0", "radius" of "R [mm]"; "-": another column.
+/// The probable name of a column: "x" of "X", "x (m)", "pos_x" and "Points:0", "radius" of "R [mm]"; "-": unknown.
 std::string likely_name(const std::string& name) {
     std::vector<std::string> words(1);
     for (const char c : lower(name)) {
@@ -54,7 +54,7 @@ std::string likely_name(const std::string& name) {
     return out;
 }
 
-/// Which names are there, and the statement that may be meant.
+/// Lists the columns of a file, and the statement that may be meant.
 std::string seen_columns(const std::vector<std::string>& names) {
     std::vector<std::string> seen, likely;
     for (const std::string& name : names) {
@@ -71,7 +71,7 @@ std::string seen_columns(const std::vector<std::string>& names) {
     return out;
 }
 
-/// Coordinates as wrapped, unwrapped or scaled to the box.
+/// Finds coordinates, either wrapped, unwrapped or scaled to the box.
 void find_coordinates(Columns& columns, const std::vector<std::string>& names, const std::string& where, Raw& raw) {
     for (const auto& [x, y, z, is_scaled, note] : {std::tuple{"x", "y", "z", false, ""},
                                                    {"pos.0", "pos.1", "pos.2", false, ""},
@@ -92,7 +92,7 @@ void find_coordinates(Columns& columns, const std::vector<std::string>& names, c
                             where, seen_columns(names)));
 }
 
-/// The column of a statement. \p what: it is for.
+/// The column named in a statement. \p what: the quantity of the column.
 int stated_column(const std::vector<std::string>& names, const std::string& column, const char* what,
                   const std::string& where) {
     const int at = find_column(names, column);
@@ -165,7 +165,7 @@ void find_bodies(Columns& columns, const ForeignOptions& options, const std::str
     }
 }
 
-/// The column of a statement about rows, and its words.
+/// Finds the column of a statement about rows, and the words to match.
 void find_rows(const std::optional<RowsWith>& rows, const std::vector<std::string>& names, const std::string& where,
                int& column, std::vector<std::string>& words) {
     if (!rows) {

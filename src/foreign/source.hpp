@@ -1,5 +1,5 @@
 #pragma once
-// What the readers of foreign formats share: named columns, the raw packing.
+// Shared by the readers of foreign formats: named columns, the raw packing.
 
 #include "io/digits.hpp"
 #include "io/lines.hpp"
@@ -20,23 +20,23 @@ constexpr long most_disks = 100'000'000;
 
 enum class Boundary { open, periodic, unknown };
 
-/// Of three axes where the file has them: whether it holds disks or spheres is known when its rows are.
+/// The box of a file, for three axes if the file has them: the rows decide whether these are disks or spheres.
 struct Bounds {
     std::optional<PerAxis<std::array<double, 2>>> box; ///< low and high
     PerTilt<double> tilt{};                            ///< A_ab, a < b
-    /// The period vectors where they are not as `box` and `tilt` say: these are then to be turned.
+    /// The period vectors if they are not as `box` and `tilt` say, so that they have to be rotated.
     std::optional<PerAxis<PerAxis<double>>> vectors;
     PerAxis<Boundary> boundary{Boundary::unknown, Boundary::unknown, Boundary::unknown};
     PerAxis<bool> loose{}; ///< the bounds only follow the disks: no walls there
-    PerAxis<Digits> sides; ///< of box and tilts; those of a packing of disks are in the first two
-    std::string place;     ///< what says so: the begin of a message
-    /// The cell has these vectors, from here.
+    PerAxis<Digits> sides; ///< digits of box and tilts; for disks in the first two axes
+    std::string place;     ///< where the file says so: the beginning of a message
+    /// Makes these the vectors of the cell, with this origin.
     void take_vectors(const PerAxis<PerAxis<double>>& periods, const PerAxis<double>& origin);
     /// The period vectors of x and y are not in the plane of x and y, or that of z is not normal to it.
     [[nodiscard]] bool leaves_the_plane() const;
 };
 
-/// Whether period vectors are written as the cell is. \p d: so many axes of them count.
+/// Whether period vectors are written as the cell is. \p d: the number of axes that count.
 bool are_upper(const PerAxis<PerAxis<double>>& vectors, std::size_t d);
 
 /// A tilt xy, xz or yz of LAMMPS, in a field of the line.
@@ -44,62 +44,62 @@ void take_tilt(const TextLine& line, std::size_t field, std::size_t tilt, Bounds
 /// A period vector, in the first three fields of the line.
 void take_vector(const TextLine& line, PerAxis<double>& vector, Bounds& bounds);
 
-/// What stands before the rows of a frame.
+/// The header of a frame, before its rows.
 struct FrameHeader : Bounds {
     long timestep = 0;
     long rows = -1;
-    int line = 0; ///< of the names
+    int line = 0; ///< line of the names
     std::vector<std::string> names;
 };
 
-/// Of a LAMMPS dump, up to the names of the columns. \p item: "ATOMS" or "ENTRIES".
+/// The header of a LAMMPS dump, up to the names of the columns. \p item: "ATOMS" or "ENTRIES".
 FrameHeader read_dump_header(TextLines& lines, const std::string& item);
-/// Of extended XYZ: `comment` is the line of key=value. Vectors are named name.0, name.1, ...
+/// The header of extended XYZ: `comment` is the line of key=value. Vectors are named name.0, name.1, ...
 FrameHeader read_xyz_header(const TextLine& comment, long rows);
 /// Its key Timestep, if it has one.
 std::optional<long> xyz_timestep(const TextLine& comment, const std::string& source);
 
-/// What a reader found, before walls and checks.
+/// The result of a reader, before walls and checks.
 struct Raw : Bounds {
     std::optional<int> dimension; ///< where the format states it
     bool has_z = false;
     std::vector<PerAxis<double>> centre;
     std::vector<double> size;
     std::vector<int> line; ///< of each disk
-    std::vector<long> ids; ///< one per disk, or none
+    std::vector<long> ids; ///< one per disk, or empty
     SizeMeaning meaning = SizeMeaning::radius;
     std::vector<std::string> notes;
     PerAxis<Digits> places;           ///< digits of coordinates
     Digits sizes;                     ///< of radii or diameters
     bool scaled = false;              ///< coordinates are in units of the box
-    std::string types;                ///< empty, or which there are, and that all are taken for disks; a note too
-    std::vector<unsigned char> fixed; ///< one per disk, or none
-    std::vector<long> bodies;         ///< one per disk, or none
+    std::string types;                ///< empty, or a note: the types in the file, all of which are taken for disks
+    std::vector<unsigned char> fixed; ///< one per disk, or empty
+    std::vector<long> bodies;         ///< one per disk, or empty
 };
 
-/// Which columns hold what.
+/// The meaning of columns.
 struct Columns {
-    PerAxis<int> at{-1, -1, -1}; ///< x, y, z; -1: not there
+    PerAxis<int> at{-1, -1, -1}; ///< x, y, z; -1: absent
     int id = -1, size = -1;
     SizeMeaning meaning = SizeMeaning::radius;
     std::string size_name; ///< empty: a constant
     double constant = 0;
-    std::vector<std::pair<std::string, double>> size_of; ///< not empty: of the words in column `size`
-    int select = -1; ///< rows with a word of `selected` there are disks; -1: every row is one
+    std::vector<std::pair<std::string, double>> size_of; ///< not empty: sizes of the words in column `size`
+    int select = -1; ///< rows with a word of `selected` in this column are disks; -1: every row is one
     std::vector<std::string> selected;
-    int fix = -1; ///< disks with a word of `fixed` there cannot move
+    int fix = -1; ///< disks with a word of `fixed` in this column cannot move
     std::vector<std::string> fixed;
-    int body = -1;                         ///< which rows are one rigid body
-    bool are_molecules = false;            ///< `body` was not stated and its name is that of molecules: for a note
-    std::optional<long> first_id;          ///< of the first row; the column of ids is not read then
-    int type = -1;                         ///< counted, for a note
+    int body = -1;                         ///< the body of each row
+    bool are_molecules = false;            ///< `body` was not stated and its name is one for molecules: for a note
+    std::optional<long> first_id;          ///< id of the first row; the column of ids is then not read
+    int type = -1;                         ///< its values are counted, for a note
     std::vector<std::string> names;        ///< of all columns
-    std::vector<std::pair<int, int>> same; ///< columns of one name: their values must agree
+    std::vector<std::pair<int, int>> same; ///< columns with one name: their values must agree
 };
 
-/// By the names, which are those that the user stated where there are any. Throws when coordinates, what a statement
-/// speaks of, or the size (from the statement of the user, or from one of the names that state it) are not there;
-/// `where` starts the message.
+/// The columns by their names, which are the stated ones if there are any.
+/// Throws when coordinates, a stated column, or the size (stated by the user,
+/// or in a column with a known name) are missing; `where` starts the message.
 Columns find_columns(const std::vector<std::string>& names, const ForeignOptions& options, const std::string& where,
                      Raw& raw);
 
@@ -112,11 +112,11 @@ void refuse_twice(const std::vector<std::string>& names, const std::string& wher
 int find_column(const std::vector<std::string>& names, std::string_view name);
 /// Pairs of columns with the same name; "" names none.
 std::vector<std::pair<int, int>> columns_twice(const std::vector<std::string>& names);
-/// Throws where a row has not the same words in such columns.
+/// Throws when such columns of a row have different words.
 void require_same(const std::vector<std::pair<int, int>>& twice, const std::vector<std::string>& names,
                   const TextLine& row);
 
-/// Adds the rows that are selected to a raw packing; finds ids given twice.
+/// Adds selected rows to a raw packing; finds ids given twice.
 class Rows {
   public:
     Rows(Columns columns, std::string source) : columns_(std::move(columns)), source_(std::move(source)) {}
@@ -137,19 +137,19 @@ class Rows {
 /// The rows with the same number above 0, ascending; bodies of more than one.
 std::vector<std::vector<int>> bodies_of(const std::vector<long>& ids);
 
-/// They become members of one body, in a cell beside the first of them, with bars of the
-/// places that they have. Throws where images are not told apart, or the members from such on one line by the digits.
-/// \pre `out.rounding`
+/// Makes the bodies: members are in a cell beside the first one, with bars from
+/// their positions. Throws where images cannot be told apart, or where the digits
+/// cannot tell the members of a body from points on one line. \pre `out.rounding`
 void add_bodies(ForeignPacking& out, const std::vector<long>& ids, const std::string& source);
 
-/// The frame that is asked for, the last one where none is. \p head takes what stands before the rows of a frame, which
-/// messages call `row`.
+/// Finds the frame that the options name, or the last one. \p head
+/// reads the header of a frame; messages call its rows `row`.
 struct ChosenFrame {
     long number = 0;
     FrameHeader header;
     TextLines rows;
     const char* row;
-    /// Adds them to a raw packing.
+    /// Adds the rows of the frame to a raw packing.
     void read(Columns columns, Raw& raw);
 };
 ChosenFrame choose_frame(const std::string& text, const std::string& source, const ForeignOptions& options,
@@ -158,7 +158,7 @@ ChosenFrame choose_frame(const std::string& text, const std::string& source, con
 /// Names of the columns of a table: from the comments at its start, or the row of names; reads up to the first row.
 struct TableNames {
     std::vector<std::string> names;
-    int line = 0; ///< 0: no line names them
+    int line = 0; ///< line of the names; 0: no line has them
     char separator = ' ';
 };
 /// \p any: a comment may name other columns than x and y, as many as the first row has.

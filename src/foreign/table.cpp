@@ -1,4 +1,4 @@
-// Rows of numbers under names: x y r text, CSV.
+// Reads rows of numbers under names: x y r text, CSV.
 #include "foreign/source.hpp"
 #include "io/numbers.hpp"
 #include "packing/words.hpp"
@@ -34,12 +34,12 @@ std::vector<std::string> names_of(const TextLine& line) {
     return names;
 }
 
-/// "# x y r", "# x y r; words", "#format x_y_z_r": the words of a comment.
+/// The words of a comment such as "# x y r", "# x y r; words" or "#format x_y_z_r".
 std::vector<std::string> words_of_comment(std::string_view line, int number, const std::string& source) {
     line.remove_prefix(line.find_first_of("#%") + 1);
     std::vector<std::string> names = names_of(TextLine(line, number, &source, separator_of(line)));
     if (const std::size_t end = line.find(';'); end != std::string_view::npos && find_column(names, "x") < 0) {
-        names = names_of(TextLine(line.substr(0, end), number, &source, blanks_or_commas)); // words come after them
+        names = names_of(TextLine(line.substr(0, end), number, &source, blanks_or_commas)); // other words follow
     }
     if (names.size() == 2 && names[0] == "format") {
         std::string fields = names[1];
@@ -49,7 +49,7 @@ std::vector<std::string> words_of_comment(std::string_view line, int number, con
     return names;
 }
 
-/// A number, or what stands for one that is missing or that other programs write: not a name of a column.
+/// Whether a field is a number, or a mark for a missing or infinite number, and so no name of a column.
 bool is_value(std::string_view field) {
     std::string word(field.substr(field.find_first_not_of("+-") == 1 ? 1 : 0));
     std::transform(word.begin(), word.end(), word.begin(),
@@ -59,13 +59,13 @@ bool is_value(std::string_view field) {
     return digit || std::find(missing.begin(), missing.end(), word) != missing.end();
 }
 
-/// A row without any value is taken for names; all others are disks.
+/// Whether a row without any value is one of names; every other row is a disk.
 bool are_names(const std::vector<std::string>& words) {
     return !words.empty() && std::none_of(words.begin(), words.end(), [](const auto& word) { return is_value(word); });
 }
 
-/// The last comment before the first row that names columns x and y; else, of `any` columns, the last comment, where it
-/// has as many words as the row has fields.
+/// Takes the names in the last comment before the first row that has columns x and y. Otherwise, with `any` columns, it
+/// takes the last comment if this has as many words as the row has fields.
 void take_names_in_comments(TextLines& lines, bool any, TableNames& out) {
     std::vector<std::string> last;
     int line = 0;
@@ -89,10 +89,10 @@ void take_names_in_comments(TextLines& lines, bool any, TableNames& out) {
     }
 }
 
-/// Characters: std::regex calls itself for each, and a longer line could end its stack.
+/// In characters; std::regex recurses for each character, and a longer line could overflow its stack.
 constexpr std::size_t longest_header = 4096;
 
-/// "# box 0:4,0:2, tilt 0.5, periodic along xy", the first line of our own tables; another comment is none.
+/// Reads "# box 0:4,0:2, tilt 0.5, periodic along xy", the first line of our own tables, and ignores other comments.
 void take_box_of_comment(std::string_view line, int number, Raw& raw) {
     static const std::regex form(R"(# box ([^ ,:]+):([^ ,:]+),([^ ,:]+):([^ ,:]+)(?:,([^ ,:]+):([^ ,:]+))?)"
                                  R"((?:, tilt ([^ ,]+)(?: ([^ ,]+) ([^ ,]+))?, periodic along ([xyz]+))?[ \r]*)");
@@ -176,7 +176,7 @@ Raw read_table(const std::string& text, const std::string& source, const Foreign
     return raw;
 }
 
-/// N = 2 ,L1= { 4 , 0 } ,L2= { 0.5 , 2 } ,P = 0.1, then rows x , y , r , between braces (jambashbulk).
+/// Reads N = 2 ,L1= { 4 , 0 } ,L2= { 0.5 , 2 } ,P = 0.1, then rows x , y , r , between braces (jambashbulk).
 Raw read_braces(const std::string& text, const std::string& source, const ForeignOptions& options) {
     TextLines lines(text, source);
     Raw raw;

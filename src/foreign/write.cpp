@@ -13,8 +13,8 @@ namespace isostat {
 
 namespace {
 
-/// The box of three axes: the walls, or a period from 0; where there is neither, the last grain. Disks lie in the
-/// middle of a layer that is as thick as the largest one.
+/// The box along three axes: from wall to wall, or one period from 0; without both, to the outermost grains. Disks are
+/// in the middle of a layer as thick as the largest disk.
 struct Box {
     PerAxis<double> low{}, high{};
     PerTilt<double> tilt{};
@@ -39,7 +39,7 @@ struct Box {
     [[nodiscard]] double length(std::size_t axis) const { return high[axis] - low[axis]; }
 };
 
-/// Three numbers of grain i, of disks with a 0 for z.
+/// The three numbers of grain i, with 0 for the z of a disk.
 std::string three(const Packing& packing, const std::vector<double>& of_grains, std::size_t i) {
     const std::size_t d = packing.axes();
     PerAxis<double> out{};
@@ -59,7 +59,7 @@ std::string lammps_data_text(const Packing& stored, const std::string& title) {
     }
     const auto& moves = packing.cell.tilt_moves;
     if (box.tilt != PerTilt<double>{} || std::find(moves.begin(), moves.end(), true) != moves.end()) {
-        // Triclinic for LAMMPS, even at tilt 0.
+        // The box is triclinic for LAMMPS, even at tilt 0.
         text += fmt::format("{} {} {} xy xz yz\n", box.tilt[0], box.tilt[1], box.tilt[2]);
     }
     text += "\nAtoms # sphere\n\n";

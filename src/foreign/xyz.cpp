@@ -1,4 +1,4 @@
-// Extended XYZ: a number of rows, a line of key=value, the rows; frames follow each other.
+// Reads extended XYZ: a number of rows, a line of key=value, the rows; frames follow each other.
 #include "foreign/source.hpp"
 #include "io/numbers.hpp"
 
@@ -13,7 +13,7 @@ namespace isostat::foreign {
 
 namespace {
 
-/// key=value, key="several words", key='..', key={..}; words without '=' are flags. Keys in lower case.
+/// Reads key=value, key="several words", key='..', key={..}; words without '=' are flags. Keys become lower case.
 std::map<std::string, std::string> key_values(const TextLine& line) {
     std::map<std::string, std::string> out;
     std::string_view rest = line.text();
@@ -50,7 +50,7 @@ std::map<std::string, std::string> key_values(const TextLine& line) {
     return out;
 }
 
-/// Properties=name:type:count:... as one name per column; vectors as name.0, name.1, ...
+/// Turns Properties=name:type:count:... into one name per column; vectors become name.0, name.1, ...
 std::vector<std::string> property_columns(const TextLine& line, const std::string& properties) {
     std::vector<std::string> parts;
     for (std::size_t at = 0; at <= properties.size();) {
@@ -103,7 +103,7 @@ void read_box(const TextLine& line, const std::map<std::string, std::string>& ke
     const auto lattice = keys.find("lattice");
     if (lattice != keys.end()) {
         std::vector<double> v = numbers_of(line, "Lattice", lattice->second, {4, 9}, out.sides[0]);
-        if (v.size() == 4) { // of disks
+        if (v.size() == 4) { // for disks
             v = {v[0], v[1], 0, v[2], v[3], 0, 0, 0, 1};
         }
         std::vector<double> origin(most_axes, 0);
@@ -113,7 +113,7 @@ void read_box(const TextLine& line, const std::map<std::string, std::string>& ke
         out.place = fmt::format("{}: Lattice is '{}'", line.place(), lattice->second);
         out.take_vectors({{{v[0], v[1], v[2]}, {v[3], v[4], v[5]}, {v[6], v[7], v[8]}}},
                          {origin[0], origin[1], origin[2]});
-        out.boundary.fill(Boundary::periodic); // unless pbc says otherwise
+        out.boundary.fill(Boundary::periodic); // the default without pbc
     }
     if (const auto pbc = keys.find("pbc"); pbc != keys.end()) {
         const std::string source;
@@ -160,7 +160,7 @@ FrameHeader read_xyz_header(const TextLine& comment, long rows) {
 
 Raw read_xyz(const std::string& text, const std::string& source, const ForeignOptions& options) {
     Raw raw;
-    std::optional<TextLine> comment; // of the last frame looked at: others need not be right
+    std::optional<TextLine> comment; // of the chosen frame: other frames may be wrong
     ChosenFrame frame = choose_frame(text, source, options, "row", [&comment](TextLines& lines) {
         const TextLine count = lines.next("the number of rows");
         count.require_size(1, "the number of rows");

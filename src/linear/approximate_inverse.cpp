@@ -26,7 +26,7 @@ double* mutable_data(const std::vector<double>& x) {
     return const_cast<double*>(x.data()); // NOLINT(cppcoreguidelines-pro-type-const-cast)
 }
 
-/// A few entries of a vector.
+/// A vector with few entries, by index and value.
 struct SparseVector {
     std::vector<int> index;
     std::vector<double> value;
@@ -50,7 +50,7 @@ SparseVector column_of(const sparse::Matrix<double>& matrix, int column) {
             {matrix.value.begin() + matrix.start[c], matrix.value.begin() + matrix.start[c + 1]}};
 }
 
-/// x -> solve(part of x), 0 elsewhere.
+/// Replaces x by solve(part of x) on the unknowns of `to`, and by 0 elsewhere.
 template <class Solve>
 void in_block(std::span<double> x, const std::vector<int>& from, const std::vector<int>& to, Solve solve) {
     std::vector<double> part(from.size());
@@ -62,7 +62,7 @@ void in_block(std::span<double> x, const std::vector<int>& from, const std::vect
     }
 }
 
-/// Long vectors, `together` at a time: one sweep through x for all of them.
+/// Several long vectors are handled `together` at a time, in one sweep through x.
 constexpr std::size_t together = 4;
 using Several = std::vector<const double*>;
 
@@ -77,7 +77,7 @@ template <std::size_t count> void add_each(const double* const* v, const double*
 }
 
 template <std::size_t count> void dot_each(const double* const* v, std::span<const double> x, double* product) {
-    // Written in pairs, because g++ else permutes the elements of its vectors in every step of the loop.
+    // The sums are written in pairs because g++ else permutes the elements of its vectors in every step of the loop.
     std::array<Two, count> low{}; // sums over i = 0, 1 mod 4
     std::array<Two, count> high{};
     std::size_t i = 0;
@@ -99,7 +99,7 @@ template <std::size_t count> void dot_each(const double* const* v, std::span<con
     }
 }
 
-/// sweep(number, first) for groups of four, and one of what is left.
+/// Calls sweep(number, first) for groups of four vectors, then for the remaining group.
 template <class Sweep> void in_groups(std::size_t size, Sweep sweep) {
     std::size_t first = 0;
     for (; first + together <= size; first += together) {
@@ -113,12 +113,12 @@ template <class Sweep> void in_groups(std::size_t size, Sweep sweep) {
     }
 }
 
-/// x += sum of factor v.
+/// Adds the sum of factor v to x.
 void add_all(const Several& v, const std::vector<double>& factor, std::span<double> x) {
     in_groups(v.size(), [&](auto count, std::size_t k) { add_each<count>(v.data() + k, factor.data() + k, x); });
 }
 
-/// v . x of each.
+/// Computes v . x for each v.
 void dot_all(const Several& v, std::span<const double> x, std::vector<double>& product) {
     product.resize(v.size());
     in_groups(v.size(), [&](auto count, std::size_t k) { dot_each<count>(v.data() + k, x, product.data() + k); });
@@ -128,21 +128,21 @@ void dot_all(const Several& v, std::span<const double> x, std::vector<double>& p
 
 struct ApproximateInverse::Base {
     klu_common common{};
-    std::shared_ptr<void> analysis; ///< keeps `symbolic` alive when it is shared
+    std::shared_ptr<void> analysis; ///< keeps a shared `symbolic` alive
     klu_symbolic* symbolic = nullptr;
     klu_numeric* numeric = nullptr;
     sparse::Matrix<double> matrix;
     std::vector<int> block_rows, block_columns; ///< empty: the whole matrix
     std::vector<int> row_order, column_order;   ///< of the last full analysis, exchanged columns last
     int entries = 0;                            ///< of L and U; 0: there are no factors
-    int entries_then = 0;                       ///< of the factors made with it first
-    double operations = 0;                      ///< that made the factors
+    int entries_then = 0;                       ///< of the first factors made with this order
+    double operations = 0;                      ///< number of operations that made the factors
     explicit Base(const sparse::Matrix<double>& m) : matrix(m) {
         klu_defaults(&common);
         sparse::choose_order(common, matrix.rows, matrix.entries());
-        // Unit columns need no scaling, and without it nothing depends on the size of the numbers.
+        // Unit columns need no scaling, and without scaling nothing depends on the size of the numbers.
         common.scale = 0;
-        // A regular matrix may still underflow to a zero pivot: keep going, the residual bounds of the users will tell.
+        // A regular matrix may still underflow to a zero pivot. KLU then goes on: the callers' residual bounds show it.
         common.halt_if_singular = 0;
     }
     void factorise() {
@@ -165,9 +165,9 @@ struct ApproximateInverse::Base {
     }
 };
 
-/// M' = M with row `slot` of G replaced by g: M'^-1 = (I - v (g - a)^T / (g.v)) M^-1, v = M^-1 e_slot, a the row
-/// before. What several of them do to a vector follows from their products with it, taken all at once, and from their
-/// products with each other.
+/// M' = M with row `slot` of G replaced by g: M'^-1 = (I - v (g - a)^T / (g.v)) M^-1, v = M^-1 e_slot, a the old row.
+/// The effect of several exchanges on a vector follows from their products with the vector, all computed in one sweep,
+/// and from their products with each other.
 struct ApproximateInverse::Exchange {
     int slot = 0;
     SparseVector row;                      ///< g
@@ -175,7 +175,7 @@ struct ApproximateInverse::Exchange {
     SparseVector few;                      ///< v when only few grains move (rattlers)
     std::vector<double> many;              ///< v otherwise
     double speed = 0;                      ///< g.v
-    std::vector<double> row_on, change_on; ///< g . v and (g - a) . v with the v of each earlier exchange
+    std::vector<double> row_on, change_on; ///< g . v and (g - a) . v for the v of each earlier exchange
 
     [[nodiscard]] double along_v(const SparseVector& x) const {
         if (!many.empty()) {
@@ -217,8 +217,8 @@ ApproximateInverse ApproximateInverse::renewed(const sparse::Matrix<double>& mat
     base->row_order = base_->row_order;
     base->column_order = base_->column_order;
     base->entries_then = base_->entries_then;
-    // A column that was exchanged goes to the end, with its row: there it fills little, whatever it connects. Its
-    // pivot need not be an entry of the matrix.
+    // An exchanged column goes to the end of the order, and so does its row: there it fills little, whatever it
+    // connects. Its pivot need not be an entry of the matrix.
     std::vector<unsigned char> last(base->column_order.size(), 0);
     for (const auto& exchange : exchanges_) {
         last[static_cast<std::size_t>(exchange->slot)] = 1;
@@ -236,7 +236,7 @@ ApproximateInverse ApproximateInverse::renewed(const sparse::Matrix<double>& mat
                                        base->row_order.data(), base->column_order.data(), &base->common);
     base->factorise();
     if (base->common.numerical_rank < matrix.rows && base->common.numerical_rank >= 0) {
-        return ApproximateInverse(matrix); // a block was left without pivot
+        return ApproximateInverse(matrix); // a block has no pivot
     }
     ApproximateInverse inverse;
     inverse.make_schedule(std::move(base));
@@ -291,7 +291,7 @@ double ApproximateInverse::relative_cost() const {
     for (const auto& exchange : exchanges_) {
         work += static_cast<double>(exchange->many.size());
     }
-    // An entry of a dense vector costs about a sixth of one of the factors, which is reached through its index.
+    // An entry of a dense vector costs about a sixth of an entry of the factors, which is reached through its index.
     return 1 + work / (6 * std::max(1.0, static_cast<double>(base_->entries)));
 }
 
@@ -305,7 +305,7 @@ ApproximateInverse ApproximateInverse::exchanged(int slot, const sparse::Matrix<
     exchange->slot = slot;
     exchange->row = column_of(after, slot);
     exchange->speed = exchange->row.dot(v);
-    // The row that M has there now: of the last exchange of this slot, or of the base.
+    // The row before is that of the last exchange of this slot, or else the row of the base.
     const auto last = std::find_if(exchanges_.rbegin(), exchanges_.rend(),
                                    [slot](const auto& earlier) { return earlier->slot == slot; });
     const SparseVector before = last != exchanges_.rend() ? (*last)->row : column_of(base_->matrix, slot);
@@ -339,13 +339,13 @@ ApproximateInverse ApproximateInverse::exchanged(int slot, const sparse::Matrix<
 void ApproximateInverse::velocities(std::span<double> rhs) const {
     assert(rhs.size() == static_cast<std::size_t>(base_->matrix.rows));
     if (!valid()) {
-        std::fill(rhs.begin(), rhs.end(), std::nan("")); // every bound fails, nothing is decided
+        std::fill(rhs.begin(), rhs.end(), std::nan("")); // every bound fails, so nothing is decided
         return;
     }
-    // Row r of the newest matrix asks for rhs[r]; the factors solve for the base with the same right-hand side, and
-    // each exchange corrects its own row.
-    klu_common common = base_->common;             // the factors may be shared by threads
-    std::vector<double> factor(exchanges_.size()); // first what is asked for
+    // Row r of the newest matrix requires rhs[r]. The factors solve for the base with the same right-hand side, and
+    // each exchange then corrects its own row.
+    klu_common common = base_->common;             // a copy, since threads may share the factors
+    std::vector<double> factor(exchanges_.size()); // first the required rates
     for (std::size_t k = 0; k < exchanges_.size(); ++k) {
         factor[k] = rhs[static_cast<std::size_t>(exchanges_[k]->slot)];
     }
@@ -393,7 +393,7 @@ void ApproximateInverse::forces(std::span<double> rhs) const {
     }
     std::vector<double> product;
     dot_all(many, rhs, product);
-    std::vector<double> factor(exchanges_.size()); // of the changes
+    std::vector<double> factor(exchanges_.size()); // of each `change`
     std::size_t dense = many.size();
     for (std::size_t k = exchanges_.size(); k-- > 0;) {
         const Exchange& exchange = *exchanges_[k];

@@ -17,9 +17,9 @@ namespace isostat {
 namespace {
 
 using roundoff::u;
-constexpr std::size_t max_passes = 20; ///< more than that costs as much as new factors
+constexpr std::size_t max_passes = 20; ///< more passes cost as much as new factors
 constexpr std::size_t kept_directions = 4;
-constexpr double cancelled = 1e-12;     ///< of the square of an image: as much as 1e-10 of it is rounding
+constexpr double cancelled = 1e-12;     ///< of the square of an image: then 1e-10 of the image is rounding
 constexpr double residual_left = 1e-12; ///< of the size of the unknowns and the right-hand side
 
 /// A direction and its image under the matrix.
@@ -29,7 +29,7 @@ struct Direction {
 };
 using Directions = std::array<Direction, kept_directions>;
 
-/// Directions with their factors, all in one sweep.
+/// Subtracts directions times their factors, all in one sweep.
 template <std::size_t count>
 void subtract(Direction& from, const std::array<const Direction*, count>& what,
               const std::array<double, count>& factor) {
@@ -52,8 +52,8 @@ void subtract(Direction& from, const std::array<const Direction*, count>& what,
     sweep(from.image.data(), images);
 }
 
-/// What is left of a direction when its image is made orthogonal to those of the last `count` ones, which are so to
-/// each other. Returns the square of the image taken out.
+/// Makes the image of a direction orthogonal to the images of the last `count` directions, which are orthogonal to each
+/// other. Returns the square of the image taken out.
 template <std::size_t count> double orthogonalise(Direction& now, const std::array<const Direction*, count>& earlier) {
     std::array<double, count> factor{};
     double taken_out = 0;
@@ -74,7 +74,7 @@ struct Factorisation::Implementation {
     int passes = 0;
     std::vector<double> x, r;
     using Enough = std::function<bool(std::span<const double>, double)>;
-    double error = 0; ///< estimated, of the last refinement that ended because it was enough
+    double error = 0; ///< estimated, of the last refinement that `enough` ended
 
     enum class Side { forces, velocities };
 
@@ -111,7 +111,7 @@ struct Factorisation::Implementation {
         }
     }
 
-    /// Direction k of the iteration: from the residual, with the images of the last ones taken out of its own.
+    /// Direction k of the iteration: from the residual, with the image made orthogonal to the last images.
     const Direction& next_direction(Side side, std::size_t k, Directions& directions) {
         Direction& now = directions[k % kept_directions];
         now.step = r;
@@ -124,15 +124,15 @@ struct Factorisation::Implementation {
                                  : k == 2 ? orthogonalise<2>(now, {back(1), back(2)})
                                           : orthogonalise<3>(now, {back(1), back(2), back(3)});
         now.square = dot(now.image, now.image);
-        if (now.square < cancelled * taken_out) { // rounding is left: it is no longer the image of what is left
+        if (now.square < cancelled * taken_out) { // mostly rounding is left, so the image is computed again
             multiply(side, now.step, now.image);
             now.square = dot(now.image, now.image);
         }
         return now;
     }
 
-    /// What the changes to come may amount to: change^2 / previous where they fall fast. A direction across the
-    /// residual also makes a small step: the residual has to tell the same.
+    /// Estimate of the changes still to come: change^2 / previous where the changes fall fast, and otherwise infinity.
+    /// A direction across the residual also makes a small step, so the residual must be as small.
     [[nodiscard]] double error_left(double change, double previous, double size, double size_of_rhs) const {
         const double next = change * change / previous;
         return change < 0.1 * previous && largest(r) * std::max(size, size_of_rhs) <= 100 * next * size_of_rhs
@@ -140,7 +140,7 @@ struct Factorisation::Implementation {
                    : std::numeric_limits<double>::infinity();
     }
 
-    /// Puts x and r at the start of a refinement, multiplied by `up`. Returns the largest component of the right side.
+    /// Sets x and r for the start of a refinement, times `up`. Returns the largest component of the right-hand side.
     double start_from(Side side, std::span<const double> rhs, std::span<const double> guess, double up) {
         const auto scaled = [up](double c) { return c * up; };
         error = 0;
@@ -157,13 +157,13 @@ struct Factorisation::Implementation {
         return size_of_rhs;
     }
 
-    /// Iterates to rounding; false when it does not converge. Each pass makes a direction; the residual is minimised
-    /// over the last few of them (generalised conjugate residuals, truncated), which needs fewer passes than plain
-    /// refinement and converges where that does not.
+    /// Iterates to rounding; false when the iteration does not converge. Each pass makes a direction. The residual is
+    /// minimised over the last few directions (generalised conjugate residuals, truncated), which needs fewer passes
+    /// than plain refinement and converges in cases where plain refinement does not.
     bool refined(Side side, std::span<double> rhs, std::span<const double> guess = {}, double accuracy = 4 * u,
                  const Enough& enough = {}) {
         const std::size_t n = rhs.size();
-        // By a power of two near 1, which changes no bit: squares neither under- nor overflow, whatever the units are.
+        // Scales by a power of two, which changes no bit, so that squares neither under- nor overflow in any units.
         int exponent = 0;
         std::frexp(largest(rhs), &exponent);
         exponent = std::clamp(exponent, -1000, 1000);
@@ -179,10 +179,10 @@ struct Factorisation::Implementation {
         for (std::size_t k = 0; k < max_passes; ++k) {
             const Direction& now = next_direction(side, k, directions);
             if (now.square == 0 && largest(r) == 0) {
-                return deliver(); // nothing is left to correct
+                return deliver(); // the residual is exactly 0
             }
             const double length = dot(now.image, r) / now.square;
-            if (!std::isfinite(now.square) || !std::isfinite(length)) { // maxima below do not see a NaN
+            if (!std::isfinite(now.square) || !std::isfinite(length)) { // the maxima below overlook a NaN
                 return false;
             }
             for (std::size_t i = 0; i < n; ++i) {
@@ -196,7 +196,7 @@ struct Factorisation::Implementation {
             }
             // Linear convergence: the next change would be change^2 / previous.
             if (change <= accuracy * size || (k > 0 && change * change <= accuracy * size * previous)) {
-                // Small steps are also what a useless operator makes: the residual has to be small too.
+                // A useless operator makes small steps too, so the residual has to be small as well.
                 if (!(largest(r) <= std::max(residual_left, 100 * accuracy) * (size + size_of_rhs))) {
                     return false;
                 }
@@ -244,7 +244,7 @@ Factorisation::Factorisation(const IsostaticStructure& structure, ApproximateInv
     : implementation_(new Implementation{structure.shared_matrix(), std::move(inverse), false, 0, {}, {}}) {}
 
 std::optional<Factorisation> Factorisation::of_moving_block(const IsostaticStructure& structure, int slot) {
-    // Unknown velocities that are not structural zeros when only contact `slot` has one: the pattern of G.
+    // The pattern of G where only contact `slot` has a velocity: the unknown velocities that are not structural zeros.
     const sparse::Matrix<double>& h = structure.matrix();
     const auto n = static_cast<std::size_t>(h.rows);
     std::vector<int> start(n + 1, 0);
@@ -259,7 +259,7 @@ std::optional<Factorisation> Factorisation::of_moving_block(const IsostaticStruc
             contact[static_cast<std::size_t>(next[static_cast<std::size_t>(h.row[e])]++)] = static_cast<int>(l);
         }
     }
-    std::vector<int> matched(n); // degree of freedom matched to each contact
+    std::vector<int> matched(n); // the degree of freedom matched to each contact
     for (std::size_t mu = 0; mu < n; ++mu) {
         matched[static_cast<std::size_t>(structure.matching()[mu])] = static_cast<int>(mu);
     }

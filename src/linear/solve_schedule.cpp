@@ -10,7 +10,7 @@
 
 namespace isostat {
 
-/// What KLU's factors are made of.
+/// KLU's factors and permutations.
 struct SolveSchedule::Parts {
     Lines lower, upper, beside; ///< L by columns, U and F by rows
     std::vector<int> rows, columns, blocks;
@@ -29,12 +29,12 @@ struct SolveSchedule::Parts {
         join_small_blocks();
     }
 
-    /// The blocks of rattlers are small and many, and each has a price of its own. [A F; 0 B] with A = L U is also
-    /// [L 0; 0 1] [U L^-1 F; 0 B]: small blocks become one with what comes after them.
+    /// The blocks of rattlers are small and many, and each has a fixed cost. Because [A F; 0 B] with A = L U equals [L
+    /// 0; 0 1] [U L^-1 F; 0 B], small blocks are joined to the block that follows.
     void join_small_blocks() {
         constexpr int small = 8;
         std::vector<int> joined{0};
-        std::vector<int> first_above(rows.size()); // lines of its block above a row that something comes after
+        std::vector<int> first_above(rows.size()); // first line of the small block that a joined row belongs to
         std::iota(first_above.begin(), first_above.end(), 0);
         for (std::size_t b = 1; b < blocks.size(); ++b) {
             if (blocks[b] - blocks[b - 1] > small || b + 1 == blocks.size()) {
@@ -52,8 +52,8 @@ struct SolveSchedule::Parts {
             to.index.push_back(index);
             to.value.push_back(value);
         };
-        std::vector<std::size_t> first(rows.size());    // of the entries of L^-1 F in each row
-        std::vector<std::size_t> place(rows.size(), 0); // of a column in the row
+        std::vector<std::size_t> first(rows.size());    // first entry of L^-1 F in each row
+        std::vector<std::size_t> place(rows.size(), 0); // position of a column in the current row
         std::size_t block = 1;
         for (std::size_t row = 0; row < rows.size(); ++row) {
             block += static_cast<int>(row) == blocks[block] ? 1 : 0;
@@ -112,7 +112,7 @@ SolveSchedule::SolveSchedule(const Parts& parts, Future<Triangle> lower)
 
 namespace {
 
-/// work(x), x = rhs in the order `from` with the unknowns to spare behind it; its result back in the order `to`.
+/// Calls work(x), x = rhs in the order `from` followed by spare unknowns; puts the result back in the order `to`.
 template <class Work>
 void in_order(std::span<double> rhs, const std::vector<int>& from, const std::vector<int>& to, Work work) {
     const std::size_t n = rhs.size();

@@ -12,12 +12,12 @@
 
 namespace isostat {
 
-/// Solves with P A Q = L U + F (block upper triangular, F above the blocks). Blocks of few unknowns, of which rattlers
-/// make many, are one with the block that comes after them: their rows of L^-1 F are rows of its U.
+/// Solves with P A Q = L U + F (block upper triangular, F above the blocks). Blocks of few unknowns, which rattlers
+/// make in number, are merged with the block after them: their rows of L^-1 F are rows of its U.
 class SolveSchedule {
   public:
-    /// Takes the place of the factors, which are as large: none are left. Cost: half to two thirds of the
-    /// factorisation; two threads share it.
+    /// Consumes the factors, whose memory it replaces. Cost: half
+    /// to two thirds of the factorisation, shared by two threads.
     SolveSchedule(klu_symbolic& symbolic, klu_numeric*& numeric);
     /// A^-1 rhs, and A^-T rhs, in place. Zeros that follow from the pattern stay exact.
     void solve(std::span<double> rhs) const;
@@ -31,13 +31,13 @@ class SolveSchedule {
     };
     struct Parts;
     explicit SolveSchedule(const std::shared_ptr<const Parts>& parts);
-    /// The other triangle meanwhile.
+    /// Takes the other triangle from another thread.
     SolveSchedule(const Parts& parts, Future<Triangle> lower);
 
     std::vector<int> rows_, columns_; ///< P and Q
     Triangle upper_, lower_;
     std::vector<Beside> beside_;
-    std::vector<std::size_t> beside_start_; ///< by block of the row
+    std::vector<std::size_t> beside_start_; ///< first entry of each block of rows
 };
 
 } // namespace isostat

@@ -16,17 +16,17 @@ namespace {
 
 using roundoff::infinity;
 
-/// Entries between the lines of a step.
+/// Number of entries between the lines of a step.
 constexpr int links(int width) {
     return width * (width - 1) / 2;
 }
 
-/// Values of a step: inverse diagonals, links, entries.
+/// Number of values of a step: inverse diagonals, links, entries.
 constexpr int values_of(int width, int entries, bool unit) {
     return (unit ? 0 : width) + links(width) + width * entries;
 }
 
-/// Steps of up to this many entries have functions of their own; more are rounded up to a multiple of four.
+/// Steps of up to this many entries have functions of their own; larger numbers are rounded up to a multiple of four.
 constexpr int few = 8;
 
 int rounded(int entries) {
@@ -88,7 +88,7 @@ void run_backwards(const Triangle::Run& run, const int* i, const double* v, doub
         const double* const link = v + (unit ? 0 : width);
         const double* const value = link + links(width);
         std::array<double, at(width)> sum{};
-        // The unknowns that were found last come last.
+        // The unknowns computed last are used last.
         int e = entries;
         if constexpr (width == 1) {
             double even = 0;
@@ -102,7 +102,7 @@ void run_backwards(const Triangle::Run& run, const int* i, const double* v, doub
             }
             sum[0] = even + odd;
         } else {
-            std::array<Two, at(width)> parts{}; // of every second entry, then of the others
+            std::array<Two, at(width)> parts{}; // sums over every second entry, then over the others
             const auto take = [&](int entry, int part) {
                 for (int half = 0; half < width / 2; ++half) {
                     parts[at(part + half)] += two_at(value + width * entry + 2 * half) * x[index[entry]];
@@ -131,7 +131,7 @@ void run_backwards(const Triangle::Run& run, const int* i, const double* v, doub
     }
 }
 
-/// By width (1, 2, 4), and number of entries: 0 to `few`, and more.
+/// Kernels by width (1, 2, 4), and by number of entries: 0 to `few`, then more.
 using Kernels = std::array<std::array<Kernel, few + 2>, 3>;
 
 template <bool unit, int... known> constexpr Kernels forward_kernels(std::integer_sequence<int, known...>) {
@@ -178,27 +178,27 @@ double Lines::entry(std::size_t line, int number) const {
     return found != end ? value[at(static_cast<int>(found - index.begin()))] : 0.0;
 }
 
-/// How a triangle is laid out.
+/// Computes the layout of a triangle.
 struct Triangle::Layout {
-    /// Lines done together.
+    /// Lines that are computed together.
     struct Step {
         int line, width;
-        std::size_t first; ///< of its numbers
-        int different;     ///< of them
-        int waits = 0;     ///< times that steps not done yet change its unknowns
+        std::size_t first; ///< index of its first entry in `numbers`
+        int different;     ///< how many entries of `numbers` it has
+        int waits = 0;     ///< number of changes that steps not yet done make to its unknowns
         [[nodiscard]] int entries() const { return rounded(different); }
     };
     const Lines& lines;
     Triangle& triangle;
     std::vector<Step> steps;
-    std::vector<int> numbers;       ///< of the unknowns that a step changes, step by step
-    std::vector<int> step_of;       ///< each line
-    std::vector<int> seen;          ///< by number: when it was met last
-    std::vector<std::size_t> place; ///< by number: of its values in a step
+    std::vector<int> numbers;       ///< the unknowns that a step changes, step by step
+    std::vector<int> step_of;       ///< the step of each line
+    std::vector<int> seen;          ///< by number: the last round in which it was met
+    std::vector<std::size_t> place; ///< by number: the place of its values in a step
     int now = 0;
-    /// Steps that wait for nothing, by shape.
+    /// Steps that wait for no other step, by shape.
     std::vector<std::vector<int>> ready;
-    std::vector<std::size_t> shapes; ///< of which there are some
+    std::vector<std::size_t> shapes; ///< the shapes of which some step is ready
 
     Layout(const Lines& l, Triangle& t)
         : lines(l), triangle(t), step_of(l.start.size()), seen(l.start.size(), 0), place(l.start.size(), 0) {
@@ -218,7 +218,7 @@ struct Triangle::Layout {
     /// Cost of entries when a step has 1, 2 or 4 lines.
     static int cost(int width, int entries) { return (width == 1 ? 5 : width == 2 ? 7 : 10) * entries; }
 
-    /// Appends the step that begins with this line, of two lines when that is cheaper than two of one.
+    /// Appends the step that begins with this line; the step has two lines when that is cheaper than two steps of one.
     Step one_or_two(int line, int end) {
         const std::size_t first = numbers.size();
         ++now;
@@ -241,7 +241,7 @@ struct Triangle::Layout {
         }
         return {line, 2, first, both};
     }
-    /// Two steps of two lines into one, when that is cheaper: the first.
+    /// Joins two steps of two lines into the first when one step of four lines is cheaper.
     bool join(Step& a, const Step& b) {
         if (a.width != 2 || b.width != 2 || b.different <= few) {
             return false;
@@ -280,7 +280,7 @@ struct Triangle::Layout {
         for (int k = 0; k < static_cast<int>(steps.size()); ++k) {
             const Step& step = steps[at(k)];
             std::fill_n(step_of.begin() + step.line, step.width, k);
-            if (step.different > few) { // what the next steps wait for comes first
+            if (step.different > few) { // the unknowns of the next steps come first
                 const auto first = numbers.begin() + static_cast<std::ptrdiff_t>(step.first);
                 std::sort(first, first + step.different);
             }
@@ -318,7 +318,7 @@ struct Triangle::Layout {
         for (int k = s.different; k < s.entries(); ++k) {
             index.push_back(static_cast<int>(lines.start.size()) - 1 + k % spare);
         }
-        if (!triangle.unit_) { // without a diagonal, if it should be, nothing is finite
+        if (!triangle.unit_) { // a missing diagonal makes the results infinite
             std::fill_n(value.begin() + static_cast<std::ptrdiff_t>(scale), s.width, infinity);
         }
         for (int b = 0; b < s.width; ++b) {
@@ -337,7 +337,7 @@ struct Triangle::Layout {
         }
     }
 
-    /// Always the shape of which most are ready.
+    /// Writes the steps in runs of one shape, always the shape of which most steps are ready.
     void lay_out(int begin, int end) {
         group(begin, end);
         for (int step = 0; step < static_cast<int>(steps.size()); ++step) {
@@ -355,7 +355,7 @@ struct Triangle::Layout {
             *most = shapes.back();
             shapes.pop_back();
             const Step& shape = steps[at(run.front())];
-            if (!triangle.unit_ || shape.different > 0 || shape.width > 1) { // else there is nothing to do
+            if (!triangle.unit_ || shape.different > 0 || shape.width > 1) { // otherwise the step does nothing
                 triangle.runs_.push_back({shape.width, shape.entries(), static_cast<int>(run.size())});
                 for (const int step : run) {
                     write(steps[at(step)]);

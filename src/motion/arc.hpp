@@ -14,29 +14,29 @@
 
 namespace isostat {
 
-/// Choices of the path follower. The events do not depend on them; the cost does.
+/// Choices of the path follower. They change the cost, not the events.
 struct ArcOptions {
     double step_fraction = 0.1;   ///< longest predictor step of the fastest coordinate, in units of the smallest radius
     int max_steps = 100000;       ///< predictor steps before the motion is called unbounded
     double max_length_change = 1; ///< |L_a / L_a(start) - 1| beyond which the motion is called unbounded
-    /// The tangent at an event is extrapolated from the way there instead of solved for, where nothing is close enough
-    /// to depend on it: for callers that do not use `Arc::tangent`. Saves two passes and more.
+    /// The tangent at an event is extrapolated from the path instead of solved for, where no close decision depends on
+    /// it: for callers that do not use `Arc::tangent`. Saves two passes or more.
     bool extrapolate_tangent = false;
-    /// The sign of the power at an event is read off a tangent that is solved for to the last digits: for callers who
-    /// proved it negative where it was taken for positive.
+    /// The sign of the power at an event comes from a tangent that is solved for to the last digits: for callers who
+    /// proved the power negative after the follower had taken it for positive.
     bool sharp_power = false;
-    /// Points and tangents are found with residuals in double-double: for callers to whom an arc in double failed.
+    /// Points and tangents are found with residuals in double-double: for callers whose arc in double failed.
     bool precisely = false;
-    std::optional<Contact> closes; ///< proved by the caller to close before the contact found otherwise: end there
-    /// Pairs that touch at the start besides the contacts: those proved to separate at once (as the opened contact
-    /// does), those proved to keep their distance all along (both at rest), and those only taken to, or to graze on the
-    /// way: where a step ends they are looked at.
+    std::optional<Contact> closes; ///< ends the arc: the caller proved that this contact closes earlier
+    /// Pairs that touch at the start without being contacts: `leaving` are proved to separate at once (as the opened
+    /// contact does), `resting` are proved to keep their distance all along, `taken_to_rest` are only assumed to keep
+    /// it, or to graze later: they are checked at the end of each step.
     std::vector<Contact> leaving;
     std::vector<Contact> resting;
     std::vector<Contact> taken_to_rest;
 };
 
-/// What an arc starts from: a structure made at the packing, with factors that solve well for it. The gap of `opened`
+/// The start of an arc: a structure made at the packing, with factors that solve accurately for it. The gap of `opened`
 /// grows (`direction` +1; a held coordinate grows, or falls with -1).
 struct ArcOrigin {
     const Packing& packing;
@@ -61,7 +61,7 @@ struct Arc {
     Packing end;
     ArcEnd kind = ArcEnd::contact;
     Contact closed;              ///< the new contact, or the fastest coordinate at the power turn (ContactKind::held)
-    double power = 0;            ///< F_ext . t at the end, t scaled to 1 in the fastest coordinate; as good as t
+    double power = 0;            ///< F_ext . t at the end, t scaled to 1 in the fastest coordinate; as accurate as t
     std::vector<double> tangent; ///< t, on coordinates: a guess of the null vector of the kept contacts, not a bound
     /// The candidates that are not contacts at the end, in the order of the list; empty: not known.
     std::vector<Contact> open;
@@ -81,34 +81,34 @@ struct Arc {
 /// inside a step; the end is checked by the caller with proved bounds.
 ///
 /// \pre `candidates` is complete at the origin; it is rebuilt when the motion leaves its reach. Failures: `unbounded`,
-/// `not_converged`, `not_isostatic` (the mechanism is not unique on the way), `undecided` (a dip that touches). Cost:
-/// about 10 to 30 triangular solves for a short arc; no factorisation.
+/// `not_converged`, `not_isostatic` (the mechanism is not unique on the path), `undecided` (a gap that touches 0 inside
+/// a step). Cost: about 10 to 30 triangular solves for a short arc; no factorisation.
 Result<Arc> follow_arc(const ArcOrigin& origin, const PowerLoad& power, CandidateList& candidates,
                        const ArcOptions& options);
 
-/// Candidates anew, when less than a quarter of their reach is left at a configuration; whether they were. What every
-/// step of an arc begins with.
+/// Makes the candidates anew when less than a quarter of their reach is left at a configuration, and returns whether it
+/// did. Every step of an arc begins with this call.
 bool renew_candidates(CandidateList& candidates, const Packing& at);
 
-/// An arc of which tangent, curvature and the candidates at the start are worked out: the part that can be done beside
-/// other work on the same vertex. `follow` is then what `follow_arc` is. What the origin and the constructor refer to
-/// must outlive it. The candidates are made anew only when `renew_candidates` would. `open`: those that are not
-/// contacts of the structure, if they are at hand (`Arc::open` of the arc before). Cost: about half the solves of a
-/// short arc.
+/// An arc whose tangent, curvature and candidates at the start are computed: the part that can run
+/// in parallel with other work on the same vertex. `follow` then does what `follow_arc` does. Objects that the
+/// origin and the constructor refer to must outlive it. The candidates are made anew only when
+/// `renew_candidates` would do so. `open`: candidates that are not contacts of the structure, if the
+/// caller has them (`Arc::open` of the previous arc). Cost: about half the solves of a short arc.
 class ArcDeparture {
   public:
     ArcDeparture(const ArcOrigin& origin, const PowerLoad& power, CandidateList& candidates, const ArcOptions& options,
                  std::vector<Contact> open = {});
     ArcDeparture(ArcDeparture&&) noexcept;
     ~ArcDeparture();
-    /// The end as the start foretells it.
+    /// The end as predicted at the start.
     struct Expected {
         Contact closes;
-        Packing end; ///< not on the curve
+        Packing end; ///< near the curve, not on it
     };
-    /// A guess, before `follow`. Nothing when no contact closes within the first step. Cost: a copy of the coordinates.
+    /// A guess, before `follow`. Nothing when the first step closes no contact. Cost: a copy of the coordinates.
     [[nodiscard]] std::optional<Expected> expected() const;
-    /// Once.
+    /// To be called once.
     Result<Arc> follow();
 
   private:

@@ -1,5 +1,5 @@
 #pragma once
-// Where a piece of an arc is developed: private to the room.
+// Where the polynomial of a piece of an arc is expanded: private to the room.
 
 #include "motion/certify_arc.hpp"
 #include "motion/factorised_structure.hpp"
@@ -12,9 +12,9 @@ namespace isostat {
 /// A configuration whose contact matrix (moving grains only) was proved regular, factorised and bounded.
 class ArcCentre {
   public:
-    /// Nothing when a step fails.
+    /// Null when a step fails.
     static std::unique_ptr<ArcCentre> make(Packing packing, std::vector<Contact> contacts, InverseBoundCache& cache);
-    /// The vertex itself, nothing copied but the coordinates.
+    /// The vertex itself as a centre; only its coordinates are copied.
     static std::unique_ptr<ArcCentre> of(const ArcVertex& vertex);
 
     [[nodiscard]] const Packing& packing() const { return packing_; }

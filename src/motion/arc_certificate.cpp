@@ -18,7 +18,7 @@ namespace isostat {
 
 namespace {
 
-/// How far the true vertex may be from the stored configuration.
+/// Bound of the distance between the true vertex and the stored configuration.
 double uncertainty(const VertexEnclosure& vertex) {
     double square = 0;
     for (const double c : vertex.correction) {
@@ -34,8 +34,8 @@ class Certifier {
         : start_(start), end_(end), slot_(opened.index()), direction_(direction), candidates_(std::move(candidates)),
           options_(options), load_(power) {}
 
-    /// First with the bounds that the vertices have; when the rows of the opened and of the closed contact do not serve
-    /// (they move slowly against the rest), with the fastest coordinates in their place.
+    /// First tries the bounds of the vertices; when the rows of the opened and of the closed contact are unsuitable
+    /// (they change slowly compared with other coordinates), uses the fastest coordinates instead.
     ArcCertificate run() {
         if (!check_input()) {
             return std::move(certificate_);
@@ -55,7 +55,7 @@ class Certifier {
 
   private:
     using Piece = CurvePiece;
-    /// The piece that the curve has come to, its centre, and where on it the next stretch begins, up to `slack`.
+    /// The current piece of the curve, its centre, and where on the piece the next stretch begins, up to `slack`.
     struct Front {
         std::unique_ptr<ArcCentre> centre;
         std::unique_ptr<Piece> piece;
@@ -91,16 +91,16 @@ class Certifier {
     std::vector<Contact> active_;
     ArcCertificateOptions options_;
     std::unique_ptr<MovingPart> part_;
-    InverseBoundCache cache_; ///< of one attempt
+    InverseBoundCache cache_; ///< for one attempt
     Front front_;
     std::unique_ptr<ArcCentre> end_centre_;
-    std::unique_ptr<Piece> last_; ///< at `end_centre_`
+    std::unique_ptr<Piece> last_; ///< the piece at `end_centre_`
     GapWatch watch_;
     const PowerLoad& load_;
     PowerWatch* power_ = nullptr;
     bool fresh_ends_ = false;
     bool hopeless_ = false; ///< fresh ends would not help
-    double end_rate_ = -1;  ///< of the free row at the end
+    double end_rate_ = -1;  ///< rate of the free row at the end
     ArcCertificate certificate_;
     double start_uncertainty_ = 0;
     double end_uncertainty_ = 0;
@@ -131,7 +131,7 @@ bool Certifier::check_input() {
     return true;
 }
 
-/// Every candidate but the contacts has a positive gap at the true vertex; `zero` may be 0.
+/// Every candidate except the contacts has a positive gap at the true vertex; the gap of `zero` may be 0.
 bool Certifier::check_vertex(const ArcVertex& vertex, const Contact& zero, const char* name) {
     for (const Contact& contact : active_) {
         if (contact != zero && !gap_at_vertex(vertex.packing, vertex.enclosure, contact).positive()) {
@@ -142,7 +142,7 @@ bool Certifier::check_vertex(const ArcVertex& vertex, const Contact& zero, const
     return true;
 }
 
-/// The piece at a centre with the longest tube that is proved; null: none.
+/// The piece at a centre with the longest proved tube; null: no tube is proved.
 std::unique_ptr<CurvePiece> Certifier::proved_piece(const ArcCentre& centre, double forward) {
     auto piece = std::make_unique<Piece>(part_->curve(), centre, forward);
     const double floor = options_.smallest_step * start_.packing.min_radius();
@@ -154,7 +154,7 @@ std::unique_ptr<CurvePiece> Certifier::proved_piece(const ArcCentre& centre, dou
     return nullptr;
 }
 
-/// Gaps and power for s in [from, to] of a proved piece.
+/// Proves gaps and power for s in [from, to] of a proved piece.
 bool Certifier::finish(const Piece& piece, double from, double to) {
     ++certificate_.pieces;
     certificate_.tube = std::max(certificate_.tube, piece.radius());
@@ -182,7 +182,7 @@ bool Certifier::finish(const Piece& piece, double from, double to) {
     return true;
 }
 
-/// The end vertex lies on `last`: looks at what is left and at the gaps of the end.
+/// The end vertex lies on `last`: proves the remaining stretch and the gaps at the end.
 bool Certifier::arrive(const Piece& last, double from, double joint_slack) {
     const auto place = last.locate(end_.packing.q, end_uncertainty_);
     if (!place) {
@@ -192,8 +192,8 @@ bool Certifier::arrive(const Piece& last, double from, double joint_slack) {
     if (!finish(last, from, std::max(to, from))) {
         return false;
     }
-    // The end lies ahead of the start of the piece; or this is the only piece and the closing gap, positive at the
-    // start of the arc, falls all along it.
+    // The end is ahead of the start of the piece; or this is the only piece and the closing gap, positive at the start
+    // of the arc, falls all along it.
     const bool ahead = place->s - place->slack > from + 2 * joint_slack;
     if (!ahead && !(certificate_.pieces == 1 && closed() != opened() && watch_.fell_all_along(closed()))) {
         return refuse("the end is not proved to lie ahead of the start");
@@ -237,7 +237,7 @@ ArcCertificate Certifier::attempt(bool fresh_ends) {
     return certificate_;
 }
 
-/// The moving part, its equations, and the gaps at the start. False: fresh ends would not help either.
+/// Finds the moving part and its equations, and proves the gaps at the start. False: fresh ends would not help either.
 bool Certifier::begin() {
     start_uncertainty_ = uncertainty(start_.enclosure);
     end_uncertainty_ = uncertainty(end_.enclosure) + MovingPart::shift_of_end(start_, end_);
@@ -261,8 +261,8 @@ bool Certifier::begin() {
     return true;
 }
 
-/// Centres at the two ends, and the piece at the start. A released coordinate says in which direction the curve is
-/// followed: its row stays.
+/// Makes the centres at the two ends, and the piece at the start. A released coordinate determines the direction of the
+/// curve, so its row is kept.
 bool Certifier::place_ends() {
     double rate = opened().kind == ContactKind::held ? static_cast<double>(direction_) : 1.0;
     const auto with_fastest = [&](std::unique_ptr<ArcCentre>& vertex, double& forward) {
@@ -294,7 +294,7 @@ bool Certifier::place_ends() {
     return true;
 }
 
-/// Sees to it that `last_`, the piece at the end, runs the way in which the present piece reaches it; false: no tube.
+/// Makes `last_`, the piece at the end, run in the direction in which the present piece reaches it; false: no tube.
 bool Certifier::aim_at_end(double to) {
     const bool held = closed().kind == ContactKind::held;
     if (last_ && !(held && last_->forward() != front_.piece->direction_along(*last_, to))) {
@@ -309,7 +309,7 @@ bool Certifier::aim_at_end(double to) {
     return last_ != nullptr;
 }
 
-/// A fresh centre ahead of the frontier p(to) of the present piece, known up to `open`, whose tube reaches back to it.
+/// A fresh centre ahead of the end p(to) of the present piece, known up to `open`, whose tube overlaps that piece.
 std::optional<Certifier::Front> Certifier::ahead_of(const std::vector<double>& frontier, double open, double to) {
     const Piece& piece = *front_.piece;
     const double floor = options_.smallest_step * start_.packing.min_radius();
@@ -346,7 +346,7 @@ std::optional<Certifier::Front> Certifier::ahead_of(const std::vector<double>& f
     return std::nullopt;
 }
 
-/// From piece to piece, until the end vertex lies on the present one or on one that it meets.
+/// Goes from piece to piece, until the end vertex lies on the present piece or on one that meets it.
 bool Certifier::follow() {
     last_.reset();
     while (certificate_.pieces < options_.max_pieces) {

@@ -64,7 +64,7 @@ bool Chord::converge(Packing& at, const Contact& row) {
     if (iterate(at, row, true)) {
         return true;
     }
-    at = guess; // acceleration may have taken rounding for a direction
+    at = guess; // acceleration may have followed rounding
     return iterate(at, row, false);
 }
 
@@ -84,7 +84,7 @@ bool Chord::iterate(Packing& at, const Contact& row, bool accelerated) {
         if (!(size < infinity)) {
             return false;
         }
-        // About linear convergence: the next change is this one times the worse of the last two ratios.
+        // Nearly linear convergence: the next change is this one times the worse of the last two ratios.
         const double ratio = size / previous;
         const bool last = size <= rounding || (k > 1 && size * std::max(ratio, rate) <= 0.1 * rounding);
         rate = ratio;
@@ -98,7 +98,7 @@ bool Chord::iterate(Packing& at, const Contact& row, bool accelerated) {
         if (last) {
             return largest(at.q) < infinity;
         }
-        // What no longer shrinks is rounding noise, or the factors are stale; factors taken over shrink it slowly.
+        // A change that no longer shrinks is rounding, or the factors are stale; with reused factors it shrinks slowly.
         if (k > 3 && size > (is_fresh() ? 0.5 : 0.9) * previous) {
             return size <= (accelerated ? 64 * rounding : 1e-9 * at.min_radius());
         }
@@ -107,10 +107,10 @@ bool Chord::iterate(Packing& at, const Contact& row, bool accelerated) {
     return false;
 }
 
-/// With factors of a place on the curve: of two places that a nearly singular list allows it goes to the one that is
-/// there already, or nowhere.
+/// Uses factors of a point on the curve: of two roots that a nearly singular list has the iteration converges to the
+/// one on that branch, or to none.
 bool Chord::iterate_precisely(Packing& at, const Contact& row) {
-    constexpr double converged = 1e-19; // of a radius: coordinates are rounded to doubles afterwards
+    constexpr double converged = 1e-19; // of a radius; coordinates are rounded to doubles afterwards
     CorrectedConfiguration<dd_real> place(Arithmetic<dd_real>(), at);
     double previous = infinity;
     for (iterations_ = 1; iterations_ <= 60; ++iterations_) {
@@ -146,7 +146,7 @@ void Chord::rates_at(const Packing& at, const Vector& v) {
     }
 }
 
-/// The rates are minus the approach velocities G v, whose G is at hand.
+/// The rates are minus the approach velocities G v, and the matrix has G.
 void Chord::rates_from_matrix(const Vector& v) {
     const sparse::Matrix<double>& h = structure().matrix();
     const DofMap& dofs = structure().dofs();
@@ -163,7 +163,7 @@ void Chord::rates_from_matrix(const Vector& v) {
     }
 }
 
-/// `rates` makes `approach_` the rates of the kept gaps along a velocity: what must be taken away from it.
+/// `rates` sets `approach_` to the rates of the kept gaps along a velocity, which the next pass removes.
 template <class Rates>
 std::optional<std::vector<double>> Chord::refined_tangent(const Vector& guess, std::size_t fastest, double accuracy,
                                                           Rates rates) {
@@ -182,7 +182,7 @@ std::optional<std::vector<double>> Chord::refined_tangent(const Vector& guess, s
             break;
         }
         tangent_error_ = size / largest(t);
-        // Linear convergence: what is left is about size^2 / previous.
+        // Linear convergence: the remaining change is about size^2 / previous.
         if (size < accuracy * largest(t) || (k > 0 && size * size < 0.1 * accuracy * largest(t) * previous)) {
             return t;
         }
@@ -196,7 +196,7 @@ std::optional<std::vector<double>> Chord::tangent(const Packing& at, const Vecto
     if (!precise_) {
         return refined_tangent(guess, fastest, accuracy, [&](const Vector& t) { rates_at(at, t); });
     }
-    constexpr double sharp = 1e-13; // rounding of the coordinates apart
+    constexpr double sharp = 1e-13; // for the rounding of the coordinates
     Packing there = at;
     if (!iterate_precisely(there, Contact{ContactKind::held, static_cast<int>(fastest), 0})) {
         return std::nullopt;

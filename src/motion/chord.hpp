@@ -16,8 +16,8 @@
 
 namespace isostat {
 
-/// Newton-like iterations with the factors of one contact matrix, for the equations gap_l = 0 of all its contacts but
-/// one, in the *slot*, whose row is free: the caller says what stands there. Nothing is proved by what it returns.
+/// Newton-like iterations with the factors of one contact matrix, for the equations gap_l = 0 of all its contacts
+/// except the one in the *slot*, whose row is free: the caller chooses its equation. Nothing is proved of the results.
 class Chord {
   public:
     using Vector = std::vector<double>;
@@ -25,16 +25,16 @@ class Chord {
     /// \pre `structure` and `factorisation` outlive it.
     Chord(const IsostaticStructure& structure, const Factorisation& factorisation, std::size_t slot);
 
-    /// All of them, that in the slot included.
+    /// All contacts, including the one in the slot.
     [[nodiscard]] const std::vector<Contact>& contacts() const { return structure().contacts(); }
     [[nodiscard]] const DofMap& dofs() const { return structure().dofs(); }
     [[nodiscard]] std::size_t slot() const { return slot_; }
     [[nodiscard]] bool is_fresh() const { return factorisation().is_fresh(); }
-    /// Velocity with unit approach in the slot and none in the kept contacts, where the matrix was made.
+    /// Velocity, where the matrix was made, with unit approach in the slot and zero approach in the kept contacts.
     [[nodiscard]] const Vector& mechanism() const { return mechanism_; }
 
     /// Velocity with the approach velocities `approach(contact)` in the kept contacts, coordinate `still` at rest. One
-    /// pass. Good until the next call.
+    /// pass. Valid until the next call.
     template <class Approach> const Vector& velocity(Approach approach, std::size_t still) {
         for (std::size_t l = 0; l < size_; ++l) {
             approach_[l] = l == slot_ ? 0.0 : approach(contacts()[l]);
@@ -43,22 +43,22 @@ class Chord {
         return y_;
     }
 
-    /// From here on points are found, and tangents there, with residuals in double-double: where the kept contacts are
-    /// nearly singular those of doubles are moved about by rounding, and no iteration ends.
+    /// From here on points and tangents are found with residuals in double-double. Needed where the kept contacts are
+    /// nearly singular: there rounding moves the points that doubles find, and no iteration ends.
     void be_precise() { precise_ = true; }
     [[nodiscard]] bool is_precise() const { return precise_; }
 
-    /// Moves `at` to where the kept gaps vanish, down to rounding, and so does the gap of `row`; a coordinate (`held`)
-    /// stays as it is. False: it did not converge, and `at` is anywhere.
+    /// Moves `at` to where the kept gaps and the gap of `row` vanish, up to rounding; with a `held` coordinate as `row`
+    /// this coordinate keeps its value. False: the iteration did not converge, and `at` is arbitrary.
     bool converge(Packing& at, const Contact& row);
     /// Iterations of the last attempt.
     [[nodiscard]] int iterations() const { return iterations_; }
 
-    /// Tangent at a point of the curve near `guess`, scaled like it in coordinate `fastest`, to a relative accuracy.
+    /// Tangent at a point of the curve near `guess`, scaled as `guess` in coordinate `fastest`, to a relative accuracy.
     std::optional<Vector> tangent(const Packing& at, const Vector& guess, std::size_t fastest, double accuracy);
-    /// Relative size of the last correction of it: what it is good to, where that is above the accuracy asked for.
+    /// Relative size of its last correction, which bounds its accuracy where this is above the accuracy asked for.
     [[nodiscard]] double tangent_error() const { return tangent_error_; }
-    /// The same where the matrix was made. \pre nothing was renewed.
+    /// The tangent where the matrix was made. \pre nothing was renewed.
     std::optional<Vector> tangent(const Vector& guess, std::size_t fastest, double accuracy);
 
     /// Proves and factorises the structure with coordinate `held` in the slot, at another configuration.
@@ -83,7 +83,7 @@ class Chord {
 
     const IsostaticStructure* structure_;
     const Factorisation* factorisation_;
-    std::unique_ptr<FactorisedStructure> own_; ///< in place of the two, once renewed
+    std::unique_ptr<FactorisedStructure> own_; ///< replaces `structure_` and `factorisation_` after `renew`
     std::size_t slot_;
     std::size_t size_;
     double tangent_error_ = 0;
@@ -91,7 +91,7 @@ class Chord {
     Vector y_;        ///< on coordinates
     Vector mechanism_;
     Acceleration acceleration_;
-    /// What is to be added to the point that was found last. Empty: in double.
+    /// Double-double correction of the last point found. Empty: the point is in double.
     std::vector<dd_real> rest_;
     bool precise_ = false;
     int iterations_ = 0;
@@ -99,7 +99,7 @@ class Chord {
     int passes_ = 0;
 };
 
-/// y_ = velocity with the approach velocities `approach_` and row(y_) = target.
+/// y_ = velocity with approach velocities `approach_` and row(y_) = target.
 template <class Row> void Chord::solve(Row row, double target) {
     ++passes_;
     factorisation().approximate().velocities(approach_);

@@ -9,8 +9,8 @@
 
 namespace isostat {
 
-/// Whether separations of up to 3 periods are exact at multiples of `step`: no sum on the way has more than 2^53 of
-/// them. \pre there are periodic axes
+/// Whether separations of up to 3 periods are exact at multiples of `step`: no intermediate sum has more than 2^53 such
+/// multiples. \pre there are periodic axes
 inline bool fits_grid(const Packing& packing, double step) {
     double farthest = 0;
     for (std::size_t k = 0; k < packing.length_at(0); ++k) {
@@ -27,8 +27,8 @@ inline bool fits_grid(const Packing& packing, double step) {
     return 2 * farthest + 3 * period <= 0x1p53 * step;
 }
 
-/// Rounds what moves to the grid of another configuration, so that what does not move stays; false: this one is too
-/// large for it. \pre there are periodic axes
+/// Rounds the coordinates that move to the grid of another configuration, so that the others stay; false: this
+/// configuration is too large for that grid. \pre there are periodic axes
 inline bool put_on_grid_of(const Packing& other, const DofMap& dofs, Packing& packing) {
     const double step = grid_step(other);
     for (int mu = 0; mu < dofs.dof_count(); ++mu) {

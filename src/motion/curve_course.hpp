@@ -16,14 +16,14 @@ struct CurvePoint {
     std::vector<double> tangent; ///< on coordinates
 };
 
-/// The curve to second order, with one coordinate for the parameter: q(s) = at + s tangent + s^2 curvature / 2.
+/// The curve to second order, with one coordinate as parameter: q(s) = at + s tangent + s^2 curvature / 2.
 struct CurveCourse {
     Packing at;
     std::vector<double> tangent;
     std::vector<double> curvature; ///< 0 in the fastest coordinate
-    std::size_t fastest = 0;       ///< the coordinate s: its tangent is +1 or -1, no other is larger
+    std::size_t fastest = 0;       ///< the coordinate s: its tangent is +1 or -1, and no other is larger
 
-    /// Takes the coordinate with the largest tangent for s. Not finite: nor is the tangent afterwards.
+    /// Takes the coordinate with the largest tangent as s. A tangent that is not finite stays so.
     void choose_fastest() {
         fastest = 0;
         for (std::size_t k = 0; k < tangent.size(); ++k) {
@@ -44,8 +44,8 @@ struct CurveCourse {
         }
         return there;
     }
-    /// The tangent at a point of the curve, from the way it went: the third derivative is what the prediction missed.
-    /// Below `shortest` that is rounding, and left out.
+    /// The tangent at a point of the curve, extrapolated from the path: the third derivative comes from the error of
+    /// the prediction. Below `shortest` this error is rounding, and the third derivative is left out.
     [[nodiscard]] std::vector<double> extrapolated_tangent(const Packing& there, double s, double shortest) const {
         const double third = s > shortest ? 3 / s : 0.0;
         std::vector<double> t(tangent.size());

@@ -51,7 +51,7 @@ void CurvePiece::bound_coefficients() {
     }
 }
 
-/// Around p + a_0 in the place of p: the constant term is that of F(m + a_0), the others gain D_l a_0 . D_l a_k.
+/// Around p + a_0 instead of p: the constant term is that of F(m + a_0), the others gain D_l a_0 . D_l a_k.
 void CurvePiece::shift_residual_of(std::size_t l) {
     const std::vector<double>& shift = this->shift();
     if (shift.empty()) {
@@ -110,8 +110,8 @@ void CurvePiece::bound_coefficients_of(std::size_t l) {
     }
 }
 
-/// Shortens the reach until the polynomial misses the equations by no more than the centre itself does; around a
-/// shifted one by a small part of that, which costs a fifth of the reach (the misfit grows as its 15th power).
+/// Shortens the reach until the misfit of the polynomial is at most that of the centre, or for a shifted one a small
+/// part of that, which costs a fifth of the reach (the misfit grows as its 15th power).
 void CurvePiece::shorten_reach() {
     const std::size_t order = coefficients().size();
     const std::size_t stride = 2 * order + 1;
@@ -236,7 +236,7 @@ std::vector<double> CurvePiece::away(const std::vector<double>& x, double s) con
     return off;
 }
 
-/// Where row . (x - p(s)) = 0, by Newton's method: any s will do, the bound in `locate` is what counts.
+/// The s where row . (x - p(s)) = 0, by Newton's method. Any s is allowed, because `locate` bounds its error.
 std::optional<double> CurvePiece::nearest(const std::vector<double>& x) const {
     double s = 0;
     for (int k = 0; k < 8; ++k) {
@@ -265,7 +265,7 @@ std::optional<CurvePiece::Place> CurvePiece::locate(const std::vector<double>& x
         square += off[k] * off[k];
         coordinate = std::max({coordinate, std::abs(x[k]), std::abs(centre().q[k])});
     }
-    double terms = 0; // of Horner's scheme, with the operations that each goes through (A8)
+    double terms = 0; // of Horner's scheme, times the operations on each (A8)
     double power = 1;
     for (std::size_t k = 0; k < coefficients().size(); ++k) {
         power *= std::abs(*s);

@@ -11,7 +11,7 @@
 
 namespace isostat {
 
-/// The polynomial for |s| <= h, and what `prove` found about the curve near it.
+/// The polynomial for |s| <= h, and what `prove` proved about the curve near it.
 class CurvePiece : public CurvePolynomial {
     using Polynomial = CurvePolynomial;
 
@@ -24,7 +24,7 @@ class CurvePiece : public CurvePolynomial {
     using Polynomial::inverse_norm;
     using Polynomial::structure;
 
-    /// As of the polynomial, and where its misfit is no larger than that of the centre.
+    /// Reach of the polynomial, shortened to where its misfit is at most that of the centre.
     [[nodiscard]] double natural_reach() const { return reach_; }
     /// Proves for every s in [-h, h]: exactly one point of the curve lies in the hyperplane {row . (q - p(s)) = 0}
     /// within `unique()` of p(s); it is within `radius()`, its derivative in s within `slope_error()` of p'(s), and
@@ -38,8 +38,8 @@ class CurvePiece : public CurvePolynomial {
     /// (1/4) / (beta^2 K rho): above 1 the tube exists.
     [[nodiscard]] double margin() const { return margin_; }
 
-    /// A point of the curve (a true root of the kept equations within `uncertainty` of x, moving coordinates) is
-    /// q(s) for one s within `slack` of `s`: proved, or nothing.
+    /// A point of the curve (a true root of the kept equations within `uncertainty` of x, moving coordinates) is q(s)
+    /// for exactly one s within `slack` of `s`. Nothing when this is not proved.
     struct Place {
         double s = 0;
         double slack = 0;
@@ -56,7 +56,7 @@ class CurvePiece : public CurvePolynomial {
     void shorten_reach();
     /// |sum_k s^k (difference of a_k)| / D of every kept disk contact, for all |s| <= h.
     [[nodiscard]] std::vector<double> stretch(double h) const;
-    /// For all |s| <= h: by how much p misses the equations, how fast that changes, largest |difference of p'| / D.
+    /// For all |s| <= h: residual of the equations along p, its rate of change, largest |difference of p'| / D.
     struct Misfit {
         double value = 0;
         double rate = 0;
@@ -75,9 +75,9 @@ class CurvePiece : public CurvePolynomial {
 
     std::vector<double> relative_; ///< |difference of a_k over contact l|, K per contact (rounded)
     std::vector<double> residual_; ///< bound of coefficient k = 0 ... 2K of F_l along p + a_0
-    std::vector<double> shifted_;  ///< |difference of a_0 over contact l|
+    std::vector<double> shifted_;  ///< |difference of a_0| over contact l
     double shift_norm_ = 0;        ///< |a_0|
-    double rounded_ = 0;           ///< sum of the squares of what the centre misses
+    double rounded_ = 0;           ///< sum of the squared residuals of the centre
     double reach_ = 0;
     double proved_ = 0;
     double radius_ = 0;

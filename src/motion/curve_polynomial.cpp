@@ -16,7 +16,7 @@ namespace isostat {
 namespace {
 
 using roundoff::infinity;
-/// Share of sigma_min that the change of the derivative over a piece may take. Cost only.
+/// Share of sigma_min that the change of the derivative over a piece may use. Affects cost only.
 constexpr double share = 0.7;
 constexpr int max_order = 14;
 constexpr double longest_reach = 0.2; ///< in units of the smallest radius
@@ -29,8 +29,8 @@ std::vector<PerAxis<double>> separations(const Layout& layout, const std::vector
     return list;
 }
 
-/// Rounds to the multiples of a power of two for which C2 holds (proofs/cells.md): any coefficients will do, and the
-/// separations of these are exact.
+/// Rounds to the multiples of a power of two for which C2 holds (proofs/cells.md). Any coefficients are allowed, and
+/// the separations of these are exact.
 void put_on_grid(std::vector<double>& a, int dimension) {
     int exponent = 0;
     std::frexp(largest(a), &exponent); // largest < 2^exponent
@@ -69,7 +69,7 @@ std::vector<double> CurvePolynomial::solved(std::vector<double> rhs) const {
     return y;
 }
 
-/// Tangent at the centre, 1 in its fastest coordinate. False: it is no good.
+/// Tangent at the centre, 1 in its fastest coordinate. False: the tangent is not finite.
 bool CurvePolynomial::first_coefficient() {
     std::vector<double> rhs(curve_->contacts.size(), 0.0);
     rhs[curve_->slot] = -forward_; // approach velocity: minus the rate of the row
@@ -88,7 +88,7 @@ bool CurvePolynomial::first_coefficient() {
     return true;
 }
 
-/// From the first coefficient over the contacts: how far the derivative of the equations may turn.
+/// Chooses the reach from the first coefficient over the contacts: how far the derivative of the equations may turn.
 void CurvePolynomial::choose_reach(const std::vector<PerAxis<double>>& first) {
     std::vector<double> e(first.size(), 0.0);
     for (std::size_t l = 0; l < first.size(); ++l) {

@@ -13,18 +13,18 @@
 
 namespace isostat {
 
-/// p(s) = centre + sum_k s^k a_k, the derivatives of the curve at a place near it. Nothing is proved of it here.
+/// p(s) = centre + sum_k s^k a_k, the derivatives of the curve at a nearby point. Nothing is proved of it here.
 class CurvePolynomial {
   public:
-    /// Derivatives of the curve at a centre with the contacts of `curve`, but for the free row. `forward` = +1 or -1:
-    /// sign of the rate of the free row for growing s. \pre the curve and the centre outlive it
+    /// Derivatives of the curve at a centre with the contacts of `curve`, except for the free row. `forward` = +1 or
+    /// -1: sign of the rate of the free row for growing s. \pre the curve and the centre outlive it
     CurvePolynomial(const KeptCurve& curve, const ArcCentre& centre, double forward);
 
-    /// Largest |s| worth trying (an estimate; 0: the centre is no good).
+    /// Largest |s| worth trying (an estimate; 0: the centre cannot be used).
     [[nodiscard]] double natural_reach() const { return reach_; }
-    /// Upper bound of |DPhi(centre)^-1|; 0: unknown, and no coefficients.
+    /// Upper bound of |DPhi(centre)^-1|; 0: unknown, and there are no coefficients.
     [[nodiscard]] double inverse_norm() const { return inverse_; }
-    /// Sign of the rate of the own row.
+    /// Sign of the rate of the free row.
     [[nodiscard]] int forward() const { return forward_ > 0 ? 1 : -1; }
 
     /// Rounded p(s) on all coordinates; error per coordinate below 2^-51 times the largest coordinate for |s| <= reach.
@@ -34,7 +34,7 @@ class CurvePolynomial {
     [[nodiscard]] std::optional<Packing> corrected(double s) const;
     /// row . v, and the sum of the absolute values of its terms.
     [[nodiscard]] RoundedSum along_row(const std::vector<double>& v) const;
-    /// No less than the 2-norm of the row, and than a fourth of the sum of its absolute values.
+    /// At least the 2-norm of the row, and at least a fourth of the sum of its absolute values.
     [[nodiscard]] double row_norm() const;
     [[nodiscard]] double row_terms() const;
 
@@ -42,9 +42,9 @@ class CurvePolynomial {
     [[nodiscard]] const Packing& centre() const { return at_->packing(); }
     [[nodiscard]] const IsostaticStructure& structure() const { return at_->structure(); }
     [[nodiscard]] const Factorisation& factorisation() const { return at_->factorisation(); }
-    /// a_1 ... a_K on all coordinates (0 at rest). In a cell on a grid of their own: separations of them are exact.
+    /// a_1 ... a_K on all coordinates (0 at rest). In a cell on a grid of their own: their separations are exact.
     [[nodiscard]] const std::vector<std::vector<double>>& coefficients() const { return a_; }
-    /// a_0: p + a_0 meets the equations at s = 0 far better than the centre, which is rounded to a grid. Of cells,
+    /// a_0: p + a_0 meets the equations at s = 0 far better than the centre, which is rounded to a grid. Used in cells,
     /// whose grid is coarse; empty: 0.
     [[nodiscard]] const std::vector<double>& shift() const { return shift_; }
 

@@ -33,7 +33,7 @@ double first_root(double h, double h1, double h2) {
 struct Cubic {
     double h0, d0, h1, d1, s;
 
-    /// Between its control points: nowhere below the first of these, nowhere above the second.
+    /// Bounds from the control points: the cubic is at least the smallest and at most the largest of these.
     [[nodiscard]] double floor() const {
         return std::min(std::min(h0, h1), std::min(h0 + d0 * s / 3, h1 - d1 * s / 3));
     }
@@ -43,7 +43,7 @@ struct Cubic {
     struct Point {
         double position, value;
     };
-    /// Where it is smallest. \pre d0 < 0 < d1
+    /// The minimum. \pre d0 < 0 < d1
     [[nodiscard]] Point lowest() const {
         const double c3 = (d0 + d1) * s - 2 * (h1 - h0);
         const double c2 = 3 * (h1 - h0) - (2 * d0 + d1) * s;
@@ -57,15 +57,15 @@ struct Cubic {
         }
         return {low * s, h0 + low * (c1 + low * (c2 + low * c3))};
     }
-    /// Where it comes so near 0 that the gap may touch it.
+    /// The place where the cubic comes so near 0 that the gap may touch 0.
     [[nodiscard]] std::optional<double> dip() const {
         // `depth` below is at most max - floor, and x^2 (1 - x)^2 is at most 1/16: most gaps are far from a dip.
         if (floor() > 0.1 * (std::max(h0, h1) - floor())) {
             return std::nullopt;
         }
-        // The error of the cubic at x is x^2 (1 - x)^2 h/24 (x in units of the step); h is taken as 40 depths, far
-        // above what a disk rolling through a step of a tenth of a radius has. It vanishes at the ends, where the
-        // gap is known.
+        // The error of the cubic at x is x^2 (1 - x)^2 h/24 (x in units of the step);
+        // h is taken as 40 depths, far above that of a disk rolling through a step of
+        // a tenth of a radius. It vanishes at the ends, where the gap is known.
         const Point low = lowest();
         const double depth = std::max(h0, h1) - low.value;
         const double x = low.position / s;
@@ -73,8 +73,8 @@ struct Cubic {
     }
 };
 
-/// How much faster than that of two disks a separation can change when no coordinate is faster than 1: the image of a
-/// disk moves with the cell too.
+/// Factor by which a separation can change faster than that of two disks when no coordinate is faster than 1: the image
+/// of a disk moves with the cell too.
 double image_weight(const Contact& contact) {
     const auto& m = contact.image.m;
     return contact.image.is_here() ? 1.0 : 1 + 0.5 * (std::abs(m[0]) + std::abs(m[1]) + std::abs(m[2]));
@@ -93,7 +93,7 @@ double reach_left(const CandidateList& candidates, const Packing& at) {
     if (at.cell.any()) {
         return 0.5 * candidates.reach - cell_drift(candidates, at).used;
     }
-    const double unit = 1 / candidates.reach; // squares neither under- nor overflow, whatever the units are
+    const double unit = 1 / candidates.reach; // squares then neither under- nor overflow in any unit
     double moved = 0;
     for (std::size_t k = 0; k + at.axes() <= at.q.size(); k += at.axes()) {
         double square = 0;
@@ -113,7 +113,7 @@ double longest_step(const CandidateList& candidates, const Packing& at) {
     if (!at.cell.any()) {
         return 0.9 * reach / (1.3 * root_dim);
     }
-    const double in_cell = std::sqrt(static_cast<double>(at.axes() + at.tilts())); // its coordinates
+    const double in_cell = std::sqrt(static_cast<double>(at.axes() + at.tilts())); // coordinates of the cell
     return 0.9 * reach / (1.3 * in_cell * cell_drift(candidates, at).rate);
 }
 
@@ -149,7 +149,7 @@ void EventScan::list(const Packing& at, const std::vector<Contact>& kept) {
     }
 }
 
-/// Of the open ones, those that take part; with the one that opens, which may close again.
+/// The open candidates that take part, and the contact that opens, which may close again.
 void EventScan::complete() {
     std::erase_if(active_, [&](const Contact& c) { return c == opened_ || listed(resting_, c); });
     if (opened_.kind != ContactKind::held) {
@@ -161,8 +161,8 @@ GapEvent EventScan::first_event(const CurveCourse& course, double longest, doubl
     gap_.resize(active_.size());
     rate_.resize(active_.size());
     GapEvent first;
-    // Roots beyond the longest step are not asked for: |t| <= 1 in every coordinate, so that no second derivative of a
-    // gap is larger than this.
+    // Roots beyond the longest step are not needed: |t| <= 1 in every
+    // coordinate, so that no second derivative of a gap is larger than this.
     const double root_dim = std::sqrt(static_cast<double>(course.at.dimension));
     const double bend =
         1.01 * (2 * root_dim * largest(course.curvature) + 2 * course.at.dimension / course.at.min_radius());
@@ -179,15 +179,15 @@ GapEvent EventScan::first_event(const CurveCourse& course, double longest, doubl
         }
         const GapCourse gap = gap_course(course.at, active_[c], course.tangent, course.curvature);
         gap_[c] = opening ? 0.0 : gap.value;
-        // A pair that touches and parts by its bend: its rate is 0 but for rounding. Not the contact that opens: its
-        // rate tells when the motion was begun the wrong way.
+        // A touching pair that separates by its second derivative: its rate is 0 but for rounding. Not the opening
+        // contact, whose rate shows when the motion began in the wrong direction.
         const bool parts = opening && active_[c] != opened_;
         rate_[c] = parts ? std::max(gap.rate, 0.0) : gap.rate;
         double root = first_root(std::max(gap_[c], 0.0), rate_[c], gap.bend);
         if (gap_[c] <= 0 && !(rate_[c] > 0) && !(parts && gap.bend > 0)) {
             root = 0;
         }
-        // 0 to rounding, and the step does not take it below: what it does no double tells.
+        // 0 to rounding, and the step does not bring the gap below 0: double cannot resolve its course.
         if (gap_[c] <= noise && first_root(std::max(gap_[c], 0.0) + noise, rate_[c], gap.bend) > longest) {
             root = infinity;
         }
@@ -204,7 +204,7 @@ std::optional<GapEvent> EventScan::first_violation(const Step& step, double nois
     for (std::size_t k = 0; k < step.to.q.size(); ++k) {
         moved = std::max(moved, std::abs(step.to.q[k] - step.from.q[k]));
     }
-    // A gap changes by no more than its grains, or a grain and a wall, move.
+    // A gap changes by at most the motion of its grains, or of its grain and wall.
     const double within = 2.01 * std::sqrt(static_cast<double>(step.to.dimension)) * moved;
     for (std::size_t c = 0; c < active_.size(); ++c) {
         if (gap_[c] > within * image_weight(active_[c]) || active_[c] == step.closing) {
@@ -234,7 +234,7 @@ std::optional<double> EventScan::suspicious_dip(const Step& step, const std::vec
         const Cubic course{gap_[c], rate_[c], gap, rate, step.s};
         const bool grazes_at_event =
             step.closing.i >= 0 && std::abs(gap) <= noise && rate > 0 && course.lowest().value >= -noise;
-        const bool still = course.floor() >= -noise && course.ceiling() <= noise; // no double tells that it dips
+        const bool still = course.floor() >= -noise && course.ceiling() <= noise; // a dip within rounding
         if (!(rate > 0) || grazes_at_event || still) {
             continue;
         }

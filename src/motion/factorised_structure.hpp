@@ -8,7 +8,7 @@
 
 namespace isostat {
 
-/// Not movable: the factors refer to the structure.
+/// Not movable because the factors refer to the structure.
 struct FactorisedStructure {
     explicit FactorisedStructure(IsostaticStructure s) : structure(std::move(s)), factorisation(structure) {}
     FactorisedStructure(const FactorisedStructure&) = delete;

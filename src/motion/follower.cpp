@@ -13,14 +13,14 @@ namespace isostat {
 
 namespace {
 
-/// Relative accuracy of tangents: they only predict, choose the fastest coordinate and place dips and power turns; no
-/// sign rests on them.
+/// Relative accuracy of tangents. These only predict, choose the fastest
+/// coordinate and locate dips and power turns; no sign depends on them.
 constexpr double tangent_accuracy = 1e-7;
-constexpr double turn_tangent_accuracy = 1e-15; ///< at a power turn, which is located no better than its tangent
-/// What such a tangent must be good to: factors of a list that is nearly singular there may not bring it further.
+constexpr double turn_tangent_accuracy = 1e-15; ///< at a power turn, located only as well as its tangent
+/// Required accuracy of such a tangent: factors of a nearly singular list may not reach a higher one.
 constexpr double turn_tangent_error = 1e-8;
-constexpr double no_power = 1e-6; ///< of the largest force of the load: what may be left of the power where it turns
-constexpr double end_tangent_accuracy = 1e-4; ///< at an event, where only dips and the sign of the power are read off
+constexpr double no_power = 1e-6;             ///< of the largest force of the load: accepted power at a turn
+constexpr double end_tangent_accuracy = 1e-4; ///< at an event, where only dips and the sign of the power need it
 
 } // namespace
 
@@ -63,7 +63,7 @@ std::optional<ArcDeparture::Expected> Follower::expected() const {
     return ArcDeparture::Expected{event_.contact, here_.predicted(event_.s)};
 }
 
-/// Curvature and first event from `here_` and its tangent; false: `failure_` says why.
+/// Computes curvature and first event from `here_` and its tangent; false: `failure_` has the reason.
 bool Follower::predict() {
     here_.choose_fastest();
     if (!std::isfinite(here_.tangent[here_.fastest])) {
@@ -93,7 +93,7 @@ Result<Arc> Follower::run() {
     return failed(FailureKind::unbounded, "no new contact after {} predictor steps", steps_);
 }
 
-/// It is minus the force that opens: where that is small, only a sharper tangent tells its sign.
+/// The power is minus the force that opens; where that is small, only a sharper tangent gives its sign.
 double Follower::power_at_start() {
     const double power = power_(here_.at, here_.tangent);
     if (power > 0 || power_.starts_at_zero()) {
@@ -103,7 +103,7 @@ double Follower::power_at_start() {
     return t ? power_(here_.at, *t) : power;
 }
 
-/// One attempt at a step. Nothing: the arc goes on, from there or from here.
+/// One attempt at a step. Nothing: the arc goes on, from the end of the step or from the same point.
 Follower::Ending Follower::step() {
     if (!predicted_ && !predict()) {
         return *failure_;
@@ -162,7 +162,7 @@ Follower::Ending Follower::step() {
     return Ending(std::nullopt);
 }
 
-/// A gap seems to dip within the step: it is to be tried again as far as that, and no further.
+/// True: a gap seems to dip within the step, which is to be repeated up to the dip at most.
 Result<bool> Follower::dips_within(const Reached& there) {
     const auto dip = there.s > noise_ ? scan_.suspicious_dip({here_.at, there.point.at, there.s, there.closing},
                                                              there.point.tangent, noise_)
@@ -175,12 +175,12 @@ Result<bool> Follower::dips_within(const Reached& there) {
     }
     pace_.for_dip = std::max(*dip, 0.05 * there.s);
     if (there.closing != nothing && !(pace_.for_dip < event_.s)) {
-        pace_.for_dip = 0.5 * event_.s; // else the same event would be met again, and again
+        pace_.for_dip = 0.5 * event_.s; // else the same event would be met again and again
     }
     return true;
 }
 
-/// The event, if it is predicted within this length or seen to lie within it; else the end of a step of this length.
+/// The event, if it is predicted or found within this length; else the end of a step of this length.
 Follower::Attempt Follower::reach(double longest) {
     if (event_.s <= longest) {
         return reach_event(event_, longest);
@@ -201,7 +201,7 @@ Follower::Attempt Follower::reach(double longest) {
     return Attempt(Reached{std::move(*point), longest, nothing});
 }
 
-/// The place where the gap of an event closes, or that of another which closes before.
+/// The place where the gap of an event closes, or the gap of another event that closes before.
 Follower::Attempt Follower::reach_event(GapEvent event, double longest) {
     for (int attempt = 0; attempt < 40; ++attempt) {
         Packing at = here_.predicted(event.s);
@@ -213,7 +213,7 @@ Follower::Attempt Follower::reach_event(GapEvent event, double longest) {
             break; // another root
         }
         if (!moved_ && scan_.leaves(event.contact) && reached < 0.25 * event.s) {
-            break; // the start itself: the gap that opens is zero there too
+            break; // the start itself, where the opening gap is zero too
         }
         const double s = std::max(reached, 0.0);
         if (s > noise_) {
@@ -231,9 +231,9 @@ Follower::Attempt Follower::reach_event(GapEvent event, double longest) {
     return shorten_before(event, longest);
 }
 
-/// The direct solve failed: renews the factors, and shortens the step when that does not help. In the end it is 0 long
-/// before a gap that nearly grazes: 0 to rounding where it still falls. Then the arc ends here, and the caller looks
-/// for the end in more digits.
+/// The direct solve failed: renews the factors, and shortens the step when that does not help. Before a gap that nearly
+/// grazes the step shrinks to 0, because the gap is 0 to rounding while it still falls. Then the arc ends here, and the
+/// caller computes the end with more digits.
 Follower::Attempt Follower::shorten_before(const GapEvent& event, double longest) {
     if (longest < 1e-12 * step_limit_ || pace_.shrink < 1e-9) {
         if (moved_ && std::abs(quick_gap(here_.at, event.contact)) <= noise_) {
@@ -259,8 +259,8 @@ std::optional<CurvePoint> Follower::step_to(double s, double accuracy) {
         return std::nullopt;
     }
     std::transform(at.q.begin(), at.q.end(), off.begin(), off.begin(), std::minus<>());
-    // A start is on the curve up to its last bits only: the room of 1e-10 keeps a short step from taking the way back
-    // to the curve for a bend.
+    // A start is on the curve up to its last bits only: the allowance of 1e-10 keeps a short step from counting the
+    // correction to the curve as a bend.
     if (!(largest(off) <= 0.2 * s + 1e-10 * at.min_radius())) {
         return std::nullopt; // another branch, or a curve too bent for this step
     }
@@ -279,8 +279,8 @@ bool Follower::converge_to(Packing& at, const Contact& closing) {
     return converged;
 }
 
-/// With the tangent that the event needs: where a dip or the sign of the power is not clear from an extrapolation, it
-/// is solved for.
+/// The point with the tangent that the event needs: solved for where
+/// an extrapolation does not decide a dip or the sign of the power.
 std::optional<CurvePoint> Follower::tangent_at_event(Packing at, double s, const Contact& closing) {
     if (options_.extrapolate_tangent) {
         Vector t = here_.extrapolated_tangent(at, s, 1e-5 * step_limit_);
@@ -293,22 +293,22 @@ std::optional<CurvePoint> Follower::tangent_at_event(Packing at, double s, const
     return t ? std::optional(CurvePoint{std::move(at), std::move(*t)}) : std::nullopt;
 }
 
-/// The power where the step ended, and what it says of the step.
+/// Judges the step by the power at its end.
 Follower::PowerSign Follower::judge_power(Reached& there) {
     CurvePoint& point = there.point;
     there.power = power_(point.at, point.tangent);
-    // At a limit load the power grows from zero: over the first, possibly tiny, step its sign is left to the force
-    // in the new contact.
+    // At a limit load the power grows from zero: over the first, possibly
+    // tiny, step its sign is decided by the force in the new contact.
     const bool judged = !power_.starts_at_zero() || moved_;
     const bool long_enough = there.s > 1e-6 * step_limit_;
-    if (judged && (there.power < 0 || options_.sharp_power)) { // it may only seem so: a turn at the very end is none
+    if (judged && (there.power < 0 || options_.sharp_power)) { // recheck, as a turn at the very end is no turn
         if (auto t = chord_.tangent(point.at, here_.tangent, here_.fastest, turn_tangent_accuracy)) {
             point.tangent = std::move(*t);
             there.power = power_(point.at, point.tangent);
         }
     }
     if (!judged && there.power < 0 && long_enough) {
-        pace_.for_dip = 0.25 * there.s; // it may have grown and turned within the step
+        pace_.for_dip = 0.25 * there.s; // the power may have grown and turned within the step
         return PowerSign::shorten;
     }
     if (there.power > 0 && long_enough) {
@@ -323,11 +323,11 @@ Follower::PowerSign Follower::judge_power(Reached& there) {
     if (here_power_ > 0) {
         return chord_.tangent_error() <= turn_tangent_error ? PowerSign::turned : PowerSign::unclear;
     }
-    // A hold whose multiplier is 0 may be released to see whether its arc goes down: its end tells.
+    // A hold with multiplier 0 may be released to test whether its arc goes down, which its end decides.
     return opened_.kind == ContactKind::held ? PowerSign::positive : PowerSign::unclear;
 }
 
-/// The end where the power vanishes, within a step of length s at whose end it is negative.
+/// The end where the power vanishes, within a step of length s at whose end the power is negative.
 Result<Arc> Follower::power_turn(double s, double power) {
     SignChange bracket({0.0, here_power_}, {s, power});
     std::optional<CurvePoint> best;
@@ -361,7 +361,7 @@ Result<Arc> Follower::power_turn(double s, double power) {
                   smallest);
 }
 
-/// The next step begins there.
+/// Makes the end of the step the start of the next one.
 std::optional<Failure> Follower::go_on(Reached there) {
     moved_ = true;
     here_.at = std::move(there.point.at);
@@ -395,7 +395,7 @@ std::optional<Failure> Follower::go_on(Reached there) {
                           here_.at.q[k]);
         }
     }
-    if (here_.at.cell.any()) { // before the list of candidates would refuse it
+    if (here_.at.cell.any()) { // before the list of candidates would refuse the configuration
         if (const auto beyond = disk_beyond(here_.at, here_.at.min_radius(), farthest_disk_of_a_run)) {
             return Failure{FailureKind::undecided, "too far for lists of pairs: " + *beyond};
         }
@@ -403,7 +403,7 @@ std::optional<Failure> Follower::go_on(Reached there) {
     return std::nullopt;
 }
 
-/// Stale factors first, then shorter steps.
+/// Renews stale factors first, then shortens the step.
 std::optional<Failure> Follower::narrow() {
     if (chord_.iterations() > 12 || pace_.shrink < 0.3) {
         if (auto failure = renew()) {
@@ -414,7 +414,7 @@ std::optional<Failure> Follower::narrow() {
     return std::nullopt;
 }
 
-/// The factors of the start are stale: those of the structure that holds the fastest coordinate, here.
+/// The factors of the start are stale: makes those of the structure that holds the fastest coordinate, here.
 std::optional<Failure> Follower::renew() {
     if (auto failure = chord_.renew(here_.at, here_.fastest)) {
         return failure;
@@ -427,7 +427,7 @@ std::optional<Failure> Follower::renew() {
     return chord_.is_precise() ? sharpen() : std::nullopt;
 }
 
-/// The tangent here, which double knows no better than rounding of the coordinates allows.
+/// Solves for a tangent here as accurate as the rounding of the coordinates allows.
 std::optional<Failure> Follower::sharpen() {
     here_.choose_fastest();
     auto t = chord_.tangent(here_.at, here_.tangent, here_.fastest, tangent_accuracy);
@@ -444,13 +444,13 @@ Arc Follower::finish(CurvePoint end, ArcEnd kind, const Contact& closed, double 
         const Contact& contact = chord_.contacts()[l];
         if (contact.kind == ContactKind::held && contact != opened_ && l != chord_.slot()) {
             const auto k = static_cast<std::size_t>(contact.i);
-            end.at.q[k] = start_.q[k]; // held means held, rounding apart
+            end.at.q[k] = start_.q[k]; // a held coordinate keeps its value without rounding
         }
     }
     for (std::size_t k = start_.length_at(0); start_.cell.any() && k < end.at.q.size(); ++k) {
         if (chord_.dofs().dof_of(k) < 0) {
             end.at.q[k] =
-                start_.q[k]; // what does not move of a cell is not rounded: the vertex says if it is off the grid
+                start_.q[k]; // fixed coordinates of a cell are not rounded: the vertex reports one off the grid
         }
     }
     for (std::size_t k = 0; k < end.at.q.size(); ++k) {

@@ -19,7 +19,7 @@ class Follower {
     Follower(const ArcOrigin& origin, const PowerLoad& power, CandidateList& candidates, const ArcOptions& options,
              std::vector<Contact> open);
 
-    /// Tangent, curvature and the first event that they predict, at the start.
+    /// Computes tangent, curvature and the first event that they predict, at the start.
     void begin();
     /// \pre begin()
     [[nodiscard]] std::optional<ArcDeparture::Expected> expected() const;
@@ -30,14 +30,14 @@ class Follower {
     using Vector = std::vector<double>;
     static constexpr double infinity = std::numeric_limits<double>::infinity();
 
-    /// What shortens the next step, in units of the longest one or as a length.
+    /// What shortens the next step, relative to the longest step or as a length.
     struct Pace {
-        double shrink = 1;           ///< after failures; recovers
-        double for_dip = infinity;   ///< once, where a gap may dip or a power may have turned
-        double for_power = infinity; ///< for the rest of an arc whose power comes near 0
-        bool renewed = false;        ///< the factors are of this very step
+        double shrink = 1;           ///< reduced after failures, then recovers
+        double for_dip = infinity;   ///< for one step, where a gap may dip or a power may have turned
+        double for_power = infinity; ///< for the rest of an arc on which the power comes near 0
+        bool renewed = false;        ///< the factors were made at the start of this step
     };
-    /// Where a step came to. `closing`: the gap that is 0 there (`nothing`: it just ended).
+    /// The end of a step. `closing`: the contact whose gap is 0 there (`nothing`: the step ended without an event).
     struct Reached {
         CurvePoint point;
         double s = 0;
@@ -45,7 +45,7 @@ class Follower {
         double power = 0;
     };
     static constexpr Contact nothing{ContactKind::held, -1, 0};
-    /// Nothing: again, with what `pace_` and the factors are now.
+    /// Nothing: try again with the changed `pace_` or factors.
     using Attempt = Result<std::optional<Reached>>;
     using Ending = Result<std::optional<Arc>>;
     enum class PowerSign { positive, shorten, turned, unclear };
@@ -74,13 +74,13 @@ class Follower {
     Chord chord_;
     EventScan scan_;
     PowerAlong power_;
-    CurveCourse here_; ///< where the next step begins
+    CurveCourse here_; ///< the start of the next step
     double step_limit_;
-    double noise_;                   ///< lengths that rounding may make
+    double noise_;                   ///< lengths below this may be rounding
     std::optional<Failure> failure_; ///< of `begin` or `predict`
     bool predicted_ = false;         ///< curvature and `event_` belong to `here_`
-    bool moved_ = false;             ///< `here_` is no longer the start
-    GapEvent event_;                 ///< predicted
+    bool moved_ = false;             ///< `here_` is not the start of the arc
+    GapEvent event_;                 ///< the predicted event
     double here_power_ = infinity;
     Pace pace_;
     int steps_ = 0;

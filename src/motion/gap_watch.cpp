@@ -15,7 +15,7 @@ constexpr int max_depth = 60;
 
 } // namespace
 
-/// Relative position of the two grains of a candidate along p(s), and what the tube adds to it.
+/// Relative position of the two grains of a candidate along p(s), and its uncertainty from the tube.
 struct GapWatch::Motion {
     Motion(const CurvePiece& piece, const Contact& contact) {
         wall = !contact.of_disks();
@@ -33,14 +33,14 @@ struct GapWatch::Motion {
         slope_error = weight * piece.slope_error() * up;
     }
 
-    /// What is known for s in [from, to].
+    /// Bounds for s in [from, to].
     struct View {
         double gap_low = 0;  ///< gap > gap_low
         double gap = 0;      ///< at the middle
         double gap_open = 0; ///< error of the gap at the middle
         double rate = 0;     ///< (relative position).(its derivative) at the middle (walls: the derivative)
         double rate_open = 0;
-        double rate_spread = 0; ///< how much it may change within the stretch
+        double rate_spread = 0; ///< largest change within the stretch
     };
     [[nodiscard]] View view(double from, double to) const {
         const double s = 0.5 * (from + to);
@@ -120,8 +120,8 @@ struct GapWatch::Motion {
     double target = 0;
     std::vector<PerAxis<double>> a; ///< position, then coefficients
     std::vector<double> size;
-    double apart = 0;       ///< how far the true relative position is from that of p
-    double slope_error = 0; ///< the same for its derivative
+    double apart = 0;       ///< bound of the distance of the true relative position from that of p
+    double slope_error = 0; ///< the same for the derivative
 };
 
 bool GapWatch::walk(const Motion& motion, double from, double to, int depth, GapTrend& last, bool& only_falls) {
@@ -137,11 +137,11 @@ bool GapWatch::walk(const Motion& motion, double from, double to, int depth, Gap
         const bool rises = view.rate > 0;
         if (rises && last == GapTrend::falling && !(motion.view(from, from).gap_low > 0)) {
             where_ = from;
-            return false; // it may have passed through 0 where the two meet
+            return false; // the gap may have passed through 0 where the two meet
         }
         if (!rises && last == GapTrend::zero) {
             where_ = from;
-            return false; // it does not open
+            return false; // the contact does not open
         }
         margin_ = std::min(margin_, std::abs(view.rate) / view.rate_open);
         only_falls = only_falls && !rises;
@@ -150,7 +150,7 @@ bool GapWatch::walk(const Motion& motion, double from, double to, int depth, Gap
     }
     const double middle = 0.5 * (from + to);
     if (depth >= max_depth || !(middle > from && middle < to) || std::abs(view.rate) < view.rate_open) {
-        // No stretch around the middle can be settled unless the gap itself is clear there.
+        // No stretch around the middle can be settled unless the gap there is proved positive.
         if (depth >= max_depth || !(view.gap > view.gap_open) || !(middle > from && middle < to)) {
             where_ = middle;
             return false;

@@ -8,7 +8,7 @@
 
 namespace isostat {
 
-/// a . b. In the plane the inner loops leave the third components out, which are 0.
+/// a . b. In the plane inner loops leave out the third components, which are 0.
 inline double dot(const Layout& layout, const PerAxis<double>& a, const PerAxis<double>& b) {
     const double sum = a[0] * b[0] + a[1] * b[1];
     return layout.dimension > plane ? sum + a[2] * b[2] : sum;
@@ -20,7 +20,7 @@ struct CentreLine {
     double length;
 };
 
-/// Nothing for other contacts, and where squares under- or overflow: the general functions of the room contact serve.
+/// Empty for other contacts, and where squares under- or overflow: then the functions of the room contact are used.
 inline std::optional<CentreLine> centre_line(const Packing& at, const Contact& contact) {
     if (!contact.of_disks()) {
         return std::nullopt;
@@ -80,7 +80,7 @@ inline double quick_curvature(const Packing& at, const Contact& contact, const s
     return gap_curvature(at, contact, v.data());
 }
 
-/// Separation over a contact of any kind: all components for two disks, else the first one, of a wall or a coordinate.
+/// Separation over a contact of any kind: all components for two disks, else one component, of a wall or a coordinate.
 inline PerAxis<double> separation_over(const Layout& layout, const std::vector<double>& x, const Contact& contact) {
     PerAxis<double> d{};
     switch (contact.kind) {

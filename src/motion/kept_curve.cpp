@@ -67,7 +67,7 @@ void KeptCurve::find_blocks() {
     }
 }
 
-/// As C5 and A7 say (proofs/cells.md, C11): sums over the blocks that move, and over those at rest.
+/// C5 and A7 (proofs/cells.md, C11): sums over the blocks that move, and over those at rest.
 void KeptCurve::bound_in_cell() {
     const std::size_t disks = start->radius.size();
     std::vector<double> squares(disks + 1, 0.0);

@@ -9,8 +9,8 @@
 
 namespace isostat {
 
-/// The parts of the moving coordinates that the separation over a kept contact depends on: its disks, and the cell, a
-/// block behind them. A change of norm x in a block changes r by at most weight x: 1 of a disk, |m| of the cell.
+/// The parts of the moving coordinates on which the separation over a kept contact depends: its disks, and the cell as
+/// a block behind them. A change of norm x in a block changes r by at most weight x: 1 for a disk, |m| for the cell.
 struct Blocks {
     std::array<std::size_t, 3> at{};
     std::array<double, 3> weight{};
@@ -22,21 +22,21 @@ struct Blocks {
     }
 };
 
-/// The equations of one arc: contacts[l] keeps gap 0 for every l but `slot`, whose row is free. Only grains that move
-/// take part; the others stay at their true place, which is within `rest_radius` (2-norm) of the one in `start`.
+/// The equations of one arc: contacts[l] keeps gap 0 for every l except `slot`, whose row is free. Only moving grains
+/// take part; the others stay at their true place, which is within `rest_radius` (2-norm) of that in `start`.
 struct KeptCurve {
     KeptCurve(const Packing& start, std::vector<Contact> contacts, std::size_t slot, double rest_radius);
-    /// Two disks that keep contact: the equations of all others are linear.
+    /// The equation of two disks in contact is not linear; all other equations are.
     [[nodiscard]] bool bends(std::size_t l) const { return l != slot && contacts[l].of_disks(); }
     /// Upper bound of the 2-norm of the matrix whose row l has blocks of norm e_l times their weight.
     [[nodiscard]] double norm_of(const std::vector<double>& e) const;
 
-    const Packing* start; ///< `fixed` and `walls` tell which grains move; held coordinates keep their value here
+    const Packing* start; ///< `fixed` and `walls` tell which grains move; held coordinates keep this value
     std::vector<Contact> contacts;
     std::size_t slot;
     DofMap dofs;
     std::vector<double> target; ///< sum of the radii, radius (walls), 0 (held), rounded
-    std::vector<Blocks> blocks; ///< per contact; none but of two disks that keep contact
+    std::vector<Blocks> blocks; ///< per contact; empty unless two disks keep contact
     double spread = 2;          ///< sum_l |D_l x|^2 <= spread |x|^2 over the kept contacts of two disks
     double smallest = 0;        ///< smallest sum of radii of a kept disk contact (infinity: there is none)
     double lipschitz = 0;       ///< of the derivative of F over the moving coordinates (V4)

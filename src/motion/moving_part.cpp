@@ -33,7 +33,7 @@ MovingPart::MovingPart(const ArcVertex& start, const ArcVertex& end, std::size_t
 double MovingPart::shift_of_end(const ArcVertex& start, const ArcVertex& end) {
     double square = 0;
     for (std::size_t k = 0; k < start.packing.q.size(); ++k) {
-        if (start.structure.dofs().dof_of(k) < 0) { // of a disk that is pinned: all go with it
+        if (start.structure.dofs().dof_of(k) < 0) { // of a pinned disk: all disks move with it
             const double d = end.packing.q[k] - start.packing.q[k];
             square += d * d * static_cast<double>(start.packing.radius.size());
         }
@@ -41,7 +41,7 @@ double MovingPart::shift_of_end(const ArcVertex& start, const ArcVertex& end) {
     return square > 0 ? std::sqrt(square) * up : 0;
 }
 
-/// A grid that became coarser has moved the pinned disk by a rounding: with it all others, by a translation.
+/// A coarser grid has moved the pinned disk by a rounding, and all others with it by a translation: undoes this.
 void MovingPart::bring_end_back() {
     const DofMap& dofs = start_.structure.dofs();
     for (std::size_t k = 0; k < end_packing_.q.size(); ++k) {
@@ -126,7 +126,7 @@ bool MovingPart::restrict_to(const std::vector<double>& mechanism) {
     return true;
 }
 
-/// What does not move is marked so; a cell that rests needs no pin.
+/// Marks what does not move; a cell at rest needs no pin.
 void MovingPart::let_rest() {
     const std::size_t disks = start_packing_.radius.size();
     std::vector<unsigned char> fixed(disks, 0);
@@ -147,7 +147,7 @@ void MovingPart::let_rest() {
     }
 }
 
-/// Then everything takes part: A7 is for disks alone there.
+/// Then everything takes part, because A7 is for disks alone.
 bool MovingPart::moves_pin_or_cell() const {
     const Cell& cell = start_packing_.cell;
     if (!cell.any()) {

@@ -12,34 +12,34 @@
 
 namespace isostat {
 
-/// All grains, or the few that the mechanism at the start moves when the contacts that touch them are as many as their
-/// degrees of freedom.
+/// All grains, or only those that the mechanism at the start moves,
+/// when as many contacts touch these as they have degrees of freedom.
 class MovingPart {
   public:
     MovingPart(const ArcVertex& start, const ArcVertex& end, std::size_t slot, double start_uncertainty,
                double end_uncertainty);
-    /// How much farther the true end vertex may be from the stored one when what does not move stands where it does at
+    /// Bound of the distance between the true end vertex and the same vertex with the resting grains at their places at
     /// the start (C11): 0 in a box.
     [[nodiscard]] static double shift_of_end(const ArcVertex& start, const ArcVertex& end);
-    /// Empty, or why the part cannot be certified.
+    /// Empty, or the reason why the part cannot be certified.
     [[nodiscard]] const std::string& trouble() const { return trouble_; }
     [[nodiscard]] const KeptCurve& curve() const { return *curve_; }
-    /// The vertex at an end, with its own contact in the free row.
+    /// The vertex at an end; the free row is that of its own contact.
     [[nodiscard]] std::unique_ptr<ArcCentre> at_start(InverseBoundCache& cache) const;
     [[nodiscard]] std::unique_ptr<ArcCentre> at_end(InverseBoundCache& cache) const;
-    /// The same place with the coordinate that is fastest there in the free row, `rate` (of the present free row) made
-    /// the sign of that coordinate's rate.
+    /// The same place with the fastest coordinate there in the free row; `rate`, the rate of the old free row, becomes
+    /// the sign of the rate of that coordinate.
     [[nodiscard]] std::unique_ptr<ArcCentre> with_fastest(const ArcCentre& vertex, double& rate,
                                                           InverseBoundCache& cache) const;
-    /// Fresh centre with coordinate `held` in the free row.
+    /// A fresh centre with coordinate `held` in the free row.
     [[nodiscard]] std::unique_ptr<ArcCentre> centre(Packing packing, int held, InverseBoundCache& cache) const;
     [[nodiscard]] bool whole() const { return whole_; }
-    /// The grains that move, when they are not all: disks, then walls.
+    /// The grains that move, if not all do: disks, then walls.
     [[nodiscard]] std::vector<int> grains() const;
 
-    /// Candidates with a grain that moves and that are not kept; the opened contact is among them.
+    /// Candidates outside the kept contacts of which a grain moves; the opened contact is among them.
     [[nodiscard]] std::vector<Contact> watched(const CandidateList& list) const;
-    /// Candidates that are not kept, moving or not.
+    /// Candidates outside the kept contacts, moving or not.
     [[nodiscard]] std::vector<Contact> all(const CandidateList& list) const;
     /// Whether the list is complete at every true point of the curve with |s| <= h on the piece.
     [[nodiscard]] bool complete(const CurvePiece& piece, double h, const CandidateList& list) const;
@@ -58,9 +58,9 @@ class MovingPart {
     const ArcVertex& end_;
     std::size_t slot_;
     bool whole_ = true;
-    bool end_moved_ = false; ///< the end is not stored as it is taken
+    bool end_moved_ = false; ///< the end used here is not the stored one
     std::vector<unsigned char> disk_moves_;
-    std::vector<unsigned char> wall_moves_; ///< and the coordinates of a cell
+    std::vector<unsigned char> wall_moves_; ///< walls that move, then coordinates of a cell
     Packing start_packing_;                 ///< grains at rest are marked fixed
     Packing end_packing_;
     std::unique_ptr<KeptCurve> curve_;

@@ -69,8 +69,8 @@ double PowerAlong::terms(const Packing& at, const std::vector<double>& v) const 
     return sum;
 }
 
-/// DF v: true stresses act on lengths, which is linear in q, and in space on products of two of them: there a
-/// difference to both sides is the derivative. Empty when the load is dead.
+/// DF v: true stresses act on lengths, which are linear in q, and in space on products of two lengths, of which a
+/// central difference is the derivative. Empty when the load is dead.
 std::vector<double> PowerAlong::change(const Packing& at, const std::vector<double>& v) const {
     if (load_.infinitesimal || load_.load->kind == LoadKind::nominal) {
         return {};
@@ -100,8 +100,8 @@ std::vector<double> PowerAlong::force_at(const Packing& at, const std::vector<do
     return load_.load->external_force(there);
 }
 
-/// Passes until what one does to the power over a length s is small beside `least`, a power, or beside what the slope
-/// does: of a power that starts at 0.
+/// Makes passes until their effect on the power over a length s is small compared with `least`, a power, or, for a
+/// power that starts at 0, with the effect of the slope.
 void PowerAlong::sharpen(CurveCourse& course, Chord& chord, double s, double least) const {
     constexpr int most_passes = 10;
     constexpr double small = 0.1;
@@ -121,14 +121,14 @@ void PowerAlong::sharpen(CurveCourse& course, Chord& chord, double s, double lea
 }
 
 std::optional<double> PowerAlong::dip(const CurveCourse& course, Chord& chord, const Step& step) const {
-    // Factors of another place leave an error of this share in the curvature: where the power is less beside its terms
-    // it is a difference that they do not tell.
+    // Factors of another configuration leave an error of this share in the curvature: a power smaller than this share
+    // of its terms is a difference that they cannot resolve.
     constexpr double stale = 0.1;
     const double s = step.s;
     const double slope = s * slope_along(course);
     const double least = std::min({step.start, step.start + slope, step.end});
-    // Passes only where the curved part, as the other three numbers show it, could bring the power near 0. Like the
-    // cubic itself this is an estimate, not a proof.
+    // Passes are needed only where the curved part, estimated from the other three numbers, could bring the power near
+    // 0. Like the cubic itself this is an estimate, not a proof.
     if (least > 2 * std::abs(step.end - step.start - slope) && least > stale * s * terms(course.at, course.curvature)) {
         return std::nullopt;
     }
@@ -153,7 +153,7 @@ std::optional<double> PowerAlong::dip_of_cubic(const CurveCourse& course, Chord&
         ((*this)(course.at, third) + 2 * product(change(course.at, course.tangent), course.curvature) +
          product(change(course.at, course.curvature), course.tangent) + bend_along(course.at, course.tangent));
     const double p3 = step.end - step.start - p1 - p2;
-    // What the cubic misses at x is x^3 (1 - x) times a fourth derivative / 24, taken to be as much as p3.
+    // The error of the cubic at x is x^3 (1 - x) times a fourth derivative / 24, taken to be as large as p3.
     constexpr int samples = 32;
     for (int k = 1; k < samples; ++k) {
         const double x = static_cast<double>(k) / samples;

@@ -18,20 +18,20 @@ class PowerAlong {
     [[nodiscard]] bool starts_at_zero() const { return load_.starts_at_zero; }
     /// F_ext . t at a configuration.
     [[nodiscard]] double operator()(const Packing& at, const std::vector<double>& t) const;
-    /// Largest force of the load.
+    /// The largest component of the load.
     [[nodiscard]] double largest_force(const Packing& at) const;
 
-    /// The power at the two ends of a step of length s.
+    /// A step of length s with the power at its two ends.
     struct Step {
         double start, end, s;
     };
-    /// First place inside a step where the power seems to be negative although both ends are positive: the cubic with
-    /// its value and its first two derivatives at the start, and its value at the end. Mostly without a pass; else the
-    /// curvature of the course is solved for until it tells the slope of the power, and one pass more.
+    /// First place inside a step where the power seems to be negative although both ends are positive: by the cubic
+    /// with value and two derivatives at the start, and the value at the end. Mostly without a pass; else the curvature
+    /// is solved for until the slope of the power is accurate, then one more pass.
     [[nodiscard]] std::optional<double> dip(const CurveCourse& course, Chord& chord, const Step& step) const;
 
   private:
-    /// Sum of the sizes of the terms of F_ext . v.
+    /// Sum of the absolute values of the terms of F_ext . v.
     [[nodiscard]] double terms(const Packing& at, const std::vector<double>& v) const;
     [[nodiscard]] double slope_along(const CurveCourse& course) const;
     void sharpen(CurveCourse& course, Chord& chord, double s, double least) const;
@@ -51,15 +51,15 @@ class SignChange {
         double s, value;
     };
     SignChange(End low, End high) : low_(low), high_(high) {}
-    /// Where to look next.
+    /// The place to evaluate next.
     [[nodiscard]] double next() const;
-    /// What was found there: it takes the place of the end with that sign.
+    /// The value found there: it replaces the end with the same sign.
     void found(End there);
     [[nodiscard]] double width() const { return high_.s - low_.s; }
 
   private:
     End low_, high_;
-    int side_ = 0; ///< +1, -1: the end replaced last was the lower, the upper one
+    int side_ = 0; ///< +1, -1: the lower, the upper end was replaced last
 };
 
 } // namespace isostat

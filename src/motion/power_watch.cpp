@@ -10,7 +10,7 @@ namespace isostat {
 namespace {
 
 constexpr int max_halvings = 40;
-/// Shares of a piece beyond which an end with power 0 is not called that: they are reported whatever they are.
+/// Larger shares of a piece with open power are not excused as the start at a limit or the end at a turn.
 constexpr double largest_open_start = 1e-2;
 constexpr double largest_open_end = 1e-2;
 
@@ -23,7 +23,7 @@ struct PowerWatch::Power {
     std::vector<double> c_open; ///< rounding of c_k
     std::vector<double> g;      ///< (sum (f/d)^2 |difference of a_k|^2)^(1/2), k = 1 ...
     double apart = 0;           ///< 2-norm of the differences of q(s) - p(s)
-    double slope_apart = 0;     ///< of their derivatives
+    double slope_apart = 0;     ///< 2-norm of the differences of the derivatives
     double heaviest = 0;        ///< largest |f| / d
     double residual = 0;        ///< |F - H f| times the speed
 
@@ -77,7 +77,7 @@ void PowerWatch::walk(const Power& power, double from, double to, int depth) {
     walk(power, middle, to, depth + 1);
 }
 
-/// Forces that balance the load at the centre, and what they leave of it.
+/// Forces that balance the load at the centre, and the residual.
 PowerWatch::Balance PowerWatch::balance(const CurvePiece& piece) const {
     const IsostaticStructure& structure = piece.structure();
     const sparse::Matrix<double>& h = structure.matrix();
@@ -116,7 +116,7 @@ PowerWatch::Balance PowerWatch::balance(const CurvePiece& piece) const {
     return balance;
 }
 
-/// The part of the free row; returns the largest speed.
+/// Adds the part of the free row; returns the largest speed.
 double PowerWatch::add_row(const CurvePiece& piece, double force, Power& power) {
     const auto& a = piece.coefficients();
     const auto count = static_cast<double>(piece.structure().size());
@@ -127,7 +127,7 @@ double PowerWatch::add_row(const CurvePiece& piece, double force, Power& power) 
         const RoundedSum sum = piece.along_row(a[k - 1]);
         const auto factor = static_cast<double>(k);
         power.c[k - 1] -= factor * force * sum.value;
-        const double later = k > 1 ? count * std::abs(sum.value) : 0; // what contacts are added to it
+        const double later = k > 1 ? count * std::abs(sum.value) : 0; // rounding of later additions
         power.c_open[k - 1] += u * factor * std::abs(force) * (granted * sum.absolute + later);
         double norm = 0;
         for (const double x : a[k - 1]) {
@@ -138,7 +138,7 @@ double PowerWatch::add_row(const CurvePiece& piece, double force, Power& power) 
     return speed;
 }
 
-/// The part of a kept contact of two disks.
+/// Adds the part of a kept contact of two disks.
 void PowerWatch::add_contact(const CurvePiece& piece, const Contact& contact, double force, Power& power) {
     const auto& a = piece.coefficients();
     const std::size_t order = a.size();
@@ -198,7 +198,7 @@ void PowerWatch::look(const CurvePiece& piece, double from, double to) {
     open_.clear();
     walk(power_along(piece), from, to, 0);
     ++pieces_;
-    inner_open_ = inner_open_ || last_open_ > 0; // the piece before was not the last one
+    inner_open_ = inner_open_ || last_open_ > 0; // the previous piece was not the last one
     last_open_ = 0;
     const double length = to - from;
     for (const auto& [low, high] : open_) {

@@ -12,12 +12,12 @@
 
 namespace isostat {
 
-/// Power F . q'(s) of a load that does not change, piece by piece.
+/// The power F . q'(s) of a constant load, piece by piece.
 class PowerWatch {
   public:
     explicit PowerWatch(const PowerLoad& power) : power_(power) {}
     void look(const CurvePiece& piece, double from, double to);
-    /// Fills the fields of the power. `turns`: the arc ends at a power turn.
+    /// Fills the fields of the power in `certificate`. `turns`: the arc ends at a power turn.
     void conclude(ArcCertificate& certificate, bool turns) const;
 
   private:
@@ -30,7 +30,7 @@ class PowerWatch {
     [[nodiscard]] Power power_along(const CurvePiece& piece) const;
     static double add_row(const CurvePiece& piece, double force, Power& power);
     static void add_contact(const CurvePiece& piece, const Contact& contact, double force, Power& power);
-    /// Longest end [s, to] and start [from, s] on which the power is proved positive.
+    /// Finds the longest end [s, to] and start [from, s] on which the power is proved positive.
     void walk(const Power& power, double from, double to, int depth);
 
     const PowerLoad& power_;
@@ -38,7 +38,7 @@ class PowerWatch {
     int pieces_ = 0;
     double first_open_ = 0;   ///< share of the first piece, from its start
     double last_open_ = 0;    ///< share of the last piece, to its end
-    bool inner_open_ = false; ///< not proved elsewhere
+    bool inner_open_ = false; ///< not proved positive somewhere else
     std::vector<std::pair<double, double>> open_;
 };
 

@@ -11,7 +11,7 @@ namespace isostat {
 
 namespace {
 
-/// Where the iteration begins: before the place that double took for the end, on the curve to (1e-6)^2.
+/// The start of the iteration: before the end found in double, on the curve up to (1e-6)^2.
 Packing a_little_before(const RoughEnd& rough) {
     constexpr double back = 1e-6; // of a radius: a hundred times the stretch on which a gap is 0 to rounding
     Packing at = rough.end;
@@ -23,7 +23,7 @@ Packing a_little_before(const RoughEnd& rough) {
     return at;
 }
 
-/// The step that closes the gaps of `at` + `correction`; empty: the contacts are singular, structurally or to doubles.
+/// The step that closes the gaps of `at` + `correction`; empty: the contacts are singular, structurally or in double.
 std::vector<double> newton_step(const RoughEnd& rough, const Packing& at, const std::vector<dd_real>& correction) {
     Packing rounded = at;
     for (std::size_t k = 0; k < correction.size(); ++k) {

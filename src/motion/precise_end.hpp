@@ -8,21 +8,21 @@
 
 namespace isostat {
 
-/// An arc that was followed in double, and what is nearly singular there.
+/// An arc that was followed in double to an end where the contacts are nearly singular.
 struct RoughEnd {
-    const IsostaticStructure& structure; ///< at the start
+    const IsostaticStructure& structure; ///< structure at the start
     ContactId opened;
     Contact closed;
     const Packing& end;
-    const std::vector<double>& tangent; ///< there, on coordinates, forwards
-    double displacement;                ///< of the arc, largest of a coordinate
+    const std::vector<double>& tangent; ///< tangent at the end, on coordinates, forwards
+    double displacement;                ///< largest displacement of a coordinate along the arc
 };
 
 /// The coordinates nearest to the vertex with the contact that closed, by Newton's method with gaps in double-double
-/// and fresh factors at each step. In double a gap that closes at a rate of 1e-8 is 0, to rounding, on a stretch of
-/// 1e-8 and more, on which the matrix is another one. Where the gap nearly grazes there are two places: the iteration
-/// begins a little before the end, from where it finds the first. Nothing: it did not converge. A guess: what is proved
-/// of it is for the caller. Cost: some 20 factorisations.
+/// and fresh factors at each step. In double a gap that closes at a rate of 1e-8 is 0, up to rounding, on a stretch of
+/// 1e-8 or more, and the matrix changes along this stretch. Where the gap nearly grazes, two places have gap 0: the
+/// iteration begins a little before the end, so that it finds the first. Nothing: no convergence. The result is a
+/// guess; the caller has to prove what it needs. Cost: some 20 factorisations.
 std::optional<Packing> precise_end(const RoughEnd& rough);
 
 } // namespace isostat

@@ -1,5 +1,5 @@
 #pragma once
-// What the bounds of arcs share (statement A8, proofs/arcs.md): private to the room.
+// Bounds of rounding that several files on arcs use (statement A8, proofs/arcs.md): private to the room.
 
 #include "core/roundoff.hpp"
 
@@ -10,7 +10,7 @@
 namespace isostat {
 
 using roundoff::u;
-/// Sums of up to 10^6 terms, their roots and a few products: relative rounding below 1e-9 (proofs/bounds.md).
+/// Factor for sums of up to 10^6 terms, their roots, a few products: relative rounding below 1e-9 (proofs/bounds.md).
 inline constexpr double up = 1 + 1e-9;
 using roundoff::root2;
 /// Relative error of a product with the exact row of a contact, in units of u: entries, products and their sum.
@@ -26,7 +26,7 @@ template <std::size_t size> inline double dot(const std::array<double, size>& x,
     return sum;
 }
 
-/// A sum of products, and of their absolute values: what its rounding is a share of.
+/// A sum of products, and the sum of their absolute values, to which its rounding is relative.
 struct RoundedSum {
     double value = 0;
     double absolute = 0;

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// How far a place next to a stored one misses an equation of the kept curve, in double-double: private to the room.
+/// Residual of an equation of the kept curve next to a stored place, in double-double: private to the room.
 
 #include "contact/separation.hpp"
 
@@ -14,12 +14,12 @@
 
 namespace isostat {
 
-/// F_l at `centre` + `shift` (empty: 0) of a contact or of a held coordinate, which stays where it is in `start`; the
+/// F_l at `centre` + `shift` (empty: 0) for a contact or for a held coordinate, which keeps its value in `start`; the
 /// equation in units of length (A1, proofs/arcs.md). The radius bounds the error of the value.
 /// \pre separations of both are exact (on their grids)
 inline Enclosure shifted_equation(const Packing& start, const Packing& centre, const Contact& c,
                                   const std::vector<double>& shift) {
-    constexpr double rounding = 0x1p-96; // of a few operations, each within 2^-98
+    constexpr double rounding = 0x1p-96; // bound for a few operations, each within 2^-98
     if (c.kind == ContactKind::held) {
         const auto k = static_cast<std::size_t>(c.i);
         const dd_real off = dd_real(centre.q[k]) - start.q[k] + (shift.empty() ? 0.0 : shift[k]);

@@ -10,8 +10,8 @@
 namespace isostat::preparation {
 
 std::optional<std::vector<Contact>> best_conditioned(const Packing& packing) {
-    constexpr int most = 2000;           // degrees of freedom: seconds
-    constexpr double touching = 1e-6;    // of the smallest radius: above what nearly dependent contacts leave open
+    constexpr int most = 2000;           // degrees of freedom; more take longer than seconds
+    constexpr double touching = 1e-6;    // of the smallest radius: above the gaps of nearly dependent contacts
     constexpr double independent = 1e-6; // of the largest pivot
     const DofMap dofs(packing);
     const int n = dofs.dof_count();

@@ -9,7 +9,7 @@
 
 namespace isostat::preparation {
 
-/// CHOLMOD's factor, and what its solves use again and again.
+/// CHOLMOD's factor, and the arrays that its solves reuse.
 struct CliqueMatrix::Factors {
     cholmod_common common{};
     cholmod_sparse matrix{};
@@ -21,9 +21,9 @@ struct CliqueMatrix::Factors {
     Factors(std::vector<int>& first, std::vector<int>& row, std::vector<double>& value) {
         cholmod_start(&common);
         common.supernodal = CHOLMOD_SIMPLICIAL;
-        common.final_ll = 1; // L L^T: a pivot that is not positive ends it
+        common.final_ll = 1; // L L^T: a pivot that is not positive ends the factorisation
         common.print = 0;
-        common.nmethods = 2; // the one with less fill: nested dissection from some thousand disks on
+        common.nmethods = 2; // the method with less fill: nested dissection from some thousand disks on
         common.method[0].ordering = CHOLMOD_AMD;
         common.method[1].ordering = CHOLMOD_NESDIS;
         matrix.nrow = matrix.ncol = first.size() - 1;
@@ -56,7 +56,7 @@ struct CliqueMatrix::Factors {
 
 CliqueMatrix::CliqueMatrix(std::size_t columns, const std::vector<int>& start, const std::vector<int>& column)
     : block_start_(start) {
-    std::vector<std::pair<int, int>> entries; // of blocks: column, row
+    std::vector<std::pair<int, int>> entries; // indices of blocks: column, row
     for (std::size_t l = 0; l + 1 < start.size(); ++l) {
         for (int p = start[l]; p < start[l + 1]; ++p) {
             for (int r = start[l]; r <= p; ++r) {

@@ -9,9 +9,9 @@
 namespace isostat::preparation {
 
 /// Sum over l of blocks on the columns column[start[l]] ... column[start[l + 1] - 1], plus a diagonal. Pattern and
-/// order of little fill once (AMD or nested dissection), numbers and factor as often as asked. CHOLMOD's simplicial
-/// factors: its supernodal ones are faster, but they are those of a BLAS, whose bits depend on the processor. One
-/// thread. Cost of a factor: O(n^1.5) for planar contact graphs, O(n log n) memory.
+/// order of little fill are computed once (AMD or nested dissection), numbers and factor on every call. Uses CHOLMOD's
+/// simplicial factors: the supernodal ones are faster but call a BLAS, whose bits depend on the processor. One thread.
+/// Cost of a factor: O(n^1.5) for planar contact graphs, O(n log n) memory.
 class CliqueMatrix {
   public:
     CliqueMatrix(std::size_t columns, const std::vector<int>& start, const std::vector<int>& column);
@@ -19,8 +19,8 @@ class CliqueMatrix {
     CliqueMatrix(const CliqueMatrix&) = delete;
     CliqueMatrix& operator=(const CliqueMatrix&) = delete;
 
-    /// Entry of block l between the places p and r of `column` : block(l, p, r), for r <= p. False when the matrix is
-    /// not positive definite as far as rounded numbers say.
+    /// Entry of block l between positions p and r of `column`: block(l, p, r), for r <= p. False when the matrix is not
+    /// positive definite in rounded arithmetic.
     template <class Block> bool factorise(const Block& block, const std::vector<double>& diagonal) {
         value_.assign(value_.size(), 0.0);
         std::size_t next = 0;

@@ -10,12 +10,12 @@ namespace isostat::preparation {
 
 namespace {
 
-/// More contacts are missing only where the programme is far from its optimum.
+/// More contacts than this are missing only where the programme is far from its optimum.
 constexpr std::size_t most_missing = 20;
-/// Added to the squares of the singular values: far below those of packings, far above rounding.
+/// Added to the squares of the singular values; far below those of packings and far above rounding.
 constexpr double shift = 1e-13;
 constexpr int inverse_iterations = 6;
-/// Approach of a pair, per displacement, below which it counts as none: rounding of the mechanism.
+/// Approach of a pair, per displacement, below which it counts as zero, being rounding of the mechanism.
 constexpr double no_approach = 1e-9;
 
 void normalise(std::vector<double>& x) {
@@ -28,7 +28,7 @@ void normalise(std::vector<double>& x) {
     }
 }
 
-/// A velocity that leaves all the gaps of the rows as they are, as far as inverse iteration tells.
+/// A velocity that keeps all gaps of the rows constant, as far as inverse iteration tells.
 std::optional<std::vector<double>> mechanism(std::size_t columns, const std::vector<int>& start,
                                              const std::vector<int>& column, const std::vector<double>& value) {
     CliqueMatrix matrix(columns, start, column);

@@ -11,31 +11,31 @@ namespace isostat::preparation {
 
 namespace {
 
-/// Two starts of 20 000 disks: 262 and 289 steps, of 10 000: 32 to 194. After so many the programmes have to do it.
+/// Two starts of 20 000 disks took 262 and 289 steps, of 10 000: 32 to 194. After most_steps, programmes follow.
 constexpr int most_steps = 400;
-constexpr int most_steps_late = 1500; ///< after Newton steps; samples of 60 000 to 100 000: 385 to 810
-/// The gaps at the beginning, in the internal unit, that the products correspond to with mean forces: a few overlaps of
-/// the dynamics. Five starts of 10 000 disks, well relaxed or hardly: 47 to 113 steps; with 1e-4 one of them, with 1e-3
-/// two do not end in 130, because the packing first swells and rearranges.
+constexpr int most_steps_late = 1500; ///< after Newton steps; samples of 60 000 to 100 000 disks took 385 to 810
+/// Gaps at the beginning, in the internal unit, to which the products of mean forces correspond: a few overlaps of the
+/// dynamics. Five starts of 10 000 disks, relaxed well or hardly, took 47 to 113 steps; with 1e-4 one of the starts,
+/// and with 1e-3 two of them, did not end in 130 steps, because the packing first swells and rearranges.
 constexpr double first_slack = 2e-5;
 constexpr double first_slack_late = 3e-6; ///< after Newton steps
 /// Forces of the start below this share of the mean are raised to it.
 constexpr double least_force = 0.01;
-/// Share of a complete contact list from which on the overlaps of the start are taken as its forces.
+/// Share of a complete contact list from which on the overlaps of the start are used as its forces.
 constexpr double dense_enough = 0.9;
-/// The list of pairs is renewed when a disk has moved by this share of the trust bound; a step is bounded by the rest.
+/// The list of pairs is renewed when a disk has moved by this share of the trust bound; the rest bounds a step.
 constexpr double renewal = 0.5;
-/// Products below which the contacts can be read off, and steps for which they must stay the same. In the scale of the
-/// objective a force is of order 400 and the rounding of a gap makes products of 1e-12.
+/// Products below which the contacts can be identified, and the number of steps for which the contacts must stay the
+/// same. In the scale of the objective a force is of order 400, and the rounding of a gap makes products of 1e-12.
 constexpr double settled_product = 1e-9;
 constexpr int settled_steps = 3;
-/// Steps below that product after which the simplex method does the rest: a single disk may roll about for long.
+/// After so many steps below that product the simplex method goes on, because a single disk may roll about for long.
 constexpr int most_below = 25;
-/// Slack of pairs that come into the list.
+/// Slack of pairs that enter the list.
 constexpr double least_slack = 1e-9;
 constexpr double feasible = 1e-9;
 
-/// Walks through two sorted lists: the place in `old` of each contact asked for, in order.
+/// Walks through a sorted list `old` and finds the place of each requested contact, which must come in order.
 class Matching {
   public:
     explicit Matching(const std::vector<Contact>& old) : old_(old) {}
@@ -51,8 +51,8 @@ class Matching {
     std::size_t next_ = 0;
 };
 
-/// The interior point for a renewed list: pairs that stay keep theirs, others begin with the mean product. `active`
-/// goes with them.
+/// The interior point for a renewed list: pairs that stay keep their slack and force, and the others begin with the
+/// mean product. `active` is renumbered in the same way.
 InteriorPoint carry(const InteriorPoint& point, const std::vector<Contact>& before, const std::vector<Contact>& after,
                     const std::vector<double>& gaps, ActiveSet& active) {
     double product = 0;
@@ -76,7 +76,7 @@ InteriorPoint carry(const InteriorPoint& point, const std::vector<Contact>& befo
     return matched;
 }
 
-/// Largest displacement of a disk from where the list was made; 0 while there is none.
+/// Largest displacement of a disk since the list was made; 0 while no list exists.
 double moved_since(const std::vector<double>& anchor, const std::vector<double>& q, std::size_t disk_coordinates) {
     double moved = 0;
     for (std::size_t k = 0; k < disk_coordinates && !anchor.empty(); ++k) {
@@ -85,7 +85,7 @@ double moved_since(const std::vector<double>& anchor, const std::vector<double>&
     return moved;
 }
 
-/// Counts what an iteration changed among the rows that are active, and how far they are from a basis.
+/// Counts the changes of an iteration among the active rows, and how many rows more or fewer than a basis are active.
 void count_changes(const ActiveSet& before, const ActiveSet& now, std::size_t coordinates, ProgrammeStep& step) {
     step.changes = 0;
     long held = 0;
@@ -101,7 +101,7 @@ void count_changes(const ActiveSet& before, const ActiveSet& now, std::size_t co
 } // namespace
 
 InteriorPoint ContactProgramme::first_point(const Packing& packing, const Rows& rows) const {
-    // The overlaps of a relaxed soft packing are its forces; their scale makes the walls balance (virial).
+    // The forces are proportional to the overlaps of a relaxed soft packing, on the scale that balances the walls.
     double virial = 0;
     std::size_t closed = 0;
     for (std::size_t k = 0; k < rows.contact.size(); ++k) {
@@ -116,7 +116,7 @@ InteriorPoint ContactProgramme::first_point(const Packing& packing, const Rows& 
     }
     const double first = method_ == ProgrammeMethod::interior ? first_slack_late : first_slack;
     const double centre = work / static_cast<double>(rows.contact.size()) * first;
-    const double force = centre / first; // of order of the mean one, as distances are of order 1
+    const double force = centre / first; // of the order of the mean force, because distances are of order 1
     const bool dense = static_cast<double>(closed) >= dense_enough * static_cast<double>(rows.columns());
     InteriorPoint point;
     for (const double h : rows.gap) {
@@ -133,7 +133,7 @@ InteriorPoint ContactProgramme::first_point(const Packing& packing, const Rows& 
 
 namespace {
 
-/// Moves the degrees of freedom; the largest displacement of a disk's coordinate.
+/// Moves the degrees of freedom; returns the largest displacement of a disk's coordinate.
 double displace(Packing& packing, const DofMap& dofs, const std::vector<double>& x, std::size_t disks) {
     double largest = 0;
     for (int c = 0; c < dofs.dof_count(); ++c) {
@@ -175,7 +175,7 @@ ProgrammeStep ContactProgramme::descend(Packing& packing, double eps,
             }
         }
         rows = std::move(next);
-        // A gap is never smaller than the linear one: the rest of it is slack.
+        // A gap is never smaller than the linear gap, so the difference is slack.
         for (std::size_t l = 0; l < rows.gap.size(); ++l) {
             point.slack[l] = std::max(point.slack[l], rows.gap[l]);
         }

@@ -26,20 +26,20 @@ namespace preparation {
 namespace {
 
 /// Largest displacement of a disk per programme, in mean radii. Measured at n = 1936: 0.07 needs 13 programmes where
-/// 0.27 needs 9 (rattlers fall farther); a larger one adds rows that are never used.
+/// 0.27 needs 9, because rattlers fall farther; a larger value adds rows that are never used.
 constexpr double trust_in_radii = 0.27;
-/// A failed attempt at Newton and the proofs only costs time. Worth it after a step below the first value (mean radii)
-/// when the basis has nearly settled, or below the second in any case.
+/// A failed attempt at Newton and the proofs only costs time. An attempt is made after a step below the first value
+/// (mean radii) when the basis has nearly settled, or below the second value in any case.
 constexpr double attempt_below = 0.05;
 constexpr double attempt_always_below = 0.001;
 constexpr long settled_pivots = 2;
-/// In largest radii, how far apart a programme lists pairs of a cell: more than its rows need.
+/// Distance, in largest radii, within which a programme lists the pairs of a cell; its rows need less.
 constexpr double listed_within = 8;
-/// Below this step (mean radii) and without pivots the next programme would do nothing new.
+/// After a step below this (mean radii) without pivots the next programme would change nothing.
 constexpr double converged_below = 1e-8;
-/// The finite weight of the infinitesimal loads may tip a weak backbone contact; then it is divided by this, once.
+/// The finite weight of the infinitesimal loads may open a weak backbone contact; it is then divided by this, once.
 constexpr double weight_divisor = 10;
-/// Of the smallest radius: what counts as touching where the pinned disk is chosen.
+/// Share of the smallest radius below which a gap counts as touching in the choice of the pinned disk.
 constexpr double near_enough = 1e-3;
 
 /// Relative dilation about the lower corner that parts every overlapping pair.
@@ -55,7 +55,7 @@ double dilation_needed(const Packing& packing, const std::vector<Contact>& conta
     return needed;
 }
 
-/// The disk with the most overlaps: hardly ever a rattler.
+/// The disk with the most overlaps, which is hardly ever a rattler.
 int best_held(const Packing& packing) {
     std::vector<int> touching(packing.radius.size(), 0);
     for (const Contact& c : near_contacts(packing, near_enough * packing.min_radius(), 0)) {
@@ -102,7 +102,7 @@ void require_sensible(const Packing& start, const PreparationOptions& options) {
     }
 }
 
-/// The sequence of programmes with attempts at the vertex in between. Lengths in the internal unit until `polish`.
+/// The sequence of programmes and of attempts at the vertex. Lengths are in the internal unit until `polish`.
 class VertexSearch {
   public:
     VertexSearch(const Packing& start, const PreparationOptions& options, PreparationReport& report)
@@ -156,10 +156,10 @@ class VertexSearch {
             if (polished.ok()) {
                 return succeed(std::move(polished.value()));
             }
-            // Not yet: the next programme sees the normals and the lengths of the point reached, unless it has nothing
-            // new to see.
+            // The attempt failed: the next programme has the normals and
+            // lengths of the new point, unless the step changed nothing.
             if (step.changes == 0 && step.largest <= converged_below * scale_.mean_radius()) {
-                // Clp sees neither forces nor gaps below its tolerances, nor that eps is infinitesimal.
+                // Clp ignores forces and gaps below its tolerances, and does not know that eps is infinitesimal.
                 auto pivoted = finish(step.contacts);
                 if (pivoted.ok()) {
                     return succeed(std::move(pivoted.value()));
@@ -180,13 +180,13 @@ class VertexSearch {
     }
 
   private:
-    /// In a cell they sum to zero: the pinned disk bears those of the others.
+    /// In a cell the loads sum to zero because the pinned disk bears minus the loads of the others.
     [[nodiscard]] std::vector<double> infinitesimal_loads(const std::vector<double>& radius) const {
         std::vector<double> g = generic_infinitesimal(radius, report_.infinitesimal_seed, packing_.dimension);
         balance(g, packing_.cell);
         return g;
     }
-    /// The descent, then Newton and the proofs. Nothing: the programmes go on from where it ended.
+    /// The descent, then Newton and the proofs. Empty: the programmes go on from the end of the descent.
     std::optional<Polished> descend(ContactProgramme& programme, double weight) {
         const Stage stage("interior descent", options_);
         const ProgrammeStep end = programme.descend(packing_, weight, [&](const ProgrammeStep& step) {
@@ -209,7 +209,7 @@ class VertexSearch {
         return polished.ok() ? std::optional(std::move(polished.value())) : std::nullopt;
     }
 
-    /// Contacts that an interior-point method left open.
+    /// Adds the contacts that an interior-point method left open; true when the list is complete.
     bool complete(ContactProgramme& programme, double weight, std::vector<Contact>& contacts) {
         return contacts.size() < static_cast<std::size_t>(DofMap(packing_).dof_count()) &&
                programme.complete(packing_, weight, contacts);
@@ -235,7 +235,7 @@ class VertexSearch {
         return pivoted;
     }
 
-    /// The way down leads to a cell whose pairs the next programme could not list.
+    /// A failure when the cell has become so flat that the next programme could not list its pairs.
     [[nodiscard]] std::optional<Failure> too_flat() const {
         const auto beyond = packing_.cell.any()
                                 ? disk_beyond(packing_, listed_within * packing_.max_radius(), farthest_disk)
@@ -252,7 +252,7 @@ class VertexSearch {
         case ProgrammeStep::Outcome::interrupted:
             return failed(FailureKind::interrupted, "stopped during programme {}", programmes_);
         case ProgrammeStep::Outcome::infeasible: {
-            // Overlaps that cannot be undone within the trust bounds: part the disks first.
+            // These overlaps cannot be undone within the trust bounds, so the disks are parted first.
             const double needed = dilation_needed(packing_, programme.candidates(packing_));
             if (dilated_ || !(needed > 0)) {
                 return failed(FailureKind::overlap,
@@ -283,7 +283,7 @@ class VertexSearch {
 
     [[nodiscard]] bool worth_an_attempt(const ProgrammeStep& step) const {
         const double below = step.changes <= settled_pivots ? attempt_below : attempt_always_below;
-        return programmes_ > 1 // the first one keeps the overlaps of the start
+        return programmes_ > 1 // the first programme keeps the overlaps of the start
                && step.largest <= below * scale_.mean_radius();
     }
 

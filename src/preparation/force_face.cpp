@@ -14,7 +14,7 @@ namespace isostat {
 
 namespace {
 
-/// Calls `entry` with the degrees of freedom that a contact acts on, and the force on each per unit of its own.
+/// Calls `entry` with each degree of freedom that a contact acts on, and its force there per unit of contact force.
 template <class Entry> void for_each_push(const Packing& packing, const DofMap& dofs, const Contact& c, Entry entry) {
     const GapGradient g = gap_gradient(packing, c);
     for (std::size_t k = 0; k < static_cast<std::size_t>(g.count); ++k) {
@@ -24,7 +24,7 @@ template <class Entry> void for_each_push(const Packing& packing, const DofMap& 
     }
 }
 
-/// Balance: the forces of the pairs on every degree of freedom are minus the load, in units of the largest load.
+/// Balance: the forces of the pairs on every degree of freedom equal minus the load, in units of the largest load.
 void load_balance(ClpSimplex& simplex, const Packing& packing, const std::vector<Contact>& pairs,
                   const std::vector<double>& force, double size) {
     const DofMap dofs(packing);
@@ -48,7 +48,7 @@ void load_balance(ClpSimplex& simplex, const Packing& packing, const std::vector
     simplex.loadProblem(matrix, nullptr, nullptr, nullptr, balance.data(), balance.data());
 }
 
-/// The end of the face in one direction of one force, from the last basis; nothing when Clp does not end.
+/// The end of the face in one direction of one force, from the last basis; false when Clp finds no optimum.
 bool goes_to_end(ClpSimplex& simplex, int pair, double direction, double& end) {
     simplex.setObjectiveCoefficient(pair, -direction);
     count_work(Work::linear_programmes);
@@ -58,11 +58,11 @@ bool goes_to_end(ClpSimplex& simplex, int pair, double direction, double& end) {
     return simplex.status() == 0;
 }
 
-/// Least and most of every force, from a simplex that stands somewhere on the face.
+/// The least and the largest value of every force, from a simplex at any point of the face.
 bool find_ends(ClpSimplex& simplex, const std::vector<unsigned char>& varies, double size, ForceFace& face) {
     bool ended = true;
     for (std::size_t l = 0; l < varies.size() && ended; ++l) {
-        double least = simplex.primalColumnSolution()[l]; // unique, unless it varies
+        double least = simplex.primalColumnSolution()[l]; // the only value when the force does not vary
         double most = least;
         if (varies[l] != 0) {
             const int pair = static_cast<int>(l);
@@ -88,7 +88,7 @@ Result<ForceFace> force_face(const Packing& packing, const Load& load, const std
     face.pairs.insert(face.pairs.end(), touching.begin(), touching.end());
     std::vector<unsigned char> varies(face.pairs.size(), 0);
     for (std::size_t m = 0; m < touching.size(); ++m) {
-        std::vector<double> change(contacts.size(), 0.0); // H of the list is minus the gradients of its gaps
+        std::vector<double> change(contacts.size(), 0.0); // column of H: minus the gradient of the gap
         for_each_push(packing, structure.value().dofs(), touching[m],
                       [&](int dof, double push) { change[static_cast<std::size_t>(dof)] += push; });
         factorisation.solve_forces(change);

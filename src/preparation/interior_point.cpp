@@ -12,16 +12,16 @@ namespace isostat::preparation {
 namespace {
 
 constexpr int most_iterations = 120;
-/// Share of the way to the nearest bound.
+/// Share of the distance to the nearest bound.
 constexpr double step_share = 0.9995;
-/// Corrections of a direction: how many, how much farther each looks, what is near the centre, the gain that makes
-/// one more worth its solve.
+/// Corrections of a direction: largest number, extra length that each tries, factor of products near the centre, and
+/// the gain for which one more is worth its solve.
 constexpr int most_corrections = 4;
 constexpr double reach_farther = 0.3;
 constexpr double near_centre = 10;
 constexpr double worth_it = 0.03;
-/// Descent: products aimed at are never below this share of the present ones; a step below the next share of the
-/// way is blocked, and then aims at so many times the present products.
+/// Descent: the aimed products are never below this share of the current products; a step below the next share of a
+/// full step counts as blocked, and the next one aims at so many times the current products.
 constexpr double least_centre = 0.1;
 constexpr double blocked_below = 0.2;
 constexpr double blocked_centre = 3;
@@ -33,7 +33,7 @@ class Iteration {
         : p_(programme), rows_(programme.lower.size()), columns_(programme.cost.size()), x_(columns_, 0.0),
           s_(rows_ + 2 * columns_), z_(s_.size()), ds_(s_.size()), dz_(s_.size()), target_(s_.size()),
           infeasible_(s_.size(), 0.0), dual_(columns_) {
-        // Multipliers of order 1 in the scale of the cost; slacks inside.
+        // The multipliers begin at order 1 in the scale of the cost, the slacks inside the bounds.
         double force = 0;
         for (const double c : p_.cost) {
             force = std::max(force, std::abs(c));
@@ -54,7 +54,7 @@ class Iteration {
         }
     }
 
-    /// At x = 0 with given slacks and multipliers of the rows; those of the bounds at the mean product.
+    /// Starts at x = 0 with given slacks and multipliers of the rows, and those of the bounds at the mean product.
     void start_from(const InteriorPoint& point) {
         std::copy(point.slack.begin(), point.slack.end(), s_.begin());
         std::copy(point.force.begin(), point.force.end(), z_.begin());
@@ -84,7 +84,7 @@ class Iteration {
         return sum / static_cast<double>(s_.size());
     }
 
-    /// Residuals of the constraints and of the balance; the largest of the former.
+    /// Computes the residuals of the constraints and of the balance; returns the largest residual of the constraints.
     double residuals() {
         double worst = 0;
         dual_ = p_.cost;
@@ -127,7 +127,7 @@ class Iteration {
             diagonal);
     }
 
-    /// Direction towards products s z = centre (minus the product of the affine steps when `correct`).
+    /// Computes the direction towards products s z = centre (minus the product of the affine steps when `correct`).
     void direction(CliqueMatrix& matrix, double centre, bool correct) {
         for (std::size_t l = 0; l < s_.size(); ++l) {
             target_[l] = centre - s_[l] * z_[l] - (correct ? ds_[l] * dz_[l] : 0.0);
@@ -135,23 +135,23 @@ class Iteration {
         towards_target(matrix);
     }
 
-    /// Mehrotra's direction, centred again where that makes longer steps.
+    /// Computes Mehrotra's direction, centred again where that makes longer steps.
     void predict_and_correct(CliqueMatrix& matrix, double product, double least) {
         direction(matrix, 0, false);
         const double share = product_after(slack_step(), force_step()) / product;
         aim(matrix, std::max(share * share * share, least) * product, true);
     }
 
-    /// Direction towards `centre`, centred again where that makes longer steps.
+    /// Computes the direction towards `centre`, centred again where that makes longer steps.
     void aim(CliqueMatrix& matrix, double centre, bool correct) {
         direction(matrix, centre, correct);
         for (int k = 0; k < most_corrections && centre_more(matrix, centre); ++k) {
         }
     }
 
-    /// A direction with longer steps than the present one, when there is one: products that a longer step would leave
-    /// far from the centre are aimed back at it (J. Gondzio, Comput. Optim. Appl. 6, 137 (1996)). Costs a solve, no
-    /// factorisation. False when the present direction stays.
+    /// Tries a direction with longer steps than the current one, in which products that a longer step would leave far
+    /// from the centre are aimed back at it (J. Gondzio, Comput. Optim. Appl. 6, 137 (1996)). It costs a solve and no
+    /// factorisation. False when the current direction stays.
     bool centre_more(CliqueMatrix& matrix, double centre) {
         const double slack_before = slack_step();
         const double force_before = force_step();
@@ -240,8 +240,8 @@ class Iteration {
     [[nodiscard]] bool finite() const { return std::isfinite(mean_product()); }
 
     void read(ActiveSet& set) const {
-        // At the end of the quadratic phase a multiplier or a slack is the product divided by the other: whichever
-        // moves by a larger share of itself in the last step vanishes.
+        // At the end of the quadratic phase each product fixes a multiplier by its slack or a slack by its multiplier:
+        // the one that moves by the larger share of itself in the last step vanishes.
         set.row.resize(rows_);
         set.column.assign(columns_, 0);
         const auto active = [&](std::size_t l) { return std::abs(ds_[l]) * z_[l] > std::abs(dz_[l]) * s_[l]; };

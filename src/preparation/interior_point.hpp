@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Interior-point method for one linear programme of the preparation: where the simplex method would need a number of
-/// pivots that grows with the packing, this needs some thirty sparse factorisations (22 at n = 10 000).
+/// Interior-point method for one linear programme of the preparation: some thirty sparse factorisations (22 at n = 10
+/// 000), whereas the number of pivots of the simplex method grows with the packing.
 
 #include <atomic>
 #include <memory>
@@ -21,9 +21,9 @@ struct BoxedProgramme {
     std::vector<double> bound; ///< > 0, one per column
 };
 
-/// Which constraints hold with equality at the optimum, as far as the iteration tells.
+/// Which constraints hold with equality at the optimum, as the iteration found them.
 struct ActiveSet {
-    bool converged = false;          ///< otherwise the rest means nothing
+    bool converged = false;          ///< otherwise the other fields have no meaning
     int iterations = 0;              ///< factorisations
     std::vector<unsigned char> row;  ///< 1: A x = lower
     std::vector<signed char> column; ///< -1: x = -bound, 1: x = bound, 0: between
@@ -32,9 +32,9 @@ struct ActiveSet {
 
 /// Predictor-corrector steps (S. Mehrotra, SIAM J. Optim. 2, 575 (1992)) on the normal equations (CliqueMatrix), each
 /// direction centred again where that makes longer steps. Ends when the complementarity products are below `tolerance`
-/// (cost unit x length unit) and the constraints hold to it. A generic programme has one solution, strictly
-/// complementary: the active set is then the basis of the simplex method. It is a proposal: nothing is proved.
-/// Cost: O(n^1.5) per iteration for planar contact graphs, O(n log n) memory.
+/// (cost unit x length unit) and the constraints hold up to it. A generic programme has one solution, strictly
+/// complementary: the active set is then the basis of the simplex method. The result is a proposal, not proved. Cost:
+/// O(n^1.5) per iteration for planar contact graphs, O(n log n) memory.
 ActiveSet interior_point(const BoxedProgramme& programme, double tolerance, const std::atomic<bool>* stop);
 
 /// Slacks and multipliers of the rows, > 0, kept from step to step while the programme changes.
@@ -45,17 +45,17 @@ struct InteriorPoint {
 
 /// What one step of a descent did.
 struct InteriorStep {
-    bool done = false;     ///< otherwise nothing was changed and the rest means nothing
+    bool done = false;     ///< otherwise nothing was changed and the other fields have no meaning
     double product = 0;    ///< mean slack x force of the rows before the step
     double violation = 0;  ///< largest |A x - lower - slack| before the step
     std::vector<double> x; ///< the displacement
     ActiveSet active;      ///< as after the step; without x
 };
 
-/// Steps of the same method for a programme that is another one, with the same pattern, at every step.
-///
-/// A direction that is blocked (some product is far below the mean, usual after the programme has changed) is replaced
-/// by one towards products above the mean.
+/// Steps of the same method for a programme that changes at every
+/// step but keeps its pattern. A direction that is blocked (some
+/// product is far below the mean, usual after the programme has
+/// changed) is replaced by one towards products above the mean.
 class InteriorDescent {
   public:
     explicit InteriorDescent(const BoxedProgramme& pattern);
@@ -63,7 +63,7 @@ class InteriorDescent {
     InteriorDescent(const InteriorDescent&) = delete;
     InteriorDescent& operator=(const InteriorDescent&) = delete;
 
-    /// From x = 0; updates `point`. Cost: a factorisation, some solves.
+    /// Takes a step from x = 0 and updates `point`. Cost: a factorisation, some solves.
     InteriorStep step(const BoxedProgramme& programme, InteriorPoint& point);
 
   private:

@@ -8,9 +8,9 @@
 
 namespace isostat::preparation {
 
-/// Pairs of disks and lower walls with gap < `reach`, upper walls with gap < `upper_reach`, sorted. In a cell: pairs
-/// with the images of another disk too, those with gap < `reach` + `upper_reach`, as a period moves as far as an upper
-/// wall.
+/// Pairs of disks and lower walls with gap < `reach`, upper walls with gap <
+/// `upper_reach`, sorted. In a cell also pairs with images of another disk, those with
+/// gap < `reach` + `upper_reach`, because a period moves as far as an upper wall.
 std::vector<Contact> near_contacts(const Packing& packing, double reach, double upper_reach);
 
 } // namespace isostat::preparation

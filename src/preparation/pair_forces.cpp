@@ -6,9 +6,9 @@
 #include <array>
 #include <cmath>
 
-// This file is compiled without errno, traps and changes of the rounding mode (src/CMakeLists.txt): no value depends on
-// them, and each keeps compilers from using vector units for square roots or selections.
-// Not under ThreadSanitizer: resolvers of clones run before it is ready.
+// This file is compiled without errno, traps and changes of the rounding mode (src/CMakeLists.txt), because no value
+// depends on them and each keeps compilers from using vector units for square roots or selections.
+// ThreadSanitizer is excluded because resolvers of clones run before it is ready.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_THREAD__)
 #define ISOSTAT_FOR_EACH_UNIT [[gnu::target_clones("avx512f", "avx2", "default")]]
 #else
@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::size_t block = 256;
 
-/// The same for any number of axes, which is a constant: the loops over them are unrolled.
+/// The forces for a constant number of axes, so that the loops over the axes are unrolled.
 template <std::size_t Axes>
 [[gnu::always_inline]] inline void forces_along(const PairStretch& pairs, const double* q, const double* length,
                                                 double* overlap, double* push, double* virial) {
@@ -45,7 +45,7 @@ template <std::size_t Axes>
                 d[axis][k] = b[axis] - a[axis];
             }
         }
-        // Loops that are short enough for the compiler to keep free of branches.
+        // The loops are short enough for the compiler to keep them free of branches.
         for (std::size_t k = 0; k < count; ++k) {
             double sum = d[0][k] * d[0][k];
             for (std::size_t axis = 1; axis < Axes; ++axis) {
@@ -59,7 +59,7 @@ template <std::size_t Axes>
             scale[k] = depth[k] / distance[k];
         }
         for (std::size_t k = 0; k < count; ++k) {
-            // Without a branch. NOLINTNEXTLINE(clang-diagnostic-bitwise-instead-of-logical)
+            // This has no branch. NOLINTNEXTLINE(clang-diagnostic-bitwise-instead-of-logical)
             const bool touching = (square[k] < range[k] * range[k]) & (square[k] > 0);
             f[k] = touching ? depth[k] : 0.0;
             scale[k] = touching ? scale[k] : 0.0;

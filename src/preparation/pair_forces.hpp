@@ -6,7 +6,7 @@
 
 namespace isostat::preparation {
 
-/// A stretch of the pair list.
+/// A contiguous part of the pair list.
 struct PairStretch {
     std::size_t count = 0;
     const int* first = nullptr;    ///< grain i of each pair
@@ -15,9 +15,9 @@ struct PairStretch {
 };
 
 /// For each pair: overlap f = max(0, R_i + R_j - |d|) with d = x_j - x_i (0 also for d = 0), push = f d / |d|, and its
-/// share of the virials, push_a d_a / length_a. `push` and `virial` hold as many numbers per pair as there are axes,
-/// `q` as many of each grain. Every pair is computed, in contact or not: no branch, and the same bits on every
-/// instruction set, since each lane does the same roundings as a scalar would.
+/// share of the virials, push_a d_a / length_a. `push` and `virial` hold one number per pair and axis, `q` one per
+/// grain and axis. Every pair is computed, in contact or not: there is no branch, and every instruction set gives the
+/// same bits, because each lane does the same roundings as scalar code.
 void pair_forces(int dimension, const PairStretch& pairs, const double* q, const double* length, double* overlap,
                  double* push, double* virial);
 

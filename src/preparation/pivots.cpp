@@ -21,25 +21,25 @@ namespace isostat::preparation {
 
 namespace {
 
-/// Entries of an exchange below this share of the largest one are not pivots: the next matrix would be so badly
-/// conditioned that Newton leaves the neighbourhood (seen at 1e-9, for lattices perturbed by 1e-9).
+/// Entries of an exchange below this share of the largest entry are not pivots, because the next matrix would be so
+/// badly conditioned that Newton leaves the neighbourhood (seen at 1e-9, for lattices perturbed by 1e-9).
 constexpr double smallest_pivot = 1e-6;
 
-/// Force of a contact as it is compared: finite part, then the infinitesimal one.
+/// Force of a contact for comparisons: the finite part, then the infinitesimal part.
 using Force = std::pair<double, double>;
 
-/// How signs are read.
+/// How the signs of gaps and forces are found.
 enum class Signs {
     as_computed, ///< mostly right beyond their bounds too: radii that differ by 1e-13 are told apart
-    told,        ///< what the bound does not tell from 0 counts as 0: in symmetric patches pairs touch without being
-          ///< contacts and forces vanish together, and what rounding leaves there would exchange contacts for ever
+    told,        ///< a value within its bound of 0 counts as 0: in symmetric patches pairs touch without being
+                 ///< contacts and forces vanish together, and rounding there would exchange contacts for ever
 };
 
 double value_of(const Enclosure& x, Signs signs) {
     return signs == Signs::as_computed || x.positive() || x.negative() ? x.value : 0.0;
 }
 
-/// One basis: contacts that are sorted, a configuration at which their gaps are 0 to rounding.
+/// One basis: sorted contacts, and a configuration at which their gaps are 0 to rounding.
 class Basis {
   public:
     Basis(const Centre& at, const Load& load, Signs signs)
@@ -61,19 +61,19 @@ class Basis {
         }
     }
 
-    /// Whether the gaps and forces mean anything.
+    /// Whether the gaps and forces have proved bounds.
     [[nodiscard]] bool known() const {
         return at_.inverse.verdict == Verdict::proved && vertex_.verdict == Verdict::proved;
     }
 
-    /// The most negative gap of another pair.
+    /// The other pair with the most negative gap.
     [[nodiscard]] std::optional<std::size_t> overlapping() const {
         const auto least = std::min_element(gaps_.begin(), gaps_.end());
         return least != gaps_.end() && *least < 0 ? std::optional(static_cast<std::size_t>(least - gaps_.begin()))
                                                   : std::nullopt;
     }
 
-    /// The most negative force.
+    /// The contact with the most negative force.
     [[nodiscard]] std::optional<std::size_t> pulling() const {
         const auto least = std::min_element(forces_.begin(), forces_.end());
         return least != forces_.end() && *least < Force(0, 0)
@@ -81,7 +81,7 @@ class Basis {
                    : std::nullopt;
     }
 
-    /// Contact m = sum of a_l contacts l: as its force grows, f_l - a_l f_m reaches 0 first for the one returned.
+    /// Row m = sum of a_l rows l: as the force of m grows, f_l - a_l f_m reaches 0 first for the returned contact l.
     [[nodiscard]] std::optional<std::size_t> leaving(std::size_t other) const {
         std::vector<double> a(contacts().size(), 0.0);
         const GapGradient g = gap_gradient(at_.packing, others_[other]);
@@ -108,7 +108,7 @@ class Basis {
         return first;
     }
 
-    /// Velocity that opens contact l at unit rate, and the gap that it closes first.
+    /// Velocity that opens contact l at unit rate, and the gap that this velocity closes first.
     struct Motion {
         std::vector<double> velocity; ///< on the degrees of freedom
         std::optional<Vanishing> entering;
@@ -116,7 +116,7 @@ class Basis {
     [[nodiscard]] Motion open(std::size_t l) const {
         Motion out;
         out.velocity.assign(contacts().size(), 0.0);
-        out.velocity[l] = -1; // approach
+        out.velocity[l] = -1; // a negative approach velocity
         at_.factorisation.solve_velocities(out.velocity);
         const double least = smallest_pivot * largest(out.velocity);
         const auto rate = [&](std::size_t m) {
@@ -151,7 +151,7 @@ class Basis {
     std::vector<Force> forces_; ///< of the contacts
 };
 
-/// Proved, or left to another proof as `candidate`.
+/// The proved vertex, or a failure that leaves the state to another proof as `candidate`.
 Result<Polished> end_at(Packing packing, std::vector<Contact> contacts, const Load& load, long& iterations,
                         std::optional<State>& candidate) {
     auto polished = polish(packing, contacts, load, iterations);
@@ -190,7 +190,7 @@ Result<Polished> pivot(Packing packing, std::vector<Contact> contacts, const Loa
         const Basis basis(*at.value(), load, signs);
         const auto overlapping = basis.overlapping();
         const auto pulling = basis.pulling();
-        if (!basis.known() && may_replace) { // nearly dependent contacts: others of those that touch are better
+        if (!basis.known() && may_replace) { // the contacts are nearly dependent; other touching pairs are better
             may_replace = false;
             if (auto others = best_conditioned(packing)) {
                 contacts = std::move(*others);

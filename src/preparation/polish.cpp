@@ -19,7 +19,7 @@ namespace isostat::preparation {
 
 namespace {
 
-/// Every candidate beside the contacts has a positive gap at the true vertex: proved, or named.
+/// The smallest gap of the other candidates at the true vertex when all are proved positive, else a failure naming one.
 Result<double> check_other_gaps(const Centre& at, VertexEnclosure vertex) {
     const Packing& packing = at.packing;
     const std::vector<Contact>& contacts = at.structure.contacts(); // sorted by the caller
@@ -66,14 +66,14 @@ int count_rattlers(const Packing& packing, const Statics& statics) {
     return static_cast<int>(untouched(packing.disk_count(), unmarked(statics.structure().contacts(), zero)).size());
 }
 
-/// The true vertex near a packing, with as many digits as it takes.
+/// The true vertex near a packing, with as many digits as the proof requires.
 Result<VertexEnclosure> enclosed(const Centre& at) {
     if (at.inverse.verdict != Verdict::proved) {
         return Failure{FailureKind::undecided,
                        "no bound of the inverse of the contact matrix was proved in double precision"};
     }
     VertexEnclosure vertex = enclose_vertex(at.packing, at.structure, at.inverse);
-    if (vertex.verdict != Verdict::proved) { // large packings: gaps at the rounding of the coordinates are too many
+    if (vertex.verdict != Verdict::proved) { // in large packings too many gaps are at the rounding of the coordinates
         vertex = enclose_vertex_double_double(at.packing, at.structure, at.factorisation, at.inverse);
     }
     if (vertex.verdict != Verdict::proved) {
@@ -85,9 +85,9 @@ Result<VertexEnclosure> enclosed(const Centre& at) {
     return vertex;
 }
 
-/// The candidate list is complete for an admissible packing (T6): that comes first. The contacts themselves are within
-/// `max_gap` of touching, as computed; the grid steps cover the error of computing it. Other pairs that touch at the
-/// true vertex are within twice its distance; their gaps there are looked at one by one.
+/// First an admissible packing is proved, because then the candidate list is complete (T6). The gaps of the contacts
+/// are at most `max_gap` as computed, and the grid steps bound the error of computing them. Other pairs that touch at
+/// the true vertex are within twice its distance here, and each of their gaps is decided later.
 std::optional<Failure> overlaps(const Packing& packing, const VertexEnclosure& vertex) {
     const double open = std::max(vertex.max_gap, vertex.distance());
     const Admissibility admissible = certify_admissible(packing, 2 * open + 4 * grid_step(packing));
@@ -99,7 +99,7 @@ std::optional<Failure> overlaps(const Packing& packing, const VertexEnclosure& v
                   overlap ? "overlap" : "non-overlap was not proved", named(admissible.worst), admissible.worst_gap);
 }
 
-/// The smallest force that is not a structural zero; a failure when one is not compressive.
+/// The smallest force that is not a structural zero; a failure when a force is not compressive.
 Result<double> smallest_force(Statics& statics, double sigma) {
     const std::vector<Contact>& contacts = statics.structure().contacts();
     const Result<OpeningDecision> decision = decide_opening(statics, sigma, OpeningRule::most_negative, ContactId(), 0);

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// From the contacts of a linear programme to a proved vertex, or the reason why they are not one.
+/// From the contacts of a linear programme to a proved vertex, or the reason why the contacts give none.
 
 #include <isostat/contact/state.hpp>
 #include <isostat/core/result.hpp>
@@ -11,7 +11,7 @@
 
 namespace isostat::preparation {
 
-/// Candidates beside the contacts, gap / smallest radius; T6 allows up to 0.82.
+/// Reach of candidates that are no contacts, in smallest radii; T6 allows up to 0.82.
 inline constexpr double pivot_reach = 0.5;
 
 /// The vertex and the figures of its proof.
@@ -26,9 +26,9 @@ struct Polished {
 
 /// `to_vertex` from `packing`, then coordinates to the grid and the checks promised by `find_vertex`. `state.load` must
 /// hold kind, stress and infinitesimal loads; its reference lengths are set to the lengths found.
-/// Failures: `not_isostatic`; `not_converged` (Newton stopped short, or a force is not compressive: named); `overlap`
-/// (another pair does); `tie` (another gap is 0 as far as the arithmetic can tell); `undecided` (a bound that would
-/// prove the rest was not found).
+/// Failures: `not_isostatic`; `not_converged` (Newton stopped early, or a named
+/// force is not compressive); `overlap` (of another pair); `tie` (another gap cannot
+/// be told from 0); `undecided` (a bound that would prove the rest was not found).
 Result<Polished> polish(Packing packing, std::vector<Contact> contacts, Load load, long& iterations);
 
 } // namespace isostat::preparation

@@ -23,31 +23,31 @@ namespace preparation {
 
 namespace {
 
-/// Pressure / stiffness of the compression and of the first relaxation; then it falls by ten. Large packings are
-/// pressed harder first, where they settle in fewer steps, and less rearranges as the pressure falls again (n = 10 000,
-/// one sample: 14 000 steps at 1e-3 instead of 38 000; solid fraction at the end 0.841 instead of 0.839).
+/// Pressure / stiffness of the compression and of the first relaxation; later relaxations divide it by ten. Large
+/// packings are pressed harder first, since they settle in fewer steps then and less rearranges as the pressure falls
+/// (n = 10 000, one sample: 14 000 steps at 1e-3 instead of 38 000; solid fraction at the end 0.841 instead of 0.839).
 constexpr double first_pressure = 1e-3;
 constexpr double first_pressure_large = 1e-2;
 constexpr double pressure_divisor = 10;
-/// The last relaxation of large packings ends at this many times `relaxation`, by trial: against 3, a factor of 10
-/// doubles the number of linear programmes that follow, and a factor of 1 doubles the steps. In a large packing some
-/// small part moves at any time, and the residual is the largest of all parts: the earlier relaxations end at
-/// `relaxation_between` times, or after `steps_between`, the last one after `steps_large`.
+/// The last relaxation of large packings ends at this many times `relaxation`, by trial: compared with 3, a factor of
+/// 10 doubles the number of linear programmes that follow, and a factor of 1 doubles the steps. In a large packing some
+/// small part moves at any time, and the residual is the largest of all parts. Therefore the earlier relaxations end at
+/// `relaxation_between` times, or after `steps_between`, and the last one after `steps_large`.
 constexpr double relaxation_large = 3;
 constexpr double relaxation_between = 10;
 constexpr long steps_between = 15000;
 constexpr long steps_large = 60000;
-/// In very large packings the dynamics leave too much, and Newton steps go on, at `softness` divided by these. One
-/// sample of 100 000 disks: without them the products of the descent wander at 1e-3 for 500 steps and more.
+/// In very large packings the dynamics leave large residuals, and Newton steps follow at `softness` divided by these.
+/// In one sample of 100 000 disks without them the products of the descent stay near 1e-3 for 500 steps and more.
 constexpr std::array<double, 4> newton_divisors{1, 5, 25, 100};
 constexpr double newton_tolerance = 3e-3;
-/// At each; none of them then converges in 100 000 disks. One sample, with 2500: the descent takes 436 steps instead of
-/// 552, and the whole preparation three times the CPU time.
+/// Steps at each pressure; in 100 000 disks they do not converge then. With 2500, in one sample, the descent takes 436
+/// steps instead of 552, and the whole preparation three times the CPU time.
 constexpr long most_newton_steps = 500;
-/// Strain rate of the compression per sqrt(mass / stiffness) : slow against the time that forces need to spread over a
-/// diameter.
+/// Strain rate of the compression per sqrt(mass / stiffness), slow
+/// compared with the time that forces need to spread over a diameter.
 constexpr double compression_rate = 1e-4;
-/// Least period of the loose cell, in largest radii: of the dense one more than four diameters are left, in space two.
+/// Least period of the loose cell, in largest radii: the dense cell keeps more than four diameters, in space two.
 constexpr double narrowest_cell = 12;
 constexpr double narrowest_cell_in_space = 5;
 /// Overlap left by the random start, in diameters.
@@ -63,7 +63,7 @@ void require_positive(const char* field, double value) {
     }
 }
 
-/// Lengths of the loose box: all the same but the last, which is `aspect` times as long; none below `narrowest`.
+/// Lengths of the loose box, equal but for the last, which is `aspect` times as long; none is below `narrowest`.
 PerAxis<double> loose_lengths(const std::vector<double>& radius, const PreparationOptions& options, double narrowest) {
     const bool in_plane = options.dimension == plane;
     double grains = 0;
@@ -153,13 +153,13 @@ std::vector<double> radii_of(const PreparationOptions& options) {
                        options.jitter, options.seed);
 }
 
-/// Soft disks from a random start to a packing under a small pressure, stage by stage, each recorded.
+/// Brings soft disks from a random start to a packing under a small pressure, in recorded stages.
 class SoftStages {
   public:
     SoftStages(Packing& packing, const PreparationOptions& options, PreparationReport& report)
         : packing_(packing), options_(options), report_(report), large_(packing.disk_count() > options.large_above) {}
 
-    /// False: interrupted in the last stage that the report has.
+    /// False when interrupted, in the last stage of the report.
     bool run() {
         const double pressed = large_ ? first_pressure_large : first_pressure;
         return soft("separation", [&](auto& d) { return d.separate(start_overlap, options_.max_steps); }) &&
@@ -169,7 +169,7 @@ class SoftStages {
     }
 
   private:
-    /// Pressure falls step by step.
+    /// Relaxes while the pressure falls in steps.
     bool relax(double pressed) {
         for (double pressure = pressed;; pressure = std::max(pressure / pressure_divisor, options_.softness)) {
             double relaxation = options_.relaxation;
@@ -188,7 +188,7 @@ class SoftStages {
             }
         }
     }
-    /// For very large packings.
+    /// Takes Newton steps in very large packings.
     bool newton() {
         if (!large_ || packing_.disk_count() <= options_.newton_above) {
             return true;

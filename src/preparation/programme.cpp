@@ -19,10 +19,10 @@ constexpr double tolerance = 1e-9;
 /// Complementarity products at the end of the interior-point method: multipliers of rattlers are of order 1e-5 in the
 /// scale of the objective, gaps that matter 1e-6.
 constexpr double interior_tolerance = 1e-14;
-/// Share of a complete contact list above which overlapping pairs are worth being the first basis.
+/// Share of a complete contact list above which overlapping pairs are used as the first basis.
 constexpr double mostly_closed = 0.9;
 
-/// Ends the simplex at the next iteration when the user asks for it.
+/// Ends the simplex at the next iteration when the user requests a stop.
 class StopHandler : public ClpEventHandler {
   public:
     explicit StopHandler(const std::atomic<bool>* stop) : stop_(stop) {}
@@ -30,7 +30,7 @@ class StopHandler : public ClpEventHandler {
         const bool asked = what == endOfIteration && stop_ != nullptr && stop_->load(std::memory_order_relaxed);
         return asked ? 0 : -1;
     }
-    [[nodiscard]] ClpEventHandler* clone() const override { return new StopHandler(*this); } // owned by Clp
+    [[nodiscard]] ClpEventHandler* clone() const override { return new StopHandler(*this); } // Clp owns the clone
 
   private:
     const std::atomic<bool>* stop_;
@@ -44,10 +44,10 @@ ContactProgramme::ContactProgramme(const std::vector<double>& infinitesimal, dou
       inside_(method != ProgrammeMethod::simplex) {}
 
 void ContactProgramme::collect(const Packing& packing, Rows& rows) const {
-    // Two disks approach by at most 2 sqrt(packing.dimension) trust: a pair farther apart cannot overlap after the
-    // step.
+    // Two disks approach by at most 2 sqrt(packing.dimension) trust:
+    // a pair farther apart than that cannot overlap after the step.
     const double reach = 2 * std::sqrt(static_cast<double>(packing.dimension)) * trust_ * (1 + 1e-9);
-    // A wall moves farther than a disk: look as far as both together can go. Across a corner of a cell all periods
+    // A wall moves farther than a disk, so the reach is that of both together. Across a corner of a cell all periods
     // move, with the tilts along their axes.
     const bool tilted = packing.cell.any() && (packing.cell.tilt_moves[0] || packing.cell.keeps_shape);
     double squares = packing.cell.any() ? 0 : 1;
@@ -56,8 +56,8 @@ void ContactProgramme::collect(const Packing& packing, Rows& rows) const {
     }
     const double wall_reach = (std::sqrt(squares) * wall_trust(packing) + 1) * trust_ * (1 + 1e-9);
     for (const Contact& contact : near_contacts(packing, reach, wall_reach)) {
-        // In space most images within that reach cannot come near. In the plane they stay: the path of the simplex
-        // method, and with it the bits, depend on the list.
+        // In space most images within that reach cannot approach so far. In the plane they stay in the list because the
+        // path of the simplex method, and with it the bits, depend on the list.
         if (packing.dimension == plane || rows.can_close(packing, contact, trust_)) {
             rows.add(packing, contact);
         }
@@ -87,7 +87,7 @@ BoxedProgramme ContactProgramme::boxed(const Packing& packing, const Rows& rows,
         const int a = static_cast<int>(k - disks);
         programme.bound[c] *= wall_trust(packing);
         if (a >= packing.dimension) {
-            continue; // a tilt, which bears no stress
+            continue; // a tilt, which has no stress
         }
         programme.cost[c] = a == packing.dimension - 1 ? objective_scale * ratio_ : objective_scale;
         for (int b = 0; b < packing.dimension; ++b) {
@@ -144,7 +144,7 @@ void ContactProgramme::solve_simplex(const Packing& packing, Rows& rows, const B
     }
     step.pivots = simplex.numberIterations();
     if (simplex.status() != 0 && !stopped()) {
-        // A bad basis can pass for an infeasible programme: believe only what the slack basis says.
+        // A bad basis can make a programme look infeasible, so only the result from the slack basis counts.
         simplex.allSlackBasis(true);
         simplex.dual();
         step.pivots += simplex.numberIterations();
@@ -172,10 +172,10 @@ void ContactProgramme::load(ClpSimplex& simplex, const Rows& rows, const BoxedPr
                         nullptr);
     simplex.setPrimalTolerance(tolerance);
     simplex.setDualTolerance(tolerance);
-    simplex.setPerturbation(100); // none: the multipliers are the result
+    simplex.setPerturbation(100); // no perturbation, because the multipliers are the result
 }
 
-/// Overlapping pairs as the first basis, if they are enough; the point 0 is feasible then.
+/// Takes overlapping pairs as the first basis, if there are enough; the point 0 is feasible then.
 bool ContactProgramme::start_from_overlaps(ClpSimplex& simplex, const Packing& packing, const Rows& rows) {
     const auto columns = static_cast<int>(rows.columns());
     const auto count = static_cast<int>(rows.contact.size());
@@ -210,7 +210,7 @@ bool ContactProgramme::start_from_overlaps(ClpSimplex& simplex, const Packing& p
     return true;
 }
 
-/// The basis of the programme before, row by contact.
+/// Starts from the basis of the previous programme, row by contact.
 void ContactProgramme::start_from_last(ClpSimplex& simplex, const Rows& rows) const {
     std::size_t old = 0;
     for (std::size_t k = 0; k < rows.contact.size(); ++k) {
@@ -227,7 +227,7 @@ void ContactProgramme::start_from_last(ClpSimplex& simplex, const Rows& rows) co
     }
 }
 
-/// The optimum into the step, and its basis into this.
+/// Stores the optimum in the step, and its basis in this object.
 void ContactProgramme::take_solution(const ClpSimplex& simplex, Rows& rows, ProgrammeStep& step) {
     const auto columns = static_cast<std::size_t>(simplex.numberColumns());
     const double* const solution = simplex.primalColumnSolution();
@@ -258,7 +258,7 @@ void ContactProgramme::take_solution(const ClpSimplex& simplex, Rows& rows, Prog
 bool ContactProgramme::solve_inside(Rows& rows, const BoxedProgramme& programme, ProgrammeStep& step) {
     ActiveSet active = interior_point(programme, interior_tolerance, stop_);
     if (!active.converged) {
-        return false; // infeasible, or beyond double: the simplex method says which
+        return false; // infeasible, or out of range: the simplex method decides
     }
     step.outcome = ProgrammeStep::Outcome::optimal;
     step.displacement = rows.on_coordinates(active.x.data());
@@ -293,7 +293,7 @@ bool ContactProgramme::solve_inside(Rows& rows, const BoxedProgramme& programme,
     row_contact_ = std::move(rows.contact);
     row_status_ = std::move(row_status);
     first_ = false;
-    // The simplex method needs a basis that is nearly right.
+    // The simplex method requires a basis that is nearly right.
     inside_ = method_ == ProgrammeMethod::interior || missing != 0 || step.changes > few_changes;
     return true;
 }

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// One linear programme of the sequence: linearised gaps around a configuration, solved by Clp from the basis of the
-/// one before, or by an interior-point method where many pivots are expected.
+/// One linear programme of the sequence: linearised gaps around a configuration, solved by Clp from the previous basis,
+/// or by an interior-point method where many pivots are expected.
 
 #include "preparation/interior_point.hpp"
 
@@ -16,36 +16,36 @@ class ClpSimplex;
 
 namespace isostat::preparation {
 
-/// What solves the programmes.
+/// The method that solves the programmes.
 enum class ProgrammeMethod : unsigned char {
     simplex,
     interior_first, ///< interior points where many pivots are expected
     interior        ///< interior points, unless they fail: the largest packings, after Newton steps
 };
 
-/// What one linear programme gave.
+/// The result of one linear programme.
 struct ProgrammeStep {
     enum class Outcome { optimal, infeasible, interrupted, failed } outcome = Outcome::failed;
     int status = 0;                   ///< Clp's own, for messages
-    long pivots = 0;                  ///< of the simplex method
-    long changes = 0;                 ///< pivots, or contacts that the interior-point method gave up or took
+    long pivots = 0;                  ///< pivots of the simplex method
+    long changes = 0;                 ///< pivots, or contacts that the interior-point method dropped or added
     std::vector<double> displacement; ///< one per coordinate of q
     std::vector<Contact> contacts;    ///< rows that are nonbasic: reduced gap 0, sorted
     int bounds = 0; ///< coordinates that are nonbasic: held by a trust bound; 0: a vertex of the gaps alone. After the
-                    ///< interior-point method also what is missing to (or beyond) a basis
+                    ///< interior-point method also the number of missing (or surplus) contacts of a basis
     long iterations = 0; ///< factorisations of a descent
     double largest = 0;  ///< largest |displacement| of a disk's coordinate
 };
 
-/// The sequence of programmes; keeps the basis, row by contact, from one to the next.
+/// The sequence of programmes; keeps the basis, row by contact, from each programme to the next.
 ///
 /// Scales: lengths of order the radii (mean radius in [0.5, 1)), stress 1, so that contact forces are of order 1. The
 /// objective is multiplied by 256, which puts Clp's dual tolerance 1e-9 at 4e-12 of a force and well below the
 /// multipliers eps g of rattlers.
 class ContactProgramme {
   public:
-    /// `infinitesimal`: d n loads g. `trust`: largest displacement of a disk along an axis in one step. `ratio`: of
-    /// the stress on the last axis to that on the others.
+    /// `infinitesimal`: d n loads g. `trust`: largest displacement of a disk along an axis in one step. `ratio`: stress
+    /// on the last axis over the stress on the others.
     ContactProgramme(const std::vector<double>& infinitesimal, double trust, ProgrammeMethod method,
                      const std::atomic<bool>* stop, double ratio = 1);
 
@@ -60,20 +60,20 @@ class ContactProgramme {
     /// as slacks.
     ProgrammeStep solve(const Packing& packing, double eps);
 
-    /// For large packings, before the first programme: an interior-point method for the true problem, the gaps
+    /// Runs an interior-point method for the true problem, before the first programme of large packings, with gaps
     /// linearised anew at every step. A sequence of programmes takes programmes times iterations or pivots, because
-    /// what is left to relax slides on a little from vertex to vertex; here it slides along while the products slack x
-    /// force fall. Moves `packing`. Outcome `optimal`: `contacts` may be tried (they are as many as columns, and have
-    /// stayed the same, when `bounds` is 0) and are the basis of the next programme. `failed`: the packing is where it
-    /// got to, and the programmes go on from there. Nothing is proved. `watch` is called after every step. Cost: 30 to
-    /// 190 factorisations for 10 000 disks, 260 to 290 for 20 000, 385 for 100 000; no bound is known.
+    /// each vertex moves the relaxing contacts only a little; here the contacts move continuously while the products
+    /// slack x force fall. Moves `packing`. Outcome `optimal`: `contacts` may be tried (when `bounds` is 0 they are as
+    /// many as columns, and have stayed the same) and are the basis of the next programme. `failed`: `packing` is the
+    /// last configuration, and the programmes continue from it. Nothing is proved. `watch` is called after every step.
+    /// Cost: 30 to 190 factorisations for 10 000 disks, 260 to 290 for 20 000, 385 for 100 000; no bound is known.
     ProgrammeStep descend(Packing& packing, double eps, const std::function<void(const ProgrammeStep&)>& watch);
 
-    /// The interior-point methods end in the middle of the optimal face where the cost hardly changes along it, as with
-    /// a rattler whose load is nearly balanced by one contact; then `contacts` are fewer than the coordinates. Follows
-    /// a mechanism of theirs downhill to the first pair of the last programme that closes, adds that, and so on:
-    /// `packing` moves a little. False, with both as far as it got, when nothing closes or too many are missing.
-    /// Nothing is proved. Cost: a factorisation per contact.
+    /// Adds missing contacts. The interior-point methods end in the middle of the optimal face where the cost hardly
+    /// changes along it, as with a rattler whose load is nearly balanced by one contact; then `contacts` are fewer than
+    /// the coordinates. Follows a mechanism of the contacts downhill to the first pair of the last programme that
+    /// closes, adds this pair, and repeats: `packing` moves a little. False, with both at the last state, when nothing
+    /// closes or too many are missing. Nothing is proved. Cost: a factorisation per contact.
     bool complete(Packing& packing, double eps, std::vector<Contact>& contacts) const;
 
     /// The pairs that a programme at `packing` holds apart, sorted.
@@ -85,7 +85,7 @@ class ContactProgramme {
     [[nodiscard]] BoxedProgramme boxed(const Packing& packing, const Rows& rows, double eps) const;
     [[nodiscard]] InteriorPoint first_point(const Packing& packing, const Rows& rows) const;
     [[nodiscard]] bool stopped() const;
-    /// What the simplex method starts from after a descent, and the contacts of the step.
+    /// Sets the start of the simplex method after a descent, and the contacts of the step.
     void keep_basis(Rows rows, const ActiveSet& active, ProgrammeStep& step);
     bool solve_inside(Rows& rows, const BoxedProgramme& programme, ProgrammeStep& step);
     void solve_simplex(const Packing& packing, Rows& rows, const BoxedProgramme& programme, ProgrammeStep& step);
@@ -100,7 +100,7 @@ class ContactProgramme {
     const std::atomic<bool>* stop_;
     ProgrammeMethod method_;
     bool first_ = true;
-    bool inside_ = false;              ///< the next programme goes to the interior-point method
+    bool inside_ = false;              ///< an interior-point method solves the next programme
     std::vector<Contact> row_contact_; ///< sorted
     std::vector<int> row_status_;      ///< Clp's, one per row of the last programme
     std::vector<int> column_status_;

@@ -14,14 +14,14 @@
 
 namespace isostat::preparation {
 
-/// What a length costs in the objective under stress 1.
+/// The cost of a length in the objective under stress 1.
 inline constexpr double objective_scale = 256;
-/// Contacts that change from one programme to the next: as many pivots of the simplex method (5 ms each at n = 20 000)
-/// are cheaper below this than some 25 iterations of the other (1.5 to 2 s there).
+/// Below this number of changed contacts between programmes the simplex method is faster: as many pivots (5 ms each at
+/// n = 20 000) cost less than some 25 iterations of the interior-point method (1.5 to 2 s there).
 inline constexpr long few_changes = 200;
 
-/// Walls collect the displacements of all the disks in front of them. In space these are few, and all the images that
-/// so far a motion of a cell brings near are listed: 250 spheres in a triclinic cell take 14 s with 10.
+/// The trust bound of walls, which collect the displacements of all disks before them. In space these are few, and all
+/// images that a motion of a cell within the bound brings near are listed: 250 spheres (triclinic) take 14 s with 10.
 inline double wall_trust(const Packing& packing) {
     return packing.dimension == plane ? 10 : 3;
 }
@@ -33,7 +33,7 @@ struct ContactProgramme::Rows {
     std::vector<double> gap;
     std::vector<int> row, column;
     std::vector<double> value;
-    /// Of a cell that keeps its shape: by how much its coordinates change when the last period changes by 1.
+    /// In a cell that keeps its shape: change of its coordinates when the last period changes by 1.
     std::vector<double> follows;
 
     GapGradient gradient(const Packing& packing, const Contact& c) {
@@ -69,7 +69,7 @@ struct ContactProgramme::Rows {
     }
 
     [[nodiscard]] std::size_t columns() const { return static_cast<std::size_t>(dofs.dof_count()); }
-    /// A displacement of the columns as one of all coordinates.
+    /// A displacement of the columns, written for all coordinates.
     [[nodiscard]] std::vector<double> on_coordinates(const double* x) const {
         std::vector<double> all(static_cast<std::size_t>(dofs.coordinate_count()), 0.0);
         for (std::size_t c = 0; c < columns(); ++c) {

@@ -16,8 +16,8 @@ namespace {
 
 using preparation::Uniform;
 
-/// Enough for the inverse of a power law: 1 - exponent may be as small as 2^-53 and is divided by. Logarithms and
-/// exponentials are those of the digits, rounded once: the same bits on every machine.
+/// The digits suffice for the inverse of a power law, where 1 - exponent may be as small as 2^-53 and is a divisor.
+/// Logarithms and exponentials are computed with these digits and rounded once: the same bits on every machine.
 using Precise =
     boost::multiprecision::number<boost::multiprecision::mpfr_float_backend<60>, boost::multiprecision::et_off>;
 
@@ -33,7 +33,7 @@ double exponential(double x) {
     return exp(Precise(x)).convert_to<double>();
 }
 
-/// Standard normal: Marsaglia's polar method (SIAM Review 6, 1964), the second number of a pair left out.
+/// Standard normal number by Marsaglia's polar method (SIAM Review 6, 1964); the second number of a pair is not used.
 double normal(Uniform& uniform) {
     double a = 0;
     double s = 0;
@@ -61,12 +61,12 @@ double draw(const DiameterLaw& law, Uniform& uniform) {
     case RadiiLaw::normal: return law.diameter * (1 + law.deviation * normal(uniform));
     case RadiiLaw::power: return power_law(law, uniform());
     case RadiiLaw::equal:
-    case RadiiLaw::bidisperse: break; // nothing is drawn
+    case RadiiLaw::bidisperse: break; // this law draws no number
     }
     return law.diameter;
 }
 
-/// An interval of less than one deviation, or none around the middle.
+/// The fault of a cut whose interval is shorter than one deviation, or does not contain the middle; else empty.
 std::string fault_of_cut(const DiameterLaw& law) {
     if (!(law.smallest <= law.diameter && law.diameter <= law.largest)) {
         return fmt::format("diameter is {}: expected one from {} to {}, where the law is cut", law.diameter,

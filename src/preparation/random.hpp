@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Random numbers with the same bits everywhere: the distributions of <random> differ between libraries, the engines do
-/// not.
+/// Random numbers with the same bits everywhere, because the distributions
+/// of <random> differ between libraries (its engines do not).
 
 #include <cstdint>
 #include <random>

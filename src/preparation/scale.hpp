@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Internal unit of length: a power of two, so that going there and back is exact.
+/// Internal unit of length: a power of two, so that conversions to it and back are exact.
 
 #include <isostat/packing/packing.hpp>
 
@@ -21,7 +21,7 @@ class Scale {
     }
 
     [[nodiscard]] double mean_radius() const { return mean_; }               ///< internal unit
-    [[nodiscard]] double unit() const { return std::ldexp(1.0, exponent_); } ///< in the user's
+    [[nodiscard]] double unit() const { return std::ldexp(1.0, exponent_); } ///< in the user's unit
 
     [[nodiscard]] Packing to_internal(Packing packing) const {
         multiply(packing.radius, -exponent_);
@@ -29,7 +29,7 @@ class Scale {
         return packing;
     }
 
-    /// `radius`: the user's, so that they come back as they were.
+    /// `radius`: the radii of the user, which this restores bit for bit.
     [[nodiscard]] Packing to_user(Packing packing, const std::vector<double>& radius) const {
         packing.radius = radius;
         multiply(packing.q, exponent_);

@@ -19,32 +19,32 @@ namespace isostat::preparation {
 
 namespace {
 
-/// Longest stable step of the central scheme is 2/omega; six contacts of stiffness 1 on a disk of mass 1 give omega^2
-/// <= 12 in a dense packing, twelve on a sphere 24.
+/// The longest stable step of the central scheme is 2/omega. Six contacts of stiffness 1 on a disk of mass 1 give
+/// omega^2 <= 12 in a dense packing, twelve on a sphere 24.
 constexpr double largest_step = 0.4;
 constexpr long report_interval = 500;
 /// Disks per block of a sum. Smaller packings are one block, in the order of the disks.
 constexpr std::size_t block = 8192;
 constexpr std::size_t pair_stretch = 4096;
-/// The list reaches farther when it is renewed often, less far when seldom; nothing else depends on it.
+/// The list reaches farther when it is renewed often, less far when seldom; no result depends on the reach.
 constexpr double least_skin = 0.02; // mean diameters
 constexpr double most_skin = 0.3;
 constexpr long renewed_often = 30; // steps
 constexpr long renewed_seldom = 150;
-/// Side of a patch in mean diameters: some thousand disks. With 10 the modes of the packing are cut to pieces and it
-/// takes twice the steps.
+/// Side of a patch in mean diameters: some thousand disks. With 10 the
+/// modes of the packing are cut to pieces, and the number of steps doubles.
 constexpr double patch_width = 30;
 /// Constants of the damped descent, from its paper.
 constexpr double alpha_start = 0.1;
 constexpr double alpha_decay = 0.99;
 constexpr int delay = 5; // steps
-/// Tolerance of the pressure over that of the residual, in patches.
+/// Ratio of the tolerance of the pressure to that of the residual, with patches.
 constexpr double pressure_share = 1e-2;
 
 /// x and y in one register.
 using Plane [[gnu::vector_size(16)]] = double;
 
-/// x, y and z, which no register fits.
+/// x, y and z, which fit no register.
 struct Space {
     PerAxis<double> along;
     [[nodiscard]] double operator[](std::size_t a) const { return along[a]; }
@@ -129,19 +129,19 @@ void SoftDynamics::renumber(bool in_patches) {
     }
 }
 
-/// Every disk into the cell, and the images that a disk in it may touch before the next search.
+/// Moves every disk into the cell, and lists the images that a disk in the cell may touch before the next search.
 void SoftDynamics::place_images() {
     const double margin = 2 * max_radius_ + skin_;
     images_.clear();
     q_.resize(axes_ * (n_ + 1));
     const double* const length = q_.data() + axes_ * n_;
-    // A pair may touch through several images; a sphere and its own are a diameter apart.
+    // A pair may touch through several images; the centres of a sphere and its own image are a diameter apart.
     if (!(*std::min_element(length, length + axes_) >= (axes_ == 2 ? 2 : 1) * margin)) {
         throw Error(ErrorKind::bad_input,
                     fmt::format("preparation: a periodic cell became narrower than {}: expected more",
                                 axes_ == 2 ? "four disks" : "its largest spheres"));
     }
-    int neighbours = 1; // 3 of each axis, the cell itself among them
+    int neighbours = 1; // 3 of each axis, with the cell itself
     for (std::size_t a = 0; a < axes_; ++a) {
         neighbours *= 3;
     }
@@ -151,7 +151,7 @@ void SoftDynamics::place_images() {
         }
         for (int cell = 0; cell < neighbours; ++cell) {
             GhostImage image{i, {}};
-            bool near = 2 * cell != neighbours - 1; // the one in the middle is no image
+            bool near = 2 * cell != neighbours - 1; // the middle one is the cell itself
             for (std::size_t a = axes_, rest = static_cast<std::size_t>(cell); a-- > 0; rest /= 3) {
                 image.periods[a] = static_cast<int>(rest % 3) - 1;
                 const double x = q_[axes_ * i + a] + image.periods[a] * length[a];
@@ -175,7 +175,7 @@ void SoftDynamics::follow_images() {
     }
 }
 
-/// Each pair once: of two images the one behind the disk of lower number.
+/// Lists each pair once: of two images the image of the disk with the lower number.
 void SoftDynamics::find_pairs_in_cell() {
     place_images();
     std::vector<double> x(q_.begin(), q_.begin() + static_cast<std::ptrdiff_t>(axes_ * n_));
@@ -286,7 +286,7 @@ void SoftDynamics::wall_forces() {
 
 template <std::size_t Axes>
 PerAxis<double> SoftDynamics::spread(std::size_t first, std::size_t last, std::size_t piece) {
-    // One pass over the pairs without a branch: loops over the few partners of each disk are mispredicted at every end.
+    // One pass over the pairs without a branch: loops over the few partners of each disk mispredict at every end.
     const double* const push = push_.data();
     const double* const share = virial_.data();
     const int* const target = pair_target_.data();
@@ -385,7 +385,7 @@ void SoftDynamics::compute_forces(double pressure) {
         }
         force_[axes_ * n_ + a] = virial[a] - pressure * area;
     }
-    if (packing_.cell.keeps_shape) { // the part of it that leaves the ratio of the periods
+    if (packing_.cell.keeps_shape) { // the component that keeps the ratio of the periods
         const double* const length = q_.data() + axes_ * n_;
         double* const on_cell = force_.data() + axes_ * n_;
         const double share = std::inner_product(on_cell, on_cell + axes_, length, 0.0) /
@@ -458,7 +458,7 @@ void SoftDynamics::advance(double dt, bool walls) {
     });
     follow_images();
     // Two disks that are not listed approach by at most twice the largest peculiar displacement plus the homogeneous
-    // shortening; so do a disk and a wall.
+    // shortening; the same holds for a disk and a wall.
     allowance_ -=
         2 * dt * std::sqrt(*std::max_element(fastest.begin(), fastest.end())) + shrink * (2 * max_radius_ + skin_);
     ++age_;
@@ -491,7 +491,7 @@ SoftMeasures SoftDynamics::measure(double pressure) {
 }
 
 SoftMeasures SoftDynamics::separate(double overlap, long max_steps) {
-    // Overdamped: velocity = force; at most a tenth of a diameter per step.
+    // Overdamped motion: velocity = force; a step moves a disk by at most a tenth of a diameter.
     long step = 0;
     const double limit = overlap * mean_diameter_;
     for (; step < max_steps && !stopped(); ++step) {
@@ -514,9 +514,9 @@ SoftMeasures SoftDynamics::separate(double overlap, long max_steps) {
 }
 
 SoftMeasures SoftDynamics::compress(double pressure, double rate, long max_steps) {
-    // Walls: viscous drag such that the unopposed pressure drives the strain rate `rate`. Disks: friction against the
-    // homogeneous motion, weak over one contact time. With ten times more the walls feel the pressure through drag and
-    // stop at a solid fraction of 0.77.
+    // Walls have viscous drag such that the unopposed pressure drives the strain rate `rate`. Disks have friction
+    // against the homogeneous motion, weak over one contact time: with ten times more the walls feel the pressure
+    // through drag and stop at a solid fraction of 0.77.
     constexpr double dt = 0.3;
     constexpr double friction = 0.03;
     const double keep = std::exp(-friction * dt);
@@ -561,7 +561,7 @@ SoftDynamics::Sums SoftDynamics::sums_of(const Patch& patch) const {
     return sums;
 }
 
-/// Towards the forces; where these work against the velocities, these start anew.
+/// Turns the velocities towards the forces; where the power of the forces is not positive, the velocities restart at 0.
 void SoftDynamics::turn(Patch& patch, Sums sums, double dt) {
     if (sums.power > 0) {
         if (++patch.downhill > delay) {
@@ -612,7 +612,7 @@ SoftMeasures SoftDynamics::relax(double pressure, double tolerance, long max_ste
             }
         }
         for (std::size_t a = 0; a < axes_; ++a) {
-            force_[disks + a] /= wall_mass_; // from here on: accelerations
+            force_[disks + a] /= wall_mass_; // accelerations from here on
         }
         if (patches_.empty()) {
             Sums sums = sums_;
@@ -621,7 +621,7 @@ SoftMeasures SoftDynamics::relax(double pressure, double tolerance, long max_ste
                 sums.vv += wall_mass_ * velocity_[k] * velocity_[k];
                 sums.ff += wall_mass_ * force_[k] * force_[k];
             }
-            // The step that the velocities are advanced with is the new one.
+            // The velocities are advanced with the new step.
             if (sums.power > 0) {
                 dt = whole.downhill + 1 > delay ? std::min(dt * grow, largest_step) : dt;
             } else {
@@ -629,7 +629,7 @@ SoftMeasures SoftDynamics::relax(double pressure, double tolerance, long max_ste
             }
             turn(whole, sums, dt);
         } else {
-            // One step for all of them, always the largest stable one in the end.
+            // All patches share one step, which is the largest stable step in the end.
             dt = std::min(dt * grow, largest_step);
             parallel_pieces(patches_.size(), [&](std::size_t p) { turn(patches_[p], sums_of(patches_[p]), dt); });
         }

@@ -11,23 +11,23 @@ namespace isostat::preparation {
 
 namespace {
 
-/// Pairs are listed up to this gap, in the internal unit, and the list renewed when something has moved by a third of
-/// it, in space a quarter: two grains approach by less than 2 sqrt(d) of that.
+/// Pairs are listed up to this gap, in the internal unit. The list is renewed when something has moved by a third of
+/// the gap, in space a quarter: two grains approach by less than 2 sqrt(d) times that.
 constexpr double reach = 0.1;
-/// Longest step of a disk, mean diameters: beyond it the normals are others.
+/// Longest step of a disk, in mean diameters, because the normals change too much beyond it.
 constexpr double longest_step = 0.1;
 /// The search ends where the slope is below this share of the first one.
 constexpr double flat = 0.3;
 constexpr int most_trials = 12;
-/// Damping in units of the stiffness: to begin with, how it changes, after steps below and above these shares of the
-/// whole, and its range.
+/// Damping in units of the stiffness: its first value, the factor of its changes, the shares of a full step below and
+/// above which it changes, and its range.
 constexpr double first_damping = 1e-4;
 constexpr double damping_factor = 3;
 constexpr double short_step = 0.2;
 constexpr double long_step = 0.5;
 constexpr double least_damping = 1e-14;
 constexpr double most_damping = 1;
-/// Damping of a wall, per disk: it moves what it drags.
+/// Damping of a wall, per disk, because a wall moves the disks that it drags.
 constexpr double wall_damping = 0.3;
 
 double dot(const std::vector<double>& a, const std::vector<double>& b) {
@@ -134,7 +134,7 @@ bool SoftNewton::direction(const std::vector<double>& slope, std::vector<double>
     return true;
 }
 
-/// Moves the packing; returns the share of the step.
+/// Moves the packing; returns the taken share of the step.
 double SoftNewton::search(double pressure, const std::vector<double>& slope, const std::vector<double>& step) {
     double largest = 0;
     for (std::size_t k = 0; k < packing_.axes() * packing_.radius.size(); ++k) {
@@ -144,7 +144,7 @@ double SoftNewton::search(double pressure, const std::vector<double>& slope, con
     double share = std::min(1.0, longest_step * mean_diameter_ / largest);
     double low = 0;
     double low_slope = first;
-    double high = 0; // none yet
+    double high = 0; // not yet known
     double high_slope = 0;
     const std::vector<double> from = packing_.q;
     std::vector<double> there;
@@ -162,13 +162,13 @@ double SoftNewton::search(double pressure, const std::vector<double>& slope, con
             low = share;
             low_slope = now;
             if (high == 0) {
-                return share; // still falling at the end of the step
+                return share; // the energy still falls at the end of the step
             }
         } else {
             high = share;
             high_slope = now;
         }
-        // Where a straight line through the slopes at both ends vanishes, kept away from them.
+        // The zero of the straight line through the slopes at both ends, kept away from the ends.
         const double zero = low + (high - low) * -low_slope / (high_slope - low_slope);
         share = std::clamp(zero, low + 0.1 * (high - low), low + 0.9 * (high - low));
     }

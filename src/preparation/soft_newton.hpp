@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Newton steps for soft disks in a box under isotropic pressure: for packings so large that what is left to relax is
-/// too slow for damped dynamics.
+/// Newton steps for soft disks in a box under isotropic pressure: for
+/// packings so large that damped dynamics would relax them too slowly.
 
 #include "preparation/clique_matrix.hpp"
 #include "preparation/soft.hpp"
@@ -20,26 +20,26 @@ namespace isostat::preparation {
 ///
 /// Steps -(sum n n^T + lambda)^-1 grad E: the second derivative without its negative part, which is of the order of the
 /// overlaps, and with a damping that follows from the steps (K. Levenberg, Quart. Appl. Math. 2, 164 (1944)); then a
-/// search along the direction for a point where E hardly falls or rises, by its slope (values of E differ by less than
-/// their rounding). That E falls is not checked: it decides how far the packing relaxes, and nothing that is reported.
+/// search for a point with a small slope of E (its slope: values of E differ by less than their rounding). That E falls
+/// is not checked: this affects how far the packing relaxes, and nothing that is reported.
 ///
 /// Why: one sample of 100 000 disks keeps losing energy for 340 000 steps of the dynamics at the pressure 1e-5, and the
-/// interior descent from there does not end in 500 steps; after these relaxations at 1e-5 to 1e-7 it ends after 385.
+/// interior descent from there does not end in 500 steps; after relaxations at 1e-5 to 1e-7 it ends after 385.
 class SoftNewton {
   public:
-    /// Takes the packing as it is, overlaps are wanted; keeps it up to date.
+    /// Takes the packing as it is, with the overlaps that it needs; keeps the packing up to date.
     SoftNewton(Packing& packing, const std::atomic<bool>* stop);
 
-    /// Until residual (largest unbalanced force) and pressure error are below `tolerance`. The damping is kept from
-    /// call to call. Cost of a step: a factorisation and 5 sums over the pairs or so, 0.25 s for 100 000 disks on two
-    /// cores.
+    /// Relaxes until residual (largest unbalanced force) and pressure error are below
+    /// `tolerance`. The damping is kept between calls. Cost of a step: a factorisation
+    /// and about 5 sums over the pairs, 0.25 s for 100 000 disks on two cores.
     SoftMeasures relax(double pressure, double tolerance, long max_steps, const std::function<void(double)>& progress);
 
   private:
     void collect();
     void evaluate();
     [[nodiscard]] bool left_the_list() const;
-    /// Of E, per coordinate.
+    /// The gradient of E, per coordinate.
     void gradient(double pressure, std::vector<double>& slope) const;
     [[nodiscard]] SoftMeasures measure(double pressure, const std::vector<double>& slope) const;
     bool direction(const std::vector<double>& slope, std::vector<double>& step);
@@ -49,7 +49,7 @@ class SoftNewton {
     Packing& packing_;
     double mean_diameter_ = 0;
     double damping_;
-    std::vector<Contact> pairs_; ///< all that are near, walls included
+    std::vector<Contact> pairs_; ///< all near pairs, walls included
     std::vector<int> start_, column_;
     std::vector<double> value_, gap_; ///< gradients of the gaps; gaps
     std::vector<double> anchor_;      ///< coordinates when the list was made

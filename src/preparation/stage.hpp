@@ -24,7 +24,7 @@ class Stopwatch {
     std::clock_t cpu_ = std::clock();
 };
 
-/// A stage from construction to `finish`.
+/// The time of a stage, from construction to `finish`.
 class Stage {
   public:
     Stage(std::string name, const PreparationOptions& options) : name_(std::move(name)), options_(&options) {

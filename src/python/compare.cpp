@@ -1,4 +1,4 @@
-// snap and compare: soft grains of other programs.
+// Binds snap and compare, for soft grains of other programs.
 #include "compare/report.hpp"
 #include "convert.hpp"
 #include "snap/force_split.hpp"
@@ -13,11 +13,11 @@ namespace isostat::python {
 
 namespace {
 
-/// What `snap` tells of a state of soft grains.
+/// The result of `snap` for a state of soft grains.
 struct Snapped {
     compare::Snap snap;
     compare::ForceSplit forces;
-    std::shared_ptr<PyState> state; ///< null: there is none
+    std::shared_ptr<PyState> state; ///< null when there is no state
     std::string reason;
 };
 
@@ -82,7 +82,7 @@ void bind_snap(py::module_& module) {
         "force / (overlap^(3/2) sqrt(R_i R_j / (R_i + R_j))). Disks and spheres. Ctrl-C leaves it.");
 }
 
-/// The tables of `isostat compare`, as the text of comparison.json.
+/// The results of `isostat compare`, as the text of comparison.json.
 std::string compared(const std::filesystem::path& series, const std::optional<PyState>& reference, int bundle,
                      bool local, bool nearest_arc, const std::optional<std::filesystem::path>& output) {
     std::atomic<bool> stop{false};

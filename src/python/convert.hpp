@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// What every part of the bindings needs: arrays that look into the library's memory, contacts as pairs of integers,
-/// verdicts as the Python enumeration, failures as exceptions.
+/// Used by all parts of the bindings: arrays that view memory of the library, contacts as pairs of integers, verdicts
+/// as the Python enumeration, failures as exceptions.
 
 #include <isostat/contact/state.hpp>
 #include <isostat/core/result.hpp>
@@ -30,7 +30,7 @@ namespace py = pybind11;
 /// A state in Python: the state and the forces that its file may have.
 using PyState = StateFile;
 
-/// Read-only array that looks at `data`; `owner` lives as long as the array.
+/// Read-only array that views `data`; `owner` lives as long as the array.
 template <class T> py::array view(const T* data, std::vector<py::ssize_t> shape, py::handle owner) {
     py::array array(py::dtype::of<T>(), std::move(shape), {}, data, owner);
     array.attr("flags").attr("writeable") = false;
@@ -47,13 +47,13 @@ template <class Class, class T> auto vector_of(std::vector<T> Class::*member) {
 
 /// (N, 2) integers: as in equilibria.csv, j = -1 left, -2 bottom, -3 right, -4 top wall, -9 held coordinate i.
 py::array_t<int> contact_array(const std::vector<Contact>& contacts);
-/// The pair of one contact; None where there is none (i = -1).
+/// The pair of one contact; None for no contact (i = -1).
 py::object contact_pair(const Contact& contact);
 /// The contact of a pair. Throws `Error(bad_input)`.
 Contact contact_of(std::pair<int, int> pair);
-/// The number. Throws `Error(bad_input)` when it is not finite.
+/// Returns the number. Throws `Error(bad_input)` when it is not finite.
 double finite(double value, const char* name);
-/// (n, 2) of the ends of intervals.
+/// The ends of intervals, (n, 2).
 py::array_t<double> interval_array(const std::vector<Interval>& intervals);
 
 /// The member of isostat.Verdict.
@@ -79,11 +79,11 @@ template <class Work> auto unlocked(Work work) {
 /// Throws KeyboardInterrupt when Ctrl-C was pressed (main thread). Locks the interpreter.
 void check_signals();
 
-/// A computation that Ctrl-C left: it ends by itself, or with the process. `ended` says whether it has.
+/// Keeps a computation that Ctrl-C abandoned: it ends by itself, or with the process. `ended` says whether it has.
 void leave_behind(std::thread thread, std::function<bool()> ended);
 
-/// Runs `work` on another thread with the interpreter unlocked; at Ctrl-C throws KeyboardInterrupt and leaves the work
-/// behind. For computations that nothing stops. \pre `work` owns what it uses and touches nothing of Python.
+/// Runs `work` on another thread with the interpreter unlocked; at Ctrl-C throws KeyboardInterrupt and abandons the
+/// work. For computations that nothing can stop. \pre `work` owns what it uses and touches nothing of Python.
 template <class Work> auto interruptible(Work work) {
     using Value = std::invoke_result_t<Work>;
     constexpr std::chrono::milliseconds pause{50};
@@ -119,7 +119,7 @@ namespace pybind11::detail {
 /// Verdicts become members of isostat.Verdict, which do not convert to bool.
 template <> struct type_caster<isostat::Verdict> {
     PYBIND11_TYPE_CASTER(isostat::Verdict, const_name("isostat.Verdict"));
-    bool load(handle, bool) { return false; } // none is ever given
+    bool load(handle, bool) { return false; } // Python never passes a verdict
     static handle cast(isostat::Verdict verdict, return_value_policy, handle) {
         return isostat::python::verdict_object(verdict).release();
     }

@@ -1,4 +1,4 @@
-// The folder of an ensemble: what Python needs to fill it, sample by sample.
+// Binds the folder of an ensemble, which Python fills sample by sample.
 #include "ensemble/ensemble.hpp"
 
 #include "convert.hpp"

@@ -1,4 +1,4 @@
-// Exact numbers and crafted packings.
+// Binds exact numbers and crafted packings.
 #include "convert.hpp"
 #include "crafted/enclosed_bases.hpp"
 #include "crafted/genericity.hpp"
@@ -18,7 +18,7 @@ namespace {
 
 using exact::Number;
 
-/// fractions.Fraction where the number is rational, else isostat.Number.
+/// A fractions.Fraction when the number is rational, otherwise an isostat.Number.
 py::object to_python(const Number& number) {
     return number.is_rational() ? py::module_::import("isostat._exact").attr("fraction")(number.text())
                                 : py::cast(number);
@@ -40,7 +40,7 @@ py::list to_python(const std::vector<std::vector<Number>>& vectors) {
     return list;
 }
 
-/// Number, float (the dyadic number that it is), int, Fraction, text.
+/// Converts a Number, a float (exactly), an int, a Fraction or a text.
 Number to_number(const py::handle& object) {
     if (py::isinstance<Number>(object)) {
         return object.cast<Number>();
@@ -113,12 +113,12 @@ void bind_number(py::module_& module) {
 using crafted::ExactPacking;
 using Seen = crafted::Inspection;
 
-/// An exact packing as Python has it: `contacts` for stored doubles, whose contacts are part of the state.
+/// An exact packing for Python; `contacts` is set for stored doubles, whose contacts are part of the state.
 struct Crafted {
     ExactPacking packing;
     std::optional<std::vector<Contact>> contacts;
     std::string title;
-    std::string text; ///< of the file, or of the state that it is of
+    std::string text; ///< the text of the file, or of the state
 };
 
 struct CraftedInspection {
@@ -232,12 +232,12 @@ py::tuple enclosed_bases(const CraftedInspection& self, int count) {
 
 using InspectionClass = py::class_<CraftedInspection>;
 
-/// A member of what was seen.
+/// Returns a member of the inspection.
 template <class Member> auto field(Member member) {
     return [member](const CraftedInspection& self) { return self.seen.*member; };
 }
 
-/// The same of exact numbers.
+/// Returns a member of exact numbers.
 template <class Member> auto exact(Member member) {
     return [member](const CraftedInspection& self) { return to_python(self.seen.*member); };
 }

@@ -17,7 +17,7 @@ void bind_ensemble(py::module_& module); // ensemble.cpp
 
 namespace {
 
-/// An attribute of a Python file of this package.
+/// An attribute of a Python module of this package.
 py::object ours(const char* file, const char* name) {
     return py::module_::import(file).attr(name);
 }
@@ -95,7 +95,7 @@ void check_signals() {
 namespace {
 
 std::vector<std::function<bool()>>& left_behind() {
-    static auto* const list = new std::vector<std::function<bool()>>; // outlives every destructor
+    static auto* const list = new std::vector<std::function<bool()>>; // lives longer than every destructor
     return *list;
 }
 
@@ -103,7 +103,7 @@ std::vector<std::function<bool()>>& left_behind() {
 
 void leave_behind(std::thread thread, std::function<bool()> ended) {
     static const bool registered [[maybe_unused]] = [] {
-        // Before static objects are destroyed under the feet of a thread, the process ends with its own status.
+        // The process ends with its own status before static objects that a thread still uses are destroyed.
         const auto leave = [](int status, void*) {
             for (const auto& has_ended : left_behind()) {
                 if (!has_ended()) {
@@ -117,7 +117,7 @@ void leave_behind(std::thread thread, std::function<bool()> ended) {
     left_behind().push_back(std::move(ended));
 }
 
-/// `Error` of the library becomes isostat.BadInput, ...
+/// Translates each `Error` of the library to isostat.BadInput and so on.
 void bind_errors(py::module_& /*module*/) {
     py::register_exception_translator([](std::exception_ptr thrown) {
         try {

@@ -1,4 +1,4 @@
-// Packings to begin with: prepared ones, and those of other programs.
+// Binds packings to begin with: prepared ones, and those of other programs.
 #include "convert.hpp"
 
 #include <isostat/core/error.hpp>
@@ -10,7 +10,7 @@ namespace isostat::python {
 
 namespace {
 
-/// Ctrl-C during a preparation: its progress asks, its flag stops it, and KeyboardInterrupt follows.
+/// Handles Ctrl-C in a preparation: its progress polls for signals, its flag stops it, KeyboardInterrupt follows.
 template <class Work> std::shared_ptr<PyState> stoppable(PreparationOptions options, Work work) {
     std::atomic<bool> stop{false};
     std::optional<py::error_already_set> raised;

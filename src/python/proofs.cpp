@@ -1,4 +1,4 @@
-// inspect, certify, verify: what is known and proved of one state, and of a run.
+// Binds inspect, certify, verify: proofs for one state, and for a run.
 #include "certificate/jammed_box.hpp"
 #include "convert.hpp"
 #include "io/files.hpp"
@@ -14,7 +14,7 @@ namespace isostat::python {
 
 namespace {
 
-/// A certificate with what is not in its file: the verdict and what was refuted.
+/// A certificate, with the verdict and the refuted claims, which are not in its file.
 struct Certified {
     Certificate certificate;
     Verdict verdict = Verdict::undecided;
@@ -44,7 +44,7 @@ Certified certify_state(const PyState& state) {
     return certified(std::move(certificate));
 }
 
-/// One property of the claims: `field` of the claim if it is there, else None.
+/// One property of the claims: `get` of the claim if it exists, else None.
 template <class Claim, class Get> auto claim(std::optional<Claim> CertificateClaims::*member, Get get) {
     return [member, get](const Certified& self) -> py::object {
         const auto& there = self.certificate.claims.*member;
@@ -230,7 +230,7 @@ void bind_inspection(py::module_& module) {
     bind_inspect(module);
 }
 
-/// What is jammed, of a cell or of a box.
+/// The jamming of a cell or of a box.
 struct Jamming {
     std::map<std::string, Verdict> verdicts;
     std::map<std::string, std::string> reasons;

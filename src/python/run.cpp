@@ -1,4 +1,4 @@
-// A scene carried out from Python, with functions that are called for each arc and each equilibrium.
+// Runs a scene from Python, with functions that are called for each arc and each equilibrium.
 #include "convert.hpp"
 #include "report/run_walk.hpp"
 
@@ -19,13 +19,13 @@ namespace {
 constexpr const char* program = "isostat " ISOSTAT_VERSION;
 constexpr const char* command = "isostat.Run";
 
-/// One equilibrium as Python gets it.
+/// One equilibrium as passed to Python.
 struct Equilibrium {
     EquilibriumRecord record;
     std::shared_ptr<PyState> state;
 };
 
-/// Calls the functions of Python; what they raise, and Ctrl-C, stops the run and is kept.
+/// Calls the functions of Python; an exception of these, or Ctrl-C, is kept and stops the run.
 class Watcher final : public RunObserver {
   public:
     Watcher(const py::object& on_arc, const py::object& on_equilibrium, std::atomic<bool>& stop)
@@ -45,7 +45,7 @@ class Watcher final : public RunObserver {
             }
         });
     }
-    /// Asks for signals.
+    /// Polls for signals.
     void poll() {
         call([] {});
     }
@@ -116,7 +116,7 @@ class Run {
     SceneEnding carry_out(const std::string& mode, Watcher& watcher) {
         using Mode = RunDirectory::Mode;
         if (!start_ && !scene_.start.empty() && mode != "resume") {
-            start_ = start_from_file(scene_); // bad input leaves no folder behind
+            start_ = start_from_file(scene_); // before the folder is made, because the input may be bad
         }
         RunCounters counters;
         RunDirectory directory(output_, header_of(scene_, program, command),

@@ -1,4 +1,4 @@
-// State and Packing: arrays that look into the library's memory.
+// Binds State and Packing, whose arrays view the library's memory.
 #include "certificate/contact_table.hpp"
 #include "contact/names.hpp"
 #include "convert.hpp"
@@ -24,7 +24,7 @@ WallKind wall_kind(const std::string& name) {
     throw Error(ErrorKind::bad_input, "wall is \"" + name + "\": expected absent, fixed or movable");
 }
 
-/// The entries that the dimension needs.
+/// The first `dimension` entries.
 template <class T> py::list per_axis(const PerAxis<T>& values, int dimension) {
     py::list list;
     for (std::size_t a = 0; a < static_cast<std::size_t>(dimension); ++a) {
@@ -46,7 +46,7 @@ py::dict walls_dict(const Walls& walls, int dimension) {
     return dict;
 }
 
-/// What a packing has, or a state by its packing: `of` gives that of an object.
+/// Binds the properties of a packing, also for a state; `of` returns the packing of an object.
 template <class Bound, class Of> void bind_grains(Bound& bound, const Of& of) {
     bound
         .def_property_readonly(
@@ -123,7 +123,7 @@ template <class T> py::array taken(std::vector<T>&& vector) {
     return py::array(py::dtype::of<T>(), {static_cast<py::ssize_t>(kept->size())}, {}, kept->data(), owner);
 }
 
-/// (data, indices, indptr), shape: the arguments of scipy.sparse.csc_matrix.
+/// (data, indices, indptr) and shape, which are the arguments of scipy.sparse.csc_matrix.
 py::tuple matrix_parts(const State& state) {
     SparseColumns h = contact_matrix(state);
     return py::make_tuple(py::make_tuple(taken(std::move(h.value)), taken(std::move(h.row)), taken(std::move(h.start))),
@@ -142,7 +142,7 @@ py::tuple curvature_parts(const State& state) {
     std::vector<double> value, velocity(packing.q.size(), 0);
     for (std::size_t l = 0; l < state.contacts.size(); ++l) {
         const GapGradient gradient = gap_gradient(packing, state.contacts[l]);
-        const auto along = [&](int a, int b) { // of the quadratic form, along e_a + e_b
+        const auto along = [&](int a, int b) { // the quadratic form along e_a + e_b
             const auto i = static_cast<std::size_t>(gradient.coordinate[static_cast<std::size_t>(a)]),
                        j = static_cast<std::size_t>(gradient.coordinate[static_cast<std::size_t>(b)]);
             velocity[i] += 1;
@@ -169,7 +169,7 @@ py::tuple curvature_parts(const State& state) {
                           taken(std::move(value)));
 }
 
-/// Everything that a packing is, for copies.
+/// All data of a packing, for copies.
 py::tuple packing_parts(const Packing& p) {
     require_single_grains(p, "Packing", "a copy");
     const Cell& c = p.cell;

@@ -14,7 +14,7 @@ namespace isostat {
 
 namespace {
 
-/// Of curve k: colours alone do not survive a grey print. 1 is a full line.
+/// Dash of curve k, because colours are lost in a grey print. 1 is a full line.
 std::size_t dash(std::size_t k) {
     constexpr std::size_t dashes = 5; // of gnuplot
     return k % dashes + 1;
@@ -30,7 +30,7 @@ void append_points(std::string& data, const std::string& title, const std::vecto
     data += "\n\n";
 }
 
-/// (eps2, ratio) along a path: at constant structure the stress moves, at constant stress the strain jumps.
+/// (eps2, ratio) along a path: the stress changes at constant structure, and the strain jumps at constant stress.
 std::vector<std::pair<double, double>> stairs(const std::vector<EquilibriumRow>& path) {
     std::vector<std::pair<double, double>> points;
     for (std::size_t k = 0; k < path.size(); ++k) {
@@ -88,7 +88,7 @@ Chart stairs_chart(const std::string& name, const std::vector<Curve>& curves, co
     return chart;
 }
 
-/// Segments whose first equilibrium does not follow the last one made before: they branch off.
+/// Whether the first equilibrium of a segment does not follow the previous one, so that the path branches.
 bool branches(const std::vector<EquilibriumRow>& rows, const std::vector<EquilibriumRow>& path) {
     const auto first =
         std::find_if(rows.begin(), rows.end(), [&](const auto& r) { return r.number == path[1].number; });
@@ -133,7 +133,7 @@ struct Distribution {
     bool power_law;
 };
 
-/// The script of both panels, `left` and `right` what they plot.
+/// The script of both panels; `left` and `right` are their plot commands.
 std::string two_panels(const std::string& label, bool power_law, const std::string& left, const std::string& right) {
     const std::string x = text::gnuplot(label);
     const std::string x_left = power_law ? text::gnuplot("log_{10} " + label) : x;

@@ -38,7 +38,7 @@ constexpr std::array columns{"number",    "previous",   "segment",     "sigma2",
                              "contacts",  "h",          "held",        "margin",         "proved",
                              "certified", "sigma2_low", "sigma2_high", "solid_fraction", "decided_by"};
 
-/// The number of a disk, and above it by how many periods it is moved: two signed bytes.
+/// The number of a disk, and above it the periods of its image in two signed bytes.
 std::int64_t disk_with_image(const Contact& contact, int disks) {
     constexpr std::int64_t byte = 256;
     const auto part = [&](std::size_t a) {
@@ -47,7 +47,7 @@ std::int64_t disk_with_image(const Contact& contact, int disks) {
     return contact.j + disks * (part(0) + byte * part(1));
 }
 
-/// A contact as in equilibria.csv: two numbers, walls -1 to -4; a held coordinate is (its index, -9).
+/// A contact as in equilibria.csv: two numbers, where walls are -1 to -4 and a held coordinate is (its index, -9).
 void append_contact(Json& list, const Contact& contact, const Packing& packing) {
     list.push_back(contact.i);
     switch (contact.kind) {
@@ -59,7 +59,7 @@ void append_contact(Json& list, const Contact& contact, const Packing& packing) 
     }
 }
 
-/// Forces of an equilibrium in double, or nothing.
+/// The forces of an equilibrium in double, or an empty list.
 std::vector<double> forces_of(const State& state) {
     const auto structure = IsostaticStructure::prove(state.packing, state.contacts);
     if (!structure.ok()) {
@@ -76,10 +76,10 @@ std::vector<double> difference(const State& to, const State& from) {
     return moved;
 }
 
-/// Which vertices get a frame.
+/// Which vertices become frames.
 struct Thinning {
-    std::size_t arcs = 1;       ///< every so many of them
-    std::size_t equilibria = 1; ///< every so many of them, by number
+    std::size_t arcs = 1;       ///< one arc in so many
+    std::size_t equilibria = 1; ///< one equilibrium in so many, by number
     Thinning(const RunRecords& records, std::size_t coordinates) {
         const std::size_t most = std::max<std::size_t>(1, most_coordinates / coordinates);
         const std::size_t rows = records.equilibria.size();
@@ -101,7 +101,7 @@ struct Thinning {
     }
 };
 
-/// Writes the frames one after the other.
+/// Writes the frames in order.
 class Frames {
   public:
     explicit Frames(const Packing& packing) {
@@ -156,7 +156,7 @@ class Frames {
     }
 
   private:
-    /// Its number; -1: nothing moved, or it is not known what.
+    /// Returns the number of the arrows; -1: no disk moved, or the motion is not known.
     int add_arrows(const State* from, const State& to) {
         if (from == nullptr) {
             return -1;
@@ -245,7 +245,7 @@ Json packing_json(const State& state) {
         object["body"].push_back(bodies.of(i));
     }
     object["fixed"] = packing.fixed;
-    object["periodic"] = std::array{packing.cell.periodic[0], packing.cell.periodic[1]}; // a page draws the plane
+    object["periodic"] = std::array{packing.cell.periodic[0], packing.cell.periodic[1]}; // a page shows the plane
     object["loaded_axis"] = state.load.loaded_axis;
     for (std::size_t a = 0; a < 2; ++a) {
         object["lower"].push_back(word_of(packing.walls.lower[a], wall_kind_words));

@@ -21,7 +21,7 @@ void append_varint(std::string& bytes, std::int64_t value) {
 std::string packed(const std::string& bytes) {
     uLongf size = ::compressBound(bytes.size());
     std::string small(size, '\0');
-    // NOLINTBEGIN(cppcoreguidelines-pro-type-reinterpret-cast): both libraries want their own names of bytes
+    // NOLINTBEGIN(cppcoreguidelines-pro-type-reinterpret-cast): both libraries have their own byte types
     const int status = ::compress2(reinterpret_cast<Bytef*>(small.data()), &size,
                                    reinterpret_cast<const Bytef*>(bytes.data()), bytes.size(), Z_BEST_COMPRESSION);
     if (status != Z_OK) {

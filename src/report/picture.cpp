@@ -29,7 +29,7 @@ Point centre(const State& state, int disk) {
     return {state.packing.coordinate(DiskId(disk), 0), state.packing.coordinate(DiskId(disk), 1)};
 }
 
-/// Foot of the normal on the wall of a contact; none for two disks.
+/// Foot of the normal on the wall of a contact; empty for two disks.
 std::optional<Point> foot(const State& state, const Contact& contact) {
     if (contact.kind != ContactKind::lower_wall && contact.kind != ContactKind::upper_wall) {
         return std::nullopt;
@@ -49,7 +49,7 @@ double mean_force(std::span<const double> forces) {
     return count > 0 ? sum / count : 1;
 }
 
-/// The same packing with its disks in the cell, and the images that its contacts then name.
+/// The same packing with its disks in the cell, and with the images that its contacts then have.
 State in_cell(State state) {
     if (!state.packing.cell.any()) {
         return state;
@@ -59,13 +59,13 @@ State in_cell(State state) {
         for (std::size_t a = 0; a < 2 && contact.of_disks(); ++a) {
             const double m = contact.image.m[a] + wrapped.periods[static_cast<std::size_t>(contact.j)][a] -
                              wrapped.periods[static_cast<std::size_t>(contact.i)][a];
-            contact.image.m[a] = static_cast<std::int8_t>(std::clamp(m, -100.0, 100.0)); // more: no contact
+            contact.image.m[a] = static_cast<std::int8_t>(std::clamp(m, -100.0, 100.0)); // a contact has fewer
         }
     }
     return state;
 }
 
-/// m_x and m_y periods of a cell. \pre there are periodic axes
+/// The vector of m_x and m_y periods of a cell. \pre there are periodic axes
 Point periods(const Packing& packing, double mx, double my) {
     return {mx * packing.lattice(0, 0) + my * packing.lattice(0, 1), my * packing.lattice(1, 1)};
 }
@@ -78,18 +78,18 @@ Point operator-(Point a, Point b) {
     return {a.x - b.x, a.y - b.y};
 }
 
-/// Centre of the image of the second disk that a contact names. \pre two disks
+/// Centre of the image of the second disk of a contact. \pre the contact is of two disks
 Point second_centre(const State& state, const Contact& contact) {
     const Point j = centre(state, contact.j);
     return contact.image.is_here() ? j : j + periods(state.packing, contact.image.m[0], contact.image.m[1]);
 }
 
-/// Corners of the cell, in order. Along an axis with walls it goes from wall to wall.
+/// Corners of the cell, in order. Along an axis with walls the cell extends from wall to wall.
 std::array<Point, 4> corners(const Packing& packing) {
     return {periods(packing, 0, 0), periods(packing, 1, 0), periods(packing, 1, 1), periods(packing, 0, 1)};
 }
 
-/// What is drawn: the box, or the cell with room for images.
+/// The drawn area: the box, or the cell with space for images.
 struct Frame {
     Point low, high;
 };
@@ -112,7 +112,7 @@ double farthest(const ArcBodies& arcs, const Packing& packing, int disk, int axi
 Frame frame_of(const State& state) {
     Frame frame;
     if (state.packing.cell.any()) {
-        constexpr double radii = 2.5; // a disk that touches one in the cell is shown
+        constexpr double radii = 2.5; // a disk that touches a disk of the cell is shown
         const PerAxis<bool>& periodic = state.packing.cell.periodic;
         const Point room{periodic[0] ? radii * state.packing.max_radius() : 0,
                          periodic[1] ? radii * state.packing.max_radius() : 0};
@@ -137,7 +137,7 @@ Frame frame_of(const State& state) {
     return frame;
 }
 
-/// Writes shapes in picture units: 1000 across what is drawn, y downwards.
+/// Writes shapes in picture units: 1000 units across the drawn area, y downwards.
 class Canvas {
   public:
     explicit Canvas(const State& state) : frame_(frame_of(state)), scale_(1000 / (frame_.high.x - frame_.low.x)) {}
@@ -145,7 +145,7 @@ class Canvas {
     [[nodiscard]] double scale() const { return scale_; }
     [[nodiscard]] double height() const { return (frame_.high.y - frame_.low.y) * scale_; }
     [[nodiscard]] Point low() const { return frame_.low; }
-    /// Whether most of a disk is in what is drawn.
+    /// Whether most of a disk is in the drawn area.
     [[nodiscard]] bool shows(Point at, double radius) const {
         const double in = radius / 2;
         return at.x >= frame_.low.x + in && at.x <= frame_.high.x - in && at.y >= frame_.low.y + in &&
@@ -183,7 +183,7 @@ class Canvas {
 
 constexpr double wall_width = 8; // picture units
 
-/// Outside the box, so that no disk and no force is hidden.
+/// Draws the walls outside the box, so that they hide no disk and no force.
 void draw_walls(Canvas& canvas, const State& state) {
     constexpr double thickness = wall_width;
     const double out = thickness / 2 / canvas.scale();
@@ -201,20 +201,20 @@ void draw_walls(Canvas& canvas, const State& state) {
     draw(walls.upper[1], {0, ly + out}, {lx, ly + out});
 }
 
-/// Dashed: the sides that repeat.
+/// Draws the periodic sides, dashed.
 void draw_cell(Canvas& canvas, const Packing& packing) {
     if (!packing.cell.any()) {
         return;
     }
     const std::array<Point, 4> corner = corners(packing);
     for (std::size_t k = 0; k < 4; ++k) {
-        if (packing.cell.periodic[(k + 1) % 2]) { // sides 0 and 2 are along x: they repeat along y
+        if (packing.cell.periodic[(k + 1) % 2]) { // sides 0 and 2 are along x and repeat along y
             canvas.line(corner[k], corner[(k + 1) % 4], 2.5, "cell");
         }
     }
 }
 
-/// The disks, and in a cell their images: those beyond it are fainter.
+/// Draws the disks, and in a cell their images; the images outside the cell are fainter.
 void draw_disks(Canvas& canvas, const State& state, const std::vector<unsigned char>& rattler) {
     const Packing& packing = state.packing;
     constexpr int around = 1; // images: the disks were put into the cell
@@ -314,7 +314,7 @@ void draw_contacts(Canvas& canvas, const State& state, std::span<const double> f
     }
 }
 
-/// Arrows that press on the walls that can move, with their stresses: outside the box.
+/// Draws arrows outside the box that press on the movable walls, with their stresses.
 void draw_stresses(Canvas& canvas, const State& state) {
     constexpr double length = 34; // picture units
     constexpr double head = 9;
@@ -325,7 +325,7 @@ void draw_stresses(Canvas& canvas, const State& state) {
         if (walls.upper[a] != WallKind::movable || state.load.stress[a] == 0) {
             continue;
         }
-        const double out = state.load.stress[a] > 0 ? 1 : -1; // traction pulls
+        const double out = state.load.stress[a] > 0 ? 1 : -1; // a traction pulls
         const auto at = [&](double along, double beyond) {
             const Point p{along, state.packing.length(axis) + beyond * unit};
             return axis == 1 ? p : Point{p.y, p.x};
@@ -343,7 +343,7 @@ void draw_stresses(Canvas& canvas, const State& state) {
     }
 }
 
-/// Lines of known forces below the box.
+/// Draws lines of known forces below the box.
 void draw_scale(Canvas& canvas, const State& state, std::span<const double> forces) {
     const double unit = width_of_force(canvas, state, forces);
     const double mean = mean_force(forces);
@@ -396,9 +396,9 @@ std::string force_picture(const State& stored, std::span<const double> forces, c
         draw_scale(canvas, state, forces);
     }
     constexpr double border = 20;
-    constexpr double above = 56;   // of the box: arrows
-    constexpr double beside = 150; // to the right: arrows and their stress
-    constexpr double below = 84;   // scale and caption
+    constexpr double above = 56;   // the box, for arrows
+    constexpr double beside = 150; // to the right of the box, for arrows and their stress
+    constexpr double below = 84;   // for scale and caption
     const double width = 1000 + border + beside;
     const double height = canvas.height() + above + below;
     std::string text = fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<!-- forces by isostat -->\n<svg "

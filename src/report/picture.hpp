@@ -13,24 +13,24 @@ namespace isostat {
 
 /// SVG text: disks (rattlers in another shade), walls (fixed ones dark, movable ones light) and a line per contact from
 /// centre to centre, or to the wall, of width proportional to the force (a quarter of the mean radius at the mean
-/// force). Traction, which no equilibrium has, is drawn in another colour; contacts without force are hairlines.
-/// Arrows on the walls that can move carry their stresses; below the box are lines of the mean force and of three times
-/// it. `forces`: one per contact, or empty (contacts are then hairlines, no disk is marked as a rattler). `caption` is
-/// a line below. The text depends on nothing but the arguments. A cell: its sides that repeat are dashed, the disks are
-/// moved into it, images beyond it are fainter, and a contact with an image is drawn from both sides.
+/// force). Traction, which no equilibrium has, is drawn in another colour; contacts without force are hairlines. Arrows
+/// on movable walls stand for their stresses; below the box are lines of the mean force and of three times the mean
+/// force. `forces`: one per contact, or empty (contacts are then hairlines, no disk is marked as a rattler). `caption`
+/// is a line below. The text is a function of the arguments alone. In a cell periodic sides are dashed, the disks are
+/// moved into the cell, images outside are fainter, and a contact with an image is drawn from both sides.
 std::string force_picture(const State& state, std::span<const double> forces, const std::string& caption);
 
-/// The same of spheres: seen along y, far ones first and darker; the forces as lines; what horizontal planes cut at a
-/// quarter, half and three quarters of the height, images included. Rattlers are blue. In a cell the spheres are moved
-/// into it. \pre `state.packing.dimension` is 3
+/// The same for spheres: a view along y, far spheres first and darker; the forces as lines; the cuts of horizontal
+/// planes at a quarter, half and three quarters of the height, images included. Rattlers are blue. In a cell the
+/// spheres are moved into it. \pre `state.packing.dimension` is 3
 std::string sphere_picture(const State& state, std::span<const double> forces, const std::string& caption);
 
-/// What the page of spheres draws, as numbers: `equilibrium`, `centre` and `reach` (half the diagonal) of all, mean
+/// The data that the page of spheres draws: `equilibrium`, `centre` and `reach` (half the diagonal) of all, mean
 /// `radius`, `balls` (x, y, z, radius, 1 for a rattler), `lines` (a contact from centre to centre, to the wall or to
 /// the image; the force over the mean force, with its sign), `edges` of box or cell. \pre as above
 json::Json sphere_view(const State& state, std::span<const double> forces);
 
-/// What a VTK file begins with.
+/// The first line of a VTK file.
 inline constexpr const char* vtk_mark = "# vtk DataFile Version 3.0\n";
 
 /// VTK legacy file (ASCII POLYDATA) of disks or spheres: a point and a vertex per grain with `radius`, `contacts`

@@ -35,11 +35,11 @@ namespace fs = std::filesystem;
 
 class Writer {
   public:
-    /// \pre the folder is there. `owned`: its names are those of a report, other files may stand beside otherwise
+    /// \pre the folder exists. `owned`: all its files are those of a report; otherwise it may contain other files
     Writer(fs::path output, ReportOptions options, bool owned)
         : output_(std::move(output)), options_(std::move(options)), owned_(owned) {}
 
-    /// `mark`: as for `write_output`.
+    /// `mark` as in `write_output`.
     void write(const std::string& name, const std::string& text, const std::string& mark = "") {
         write_output(output_ / name, text, owned_ ? "" : mark);
         result_.files.push_back(output_ / name);
@@ -49,7 +49,7 @@ class Writer {
             result_.notes.push_back(text);
         }
     }
-    /// With its forces, if the state is an equilibrium; bars are drawn without.
+    /// Reads a state with its forces, if it is an equilibrium; bars are drawn without forces.
     StateFile read(const fs::path& path) {
         StateFile file = read_any_state(path, Dimensions::any_bodies);
         if (file.forces.empty()) {
@@ -105,12 +105,12 @@ class Writer {
             }
         }
     }
-    /// The ParaView files in the order of their equilibria, as one series; in words how many, of a run with so many.
+    /// Writes the ParaView files as one series in the order of equilibria; returns in words how many of how many.
     std::string vtk_series(std::size_t equilibria) {
         std::sort(series_.begin(), series_.end());
         json::Json files = json::Json::array();
         for (const auto& [equilibrium, name] : series_) {
-            if (files.empty() || files.back()["time"] != equilibrium) { // the last one is stored twice
+            if (files.empty() || files.back()["time"] != equilibrium) { // the last state is stored twice
                 files.push_back({{"name", name}, {"time", equilibrium}});
             }
         }
@@ -135,10 +135,10 @@ class Writer {
             return {};
         }
         std::vector<double> forces = inspection.value().forces;
-        forces.resize(state.contacts.size()); // multipliers of held coordinates come last
+        forces.resize(state.contacts.size()); // the multipliers of held coordinates are at the end
         return forces;
     }
-    /// From the first state written.
+    /// The displacements from the first state written.
     std::vector<double> displacement(const State& state) {
         const std::vector<double>& q = state.packing.q;
         if (first_.size() != q.size()) {
@@ -160,7 +160,7 @@ class Writer {
 
 namespace {
 
-/// Decisions by kind and by the rung that settled them.
+/// Counts of decisions by kind and by the rung that decided.
 std::string decision_table(const json::Field& decisions) {
     constexpr std::array<const char*, 5> rungs{"combinatorial", "double", "double-double", "mpfr", "exact"};
     std::string text = fmt::format("\n{:<20} {:>13} {:>9} {:>13} {:>7} {:>7} {:>15}\n", "decisions", rungs[0], rungs[1],
@@ -200,7 +200,7 @@ std::vector<fs::path> stored_states(const fs::path& directory, const FolderConte
     return states;
 }
 
-/// A stress on an axis changes, not those on tilts alone.
+/// Whether the stress on an axis changes, and not only that on a tilt.
 bool changes_lengths(const Load& load) {
     return load.rate_of(0) != 0 || load.rate_of(1) != 0 || load.rate_of(2) != 0;
 }
@@ -218,14 +218,14 @@ std::string page_of_spheres(const std::vector<fs::path>& states, const std::stri
     json::Json views = json::Json::array();
     for (const fs::path& path : states) {
         const StateFile file = writer.read(path);
-        if (views.empty() || views.back()["equilibrium"] != file.state.equilibrium) { // the last one is stored twice
+        if (views.empty() || views.back()["equilibrium"] != file.state.equilibrium) { // the last state is stored twice
             views.push_back(sphere_view(file.state, file.forces));
         }
     }
     return sphere_page(title, views, run);
 }
 
-/// Figures go into the run that they are of, or where only a report is.
+/// Makes the folder; figures may go into the folder of their run, or into a folder of reports.
 void make_output(const fs::path& directory, const fs::path& output) {
     if (fs::weakly_canonical(output) == fs::weakly_canonical(directory / "figures")) {
         make_directory(output);
@@ -246,7 +246,7 @@ ReportResult report_run(const fs::path& directory, const fs::path& output, const
     const json::Json parsed = json::Field::parse(read_text(run), run.string());
     const json::Field header(parsed, run.string());
     const FolderContent content = content_of(directory, run_folder);
-    (void)check_records(directory); // damaged records are not drawn
+    (void)check_records(directory); // damaged records throw here
     std::vector<std::string> names;
     const json::Field programme = header.at("programme");
     for (std::size_t s = 0; s < programme.size(); ++s) {
@@ -287,7 +287,7 @@ ReportResult report_run(const fs::path& directory, const fs::path& output, const
         writer.write("trajectory.html", page_of_disks(directory, options, writer));
     }
     std::string text = run_tables(rows, names, header.at("status").string(), words);
-    const fs::path summary = directory / "summary.json"; // of runs that ended
+    const fs::path summary = directory / "summary.json"; // only runs that ended have one
     if (fs::exists(summary)) {
         const json::Json ended = json::Field::parse(read_text(summary), summary.string());
         text += decision_table(json::Field(ended, summary.string()).at("counters").at("decisions"));
@@ -314,7 +314,7 @@ ReportResult report_state(const fs::path& state, const fs::path& output, const R
 
 namespace {
 
-/// Forces over their mean, without those that are 0.
+/// Adds the non-zero forces of a state, divided by their mean.
 void add_scaled_forces(const fs::path& state, std::vector<double>& all) {
     const StateFile file = fs::exists(state) ? read_any_state(state, Dimensions::any_clumps) : StateFile();
     std::vector<double> forces;

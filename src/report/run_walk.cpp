@@ -26,7 +26,7 @@ class Walk {
 
     std::vector<std::string> go() {
         while (next_ < records_.events.size() && records_.events[next_].equilibrium == 0) {
-            ++next_; // they led to the start
+            ++next_; // these arcs led to the start
         }
         for (const EquilibriumLine& line : records_.equilibria) {
             const int number = line.integer("number");
@@ -54,7 +54,7 @@ class Walk {
         std::size_t first, end;
     };
 
-    /// Goes to where a rearrangement starts.
+    /// Restores the state at which a rearrangement starts.
     void begin(int previous) {
         if (here_ && here_->equilibrium == previous) {
             return;
@@ -74,7 +74,7 @@ class Walk {
         solver_.reset();
     }
 
-    /// The arcs after the last equilibrium leave from it.
+    /// Whether the arcs after the last equilibrium start from the current state.
     [[nodiscard]] bool continues() const {
         const EventRecord& event = records_.events[next_];
         if (!here_ || records_.equilibria.empty() || event.arc != 1) {
@@ -84,7 +84,7 @@ class Walk {
         return event.stress == last.stress("_low") || event.stress == last.stress("_high");
     }
 
-    /// Goes through the arcs of one rearrangement; `line`: the equilibrium that it leads to. False: stop.
+    /// Walks through the arcs of one rearrangement; `line`: the equilibrium at its end. False: stop.
     bool rearrange(Events events, const EquilibriumLine* line) {
         const std::optional<State> from = here_;
         for (std::size_t k = events.first; k < events.end && here_; ++k) {
@@ -107,7 +107,7 @@ class Walk {
         return line == nullptr || visited || stand(*line, from);
     }
 
-    /// An equilibrium without arcs, or one that the arcs were not followed to.
+    /// Visits an equilibrium without arcs, or with arcs that were not followed.
     bool stand(const EquilibriumLine& line, const std::optional<State>& from) {
         const int number = line.integer("number");
         bool relisted = false;
@@ -150,7 +150,7 @@ class Walk {
         if (!opening) {
             return false;
         }
-        const bool stays = // the arc has length O(eps): another contact, the same place
+        const bool stays = // the arc has length O(eps): the contact changes and the positions do not
             std::any_of(event.ties.begin(), event.ties.end(), [](const TieRecord& tie) { return tie.what == "step"; });
         Followed followed;
         if (!stays) {
@@ -167,10 +167,10 @@ class Walk {
 
     const RunRecords& records_;
     const WalkVisitor& visit_;
-    std::set<int> branches_; ///< equilibria that later segments start from
+    std::set<int> branches_; ///< equilibria from which later segments start
     std::map<int, State> kept_;
     std::size_t next_ = 0;
-    std::optional<State> here_; ///< nothing: lost
+    std::optional<State> here_; ///< the current state; empty: not known
     std::shared_ptr<const Solver> solver_;
     std::vector<std::string> notes_;
 };

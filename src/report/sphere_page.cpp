@@ -12,13 +12,13 @@
 
 namespace isostat {
 
-extern const char* const spheres_template; ///< source of the page, with places for its parts
+extern const char* const spheres_template; ///< source of the page, with placeholders for its parts
 
 namespace {
 
 using Polyline = std::vector<std::pair<double, double>>;
 
-/// Curves in a frame with its ticks, as SVG.
+/// Curves in a frame with ticks, as SVG.
 class Plot {
   public:
     void add(const Polyline& curve, const std::string& title) {
@@ -35,7 +35,7 @@ class Plot {
                                        "x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"none\" stroke=\"#888\"/>\n",
                                        width, height, y_label, x_label, left, top, across, up);
         constexpr int ticks = 4;
-        const auto number = [](double value, double size) { // a rounding of 0 is 0
+        const auto number = [](double value, double size) { // rounding noise is shown as 0
             return fmt::format("{:.3g}", std::abs(value) < 1e-9 * size ? 0 : value);
         };
         for (int k = 0; k <= ticks; ++k) {
@@ -87,7 +87,7 @@ std::string table_of(const SphereRun& run) {
     return text + "</tbody></table>\n";
 }
 
-/// The template with a text at each of its places: what stands in a text is not looked for.
+/// The template with each placeholder replaced by its text; placeholders inside a text are not replaced.
 std::string filled(std::string_view source, std::initializer_list<std::pair<std::string_view, std::string>> parts) {
     std::string page;
     std::size_t from = 0;

@@ -19,9 +19,9 @@ namespace {
 using Place = PerAxis<double>;
 
 constexpr double margin = 20;
-constexpr double heading = 34; // above a panel
+constexpr double heading = 34; // space above a panel
 
-/// A sphere or an image of one.
+/// A sphere or an image of a sphere.
 struct Ball {
     Place at;
     double radius;
@@ -37,7 +37,7 @@ Place shifted(const Packing& packing, Place at, const PerAxis<double>& periods) 
     return at;
 }
 
-/// Spheres in their cell, seen along y or cut at a height, in millimetres of no particular size.
+/// Spheres in their cell, seen along y or cut at a height, in arbitrary units.
 class Drawing {
   public:
     Drawing(State state, std::span<const double> forces) : state_(std::move(state)), forces_(forces) {
@@ -60,7 +60,7 @@ class Drawing {
     /// Width over height of a panel whose horizontal axis is x.
     [[nodiscard]] double aspect(std::size_t up) const { return (high_[0] - low_[0]) / (high_[up] - low_[up]); }
 
-    /// The spheres from the far side to the near one.
+    /// The spheres from the farthest to the nearest.
     [[nodiscard]] std::string seen_along_y(double width) const {
         std::vector<std::size_t> order(balls_.size());
         std::iota(order.begin(), order.end(), std::size_t{0});
@@ -69,7 +69,7 @@ class Drawing {
         std::string text;
         for (const std::size_t i : order) {
             const Ball& ball = balls_[i];
-            const double depth = (ball.at[1] - low_[1]) / (high_[1] - low_[1]); // 0: near
+            const double depth = (ball.at[1] - low_[1]) / (high_[1] - low_[1]); // 0 for the nearest
             const int light = 245 - static_cast<int>(std::lround(75 * std::clamp(depth, 0.0, 1.0)));
             text += circle(ball, 2, width, ball.radius,
                            ball.rattler ? fmt::format("rgb({},{},{})", light - 60, light - 30, light)
@@ -78,7 +78,7 @@ class Drawing {
         return text;
     }
 
-    /// Lines from centre to centre, or to the wall, as wide as the force is large; rattlers in blue.
+    /// Lines from centre to centre, or to the wall, with widths proportional to the forces; rattlers in blue.
     [[nodiscard]] std::string forces(double width) const {
         const double mean = mean_force();
         double radius = 0;
@@ -106,7 +106,7 @@ class Drawing {
         return text;
     }
 
-    /// What a horizontal plane cuts, images included, within the cell. `name`: of the clip.
+    /// The cut of a horizontal plane through spheres and images, within the cell. `name`: of the clip path.
     [[nodiscard]] std::string slice(double share, double width, const std::string& name) const {
         const Packing& packing = state_.packing;
         const double height = share * packing.length(2);
@@ -136,7 +136,7 @@ class Drawing {
         return text + fmt::format("</g>\n<polygon class=\"cell\" points=\"{}\"/>\n", outline);
     }
 
-    /// Numbers of a view in space: see `sphere_view`.
+    /// The data of a view in space, see `sphere_view`.
     [[nodiscard]] json::Json numbers() const {
         using json::Json;
         const auto put = [](Json& list, const Place& at) {
@@ -181,7 +181,7 @@ class Drawing {
         return all;
     }
 
-    /// The edges of box or cell.
+    /// The edges of the box or cell.
     [[nodiscard]] std::string edges(double width) const {
         std::string text;
         for_each_edge([&](const Place& from, const Place& to) {
@@ -192,11 +192,11 @@ class Drawing {
     }
 
   private:
-    /// To so many digits.
+    /// The value rounded to so many digits.
     [[nodiscard]] static double rounded(double value, int digits) {
-        return std::strtod(fmt::format("{:.{}g}", value, digits).c_str(), nullptr); // no exception at 1e-310
+        return std::strtod(fmt::format("{:.{}g}", value, digits).c_str(), nullptr); // throws no exception at 1e-310
     }
-    /// Of the contacts that bear one; 1 without any.
+    /// The mean force of the contacts with a force; 1 without such contacts.
     [[nodiscard]] double mean_force() const {
         double sum = 0;
         int count = 0;
@@ -287,7 +287,7 @@ class Drawing {
 
     State state_;
     std::span<const double> forces_;
-    std::vector<PerAxis<double>> wrapped_; ///< periods that each sphere was moved by; empty in a box
+    std::vector<PerAxis<double>> wrapped_; ///< periods by which each sphere was moved; empty in a box
     std::vector<Ball> balls_;
     Place low_{}, high_{};
 };
@@ -295,7 +295,7 @@ class Drawing {
 } // namespace
 
 std::string sphere_picture(const State& state, std::span<const double> forces, const std::string& caption) {
-    constexpr double width = 480, narrow = 313; // of the two upper panels, and of three slices
+    constexpr double width = 480, narrow = 313; // widths of the two upper panels, and of three slices
     const Drawing drawing(state, forces);
     const double upper = width / drawing.aspect(2), lower = narrow / drawing.aspect(1);
     const double total = 2 * width + 3 * margin, down = heading + upper + heading;

@@ -90,7 +90,7 @@ std::vector<std::pair<double, double>> histogram(const std::vector<double>& valu
     std::vector<int> count(static_cast<std::size_t>(bins), 0);
     for (const double v : values) {
         if (v >= low && v <= high) {
-            const double part = (v - low) / width; // beyond every bin, or NaN, where the width has no digits
+            const double part = (v - low) / width; // outside every bin, or NaN, when the width is lost to rounding
             ++count[static_cast<std::size_t>(part < bins ? static_cast<int>(part) : bins - 1)];
         }
     }

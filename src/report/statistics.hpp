@@ -10,24 +10,24 @@
 
 namespace isostat {
 
-/// What led from one equilibrium to the next: a change of sigma_2 at constant structure, then a rearrangement.
+/// The step from one equilibrium to the next: a change of sigma_2 at constant structure, then a rearrangement.
 struct RearrangementRow {
     int segment = 0;
-    int number = 0;    ///< of the equilibrium reached
+    int number = 0;    ///< number of the equilibrium reached
     int direction = 1; ///< +1: sigma_2 increased, -1: decreased
     double ratio = 0;  ///< sigma_2 / sigma_1 at which it happened
     int arcs = 0;
-    /// |sigma_2' - sigma_2| / sigma_1 since the previous rearrangement of the segment (paper, figure 4); none for the
-    /// first one of a segment, which does not begin with a rearrangement, and when nothing changed.
+    /// |sigma_2' - sigma_2| / sigma_1 since the previous rearrangement of the segment (paper, figure 4); absent for the
+    /// first one of a segment, which has no previous one, and when nothing changed.
     std::optional<double> stress_increment;
-    /// |eps_2' - eps_2| (paper, figure 5); none when only rattlers moved.
+    /// |eps_2' - eps_2| (paper, figure 5); absent when only rattlers moved.
     std::optional<double> strain_increment;
 };
 
-/// The rearrangements of a run in the order of the rows. A stress reached inside a supported interval is none.
+/// The rearrangements of a run in the order of the rows, without stresses reached inside a supported interval.
 std::vector<RearrangementRow> rearrangements(const std::vector<EquilibriumRow>& rows);
 
-/// Increments between equilibria, loading and unloading apart. All values are positive.
+/// Increments between equilibria, separately for loading and unloading. All values are positive.
 struct Increments {
     std::vector<double> loading, unloading;
 };
@@ -36,15 +36,15 @@ struct Increments {
 /// rearrangement and a stress reached inside a supported interval are not between two rearrangements and do not count.
 Increments stress_increments(const std::vector<EquilibriumRow>& rows);
 
-/// |eps_2' - eps_2| of every rearrangement (paper, figure 5). Loading and unloading tell the direction of sigma_2.
+/// |eps_2' - eps_2| of every rearrangement (paper, figure 5). Loading and unloading are the directions of sigma_2.
 Increments strain_increments(const std::vector<EquilibriumRow>& rows);
 
-/// Points (x, share of the values that are >= x) of the complementary distribution, x increasing: no bins, no free
-/// parameter.
+/// Points (x, share of the values that are >= x) of the complementary distribution, x
+/// increasing: no bins, no free parameter.
 std::vector<std::pair<double, double>> complementary_distribution(std::vector<double> values);
 
-/// Histogram density: `bins` equal bins over [low, high], (centre, density); densities integrate to the share of values
-/// inside.
+/// Histogram density: `bins` equal bins over [low, high], (centre, density); densities integrate
+/// to the share of values inside.
 std::vector<std::pair<double, double>> histogram(const std::vector<double>& values, double low, double high, int bins);
 
 /// The path from the start to equilibrium `number`, both included, in order.

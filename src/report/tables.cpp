@@ -87,7 +87,7 @@ void add_arcs(std::string& text, const std::vector<EquilibriumRow>& rows) {
                         arcs.back());
 }
 
-/// What is left of the largest strain when the path has come back to the ratio it started from.
+/// Adds the residual share of the largest strain when the path has returned to its initial ratio.
 void add_irreversible(std::string& text, const std::vector<EquilibriumRow>& rows, const std::vector<std::string>& names,
                       const LoadWords& words) {
     for (std::size_t s = 0; s < names.size(); ++s) {

@@ -11,7 +11,7 @@
 
 namespace isostat {
 
-/// Segments, increments, arcs, checks. `names`: of the segments; `status`: that of run.json.
+/// Segments, increments, arcs, checks. `names`: names of the segments; `status`: status in run.json.
 std::string run_tables(const std::vector<EquilibriumRow>& rows, const std::vector<std::string>& names,
                        const std::string& status, const LoadWords& words = biaxial_words);
 

@@ -54,7 +54,7 @@ std::vector<TriaxialPoint> triaxial_points(std::span<const EquilibriumRow> rows,
         load.set_loaded_stress(row.stress);
         TriaxialPoint at{row.number, row.segment, row.previous, 0, 0, load.mean_stress(), load.deviator()};
         for (std::size_t a = 0; a < row.length.size(); ++a) {
-            at.axial = std::log(load.reference_length[a] / row.length[a]); // the last one stays
+            at.axial = std::log(load.reference_length[a] / row.length[a]); // the value of the last axis remains
             at.volumetric += at.axial;
         }
         points.push_back(at);

@@ -14,21 +14,21 @@
 
 namespace isostat {
 
-/// An equilibrium: logarithmic strains since the lengths of reference, positive in compression; mean stress p, and q,
-/// the axial stress less the mean of the others.
+/// An equilibrium: logarithmic strains since the reference lengths, positive in compression; mean stress p, and q, the
+/// axial stress minus the mean of the other two.
 struct TriaxialPoint {
     int number = 0, segment = 0, previous = -1;
     double axial = 0, volumetric = 0, p = 0, q = 0;
 };
 
-/// `load`: of any state of the run. \pre rows of spheres
+/// `load`: load of any state of the run. \pre rows of spheres
 std::vector<TriaxialPoint> triaxial_points(std::span<const EquilibriumRow> rows, Load load);
 
-/// q/p and the volumetric strain against the axial strain; the data are the table of the points.
+/// q/p and the volumetric strain against the axial strain; the data file is the table of the points.
 Chart triaxial_chart(std::span<const TriaxialPoint> points, const std::vector<std::string>& names, bool pdf);
 
-/// A segment of the programme: the point that the segment starts from, and its own points. At constant structure the
-/// stress moves, at constant stress the strain jumps.
+/// A segment of the programme: the point at its start, and its own points. At constant structure the stress changes, at
+/// constant stress the strain jumps.
 struct TriaxialBranch {
     std::string title;
     std::vector<TriaxialPoint> points;

@@ -15,7 +15,7 @@ namespace isostat {
 
 namespace {
 
-using Place = PerAxis<double>; // in the plane z = 0
+using Place = PerAxis<double>; // with z = 0 in the plane
 
 Place place_of(const Packing& packing, int grain) {
     Place at{};
@@ -25,7 +25,7 @@ Place place_of(const Packing& packing, int grain) {
     return at;
 }
 
-/// Where the line of a contact ends: on the wall, or at the centre of the second grain or of its image.
+/// End of the line of a contact: on the wall, or at the centre of the second grain or of its image.
 Place end_of(const Packing& packing, const Contact& contact) {
     Place at = place_of(packing, contact.i);
     if (!contact.of_disks()) {
@@ -42,8 +42,8 @@ Place end_of(const Packing& packing, const Contact& contact) {
     return at;
 }
 
-/// The corner 0 or A_a of the cell along each axis, by the bits of a number. Along an axis with walls from wall to
-/// wall.
+/// A corner of the cell, with 0 or A_a along each axis by the bits of a number. Along an axis with walls the cell
+/// extends from wall to wall.
 Place corner(const Packing& packing, unsigned bits) {
     Place at{};
     for (std::size_t a = 0; a < packing.axes(); ++a) {
@@ -54,11 +54,11 @@ Place corner(const Packing& packing, unsigned bits) {
     return at;
 }
 
-/// Lines of a VTK file, with the points that they add, and a force for each.
+/// Lines of a VTK file, with the points that they add and a force per line.
 struct VtkLines {
     std::string lines;
     std::string forces;
-    std::vector<double> tube; ///< per point, of spheres: radius of the tube that draws the force
+    std::vector<double> tube; ///< per point, for spheres: radius of the tube that shows the force
     std::size_t count = 0;
     std::size_t ends = 0;
 
@@ -74,7 +74,7 @@ struct VtkLines {
     }
 };
 
-/// The outline of a cell: a parallelogram, or the edges of a parallelepiped as two of them and four lines.
+/// Adds the outline of a cell: a parallelogram, or the edges of a parallelepiped as two of these and four lines.
 void add_outline(const Packing& packing, std::vector<Place>& points, VtkLines& made) {
     const std::size_t first = points.size();
     for (unsigned z = 0; z < (packing.dimension == plane ? 1U : 2U); ++z) {
@@ -89,7 +89,7 @@ void add_outline(const Packing& packing, std::vector<Place>& points, VtkLines& m
     }
 }
 
-/// Points of the line of a contact. In space both are new: the radius of a tube stands at the points of a line.
+/// Points of the line of a contact. In space both are new, because the points of a line hold the radius of its tube.
 std::vector<std::size_t> ends_of(const Packing& packing, const Contact& contact, std::vector<Place>& points) {
     const bool new_begin = packing.dimension != plane;
     const bool new_end = new_begin || !contact.of_disks() || !contact.image.is_here();
@@ -105,7 +105,7 @@ std::vector<std::size_t> ends_of(const Packing& packing, const Contact& contact,
     return ends;
 }
 
-/// A quarter of the mean radius at the mean force, as in the picture.
+/// The tube of a unit force: a quarter of the mean radius at the mean force, as in the picture.
 double tube_of_one(const State& state, std::span<const double> forces) {
     double sum = 0, radii = 0;
     for (const double f : forces) {
@@ -130,7 +130,7 @@ VtkLines vtk_lines(const State& state, std::span<const double> forces, std::vect
         }
         const double force = forces.empty() ? 0 : forces[l];
         made.add(ends_of(state.packing, contact, points), force);
-        made.tube.resize(points.size(), tube * std::abs(force)); // of the points that are new
+        made.tube.resize(points.size(), tube * std::abs(force)); // for the new points
     }
     if (state.packing.cell.any()) {
         add_outline(state.packing, points, made);
@@ -162,7 +162,7 @@ std::string vtk_text(const State& state, std::span<const double> forces, const s
         rattler = rattler_flags(state, forces);
     }
     rattler.resize(points.size(), 0);
-    // The title is one line of at most 256 characters; ours is short.
+    // VTK allows titles of one line of at most 256 characters.
     std::string text = fmt::format("{}{}\nASCII\nDATASET POLYDATA\nPOINTS {} double\n", vtk_mark,
                                    text::shown(title).substr(0, 200), points.size());
     text += rows_of(points) + fmt::format("VERTICES {} {}\n", grains, 2 * grains);
@@ -194,7 +194,7 @@ std::string vtk_text(const State& state, std::span<const double> forces, const s
         }
         text += "VECTORS displacement double\n" + rows_of(moved);
     }
-    // Cell data: vertices first, then lines, as VTK numbers the cells.
+    // Cell data are in VTK's order of cells: vertices first, then lines.
     text += fmt::format("CELL_DATA {}\nSCALARS force double 1\nLOOKUP_TABLE default\n", grains + contacts.count);
     for (std::size_t i = 0; i < grains; ++i) {
         text += "0\n";

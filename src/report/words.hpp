@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// How tables and figures call what a run loads.
+/// Names of the loaded quantity in tables and figures.
 
 #include <isostat/packing/load.hpp>
 
@@ -11,15 +11,15 @@ namespace isostat {
 struct LoadWords {
     std::string ratio;      ///< as `Load::ratio_name`
     std::string strain;     ///< as `Load::strain_name`
-    std::string rising;     ///< the ratio goes up
-    std::string falling;    ///< and down
+    std::string rising;     ///< words for a rising ratio
+    std::string falling;    ///< words for a falling ratio
     std::string ratio_axis; ///< labels of axes, UTF-8
     std::string strain_axis;
-    std::string ratio_step; ///< of distributions of increments
+    std::string ratio_step; ///< labels of distributions of increments
     std::string strain_step;
     std::string ratio_sign; ///< short, UTF-8
     std::string strain_sign;
-    std::string other_strain; ///< that of the axis whose stress the ratio is taken over
+    std::string other_strain; ///< strain of the axis of the denominator of the ratio
     std::string stress_sign;
 };
 
@@ -48,7 +48,7 @@ inline const LoadWords shear_words{"shear/sigma2",
                                    "strain of the height",
                                    "τ"};
 
-/// In space they name the loaded axis, or the tilt.
+/// The words for a load; in space they name the loaded axis or tilt.
 LoadWords load_words(const Load& load);
 
 } // namespace isostat

@@ -16,7 +16,7 @@ namespace {
 
 using Residue = std::uint64_t;
 
-/// What a column is made of, in numbers of any kind.
+/// The vectors of which a column is made, in numbers of any type.
 template <class Number> struct Arms {
     PerAxis<Number> r;      ///< x_j - x_i + A m
     PerAxis<Number> period; ///< A m
@@ -31,13 +31,13 @@ Arms<Number> arms_of(const Contact& contact, const Layout& layout, At at, Minus 
     return arms;
 }
 
-/// The cell held: only the disks have degrees of freedom.
+/// The packing with its cell held, where only the disks have degrees of freedom.
 Packing in_fixed_cell(Packing packing) {
     packing.cell.move(false, false);
     return packing;
 }
 
-/// visit(row, entry) of one column, ascending. `product`, `sum`, `negative`: of the numbers.
+/// Calls visit(row, entry) for one column, ascending. `product`, `sum` and `negative` compute with the numbers.
 template <class Number, class Ring, class Visit>
 void for_each_strained_entry(const DofMap& dofs, const Contact& contact, const Arms<Number>& arms, Strain strain,
                              const Ring& ring, Visit visit) {
@@ -93,7 +93,7 @@ Counting counted(int rows, int columns, int rank) {
     return counting;
 }
 
-/// With the rank of the matrix where the one mod p leaves it open and a kernel can be had.
+/// Adds the exact rank where the rank mod p does not decide it and the matrix is small enough for a kernel.
 Counting settled(Counting counting, const std::function<exact::NumberMatrix()>& matrix) {
     const bool small =
         static_cast<long long>(counting.dof_count) * counting.contact_count <= exact::KernelLimits().cells;
@@ -176,7 +176,7 @@ StrainCounts count_strains(const Packing& packing, const std::vector<Contact>& c
 std::vector<int> untouched(int disks, const std::vector<Contact>& pairs) {
     std::vector<unsigned char> touched(static_cast<std::size_t>(disks), 0);
     for (const Contact& pair : pairs) {
-        if (pair.kind != ContactKind::held) { // whose number is that of a coordinate
+        if (pair.kind != ContactKind::held) { // the number of a held coordinate is not that of a disk
             const int other = pair.of_disks() ? pair.j : pair.i;
             touched[static_cast<std::size_t>(pair.i)] = touched[static_cast<std::size_t>(other)] = 1;
         }

@@ -10,22 +10,22 @@ namespace isostat {
 
 namespace {
 
-/// Where a coordinate of a disk is known to be at every true vertex: `value`, or for `upper` that much below the upper
-/// wall. Two disks with the same have the same coordinate along `axis`.
+/// A coordinate that a disk has at every true vertex: `value`, or for `upper` that much below the upper wall. Two
+/// disks with equal levels have the same coordinate along `axis`.
 struct Level {
     int axis;
     bool upper;
     double value;
     friend bool operator<(const Level& a, const Level& b) {
-        return std::tie(a.value, a.axis, a.upper) < std::tie(b.value, b.axis, b.upper); // values mostly tell
+        return std::tie(a.value, a.axis, a.upper) < std::tie(b.value, b.axis, b.upper); // the value mostly decides
     }
     friend bool operator==(const Level& a, const Level& b) = default;
 };
 
-/// Per coordinate of the disks: 0, or the number of the level that it is at. Empty when no two disks share one. What is
-/// held of clumps may be a free motion: it has to be one wherever it is held, not only level with others (U2).
+/// Per coordinate of the disks: 0, or the number of its level. Empty when no two disks share one. Held coordinates of
+/// clumps have no level: each may hold a free motion, which must be free wherever it is held (U2), not only there.
 std::vector<int> shared_levels(const Packing& packing, const std::vector<Contact>& contacts) {
-    std::vector<std::pair<Level, int>> held; // with the coordinate
+    std::vector<std::pair<Level, int>> held; // with its coordinate
     const int disks = packing.disk_count();
     for (const Contact& contact : contacts) {
         if (contact.of_disks()) {
@@ -57,12 +57,12 @@ std::vector<int> shared_levels(const Packing& packing, const std::vector<Contact
     return level;
 }
 
-/// Whether the image of the second disk may be displaced along an axis: by a period, or by a tilt of a later one.
+/// Whether the image of the second disk may be displaced along an axis, by a period or by a tilt of a later period.
 bool is_displaced(const Contact& contact, int axis) {
     return std::any_of(contact.image.m.begin() + axis, contact.image.m.end(), [](std::int8_t m) { return m != 0; });
 }
 
-/// The disk with the most contacts, the first of them.
+/// The disk with the most contacts, the first of several.
 int most_held(int disks, const std::vector<Contact>& contacts) {
     std::vector<int> count(static_cast<std::size_t>(disks), 0);
     for (const Contact& c : contacts) {
@@ -77,8 +77,8 @@ int most_held(int disks, const std::vector<Contact>& contacts) {
     return static_cast<int>(std::max_element(count.begin(), count.end()) - count.begin());
 }
 
-/// Which row stands for a coordinate when another disk is pinned than the one of `dofs`: forces of finite loads are
-/// the same (proofs/cells.md, C1), and where a rattler is pinned no pattern tells that the rest does not press on it.
+/// The row of a coordinate when another disk is pinned than in `dofs`: the forces of finite loads are the same
+/// (proofs/cells.md, C1), and while a rattler is pinned no pattern tells that the rest does not press on the rattler.
 class Repinned {
   public:
     Repinned(const Packing& packing, const DofMap& dofs, const std::vector<Contact>& contacts)
@@ -89,14 +89,14 @@ class Repinned {
         is_ = was_ < 0 ? -1 : most_held(packing.disk_count(), contacts);
     }
     [[nodiscard]] bool changes() const { return is_ >= 0 && is_ != was_; }
-    /// Of the disk that was pinned along the axis of a held coordinate, which is held relative to that disk; -1: no
-    /// row.
+    /// The row of the formerly pinned disk along the axis of a held
+    /// coordinate, which is held relative to that disk; -1: no row.
     [[nodiscard]] int row_against(const Contact& held) const {
         const std::size_t axis = static_cast<std::size_t>(held.i) % packing_.axes();
         const bool of_disk = held.i < packing_.dimension * packing_.disk_count();
         return changes() && of_disk && packing_.cell.periodic[axis] ? row(packing_.layout().of_disk(was_) + axis) : -1;
     }
-    /// -1: no row.
+    /// The row of a coordinate; -1: no row.
     [[nodiscard]] int row(std::size_t coordinate) const {
         const int disk = static_cast<int>(coordinate) / packing_.dimension;
         const std::size_t axis = coordinate % packing_.axes();
@@ -165,7 +165,7 @@ ContactPattern::ContactPattern(const Packing& packing, const DofMap& dofs, const
     }
     if (pinned.changes() || parts.row.size() < matrix.row.size()) {
         parts.matched = sparse::perfect_matching(matrix.rows, parts.start, parts.row);
-        if (!parts.matched.empty()) { // else no vertex with these contacts is regular, and nothing will be said of one
+        if (!parts.matched.empty()) { // else no vertex with these contacts is regular, so no force is decided
             own_ = std::move(parts);
             for (int mu = 0; pinned.changes() && mu < matrix.rows; ++mu) {
                 rows_of_disks_ += dofs.coordinate_of(mu) < packing.dimension * packing.disk_count() ? 1 : 0;
@@ -183,7 +183,7 @@ std::vector<unsigned char> ContactPattern::carrying(std::span<const int> rows,
                                                     std::vector<unsigned char> reached) const {
     const View pattern = for_load(rows);
     if (own_ && pattern.start.data() != own_->start.data()) {
-        reached.clear(); // what walls and cell reach was searched with the other pinned disk
+        reached.clear(); // `reached` was searched with the other pinned disk
     }
     return sparse::structural_nonzeros(pattern.start, pattern.row, pattern.matched, rows, std::move(reached));
 }

@@ -21,7 +21,7 @@ SparseColumns contact_matrix(const State& state) {
 
 namespace {
 
-/// Bars count as independent: with a self-stress of their own, h and k would be wrong.
+/// Throws unless the bars are independent: with a self-stress of the bars h and k would be wrong.
 void require_independent_bars(const Packing& packing, std::vector<Contact> contacts) {
     std::erase_if(contacts, [](const Contact& c) { return c.kind != ContactKind::bar; });
     const int rank = exact::rank(exact_contact_matrix(packing, DofMap(packing), contacts));
@@ -43,14 +43,14 @@ Counting count_contacts(const Packing& packing, const std::vector<Contact>& cont
     counting.dof_count = dofs.dof_count();
     counting.contact_count = static_cast<int>(contacts.size());
     sparse::Matrix<std::uint64_t> matrix = exact_contact_matrix(packing, dofs, contacts);
-    // Mostly there is nothing to hold: seen at once with an order of little fill, which the search for columns has not.
+    // Mostly no coordinate has to be held: the rank tells so at once, in an order of little fill, unlike the columns.
     if (counting.dof_count == counting.contact_count && exact::rank(matrix) == counting.dof_count) {
         counting.rank = counting.dof_count;
         counting.rank_exact = Verdict::proved;
         return without_bars(counting, bar_count(contacts));
     }
-    // The identity behind H completes its independent columns to a basis: the unit columns used are the degrees of
-    // freedom to hold.
+    // The identity matrix after H completes the independent columns of H to a basis: the unit columns in the basis
+    // are the degrees of freedom to hold.
     for (int mu = 0; mu < counting.dof_count; ++mu) {
         matrix.row.push_back(mu);
         matrix.value.push_back(1);

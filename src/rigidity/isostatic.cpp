@@ -31,7 +31,7 @@ template <class Value> sparse::Matrix<Value> empty_matrix(int rows, std::size_t 
     return matrix;
 }
 
-/// Normal from the first disk to the second, the bits of `gap_gradient`, inline; of other contacts nothing.
+/// Normal from the first disk to the second, with the bits of `gap_gradient`, inline; zero for other contacts.
 inline PerAxis<double> unit_normal(const Packing& packing, const Contact& contact) {
     if (!contact.of_disks()) {
         return {};
@@ -64,7 +64,7 @@ sparse::Matrix<Value> reduced_contact_matrix(const Packing& packing, const DofMa
     auto matrix = empty_matrix<Value>(dofs.dof_count(), contacts.size());
     for (const Contact& contact : contacts) {
         const Separation separation(contact, packing.layout());
-        PerAxis<Value> normal; // times the distance of the centres; of a wall 1
+        PerAxis<Value> normal; // times the distance of the centres; 1 for a wall
         normal.fill(1);
         if (contact.of_disks()) {
             normal = separation.of_disks([&](std::size_t k) { return residue[k]; }, subtract);
@@ -86,7 +86,7 @@ sparse::Matrix<Value> reduced_contact_matrix(const Packing& packing, const DofMa
 
 } // namespace
 
-/// Rows grow with the coordinates, and a separation names them in order.
+/// Rows ascend with the coordinates, and a separation names its coordinates in order.
 sparse::Matrix<double> contact_matrix(const Packing& packing, const DofMap& dofs,
                                       const std::vector<Contact>& contacts) {
     sparse::Matrix<double> matrix;
@@ -125,7 +125,7 @@ Result<IsostaticStructure> IsostaticStructure::prove(const Packing& packing, std
 }
 
 Result<RankProof> RankProof::begin(const Packing& packing, std::vector<Contact> contacts) {
-    if (packing.q.size() > most_coordinates) { // the one place where structures begin: what is exchanged keeps its size
+    if (packing.q.size() > most_coordinates) { // all structures begin here; an exchange keeps the size
         throw Error(
             ErrorKind::bad_input,
             fmt::format("{} disks have {} coordinates: at most {} were expected, as error bounds allow for no more",

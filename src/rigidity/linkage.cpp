@@ -15,7 +15,7 @@ namespace isostat {
 
 namespace {
 
-/// R_i + R_j, exactly: the rounded sum and what it lacks (Knuth).
+/// R_i + R_j exactly: the rounded sum and its error (Knuth).
 std::pair<double, double> length_of_bar(const std::vector<double>& radius, int i, int j) {
     const double a = radius[static_cast<std::size_t>(i)];
     const double b = radius[static_cast<std::size_t>(j)];
@@ -24,7 +24,7 @@ std::pair<double, double> length_of_bar(const std::vector<double>& radius, int i
     return {sum, (a - (sum - part)) + (b - part)};
 }
 
-/// Edges that turn by one angle, with or against each other; an edge that turns against itself does not turn.
+/// Classes of edges that turn by one angle, in equal or opposite sense; an edge opposite to itself does not turn.
 class Turning {
   public:
     explicit Turning(std::size_t edges) : parent_(edges), against_(edges, false), fixed_(edges, false) {
@@ -43,7 +43,7 @@ class Turning {
         fixed_[other] = fixed_[other] || fixed_[one];
     }
     void fix(std::size_t a) { fixed_[root(a).first] = true; }
-    /// Angles that are free.
+    /// Number of free angles.
     [[nodiscard]] int count() const {
         int free = 0;
         for (std::size_t e = 0; e < parent_.size(); ++e) {
@@ -62,11 +62,11 @@ class Turning {
         return {e, against};
     }
     std::vector<std::size_t> parent_;
-    std::vector<bool> against_; ///< of the parent
-    std::vector<bool> fixed_;   ///< of roots
+    std::vector<bool> against_; ///< relative to the parent
+    std::vector<bool> fixed_;   ///< of the roots of the classes
 };
 
-/// Disks and walls as nodes, pairs that touch as edges, and the cycles that close however the classes turn.
+/// Disks and walls as nodes, touching pairs as edges, and the cycles that close for all angles of the classes.
 class Linkage {
   public:
     Linkage(const Packing& packing, const std::vector<Contact>& touching)
@@ -84,7 +84,7 @@ class Linkage {
             node < disks_ ? find_cells(node) : find_cells_at_wall(node);
         }
     }
-    /// Dimension of the motions in which classes turn and what hangs together moves, if all cycles close; else -1.
+    /// Dimension of the motions in which classes turn and connected pieces move, if all cycles close; else -1.
     [[nodiscard]] int motions() const {
         int count = turning_.count();
         for (int axis = 0; axis < plane; ++axis) {
@@ -106,7 +106,7 @@ class Linkage {
     }
 
   private:
-    /// A closed way: edges, ascending, with the direction in which they are passed; along one axis or (d) all.
+    /// A closed path: edges, ascending, with the direction of each; valid along one axis, or along all (`plane`).
     struct Cell {
         int axis;
         std::vector<std::pair<std::size_t, int>> way;
@@ -137,7 +137,7 @@ class Linkage {
         cells_.push_back(std::move(cell));
     }
 
-    /// Triangles and parallelograms whose smallest disk is i.
+    /// Finds triangles and parallelograms in which i is the disk of lowest number.
     void find_cells(int i) {
         for (const auto& [j, first] : beside_.at(i)) {
             for (const auto& [l, last] : beside_.at(i)) {
@@ -161,7 +161,7 @@ class Linkage {
         }
     }
 
-    /// Disks at one wall: two that touch each other, and two of one size that touch a third.
+    /// Finds cells at a wall: two of its disks that touch each other, or two of equal size that touch a third disk.
     void find_cells_at_wall(int w) {
         for (const auto& [i, at_i] : beside_.at(w)) {
             for (const auto& [j, at_j] : beside_.at(w)) {
@@ -182,12 +182,12 @@ class Linkage {
         }
     }
 
-    /// Along an axis: what moves on its own, if the cells make up all cycles; else -1.
+    /// Number of pieces free to move along an axis, if the cells make up all cycles; else -1.
     [[nodiscard]] int pieces_that_move(int axis) const {
         const auto takes_part = [&](std::size_t e) {
             return ends(e).second < disks_ || axis_of(ends(e).second) == axis;
         };
-        std::map<int, int> piece; // node to a node of the same piece
+        std::map<int, int> piece; // a node to another node of its piece
         const auto root = [&piece](int node) {
             while (piece.at(node) != node) {
                 node = piece.at(node);
@@ -218,7 +218,7 @@ class Linkage {
         return ground > 1 || rank_of_cells(axis) < cycles ? -1 : pieces - ground;
     }
 
-    /// Modulo a prime: a lower bound, and no number is larger than that of the cycles.
+    /// Rank modulo a prime: a lower bound of the rank, which is at most the number of cycles.
     [[nodiscard]] int rank_of_cells(int axis) const {
         sparse::Matrix<std::uint64_t> matrix;
         matrix.rows = static_cast<int>(touching_.size());
@@ -240,7 +240,7 @@ class Linkage {
     const Packing& packing_;
     int disks_;
     const std::vector<Contact>& touching_;
-    std::map<int, std::map<int, std::size_t>> beside_; ///< edges by their ends
+    std::map<int, std::map<int, std::size_t>> beside_; ///< the edges by their two ends
     Turning turning_;
     std::vector<Cell> cells_;
 };

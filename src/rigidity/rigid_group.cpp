@@ -27,13 +27,13 @@ struct Group {
     }
 };
 
-/// Whether a coordinate of a disk counts as one that moves. That of a pinned disk does (proofs/cells.md, C1): a group
+/// Whether a coordinate of a disk counts as free. A coordinate of a pinned disk does (proofs/cells.md, C1): a group
 /// that belongs to no cell may be moved as a whole.
 bool counts(const DofMap& dofs, std::size_t disk, std::size_t axis) {
     return dofs.is_periodic(axis) || dofs.dof_of(plane * disk + axis) >= 0;
 }
 
-/// Translations along an axis and rotations that keep every gap in the group: none of them may move what is fixed.
+/// Number of axis translations and rotations that keep every gap in the group and move nothing that is fixed.
 int rigid_motions(const DofMap& dofs, const Group& group) {
     assert(dofs.layout().dimension == plane); // one rotation
     const std::size_t walls = plane * group.disk.size();
@@ -52,7 +52,7 @@ int rigid_motions(const DofMap& dofs, const Group& group) {
     return motions + (rotates ? 1 : 0);
 }
 
-/// Degrees of freedom of the group, less those.
+/// Degrees of freedom of the group less its rigid motions.
 int motions_to_hold(const DofMap& dofs, const Group& group) {
     const std::size_t walls = plane * group.disk.size();
     int free = 0;
@@ -87,7 +87,7 @@ bool carries_alone(const DofMap& dofs, const std::vector<Contact>& carrying, int
     Group group(dofs.disk_count());
     std::for_each(carrying.begin(), carrying.end(), [&](const Contact& c) { group.add(c); });
     const auto a = static_cast<std::size_t>(axis);
-    return group.lower[a] && group.upper[a] && // no translation along the load, and no rotation
+    return group.lower[a] && group.upper[a] && // excludes a translation along the load, and a rotation
            static_cast<int>(carrying.size()) == motions_to_hold(dofs, group);
 }
 

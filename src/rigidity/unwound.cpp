@@ -35,7 +35,7 @@ std::optional<std::vector<Contact>> unwound(int disks, std::vector<Contact> cont
             at[static_cast<std::size_t>(contacts[l].j)].push_back(l);
         }
     }
-    std::vector<std::optional<Periods>> by(at.size()); // how far each disk is moved
+    std::vector<std::optional<Periods>> by(at.size()); // how far each disk is moved; empty: not reached
     std::vector<std::size_t> next;
     for (std::size_t first = 0; first < at.size(); ++first) {
         if (by[first] || at[first].empty()) {

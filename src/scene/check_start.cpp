@@ -15,7 +15,7 @@ namespace isostat {
 
 namespace {
 
-/// One self-stress per contact that depends on those before it, as the contacts that take part: for a message.
+/// Names, for a message, the contacts of one self-stress for each contact that depends on earlier contacts.
 std::string self_stresses(const State& state) {
     const DofMap dofs(state.packing);
     const std::vector<int> independent =
@@ -35,7 +35,7 @@ std::string self_stresses(const State& state) {
             ++next;
             continue;
         }
-        std::vector<double> force(kept.size(), 0.0); // unit force in contact l, balanced by the others
+        std::vector<double> force(kept.size(), 0.0); // a unit force in contact l, which the others balance
         const GapGradient g = gap_gradient(state.packing, state.contacts[l]);
         for (std::size_t k = 0; k < static_cast<std::size_t>(g.count); ++k) {
             const int dof = dofs.dof_of(static_cast<std::size_t>(g.coordinate[k]));
@@ -65,7 +65,7 @@ void check_start(const State& state, const std::string& source, bool hyperstatic
         bad(fmt::format("{} overlap, and cannot move: expected every gap >= 0",
                         to_string(*pair, state.packing.dimension)));
     }
-    // Far above the rounding of a vertex (1e-15) and far below any gap that matters to a user's eye.
+    // The value is far above the rounding of a vertex (1e-15) and far below any visible gap.
     const double visible = 1e-6 * state.packing.min_radius();
     const Admissibility admissible = certify_admissible(state.packing, visible);
     if (admissible.verdict == Verdict::refuted) {

@@ -30,7 +30,7 @@ fs::path named_input(const fs::path& folder, const std::string& name, const std:
     if (std::mismatch(below.begin(), below.end(), real.begin(), real.end()).first != below.end()) {
         refuse("a link that leads elsewhere");
     }
-    if (!fs::is_regular_file(real) && !fs::is_directory(real)) { // of a folder its reader says that it is one
+    if (!fs::is_regular_file(real) && !fs::is_directory(real)) { // the reader reports a folder
         refuse("a device or a pipe");
     }
     return path;

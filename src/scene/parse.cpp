@@ -21,14 +21,14 @@ namespace {
 
 constexpr double largest_number = 1e300;
 
-/// A TOML integer has a sign: seeds are its non-negative half.
+/// A TOML integer is signed, so that a seed is a non-negative one.
 constexpr long largest_seed = std::numeric_limits<long>::max();
 
-/// Below, the doubles next to a radius are too few for different ones.
+/// Below this value the doubles near a radius are too few for different radii.
 constexpr double smallest_jitter = 1e-14;
 constexpr double largest_jitter = 0.1;
 
-/// A list of radii from [packing].
+/// Takes a list of radii from [packing].
 void read_radii_list(Section& section, const std::vector<double>& radii, PreparationOptions& options) {
     if (radii.empty()) {
         section.fail("radii", "at least one radius");
@@ -44,7 +44,7 @@ void read_radii_list(Section& section, const std::vector<double>& radii, Prepara
     section.record("radii", fmt::format("[{}]", fmt::join(radii, ", ")));
 }
 
-/// A file to start from, which leaves nothing to prepare.
+/// Takes a file to start from, which replaces the preparation.
 void read_start(Section& section, const std::string& file, Scene& scene, const std::filesystem::path& folder) {
     for (const char* key : {"jitter", "seed", "aspect"}) {
         if (section.has(key)) {
@@ -56,7 +56,7 @@ void read_start(Section& section, const std::string& file, Scene& scene, const s
     section.record("file", toml_text(file));
 }
 
-/// A list of radii is of either; the other sources say it themselves.
+/// The dimension of a list of radii or of a file of radii is a key; other sources have their own dimension.
 int read_dimension(Section& section, const std::string& source) {
     const bool list = source == "radii" || source == "radii_file";
     if (section.integer("dimension")) {
@@ -70,7 +70,7 @@ int read_dimension(Section& section, const std::string& source) {
     return source == "spheres" ? 3 : plane;
 }
 
-/// Exactly one way to say where the disks or spheres come from.
+/// Reads the one source of the disks or spheres; throws unless it is exactly one.
 void read_packing(Section& section, Scene& scene, const std::filesystem::path& folder) {
     const auto file = section.string("file");
     const auto disks = section.integer("disks");
@@ -121,7 +121,7 @@ void read_packing(Section& section, Scene& scene, const std::filesystem::path& f
     options.aspect = section.number("aspect", options.aspect, 0.01, 100, "a number from 0.01 to 100");
 }
 
-/// [cell]: there is one, so there are no walls.
+/// Reads [cell], with which the packing has no walls.
 void read_cell(Section& section, Scene& scene) {
     PreparationOptions& options = scene.preparation;
     if (!scene.start.empty()) {
@@ -150,7 +150,7 @@ void read_preparation(Section& section, Scene& scene) {
     options.max_programmes = static_cast<int>(section.integer("max_programmes", options.max_programmes, 1, 100'000));
 }
 
-/// Several stresses at once, as a triaxial test has them.
+/// A protocol that changes several stresses at once, as in a triaxial test.
 struct Protocol {
     const char* word;
     std::vector<double> path;
@@ -158,7 +158,7 @@ struct Protocol {
 const std::array protocols{Protocol{"compression", {0, 0, 1}}, Protocol{"extension", {0, 0, -1}},
                            Protocol{"constant_mean", {-1, -1, 2}}};
 
-/// [load] direction, or a protocol. What is prepared moves in all its lengths.
+/// Reads [load] direction, or a protocol. A prepared packing moves in all its lengths.
 void read_path(Section& section, Scene& scene) {
     PreparationOptions& options = scene.preparation;
     const bool prepares = scene.start.empty();
@@ -192,13 +192,13 @@ void read_path(Section& section, Scene& scene) {
     }
 }
 
-/// What the programme changes.
+/// Reads which stress the programme changes.
 void read_loaded(Section& section, Scene& scene) {
-    if (!section.string("loaded")) { // without it the state of a file says what is loaded
+    if (!section.string("loaded")) { // without this key the state of a file decides
         return;
     }
     PreparationOptions& options = scene.preparation;
-    const bool prepares = scene.start.empty(); // the state of a file tells its dimension and whether it has a tilt
+    const bool prepares = scene.start.empty(); // a state file has a dimension and states whether a tilt moves
     const bool in_plane = options.dimension == plane;
     std::vector<std::string> words{"x", "y", "z", "xy", "xz", "yz"};
     if (prepares && in_plane) {
@@ -229,7 +229,7 @@ void read_loaded(Section& section, Scene& scene) {
     }
 }
 
-/// What a programme will find loaded: its dimension and axis tell what the ratios are called.
+/// The load at the start of a programme, whose dimension and axis decide the names of the ratios.
 Load load_at_start(const Scene& scene) {
     Load load;
     if (scene.start.empty()) {
@@ -244,7 +244,7 @@ Load load_at_start(const Scene& scene) {
         State state = read_any_state(scene.start, Dimensions::any_clumps).state;
         choose_loaded(state, scene, scene.start.string());
         return state.load;
-    } catch (const Error&) { // whoever reads the start says what is wrong
+    } catch (const Error&) { // the reader of the start reports the error
         load.loaded_axis = scene.loaded == "tilt" ? plane : 1;
         return load;
     }
@@ -324,7 +324,7 @@ ProgrammeStep read_step(Section& section, const Load& load) {
     return step;
 }
 
-/// A word that scenes once had, and what says the same now.
+/// A word that scenes once had, and the words to use instead.
 struct RetiredWord {
     const char* key;
     const char* word;
@@ -480,7 +480,7 @@ Scene parse_scene(const std::string& text, const std::string& source, const std:
     std::optional<double> ratio;
     if (scene.start.empty()) {
         const Load load = load_at_start(scene);
-        ratio = load.loads_tilt() || load.path ? 0 : 1; // isotropic
+        ratio = load.loads_tilt() || load.path ? 0 : 1; // isotropic stress
     }
     check_programme(scene, ratio);
     return scene;

@@ -20,14 +20,14 @@ class Plan {
     std::vector<PlanEntry> entries_;
 };
 
-/// Whether more disks are prepared than that.
+/// Whether more than `disks` disks are prepared.
 bool prepares_more(const Scene& scene, int disks) {
     const PreparationOptions& options = scene.preparation;
     const auto given = static_cast<int>(options.radii.size());
     return scene.start.empty() && (given > 0 ? given : options.disks) > disks;
 }
 
-/// Whether some radii of a preparation are equal before they are jittered.
+/// Whether some radii of a preparation are equal before the jitter.
 bool equal_radii(const PreparationOptions& options) {
     if (options.radii.empty()) {
         const DiameterLaw& law = options.diameters;
@@ -134,7 +134,7 @@ void add_proofs(Plan& plan, const Scene& scene) {
                                          "factorisations per arc, more for long ones");
 }
 
-/// What is there for signs and orders that doubles do not tell.
+/// Adds the methods for signs and orders that doubles do not decide.
 void add_last_resorts(Plan& plan, const Scene& scene) {
     const bool runs = !scene.programme.empty();
     plan.add("solver", "multiprecision (MPFR), exact numbers", true,
@@ -203,9 +203,9 @@ std::string settings_json(const Scene& scene) {
     nlohmann::ordered_json object = nlohmann::ordered_json::object();
     for (const Setting& setting : scene.settings) {
         if (setting.section == "[programme]") {
-            continue; // a list: the scene's text and `programme` have it
+            continue; // a list, which the scene's text and `programme` contain
         }
-        // Numbers, lists and booleans are the same in both languages.
+        // Numbers, lists and booleans are written the same in TOML and JSON.
         const auto value = nlohmann::ordered_json::parse(setting.value, nullptr, false);
         object[setting.section][setting.key] = value.is_discarded() ? nlohmann::ordered_json(setting.value) : value;
     }

@@ -24,19 +24,19 @@ const char* word(Action action) {
     return "to";
 }
 
-/// Of a stress ratio; a shear, and the way along a path, have either sign.
+/// Lowest value of a stress ratio: 0; a shear, and the path parameter, may have either sign.
 double lowest(const ProgrammeStep& step) {
     return step.from_zero ? -infinity : 0;
 }
 
-/// Ratios at which the run can be, and whether both ends are reached for sure.
+/// The ratios that a run can have at this point.
 struct Range {
     double low = 0;
     double high = infinity;
 };
 
-/// Number of the last equilibrium of a segment, and the ratios of those that it makes. `last` is unknown (none) from
-/// the first segment on that ends at a ratio.
+/// Number of the last equilibrium of a segment, and the ratios of its equilibria. `last` is empty from the first
+/// segment on that ends at a ratio.
 struct Made {
     std::optional<int> last;
     Range ratio;
@@ -53,13 +53,13 @@ std::string range_text(const Range& range) {
                                     : fmt::format("from {} to {}", range.low, range.high);
 }
 
-/// Ratios possible at the start of a segment that names the equilibrium it starts from.
+/// The possible ratios at the start of a segment that names its first equilibrium.
 Range range_at(const Scene& scene, const ProgrammeStep& step, const std::vector<Made>& made) {
     const int from = *step.from;
     for (const Made& m : made) {
         if (!m.last) {
             return {lowest(step),
-                    infinity}; // its number of equilibria is not known: `from` may be of this segment or of a later one
+                    infinity}; // the number of equilibria is not known: `from` may be of this segment or of a later one
         }
         if (from <= *m.last) {
             return m.ratio;
@@ -70,7 +70,7 @@ Range range_at(const Scene& scene, const ProgrammeStep& step, const std::vector<
                        from, *made.back().last));
 }
 
-/// Ratios possible at its end.
+/// The possible ratios at the end of a segment.
 Range after(const Scene& scene, const ProgrammeStep& step, const Range& start) {
     const bool known = start.low == start.high;
     if (step.action == Action::to) {

@@ -1,13 +1,13 @@
 #pragma once
 /// \file
-/// Radii from a text file, and how small and large they may be.
+/// Radii from a text file, and bounds of their sizes.
 
 #include <filesystem>
 #include <vector>
 
 namespace isostat {
 
-/// Of radii and diameters that a packing is prepared from: the box of many is far below `longest_length`.
+/// Smallest radius or diameter for a preparation; the largest is such that a box of many stays below `longest_length`.
 inline constexpr double smallest_size = 1e-140;
 inline constexpr double largest_size = 1e140;
 

@@ -18,7 +18,7 @@ const std::vector<std::string> words{"uniform", "equal", "bidisperse", "lognorma
 
 struct LawKey {
     const char* name;
-    std::vector<RadiiLaw> laws; ///< that have it
+    std::vector<RadiiLaw> laws; ///< the laws with this key
 };
 
 const std::array<LawKey, 6> law_keys{{{"diameters", {uniform, lognormal, normal, power}},
@@ -36,7 +36,7 @@ bool belongs(const LawKey& key, RadiiLaw law) {
     return std::find(key.laws.begin(), key.laws.end(), law) != key.laws.end();
 }
 
-/// Asks for it, so that it is known.
+/// Whether a key is given; reading it marks it as known.
 bool given(Section& section, std::string_view key) {
     return key == "diameters" ? section.numbers("diameters").has_value() : section.number(std::string(key)).has_value();
 }
@@ -55,7 +55,7 @@ void check_keys(Section& section, RadiiLaw law) {
     }
 }
 
-/// [smallest, largest]; `law` holds the defaults.
+/// Reads [smallest, largest]; `law` holds the defaults.
 void read_ends(Section& section, DiameterLaw& law) {
     if (const auto ends = section.numbers("diameters")) {
         if (ends->size() != 2 || !((*ends)[0] >= smallest_size) || !((*ends)[1] >= (*ends)[0]) ||

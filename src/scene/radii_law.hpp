@@ -8,12 +8,12 @@
 
 namespace isostat {
 
-/// The law, with its defaults recorded. Throws `Error(bad_input)` for keys that another law has and for a law without
-/// sense.
+/// The law, with its defaults recorded. Throws `Error(bad_input)`
+/// for keys of another law and for a law with a fault.
 DiameterLaw read_law(Section& section);
 
-/// Asks for every key of a law, so that all are known, and refuses those that are given: "has no meaning with
-/// `source`".
+/// Reads every key of a law, so that all are known, and refuses
+/// those that are present: "has no meaning with `source`".
 void refuse_law(Section& section, const std::string& source);
 
 } // namespace isostat

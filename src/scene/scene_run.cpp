@@ -26,7 +26,7 @@ RunStatus status_of(FailureKind kind) {
     }
 }
 
-/// Calls two observers one after the other: the files first.
+/// Calls two observers in turn, the files first.
 class Both final : public RunObserver {
   public:
     Both(RunObserver& first, RunObserver& second) : first_(first), second_(second) {}
@@ -87,14 +87,14 @@ void choose_loaded(State& state, const Scene& scene, const std::string& source) 
     state.load.loaded_axis = static_cast<int>(axis);
 }
 
-/// Into the provenance of the state.
+/// Adds an entry to the provenance of the state.
 template <class Value> void note(State& state, const char* name, const Value& value) {
     Json provenance = state.provenance.empty() ? Json::object() : Json::parse(state.provenance);
     provenance[name] = value;
     state.provenance = provenance.dump();
 }
 
-/// Free motions come to rest under infinitesimal loads, as those of rattlers do. What the file says is judged before.
+/// Brings free motions to rest under infinitesimal loads, like rattlers. The state of the file is judged before.
 State clumps_at_rest(State state, const Scene& scene, const std::string& source) {
     state = with_free_motions_held(std::move(state));
     check_start(state, source);
@@ -106,7 +106,7 @@ State clumps_at_rest(State state, const Scene& scene, const std::string& source)
     const bool moves = std::any_of(state.contacts.begin(), state.contacts.end(),
                                    [](const Contact& c) { return c.kind == ContactKind::held; });
     if (!moves) {
-        return state; // where a force is negative, the run records what follows
+        return state; // if a force is negative, the run records the rearrangement
     }
     State unpressed = state;
     unpressed.load.infinitesimal.clear();
@@ -118,12 +118,12 @@ State clumps_at_rest(State state, const Scene& scene, const std::string& source)
                         source, truth.claims.undecided.front()));
     }
     Segment rest;
-    rest.equilibria = 0; // the start alone
+    rest.equilibria = 0; // only the initial equilibrium
     RunCounters counters;
     RunObserver nobody;
     RunOptions options = scene.run;
     options.certify = CertifyLevel::decisions;
-    options.max_strain = HUGE_VAL; // the load stays
+    options.max_strain = HUGE_VAL; // the load is constant
     (void)snap_to_grid(state.packing);
     const SegmentOutcome outcome = run_segment(state, rest, 0, options, counters, nobody);
     if (outcome.failure) {
@@ -145,7 +145,7 @@ State start_of_scene(State state, const Scene& scene, const std::string& source)
         balance(state.load.infinitesimal, state.packing.cell);
     }
     state.equilibrium = 0;
-    state.perturbation.reset(); // a run has its own
+    state.perturbation.reset(); // a run chooses its own
     for (std::size_t a = 0; a < state.packing.axes(); ++a) {
         if (!(state.load.stress[a] > 0)) {
             throw Error(ErrorKind::bad_input, fmt::format("{}: load.stress[{}] is {}: expected a positive stress",
@@ -159,7 +159,7 @@ State start_of_scene(State state, const Scene& scene, const std::string& source)
     }
     check_start(state, source, scene.run.at_first_order());
     check_programme(scene, state.load.ratio());
-    if (const double moved = snap_to_grid(state.packing); moved > 0) { // after the state of the file was judged
+    if (const double moved = snap_to_grid(state.packing); moved > 0) { // the file's state is judged before
         note(state, "moved_to_grid", moved);
     }
     return state;
@@ -216,7 +216,7 @@ std::string advice(const Scene& scene, const Failure& failure, const Packing& pa
     }
     constexpr double ample = 1e-6;
     const double jitter = scene.preparation.jitter;
-    // Where all are equal ties are everywhere: a smaller jitter leaves more runs undecided (src/scene/README.md).
+    // When all radii are equal most arcs have ties: a smaller jitter leaves more runs undecided (src/scene/README.md).
     const bool all = equal && radius.front() == radius.back();
     const bool choose = can_choose && !scene.programme.empty();
     return equal && jitter == 0 ? fmt::format("; equal radii: try [packing] jitter = {}{}", all ? "1e-4" : "1e-9",

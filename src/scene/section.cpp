@@ -35,7 +35,7 @@ std::string toml_text(double value) {
 }
 
 std::string toml_text(const std::string& value) {
-    // A basic string, with those escapes that JSON has as well: records of a run take it over.
+    // A basic string with the escapes that JSON has too, because records of a run contain this string.
     std::string quoted = "\"";
     for (const char c : value) {
         const auto code = static_cast<unsigned char>(c);

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// One table of a scene file. A key that is asked for is known; what was never asked for is an error: so the list of
-/// known keys, the defaults and what `plan` prints cannot disagree.
+/// One table of a scene file. A key becomes known when it is read; a key of the file that was never read is an error.
+/// So the list of known keys, the defaults and the output of `plan` cannot disagree.
 
 #include <isostat/scene/scene.hpp>
 
@@ -22,7 +22,7 @@ class Section {
 
     /// Throws `Error(bad_input)`: "FILE:LINE: KEY is VALUE: expected WHAT".
     [[noreturn]] void fail(const std::string& key, const std::string& expected) const;
-    /// The same without a value: "FILE:LINE: WHAT", at the key's line (or the table's when the key is absent).
+    /// The same without a value: "FILE:LINE: WHAT", at the line of the key (or of the table when the key is absent).
     [[noreturn]] void refuse(const std::string& key, const std::string& what) const;
 
     [[nodiscard]] bool has(const std::string& key) const { return table_ != nullptr && table_->contains(key); }
@@ -40,7 +40,7 @@ class Section {
     /// A table in this one; null when it is absent.
     const toml::table* table(const std::string& key);
 
-    /// With defaults; these are recorded as settings.
+    /// Values with defaults, which are recorded as settings.
     double number(const std::string& key, double fallback, double lowest, double highest, const std::string& expected);
     long integer(const std::string& key, long fallback, long lowest, long highest);
     bool boolean(const std::string& key, bool fallback);
@@ -49,7 +49,7 @@ class Section {
 
     /// Records a setting that the caller read itself.
     void record(const std::string& key, const std::string& value);
-    /// Throws for the first key that nobody asked for.
+    /// Throws for the first key that was never read.
     void finish() const;
 
   private:

@@ -15,7 +15,7 @@ namespace isostat {
 
 namespace {
 
-/// Byte of a position that TOML gives as line and column from 1, columns counted in code points.
+/// Byte offset of a TOML position, which is line and column from 1 with columns counted in code points.
 std::size_t offset_of(const std::string& text, const toml::source_position& position) {
     std::size_t at = 0;
     for (std::uint32_t line = 1; line < position.line; ++line) {
@@ -37,7 +37,7 @@ void replace(std::string& text, const toml::source_region& where, const std::str
     text.replace(begin, end - begin, by);
 }
 
-/// `radii = [...]` in the place of `radii_file = "..."`.
+/// Writes `radii = [...]` in the place of `radii_file = "..."`.
 void put_radii(std::string& text, const toml::table& packing, const std::vector<double>& radii) {
     for (const auto& [key, value] : packing) {
         if (key.str() == "radii_file") {

@@ -13,7 +13,7 @@ namespace isostat::compare {
 
 namespace {
 
-/// Where only the size of a cell gives way, the forces are determined up to a factor: that of the mean force. Else 1.
+/// The ratio of the mean forces where only the size of a cell gives way, because a factor is free there; else 1.
 double factor_of(const Packing& packing, const Statics& statics, const Load& load, const std::vector<double>& forces) {
     double said = 0, exact = 0;
     for (std::size_t l = 0; l < forces.size() && packing.cell.keeps_shape; ++l) {
@@ -34,7 +34,7 @@ Units units_of(const std::vector<double>& forces, const std::vector<double>& exa
         square += said ? exact[l] * exact[l] : 0;
     }
     Units out{product / square, 0};
-    for (std::size_t l = 0; l < forces.size(); ++l) { // a NaN changes nothing
+    for (std::size_t l = 0; l < forces.size(); ++l) { // comparisons ignore a NaN
         out.left = std::max(out.left, std::abs(forces[l] - out.factor * exact[l]) / mean);
     }
     return out;
@@ -68,7 +68,7 @@ ForceSplit split_forces(const SoftState& soft, const std::vector<double>& forces
         const Enclosure f = statics.force(ContactId(l), load.loaded_stress());
         const double off = std::abs(forces[l] - factor * f.value) + factor * f.radius;
         exact.push_back(f.value);
-        if (off > rest) { // not of a NaN
+        if (off > rest) { // false for a NaN
             rest = off;
             out.worst = soft.contacts[l];
         }

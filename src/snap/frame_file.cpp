@@ -14,7 +14,7 @@ namespace isostat::compare {
 
 namespace {
 
-/// Without its end.
+/// The line without its line end.
 std::string_view content(std::string_view line) {
     return line.ends_with('\n') ? line.substr(0, line.size() - 1) : line;
 }
@@ -24,7 +24,7 @@ std::string_view content(std::string_view line) {
 FrameFile::FrameFile(std::string path, std::string item)
     : source_(std::move(path)), item_(std::move(item)), file_(source_, std::ios::binary) {
     if (!file_ || file_.peek() == std::ifstream::traits_type::eof()) {
-        (void)read_text(source_); // says why it cannot be read
+        (void)read_text(source_); // throws the reason when the file cannot be read
         file_.clear();
     }
     recognise();
@@ -50,7 +50,7 @@ std::string FrameFile::take_line() {
     return line;
 }
 
-/// From the first line that is neither blank nor a comment. Of a table the names of columns are read.
+/// Recognises the format from the first line that is neither blank nor a comment; of a table it reads the column names.
 void FrameFile::recognise() {
     std::string head, row;
     do {
@@ -91,13 +91,13 @@ std::string FrameFile::take_xyz() {
     std::string line = take_line(), text = line;
     const TextLine count(content(without_byte_order_mark(line)), 0, &source_);
     const double rows = count.size() == 1 ? finite_number(count.field(0)).value_or(0) : 0;
-    for (double k = 0; k <= rows && !line.empty(); ++k) { // the line of key=value too
+    for (double k = 0; k <= rows && !line.empty(); ++k) { // these rows include the line of key=value
         text += line = take_line();
     }
     return text;
 }
 
-/// Rows with the same time step.
+/// Reads the rows of one time step.
 std::string FrameFile::take_table() {
     const auto step = static_cast<std::size_t>(std::max(step_, 0));
     std::string text, current;

@@ -12,16 +12,16 @@
 
 namespace isostat::compare {
 
-/// One frame with its rows. They refer to `text`.
+/// One frame with its rows, which refer to `text`.
 struct FileFrame {
     foreign::FrameHeader header;
     std::vector<TextLine> rows;
     std::unique_ptr<std::string> text;
 };
 
-/// A file frame by frame: one frame is in memory at a time. Its format is recognised from its first line. Time steps
-/// are those of a dump, the key Timestep of XYZ (without it the number of the frame, from 0), the column `timestep` of
-/// a table (without it the table is one frame, 0). Coordinates of XYZ are named x, y, z as in the others.
+/// A file frame by frame: one frame is in memory at a time. The first line shows the format. Time steps are those of a
+/// dump, the key Timestep of XYZ (without this key the number of the frame, from 0), the column `timestep` of a table
+/// (without this column the table is one frame, 0). Coordinates of XYZ are named x, y, z as in the other formats.
 class FrameFile {
   public:
     /// \p item: "ATOMS" or "ENTRIES". Throws when the file cannot be read.
@@ -29,16 +29,16 @@ class FrameFile {
     FrameFile(const FrameFile&) = delete;
     FrameFile& operator=(const FrameFile&) = delete;
 
-    /// Nothing at the end of the file.
+    /// The next frame; nothing at the end of the file.
     std::optional<FileFrame> next();
-    /// The frame of this time step; frames before it are passed over. Throws when there is none, and when time steps
-    /// do not grow on the way to it.
+    /// The frame of this time step; frames before it are skipped. Throws when no frame has it, and when time steps do
+    /// not grow up to this one.
     FileFrame at(long timestep);
-    /// The column, which must be there; where its name comes twice in the frame the values agree.
+    /// The column, which must exist; where its name comes twice in the frame the values agree.
     [[nodiscard]] std::size_t column(const FileFrame& frame, const std::string& name) const;
     /// "FILE:LINE".
     [[nodiscard]] std::string where(int line) const;
-    /// Throws about the end of the file.
+    /// Throws an error at the end of the file.
     [[noreturn]] void fail(const std::string& message) const;
 
   private:
@@ -50,7 +50,7 @@ class FrameFile {
     std::string take_dump();
     std::string take_xyz();
     std::string take_table();
-    /// What stands before its rows, of which a table says nothing.
+    /// Reads the header of an XYZ frame.
     void read_xyz(TextLines& lines, foreign::FrameHeader& header) const;
     void read_rows(TextLines& lines, FileFrame& frame) const;
     void read_table(TextLines& lines, FileFrame& frame) const;
@@ -58,12 +58,12 @@ class FrameFile {
     std::string source_, item_;
     std::ifstream file_;
     Format format_ = Format::dump;
-    foreign::TableNames names_; ///< of a table
-    int step_ = -1;             ///< its column of time steps
+    foreign::TableNames names_; ///< for a table
+    int step_ = -1;             ///< the column of time steps in a table
     std::string pending_;       ///< first line of the next frame
-    int lines_ = 0;             ///< before it
-    long frames_ = 0;           ///< read
-    long last_ = -1;            ///< time step that `at` came to
+    int lines_ = 0;             ///< lines before `pending_`
+    long frames_ = 0;           ///< frames read
+    long last_ = -1;            ///< time step of the last frame that `at` returned
 };
 
 /// Names of the columns of a LAMMPS dump of style local, or of a table: two ids and the force between them, positive
@@ -75,14 +75,14 @@ struct PairColumns {
 
 struct PairForce {
     int i = 0, j = 0;        ///< i < j
-    PerAxis<double> force{}; ///< a number, or a vector: the other way round where the row names j first
-    int line = 0;            ///< of the file
+    PerAxis<double> force{}; ///< a number, or a vector: reversed where the row names j first
+    int line = 0;            ///< line of the file
 };
 
-/// The pairs of disks with a force that is not 0 in a frame (from 0; none: the last) of a dump
-/// of style local (`compute property/local`, `compute pair/local`) or of a table, whose frames are told apart by a
-/// column `timestep`, as they come: a pair may touch through several images. \p ids: of the disks. Throws
-/// `Error(bad_input)` with file, line, value and what was expected: also for columns and ids that are not there.
+/// The pairs of disks with a force that is not 0 in one frame (from 0; nothing: the last frame) of a dump of style
+/// local (`compute property/local`, `compute pair/local`) or of a table, whose frames a column `timestep`
+/// distinguishes. The pairs are in the order of the file: a pair may touch through several images. \p ids: of the
+/// disks. Throws `Error(bad_input)` with file, line, value and what was expected: also for unknown columns and ids.
 std::vector<PairForce> read_local_dump(const std::filesystem::path& path, const PairColumns& columns,
                                        const std::vector<long>& ids, std::optional<long> frame);
 

@@ -1,4 +1,4 @@
-// Rows of pairs: LAMMPS dumps of style local, tables.
+// Reads rows of pairs: LAMMPS dumps of style local, and tables.
 #include "snap/frame_file.hpp"
 
 #include <isostat/core/error.hpp>

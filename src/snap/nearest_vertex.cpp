@@ -19,7 +19,7 @@ namespace isostat::compare {
 
 namespace {
 
-/// What the cell does is counted by its strains.
+/// The strains that count the motions of the cell.
 Strain strain_of(const Cell& cell) {
     return cell.keeps_shape ? Strain::isotropic : cell.tilt_moves[0] ? Strain::full : Strain::diagonal;
 }
@@ -131,13 +131,13 @@ NearestVertex vertex_as_listed(const SoftState& soft, const std::string& words, 
     }
     state = with_free_motions_held(std::move(state));
     long steps = 0;
-    constexpr double near = 0.1; // of the smallest radius
+    constexpr double near = 0.1; // in smallest radii
     const auto failure = to_vertex(state.packing, state.contacts, steps, near * state.packing.min_radius());
     out.contacts = fmt::format("{}, {}{}{}", soft.contacts.size(), words,
                                failure ? "; as they stand in the file: " : "", failure ? failure->message() : "");
     state.load = soft.load;
     state.load.refer_to(state.packing);
-    if (state.packing.bars.empty()) { // free motions of clumps are held where they are
+    if (state.packing.bars.empty()) { // the free motions of clumps are held in place
         state.load.infinitesimal = resting_loads(state.packing, state.contacts, seed);
     }
     out.truth = certify(state);
@@ -147,7 +147,7 @@ NearestVertex vertex_as_listed(const SoftState& soft, const std::string& words, 
 Moves moves_to(const State& state, const Certification& truth, const std::vector<double>& from) {
     const Packing& packing = state.packing;
     const double radius = truth.claims.vertex ? truth.claims.vertex->radius : HUGE_VAL;
-    constexpr double up = 1 + 0x1p-49; // of a difference and a sum, each rounded
+    constexpr double up = 1 + 0x1p-49; // covers the rounding of a difference and of a sum
     const auto way = [&](std::size_t k) { return (std::abs(packing.q[k] - from[k]) + radius) * up; };
     Moves moves;
     const std::size_t n = packing.radius.size();

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Pairs of grains by number, as other programs list them, and the images that they mean.
+/// Pairs of grains by number, as other programs list them, and the images that these pairs stand for.
 
 #include <isostat/contact/state.hpp>
 #include <isostat/packing/packing.hpp>
@@ -13,10 +13,10 @@ namespace isostat::compare {
 
 class PairImages {
   public:
-    /// Grains of the packing overlap or are near. \pre the packing outlives it
+    /// Finds all images that overlap or are near. \pre the packing outlives the object
     explicit PairImages(const Packing& packing);
-    /// What the next row of these two grains means: the deepest overlap of their images that no row before meant; the
-    /// nearest images when all were meant, so that a row too many is one that comes twice. In a box the pair.
+    /// The contact of the next row with these two grains: the deepest overlap of their images that no earlier row used;
+    /// the nearest images when all are used, so that a surplus row repeats a contact. In a box the pair.
     Contact next(int i, int j);
 
   private:

@@ -1,4 +1,4 @@
-// Complete states: rattlers at rest, and vertices downhill.
+// Complete states: rattlers brought to rest, and vertices at the end of a descent.
 #include "snap/backbone.hpp"
 
 #include <isostat/certificate/certify.hpp>
@@ -16,14 +16,14 @@ namespace isostat::compare {
 
 namespace {
 
-/// With the numbers of the whole packing.
+/// The contact in the numbers of the whole packing.
 Contact in_packing(const Snap& snap, Contact c) {
     c.i = snap.disks[static_cast<std::size_t>(c.i)];
     c.j = c.of_disks() ? snap.disks[static_cast<std::size_t>(c.j)] : c.j;
     return c;
 }
 
-/// Grains of the list with a contact that carries nothing are pressed to all of theirs.
+/// Presses the grains of the list that have a contact without force to all of their contacts.
 void press(const Snap& snap, State& state) {
     const std::vector<unsigned char>& zero = snap.truth.structural_zero;
     const std::size_t d = state.packing.axes();
@@ -48,8 +48,8 @@ Failure other_list(const std::vector<Contact>& list, const std::vector<Contact>&
                         names_of(without(list, found), dimension), names_of(without(found, list), dimension))};
 }
 
-/// The programmes speak of stress times present lengths; the forces are those of the load at the soft place. In space
-/// they know one stress on all axes but the last: the mean. That it leads to the vertex is not claimed.
+/// The programmes take stress times current lengths, while the forces are those of the load at the soft positions. In
+/// space the programmes have one stress for all axes but the last: the mean. No claim says that it leads to the vertex.
 void set_stresses(const SoftState& soft, PreparationOptions& options) {
     const std::size_t last = soft.packing.axes() - 1;
     PerAxis<double> stress{};
@@ -106,11 +106,11 @@ Result<State> with_resting_rattlers(const Snap& snap, std::vector<double> infini
     }
     const bool keeps_shape = std::exchange(state.packing.cell.keeps_shape, false); // rattlers move, the cell does not
     Segment rest;
-    rest.equilibria = 0; // the start alone
+    rest.equilibria = 0; // only the initial equilibrium
     RunCounters counters;
     RunObserver nobody;
     RunOptions options;
-    options.max_strain = HUGE_VAL; // the load stays, and reference lengths may be any
+    options.max_strain = HUGE_VAL; // the load is constant and the reference lengths are arbitrary
     const SegmentOutcome outcome = run_segment(state, rest, 0, options, counters, nobody);
     if (outcome.failure) {
         return Failure{outcome.failure->kind,

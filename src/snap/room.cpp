@@ -13,18 +13,18 @@ namespace isostat::compare {
 
 namespace {
 
-/// Pairs with at least one rattler that are near.
+/// Near pairs with at least one rattler.
 class RattlerPairs {
   public:
     explicit RattlerPairs(const std::vector<unsigned char>& rattles) : rattles_(rattles) {}
 
-    /// All that can overlap there: those found before while they are complete.
+    /// All pairs that can overlap at this packing: the known list while it is complete, otherwise a new one.
     const std::vector<Contact>& at(const Packing& packing) {
         return !list_.reference.empty() && list_.covers(packing) ? pairs_ : found_at(packing);
     }
-    /// Found anew: others are farther apart than half the smallest radius.
+    /// Makes a new list; other pairs are farther apart than half the smallest radius.
     const std::vector<Contact>& found_at(const Packing& packing) {
-        constexpr double reach = 0.5; // of the smallest radius; T6 allows up to 0.82
+        constexpr double reach = 0.5; // in smallest radii; T6 allows up to 0.82
         list_ = find_candidates(packing, reach);
         pairs_.clear();
         for (const Contact& c : list_.contacts) {
@@ -70,12 +70,12 @@ void part(Packing& packing, const std::vector<Contact>& pairs, const std::vector
     }
 }
 
-/// Above that of a unit square or cube.
+/// Upper bound of the diagonal of a unit square or cube.
 double diagonal(const Packing& packing) {
     return packing.dimension == plane ? 1.4143 : 1.7321;
 }
 
-/// Bounds of the gap when every coordinate may be off by `radius`: rounding as in the centre of a certificate.
+/// Bounds of a gap when every coordinate may be off by `radius`; rounding is bounded as in the centre of a certificate.
 struct GapBounds {
     double lower, upper;
 };
@@ -84,7 +84,7 @@ GapBounds gap_bounds(const Packing& packing, const Contact& pair, double radius)
     const double h = gap(packing, pair);
     double length = std::abs(h) + touching_distance(packing.radius, pair);
     double off = pair.of_disks() ? diagonal(packing) * 2 * radius : 2 * radius;
-    if (!pair.image.is_here()) { // sums on the way to the separation, and the periods as many times as they enter
+    if (!pair.image.is_here()) { // the separation has sums of coordinates, and each period m times
         const int periods = std::abs(pair.image.m[0]) + std::abs(pair.image.m[1]) + std::abs(pair.image.m[2]);
         off = diagonal(packing) * (2 + 2 * periods) * radius;
         const auto [low, high] = std::minmax_element(packing.q.begin(), packing.q.end());
@@ -94,7 +94,7 @@ GapBounds gap_bounds(const Packing& packing, const Contact& pair, double radius)
     return {h - error, h + error};
 }
 
-/// The least of these bounds, and where.
+/// The smallest lower bound, and its pair.
 struct Least {
     double gap = std::numeric_limits<double>::infinity();
     Contact pair;
@@ -108,16 +108,16 @@ Least least_gap(const Packing& packing, const std::vector<Contact>& pairs, doubl
     return out;
 }
 
-/// Whether a rattler overlaps grains of the list wherever it is put in a square or cube, which is divided until each
-/// part is within one of them. The gap to a grain changes by no more than the rattler moves.
+/// Proves that a rattler overlaps a grain of the list at every point of a square or cube. This is divided until each
+/// part is within one grain: the gap to a grain changes by at most the displacement of the rattler.
 class Covering {
   public:
-    /// `pairs`: of the rattler and grains of the list; `radius`: by which their coordinates may be off.
+    /// `pairs`: those of the rattler with grains of the list; `radius`: bound of the error of their coordinates.
     Covering(Packing packing, std::vector<Contact> pairs, std::size_t rattler, double radius)
         : packing_(std::move(packing)), pairs_(std::move(pairs)), rattler_(packing_.axes() * rattler), radius_(radius) {
     }
 
-    /// False: not shown.
+    /// False when no proof was found.
     bool holds(double half_side) {
         PerAxis<double> centre{};
         std::copy_n(&packing_.q[rattler_], packing_.axes(), centre.begin());
@@ -126,13 +126,13 @@ class Covering {
 
   private:
     bool covered(const PerAxis<double>& centre, double half) {
-        constexpr int most = 100'000; // parts
+        constexpr int most = 100'000; // largest number of parts
         if (++parts_ > most) {
             return false;
         }
         const std::size_t d = packing_.axes();
         std::copy_n(centre.begin(), d, &packing_.q[rattler_]);
-        // To a corner; centres are rounded at most 25 times on the way here.
+        // The distance to a corner; a centre was rounded at most 25 times.
         const double size = std::abs(centre[0]) + std::abs(centre[1]) + std::abs(centre[2]);
         const double way = diagonal(packing_) * half + 64 * roundoff::u * size;
         if (std::any_of(pairs_.begin(), pairs_.end(),
@@ -202,7 +202,7 @@ std::string make_room(Snap& snap) {
         return "";
     }
     const std::vector<unsigned char> rattles = marked(snap);
-    constexpr int rounds = 20, sweeps = 25; // whether the list of pairs is complete is asked in each round
+    constexpr int rounds = 20, sweeps = 25; // each round checks whether the list of pairs is complete
     const double radius = snap.truth.claims.vertex->radius;
     RattlerPairs pairs(rattles);
     Packing placed;
@@ -219,7 +219,7 @@ std::string make_room(Snap& snap) {
             if (!(least.gap > 0)) {
                 continue;
             }
-            least = least_gap(placed, pairs.found_at(placed), radius); // the proof asks for all pairs there
+            least = least_gap(placed, pairs.found_at(placed), radius); // the proof requires all pairs of this packing
             if (least.gap > 0) {
                 snap.packing = std::move(placed);
                 snap.cage = least.gap;

@@ -21,11 +21,11 @@ namespace isostat::compare {
 
 namespace {
 
-/// A vertex is looked for within this distance, in smallest radii: farther away grains are not nearly rigid.
+/// The vertex must be within this distance, in smallest radii, because grains farther away are not nearly rigid.
 constexpr double nearest_vertex = 0.1;
-constexpr double up = 1 + 0x1p-49; // of a difference and a sum, each rounded
+constexpr double up = 1 + 0x1p-49; // covers the rounding of a difference and of a sum
 
-/// Disks and contacts of the list alone.
+/// Takes the disks and contacts of the list without the rattlers.
 void take_backbone(const SoftState& soft, Snap& out) {
     std::vector<int> number(soft.packing.radius.size(), -1);
     out.rattlers = untouched(soft.packing.disk_count(), soft.contacts);
@@ -44,21 +44,21 @@ void take_backbone(const SoftState& soft, Snap& out) {
     }
     out.backbone.load = soft.load;
     out.backbone.load.disk_force.clear();
-    // Where several forces vanish together for structural reasons, the end of the interval needs them.
+    // Where several forces vanish together for structural reasons, the end of the interval depends on these loads.
     out.backbone.load.infinitesimal = generic_infinitesimal(packing.radius, 1, packing.dimension);
     balance(out.backbone.load.infinitesimal, packing.cell);
-    if (packing.dimension != plane) { // a sphere may bear forces in a plane alone, and rest on a wall beside
+    if (packing.dimension != plane) { // a sphere may bear forces in one plane only, and touch a wall too
         out.backbone.load.infinitesimal = resting_loads(packing, out.backbone.contacts, 1);
     }
 }
 
-/// In names of the whole packing.
+/// The contact in the names of the whole packing.
 std::string renamed(const Snap& snap, const Contact& c) {
     const auto disk = [&](int i) { return snap.disks[static_cast<std::size_t>(i)]; };
     return to_string(Contact{c.kind, disk(c.i), c.of_disks() ? disk(c.j) : c.j, c.image}, snap.packing.dimension);
 }
 
-/// The first force that is proved negative, or empty.
+/// Describes the first force that is proved negative, or empty.
 std::string negative_force(const Snap& snap) {
     const std::vector<Interval>& f = snap.truth.finite;
     for (std::size_t l = 0; l < f.size(); ++l) {
@@ -70,7 +70,7 @@ std::string negative_force(const Snap& snap) {
     return "";
 }
 
-/// The deepest overlap of the backbone at the vertex, or empty.
+/// Describes the deepest overlap of the backbone at the vertex, or empty.
 std::string overlapping_pair(const Snap& snap) {
     const double allowance = snap.truth.claims.vertex ? 3 * snap.truth.claims.vertex->radius : 0; // contacts touch
     Admissibility worst = certify_admissible(snap.backbone.packing, allowance);
@@ -96,12 +96,12 @@ void measure_moves(const SoftState& soft, Snap& out) {
     }
     const std::size_t n = soft.packing.length_at(0), m = out.backbone.packing.length_at(0);
     out.walls = 0;
-    for (std::size_t k = 0; m + k < q.size(); ++k) { // walls, or periods and tilt
+    for (std::size_t k = 0; m + k < q.size(); ++k) { // of walls, or of periods and tilt
         out.walls = std::max(out.walls, way(m + k, n + k));
         out.packing.q[n + k] = q[m + k];
     }
     out.packing.cell = soft.packing.cell;
-    if (soft.packing.cell.any()) { // the disk that stays where it is carries a force
+    if (soft.packing.cell.any()) { // the pinned disk must carry a force
         out.packing.cell.pin = out.disks[static_cast<std::size_t>(out.backbone.packing.cell.pin)];
     }
 }
@@ -114,13 +114,13 @@ void judge(Snap& out) {
         out.outcome = SnapOutcome::refuted;
         out.reason = !negative.empty() ? negative : !overlap.empty() ? overlap : out.truth.refuted.front();
     } else if (claims.counting && claims.vertex && claims.forces && claims.gaps) {
-        out.outcome = SnapOutcome::vertex; // the interval of the load is another question
+        out.outcome = SnapOutcome::vertex; // the interval of the load is decided elsewhere
     } else {
         out.reason = claims.undecided.empty() ? "the vertex is not proved" : claims.undecided.front();
     }
 }
 
-/// Of a vertex with rattlers.
+/// Judges whether the rattlers of a vertex have room.
 void judge_room(Snap& out) {
     if (const std::string failed = make_room(out); !failed.empty()) {
         const std::string none = without_room(out);
@@ -202,7 +202,7 @@ Snap snap(const SoftState& soft) {
     out.counting = count_contacts(out.backbone.packing, out.backbone.contacts);
     const Counting& c = out.counting;
     if (c.mechanisms > 0 || c.hyperstaticity > 0) {
-        // h is exact, or an upper bound: k = 0 makes the rank N_f, and h = N - N_f.
+        // h is exact, or an upper bound: with k = 0 the rank is N_f, and h = N - N_f.
         out.outcome = c.mechanisms > 0 ? SnapOutcome::moving : SnapOutcome::hyperstatic;
         out.reason = fmt::format("the list has N_f = {}, N = {}, rank {}, h = {}, k = {}", c.dof_count, c.contact_count,
                                  c.rank, c.hyperstaticity, c.mechanisms);
@@ -215,7 +215,7 @@ Snap snap(const SoftState& soft) {
         return out;
     }
     if (packing.cell.keeps_shape) {
-        snap_to_grid(packing); // the vertex has the period along x that is stored
+        snap_to_grid(packing); // the vertex is that of the stored period along x
     }
     out.truth = certify(out.backbone);
     judge(out);
@@ -230,7 +230,7 @@ Snap snap(const SoftState& soft) {
 
 namespace {
 
-/// All of them where nothing is known of zeros.
+/// The contacts without structural zeros, or all contacts when the zeros are not known.
 std::vector<Contact> without_zeros(const State& state, const std::vector<unsigned char>& zero) {
     const bool known = zero.size() == state.contacts.size();
     std::vector<Contact> out = known ? unmarked(state.contacts, zero) : state.contacts;

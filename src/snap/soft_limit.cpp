@@ -12,18 +12,18 @@ namespace isostat::compare {
 namespace {
 
 constexpr int most_turns = 40;
-constexpr double settled = 1e-12; ///< of the smallest radius
+constexpr double settled = 1e-12; ///< in smallest radii
 constexpr double same_stress = 1e-10;
 
-/// Soft grains on their way to the place where gaps = -f / K: forces at the place, and one step of Newton's method.
+/// Soft grains in Newton's iteration towards gaps = -f / K: the forces at the current positions, and one step.
 class SoftGrains {
   public:
     SoftGrains(const State& state, double stiffness)
         : contacts_(state.contacts), load_(state.load), stiffness_(stiffness), dofs_(state.packing),
           packing(state.packing) {}
 
-    /// Forces and their slopes at this place under the loaded stress `sigma`. False: the matrix is singular, or the
-    /// grains are so soft that a step left the range of double.
+    /// Computes forces and their slopes at the current positions under the loaded stress `sigma`. False: the matrix is
+    /// singular, or the grains are so soft that a step left the range of double.
     bool solve(double sigma) {
         if (!std::all_of(packing.q.begin(), packing.q.end(), [](double x) { return std::isfinite(x); })) {
             return false;
@@ -40,11 +40,11 @@ class SoftGrains {
         factors_->solve_forces(slopes);
         return true;
     }
-    /// The step towards gaps that belong to `forces`: whether none of the coordinates moved.
+    /// Takes the step towards the gaps that belong to `forces`; true when no coordinate moved.
     bool move() {
         std::vector<double> step(contacts_.size());
         for (std::size_t l = 0; l < step.size(); ++l) {
-            step[l] = gap(packing, contacts_[l]) + forces[l] / stiffness_; // approach by that
+            step[l] = gap(packing, contacts_[l]) + forces[l] / stiffness_; // the approach that the step must make
         }
         factors_->solve_velocities(step);
         double largest = 0;
@@ -67,8 +67,8 @@ class SoftGrains {
     std::vector<double> forces, slopes;
 };
 
-/// On the way from `middle` ahead, forces being linear in the stress at one place. Nothing: one is not positive in the
-/// middle, or none vanishes.
+/// The first force to vanish from `middle` ahead, with forces linear in the stress at fixed positions. Empty: a force
+/// is not positive in the middle, or no force vanishes.
 std::optional<Vanishing> first_ahead(const SoftGrains& grains, double sigma, double middle, int direction) {
     std::vector<double> force = grains.forces;
     for (std::size_t l = 0; l < force.size(); ++l) {
@@ -100,7 +100,7 @@ std::optional<SoftEquilibrium> soften(const State& state, double sigma, double s
 std::optional<SoftLimit> soft_limit(const State& state, const ExactInterval& exact, double stiffness) {
     const double middle = 0.5 * (exact.low + exact.high), half = std::abs(exact.end() - middle);
     SoftGrains grains(state, stiffness);
-    double sigma = middle; // place and stress move together: one solve a turn
+    double sigma = middle; // positions and stress change together: one solve per turn
     for (int turn = 0; turn < most_turns; ++turn) {
         if (!grains.solve(sigma)) {
             return std::nullopt;
@@ -124,7 +124,7 @@ std::optional<SoftLimit> soft_limit(const State& state, const ExactInterval& exa
 
 std::optional<double> stiffness_needed(const State& state, const ExactInterval& exact, double error) {
     const double stress = state.load.stress[0];
-    constexpr double stiff = 1e8; // in sigma_1: far inside the range where the difference goes as 1 / K
+    constexpr double stiff = 1e8; // in sigma_1: far inside the range where the difference is proportional to 1 / K
     const auto limit = soft_limit(state, exact, stiff * stress);
     return limit ? std::optional(stiff * stress * std::abs(limit->stress - exact.end()) / (error * exact.end()))
                  : std::nullopt;

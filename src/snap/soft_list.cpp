@@ -20,7 +20,7 @@ namespace isostat::compare {
 
 namespace {
 
-/// The disk that is nearest to a wall, and its gap.
+/// The disk nearest to a wall, and its gap.
 std::pair<int, double> nearest_to(const Packing& packing, ContactKind wall, int axis) {
     std::pair<int, double> out{-1, HUGE_VAL};
     for (int i = 0; i < packing.disk_count(); ++i) {
@@ -31,7 +31,7 @@ std::pair<int, double> nearest_to(const Packing& packing, ContactKind wall, int 
     return out;
 }
 
-/// Walls that a disk overlaps.
+/// The contacts of walls with disks that overlap them.
 std::vector<Contact> walls_of(const Packing& packing) {
     std::vector<Contact> out;
     for (const ContactKind kind : {ContactKind::lower_wall, ContactKind::upper_wall}) {
@@ -46,7 +46,7 @@ std::vector<Contact> walls_of(const Packing& packing) {
     return out;
 }
 
-/// Empty, or the walls that no disk overlaps: soft grains press on each, so digits of its position are missing.
+/// Names the walls that no disk overlaps, or empty: soft grains press on each, so digits of its position are missing.
 std::string walls_apart(const Packing& packing) {
     std::string out;
     for (const ContactKind kind : {ContactKind::lower_wall, ContactKind::upper_wall}) {
@@ -154,7 +154,7 @@ std::vector<double> normal_parts(const Packing& packing, const std::vector<Vecto
         sum += part;
         out.push_back(part);
     }
-    const double sign = sum < 0 ? -1 : 1; // on the first grain, or on the second one
+    const double sign = sum < 0 ? -1 : 1; // forces act on the first grain, or on the second one
     for (double& part : out) {
         part *= sign;
         attract += part < 0 ? 1 : 0;

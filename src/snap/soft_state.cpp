@@ -15,7 +15,7 @@ namespace isostat::compare {
 
 namespace {
 
-/// Something gives way along each axis.
+/// Whether each axis has a movable wall or a period.
 bool gives_way(const Packing& packing) {
     bool all = true;
     for (std::size_t a = 0; a < packing.axes(); ++a) {
@@ -25,7 +25,7 @@ bool gives_way(const Packing& packing) {
     return all;
 }
 
-/// R_i R_j / (R_i + R_j), of a grain at a wall R_i.
+/// R_i R_j / (R_i + R_j); for a grain at a wall R_i.
 double radius_of(const Packing& packing, const Contact& c) {
     const double one = packing.radius[static_cast<std::size_t>(c.i)];
     const double other = c.of_disks() ? packing.radius[static_cast<std::size_t>(c.j)] : 0;

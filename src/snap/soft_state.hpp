@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Soft grains and the forces that are said of them.
+/// Soft grains and their given forces.
 
 #include <isostat/io/state_file.hpp>
 #include <isostat/snap/snap.hpp>
@@ -12,25 +12,25 @@ namespace isostat::compare {
 
 struct SoftForces {
     SoftState soft;
-    std::vector<double> forces; ///< of its contacts; NaN, or an empty list: not said
+    std::vector<double> forces; ///< one per contact; NaN, or an empty list: not given
 };
 
 /// A law with its stiffness.
 struct ContactLaw {
     ForceLaw kind = ForceLaw::none;
     double stiffness = 0;
-    /// 0 where nothing overlaps.
+    /// The force; 0 without overlap.
     [[nodiscard]] double force(const Packing& packing, const Contact& contact) const;
-    /// What the rounding of an overlap does to that.
+    /// Bound of the error of that force from the rounding of a gap.
     [[nodiscard]] double rounding(const Packing& packing, const Contact& contact, double of_gap) const;
 };
 
-/// The contacts of a state that can carry a force, with its load. Throws `Error(bad_input)`, which begins with
-/// `source`: expected a fixed lower and a movable upper wall along each axis that is not periodic, no fixed grain and
-/// no force on a grain.
+/// The contacts of a state that can carry a force, with its load. Throws
+/// `Error(bad_input)`, beginning with `source`, unless each axis that is not periodic has
+/// a fixed lower and a movable upper wall, no grain is fixed and no force acts on a grain.
 SoftForces soft_grains(const StateFile& file, const std::string& source);
 
-/// Forces of the law where none are said.
+/// Adds forces of the law where none are given.
 void add_law(SoftForces& grains, const ContactLaw& law);
 
 } // namespace isostat::compare

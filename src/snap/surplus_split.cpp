@@ -43,14 +43,14 @@ class Surplus {
         }
         return out;
     }
-    /// The smallest change of forces that bears a load.
+    /// The smallest change of forces that balances a load.
     [[nodiscard]] Vector smallest(const Vector& load) const { return h_.transpose() * normal_.solve(load); }
-    /// The part along the self-stresses.
+    /// The projection on the self-stresses.
     [[nodiscard]] Vector along_self_stresses(const Vector& f) const {
         const Vector once = f - smallest(h_ * f);
-        return once - smallest(h_ * once); // rounding
+        return once - smallest(h_ * once); // removes rounding
     }
-    /// h contacts without which there is no self-stress: those that carry most of random ones, one after the other.
+    /// h contacts without which no self-stress exists: in turn, those with the largest part in random self-stresses.
     [[nodiscard]] std::vector<Eigen::Index> surplus() const {
         const Eigen::Index count = h_.cols() - h_.rows();
         std::mt19937_64 random(1);
@@ -81,16 +81,16 @@ class Surplus {
     Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> normal_;
 };
 
-/// Forces that balance exactly are within `bound` of `value`.
+/// Forces that balance exactly differ from `value` by at most `bound`.
 struct Balanced {
     Vector value;
     double bound = 0;
 };
 
-/// The forces of the surplus contacts are taken as they are, the others solved, with proof.
+/// Keeps the forces of the surplus contacts and solves for the others, with proof.
 std::optional<Balanced> balanced(const Surplus& surplus, const Packing& packing, const Vector& load,
                                  const std::vector<Contact>& contacts, Vector f) {
-    constexpr double roundings = 8; // of a term: the load, 5 of an entry, product, sum
+    constexpr double roundings = 8; // roundings per term: the load, 5 of an entry, product, sum
     const std::vector<Eigen::Index> given = surplus.surplus();
     std::vector<Contact> others;
     std::vector<Eigen::Index> places;
@@ -123,7 +123,7 @@ std::optional<Balanced> balanced(const Surplus& surplus, const Packing& packing,
                                       (1 + roundings * roundoff::u)};
 }
 
-/// Largest distance of the forces g from those of the vertex, over the contacts of both.
+/// Largest distance of the forces g from the forces of the vertex, over the contacts of both lists.
 double distance_to(const Balanced& g, const std::vector<Contact>& list, const Exchanged& vertex, Vector& difference) {
     std::map<Contact, Interval> exact;
     for (std::size_t l = 0; l < vertex.state.contacts.size(); ++l) {
@@ -143,7 +143,7 @@ double distance_to(const Balanced& g, const std::vector<Contact>& list, const Ex
             exact.erase(at);
         }
     }
-    for (const auto& [contact, f] : exact) { // not in the list: a force that the soft grains lack
+    for (const auto& [contact, f] : exact) { // only in the vertex's list: the soft grains have no such force
         largest = std::max({largest, std::abs(f.lower), std::abs(f.upper)});
     }
     return largest + g.bound;

@@ -22,8 +22,8 @@ namespace isostat::compare {
 
 namespace {
 
-/// The disks that carry forces, in their contacts, and their other pairs; copies of them with other gaps. Of clumps:
-/// all that the state has, free motions held.
+/// The disks that carry forces, in their contacts, with their other pairs, and copies of them with other gaps. For
+/// clumps the whole state, with free motions held.
 class Copies {
   public:
     Copies(const State& state, const std::vector<Contact>& carrying)
@@ -45,9 +45,9 @@ class Copies {
     }
     [[nodiscard]] bool ok() const { return factors_.has_value(); }
 
-    /// Another one: what it changes at most, for gaps that are off by `rounding`.
+    /// Draws another copy and raises the largest changes by its own, for gaps that are off by `rounding`.
     void draw(std::mt19937_64& random, double rounding) {
-        // Far above the rounding of doubles and far below what bends the answer; the change is scaled.
+        // The step is far above the rounding of doubles and so small that changes are linear; the change is scaled.
         const double step = 1e-7 * backbone_.packing.min_radius();
         std::vector<double> moves(backbone_.contacts.size());
         for (double& approach : moves) {
@@ -88,7 +88,7 @@ class Copies {
     std::optional<Factorisation> factors_;
 };
 
-/// Rattlers that would be held if the pairs that are as near as what may change were contacts.
+/// Adds the rattlers that would be held if the pairs with gaps as small as the possible change were contacts.
 void add_rattlers(const State& state, const std::vector<int>& disks, double change, Untold& out) {
     std::vector<Contact> listed = state.contacts;
     std::sort(listed.begin(), listed.end());
@@ -153,7 +153,7 @@ Untold untold_by(double rounding, const State& state, const Certification& truth
     const bool clumps = !state.packing.bars.empty();
     const std::vector<Contact> carrying = clumps ? state.contacts : compare::carrying(state, truth);
     std::vector<int> disks(clumps ? state.packing.radius.size() : 0);
-    std::iota(disks.begin(), disks.end(), 0); // or those that carry a force
+    std::iota(disks.begin(), disks.end(), 0); // for other packings the disks that carry a force
     for (std::size_t l = 0; l < carrying.size() && !clumps; ++l) {
         disks.push_back(carrying[l].i);
         disks.push_back(carrying[l].of_disks() ? carrying[l].j : carrying[l].i);
@@ -165,7 +165,7 @@ Untold untold_by(double rounding, const State& state, const Certification& truth
     for (int k = 0; copies.ok() && k < 16; ++k) {
         copies.draw(random, rounding);
     }
-    const auto bears = [&](std::size_t l) { // of clumps all rows are here
+    const auto bears = [&](std::size_t l) { // for clumps `carrying` has all rows
         return !clumps || (carrying[l].is_unilateral() && truth.structural_zero[l] == 0);
     };
     const auto sort_out = [&out](double value, double change, const Contact& name, std::vector<Contact>& open) {

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// What the rounding of the file that a state was imported from leaves open. Proofs speak of the doubles of the state;
-/// of the packing that the file was written from they hold where no gap and no force is that small.
+/// Quantities that the rounding of the imported file leaves undecided. Proofs hold for the doubles of the state, and
+/// for the packing that the file was written from if no gap and no force is that small.
 
 #include <isostat/certificate/certify.hpp>
 
@@ -10,32 +10,32 @@
 
 namespace isostat::compare {
 
-/// `rounding` of the provenance of a state, a bound of what is not known of a gap of the file; 0: it was not imported.
-/// Throws `Error(bad_input)` for a value that is none.
+/// `rounding` in the provenance of a state, a bound of the error of a gap from the file; 0: not imported. Throws
+/// `Error(bad_input)` for a bad value.
 double imported_rounding(const State& state);
 
-/// Words where the state is a copy of a file with other radii (`jitter` of the provenance): of what its verdicts speak.
-/// Empty: it is none.
+/// Words on a state that is a copy of a file with other radii (`jitter` of the provenance): what its verdicts are
+/// about. Empty: it is no such copy.
 std::string words_of_copy(const State& state);
 
-/// What cannot be told apart from 0 when every gap of a contact is off by the rounding.
+/// Quantities that cannot be told from 0 when every gap of a contact is off by the rounding.
 struct Untold {
     double rounding = 0;
     int dimension = 2;           ///< of the packing
-    std::vector<Contact> gaps;   ///< of other pairs: there may be a contact
-    bool rattlers = false;       ///< some of them are of rattlers, which may then carry a force
-    std::vector<Contact> forces; ///< of contacts: there may be none
-    int contacts = 0;            ///< that carry a force
-    bool refuted = false;        ///< an overlap or a negative force is larger than that
+    std::vector<Contact> gaps;   ///< gaps of other pairs, which may be contacts
+    bool rattlers = false;       ///< some of these pairs are of rattlers, which may then carry a force
+    std::vector<Contact> forces; ///< contacts whose force may be 0
+    int contacts = 0;            ///< contacts that carry a force
+    bool refuted = false;        ///< an overlap or a negative force is larger than the rounding
     [[nodiscard]] bool any() const { return !gaps.empty() || !forces.empty(); }
     [[nodiscard]] std::string words() const;
 };
 
-/// Found from sixteen copies whose gaps are off by the rounding, with signs drawn at random: what is less than twice
-/// the largest change in them. Diagnosis, not a bound. Nothing without a true vertex or with a rounding of 0.
+/// Computes from sixteen copies with gaps changed by the rounding, with random signs, the quantities smaller than twice
+/// their largest change. A diagnosis, no bound. Empty without a true vertex or with a rounding of 0.
 Untold untold_by(double rounding, const State& state, const Certification& truth);
 
-/// Of the packing the verdict is open where something is untold; what is proved of the doubles becomes the reason.
+/// The verdict on the packing: undecided where a quantity is; what is proved of the doubles becomes the reason.
 Verdict withheld(const Untold& untold, Verdict of_the_doubles);
 void withhold(const Untold& untold, Inspection& inspection);
 void withhold(const Untold& untold, JammingAnswer& answer);

@@ -11,7 +11,7 @@ namespace isostat::sparse {
 
 namespace {
 
-/// What CHOLMOD allocates, given back at the end.
+/// CHOLMOD's memory, freed at the end.
 class Cholmod {
   public:
     Cholmod() { cholmod_start(&common_); }
@@ -24,14 +24,14 @@ class Cholmod {
         cholmod_finish(&common_);
     }
 
-    /// Of A A^T where `stype` of the matrix is 0, else of the symmetric matrix of which it is one half. False: memory
-    /// is short.
+    /// Orders A A^T when `stype` of the matrix is 0, else the
+    /// symmetric matrix of which A is one half. False: out of memory.
     bool dissect(cholmod_sparse& matrix, int* order) {
-        static std::mutex one_at_a_time; // METIS seeds and draws the numbers of `rand`
+        static std::mutex one_at_a_time; // METIS seeds `rand` and draws from it
         const std::scoped_lock lock(one_at_a_time);
         return cholmod_metis(&matrix, nullptr, 0, 1, order, &common_) != 0;
     }
-    /// One half of the pattern of A + A^T; null: memory is short.
+    /// One half of the pattern of A + A^T; null: out of memory.
     cholmod_sparse* symmetric(cholmod_sparse& matrix) {
         std::array<double, 2> one{1, 0};
         transposed_ = cholmod_transpose(&matrix, 0, &common_);
@@ -39,7 +39,7 @@ class Cholmod {
             sum_ = cholmod_add(&matrix, transposed_, one.data(), one.data(), 0, 1, &common_);
         }
         if (sum_ != nullptr) {
-            sum_->stype = 1; // both halves are there, and the lower one is not looked at
+            sum_->stype = 1; // both halves are stored, and CHOLMOD ignores the lower one
             half_ = cholmod_copy(sum_, 1, 0, &common_);
         }
         return half_;
@@ -65,7 +65,7 @@ cholmod_sparse pattern(int rows, int columns, int* start, int* row) {
     return matrix;
 }
 
-/// As KLU asks for an order; 0: memory is short.
+/// Ordering function for KLU; 0: out of memory.
 int dissection(int n, int* start, int* row, int* order, klu_common* /*common*/) {
     cholmod_sparse matrix = pattern(n, n, start, row);
     Cholmod cholmod;

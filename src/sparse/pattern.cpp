@@ -50,7 +50,7 @@ std::vector<int> perfect_matching(int n, std::span<const int> start, std::span<c
     std::vector<int> matched(static_cast<std::size_t>(n));
     std::vector<int> work(5 * static_cast<std::size_t>(n));
     double operations = 0;
-    // BTF's interface is not const-correct; the pattern is only read. No limit on the work.
+    // BTF's interface is not const-correct; the pattern is only read. The work has no limit.
     const int rank = btf_maxtrans(n, n, const_cast<int*>(start.data()), // NOLINT(cppcoreguidelines-pro-type-const-cast)
                                   const_cast<int*>(row.data()),         // NOLINT(cppcoreguidelines-pro-type-const-cast)
                                   0, &operations, matched.data(), work.data());
@@ -63,9 +63,9 @@ std::vector<int> perfect_matching(int n, std::span<const int> start, std::span<c
 std::vector<int> repaired_matching(std::vector<int> matched, std::span<const int> start, std::span<const int> row,
                                    int column) {
     const auto free_row = std::find(matched.begin(), matched.end(), column) - matched.begin();
-    // Breadth first from the column through alternating edges: came_from[r] is the column that reached row r.
+    // Breadth-first search from the column along alternating edges: came_from[r] is the column that reached row r.
     std::vector<int> came_from(matched.size(), -1);
-    std::vector<int> row_of(matched.size()); // of the columns in the queue
+    std::vector<int> row_of(matched.size()); // row of each column in the queue
     std::vector<int> queue{column};
     for (std::size_t k = 0; k < queue.size(); ++k) {
         const int c = queue[k];
@@ -80,8 +80,8 @@ std::vector<int> repaired_matching(std::vector<int> matched, std::span<const int
                 row_of[static_cast<std::size_t>(matched[r])] = static_cast<int>(r);
                 continue;
             }
-            // Backwards along the path: each row takes the column that reached it, which leaves its own row to the
-            // next.
+            // Walks back along the path: each row takes the column that
+            // reached it, and this column leaves its old row to the next.
             auto at = r;
             for (int taken = came_from[at]; taken != column; taken = came_from[at]) {
                 matched[at] = taken;

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Compressed-column matrices and what their pattern alone says: matching, block triangular form, reachability.
+/// Compressed-column matrices and what follows from their pattern alone: matching, block triangular form, reachability.
 
 #include <memory>
 #include <span>
@@ -12,28 +12,28 @@ namespace isostat::sparse {
 template <class Value> struct Matrix {
     int rows = 0;
     int cols = 0;
-    std::vector<int> start;   ///< cols + 1
+    std::vector<int> start;   ///< size cols + 1
     std::vector<int> row;     ///< one per entry
     std::vector<Value> value; ///< one per entry
     [[nodiscard]] int entries() const { return start.empty() ? 0 : start.back(); }
 };
 
-/// Symbolic analysis of a square pattern: block upper triangular form with a zero-free diagonal, fill-reducing
-/// order inside the blocks (KLU: BTF + `choose_order`). No number is looked at, so it may precede the rank
-/// check.
+/// Symbolic analysis of a square pattern: block upper triangular form with
+/// a zero-free diagonal, fill-reducing order inside the blocks (KLU: BTF +
+/// `choose_order`). Uses no values, so it may precede the rank check.
 class Ordering {
   public:
-    /// \pre square, rows sorted and not repeated in each column. `structurally_regular()` tells whether a perfect
-    /// matching exists; if not, orders and blocks are empty. Throws std::bad_alloc. Cost: 2 ms for 4000 contacts, 6
-    /// ms for 10 000.
+    /// \pre square, rows sorted and not repeated in each column. `structurally_regular()`
+    /// says whether a perfect matching exists; if not, orders and blocks are empty.
+    /// Throws std::bad_alloc. Cost: 2 ms for 4000 contacts, 6 ms for 10 000.
     template <class Value>
     explicit Ordering(const Matrix<Value>& matrix) : Ordering(matrix.rows, matrix.start, matrix.row) {}
     Ordering(int n, std::span<const int> start, std::span<const int> row);
 
     [[nodiscard]] bool structurally_regular() const { return structural_rank_ == n_; }
     [[nodiscard]] int structural_rank() const { return structural_rank_; }
-    /// Position k of the permuted matrix holds row `row_order()[k]`, column `column_order()[k]`; these two are
-    /// matched.
+    /// Position k of the permuted matrix holds row `row_order()[k]`, column
+    /// `column_order()[k]`; these two are matched.
     [[nodiscard]] const std::vector<int>& row_order() const { return row_order_; }
     [[nodiscard]] const std::vector<int>& column_order() const { return column_order_; }
     /// Block b is the range [block_start()[b], block_start()[b+1]) of positions.
@@ -48,16 +48,16 @@ class Ordering {
     std::shared_ptr<void> symbolic_;
 };
 
-/// Which unknowns of A x = b can be non-zero for *some* values with this pattern: search from the rows where b may
-/// be non-zero, through the matching. Unknown c is 0 => x_c = 0 exactly, for the values stored (when A is regular)
-/// and for every other choice that leaves A regular; 1 => x_c != 0 for generic values, which says nothing of the
-/// values stored. The answer does not depend on the matching. \pre structurally regular. Statement T11
+/// Which unknowns of A x = b can be non-zero for *some* values with this pattern: search from the rows where b may be
+/// non-zero, through the matching. Unknown c is 0 => x_c = 0 exactly, for the stored values (when A is regular) and for
+/// every other values with which A is regular; 1 => x_c != 0 for generic values, which implies nothing for the stored
+/// values. The result does not depend on the matching. \pre structurally regular. Statement T11
 /// (proofs/structural_zeros.md). Cost O(entries).
 std::vector<unsigned char> structural_nonzeros(std::span<const int> start, std::span<const int> row,
                                                const Ordering& ordering, std::span<const int> loaded_rows);
 
-/// The same with the matching alone (`matched[r]` = column matched to row r): a fifth of the cost of an `Ordering`.
-/// `reached`: the answer for some of the rows, where it is known; only what the others reach besides is searched.
+/// Uses the matching alone (`matched[r]` = column matched to row r): a fifth of the cost of an `Ordering`. `reached`:
+/// the result for some of the rows, if known; then only what the other rows reach in addition is searched.
 std::vector<unsigned char> structural_nonzeros(std::span<const int> start, std::span<const int> row,
                                                std::span<const int> matched, std::span<const int> loaded_rows,
                                                std::vector<unsigned char> reached = {});
@@ -66,8 +66,8 @@ std::vector<unsigned char> structural_nonzeros(std::span<const int> start, std::
 /// (the matrix is then singular for all values), and when n = 0.
 std::vector<int> perfect_matching(int n, std::span<const int> start, std::span<const int> row);
 
-/// The same after the pattern of one column changed: `matched` is a perfect matching of the pattern before, `start` and
-/// `row` are the pattern now. Empty when there is none any more. Cost: one augmenting path, mostly a few columns long.
+/// A perfect matching after one column changed: `matched` is one of the previous pattern, `start` and `row` are the new
+/// pattern. Empty when there is none. Cost: one augmenting path, mostly a few columns long.
 std::vector<int> repaired_matching(std::vector<int> matched, std::span<const int> start, std::span<const int> row,
                                    int column);
 

@@ -16,10 +16,10 @@ namespace isostat {
 /// A contact that may be opened, with the quantity by which the rule orders it (smallest first).
 struct Contender {
     ContactId contact;
-    Enclosure force;       ///< what must be negative (for a held coordinate: minus the magnitude)
-    Enclosure key;         ///< what the rule compares
-    double margin;         ///< with which the sign of `force` is proved
-    double multiplier = 0; ///< of a held coordinate, with its sign
+    Enclosure force;       ///< the quantity that must be negative (for a held coordinate: minus the magnitude)
+    Enclosure key;         ///< the quantity that the rule compares
+    double margin;         ///< margin with which the sign of `force` is proved
+    double multiplier = 0; ///< signed multiplier of a held coordinate
 };
 
 inline Named name(const Statics& statics, ContactId l) {
@@ -30,21 +30,21 @@ inline bool is_held(const Statics& statics, ContactId l) {
     return statics.structure().contacts()[l.index()].kind == ContactKind::held;
 }
 
-/// A bar bears forces of either sign: it neither opens nor limits.
+/// A bar bears forces of either sign, so it neither opens nor limits the load.
 inline bool is_bar(const Statics& statics, ContactId l) {
     return statics.structure().contacts()[l.index()].kind == ContactKind::bar;
 }
 
-/// The quantity of one contact as the ladder evaluates it.
+/// The quantity of one contact as an expression that the ladder evaluates.
 using Quantity = std::function<ForceExpression(ContactId)>;
 
-/// What a choice among contenders needs besides them.
+/// Context of a choice among contenders.
 struct Choice {
     OpeningRule rule = OpeningRule::most_negative;
     std::uint64_t random_bits = 0;
     Quantity quantity;
-    const Turn* turn = nullptr;            ///< at a power turn: struts order their ends
-    PerturbedStatics* perturbed = nullptr; ///< first-order terms order ties, and are written to its log
+    const Turn* turn = nullptr;            ///< at a power turn: orders the two ends of a strut
+    PerturbedStatics* perturbed = nullptr; ///< first-order terms that order ties; its log records them
 };
 
 /// Picks by the rule among contenders that all carry a proved negative force, or are in one class of forces that vanish

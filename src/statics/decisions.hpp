@@ -18,21 +18,21 @@ namespace isostat {
 /// The contact to open, with the evidence.
 struct Opening {
     ContactId contact;
-    bool infinitesimal = false; ///< decided by the eps part
-    Enclosure force;            ///< the force (or multiplier, or infinitesimal force) that made the choice
+    bool infinitesimal = false; ///< the infinitesimal part decided
+    Enclosure force;            ///< the force, multiplier or infinitesimal force that the choice compared
     int direction = +1;         ///< rate of the gap; -1 only for a held coordinate that is pushed downwards
     double margin = 0;          ///< smallest |difference| / bound over the comparisons made
     Rung rung = Rung::none;
     bool perturbed = false;    ///< a first-order comparison was needed
-    bool equal_forces = false; ///< another contact bore the same force: of a straight strut (S4), or in an edge (S6)
+    bool equal_forces = false; ///< another contact bears an equal force: in a straight strut (S4) or in an edge (S6)
     bool bears = false;        ///< with `infinitesimal`: grains that bear force move, not only rattlers
     /// The power of an arc that opens this contact is that of the infinitesimal loads.
     [[nodiscard]] bool moves_rattlers() const { return infinitesimal && !bears; }
 };
 
 /// All grains of the contact bear finite forces in other contacts. Where the finite force of the contact is 0, it holds
-/// a grain in a plane of such forces: the load does no work at first order when it opens, and some at the next (S2).
-/// `zero(l)`: the finite force of contact l is a structural zero. Cost: O(N).
+/// a grain against leaving the plane of such forces: when it opens, the load does no work at first order and some at
+/// second order (S2). `zero(l)`: the finite force of contact l is a structural zero. Cost: O(N).
 template <class Zero>
 bool grains_bear_force(const std::vector<Contact>& contacts, ContactId contact, const Zero& zero) {
     const Contact& c = contacts[contact.index()];
@@ -51,19 +51,19 @@ bool grains_bear_force(const std::vector<Contact>& contacts, ContactId contact, 
 
 /// The state of a vertex at a load: nothing to open (equilibrium), or the contact to open.
 struct OpeningDecision {
-    std::optional<Opening> opening; ///< none: every force is proved positive, lexicographically in (f0, f1)
+    std::optional<Opening> opening; ///< nothing: every force is proved positive, lexicographically in (f0, f1)
     double margin = 0;
     Rung rung = Rung::none;
     bool perturbed = false; ///< a first-order comparison was needed
-    /// Finite forces that vanish in the base, and are positive at first order; where ties are chosen, not negative.
+    /// Finite forces that vanish in the base and are positive at first order; where ties are chosen, not negative.
     std::vector<ContactId> zeros;
 };
 
-/// Held coordinates that carry no finite force: they do not compete.
+/// Held coordinates that carry no finite force and therefore do not compete.
 struct ZeroHolds {
-    std::optional<ContactId> fresh; ///< held just now at a power turn: 0 by construction, infinitesimal part too
-    /// Held earlier: the force of the finite loads is 0, as far as their turns are located, that of the infinitesimal
-    /// ones may not be.
+    std::optional<ContactId> fresh; ///< held since the last power turn: 0 by construction, as is its infinitesimal part
+    /// Held earlier: the force of the finite loads is 0, up to the uncertainty of their turns; that of the
+    /// infinitesimal loads may be different from 0.
     std::vector<ContactId> others;
 
     [[nodiscard]] bool has(ContactId l) const {
@@ -71,22 +71,22 @@ struct ZeroHolds {
     }
 };
 
-/// Applies the rule at the loaded stress `sigma`. The two ends of a strut that a power turn (`zero.fresh`) leaves
-/// straight carry exactly the same force there (S4): by the rules that compare forces they are ordered by the
-/// infinitesimal loads.
-/// Contacts that carry nothing at such a turn (S4 (c)) do not compete; `undecided` when nothing else is negative, and
-/// when every force is positive at a turn that carries some (S3).
-/// `random_bits` is used by the rule `random` only. May climb `statics` to double-double. Failure: `undecided` (a
+/// Applies the rule at the loaded stress `sigma`. The two ends of a strut that a power turn
+/// (`zero.fresh`) leaves straight carry exactly the same force there (S4): rules that compare
+/// forces order these two by the infinitesimal loads. Contacts that carry nothing at such a turn
+/// (S4 (c)) do not compete. The answer is `undecided` when no other force is negative, and when
+/// every force is positive at a turn where held coordinates carry some (S3). `random_bits` is
+/// used by the rule `random` only. May climb `statics` to double-double. Failure: `undecided` (a
 /// sign), `tie` (two candidates that cannot be ordered), naming the contacts and the numbers.
-/// With `perturbed` ties of finite forces are settled by their first-order terms, and written to its log: a force that
-/// vanishes in the base has the sign of its first-order term, equal keys have the order of theirs. Failure: `undecided`
-/// when the first-order terms do not tell either, and for held coordinates that vanish. Where ties
-/// are chosen (C1) a force whose first-order term is not told from 0 opens nothing, and equal keys are ordered by the
-/// infinitesimal loads, then by the names of the contacts.
+/// With `perturbed` first-order terms settle ties of finite forces and are written to its log: a force that vanishes in
+/// the base has the sign of its first-order term, equal keys have the order of their terms. Failure: `undecided` when
+/// the first-order terms cannot be told apart either, and for held coordinates that vanish. Where ties are chosen (C1)
+/// a force whose first-order term cannot be told from 0 opens nothing, and equal keys are ordered by the infinitesimal
+/// loads, then by the names of the contacts.
 Result<OpeningDecision> decide_opening(Statics& statics, double sigma, OpeningRule rule, const ZeroHolds& zero,
                                        std::uint64_t random_bits, PerturbedStatics* perturbed = nullptr);
 
-/// The same with `fresh_hold` only, or without any when it is not valid.
+/// `decide_opening` with at most one hold: `fresh_hold`, if it is valid.
 inline Result<OpeningDecision> decide_opening(Statics& statics, double sigma, OpeningRule rule, ContactId fresh_hold,
                                               std::uint64_t random_bits, PerturbedStatics* perturbed = nullptr) {
     return decide_opening(statics, sigma, rule, fresh_hold.valid() ? ZeroHolds{fresh_hold, {}} : ZeroHolds{},
@@ -107,9 +107,9 @@ struct LoadLimit {
 };
 
 /// \pre every finite force positive at `sigma`. `direction` +1 or -1. Held coordinates do not limit. May climb.
-/// Failure: `tie` when two forces vanish at loads that cannot be ordered, and that no structural argument ties
-/// together. With `perturbed`: the first-order terms of the loads tell which is first; `undecided` when they do not,
-/// or, where ties are chosen, the infinitesimal loads tell, then the names.
+/// Failure: `tie` when two forces vanish at loads that cannot be ordered, and no structural argument makes these loads
+/// equal. With `perturbed` the first-order terms of the loads decide which is first; when they do not, the answer is
+/// `undecided`, or, where ties are chosen, the infinitesimal loads decide, then the names.
 Result<LoadLimit> find_limit(Statics& statics, double sigma, int direction, PerturbedStatics* perturbed = nullptr);
 
 } // namespace isostat

@@ -16,7 +16,7 @@ struct Edge {
         wall.i = sphere;
         return std::find(contacts.begin(), contacts.end(), wall) != contacts.end();
     }
-    /// The contact presses the sphere as hard towards the one wall as towards the other.
+    /// The contact acts on the sphere equally towards both walls.
     [[nodiscard]] bool presses_alike(const Contact& c, int dimension) const {
         switch (c.kind) {
         case ContactKind::disk_disk:
@@ -38,7 +38,7 @@ bool is_wall(const Contact& c) {
     return c.kind == ContactKind::lower_wall || c.kind == ContactKind::upper_wall;
 }
 
-/// The sphere moves, and only contacts press it.
+/// The sphere moves, and only contacts act on it.
 bool moves_without_load(const Statics& statics, int sphere) {
     const DofMap& dofs = statics.structure().dofs();
     const std::vector<int>& rows = statics.loaded_rows();
@@ -47,7 +47,7 @@ bool moves_without_load(const Statics& statics, int sphere) {
         const auto coordinate = static_cast<std::size_t>(dofs.coordinate_of(row));
         return coordinate >= first && coordinate < first + dofs.layout().axes();
     };
-    const bool moves = dofs.dof_of(first) >= 0 || dofs.dof_of(first + 1) >= 0; // the pinned sphere does along walls
+    const bool moves = dofs.dof_of(first) >= 0 || dofs.dof_of(first + 1) >= 0; // the pinned sphere moves along walls
     return moves && std::none_of(rows.begin(), rows.end(), of_sphere);
 }
 

@@ -7,10 +7,10 @@
 
 namespace isostat {
 
-/// A contact whose force equals that of another one for a reason that is counted, whatever the other forces are.
+/// A contact whose force equals that of another one by counting, whatever the other forces are.
 struct EqualForce {
     ContactId contact;
-    Enclosure excess; ///< of its force over that of the other one, per unit of the infinitesimal loads
+    Enclosure excess; ///< its force minus the other one, per unit of the infinitesimal loads
 };
 
 /// The wall of another axis whose force on the same sphere is that of `of` at the true vertex, for every load and all

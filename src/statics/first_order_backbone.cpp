@@ -73,7 +73,7 @@ Result<std::vector<Contact>> first_order_backbone(const Packing& packing, const 
     load_programme(simplex, packing, dofs, load, contacts, rho);
     simplex.setPrimalTolerance(tolerance);
     simplex.setDualTolerance(tolerance);
-    simplex.setPerturbation(100); // none: the basis is the result
+    simplex.setPerturbation(100); // no perturbation: the basis is the result
     count_work(Work::linear_programmes);
     simplex.primal();
     if (simplex.status() == 2) {

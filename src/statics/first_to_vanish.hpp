@@ -9,10 +9,10 @@ namespace isostat {
 
 struct Vanishing {
     std::size_t index;
-    double distance = roundoff::infinity; ///< on the way that the rates refer to
+    double distance = roundoff::infinity; ///< distance on the path that the rates refer to
 };
 
-/// Of n quantities the one that falls to 0 first, as far as rounded numbers tell. Nothing: none falls.
+/// The first of n quantities to fall to 0, in rounded numbers. Nothing: no quantity falls.
 template <class Value, class Rate>
 std::optional<Vanishing> first_to_vanish(std::size_t n, const Value& value, const Rate& rate) {
     Vanishing first{n};

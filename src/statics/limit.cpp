@@ -38,16 +38,16 @@ class LimitContest final : public Contest {
     Result<std::optional<std::size_t>> stand(std::size_t best) override;
     Result<Comparison> compare(std::size_t rival, std::size_t best) override;
 
-    /// Whom to begin with: as far as rounded numbers tell, then as far as rates are proved. None: no force decreases.
+    /// The first candidate: by rounded numbers, then by proved rates. Nothing: no force decreases.
     Result<std::optional<std::size_t>> guess();
-    /// The force stays at 0 on the whole way in the base, where ties are chosen: it opens nothing.
+    /// The force is 0 up to the limit in the base, where ties are chosen: it opens nothing.
     bool stays_zero(ContactId l) {
         return perturbed_ != nullptr && perturbed_->chooses() && is_tie(rate_sign(l), slope_size());
     }
     /// A member of the class of the limiting force that opens nothing: its own force stays at 0, or grows from 0.
     /// Without ties all of a class are positive before, and fall.
     bool opens_nothing(ContactId l) { return stays_zero(l) || (perturbed_ != nullptr && rate_sign(l).sign > 0); }
-    /// Where the force of the last one that stood vanishes, and what vanishes with it.
+    /// The load at which the force of the last candidate vanishes, and the forces that vanish with it.
     [[nodiscard]] const LoadLimit& limit() const { return limit_; }
 
   private:
@@ -56,9 +56,9 @@ class LimitContest final : public Contest {
     [[nodiscard]] bool carried_by_others(const Enclosure& slope) const;
     [[nodiscard]] Failure open_rate(ContactId l, const Order& order) const;
     [[nodiscard]] Named name_of(ContactId l) const { return name(statics_, l); }
-    /// Largest slope: what a zero slope is compared with.
+    /// Largest slope, the scale for zero slopes.
     [[nodiscard]] double slope_size() const;
-    /// The force at the limit, wherever within its error that is.
+    /// The force at the limit, for every load within its error.
     [[nodiscard]] Enclosure at_limit(ContactId l) const;
     void add_to_class(ContactId l);
     Result<Comparison> with_a_rate_of_order_eps(ContactId l, const Order& rate);
@@ -88,9 +88,9 @@ Order LimitContest::rate_sign(ContactId l) {
     return order;
 }
 
-/// Contacts that carry all of the change of the load, as far as they can be told from the others, are counted (R3).
+/// Whether the contacts that carry the whole change of the load, as doubles separate them, pass the count (R3).
 bool LimitContest::carried_by_others(const Enclosure& slope) const {
-    constexpr double nothing = 1e-15; // of the largest: a guess, what it leaves out or takes in makes the count fail
+    constexpr double nothing = 1e-15; // of the largest: a guess; a wrong selection makes the count fail
     const double least = nothing * slope_size();
     if (!(slope.radius < least)) {
         return false;
@@ -126,7 +126,7 @@ double LimitContest::slope_size() const {
 Result<std::optional<std::size_t>> LimitContest::guess() {
     const auto first = first_to_vanish(
         candidates_.size(), [this](std::size_t k) { return statics_.force(candidates_[k], sigma_).value; },
-        [this](std::size_t k) { // a slope that may vanish in the base is looked at with the rivals
+        [this](std::size_t k) { // slopes that may vanish are judged with the rivals
             const Enclosure slope = statics_.slope(candidates_[k]);
             return perturbed_ != nullptr && !slope.decided() ? 0.0 : direction_ * slope.value;
         });
@@ -140,7 +140,7 @@ Result<std::optional<std::size_t>> LimitContest::guess() {
             const bool stays_positive = zero.decided && zero.sign > 0;
             const bool stays_zero = perturbed_->chooses() && is_tie(zero, perturbed_->size());
             if (is_tie(rate, slope_size()) && (stays_positive || stays_zero)) {
-                continue; // it changes by O(eps) over any finite way
+                continue; // it changes by O(eps) over any finite change of the load
             }
         }
         if (!rate.decided || (perturbed_ != nullptr && rate.sign == 0)) {
@@ -159,7 +159,7 @@ Result<std::optional<std::size_t>> LimitContest::stand(std::size_t best) {
     if (!rate.decided) {
         return open_rate(first, rate);
     }
-    if (rate.sign >= 0) { // the guess was wrong: any other that decreases
+    if (rate.sign >= 0) { // the guess was wrong: take any other that decreases
         for (const ContactId l : candidates_) {
             const Order other = rate_sign(l);
             if (!other.decided) {
@@ -188,7 +188,7 @@ Result<std::optional<std::size_t>> LimitContest::stand(std::size_t best) {
     return std::optional(best);
 }
 
-/// A contact whose force vanishes there, and what vanishes with it by counting.
+/// Adds a contact whose force vanishes at the limit, and those that vanish with it by counting.
 void LimitContest::add_to_class(ContactId l) {
     std::vector<ContactId> members = statics_.vanish_with(l);
     members.insert(members.begin(), l);
@@ -206,7 +206,7 @@ Enclosure LimitContest::at_limit(ContactId l) const {
     return f;
 }
 
-/// Everything outside the class is still positive at the limit, hence on the whole interval (forces are affine).
+/// Every force outside the class is still positive at the limit, hence on the whole interval (forces are affine).
 Result<Comparison> LimitContest::compare(std::size_t rival, std::size_t best) {
     const ContactId l(rival);
     const ContactId first(best);
@@ -269,7 +269,7 @@ Result<Comparison> LimitContest::at_first_order(ContactId l, ContactId first, co
                                 name_of(first), name_of(l), limit_.stress, reach(order)));
 }
 
-/// Within a class of forces that vanish together: the infinitesimal loads decide which one reaches zero first.
+/// Within a class of forces that vanish together the infinitesimal loads decide which one reaches zero first.
 Result<Opening> first_of_class(Statics& statics, const std::vector<ContactId>& members) {
     std::vector<Contender> contenders;
     for (const ContactId l : members) {
@@ -290,8 +290,8 @@ Result<Opening> first_of_class(Statics& statics, const std::vector<ContactId>& m
     return pick(statics, std::move(contenders), choice);
 }
 
-/// Which of several forces that vanish at one load, as far as first-order terms tell, ends the interval: the
-/// infinitesimal loads say, or the names. The contest then stands with that one.
+/// Among forces that vanish at one load, tied at first order: the infinitesimal loads select the one that ends the
+/// interval, or the names. The contest then has this one as its best.
 std::optional<Failure> choose(Statics& statics, LimitContest& contest, Minimum& minimum) {
     const auto found = choosable(contest, minimum);
     if (!found.ok()) {

@@ -20,7 +20,7 @@ class Stage {
         : statics_(statics), contacts_(statics.structure().contacts()), finite_(finite), sigma_(sigma), idle_(idle),
           choice_(std::move(choice)) {
         choice_.quantity = [this](ContactId l) { return quantity(l); };
-        if (finite_) { // the infinitesimal stage ties no strut
+        if (finite_) { // the infinitesimal stage has no ties of struts
             find_zero_holds();
         }
         if (zero_.fresh) {
@@ -42,7 +42,7 @@ class Stage {
     }
 
   private:
-    /// Struts are of the plane, and of single grains (S4).
+    /// Struts exist in the plane, for single grains (S4).
     void ask_struts() {
         const bool clumps = std::any_of(contacts_.begin(), contacts_.end(),
                                         [](const Contact& c) { return c.kind == ContactKind::bar; });
@@ -63,7 +63,7 @@ class Stage {
         e.minus_magnitude = is_held(statics_, l);
         return e;
     }
-    /// As far as it is known on the present rung.
+    /// The contender with the precision of the present rung.
     [[nodiscard]] Contender contender(ContactId l) const {
         const Enclosure f = value(l);
         const Enclosure competes{is_held(statics_, l) ? -std::abs(f.value) : f.value, f.radius};
@@ -73,7 +73,7 @@ class Stage {
     void find_zero_holds();
     void sort_by_sign();
     void leave_out_what_cannot_open();
-    /// The sign of a force that its enclosure does not tell.
+    /// Decides the sign of a force that its enclosure leaves open.
     std::optional<Failure> settle(const Contender& doubtful);
     std::optional<Failure> settle_at_first_order(ContactId l, const Order& order);
     void add_negative(ContactId l, double margin) {
@@ -82,7 +82,7 @@ class Stage {
     }
     Result<OpeningDecision> nothing_opens();
     Result<OpeningDecision> open();
-    /// A held coordinate is let go in the direction in which it pushes.
+    /// Releases a held coordinate in the direction of its multiplier.
     std::optional<Failure> let_go(Opening& opening);
 
     Statics& statics_;
@@ -95,7 +95,7 @@ class Stage {
     std::optional<Turn> turn_;
     std::vector<Contender> negative_;
     std::vector<Contender> doubtful_; ///< forces whose signs the enclosures do not prove
-    bool without_force_ = false;      ///< there are contacts whose force is 0 at the turn itself
+    bool without_force_ = false;      ///< some contacts have force 0 at the exact turn
     double margin_ = infinity;        ///< of the positive forces
     Words zeros_;                     ///< forces that are exactly 0
     OpeningDecision decision_;
@@ -130,8 +130,8 @@ void Stage::sort_by_sign() {
     }
 }
 
-/// A doubtful sign matters when no force is negative, when the rule needs the whole list, or when it could be the
-/// smallest.
+/// A doubtful sign matters when no force is negative, when the rule
+/// needs the whole list, or when the force could be the smallest.
 void Stage::leave_out_what_cannot_open() {
     if (negative_.empty() || choice_.rule != OpeningRule::most_negative) {
         return;
@@ -268,7 +268,7 @@ Result<OpeningDecision> decide_opening(Statics& statics, double sigma, OpeningRu
     if (!finite.ok() || finite.value().opening) {
         return finite;
     }
-    // The loads are smaller than every power of eps: no first-order terms.
+    // The loads are smaller than every power of eps, so this stage has no first-order terms.
     auto infinitesimal = Stage(statics, false, sigma, zero, {rule, random_bits, {}, nullptr, nullptr}).decide();
     if (infinitesimal.ok()) {
         infinitesimal.value().perturbed = finite.value().perturbed;

@@ -11,8 +11,8 @@
 
 namespace isostat {
 
-/// First-order terms of the forces of one vertex, at the present load whose stress is sigma + eps sigma1. The arguments
-/// must outlive the object.
+/// First-order terms of the forces of one vertex, at the present load with
+/// the stress sigma + eps sigma1. The arguments must outlive the object.
 class PerturbedStatics {
   public:
     /// `stress_rate`: sigma1 (0, radius 0, for a load that was given). `choose`: see `chooses`.
@@ -20,17 +20,17 @@ class PerturbedStatics {
 
     /// f1 at the present load; {0, 0} for structural zeros. Cost: one solve, once per rung of `statics`.
     [[nodiscard]] Enclosure force(ContactId contact);
-    /// f1 at another stress, fixed.
+    /// f1 at another stress, which does not depend on eps.
     [[nodiscard]] Enclosure force_at(ContactId contact, double sigma, double sigma_error);
     /// sigma1 of the stress at which the force vanishes, sigma its base value: -f1 / slope.
     [[nodiscard]] Enclosure limit_rate(ContactId contact, double sigma, double sigma_error);
-    /// Largest finite force: what a zero is compared with.
+    /// Largest finite force, the scale for zeros.
     [[nodiscard]] double size();
 
-    /// Under `ties = "choose"`: what first-order terms do not tell is a matter of the rule (C1).
+    /// Under `ties = "choose"`: where first-order terms do not decide, the rule does (C1).
     [[nodiscard]] bool chooses() const { return choose_; }
 
-    std::vector<TieDecision> log; ///< what was settled, in order; whoever writes records takes it
+    std::vector<TieDecision> log; ///< the settled ties, in order; whoever writes records takes them
 
   private:
     [[nodiscard]] std::vector<Enclosure> terms(double sigma, double sigma_error) const;

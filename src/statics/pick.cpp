@@ -22,7 +22,7 @@ class OpeningContest final : public Contest {
         }
     }
     [[nodiscard]] std::size_t size() const override { return contenders_.size(); }
-    /// A contact that bears the same force as the last one that stood is among the contenders.
+    /// A contact with the same force as the current best is among the contenders.
     [[nodiscard]] bool equal_met() const { return equal_met_; }
 
     Result<std::optional<std::size_t>> stand(std::size_t best) override {
@@ -55,7 +55,7 @@ class OpeningContest final : public Contest {
 
   private:
     /// The two ends of a strut that a power turn leaves straight (S4), and two walls of an edge (S6), bear one force:
-    /// the infinitesimal loads order them, not the digits to which the turn or the vertex was located.
+    /// the infinitesimal loads order them, not the digits of the located turn or vertex.
     Comparison by_loads(const Enclosure& excess, const Contender& other) {
         equal_met_ = true;
         Order order{excess.decided(), excess.positive() == least_ ? -1 : 1, excess.margin(), Rung::combinatorial};
@@ -68,7 +68,7 @@ class OpeningContest final : public Contest {
         });
     }
 
-    /// Difference of two enclosures where that decides, the ladder where it does not.
+    /// The difference of two enclosures if it decides, else the ladder.
     Order by_enclosure_or_ladder(const Contender& other, const Contender& one) {
         const Enclosure difference = other.key - one.key;
         if (difference.decided()) {
@@ -90,7 +90,7 @@ class OpeningContest final : public Contest {
                                     name(statics_, one.contact), name(statics_, other.contact), reach(order)));
     }
 
-    /// First-order term of what the rule compares, for a contender of the finite stage.
+    /// First-order term of the key, for a contender of the finite stage.
     Enclosure first_order_key(const Contender& c) {
         Enclosure f1 = choice_.perturbed->force(c.contact);
         // A held coordinate competes with -|m|: its derivative is -sign(m) m1, and the force of the contender is -|m|.
@@ -106,10 +106,10 @@ class OpeningContest final : public Contest {
     const Choice& choice_;
     bool least_;
     bool equal_met_ = false;
-    std::vector<EqualForce> equal_; ///< to the one that stands
+    std::vector<EqualForce> equal_; ///< forces equal to that of the current best
 };
 
-/// Of rules that compare no numbers: the place, among `count` contacts sorted by their names, of the one that opens.
+/// The position of the opening contact among `count` contacts sorted by name, for rules that compare no numbers.
 std::optional<std::size_t> rule_place(OpeningRule rule, std::size_t count, std::uint64_t random_bits) {
     return rule == OpeningRule::random        ? std::optional<std::size_t>(random_bits % count)
            : rule == OpeningRule::least_index ? std::optional<std::size_t>(0)
@@ -126,7 +126,7 @@ Opening pick_by_name(const Statics& statics, std::vector<Contender>& contenders,
     return {chosen.contact, false, chosen.force, +1, chosen.margin, statics.rung()};
 }
 
-/// One of those that first-order terms do not order: by the infinitesimal loads, or by name.
+/// Chooses among contenders that first-order terms do not order: by the infinitesimal loads, or by name.
 std::optional<Failure> choose(Statics& statics, const std::vector<Contender>& contenders, OpeningContest& contest,
                               OpeningRule rule, Minimum& minimum) {
     const auto members = choosable(contest, minimum);

@@ -10,7 +10,7 @@ namespace isostat {
 
 namespace {
 
-/// Compares all with `best`, as far as somebody who is proved smaller.
+/// Compares all with `best`, until one is proved smaller.
 Result<std::optional<std::size_t>> pass(Contest& contest, std::size_t best, Minimum& minimum) {
     for (std::size_t rival = 0; rival < contest.size(); ++rival) {
         if (rival == best) {
@@ -123,7 +123,7 @@ Result<std::vector<std::size_t>> choosable(Contest& contest, const Minimum& mini
 
 std::vector<TieDecision> recorded_choice(const Minimum& minimum, const std::vector<std::size_t>& members,
                                          std::size_t chosen, TieChoice how) {
-    const auto tie = [&](std::size_t member) -> const TieDecision& { // of the smallest with that one
+    const auto tie = [&](std::size_t member) -> const TieDecision& { // of the smallest with this one
         return *std::find_if(minimum.open.begin(), minimum.open.end(), [member](const Minimum::Tied& one) {
                     return one.index == member;
                 })->terms;

@@ -10,7 +10,7 @@
 
 namespace isostat {
 
-/// a / b, for b > 0; a radius of infinity when that is not proved.
+/// a / b, for b > 0; with radius infinity when b > 0 is not proved.
 inline Enclosure quotient(const Enclosure& a, const Enclosure& b) {
     using roundoff::u;
     const double value = a.value / b.value;

@@ -33,7 +33,7 @@ Statics::Statics(const Packing& packing, const Load& load, const IsostaticStruct
       sigma_(load.loaded_stress()), ladder_(packing, structure, factorisation, inverse, hints.ladder, hints.vertex),
       pattern_(packing, structure) {
     const DofMap& dofs = structure.dofs();
-    // Under true stresses a wall's force follows the lengths of the other axes.
+    // Under true stresses the force on a wall depends on the lengths of the other axes.
     const bool follows = load.kind == LoadKind::true_stress;
     const double stress = std::abs(*std::max_element(load.stress.begin(), load.stress.end(),
                                                      [](double a, double b) { return std::abs(a) < std::abs(b); }));
@@ -63,7 +63,7 @@ Statics::Statics(const Packing& packing, const Load& load, const IsostaticStruct
     find_backbone();
 }
 
-/// Forces at a stress as far as they are known: at another one only with the slopes.
+/// The known forces at a stress; at another stress this needs the slopes.
 std::vector<double> Statics::guess(double sigma) const {
     const std::span<const double> a = ladder_.known(present);
     std::vector<double> forces(a.begin(), a.end());

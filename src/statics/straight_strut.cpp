@@ -14,7 +14,7 @@ namespace isostat {
 
 namespace {
 
-/// Contacts as edges between free disks; all that is not one of them is the node `ground`.
+/// Contacts as edges between free disks; everything else is the node `ground`.
 struct ContactGraph {
     struct Step {
         std::size_t node;
@@ -25,7 +25,7 @@ struct ContactGraph {
     std::vector<unsigned char> leads;             ///< this contact is an edge
     std::vector<std::array<std::size_t, 2>> ends; ///< of each contact that is one
 
-    /// Edges without which their two ends are not connected, `left_out` being no edge at all.
+    /// Edges whose removal disconnects their ends, with `left_out` not an edge.
     [[nodiscard]] std::vector<unsigned char> bridges(std::size_t left_out) const {
         struct Frame {
             std::size_t node;
@@ -91,7 +91,7 @@ struct ContactGraph {
 
 struct Disks {
     std::vector<unsigned char> free; ///< every coordinate moves, carries no finite load and is not held with a force
-    std::vector<unsigned char> held; ///< with an infinitesimal force that is not known
+    std::vector<unsigned char> held; ///< by an unknown infinitesimal force
     std::size_t count = 0;
 
     Disks(const Statics& statics, const ZeroHolds& zero) {
@@ -151,19 +151,19 @@ Vector push(const Statics& statics, std::size_t contact, std::size_t disk) {
     return on;
 }
 
-/// How far normals at the turn may be from the stored ones, and what rounding of sums over all contacts adds (S4).
+/// Bound of the distance of normals at the turn from the stored ones, with the rounding of sums over all contacts (S4).
 double doubt_of(const Statics& statics) {
     using roundoff::u;
     return 2 * statics.normal_uncertainty() + (static_cast<double>(statics.structure().size()) + 512) * u;
 }
 
-/// What the infinitesimal loads come to when the disks that carry no finite force at the turn are taken away with their
-/// contacts (S4 (c)): free disks that two contacts, not in one line, hold. Each is done once, in an order in which two
-/// contacts are left of it.
+/// The infinitesimal loads after the disks that carry no finite force at the turn
+/// are removed with their contacts (S4 (c)): free disks that two contacts, not in
+/// one line, hold. Disks are removed one by one, when two contacts are left on them.
 struct Bare {
     std::vector<unsigned char> gone; ///< of contacts
-    std::vector<Vector> load;        ///< of each disk: its own, and what the disks that are gone press on it with
-    std::vector<double> error;       ///< of the latter, in length
+    std::vector<Vector> load;        ///< of each disk: its own, and those passed on by removed disks
+    std::vector<double> error;       ///< of the loads passed on, as a length
 
     Bare(const Statics& statics, const Disks& disks, const ZeroHolds& zero)
         : gone(statics.structure().contacts().size(), 0), load(disks.count), error(disks.count, 0) {
@@ -179,7 +179,7 @@ struct Bare {
         for (const ContactId l : zero.others) {
             const auto coordinate = static_cast<std::size_t>(contacts[l.index()].i);
             if (coordinate / plane < disks.count) {
-                // Structurally 0 in the finite forces wherever the mechanism stands: as solved, at the moved turn too.
+                // The force l is structurally zero in the finite forces, as solved and after the turn.
                 const Enclosure part = statics.infinitesimal(l);
                 load[coordinate / plane][coordinate % plane] -=
                     part.value * push(statics, l.index(), coordinate / plane)[coordinate % plane];
@@ -225,7 +225,7 @@ struct Bare {
         const Vector n = push(statics, a, disk);
         const Vector m = push(statics, b, disk);
         const double cross = n[0] * m[1] - n[1] * m[0];
-        // Far more than the place of the turn is off by; the normals of a strut fail by many orders.
+        // Far more than the error of the place of the turn; the normals of a strut fail by many orders.
         constexpr double well_apart = 0x1p-16;
         if (!(std::abs(cross) > well_apart + 8 * statics.normal_uncertainty())) {
             return false;
@@ -299,7 +299,7 @@ Enclosure excess_over(const Statics& statics, std::size_t a, std::size_t b, cons
             sum[k] += v[k];
         }
     };
-    const auto ends = [&](std::size_t contact, Vector& sum) { // of a unit force on the group
+    const auto ends = [&](std::size_t contact, Vector& sum) { // by a unit force on the group
         const Contact& c = statics.structure().contacts()[contact];
         for (const int disk : {c.i, c.of_disks() ? c.j : -1}) {
             if (disk >= 0 && inside[static_cast<std::size_t>(disk)] != 0) {
@@ -336,7 +336,7 @@ struct Turn::Parts {
     Disks disks;
     Bare bare;
     ContactGraph graph;
-    std::vector<unsigned char> alone; ///< what a single contact cuts off leaves it without force
+    std::vector<unsigned char> alone; ///< grains that a single contact cuts off leave it without force
 };
 
 Turn::Turn(const Statics& statics, ZeroHolds zero) : statics_(statics), zero_(std::move(zero)) {

@@ -16,8 +16,8 @@ double cost_of_solves(const Vertex& vertex, int arc_passes) {
     return (arc_passes + vertex.factorisation.passes() + proofs) * vertex.factorisation.approximate().relative_cost();
 }
 
-/// New factors are due when this vertex cost more than the average since the last ones, their making included: the rule
-/// that keeps that average smallest. It counts operations, never seconds.
+/// New factors are due when this vertex cost more than the average since the last ones, including the cost of making
+/// factors, because this keeps the average smallest. Cost is counted in operations, never in seconds.
 bool new_factors_are_due(const Vertex& vertex, double cost) {
     constexpr double factorisation_in_passes = 90; // KLU: analysis and factorisation, measured for n = 1936, 4900
     const int exchanges = vertex.factorisation.approximate().exchanges();
@@ -39,8 +39,8 @@ BoundedSteering::BoundedSteering(std::shared_ptr<const Vertex> from, ArcStart st
     }
 }
 
-/// Rattlers turn far from arc to arc: factors taken over predict their curvature badly. They are few, so that their own
-/// block costs next to nothing.
+/// Rattlers turn far from arc to arc, so reused factors predict their curvature badly. Rattlers are few, so that
+/// factors of their block cost little.
 void BoundedSteering::refresh() {
     const Opening& opening = start_.opening;
     if (opening.infinitesimal && !from_.factorisation.is_fresh()) {
@@ -87,7 +87,7 @@ Result<ArcProposal> BoundedSteering::propose() {
         arc = attempt();
     }
     if (!arc.ok()) {
-        return refused_.value_or(arc.failure()); // nothing is known of what lies beyond a pair that was passed by
+        return refused_.value_or(arc.failure()); // beyond a grazing pair nothing is known
     }
     proposed_ = true;
     if (precisely_ && !arc_options_.precisely) {
@@ -130,44 +130,44 @@ ArcProposal BoundedSteering::proposal(Arc path) const {
     return arc;
 }
 
-/// What may be wrong with a proposal that was refused, and what is proposed in its place.
+/// A defect of a refused proposal, and what is proposed instead.
 struct BoundedSteering::Remedy {
     bool (*applies)(const BoundedSteering&, const ArcProof&);
     void (*propose)(BoundedSteering&, const ArcProof&);
 };
 
-/// In the order in which they are tried.
+/// The remedies, in the order in which they are tried.
 auto BoundedSteering::remedies() -> const std::vector<Remedy>& {
     using S = BoundedSteering;
     using Proof = ArcProof;
     static const std::vector<Remedy> table{
-        // Another contact closed before: that one closes.
+        // Another contact closed before: end the arc there.
         {[](const S&, const Proof& p) { return p.closed_before.has_value(); },
          [](S& s, const Proof& p) { (s.next_to_ ? s.next_to_ : s.arc_options_.closes) = p.closed_before; }},
-        // Nothing is proved of an end that old factors found: fresh ones.
+        // No vertex is proved at an end that old factors found: use fresh factors.
         {[](const S& s, const Proof& p) {
              return !p.vertex && !s.fresh_ && !s.next_to_ && !s.from_.factorisation.is_fresh();
          },
          [](S& s, const Proof&) { s.fresh_.emplace(s.from_.structure); }},
-        // The power is proved negative at the end: it turned before, and is looked at with more care.
+        // The power is proved negative at the end, so it turned before: use a sharper tangent.
         {[](const S& s, const Proof& p) {
              return p.reached && !p.next && !p.record.power_turn && !s.next_to_ && !s.arc_options_.sharp_power &&
                     p.record.power + p.record.power_bound < 0;
          },
          [](S& s, const Proof&) { s.arc_options_.sharp_power = true; }},
-        // A nearly singular list is another matrix at the end that double finds: an end with more digits.
+        // Double locates the end of a nearly singular list too badly: use more digits at the end.
         {[](const S& s, const Proof& p) {
              return !p.vertex && !s.precisely_ && !s.next_to_ && p.record.closed.kind != ContactKind::held;
          },
          [](S& s, const Proof&) { s.precisely_ = true; }},
-        // A nearly singular list has no end in double: the whole arc in double-double.
+        // A nearly singular list has no end in double: follow the whole arc in double-double.
         {[](const S& s, const Proof& p) { return !p.vertex && !s.arc_options_.precisely && !s.next_to_; },
          [](S& s, const Proof& p) {
              s.arc_options_.precisely = true;
              s.refused_ = p.failure;
          }},
-        // Where ties are chosen, and no list is regular at the end: the pair may only graze, and is passed by. The gaps
-        // at the end of the arc tell whether it did.
+        // Where ties are chosen, and no list is regular at the end, the pair may only graze: go on without it. The gaps
+        // at the end of the arc decide whether it did.
         {[](const S& s, const Proof& p) {
              const Contact& closed = p.record.closed;
              return !p.vertex && !p.list_for_end && !s.next_to_ && s.from_.perturbed &&

@@ -8,15 +8,15 @@
 
 namespace isostat {
 
-/// The arc from a vertex, with its factors or fresh ones where these serve badly, and with residuals in double-double
-/// where it does not converge otherwise. A proposal that was refused is followed by another one where a remedy applies
-/// (the table in bounded_steering.cpp). Failures besides those of `follow_arc`: that of `departure`; that of an end for
-/// which nothing better was found; `undecided` when the order of the contacts that close is not settled in a few
-/// proposals.
+/// The arc from a vertex, with the factors of the vertex, or with fresh ones where iterations with the former converge
+/// slowly, and with residuals in double-double where the iteration does not converge otherwise. Another proposal
+/// follows a refused one when a remedy of the table in bounded_steering.cpp applies. Failures besides those of
+/// `follow_arc`: that of `departure`; that of a refused end to which no remedy applies; `undecided` when several
+/// proposals leave the order of the closing contacts open.
 class BoundedSteering final : public Steering {
   public:
-    /// `departure`: of the pairs that touch; none overlaps at second order. The candidates and the load must outlive
-    /// the steering; the first are made anew where the arc leaves their reach.
+    /// `departure`: what the touching pairs do; none of them overlaps at second order. The candidates and the load must
+    /// outlive the steering; the candidates are made anew where the arc leaves their reach.
     BoundedSteering(std::shared_ptr<const Vertex> from, ArcStart start, Result<Departure> departure,
                     double step_fraction, CandidateList& candidates);
 
@@ -28,7 +28,7 @@ class BoundedSteering final : public Steering {
   private:
     struct Remedy;
     static const std::vector<Remedy>& remedies();
-    /// The first that applies; null: none does.
+    /// The first remedy that applies; null: no remedy does.
     [[nodiscard]] const Remedy* remedy(const ArcProof& refused) const;
     void refresh();
     Result<Arc> attempt();
@@ -36,16 +36,16 @@ class BoundedSteering final : public Steering {
     void improve_end(Arc& path) const;
 
     std::shared_ptr<const Vertex> vertex_;
-    const Vertex& from_; ///< the same
+    const Vertex& from_; ///< the same vertex
     ArcStart start_;
     CandidateList& candidates_;
     Contact opened_;
     ArcOptions arc_options_;
-    std::optional<Contact> next_to_; ///< closes on a way of length O(eps)
+    std::optional<Contact> next_to_; ///< contact that closes on a path of length O(eps)
     Result<Departure> departure_;
-    std::optional<Factorisation> fresh_; ///< instead of the factors of the vertex
-    bool precisely_ = false;             ///< the end of the arc in more digits
-    std::optional<Failure> refused_;     ///< of the last end that was to be bettered, or passed by
+    std::optional<Factorisation> fresh_; ///< replaces the factors of the vertex
+    bool precisely_ = false;             ///< more digits at the end of the arc
+    std::optional<Failure> refused_;     ///< failure of the last end that a remedy was for
     int proposals_ = 0;
     bool proposed_ = false;
 };

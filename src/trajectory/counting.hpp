@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Work that is counted later, or not at all: private to the room.
+/// Work that enters the counts later, or never: private to the room.
 
 #include "core/work.hpp"
 
@@ -10,7 +10,7 @@ namespace isostat {
 
 using WorkCounts = std::array<long, work_kinds>;
 
-/// While it lives this thread counts its work there (null: for the process).
+/// During the life of this object its thread counts work in `counts` (null: in the counts of the process).
 class CountingIn {
   public:
     explicit CountingIn(WorkCounts* counts) : before_(count_work_in(counts)) {}
@@ -28,7 +28,7 @@ inline void add(WorkCounts& to, const WorkCounts& counts) {
     }
 }
 
-/// Counts them after all.
+/// Adds the counts to those of the process.
 inline void count_all(const WorkCounts& counts) {
     for (std::size_t k = 0; k < work_kinds; ++k) {
         if (counts[k] != 0) {

@@ -13,13 +13,13 @@ namespace isostat {
 
 namespace {
 
-constexpr double dd_unit = 0x1p-98; // granted to one operation in double-double (proofs/bounds.md)
-constexpr double above = 1 + 1e-10; // of sums of at most 10^6 bounds
+constexpr double dd_unit = 0x1p-98; // bounds one operation in double-double (proofs/bounds.md)
+constexpr double above = 1 + 1e-10; // for sums of at most 10^6 bounds
 
-/// A true vertex as far as it is known: within `radius` (2-norm) of packing.q + correction.
+/// Enclosure of a true vertex: within `radius` (2-norm) of packing.q + correction.
 struct Place {
     const std::vector<double>& q;
-    const std::vector<double>& correction; ///< empty: none
+    const std::vector<double>& correction; ///< empty: 0
     double radius;
 
     [[nodiscard]] dd_real operator[](std::size_t k) const {
@@ -29,8 +29,8 @@ struct Place {
 
 struct Sum {
     dd_real value = 0.0;
-    double size = 0;   ///< of the terms
-    double square = 0; ///< of the forces
+    double size = 0;   ///< size of the terms
+    double square = 0; ///< sum of the squares of the forces
     void add(const dd_real& force, const dd_real& way) {
         const dd_real term = force * way;
         value += term;
@@ -60,8 +60,8 @@ Enclosure work(const Vertex& start, const Place& from, const Place& to, const Lo
     return {sum.value.x[0], radius + 0x1p-52 * std::abs(sum.value.x[0])};
 }
 
-/// ln(b / a) = 2 artanh(t), t = (b - a) / (b + a), by its series: no function whose error is only known by hearsay.
-/// `error`: of the sum.
+/// ln(b / a) = 2 artanh(t), t = (b - a) / (b + a), by its series, because the error of a library function is not
+/// proved. `error`: bound of the error of the sum.
 dd_real log_of_ratio(const dd_real& a, const dd_real& b, double& error) {
     const dd_real t = (b - a) / (b + a);
     const dd_real square = t * t;
@@ -73,7 +73,7 @@ dd_real log_of_ratio(const dd_real& a, const dd_real& b, double& error) {
         sum += power / static_cast<double>(k);
         ++terms;
     }
-    const double rest = square.x[0] < 0.999 ? std::abs(power.x[0]) / (1 - square.x[0]) // of the geometric series beyond
+    const double rest = square.x[0] < 0.999 ? std::abs(power.x[0]) / (1 - square.x[0]) // of the tail of the series
                                             : std::numeric_limits<double>::infinity();
     error = 2 * (rest + (4.0 * terms + 8) * dd_unit * std::abs(sum.x[0])) * above;
     return 2 * sum;
@@ -94,7 +94,7 @@ Enclosure decrease_of_phi(const Vertex& start, const Place& from, const Place& t
         const dd_real term = dd_real::add(stress.nearest, stress.rest[0]) * log_of_ratio(to[k], from[k], error);
         value += term;
         size += std::abs(term.x[0]);
-        // |ln x - ln y| <= |x - y| / min(x, y); nothing is known of a length that may be 0.
+        // |ln x - ln y| <= |x - y| / min(x, y); no bound for a length that may be 0.
         const auto moved = [&](const Place& at) {
             const double least = at[k].x[0] - at.radius;
             return least > 0 ? at.radius / least : std::numeric_limits<double>::infinity();
@@ -105,7 +105,7 @@ Enclosure decrease_of_phi(const Vertex& start, const Place& from, const Place& t
     return {value.x[0], bound >= 0 ? bound : std::numeric_limits<double>::infinity()};
 }
 
-/// What -F.q, or Phi, loses on the way, as an interval of at least `bits`.
+/// Decrease of -F.q, or of Phi, between the two vertices, as an interval of at least `bits`.
 PreciseInterval decrease_between(const PreciseVertex& from, const PreciseVertex& to, const Vertex& start,
                                  const Load& load, bool infinitesimal, int bits) {
     PreciseInterval sum(bits);
@@ -133,7 +133,7 @@ PreciseInterval decrease_between(const PreciseVertex& from, const PreciseVertex&
     return sum;
 }
 
-/// In MPFR, until the sign is known; `rough` where that says no more.
+/// Computes in MPFR until the sign is known; returns `rough` if this gives no sign.
 Enclosure precise_decrease(const Vertex& from, const Vertex& to, const Load& load, bool infinitesimal,
                            const Enclosure& rough) {
     PreciseVertex a(from.packing, from.structure, from.factorisation, from.inverse);
@@ -195,7 +195,7 @@ Enclosure potential_decrease(const Vertex& from, const Vertex& to, const Load& l
     }
     const Enclosure near =
         between(Place{from.packing.q, a.correction, a.radius}, Place{to.packing.q, b.correction, b.radius});
-    const bool at_once = from.perturbed && from.packing.q == to.packing.q; // of length O(eps): it is 0
+    const bool at_once = from.perturbed && from.packing.q == to.packing.q; // an arc of length O(eps) has decrease 0
     return near.decided() || at_once ? near : precise_decrease(from, to, load, infinitesimal, near);
 }
 

@@ -1,4 +1,4 @@
-// One arc, and the mechanism that begins one, for those who do not want a run.
+// One arc, and the mechanism that begins one, without a run.
 #include "linear/factorisation.hpp"
 #include "rigidity/isostatic.hpp"
 

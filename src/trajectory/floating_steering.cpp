@@ -36,8 +36,8 @@ FloatingSteering::FloatingSteering(const Origin& from, const ArcStart& start, co
     arc_options_.extrapolate_tangent = true;
 }
 
-/// The work is counted when the arc is recorded: how many arcs are proposed in vain depends on the threads, and a
-/// record must not.
+/// The work is counted when the arc is recorded, because the number of arcs that are proposed in vain depends on the
+/// threads, and records must not.
 Result<ArcProposal> FloatingSteering::propose() {
     WorkCounts work{};
     const CountingIn counting(&work);
@@ -55,9 +55,9 @@ Result<ArcProposal> FloatingSteering::next() {
     record.kind = start_.kind;
     record.opened = structure_->contacts()[start_.opening.contact.index()];
     arc.opening = start_.opening;
-    ended_ = true; // unless there is another arc after this one
+    ended_ = true; // unless another arc follows
     Prediction prediction;
-    prediction.passes = here_ ? here_->passes() : 0; // of others at the start
+    prediction.passes = here_ ? here_->passes() : 0; // passes for the other forces at the start
     auto path = follow(prediction);
     if (!path.ok()) {
         return path.failure();
@@ -80,11 +80,11 @@ Result<ArcProposal> FloatingSteering::next() {
     return arc;
 }
 
-/// With the arc that was begun beside the choice of what opens, if it was.
+/// Uses the arc that was begun while the opening was chosen, if it is the right one.
 Result<Arc> FloatingSteering::follow(Prediction& prediction) {
     const Opening& opening = start_.opening;
     const PowerLoad power = power_load(load_, opening, start_.kind);
-    // Rattlers turn far from arc to arc: factors taken over predict their curvature badly.
+    // Rattlers turn far from arc to arc, so reused factors predict their curvature badly.
     std::optional<Factorisation> block;
     if (opening.infinitesimal) {
         block = Factorisation::of_moving_block(*structure_, static_cast<int>(opening.contact.index()));
@@ -126,20 +126,20 @@ std::optional<Failure> FloatingSteering::check_work(const ArcRecord& record, con
     return std::nullopt;
 }
 
-/// The vertex at the end of the path: from now on it is `here_`.
+/// Makes the vertex at the end of the path `here_`.
 std::optional<Failure> FloatingSteering::arrive(ArcProposal& arc, Arc& path, Prediction& prediction) {
     std::optional<PredictedVertex> predicted;
     if (prediction.end && prediction.end->closes == path.closed) {
         predicted = prediction.vertex.get();
     }
-    prediction.vertex = {}; // it reads this vertex
+    prediction.vertex = {}; // it uses this vertex
     auto next = IsostaticStructure::exchange(*structure_, path.end, start_.opening.contact, path.closed,
                                              predicted && predicted->contacts ? &*predicted->contacts : nullptr);
     if (!next) {
         return failed(FailureKind::undecided, "the contacts are structurally singular at the end of {}",
                       names(arc.record));
     }
-    if (!next->predicted()) { // a normal turned into or out of an axis: the backbone may be another one
+    if (!next->predicted()) { // a normal became parallel to an axis or ceased to be, so the backbone may differ
         predicted.reset();
     }
     ApproximateInverse approximate = operator_at(*next, path.passes + prediction.passes);
@@ -160,8 +160,8 @@ std::optional<Failure> FloatingSteering::arrive(ArcProposal& arc, Arc& path, Pre
     return std::nullopt;
 }
 
-/// An operator close to the inverse, after an arc that cost so many passes: renewed, or the one before with one more
-/// exchange.
+/// An operator close to the inverse, after an arc that cost `passes`:
+/// a renewed one, or the previous one with one more exchange.
 ApproximateInverse FloatingSteering::operator_at(const ExchangedContacts& next, int passes) {
     rule_.add(passes, factorisation_->approximate());
     if (auto renewed = refactorisation_.after(next.slot(), next.matrix())) {
@@ -184,9 +184,9 @@ std::optional<Failure> FloatingSteering::check_power(const ArcRecord& record) co
     return std::nullopt;
 }
 
-/// What opens next; nothing: it ends here.
+/// Chooses what opens next; no opening: the steering ends here.
 void FloatingSteering::choose(ArcProposal& arc) {
-    // The ends of a straight strut carry one force at a power turn: only a proof orders them.
+    // Both ends of a straight strut carry one force at a power turn, and only a proof orders them.
     const auto chosen = arc.record.power_turn ? std::optional<Opening>() : here_->choose();
     if (!chosen) {
         const ContactId hold = arc.record.power_turn ? start_.opening.contact : ContactId();

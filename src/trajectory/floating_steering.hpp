@@ -17,13 +17,13 @@ namespace isostat {
 /// A random number for each step of a run, the same after a resume.
 std::uint64_t bits_for(std::uint64_t seed, long step);
 
-/// Arc after arc from a vertex whose opening is given, until no force is negative. Forces, events and the choice of
-/// what opens are those of refined double precision. Failures besides those of `follow_arc`: `undecided` when the new
-/// contact of an arc carries no compression, or W grew. Cost: 12 triangular solves or so per arc, and new factors every
-/// 20 arcs at n = 1936, every 40 at 4900.
+/// Arc after arc from a vertex whose opening is given, until no force is negative. Forces, events and the choice of the
+/// opening contact are computed in refined double precision. Failures besides those of `follow_arc`: `undecided` when
+/// the new contact of an arc carries no compression, or W grew. Cost: about 12 triangular solves per arc, and new
+/// factors every 20 arcs at n = 1936, every 40 at 4900.
 class FloatingSteering final : public Steering {
   public:
-    /// Where it starts. Must outlive its first arc.
+    /// The start of the steering. Must outlive its first arc.
     struct Origin {
         const Packing& packing;
         const IsostaticStructure& structure;
@@ -36,7 +36,7 @@ class FloatingSteering final : public Steering {
     Result<ArcProposal> propose() override;
 
   private:
-    /// What is known at the start of an arc: what its forces cost, and its end as predicted, with the vertex there.
+    /// Data at the start of an arc: the cost of its forces, its predicted end, and the vertex predicted there.
     struct Prediction {
         int passes = 0;
         std::optional<ArcDeparture::Expected> end;
@@ -53,14 +53,14 @@ class FloatingSteering final : public Steering {
     const Packing* packing_;
     const IsostaticStructure* structure_;
     const Factorisation* factorisation_;
-    ArcStart start_; ///< of the next arc
+    ArcStart start_; ///< start of the next arc
     const Load& load_;
     CandidateList candidates_;
     ArcOptions arc_options_;
     bool ended_ = false;
     RefactorisationRule rule_;
     Refactorisation refactorisation_;
-    std::unique_ptr<FloatingVertex> here_; ///< null: at the start. Last: it uses the rest
+    std::unique_ptr<FloatingVertex> here_; ///< null: at the start. Declared last because it uses the other members
 };
 
 } // namespace isostat

@@ -11,10 +11,10 @@ namespace isostat {
 
 namespace {
 
-/// Relative, of forces on the way where they are close to 0 or to each other: estimated, not bounded.
+/// Relative accuracy, estimated and not bounded, of forces that are close to 0 or to each other.
 constexpr double accuracy = 1e-12;
-/// Elsewhere they are as accurate as the choice of what opens asks for: the estimated error times `safety` does not
-/// change it. A proof starts from these forces: a few digits more save it passes where no arc was begun beside.
+/// Other forces are only as accurate as the choice of what opens needs: the estimated error times `safety` does not
+/// change it. If no arc was begun, some more digits save passes in the proof, which starts from these forces.
 constexpr double accuracy_for_proof = 1e-8;
 constexpr double accuracy_beside_arc = 1e-3;
 constexpr double safety = 30;
@@ -39,7 +39,7 @@ FloatingVertex::FloatingVertex(Arrival arrival, const Context& context)
         pending_backbone_ =
             Future<std::vector<unsigned char>>([this] { return ContactPattern(packing, structure).carrying(loaded_); });
     }
-    if (renew_candidates(context.candidates, packing)) { // here, because a task that finds them might be dropped
+    if (renew_candidates(context.candidates, packing)) { // not in a task, which may be dropped without running
         arrival.open.clear();
     }
     load_on_dofs_ = force;
@@ -50,10 +50,10 @@ FloatingVertex::FloatingVertex(Arrival arrival, const Context& context)
             depart(arrival, arrival.predicted->opens.index());
         }
     }
-    if (departure_) { // the arc by the thread that will follow it, the forces beside it
+    if (departure_) { // another thread begins the arc, this one solves the forces
         Task solving([&] { solve(arrival); });
         begin_arc(arrival);
-        if (solving.underway()) { // else wait for the forces, which may say that another contact opens
+        if (solving.underway()) { // else first solve the forces, which may select another contact
             departure_->arc.begin_here();
         }
         solving.finish();
@@ -82,7 +82,7 @@ void FloatingVertex::begin_arc(const Arrival& arrival) {
     });
 }
 
-/// The finite forces, as accurate as the choice of what opens needs them; the arc that opens it is begun on the way.
+/// Solves the finite forces as accurately as the choice of what opens needs; the arc that opens it begins meanwhile.
 void FloatingVertex::solve(const Arrival& arrival) {
     const auto enough = [&](std::span<const double> f, double error) {
         take_backbone();
@@ -108,7 +108,7 @@ const std::vector<double>& FloatingVertex::infinitesimal() {
 }
 
 FloatingVertex::Departure* FloatingVertex::departure(const Opening& opening) {
-    // Fresh factors, if solving asked for some, are better.
+    // Fresh factors, made if the solve needed some, are better.
     const bool useful = departure_ && departure_->opened == opening.contact && !opening.infinitesimal &&
                         opening.direction > 0 && !factorisation.is_fresh();
     if (!useful) {
@@ -132,12 +132,12 @@ bool FloatingVertex::compressive(std::size_t l, bool of_infinitesimal) {
     return (of_infinitesimal ? infinitesimal() : force)[l] > 0;
 }
 
-/// Whether `chosen` is the most negative of all finite forces that lie within the error of `f`. With no contact chosen:
-/// whether all of them are positive.
+/// Whether `chosen` is the most negative force for all forces within the error of `f`. Without a chosen contact:
+/// whether all forces are positive for all such `f`.
 bool FloatingVertex::clear(std::span<const double> f, std::size_t chosen) const {
     const double bar = chosen < f.size() ? signed_size(structure.contacts()[chosen], f[chosen]) + 2 * error_ : error_;
     if (chosen < f.size() && bar >= error_) {
-        return false; // it may be 0
+        return false; // the force may be 0
     }
     for (std::size_t l = 0; l < f.size(); ++l) {
         if (l != chosen && signed_size(structure.contacts()[l], f[l]) <= bar && !is_structural_zero(l)) {
@@ -147,7 +147,7 @@ bool FloatingVertex::clear(std::span<const double> f, std::size_t chosen) const 
     return true;
 }
 
-/// Among the finite forces, or the infinitesimal ones of the structural zeros: the most negative one.
+/// The most negative of the finite forces, or of the infinitesimal forces of structural zeros.
 std::optional<Opening> FloatingVertex::stage(bool finite) {
     if (!finite && std::find(backbone_.begin(), backbone_.end(), 0) == backbone_.end()) {
         return std::nullopt;

@@ -16,23 +16,23 @@
 
 namespace isostat {
 
-/// A vertex on the way. Nothing is proved of it.
+/// A vertex along floating steering. Nothing is proved of it.
 class FloatingVertex {
   public:
-    /// What the steering has for each of its vertices. Must outlive them.
+    /// Data of the steering for all of its vertices. Must outlive the vertices.
     struct Context {
         const Load& load;
-        CandidateList& candidates; ///< made anew when less is left of their reach than an arc needs
+        CandidateList& candidates; ///< made anew when their remaining reach is shorter than an arc needs
         const ArcOptions& arc;
     };
-    /// What the arc that leads here brings.
+    /// Data at the end of the arc that leads to this vertex.
     struct Arrival {
         Packing packing;
         IsostaticStructure structure;
         const ApproximateInverse& approximate; ///< close to the inverse of its matrix
-        std::vector<double> guess;             ///< forces in the same slots
+        std::vector<double> guess;             ///< forces, by the same slots
         std::vector<Contact> open;             ///< see `Arc`
-        PredictedVertex* predicted;            ///< of the same pattern, or null
+        PredictedVertex* predicted;            ///< predicted vertex of the same pattern, or null
     };
     FloatingVertex(Arrival arrival, const Context& context);
 
@@ -42,23 +42,23 @@ class FloatingVertex {
     std::vector<double> force; ///< finite forces
 
     [[nodiscard]] bool is_structural_zero(std::size_t l) const { return backbone_[l] == 0; }
-    /// Of the factors, for forces.
+    /// Passes of the factors for the forces.
     [[nodiscard]] int passes() const { return factorisation.passes() + predicted_passes_; }
-    /// Degrees of freedom.
+    /// The degrees of freedom on which the finite load acts.
     [[nodiscard]] const std::vector<int>& loaded() const { return loaded_; }
     /// Forces of the infinitesimal loads.
     [[nodiscard]] const std::vector<double>& infinitesimal();
-    /// The arc that opens what has the most negative force, begun before that was known to the end; nothing when it is
-    /// another one. Its factors stay with this vertex.
+    /// The arc that opens the contact with the apparently most negative force, begun before the forces are converged;
+    /// `departure` gives nothing when another contact opens. The factors of the arc stay with this vertex.
     struct Departure {
         ContactId opened;
         Factorisation factorisation;
         Future<std::unique_ptr<ArcDeparture>> arc;
     };
     [[nodiscard]] Departure* departure(const Opening& opening);
-    /// What has the most negative force, and opens; nothing: no force is negative.
+    /// The contact with the most negative force, which opens; nothing: no force is negative.
     [[nodiscard]] std::optional<Opening> choose();
-    /// Whether the force in a contact is compressive, as far as doubles tell.
+    /// Whether the force in a contact is compressive, judged in double precision.
     [[nodiscard]] bool compressive(std::size_t l, bool of_infinitesimal);
 
   private:
@@ -72,12 +72,12 @@ class FloatingVertex {
     Context context_;
     std::vector<int> loaded_;
     std::vector<unsigned char> backbone_;
-    Future<std::vector<unsigned char>> pending_backbone_; ///< while it is made
+    Future<std::vector<unsigned char>> pending_backbone_; ///< filled while another task computes `backbone_`
     std::vector<double> infinitesimal_;
     std::vector<double> load_on_dofs_;
     int predicted_passes_ = 0;
-    double error_ = 0;                     ///< of the finite forces, with a margin; 0: they are as accurate as they get
-    std::unique_ptr<Departure> departure_; ///< last: it uses the rest
+    double error_ = 0;                     ///< bound of the error of `force`, with a margin; 0: converged to rounding
+    std::unique_ptr<Departure> departure_; ///< last because it uses the other members
 };
 
 } // namespace isostat

@@ -1,5 +1,5 @@
 /// \file
-/// Which states a run follows.
+/// Which states a run can follow.
 
 #include <isostat/core/error.hpp>
 #include <isostat/trajectory/trajectory.hpp>

@@ -29,7 +29,7 @@ const std::vector<unsigned char>& KeptCandidates::of(const std::vector<Contact>&
             set(contacts_[l], 0);
         }
     }
-    for (const std::size_t l : changed) { // after all others left: a contact may have changed its place
+    for (const std::size_t l : changed) { // after all others left, because a contact may have changed its place
         contacts_[l] = contacts[l];
         set(contacts[l], 1);
     }

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Which candidates are contacts already: private to the room.
+/// Which candidates are contacts of the current structure: private to the room.
 
 #include <isostat/contact/state.hpp>
 
@@ -12,8 +12,8 @@ namespace isostat {
 /// contacts, and the list is the same for many of them.
 class KeptCandidates {
   public:
-    /// One flag per candidate: 1 when it is in `contacts`. Cost: two comparisons of lists, and a search per contact
-    /// that is not where it was at the last call. \pre `candidates` sorted. Valid until the next call.
+    /// One flag per candidate: 1 when the candidate is in `contacts`. Cost: two comparisons of lists, and a search per
+    /// contact whose position changed since the last call. \pre `candidates` sorted. Valid until the next call.
     const std::vector<unsigned char>& of(const std::vector<Contact>& candidates, const std::vector<Contact>& contacts);
 
   private:

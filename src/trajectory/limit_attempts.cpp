@@ -23,9 +23,9 @@ Result<Reached> LimitAttempts::begin(Attempt& attempt) {
     return reached;
 }
 
-/// The first double beyond the limit; nothing: the limit is not known to a double. The double nearest to the limit may
-/// lie before the limit, where the force that opens is still positive by a rounding: the potential then grows along the
-/// first part of the arc, which is as short as that rounding.
+/// The first double beyond the limit; nothing: the limit is not known to within one double. The double nearest to the
+/// limit may lie before the limit, where the force that opens is still positive by a rounding: the potential then grows
+/// along the first part of the arc, which is as short as that rounding.
 std::optional<double> LimitAttempts::beyond() {
     auto found = find_limit(statics_, sigma_, direction_, nullptr);
     const auto known = [&] {

@@ -9,25 +9,25 @@
 
 namespace isostat {
 
-/// A rearrangement as it was begun.
+/// How a rearrangement begins.
 struct Attempt {
     Opening opening;
     ArcKind kind = ArcKind::limit;
     LimitLoad at;
     bool begun = false; ///< an arc was recorded
-    /// Its first arc is not decided.
+    /// Its first arc is undecided, so another beginning may be tried.
     [[nodiscard]] bool in_vain(const Result<Reached>& reached) const {
         return !reached.ok() && reached.failure().kind == FailureKind::undecided && !begun;
     }
 };
 
-/// Follows an attempt at a limit of the statics. In vain, and without first-order terms, it may begin with the load
-/// rounded away from `sigma` in `direction`; `attempt` is then that one. `follow` carries one out and sets its `begun`;
-/// counters of `recorder` are those of the attempt that is returned. Failure: that of the last attempt.
+/// Follows `attempt` from a limit of the statics. After one in vain, and without first-order terms, `attempt` begins
+/// again with the load rounded away from `sigma` in `direction`. `follow` carries out an attempt and sets `begun`;
+/// `recorder` counts the returned attempt only. Failure: that of the last attempt.
 class LimitAttempts {
   public:
     using Follow = std::function<Result<Reached>(Attempt&)>;
-    /// All must outlive the attempts.
+    /// All arguments must outlive this object.
     LimitAttempts(Statics& statics, double sigma, int direction, Recorder& recorder, Follow follow)
         : statics_(statics), sigma_(sigma), direction_(direction), recorder_(recorder), follow_(std::move(follow)) {}
 

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// One piece of work after the other, beside the thread that submits them: private to the room.
+/// A queue of work that one other thread carries out in order: private to the room.
 
 #include "core/parallel.hpp"
 
@@ -14,13 +14,13 @@
 
 namespace isostat {
 
-/// Items are worked on in the order in which they were submitted, each after the one before: beside the caller where a
-/// thread is free, else when the caller asks. The first item without a result ends it: later ones are dropped.
-/// What is done, and with which results, does not depend on the number of threads.
+/// Items are worked on in the order in which they were submitted, one at a time: in another thread where one is free,
+/// else when the caller asks. The first item without a result ends the pipeline: later items are dropped. What is done,
+/// and with which results, does not depend on the number of threads.
 template <class Item, class Result> class Pipeline {
   public:
-    /// `work` must not touch what the caller uses meanwhile. At most `window` items wait; with 0 each is done when it
-    /// is submitted.
+    /// `work` must not touch data that the caller uses meanwhile. At most `window` items wait; with 0 each item is
+    /// finished when `submit` returns.
     Pipeline(std::function<std::optional<Result>(Item&)> work, std::size_t window)
         : work_(std::move(work)), window_(window) {}
     Pipeline(const Pipeline&) = delete;
@@ -46,16 +46,16 @@ template <class Item, class Result> class Pipeline {
             full = items_.size() > window_;
         }
         if (idle) {
-            server_.finish(); // it has nothing left to do
+            server_.finish(); // the task has no item left to work on
             server_ = Task([this] { serve(); });
         }
         if (full || threads() < 2) {
             server_.finish();
         }
     }
-    /// Waits until all is done that was submitted.
+    /// Waits until every submitted item is finished or dropped.
     void finish() { server_.finish(); }
-    /// The result of the next item, if it is there.
+    /// The result of the next item, if it is finished.
     std::optional<Result> next() {
         const std::scoped_lock lock(guard_);
         if (results_.empty()) {
@@ -65,12 +65,12 @@ template <class Item, class Result> class Pipeline {
         results_.pop_front();
         return result;
     }
-    /// Nothing more will be done.
+    /// No further item will be worked on.
     [[nodiscard]] bool ended() {
         const std::scoped_lock lock(guard_);
         return ended_;
     }
-    /// Items that were not begun are dropped; waits for the one that was.
+    /// Drops items that were not begun, and waits for the one that was.
     void drop() {
         {
             const std::scoped_lock lock(guard_);
@@ -122,7 +122,7 @@ template <class Item, class Result> class Pipeline {
     std::deque<Result> results_;
     bool busy_ = false;
     bool ended_ = false;
-    Task server_; ///< last: it uses the rest
+    Task server_; ///< last because it uses the other members
 };
 
 } // namespace isostat

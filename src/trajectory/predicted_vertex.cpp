@@ -35,7 +35,7 @@ PredictedVertex predict(const IsostaticStructure& from, const std::vector<int>& 
     const auto structure = IsostaticStructure::without_proof(*predicted.contacts);
     const Factorisation factorisation(structure, approximate.exchanged(predicted.contacts->slot(), h));
     predicted.force = on_dofs(load.external_force(end.end), structure.dofs());
-    // One pass mostly finds out which force is most negative.
+    // One pass mostly decides which force is most negative.
     factorisation.solve_forces_until(predicted.force, force, [](std::span<const double>, double) { return true; });
     predicted.passes = factorisation.passes();
     const std::size_t opens_next = most_negative(predicted.force, structure.contacts(), predicted.backbone);

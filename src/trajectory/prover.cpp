@@ -16,7 +16,7 @@ namespace isostat {
 
 namespace {
 
-/// Relative accuracy of forces on the way: what records say of them, and far more than most decisions need.
+/// Relative accuracy of forces during a rearrangement: enough for records, and more than most decisions need.
 constexpr double enough_to_decide = 1e-12;
 
 double size_of_work(const Load& load, const Vertex& from) {
@@ -27,21 +27,21 @@ double size_of_work(const Load& load, const Vertex& from) {
     return size;
 }
 
-/// Of the work of an arc under dead loads: a bound that a record should have (`record_tolerance`, proofs/checker.md,
-/// accepts some more).
+/// The bound for the work of an arc under dead loads that a record should have (`record_tolerance`, proofs/checker.md,
+/// accepts somewhat larger ones).
 double wanted_bound(const Load& load, const Vertex& from) {
     constexpr double enough = 4e-10;
     return enough * size_of_work(load, from);
 }
 
-/// As rounded coordinates tell, with the distance to what is proved of it; where that is too far, what is proved.
-/// `decrease`: of the potential, when the finite loads decided.
+/// The work from rounded coordinates, with its distance to the proved value as bound; the proved value where this
+/// distance is too large. `decrease`: of the potential, when the finite loads decided.
 void record_work(ArcRecord& record, const Vertex& from, const Vertex& to, const Load& load,
                  const std::optional<Enclosure>& decrease) {
     record.work = work_of(load, from.packing, to.packing).value;
     if (load.kind == LoadKind::nominal) {
         const Enclosure work = decrease ? *decrease : work_between(from, to, load);
-        // Where the sign took many digits: no finer than double-double, which whoever checks the record can confirm.
+        // Where the sign took many digits: no finer than double-double, in which a checker can confirm the record.
         const double size = size_of_work(load, from);
         if (std::abs(record.work - work.value) > wanted_bound(load, from)) {
             record.work = work.value;
@@ -51,8 +51,8 @@ void record_work(ArcRecord& record, const Vertex& from, const Vertex& to, const 
     }
 }
 
-/// Pairs that touch at the start of an arc and at its end: grains that make one body, and all when nothing moves, the
-/// contact that opens among them.
+/// Pairs that touch at both ends of an arc: grains that make one
+/// body; all pairs, with the contact that opens, when nothing moves.
 ZeroGaps touch_still(const Vertex& from, const ArcProposal& arc) {
     ZeroGaps still;
     for (const auto& pair : from.perturbed ? from.perturbed->zero : ZeroGaps()) {
@@ -66,8 +66,8 @@ ZeroGaps touch_still(const Vertex& from, const ArcProposal& arc) {
     return still;
 }
 
-/// A bound of a force that tells its sign, but that no record should have: `verify` accepts a thousandth of the largest
-/// force (`force_tolerance`, proofs/checker.md). Contacts that are nearly singular have such bounds in double.
+/// The bound of a force gives its sign, but is too wide for a record: `verify` accepts a thousandth of the largest
+/// force (`force_tolerance`, proofs/checker.md). Nearly singular contacts have such bounds in double.
 bool says_too_little(const Statics& statics, const Enclosure& f, double stress, bool infinitesimal) {
     constexpr double enough = 9e-4;
     if (!(f.radius > enough * std::abs(f.value))) {
@@ -87,8 +87,8 @@ bool overlaps_at_first_order(const Vertex& vertex) {
                                            [](const auto& pair) { return pair.second.negative(); });
 }
 
-/// The end as near its true vertex as the grid allows, where doubles left it farther away: the lists that follow at
-/// these coordinates may be nearly singular.
+/// The end moved to the grid point nearest to its true vertex, if it is
+/// farther away: later lists at these coordinates may be nearly singular.
 std::optional<Packing> nearer(const Vertex& vertex) {
     const double far = 64 * grid_step(vertex.packing);
     if (vertex.enclosure.distance() <= far) {
@@ -107,8 +107,8 @@ std::optional<Packing> nearer(const Vertex& vertex) {
     return at;
 }
 
-/// A grid that became coarser rounds what a held coordinate is counted from, or the coordinate: then it is held
-/// elsewhere at the end of the arc, and the end belongs to another curve.
+/// A coarser grid rounds a held coordinate, or the coordinate relative to which it is held: then it is held elsewhere
+/// at the end of the arc, and the end belongs to another curve.
 bool holds_elsewhere(const Vertex& from, const ArcProposal& arc) {
     const std::vector<Contact>& contacts = from.structure.contacts();
     const std::vector<double>& before = from.packing.q;
@@ -136,7 +136,7 @@ void ArcProof::count(const Decision& decision) {
 }
 
 void Prover::start_at(const Packing& packing, const std::shared_ptr<const RegularTriangulation>& near) {
-    if (candidates_.reference != packing.q || candidates_.contacts.empty()) { // else it would be the same list
+    if (candidates_.reference != packing.q || candidates_.contacts.empty()) { // otherwise the list would be the same
         candidates_ = find_candidates(packing, candidate_fraction, near ? near : candidates_.triangulation);
     }
     bounds_.forget();
@@ -155,7 +155,7 @@ LadderOptions Prover::ladder() const {
     LadderOptions options;
     if (options_->chooses()) {
         options.first_bits = 280;
-        options.max_bits = 1120; // tie_bits, and what a bad condition takes
+        options.max_bits = 1120; // tie_bits, and bits lost by a bad condition number
     }
     return options;
 }
@@ -183,7 +183,7 @@ ArcProof Prover::prove(const Vertex& from, ArcProposal arc, const Opening& openi
     record = arc.record;
     record.force = opening.force.value;
     record.force_bound =
-        record.kind == ArcKind::limit ? 0 : opening.force.radius; // the load is the one where it vanishes
+        record.kind == ArcKind::limit ? 0 : opening.force.radius; // the load is the one where the force vanishes
     record.margin = std::numeric_limits<double>::infinity();
     record.decided_by = Rung::combinatorial;
     proof.count({DecisionKind::opening, opening.margin, opening.rung, opening.perturbed});
@@ -211,7 +211,7 @@ ArcProof Prover::prove(const Vertex& from, ArcProposal arc, const Opening& openi
     return proof;
 }
 
-/// The vertex at the end, and no gap closed before.
+/// Proves the vertex at the end, and that no gap closed before.
 std::optional<Failure> Prover::reach(ArcProof& proof, const Vertex& from, ArcProposal& arc, const LimitLoad& at) {
     const auto at_end = [&](const Failure& failure) {
         return located(failure, words("at the end of the arc that opens {} and closes {}", named(proof.record.opened),
@@ -222,7 +222,7 @@ std::optional<Failure> Prover::reach(ArcProof& proof, const Vertex& from, ArcPro
                                                       "are held would change by a rounding"});
     }
     LadderOptions options = ladder();
-    options.first_accuracy = ties_->settles() ? 0 : enough_to_decide; // ties are told from zeros at full accuracy
+    options.first_accuracy = ties_->settles() ? 0 : enough_to_decide; // telling ties from zeros needs full accuracy
     auto made = Vertex::exchanged(from, arc, at.load, bounds_, options);
     if (!made.ok()) {
         if (from.perturbed && from.perturbed->statics.chooses() && !arc.stays) {
@@ -284,7 +284,7 @@ Result<std::shared_ptr<Vertex>> Prover::exchange(const Vertex& from, const ListE
     return proof.vertex;
 }
 
-/// Pairs that touch at the end, at first order.
+/// Judges pairs that touch at the end at first order.
 std::optional<Failure> Prover::arrive(ArcProof& proof, std::vector<TieDecision> settled, const Way& way,
                                       const Vertex::Gaps& gaps) const {
     if (!gaps.zero.empty()) {
@@ -316,7 +316,7 @@ std::optional<Failure> Prover::descend(ArcProof& proof, const Vertex& from, cons
                            recorded ? wanted_bound(load, from) : std::numeric_limits<double>::infinity());
     record_work(proof.record, from, to, load, opening.moves_rattlers() ? std::nullopt : std::optional(decrease));
     proof.descends = decrease.positive();
-    // A way of length O(eps) ends where it began: first-order terms decide there.
+    // An arc of length O(eps) ends where it began: first-order terms decide there.
     const bool at_once = from.perturbed && from.packing.q == to.packing.q;
     if (proof.descends || at_once) {
         return std::nullopt;
@@ -332,7 +332,7 @@ std::optional<Failure> Prover::descend(ArcProof& proof, const Vertex& from, cons
                   named(proof.record.opened), named(proof.record.closed), decrease.value, decrease.radius);
 }
 
-/// The load does no work on an arc of rattlers, or has not turned where a contact closes that bears force.
+/// The load does no work on an arc of rattlers; where a contact that bears force closes, its power has not turned.
 std::optional<Failure> Prover::work_of_load(const ArcProof& proof, const Opening& opening, double stress) {
     const Statics& statics = proof.vertex->statics;
     const ContactId slot = opening.contact;
@@ -347,7 +347,7 @@ std::optional<Failure> Prover::work_of_load(const ArcProof& proof, const Opening
         named(proof.record.opened), named(proof.record.closed));
 }
 
-/// F.t = f_c (G t)_c at the event, and the new gap closes: the power is positive there iff the new force is.
+/// F.t = f_c (G t)_c at the event, and the new gap closes, so the power is positive there iff the new force is.
 std::optional<Failure> Prover::power(ArcProof& proof, const Opening& opening, double stress) {
     Vertex& to = *proof.vertex;
     ArcRecord& record = proof.record;
@@ -408,7 +408,7 @@ std::optional<Failure> Prover::power(ArcProof& proof, const Opening& opening, do
 /// Level `arcs`: the certificate does not depend on how the arc was found, and an arc without one stays in the run.
 void Prover::certify(ArcProof& proof, const Vertex& from, const Opening& opening, const Load& load) const {
     const auto begin = std::chrono::steady_clock::now();
-    // Factors of its own: those of the run count their use, and only fresh ones leave what does not move at exactly 0.
+    // New factors: those of the run count their passes, and only fresh ones give exactly 0 for what does not move.
     const Vertex& to = *proof.vertex;
     const Factorisation first(from.structure);
     const Factorisation last(to.structure);
@@ -470,7 +470,7 @@ std::optional<ArcProof> ProofChain::prove(ArcProposal& arc) {
         return a.contact == b.contact && a.direction == b.direction && a.infinitesimal == b.infinitesimal;
     };
     if (!due_ || !same(*due_, arc.opening)) {
-        return std::nullopt; // it starts with what does not open
+        return std::nullopt; // it starts with another contact than the one that opens
     }
     const WorkCounts steering = arc.work;
     WorkCounts counts{};

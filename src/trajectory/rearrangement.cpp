@@ -13,7 +13,7 @@ namespace isostat {
 
 namespace {
 
-constexpr std::size_t most_exchanges = 1000; ///< of lists at one place
+constexpr std::size_t most_exchanges = 1000; ///< exchanges of lists at one configuration
 
 } // namespace
 
@@ -76,7 +76,7 @@ std::optional<Failure> Rearrangement::follow_arcs() {
         const int before = arcs_;
         proposed_ = 0;
         steered_to_.reset();
-        std::optional<Failure> failed; // to propose an arc
+        std::optional<Failure> failed; // why the next arc could not be proposed
         while (steering_->goes_on() && !failed && !proofs.ended() && !recorder_.stopped() &&
                before + proposed_ < options().max_arcs) {
             failed = propose(proofs);
@@ -87,7 +87,7 @@ std::optional<Failure> Rearrangement::follow_arcs() {
         Prover other = prover_.another();
         std::optional<EndProof> end;
         if (ahead_ && steered_to_ && !steered_to_->zero.fresh && !proofs.ended()) {
-            end = prove_end(other, std::move(*steered_to_)); // the proofs before it may say that the arcs end elsewhere
+            end = prove_end(other, std::move(*steered_to_)); // earlier proofs may still refuse this end
         }
         proofs.finish();
         if (auto failure = record(proofs)) {
@@ -121,7 +121,7 @@ std::optional<Failure> Rearrangement::cap() const {
     return std::nullopt;
 }
 
-/// From where the rearrangement stands, ahead of the proofs or not; then the list there may become another one.
+/// Begins at the current vertex, ahead of the proofs or not; the list there may be exchanged.
 void Rearrangement::begin_steering() {
     ahead_ = floats();
     const long step = recorder_.counters.steps + 1;
@@ -141,7 +141,7 @@ void Rearrangement::begin_steering() {
                                                   std::move(departure), options().step_fraction, prover_.candidates());
 }
 
-/// What becomes of pairs that touch, on a list with which the contact can open (C3): `here_` may get another one.
+/// What the touching pairs do, on a list with which the contact can open (C3): this may exchange the list of `here_`.
 Result<Departure> Rearrangement::depart() {
     if (!here_.vertex->perturbed || here_.vertex->perturbed->touching.empty()) {
         return Departure{};
@@ -166,7 +166,7 @@ Result<Departure> Rearrangement::depart() {
     }
 }
 
-/// The same place with another list.
+/// Exchanges the list at the same configuration.
 std::optional<Failure> Rearrangement::relist(const ListExchange& exchange) {
     auto next = prover_.exchange(*here_.vertex, exchange, at_);
     if (!next.ok()) {
@@ -269,14 +269,14 @@ auto Rearrangement::answer(const ArcProof* refused, bool proposed) const -> Answ
                                                                                     : Answer::refused;
 }
 
-/// `any`: arcs that were proposed before this one agreed.
+/// `any`: some arcs proposed before this one were proved.
 std::optional<Failure> Rearrangement::act(Answer answer, ArcProof* refused, const std::optional<Failure>& not_proposed,
                                           bool any) {
     if (refused != nullptr) {
         count_all(refused->work);
     }
     switch (answer) {
-    case Answer::agreed: steering_.reset(); return std::nullopt; // it was for one arc
+    case Answer::agreed: steering_.reset(); return std::nullopt; // bounded steering serves one arc
     case Answer::by_steps:
         here_.by_steps = !any;
         steering_.reset();
@@ -304,8 +304,8 @@ std::optional<Failure> Rearrangement::act(Answer answer, ArcProof* refused, cons
     return located(*refused->failure, where(arcs_ + 1));
 }
 
-/// It turned back where it stood, or went up: its multiplier is noise, and there is no descent. Released once more it
-/// would do so for ever.
+/// A released hold that was held again at once, or whose arc goes up, has a multiplier of 0 up to rounding, and no
+/// descent. Releasing it again would repeat this without end.
 std::optional<Failure> Rearrangement::set_aside(const ArcRecord& record) {
     here_.resting.push_back(here_.opening.contact);
     auto again = prover_.decide(*here_.vertex, at_.stress(), here_.zero_holds(), recorder_.counters.steps);
@@ -313,7 +313,7 @@ std::optional<Failure> Rearrangement::set_aside(const ArcRecord& record) {
         return located(again.failure(), where(arcs_ + 1));
     }
     const bool free = !here_.vertex->packing.bars.empty() && !holds_what_bears(*here_.vertex);
-    if (!again.value().opening && free) { // the motion is one of a clump, which does no work wherever it is held (U2)
+    if (!again.value().opening && free) { // a free motion of a clump, which does no work at any held value (U2)
         here_.zeros = again.value().zeros;
         ended_ = true;
         recorder_.count({DecisionKind::equilibrium, again.value().margin, again.value().rung, again.value().perturbed});
@@ -336,8 +336,8 @@ SteeredEnd Rearrangement::at_here() const {
     return {here_.vertex->packing, here_.vertex->structure.contacts(), here_.zero_holds(), {}};
 }
 
-/// The end is proved from nothing that the way to it left: full exact elimination, fresh factors and bound. A resumed
-/// run starts from the same bits.
+/// The proof of the end uses no data of the arcs: full exact elimination, fresh factors and bound. A resumed run
+/// therefore starts from the same bits.
 EndProof Rearrangement::prove_end(Prover& prover, SteeredEnd end) {
     EndProof proof;
     WorkCounts work{};

@@ -13,48 +13,48 @@
 
 namespace isostat {
 
-/// Where a rearrangement ended: an equilibrium, proved from nothing that the way to it left.
+/// Where a rearrangement ended: an equilibrium, proved without data of the arcs that led to it.
 struct Reached {
     EndProof proof;
     int arcs = 0;
 };
 
-/// Where a rearrangement stands, and what is known there.
+/// The current vertex of a rearrangement, and what is known there.
 struct Standing {
-    std::shared_ptr<Vertex> vertex; ///< the last one that was proved
-    Opening opening;                ///< what opens there
-    ArcKind kind = ArcKind::limit;  ///< of the arc that it begins
-    /// Why this one opens, and lists that were exchanged. Recorded with the arc.
+    std::shared_ptr<Vertex> vertex; ///< last proved vertex
+    Opening opening;                ///< what opens at `vertex`
+    ArcKind kind = ArcKind::limit;  ///< kind of the arc that this opening begins
+    /// Why this contact opens, and lists that were exchanged. Recorded with the arc.
     std::vector<TieDecision> settled{};
-    ContactId fresh_hold{};           ///< of the power turn that ended there
-    std::vector<ContactId> resting{}; ///< holds whose multipliers are 0 as far as their turns are located
+    ContactId fresh_hold{};           ///< held since the power turn that ended at `vertex`
+    std::vector<ContactId> resting{}; ///< holds with multiplier 0, up to the uncertainty of the place of their turns
     std::vector<ContactId> zeros{};   ///< forces of an equilibrium that vanish in the base
-    bool by_steps = false;            ///< the next arc must be proved before going on
+    bool by_steps = false;            ///< the next arc must be proved before another one is proposed
 
     [[nodiscard]] ZeroHolds zero_holds() const;
-    /// To what opens at `vertex`, of which nothing else is known.
+    /// Moves to `to`, where `opens` opens, and forgets what was known of the previous vertex.
     void move_to(std::shared_ptr<Vertex> to, const Opening& opens);
 };
 
 /// One rearrangement under a constant load (paper, section 2.3): a contact opens, the grains move until another one
-/// closes, and the contact with the largest traction opens next, until there is none. Every arc is *proposed* by a
-/// steering, *proved*, *recorded*, and its end *decides* what opens. Floating steering goes ahead of the proofs, by a
-/// window; where one does not agree the arc is proposed again by bounded steering, window 0. With first-order ties, and
-/// by rules whose choice steering does not resolve, bounded steering proposes every arc.
+/// closes, and the contact with the largest traction opens next, until no contact is in traction. Every arc is
+/// *proposed* by a steering, *proved*, *recorded*, and what opens at its end is *decided*. Floating steering goes ahead
+/// of the proofs by a window; an arc that is not proved is proposed again by bounded steering, window 0. With
+/// first-order ties, and by rules that floating steering cannot resolve, bounded steering proposes every arc.
 class Rearrangement {
   public:
     struct Start {
         std::shared_ptr<Vertex> vertex;
         Opening opening;
-        ArcKind kind = ArcKind::limit; ///< of the first arc
+        ArcKind kind = ArcKind::limit; ///< kind of the first arc
         LimitLoad at;
     };
-    /// All must outlive the rearrangement.
+    /// All arguments must outlive the rearrangement.
     Rearrangement(Start start, Prover& prover, Recorder& recorder);
 
-    /// Once.
+    /// To be called once.
     Result<Reached> run();
-    /// Recorded so far.
+    /// Number of arcs recorded so far.
     [[nodiscard]] int arcs() const { return arcs_; }
 
   private:
@@ -70,16 +70,16 @@ class Rearrangement {
     std::optional<Failure> record(Proofs& proofs);
     std::optional<Failure> decide(ArcProof& proof);
     [[nodiscard]] std::optional<Failure> flows(const ArcProof& proof) const;
-    /// What becomes of the last arc that was proposed.
+    /// What happens after the last proposed arc was judged.
     enum class Answer {
-        agreed,       ///< it is recorded: the next one begins at its end
-        by_steps,     ///< proposed ahead, in vain: it is proposed again, proved before anything follows
-        not_proposed, ///< the rearrangement ends: the arc was not followed to an end
+        agreed,       ///< the arc is recorded: the next one begins at its end
+        by_steps,     ///< an arc proposed ahead is not proved: bounded steering proposes it again
+        not_proposed, ///< the rearrangement ends: the arc could not be followed to its end
         revised,      ///< another proposal for the same arc
-        relisted,     ///< another list at its start, with which its end may be regular
-        next_unknown, ///< the rearrangement ends after it: what opens there is not decided
-        set_aside,    ///< a held coordinate that was released stays, and another opens
-        refused       ///< the rearrangement ends: it is not proved
+        relisted,     ///< another list at the start of the arc, with which its end may be regular
+        next_unknown, ///< the arc is recorded and the rearrangement ends: what opens next is undecided
+        set_aside,    ///< a released coordinate is held again, and another contact opens
+        refused       ///< the rearrangement ends: the arc is not proved
     };
     [[nodiscard]] Answer answer(const ArcProof* refused, bool proposed) const;
     std::optional<Failure> act(Answer answer, ArcProof* refused, const std::optional<Failure>& not_proposed, bool any);
@@ -96,11 +96,11 @@ class Rearrangement {
     Standing here_;
     std::vector<double> tilts_at_start_;
     int arcs_ = 0;
-    bool ended_ = false;                   ///< no force is negative where it is
-    bool ahead_ = false;                   ///< the steering goes ahead of the proofs
-    int proposed_ = 0;                     ///< arcs by it
-    std::unique_ptr<Steering> steering_;   ///< refers to `here_.vertex`
-    std::optional<SteeredEnd> steered_to_; ///< by `steering_`, if it came to an end
+    bool ended_ = false;                   ///< no force is negative at `here_`
+    bool ahead_ = false;                   ///< `steering_` goes ahead of the proofs
+    int proposed_ = 0;                     ///< number of arcs that `steering_` proposed
+    std::unique_ptr<Steering> steering_;   ///< uses `here_.vertex`
+    std::optional<SteeredEnd> steered_to_; ///< where `steering_` found no negative force
     std::optional<EndProof> end_;
 };
 

@@ -47,11 +47,11 @@ double virtual_power_error(const Vertex& vertex, double sigma) {
     return size > 0 ? std::abs(inner - outer) / size : std::abs(inner);
 }
 
-/// Relative error of a few operations in double-double, several times what it is.
+/// Bound of the relative error of a few operations in double-double, several times too large.
 constexpr double dd_rounding = 0x1p-96;
 constexpr double rounded_up = 1 + 0x1p-40; ///< covers the rounding of a bound
 
-/// As near to the true vertex as is known.
+/// The best enclosure that is known.
 VertexEnclosure at_true_vertex(const Vertex& vertex) {
     VertexEnclosure at = vertex.enclosure;
     if (at.correction.empty() && !at.step.empty() && at.step_radius < at.radius) {
@@ -65,7 +65,7 @@ VertexEnclosure at_true_vertex(const Vertex& vertex) {
     return at;
 }
 
-/// What is left out when `value` is shown as one double is part of the bound.
+/// The bound includes the part of `value` that one double cannot show.
 Enclosure shown(const dd_real& value, double error) {
     return {value.x[0], (error + std::abs(value.x[1])) * rounded_up};
 }
@@ -100,7 +100,7 @@ Enclosure strain_of(const TrueCoordinates& q, const Load& load, std::size_t axis
     return shown((at_rest - q[k]) / reference, (q.error(k) + rounding) / reference);
 }
 
-/// Of dead loads on the degrees of freedom; true stresses have none: an infinite bound.
+/// Potential of dead loads on the degrees of freedom; true stresses have no W: an infinite bound.
 void record_potential(EquilibriumRecord& record, const TrueCoordinates& q, const Load& load) {
     dd_real sum = 0.0;
     double error = load.kind == LoadKind::nominal ? 0 : std::numeric_limits<double>::infinity();
@@ -187,9 +187,9 @@ std::vector<double> finite_forces(const Vertex& vertex, const Load& load) {
     return forces;
 }
 
-/// An end of the supported interval that is known to `vague` only, relative to it or to the largest stress, is asked
-/// for again with more digits, until it is known to `sharp` or the ladder ends: where slopes are small, more are needed
-/// than the signs of the forces need.
+/// An end of the supported interval with a bound above `vague`, relative to the end or to the largest stress, is
+/// computed again with more digits, until the bound is below `sharp` or the ladder ends: small slopes need more digits
+/// than the signs of the forces.
 constexpr double vague = 1e-6;
 constexpr double sharp = 1e-10;
 
@@ -209,10 +209,10 @@ Result<LoadLimit> well_known_limit(Vertex& vertex, const Load& load, int directi
     for (double asked = vague; limit.ok() && worse_than(asked) && vertex.statics.climb(); asked = sharp) {
         const std::vector<TieDecision> log = side != nullptr ? side->log : std::vector<TieDecision>();
         if (side != nullptr) {
-            side->log.resize(settled); // the same question once more
+            side->log.resize(settled); // the same decision once more
         }
         auto again = find_limit(vertex.statics, sigma, direction, side);
-        if (!again.ok()) { // the vague answer is one
+        if (!again.ok()) { // then the vague end stays
             if (side != nullptr) {
                 side->log = log;
             }
@@ -223,14 +223,14 @@ Result<LoadLimit> well_known_limit(Vertex& vertex, const Load& load, int directi
     return limit;
 }
 
-/// Both ends of the supported interval.
+/// Decides both ends of the supported interval.
 std::optional<Failure> describe_limits(Description& description, Vertex& vertex, const Load& load) {
     constexpr Contact none{ContactKind::disk_disk, -1, -1};
     EquilibriumRecord& record = description.record;
     for (const int direction : {-1, +1}) {
         double& stress = direction > 0 ? record.stress_high : record.stress_low;
         Contact& opens = direction > 0 ? record.opens_high : record.opens_low;
-        if (holds_what_bears(vertex)) { // at this load only: the multiplier of what is held vanishes just here
+        if (holds_what_bears(vertex)) { // only at this load, where the multiplier of the held coordinate vanishes
             stress = load.loaded_stress();
             opens = none;
             continue;
@@ -253,13 +253,13 @@ std::optional<Failure> describe_limits(Description& description, Vertex& vertex,
 
 namespace {
 
-/// Bars do not count.
+/// Counts; bars do not count.
 void record_counts(EquilibriumRecord& record, const Vertex& vertex) {
     const auto& contacts = vertex.structure.contacts();
     const int bars = bar_count(contacts);
     record.dof_count = vertex.structure.size() - bars;
     record.contact_count = static_cast<int>(contacts.size()) - bars;
-    record.rank = record.dof_count; // what IsostaticStructure means
+    record.rank = record.dof_count; // proved by `IsostaticStructure`
     record.hyperstaticity = record.contact_count - record.rank;
     record.mechanisms = record.dof_count - record.rank;
     record.held = static_cast<int>(
@@ -299,8 +299,8 @@ Result<Description> describe(Vertex& vertex, const Load& load) {
     if (auto failure = describe_limits(description, vertex, load)) {
         return *failure;
     }
-    // After the limits: they may have climbed, and the bounds are then those of the better solution.
-    // No finer than double-double all the same: whoever checks the record can confirm that.
+    // After the limits, which may have climbed, so that the bounds are those of the better solution.
+    // But no finer than double-double, in which a checker can confirm the record.
     double largest = 0;
     for (std::size_t l = 0; l < contacts.size(); ++l) {
         largest = std::max(largest, std::abs(vertex.statics.force(ContactId(l), sigma).value));
@@ -345,7 +345,7 @@ std::optional<Failure> record_smallest_gap(EquilibriumRecord& record, const Vert
     };
     const std::vector<Contact>& contacts = vertex.structure.contacts();
     Enclosure gap = look(without(candidates.contacts, contacts, vertex.packing.disk_count()));
-    // Pairs that are not listed are further apart than that, or all are looked for.
+    // Pairs that are not listed are farther apart than that; otherwise all pairs are searched.
     if (!candidates.covers(vertex.packing, 0.5 * (gap.value + gap.radius) + 1.001 * at.distance())) {
         const OtherPairs others = other_pairs(vertex.packing, contacts);
         if (others.far()) {
@@ -354,7 +354,7 @@ std::optional<Failure> record_smallest_gap(EquilibriumRecord& record, const Vert
         }
         gap = look(others.near);
     }
-    const bool touches = !gap.positive(); // decided by more digits, or at first order: it is not negative
+    const bool touches = !gap.positive(); // decided by more digits, or at first order: not negative
     record.min_gap = touches ? 0 : gap.value;
     record.min_gap_bound = touches ? gap.value + gap.radius : gap.radius;
     return std::nullopt;

@@ -6,10 +6,10 @@
 
 namespace isostat {
 
-/// Counts what was decided, and tells the observer. For the thread that records only.
+/// Counts decisions and passes records to the observer. For the recording thread only.
 class Recorder {
   public:
-    /// All must outlive the recorder.
+    /// All arguments must outlive the recorder.
     Recorder(const RunOptions& asked, RunCounters& counted, RunObserver& told)
         : options(asked), counters(counted), observer(told) {}
 
@@ -19,10 +19,10 @@ class Recorder {
 
     [[nodiscard]] bool stopped() const { return options.stop != nullptr && options.stop->load(); }
     void count(const Decision& decision);
-    /// Its decisions.
+    /// Counts the decisions of the proof.
     void count(const ArcProof& proof);
-    /// An arc that happened: numbered, counted and shown. Failure: it rests on more choices than are left; it is not
-    /// recorded then.
+    /// Numbers, counts and shows a proved arc. Failure: the arc is
+    /// based on more choices than are left; then it is not recorded.
     std::optional<Failure> record(ArcProof& proof, int arc, double stress);
     /// Smallest margin and highest rung of the decisions since the last call, into the record of an equilibrium.
     void take_margin(EquilibriumRecord& record);

@@ -1,5 +1,5 @@
 #pragma once
-// When the factors that steer are made anew, and how: private to the room.
+// When and how the factors that steering uses are made anew: private to the room.
 
 #include "core/parallel.hpp"
 #include "linear/approximate_inverse.hpp"
@@ -11,12 +11,12 @@
 
 namespace isostat {
 
-/// When new factors are due: as soon as an arc costs more than the average since the last ones, their making included,
-/// which keeps that average smallest. What an arc costs is smoothed over a few: single ones cost twice as much as
-/// others. Counts passes, never seconds.
+/// New factors are due as soon as an arc costs more than the average since the last ones, including the cost of making
+/// factors, because this keeps the average smallest. The cost of an arc is smoothed over a few arcs, because single
+/// ones cost twice as much as others. Cost is counted in passes, never in seconds.
 class RefactorisationRule {
   public:
-    /// An arc that took so many passes of `inverse`.
+    /// Counts an arc that took `passes` of `inverse`.
     void add(int passes, const ApproximateInverse& inverse) {
         const double cost = passes * inverse.relative_cost();
         recent_ = arcs_ == 0 ? cost : recent_ + (cost - recent_) / smoothed_over;
@@ -35,10 +35,10 @@ class RefactorisationRule {
     int arcs_ = 0;
 };
 
-/// New factors made beside the arcs, which go on with the old ones meanwhile.
+/// New factors computed by another thread, while the arcs continue with the old ones.
 class Refactorisation {
   public:
-    /// Of the matrix that `old` stands for. Nothing when one is under way.
+    /// Begins factors of the matrix that `old` stands for. Does nothing when others are under way.
     void begin(const ApproximateInverse& old, std::shared_ptr<const sparse::Matrix<double>> matrix) {
         if (!factors_.pending()) {
             slots_.clear();
@@ -46,7 +46,7 @@ class Refactorisation {
             factors_ = Future<ApproximateInverse>([old, matrix = std::move(matrix)] { return old.renewed(*matrix); });
         }
     }
-    /// One more exchange: the new factors with all that they missed, when it is time to take them.
+    /// After an exchange: the new factors, with all exchanges that they missed, when it is time to take them.
     std::optional<ApproximateInverse> after(int slot, const sparse::Matrix<double>& matrix) {
         if (!factors_.pending()) {
             return std::nullopt;
@@ -65,12 +65,12 @@ class Refactorisation {
     }
 
   private:
-    /// A core makes the new factors while the other goes so far. By count of operations: when they are ready depends
-    /// on the machine, when they are taken must not.
+    /// One core makes the new factors while the other follows arcs. They are taken after a fixed number of operations,
+    /// because the time at which they are ready depends on the machine, and results must not.
     static constexpr double passes_beside_an_arc = 9;
     static constexpr int most_arcs_beside = 8;
     Future<ApproximateInverse> factors_;
-    std::vector<int> slots_; ///< exchanged since
+    std::vector<int> slots_; ///< slots exchanged since `begin`
     int arcs_left_ = 0;
 };
 

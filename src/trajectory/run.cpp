@@ -46,7 +46,7 @@ class Run {
     std::optional<Failure> first_equilibrium(const SegmentStart& start);
     std::optional<Failure> still_equilibrium();
     std::optional<Failure> reload();
-    /// True: the goal of the segment is reached.
+    /// True: the segment has reached its goal.
     Result<bool> next_equilibrium();
     Result<LoadLimit> find_limit();
     Result<bool> reach_stress(const LoadLimit& limit);
@@ -66,7 +66,7 @@ class Run {
     std::shared_ptr<Vertex> vertex_;
     EquilibriumRecord record_;                       ///< of `vertex_`
     std::array<std::optional<LoadLimit>, 2> limits_; ///< of `vertex_`, as `describe` found them
-    int made_ = -1; ///< equilibria of the segment; a start that is no equilibrium yet makes one that does not count
+    int made_ = -1; ///< equilibria of the segment; making the start an equilibrium does not count
 };
 
 SegmentOutcome Run::run() {
@@ -99,8 +99,8 @@ std::optional<Failure> Run::start() {
     return resumed() ? resume() : first_equilibrium(begun.value());
 }
 
-/// The same questions as when the equilibrium was found: the statics then stand on the same rung, and the run goes on
-/// with the same bits.
+/// Repeats the decisions made when the equilibrium was found: the statics
+/// are then on the same rung, and the run goes on with the same bits.
 std::optional<Failure> Run::resume() {
     if (auto failure = still_equilibrium()) {
         return failure;
@@ -114,7 +114,7 @@ std::optional<Failure> Run::resume() {
     return std::nullopt;
 }
 
-/// Rearranged at its own load where a force is negative.
+/// Rearranges the start at its own load where a force is negative.
 std::optional<Failure> Run::first_equilibrium(const SegmentStart& start) {
     recorder_.count({DecisionKind::gaps, start.gaps.margin, start.gaps.rung});
     auto decided = prover_.decide(*vertex_, sigma(), {}, 0);
@@ -134,7 +134,7 @@ std::optional<Failure> Run::first_equilibrium(const SegmentStart& start) {
     return report(0);
 }
 
-/// What the state stores says of `vertex_`; with first-order terms it must be an equilibrium again.
+/// Proves again what the state stores about `vertex_`; with first-order terms it must still be an equilibrium.
 std::optional<Failure> Run::still_equilibrium() {
     auto decision = prover_.ask_again(*vertex_, sigma());
     if (!ties_->settles() || (decision.ok() && !decision.value().opening)) {
@@ -145,7 +145,7 @@ std::optional<Failure> Run::still_equilibrium() {
                   decision.ok() ? Words() : words(": {}", decision.failure()));
 }
 
-/// The same vertex under another load, which is meant as it is stored.
+/// The same vertex under another load, whose stored stress is exact.
 std::optional<Failure> Run::reload() {
     ties_->load_is_stored();
     const auto touching = vertex_->perturbed->touching;
@@ -195,7 +195,7 @@ Result<bool> Run::next_equilibrium() {
     ties_->set_limit(at, *vertex_, limit.opens, limit.stress_error);
     ++counters_.equilibria;
     if (auto failure = rearrange(opening, ArcKind::limit, std::move(at))) {
-        --counters_.equilibria; // the steps stay counted: their records are written
+        --counters_.equilibria; // the steps stay counted, because their records are written
         counters_.seconds = elapsed();
         return *failure;
     }
@@ -203,9 +203,9 @@ Result<bool> Run::next_equilibrium() {
     return false;
 }
 
-/// Where the statics have climbed since `describe`, the same question has an answer with other bits; a resumed run,
-/// whose statics climb at other moments, must find the same. With first-order terms ties are written to the log once
-/// more.
+/// Where the statics have climbed since `describe`, the limit has other bits now;
+/// a resumed run, whose statics climb at other moments, must find the same limit
+/// as recorded. With first-order terms ties are written to the log once more.
 Result<LoadLimit> Run::find_limit() {
     if (vertex_->perturbed) {
         vertex_->perturbed->statics.log.clear();
@@ -217,7 +217,7 @@ Result<LoadLimit> Run::find_limit() {
     return isostat::find_limit(vertex_->statics, sigma(), segment_.direction, vertex_->first_order());
 }
 
-/// The stress that the segment is to reach, if it lies before the limit: an equilibrium of its own. True: it does.
+/// The stress that the segment is to reach, if it lies before the limit, is an equilibrium too. True: it was reached.
 Result<bool> Run::reach_stress(const LoadLimit& limit) {
     if (!segment_.to_stress) {
         return false;
@@ -301,7 +301,7 @@ std::optional<Failure> Run::report(int arcs, std::optional<Result<Description>> 
 
 namespace {
 
-/// Ties at first order are stated of single grains.
+/// First-order ties are only proved for single grains.
 void require_no_ties_of_clumps(const State& state, const RunOptions& options) {
     if (!state.packing.bars.empty() && options.at_first_order()) {
         throw Error(ErrorKind::bad_input, "state: a packing of clumps: expected ties = \"stop\"");
@@ -316,7 +316,7 @@ SegmentOutcome run_segment(State& state, const Segment& segment, int segment_num
     require_followed(state, "state");
     require_no_arcs(state.packing, "state", "a run");
     require_no_ties_of_clumps(state, options);
-    if (options.certify == CertifyLevel::arcs && state.load.path) { // the power of an arc takes stresses as stored
+    if (options.certify == CertifyLevel::arcs && state.load.path) { // the power of an arc uses stored stresses
         throw Error(ErrorKind::bad_input, "state: several stresses change together, and certify is arcs: expected "
                                           "decisions or states");
     }

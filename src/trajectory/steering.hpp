@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Who proposes the arcs of a rearrangement, and what is proposed: private to the room.
+/// The interface that proposes the arcs of a rearrangement, and the proposals: private to the room.
 
 #include "contact/candidates.hpp"
 #include "linear/approximate_inverse.hpp"
@@ -19,73 +19,73 @@
 
 namespace isostat {
 
-/// What an arc starts with.
+/// The start of an arc.
 struct ArcStart {
     Opening opening;
     ArcKind kind = ArcKind::limit;
     long step = 0; ///< number of the arc in the run
     const Load* load = nullptr;
-    std::vector<TieDecision> settled; ///< ties on the way to its opening
+    std::vector<TieDecision> settled; ///< ties settled between the previous arc and this opening
 };
 
-/// Of an arc that starts with an opening of a contact, but for the first one at a limit load.
+/// The kind of an arc that starts with an opening of a contact, except the first arc at a limit load.
 ArcKind kind_of(const Contact& opened, bool infinitesimal);
 
-/// Whose power an arc follows. That of a load that does no work at first order grows from 0.
+/// The load whose power an arc follows. The power of a load that does no work at first order grows from 0.
 inline PowerLoad power_load(const Load& load, const Opening& opening, ArcKind kind) {
     return {&load, opening.moves_rattlers(), kind == ArcKind::limit || opening.bears};
 }
 
-/// Where steering found no negative force. Nothing is proved of it.
+/// An end at which steering found no negative force. Nothing is proved of this end.
 struct SteeredEnd {
     Packing packing;
     std::vector<Contact> contacts;
-    ZeroHolds zero; ///< what is held at the power turn where the last arc ended, or turned back where it stood
-    std::shared_ptr<const RegularTriangulation> triangulation; ///< of a configuration near
+    ZeroHolds zero;                                            ///< holds whose multipliers are 0 at this end
+    std::shared_ptr<const RegularTriangulation> triangulation; ///< triangulation of a nearby configuration
 };
 
-/// An arc that was followed, and its end. A guess in every part: a prover says what is true of it.
+/// An arc that was followed, and its end. Every part is a guess, which a prover proves or refutes.
 struct ArcProposal {
-    ArcRecord record; ///< as far as the path tells
-    Opening opening;  ///< that it starts with
+    ArcRecord record; ///< what the followed path determines
+    Opening opening;  ///< the opening at its start
     Packing end;
-    std::vector<double> tangent;                   ///< there, on coordinates
-    std::optional<ExchangedContacts> contacts;     ///< there; none: structurally singular
-    std::optional<ApproximateInverse> approximate; ///< of their matrix
-    std::vector<double> forces;                    ///< the finite ones; empty: not known
+    std::vector<double> tangent;                   ///< tangent at the end, on coordinates
+    std::optional<ExchangedContacts> contacts;     ///< contacts at the end; absent: structurally singular
+    std::optional<ApproximateInverse> approximate; ///< approximate inverse of their matrix
+    std::vector<double> forces;                    ///< finite forces at the end; empty: not known
     double cost_before = 0;                        ///< see `Vertex`
-    bool ahead = false;                            ///< nothing is proved of its start either
+    bool ahead = false;                            ///< the start of the arc is not proved either
     /// With first-order terms:
-    bool stays = false;                 ///< the way is of length O(eps)
-    bool relists = false;               ///< only the list changes, and pairs that touch may overlap at first order
-    std::vector<Contact> resting;       ///< pairs that touch all along
-    std::vector<Contact> taken_to_rest; ///< pairs that seem to: the gaps at the end tell
-    std::vector<TieDecision> settled;   ///< ties at the start of the way
-    std::optional<SteeredEnd> last;     ///< no force is negative at the end
-    WorkCounts work{};                  ///< to be counted when it is recorded
+    bool stays = false;                 ///< the path is of length O(eps)
+    bool relists = false;               ///< only the list changes; pairs that touch may overlap at first order
+    std::vector<Contact> resting;       ///< pairs that touch all along the path
+    std::vector<Contact> taken_to_rest; ///< pairs assumed to touch; the gaps at the end decide
+    std::vector<TieDecision> settled;   ///< ties at the start of the path
+    std::optional<SteeredEnd> last;     ///< filled when no force is negative at the end
+    WorkCounts work{};                  ///< counted when the arc is recorded
 };
 
 struct ArcProof;
 
-/// Proposes arc after arc. The two kinds differ in what a proposal starts from:
-/// - `BoundedSteering`: a vertex that is proved, and the opening that was proved to be the one; it knows the next arc
-///   only when the end of this one is proved. Finds what is there, ties included, or says why not;
-/// - `FloatingSteering`: the end of the proposal before, as refined double precision knows it. Goes ahead of every
-///   proof; *no rank, no sign and no order of what it proposes is proved or even bounded*, and one that took a wrong
-///   turn does not know.
+/// Proposes arc after arc. The two kinds start from different data:
+/// - `BoundedSteering`: a proved vertex and its proved opening; the next arc is known only when the end of this one is
+///   proved. Finds the true next contact, ties included, or says why not;
+/// - `FloatingSteering`: the end of the previous proposal in refined double precision.
+///   Goes ahead of every proof; *no rank, sign or order that it proposes is proved or
+///   even bounded*, and it does not notice when a proposal leaves the true path.
 class Steering {
   public:
     Steering() = default;
     Steering(const Steering&) = delete;
     Steering& operator=(const Steering&) = delete;
     virtual ~Steering() = default;
-    /// It knows what the next arc starts with.
+    /// Whether the start of the next arc is known.
     [[nodiscard]] virtual bool goes_on() const = 0;
     /// The next arc. \pre goes_on(). Failures: those of `follow_arc`, and what each kind adds.
     virtual Result<ArcProposal> propose() = 0;
-    /// The last proposal was refused: whether there is another one for the same arc.
+    /// The last proposal was refused: whether the steering has another one for the same arc.
     [[nodiscard]] virtual bool may_revise(const ArcProof& /*refused*/) const { return false; }
-    /// It comes next. \pre may_revise
+    /// Makes that one the next proposal. \pre may_revise
     virtual void revise(const ArcProof& /*refused*/) {}
 };
 

@@ -30,7 +30,7 @@ Vertex::Vertex(Packing p, IsostaticStructure s, ApproximateInverse approximate, 
 
 namespace {
 
-/// Bounds of a vertex ask for exact differences (proofs/cells.md, C2), and for entries of the contact matrix that are
+/// Bounds of a vertex need exact differences (proofs/cells.md, C2), and entries of the contact matrix that are
 /// multiples by a power of two.
 std::optional<Failure> is_not_exact(const Packing& packing, const std::vector<Contact>& contacts) {
     const auto far =
@@ -101,7 +101,7 @@ Result<std::unique_ptr<Vertex>> Vertex::make(Beginning beginning, const Load& lo
         return proved.failure();
     }
     vertex->structure = std::move(proved.value());
-    if (vertex->inverse.verdict != Verdict::proved) { // small structures: with as many bits as it takes
+    if (vertex->inverse.verdict != Verdict::proved) { // small structures: with as many bits as needed
         vertex->inverse = bound_inverse_multiprecision(vertex->packing, vertex->structure);
         vertex->enclosure = enclose_vertex(vertex->packing, vertex->structure, vertex->factorisation, vertex->inverse);
     }
@@ -122,10 +122,10 @@ Result<std::unique_ptr<Vertex>> Vertex::exchanged(const Vertex& from, ArcProposa
     std::vector<Contact> contacts = from.structure.contacts();
     contacts[arc.opening.contact.index()] = arc.record.closed;
     options.first_accuracy = 0;
-    return make(arc.end, std::move(contacts), load, cache, options); // it says what is wrong
+    return make(arc.end, std::move(contacts), load, cache, options); // this gives the reason for a failure
 }
 
-/// Nothing when no bound was proved in doubles.
+/// Null when no bound was proved in doubles.
 Result<std::unique_ptr<Vertex>> Vertex::prove(const Vertex& from, ArcProposal& arc, const Load& load,
                                               InverseBoundCache& cache, LadderOptions options) {
     std::vector<double> mechanism(static_cast<std::size_t>(from.structure.size()), 0.0);
@@ -152,13 +152,13 @@ Result<std::unique_ptr<Vertex>> Vertex::prove(const Vertex& from, ArcProposal& a
 
 namespace {
 
-/// Null: it is not among them.
+/// Null: the contact is not among the pairs.
 const ZeroGaps::value_type* find(const ZeroGaps& pairs, const Contact& contact) {
     const auto pair = std::find_if(pairs.begin(), pairs.end(), [&](const auto& zero) { return zero.first == contact; });
     return pair == pairs.end() ? nullptr : &*pair;
 }
 
-/// A candidate with an image that is farther away than the grid allows for (C2).
+/// A candidate with an image that is farther away than the grid allows (C2).
 std::optional<Failure> too_far(const Packing& packing, const std::vector<Contact>& candidates) {
     const auto far = packing.cell.any() ? std::find_if(candidates.begin(), candidates.end(),
                                                        [](const Contact& c) { return is_beyond(c, farthest_image); })
@@ -216,7 +216,7 @@ Result<Vertex::Gaps> Vertex::check_gaps(CandidateList& candidates, KeptCandidate
 
 std::optional<Failure> Vertex::settle_gaps(const std::vector<Contact>& doubtful, const ZeroGaps* known,
                                            Gaps& gaps) const {
-    const auto told = [known](const Contact& contact) { // that it touches
+    const auto told = [known](const Contact& contact) { // the pair is known to touch
         return known == nullptr ? nullptr : find(*known, contact);
     };
     std::vector<Contact> asked;

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A vertex with everything that is known of it: private to the room.
+/// A vertex with everything that is known about it: private to the room.
 
 #include "contact/candidates.hpp"
 #include "statics/decisions.hpp"
@@ -18,38 +18,38 @@
 
 namespace isostat {
 
-/// Pairs whose gaps are 0, and how that was found.
+/// Pairs whose gaps are 0, each with the evidence for 0.
 using ZeroGaps = std::vector<std::pair<Contact, Order>>;
 
 /// The first-order side of a vertex whose radii are R_i + eps rho_i.
 struct FirstOrderVertex {
-    /// `rate`: first-order term of the stress. `choose`: what first-order terms do not tell is chosen (C1).
+    /// `rate`: first-order term of the stress. `choose`: what first-order terms leave open is chosen (C1).
     FirstOrderVertex(FirstOrder terms, Statics& forces, const Load& load, const Enclosure& rate, bool choose)
         : first(std::move(terms)), statics(first, forces, load, rate, choose), stress_rate(rate) {}
     FirstOrder first;
-    const std::vector<double>* rho = nullptr; ///< its direction
+    const std::vector<double>* rho = nullptr; ///< direction of the radii
     PerturbedStatics statics;                 ///< refers to `first`
     Enclosure stress_rate;
     /// Pairs that touch in the base without being contacts, with their first-order gaps, proved positive; where ties
-    /// are chosen, not proved negative.
+    /// are chosen, only not proved negative.
     std::vector<std::pair<Contact, Enclosure>> touching;
-    /// The same pairs, with what says that they touch: where grains do not move against each other it is said once.
+    /// The same pairs with the evidence that they touch; pairs that do not move relative to each other have one entry.
     ZeroGaps zero;
-    std::vector<ContactId> zeros; ///< of an equilibrium: forces that vanish in the base, as `OpeningDecision` says
+    std::vector<ContactId> zeros; ///< of an equilibrium: forces that vanish in the base, see `OpeningDecision`
 };
 
 struct ArcProposal;
 
-/// Configuration, proved structure, factors, bounds and statics of one vertex. Not movable: the parts refer to each
-/// other.
+/// Configuration, proved structure, factors, bounds and statics of one vertex. Not movable:
+/// the parts refer to each other.
 class Vertex {
   public:
     /// Proves the rank, factorises, bounds the inverse, solves the statics and encloses the true vertex.
-    /// Failures: `not_isostatic`; `undecided` when no bound of the inverse or no true vertex near the stored one was
-    /// proved.
+    /// Failures: `not_isostatic`; `undecided` when no bound of the inverse or no true vertex
+    /// near the stored one was proved.
     static Result<std::unique_ptr<Vertex>> make(Packing packing, std::vector<Contact> contacts, const Load& load,
                                                 InverseBoundCache& cache, LadderOptions options = {});
-    /// The same in two steps: what a motion from the vertex needs, of which nothing is proved, and the proofs.
+    /// `make` in two steps: the unproved data that a motion from the vertex needs, then the proofs.
     struct Beginning {
         Packing packing;
         RankProof rank;
@@ -60,8 +60,8 @@ class Vertex {
                                                 LadderOptions options = {});
     /// The vertex at the end of a proposed arc: one contact of `from` exchanged. The regularity of the new structure
     /// and the bound of its inverse are proved together, by the cheapest of: the bound of `from` carried over (V8), a
-    /// Cholesky factorisation (V1), everything anew as in `make`. What the proposal brings are guesses, all but the
-    /// configuration and the contacts; what is used is taken out of it.
+    /// Cholesky factorisation (V1), everything anew as in `make`. All parts of the proposal except the configuration
+    /// and the contacts are treated as guesses; parts that are used are moved out of it.
     static Result<std::unique_ptr<Vertex>> exchanged(const Vertex& from, ArcProposal& arc, const Load& load,
                                                      InverseBoundCache& cache, LadderOptions options);
     Vertex(const Vertex&) = delete;
@@ -73,40 +73,40 @@ class Vertex {
     InverseBound inverse;
     VertexEnclosure enclosure;
     Statics statics;
-    LadderOptions ladder;   ///< of signs that must climb
-    double cost_before = 0; ///< of the vertices since the factorisation, in passes of fresh factors, without this one
+    LadderOptions ladder;   ///< precisions for signs that must climb
+    double cost_before = 0; ///< cost of the earlier vertices since the factorisation, in passes of fresh factors
 
     /// Signs of the gaps of all candidates at the true vertex.
     struct Gaps {
         double margin = 0;
         Rung rung = Rung::double_bound;
-        std::optional<Contact> negative; ///< proved to overlap: it closed before
-        ZeroGaps zero;                   ///< only when asked for: ties
+        std::optional<Contact> negative; ///< a pair proved to overlap, so it closed earlier
+        ZeroGaps zero;                   ///< ties, only when they were asked for
     };
-    /// Gaps of all pairs that are not contacts, at the true vertex: `candidates` is made anew when it is not complete
-    /// there (T6). Climbs to double-double when needed. Failure: `tie`, naming the candidates whose gaps are 0 to the
-    /// precision reached.
-    /// With `known` they are returned instead; `undecided` when too few bits say that a gap is 0. Not asked again of
-    /// pairs that are known to touch.
-    /// `kept`: for the next vertices with the same list.
+    /// Signs of the gaps of all pairs that are not contacts, at the true vertex:
+    /// `candidates` is made anew when it is not complete there (T6). Climbs to double-double
+    /// when needed. Failure: `tie`, naming the candidates whose gaps are 0 to the precision
+    /// reached. With `known` these candidates are returned instead, or `undecided` when too
+    /// few bits say that a gap is 0; pairs in `known` are taken to touch without a
+    /// computation. `kept`: flags that serve the next vertices with the same list.
     Result<Gaps> check_gaps(CandidateList& candidates, KeptCandidates& kept, const ZeroGaps* known = nullptr);
 
-    /// Under `ties = "choose"` only.
+    /// Filled under `ties = "choose"` only.
     std::unique_ptr<FirstOrderVertex> perturbed;
     [[nodiscard]] PerturbedStatics* first_order() { return perturbed ? &perturbed->statics : nullptr; }
 
   private:
-    /// Nothing is proved unless the proof is concluded.
+    /// The vertex counts as proved only after `RankProof` is concluded.
     Vertex(Packing p, RankProof& proof, Factorisation factors, const Load& load, InverseBoundCache& cache,
            LadderOptions options);
     Vertex(Packing p, IsostaticStructure s, ApproximateInverse approximate, const InverseBound& bound, const Load& load,
            StaticsHints hints);
     static Result<std::unique_ptr<Vertex>> prove(const Vertex& from, ArcProposal& arc, const Load& load,
                                                  InverseBoundCache& cache, LadderOptions options);
-    /// Signs of the gaps that double-double left open, with as many bits as the ladder has, put into `gaps`; or the
-    /// tie.
+    /// Puts into `gaps` the signs that double-double left open,
+    /// computed with as many bits as the ladder has. Failure: the tie.
     std::optional<Failure> settle_gaps(const std::vector<Contact>& doubtful, const ZeroGaps* known, Gaps& gaps) const;
-    /// What every vertex needs, or why not.
+    /// The first proof that every vertex needs and this one lacks; nothing: it lacks no proof.
     std::optional<Failure> lacking();
 };
 

@@ -1,6 +1,6 @@
 #pragma once
-// The number types of the rungs, with the error that is granted to one of their operations: private to the room and to
-// the certificate.
+// The number types of the rungs, with bounds of the errors of
+// their operations: private to the room and to the certificate.
 
 #include "verified/upper_bound.hpp"
 
@@ -14,12 +14,12 @@
 
 namespace isostat {
 
-/// `unit`: a sum of two numbers errs by at most unit (|a| + |b|), a product, a quotient or a root by unit times the
-/// result. `difference` of two doubles errs by at most unit times the result,
-/// `product` of three by twice that. `Bound`: upper bounds, in a
-/// range that the type does not leave. `corrections`, `refinements`: caps of the iterations, which stop by themselves
-/// at the rounding of the type. `size`: a bound of |x|; `about`: |x| as rounded, where a bound counts 2 % more anyway.
-/// `scaled`: x 2^-exponent in double; `number`: the inverse.
+/// `unit`: the error of a sum of two numbers is at most unit (|a| + |b|), that of a product, a
+/// quotient or a root unit times the result. `difference` of two doubles errs by at most unit
+/// times the result, `product` of three by twice that. `Bound`: the type of upper bounds, in a
+/// range that they never leave. `corrections`, `refinements`: caps of iterations, which stop
+/// earlier at the rounding of the type. `size`: a bound of |x|; `about`: |x| rounded, for bounds
+/// that have 2 % to spare. `scaled`: x 2^-exponent in double; `number`: the inverse of `scaled`.
 template <class T> class Arithmetic;
 
 /// Doubles and pairs of doubles: `Bound` and all exponents are those of double.
@@ -44,8 +44,8 @@ template <> class Arithmetic<double> : public ArithmeticOfDoubles<double> {
     static double rounded(double x) { return x; }
 };
 
-/// libqd: its own bounds are 2^-103 for a (sloppy) sum and 2^-102 for products; differences and products of two doubles
-/// are exact.
+/// libqd: its own bounds are 2^-103 for a (sloppy) sum and 2^-102
+/// for products; differences and products of two doubles are exact.
 template <> class Arithmetic<dd_real> : public ArithmeticOfDoubles<dd_real> {
   public:
     static constexpr Rung rung = Rung::double_double;
@@ -57,7 +57,7 @@ template <> class Arithmetic<dd_real> : public ArithmeticOfDoubles<dd_real> {
     static double rounded(const dd_real& x) { return x.x[0]; }
 };
 
-/// MPFR with any number of bits from 128 on, rounded to nearest; exponents have no limit to speak of.
+/// MPFR with any number of bits from 128 on, rounded to nearest; the range of its exponents is never left.
 template <> class Arithmetic<Real> {
   public:
     using Bound = UpperBound;
@@ -79,7 +79,7 @@ template <> class Arithmetic<Real> {
     static double rounded(const Real& x) { return x.nearest(); }
     static UpperBound about(const Real& x) { return UpperBound::magnitude(x); }
     static UpperBound size(const Real& x) { return UpperBound::magnitude(x); }
-    /// Of the largest.
+    /// The exponent of the largest number.
     static long exponent_of(const std::vector<Real>& x) {
         bool any = false;
         long largest = 0;
@@ -101,10 +101,10 @@ template <> class Arithmetic<Real> {
     int bits_;
 };
 
-inline constexpr double sum_slack = 1 + 1e-10; ///< of sums of up to 10^6 non-negative terms and their roots (B1)
+inline constexpr double sum_slack = 1 + 1e-10; ///< for sums of up to 10^6 non-negative terms and their roots (B1)
 
-/// Upper bound of the 2-norm of numbers >= 0; scaled, so that tiny ones are not lost to underflow. A NaN stays one and
-/// proves nothing.
+/// Upper bound of the 2-norm of numbers >= 0; scaled, so that tiny
+/// numbers do not underflow. A NaN stays NaN, and proves nothing.
 template <class Bound> Bound norm_of_bounds(const std::vector<Bound>& x) {
     const Bound largest = x.empty() ? Bound(0) : *std::max_element(x.begin(), x.end());
     Bound square(0);

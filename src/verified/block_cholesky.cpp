@@ -20,9 +20,9 @@ namespace {
 using roundoff::gamma;
 using roundoff::u;
 
-/// An order of the rows, with the one that only fills up the last block. Without dissection the pairs of successive
-/// rows stay together, and AMD takes those that share a contact: columns of a symmetric pattern, both halves, with
-/// repetitions.
+/// An order of the rows, with the row that only fills up the last block. Without dissection the two rows of a block
+/// stay together, and AMD is given the pairs of blocks that share a contact: columns of a symmetric pattern, both
+/// halves, with repetitions.
 std::vector<int> little_fill(const sparse::Matrix<double>& h, std::size_t blocks) {
     if (sparse::worth_dissection(h.rows, h.entries())) {
         std::vector<int> rows = sparse::dissection_of_products(h.rows, h.start, h.row);
@@ -65,7 +65,7 @@ std::vector<int> little_fill(const sparse::Matrix<double>& h, std::size_t blocks
 } // namespace
 
 void BlockCholesky::set(const sparse::Matrix<double>& h, FillOrder& order) {
-    constexpr double outgrown = 1.2; // new contacts join parts that the order keeps apart: the work grows
+    constexpr double outgrown = 1.2; // new contacts join parts that the order keeps apart, so the work grows
     h_ = &h;
     blocks_ = (static_cast<std::size_t>(h.rows) + 1) / 2;
     const bool known = order.rows.size() == 2 * blocks_;
@@ -86,7 +86,7 @@ void BlockCholesky::arrange(const std::vector<int>& order) {
         position_[static_cast<std::size_t>(order[k])] = static_cast<int>(k);
     }
     diagonal_.assign(blocks_, Block{});
-    if (h_->rows % 2 != 0) { // the last row is not there: coupled to nothing
+    if (h_->rows % 2 != 0) { // the last row only fills up its block: it is coupled to nothing
         const auto last = static_cast<std::size_t>(position_.back());
         diagonal_[last / 2].value[3 * (last % 2)] = 1;
     }
@@ -94,14 +94,14 @@ void BlockCholesky::arrange(const std::vector<int>& order) {
     column_start_.assign(blocks_ + 1, 0);
     row_start_.assign(blocks_ + 1, 0);
     const auto contacts = static_cast<std::size_t>(h_->cols);
-    // Of two spheres and the coordinates of a cell, each perhaps in a block of its own.
+    // Two spheres and the coordinates of a cell, each perhaps in a block of its own.
     std::array<Part, 2 * most_axes + most_axes + most_tilts> parts;
     for (std::size_t l = 0; l < contacts; ++l) {
         std::size_t count = 0;
         std::size_t part = 0;
         for (auto e = static_cast<std::size_t>(h_->start[l]); e < static_cast<std::size_t>(h_->start[l + 1]); ++e) {
             const int at = position_[static_cast<std::size_t>(h_->row[e])];
-            if (count == 0 || parts[part].place != at / 2) { // mostly those of one block follow each other
+            if (count == 0 || parts[part].place != at / 2) { // entries of one block mostly follow each other
                 part = 0;
                 while (part < count && parts[part].place != at / 2) {
                     ++part;
@@ -156,7 +156,7 @@ void BlockCholesky::analyse() {
     constexpr int none = -1;
     struct Column {
         int parent = none;
-        int seen = none; ///< the last row that has it
+        int seen = none; ///< the last row found to have this column
         int count = 0;
     };
     std::vector<Column> columns(blocks_);
@@ -190,7 +190,7 @@ void BlockCholesky::analyse() {
         next_[j] = start_[j];
         start_[j + 1] = start_[j] + columns[j].count;
     }
-    if (row_.size() < entries) { // never made smaller: the memory serves the next matrix
+    if (row_.size() < entries) { // the arrays never shrink: their memory serves the next matrix
         row_.resize(entries);
         across_.resize(entries);
         value_.resize(entries);
@@ -199,7 +199,7 @@ void BlockCholesky::analyse() {
     int* const row = row_.data();
     int* const across = across_.data();
     const int* const column = column_.data();
-    for (std::size_t i = 0; i < blocks_; ++i) { // rows come in ascending order
+    for (std::size_t i = 0; i < blocks_; ++i) { // rows are entered in ascending order
         const auto end = static_cast<std::size_t>(across_start_[i + 1]);
         for (auto a = static_cast<std::size_t>(across_start_[i]); a < end; ++a) {
             const int place = next[column[a]]++;
@@ -209,18 +209,18 @@ void BlockCholesky::analyse() {
     }
 }
 
-/// Arrays of a factorisation: not read through `this`, which every store might change.
+/// Arrays of a factorisation, not read through `this` because every store might change `this`.
 struct BlockCholesky::Arrays {
     Block* value;
-    Block* work; ///< the column in work
-    int* place;  ///< of each row in it
+    Block* work; ///< the column that is worked on
+    int* place;  ///< of each row in `work`
     const int* start;
     const int* row;
     const int* column;
     const int* across;
 };
 
-/// Column j of H H^T - shift I, scattered; returns how many blocks L has below the diagonal.
+/// Scatters column j of H H^T - shift I into `work`; returns how many blocks L has below the diagonal.
 inline std::size_t BlockCholesky::load_column(const Arrays& at, std::size_t j, double shift) const {
     const auto begin = static_cast<std::size_t>(at.start[j]);
     const auto count = static_cast<std::size_t>(at.start[j + 1]) - begin;
@@ -245,8 +245,8 @@ inline std::size_t BlockCholesky::load_column(const Arrays& at, std::size_t j, d
     return count;
 }
 
-/// work -= m l^T for the columns of row j, in the order of the scalar operations: the bits do not depend on the width.
-/// Two columns at a time when one is the parent of the other and has as many rows left: it has the same rows then.
+/// work -= m l^T for the columns of row j, in the order of the scalar operations, so that the bits do not depend on the
+/// width. Takes two columns at once when one is the parent of the other and has as many rows left: the same rows.
 ISOSTAT_WITHIN_WIDE void BlockCholesky::subtract_columns(const Arrays& at, std::size_t begin, std::size_t end) {
     Block* const value = at.value;
     Block* const work = at.work;
@@ -348,7 +348,7 @@ double BlockCholesky::error_bound(double shift) const {
     double trace = 0;
     for (std::size_t i = 0; i < n; ++i) {
         const auto block = static_cast<std::size_t>(position_[i] / 2);
-        const int row_of_l = 2 * (across_start_[block + 1] - across_start_[block] + 1); // zeros in blocks counted too
+        const int row_of_l = 2 * (across_start_[block + 1] - across_start_[block] + 1); // with the zeros in blocks
         relative[i] = gamma(entries[i] + row_of_l + 4.0);
         trace += relative[i] * (2 * diagonal[i] + shift);
     }
@@ -368,8 +368,8 @@ double BlockCholesky::error_bound(double shift) const {
     return sum * 1.01 + 1e-290; // 1.01: second order in gamma and the rounding of this sum; 1e-290: underflow
 }
 
-/// Largest (M x)_k / x_k for M = D^1/2 (|B||B|^T + s + |L||L|^T) D^1/2, D = diag(gamma_{t_k}), x > 0: above the norm of
-/// M, and less than its trace by about the number of rows. Leaves M x, scaled, in x: the next ratio is nearer the norm.
+/// Largest (M x)_k / x_k, x > 0, for M = D^1/2 (|B||B|^T + s + |L||L|^T) D^1/2, D = diag(gamma_{t_k}): above |M|, and
+/// below its trace by about the number of rows. Leaves M x, scaled, in x, so that the next ratio is nearer |M|.
 double BlockCholesky::largest_ratio(const std::vector<double>& relative, double shift, std::vector<double>& x) const {
     const sparse::Matrix<double>& h = *h_;
     std::vector<double> y(x.size()); // D^1/2 x
@@ -385,7 +385,7 @@ double BlockCholesky::largest_ratio(const std::vector<double>& relative, double 
             of_b[static_cast<std::size_t>(h.row[e])] += std::abs(h.value[e]) * sum;
         }
     }
-    // y, block by block; 0 for the row that only fills up the last one.
+    // y by blocks, with 0 for the row that only fills up the last block.
     std::vector<std::array<double, 2>> weight(blocks_, {0.0, 0.0});
     for (std::size_t i = 0; i < y.size(); ++i) {
         const auto at = static_cast<std::size_t>(position_[i]);
@@ -418,7 +418,7 @@ double BlockCholesky::largest_ratio(const std::vector<double>& relative, double 
         const auto at = static_cast<std::size_t>(position_[i]);
         const double l = of_l[at / 2][at % 2];
         const double image = std::sqrt(relative[i]) * (of_b[i] + shift * y[i] + l);
-        if (!std::isfinite(image)) { // maxima do not see a NaN
+        if (!std::isfinite(image)) { // a maximum overlooks a NaN
             return std::numeric_limits<double>::infinity();
         }
         largest = std::max(largest, image / x[i]);
@@ -426,7 +426,7 @@ double BlockCholesky::largest_ratio(const std::vector<double>& relative, double 
         largest_x = std::max(largest_x, image);
     }
     for (double& c : x) {
-        c = std::max(c / largest_x, 1e-9); // any x > 0 will do: ratios must not over- or underflow
+        c = std::max(c / largest_x, 1e-9); // any x > 0 gives a bound; the ratios must not over- or underflow
     }
     return largest;
 }

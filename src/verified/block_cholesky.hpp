@@ -9,11 +9,11 @@
 
 namespace isostat {
 
-/// Left-looking, in double, round to nearest. It proves nothing by itself: statement V1 turns its success into a bound.
+/// Left-looking, in double, round to nearest. Its success alone proves nothing; statement V1 derives a bound from it.
 class BlockCholesky {
   public:
-    /// The matrix to factorise; it must live as long as it is used. `order` is made when it does not fit or lets
-    /// the work grow too far. The memory of the last matrix is used again.
+    /// The matrix to factorise, which must outlive its use here. `order` is computed when it does not fit or makes the
+    /// work too large. Memory of the previous matrix is reused.
     void set(const sparse::Matrix<double>& h, FillOrder& order);
 
     /// Factorises H H^T - shift I = L L^T; true when every pivot was positive.
@@ -22,20 +22,20 @@ class BlockCholesky {
     /// E of statement V1 after a successful `factorise(shift)`.
     [[nodiscard]] double error_bound(double shift) const;
 
-    /// Products of blocks in a factorisation, about: what an order is judged by.
+    /// About the number of products of blocks in a factorisation, by which orders are compared.
     [[nodiscard]] double work() const;
 
   private:
-    /// By columns: element 2 c + r is (row r, column c) of the block.
+    /// Stored by columns: element 2 c + r is (row r, column c) of the block.
     struct alignas(32) Block {
         std::array<double, 4> value{};
     };
-    /// What a contact has in one block.
+    /// The entries of a contact in one block.
     struct Part {
-        int place = 0;                 ///< of the block in the order
-        std::array<double, 2> value{}; ///< 0 where nothing is stored
+        int place = 0;                 ///< position of the block in the order
+        std::array<double, 2> value{}; ///< 0 where no entry is stored
     };
-    /// Two blocks that share a contact.
+    /// Two blocks with entries of one contact.
     struct Pair {
         Part column, row; ///< column.place < row.place
     };
@@ -49,8 +49,8 @@ class BlockCholesky {
 
     const sparse::Matrix<double>* h_ = nullptr;
     std::size_t blocks_ = 0;
-    std::vector<int> position_;                 ///< of each row in the order; two make a block
-    std::vector<Block> diagonal_;               ///< of H H^T, in the order
+    std::vector<int> position_;                 ///< position of each row in the order; two rows make a block
+    std::vector<Block> diagonal_;               ///< diagonal blocks of H H^T, in the order
     std::vector<Pair> pairs_;                   ///< by contacts
     std::vector<int> column_start_, by_column_; ///< pairs by column
     std::vector<int> row_start_, by_row_;       ///< columns of the pairs by row

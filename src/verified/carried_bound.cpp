@@ -14,8 +14,8 @@ namespace {
 using roundoff::u;
 constexpr double slack = 1 + 1e-9; ///< rounding of the norms and of the last operations
 
-/// Upper bound of |G_-' - G_-|_2 over the kept rows, exact matrices: |B|_2^2 <= max (B^T B 1)_j for B = |difference|
-/// entry by entry, and the entries of both carry 5u, in space 5.51u. Nothing when the patterns differ.
+/// Upper bound of |G_-' - G_-|_2 over the kept rows of the exact matrices: |B|_2^2 <= max (B^T B 1)_j for B =
+/// |difference| entry by entry; the entries of both matrices err by 5u, in space 5.51u. Empty when the patterns differ.
 std::optional<double> change_of_kept(const sparse::Matrix<double>& before, const sparse::Matrix<double>& after,
                                      int slot, int dimension) {
     const double of_entries = (dimension == plane ? 11 : 12) * u;
@@ -51,7 +51,7 @@ std::optional<double> change_of_kept(const sparse::Matrix<double>& before, const
     return std::sqrt(largest) * slack;
 }
 
-/// r = G_- v for the kept rows, 0 in the slot. Returns an upper bound of the exact |G_- v|_2.
+/// r = G_- v for the kept rows, 0 for the slot. Returns an upper bound of the exact |G_- v|_2.
 double residual_of_mechanism(const sparse::Matrix<double>& h, int slot, const std::vector<double>& v,
                              std::vector<double>& r) {
     double square = 0;
@@ -64,18 +64,18 @@ double residual_of_mechanism(const sparse::Matrix<double>& h, int slot, const st
             size += std::abs(term);
         }
         r[j] = static_cast<int>(j) == slot ? 0.0 : dot;
-        const double terms = h.start[j + 1] - h.start[j] + 8; // 5u of the entries, products, additions
+        const double terms = h.start[j + 1] - h.start[j] + 8; // 5u of the entries, the products, the additions
         const double bound = static_cast<int>(j) == slot ? 0.0 : std::abs(dot) + terms * u * size;
         square += bound * bound;
     }
     return std::sqrt(square) * slack;
 }
 
-constexpr double good_enough = 0.02; // enters the bound as a relative loss
+constexpr double good_enough = 0.02; // a relative loss of the bound
 constexpr int max_passes = 4;
 
-/// Refines a guess of the motion v with G_- v = 0, of length about 1. Returns an upper bound of its distance from the
-/// line of the true one: at most |G_- v| / kept.
+/// Refines a guess, of length about 1, of the motion v with G_- v = 0. Returns an upper bound of its distance from
+/// the line of the true motion, which is at most |G_- v| / kept.
 double refine_mechanism(const sparse::Matrix<double>& h, int slot, const ApproximateInverse& inverse, double kept,
                         std::vector<double>& mechanism) {
     std::vector<double> r(mechanism.size());
@@ -91,7 +91,7 @@ double refine_mechanism(const sparse::Matrix<double>& h, int slot, const Approxi
     }
 }
 
-/// Forces z that balance the mechanism, roughly. Returns an upper bound of |v - H z|_2.
+/// Computes forces z that balance the mechanism approximately. Returns an upper bound of |v - H z|_2.
 double balancing_forces(const sparse::Matrix<double>& h, const std::vector<double>& mechanism,
                         const ApproximateInverse& inverse, std::vector<double>& z) {
     z = mechanism;

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A configuration in doubles with what is proved there once for all who ask.
+/// A configuration in doubles with proofs that several users share.
 
 #include "verified/enclosed_vertex.hpp"
 
@@ -11,7 +11,7 @@
 
 namespace isostat {
 
-/// The place around which a true vertex is enclosed. Not movable: its parts may refer to each other.
+/// The place around which a true vertex is enclosed. Not movable because its parts may refer to each other.
 class Centre {
   public:
     /// Proves the rank, factorises, bounds the inverse (which may stay undecided). Failure: `not_isostatic`.

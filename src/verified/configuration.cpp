@@ -17,7 +17,7 @@ namespace isostat {
 namespace {
 
 using roundoff::u;
-/// Kantorovich with |F| <= residual, |DF^-1| <= inverse_norm: radius of existence, or NaN when the test fails.
+/// Kantorovich's radius of existence for |F| <= residual and |DF^-1| <= inverse_norm, or NaN when its test fails.
 double kantorovich_radius(double residual, double inverse_norm, double lipschitz_constant) {
     const double eta = inverse_norm * residual * (1 + 4 * u);
     const double product = inverse_norm * lipschitz_constant * eta * (1 + 8 * u);
@@ -120,7 +120,7 @@ PreciseInterval gap_at(const EnclosedVertex<Real>& vertex, const Contact& contac
 
 namespace {
 
-/// What one enclosure of the vertex says of a gap.
+/// The sign of a gap as far as one enclosure of the vertex decides the sign.
 Order sign_at(const EnclosedVertex<Real>& vertex, const Contact& contact) {
     const PreciseInterval gap_there = gap_at(vertex, contact);
     Order order{false, 0, 0, Rung::multiprecision, vertex.at().arithmetic().bits()};
@@ -161,7 +161,7 @@ std::vector<Order> gap_signs_at_vertex(const Packing& packing, const IsostaticSt
     // A stored configuration that closes every kept gap exactly is the true vertex.
     const auto& contacts = structure.contacts();
     const auto closed = [&](const Contact& c) { return c.kind == ContactKind::held || gap_sign(packing, c, 0) == 0; };
-    const bool exact = std::any_of(orders.begin(), orders.end(), open) && // and unique there, by an enclosure
+    const bool exact = std::any_of(orders.begin(), orders.end(), open) && // an enclosure proves it unique
                        std::all_of(contacts.begin(), contacts.end(), closed);
     for (std::size_t k = 0; k < orders.size() && exact; ++k) {
         if (open(orders[k]) && orders[k].rung != Rung::none) {

@@ -17,16 +17,16 @@ struct VertexEnclosure {
     Verdict verdict = Verdict::undecided; ///< proved, or undecided (then nothing is known)
     double radius = 0;
     std::vector<double> correction; ///< empty on the rung double_bound; else one per coordinate of q
-    /// On the rung double_bound, where it is known: the Newton step, one per degree of freedom. The true vertex is
-    /// within `step_radius` of stored q + step (V4 (e)).
+    /// On the rung double_bound, if known: the Newton step, one entry per degree of freedom. The true vertex is within
+    /// `step_radius` of stored q + step (V4 (e)).
     std::vector<double> step;
     double step_radius = 0;
     double max_gap = 0;   ///< largest |gap| of the contacts at the stored configuration, as computed
-    double lipschitz = 0; ///< of the derivative of the constraints (V4 (a)), where it was computed; else 0
+    double lipschitz = 0; ///< Lipschitz constant of the derivative of the constraints (V4 (a)), if computed; else 0
     Rung rung = Rung::double_bound;
 
-    /// The true vertex is within this distance (2-norm, all coordinates) of the *stored* configuration: `radius` is
-    /// about the corrected one, and alone says nothing of the stored one.
+    /// The true vertex is within this distance (2-norm, all coordinates) of the *stored* configuration, whereas
+    /// `radius` is the distance from the corrected one.
     [[nodiscard]] double distance() const;
 };
 
@@ -34,9 +34,9 @@ struct VertexEnclosure {
 VertexEnclosure enclose_vertex(const Packing& packing, const IsostaticStructure& structure,
                                const InverseBound& inverse);
 
-/// The same with a much smaller radius: gaps without rounding to speak of, and the Newton step itself instead of its
-/// worst case (statement V4 (e)); the true vertex is then about as far as that step, some 1e-14 sqrt(N), whatever
-/// sigma_min is. Cost: 2 or 3 passes and O(N). `factorisation` makes guesses and is not trusted.
+/// The same with a much smaller radius: gaps with negligible rounding, and the Newton step itself instead of its worst
+/// case (statement V4 (e)); the true vertex is then about as far as this step, some 1e-14 sqrt(N), for any sigma_min.
+/// Cost: 2 or 3 passes and O(N). `factorisation` makes guesses and is not trusted.
 VertexEnclosure enclose_vertex(const Packing& packing, const IsostaticStructure& structure,
                                const Factorisation& factorisation, const InverseBound& inverse);
 
@@ -45,12 +45,12 @@ VertexEnclosure enclose_vertex(const Packing& packing, const IsostaticStructure&
 VertexEnclosure enclose_vertex_double_double(const Packing& packing, const IsostaticStructure& structure,
                                              const Factorisation& factorisation, const InverseBound& inverse);
 
-/// Gap of any candidate at the true vertex.
+/// Gap at the true vertex, for any candidate.
 Enclosure gap_at_vertex(const Packing& packing, const VertexEnclosure& vertex, const Contact& contact);
 
-/// Sign of the gap of a candidate at the true vertex, beyond double-double: the vertex in MPFR with first_bits ...
-/// max_bits bits, then, when every kept gap is exactly 0 at the stored configuration (which is then the true one),
-/// exact numbers. sign 0: the candidate touches, proved. Cost: N gaps and a solve per 30 bits or so.
+/// Sign of the gap of a candidate at the true vertex, beyond double-double: first the vertex in MPFR with first_bits
+/// ... max_bits bits; then, when every kept gap is exactly 0 at the stored configuration (which is then the true
+/// vertex), exact numbers. Sign 0: the candidate is proved to touch. Cost: N gaps and a solve per 30 bits or so.
 Order gap_sign_at_vertex(const Packing& packing, const IsostaticStructure& structure,
                          const Factorisation& factorisation, const InverseBound& inverse, const Contact& contact,
                          const LadderOptions& options = {});

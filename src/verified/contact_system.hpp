@@ -8,23 +8,23 @@
 
 namespace isostat {
 
-/// |x*_l - value_l| <= bound for every l. A bound that is NaN or infinite: nothing is known.
+/// |x*_l - value_l| <= bound for every l. With a bound that is NaN or infinite nothing is known.
 template <class T> struct BoundedVector {
     std::vector<T> value;
     typename Arithmetic<T>::Bound bound = std::numeric_limits<double>::infinity();
     double residual = 0; ///< largest component of load - A value, as computed
 };
 
-/// H* f = F and its transpose, H* the contact matrix that is meant, by refinement with residuals in T and corrections
-/// of the factors in double, until an iteration does not halve the bound. Cost per iteration: a product with the matrix
-/// and a solve. The arguments must outlive the object.
+/// H* f = F and its transpose, H* the contact matrix at the true vertex or place, by refinement with residuals in T and
+/// corrections of the factors in double, until an iteration does not halve the bound. Cost per iteration: a product
+/// with the matrix and a solve. The arguments must outlive the object.
 template <class T> class ContactSystem {
   public:
     using A = Arithmetic<T>;
     using Bound = typename A::Bound;
     using Place = CorrectedConfiguration<T>;
 
-    /// H* is that of the true vertex. \pre it exists.
+    /// H* is the matrix at the true vertex. \pre the vertex exists.
     ContactSystem(const EnclosedVertex<T>& vertex, const IsostaticStructure& structure,
                   const Factorisation& factorisation)
         : arithmetic_(vertex.at().arithmetic()), packing_(vertex.at().packing()), structure_(structure),
@@ -39,14 +39,14 @@ template <class T> class ContactSystem {
           factorisation_(factorisation), matrix_(place.contact_matrix(structure, Place::Divided::by_distances)),
           radius_(0), uncertainty_(uncertainty), sigma_(sigma) {}
 
-    /// The forces that bear a load, which is known to `load_error` (2-norm); `x`: where the iteration begins.
+    /// The forces that bear a load, which is known to `load_error` (2-norm); `x`: the start of the iteration.
     [[nodiscard]] BoundedVector<T> forces(const std::vector<T>& load, const Bound& load_error, std::vector<T> x) const {
         for (T& c : x) {
-            c = arithmetic_.number(0) + c; // with the bits of this arithmetic
+            c = arithmetic_.number(0) + c; // rounded to the bits of this arithmetic
         }
         return refine(load, load_error, std::move(x), false);
     }
-    /// The motion with these velocities of approach.
+    /// The motion with these approach velocities.
     [[nodiscard]] BoundedVector<T> motion(const std::vector<T>& approach) const {
         return refine(approach, 0, std::vector<T>(approach.size(), arithmetic_.number(0)), true);
     }
@@ -57,11 +57,11 @@ template <class T> class ContactSystem {
     static constexpr double u = roundoff::u;
     struct Residual {
         std::vector<T> value;
-        Bound norm = 0; ///< of the exact one, from above
+        Bound norm = 0; ///< upper bound of the norm of the exact residual
         double largest = 0;
     };
     [[nodiscard]] Residual residual(const std::vector<T>& load, const std::vector<T>& x, bool transposed) const;
-    /// Bound of |(H* - A) x|: what the distance to the true vertex does to forces.
+    /// Bound of |(H* - A) x|: the error of forces from the distance to the true vertex.
     [[nodiscard]] Bound turned(const std::vector<T>& x, bool transposed) const;
     [[nodiscard]] BoundedVector<T> refine(const std::vector<T>& load, const Bound& load_error, std::vector<T> x,
                                           bool transposed) const;
@@ -74,7 +74,7 @@ template <class T> class ContactSystem {
     Bound radius_;
     Bound uncertainty_;
     double sigma_;
-    double largest_entry_ = largest_multiple(structure_.contacts()); ///< no entry of a matrix of contacts is larger
+    double largest_entry_ = largest_multiple(structure_.contacts()); ///< bound of the entries of a contact matrix
 };
 
 template <class T>
@@ -100,7 +100,7 @@ auto ContactSystem<T>::residual(const std::vector<T>& load, const std::vector<T>
             ++terms[i];
         }
     }
-    std::vector<Bound> unknown(n); // of the exact residual, row by row
+    std::vector<Bound> unknown(n); // bound of the error of the residual, row by row
     for (std::size_t i = 0; i < n; ++i) {
         unknown[i] = a.size(result.value[i]) + 1.02 * a.unit() * terms[i] * size[i];
         result.largest = std::max(result.largest, std::abs(a.rounded(result.value[i])));

@@ -1,6 +1,6 @@
 #pragma once
 // Gaps and contact matrix at stored coordinates plus a correction, in one number type: private to the room and to the
-// certificate. Every constant is counted in V5 and V6 (proofs/true_vertex.md).
+// certificate. V5 and V6 (proofs/true_vertex.md) derive every constant.
 
 #include "contact/separation.hpp"
 #include "rigidity/isostatic.hpp"
@@ -12,9 +12,9 @@
 
 namespace isostat {
 
-/// c = q + p, q doubles. Differences of coordinates are formed as (q_j - q_i) + (p_j - p_i): no cancellation of large
-/// coordinates, whatever the distance from the origin. With an image x_j - x_i + A m of the doubles is formed first: it
-/// is exact in every arithmetic where they are on the grid, which is asked of a cell. `Correction`: how p is kept, one
+/// c = q + p, q doubles. Differences of coordinates are formed as (q_j - q_i) + (p_j - p_i), so that large coordinates
+/// do not cancel, whatever the distance from the origin. With an image x_j - x_i + A m of the doubles is formed first:
+/// it is exact in every arithmetic where they are on the grid, which cells must be. `Correction`: the type of p, one
 /// number per coordinate. Copies share the packing, which must outlive them.
 template <class T, class Correction = std::vector<T>> class CorrectedConfiguration {
   public:
@@ -30,7 +30,7 @@ template <class T, class Correction = std::vector<T>> class CorrectedConfigurati
     [[nodiscard]] T& correction(int coordinate) { return correction_[index(coordinate)]; }
     void correct(Correction correction) { correction_ = std::move(correction); }
 
-    /// F_l of T9: (|x_j - x_i|^2 - D^2) / (2 D), the gap at a wall, what a held coordinate has moved. Within 8 unit D.
+    /// F_l of T9: (|x_j - x_i|^2 - D^2) / (2 D), the gap at a wall, the change of a held coordinate. Within 8 unit D.
     [[nodiscard]] T gap_function(const Contact& contact) const {
         switch (contact.kind) {
         case ContactKind::disk_disk:
@@ -62,7 +62,7 @@ template <class T, class Correction = std::vector<T>> class CorrectedConfigurati
         default: return wall_gap(contact);
         }
     }
-    /// x_j - x_i + A m of two disks: the stored numbers first, which cancel where they are large, then the corrections.
+    /// x_j - x_i + A m of two disks: first the stored numbers, as large ones cancel, then the corrections.
     [[nodiscard]] PerAxis<T> separation(const Contact& pair) const {
         const Separation separation(pair, packing_->layout());
         if (pair.image.is_here()) [[likely]] {
@@ -77,7 +77,7 @@ template <class T, class Correction = std::vector<T>> class CorrectedConfigurati
         }
         return r;
     }
-    /// R_i + R_j, of a bar its length.
+    /// R_i + R_j, or the length of a bar.
     [[nodiscard]] T length(const Contact& contact) const {
         if (contact.kind == ContactKind::bar) {
             return number(packing_->bar_length(contact.i, contact.j));
@@ -85,8 +85,8 @@ template <class T, class Correction = std::vector<T>> class CorrectedConfigurati
         return number(packing_->radius[index(contact.i)]) + number(packing_->radius[index(contact.j)]);
     }
 
-    /// Columns of disk contacts are (x_j - x_i) divided by `by`. Lengths: A(c) = -DF(c)^T, the contact matrix where c
-    /// is the true vertex (V6). Distances: the unit normals at c itself.
+    /// Columns of disk contacts are (x_j - x_i) divided by a length. by_lengths: A(c) = -DF(c)^T, which is the contact
+    /// matrix if c is the true vertex (V6). by_distances: the unit normals at c.
     enum class Divided : unsigned char { by_lengths, by_distances };
     [[nodiscard]] sparse::Matrix<T> contact_matrix(const IsostaticStructure& structure, Divided divided) const {
         using std::sqrt;

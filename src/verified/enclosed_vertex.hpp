@@ -10,29 +10,29 @@
 
 namespace isostat {
 
-/// What is proved at the stored coordinates q once for all number types (V4).
+/// Bounds at the stored coordinates q that hold for all number types (V4).
 struct Neighbourhood {
     double lipschitz = 0;    ///< K of V4 (a), for the derivative of the gap functions F_l
-    double inverse_norm = 0; ///< bound of |DF^-1| at q, V4 (b); infinity when nothing is known
+    double inverse_norm = 0; ///< bound of |DF^-1| at q, V4 (b); infinity if unknown
 
     static Neighbourhood of(const Packing& packing, const std::vector<Contact>& contacts, const InverseBound& inverse) {
         using roundoff::u;
         const double relative_gap = worst_gap_ratio(packing, contacts);
-        const bool known = inverse.verdict == Verdict::proved && relative_gap < 1e-3; // a NaN knows nothing
+        const bool known = inverse.verdict == Verdict::proved && relative_gap < 1e-3; // false for a NaN
         return {isostat::lipschitz(packing, contacts),
                 known ? (1 + 2 * relative_gap + 16 * u) / inverse.sigma_min * (1 + 4 * u)
                       : std::numeric_limits<double>::infinity()};
     }
 };
 
-/// Newton's method from q + p with gaps in T and steps of the factors in double, until an iteration does not halve the
-/// radius; Newton-Kantorovich with the rounding of the gaps counted. Cost per iteration: N gaps and a solve.
+/// Newton's method from q + p with gaps in T and steps from the factors in double, until an iteration does not halve
+/// the radius; then Newton-Kantorovich, including the rounding of the gaps. Cost per iteration: N gaps and a solve.
 template <class T> class EnclosedVertex {
   public:
     using A = Arithmetic<T>;
     using Bound = typename A::Bound;
 
-    /// `start`: p where the iteration begins, or empty.
+    /// `start`: p at the start of the iteration, or empty.
     EnclosedVertex(const A& arithmetic, const Packing& packing, const IsostaticStructure& structure,
                    const Factorisation& factorisation, const Neighbourhood& at_q, const std::vector<T>& start = {})
         : at_(arithmetic, packing), at_q_(at_q) {
@@ -43,7 +43,7 @@ template <class T> class EnclosedVertex {
             enclose(structure, factorisation);
         }
     }
-    /// There is one within `radius` of `at`, alone within 1.7 / (derivative K); the members below mean nothing else.
+    /// A true vertex exists within `radius` of `at`, alone within 1.7 / (derivative K). \pre of all members below
     [[nodiscard]] bool exists() const { return exists_; }
     [[nodiscard]] const CorrectedConfiguration<T>& at() const { return at_; }
     [[nodiscard]] const Bound& radius() const { return radius_; }   ///< 2-norm
@@ -58,7 +58,7 @@ template <class T> class EnclosedVertex {
   private:
     static constexpr double u = roundoff::u;
 
-    /// Bound of |F(c)|; `f` is F as computed.
+    /// Bound of |F(c)|; `f` becomes the computed F.
     Bound residual(const std::vector<Contact>& contacts, std::vector<T>& f) const {
         const A& a = at_.arithmetic();
         std::vector<Bound> bound;
@@ -69,7 +69,7 @@ template <class T> class EnclosedVertex {
         }
         return norm_of_bounds(bound);
     }
-    /// Takes the present place when its radius is less than half the best; false also where nothing is known.
+    /// Accepts the present place when its radius is less than half the best; false also where nothing is known.
     bool accept(const Bound& residual);
     void enclose(const IsostaticStructure& structure, const Factorisation& factorisation);
 

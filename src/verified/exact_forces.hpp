@@ -19,9 +19,9 @@ namespace isostat {
 class ExactForces {
   public:
     ExactForces(const Packing& packing, const IsostaticStructure& structure);
-    /// \pre of the others
+    /// \pre of the other members
     [[nodiscard]] bool regular() const { return solver_.regular(); }
-    /// unknown of H f = force, the doubles taken as exact but for the rows of `products`.
+    /// The unknowns of H f = force, the doubles taken as exact except in the rows of `products`.
     [[nodiscard]] std::vector<mpq_class> solve(const std::vector<double>& force,
                                                std::span<const ExactProduct> products = {}) const;
     [[nodiscard]] const mpz_class& square(ContactId contact) const { return square_[contact.index()]; }

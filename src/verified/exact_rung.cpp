@@ -13,7 +13,7 @@ namespace isostat {
 namespace {
 
 using roundoff::infinity;
-constexpr mpfr_prec_t shown_bits = 160; ///< of what is told of exact numbers in doubles
+constexpr mpfr_prec_t shown_bits = 160; ///< of the doubles that are shown for exact numbers
 
 /// Rational times the root of an integer, to `bits` bits (a few units of rounding).
 Real root_product(const mpq_class& factor, const mpz_class& square, mpfr_prec_t bits) {
@@ -31,7 +31,7 @@ Order exact_order(int sign) {
     return {true, sign, infinity, Rung::exact, 0, sign == 0 ? -infinity : infinity};
 }
 
-/// Numbers x sqrt(s), x rational, s an integer: `ExactForces`.
+/// Numbers x sqrt(s) with x rational and s an integer, see `ExactForces`.
 class ExactRung final : public ForceRung {
   public:
     ExactRung(LadderProblem& problem, ExactForces forces, double away)
@@ -68,7 +68,7 @@ class ExactRung final : public ForceRung {
     std::unique_ptr<ForceRung> next() override { return nullptr; }
 
   private:
-    /// A number with the sign of the expression, and the square of the expression.
+    /// A factor with the sign of the expression, and the square of the expression.
     struct Value {
         mpq_class factor;
         mpq_class square;
@@ -113,13 +113,13 @@ void ExactRung::solve(RightHandSide& part) {
         mpfr_abs(size.get(), x.back().get(), MPFR_RNDU);
         mpfr_max(error.get(), error.get(), size.get(), MPFR_RNDU);
     }
-    mpfr_mul_2si(error.get(), error.get(), -shown_bits, MPFR_RNDU); // 8 bits more were carried
+    mpfr_mul_2si(error.get(), error.get(), -shown_bits, MPFR_RNDU); // the numbers have 8 bits more
     round_to_pairs(x, error, s);
     s.residual = 0;
 }
 
-/// Loads are numbers, and exact numbers would be about what is meant: the stored configuration is the true vertex, and
-/// the loads do not depend on it.
+/// True when the loads are finite numbers and the exact numbers describe the vertex that is meant: the stored
+/// configuration is the true vertex, and the loads do not depend on the vertex.
 bool applies(const LadderProblem& problem) {
     const auto finite = [](const RightHandSide& part) {
         return std::all_of(part.force.begin(), part.force.end(), [](double f) { return std::isfinite(f); });

@@ -6,10 +6,10 @@
 
 namespace isostat {
 
-/// Factorises H H^T - shift I (Eigen's simplicial Cholesky over libqd's double-double). Returns a proved lower bound of
-/// lambda_min(H H^T): shift minus the bound of the backward error (statement V1 with the unit of double-double), or 0
-/// when a pivot was not positive. H is taken as the exact matrix that the doubles are. Cost: about 30 times the double
-/// version.
+/// Factorises H H^T - shift I (Eigen's simplicial Cholesky over libqd's double-double).
+/// Returns a proved lower bound of lambda_min(H H^T): shift minus the bound of the backward
+/// error (statement V1 with the unit of double-double), or 0 when a pivot was not positive.
+/// The entries of `h` are taken as exact. Cost: about 30 times that of the double version.
 double shifted_cholesky_double_double(const sparse::Matrix<double>& h, double shift);
 
 } // namespace isostat

@@ -28,15 +28,15 @@ double length_of(const std::vector<double>& x) {
     return norm_above(size);
 }
 
-/// Of a row times a vector: 4 terms, with an image 7, in space 6 and 12, their sum, 5u (5.51u) per entry, and one for
-/// three periods.
+/// Relative rounding of a row times a vector: 4 terms, with an image 7, in space 6 and 12; their sum; 5u (5.51u)
+/// per entry; and one for three periods.
 double rounding(int dimension, const Contact& contact) {
     const bool here = contact.image.is_here();
     return (dimension == plane ? (here ? 12 : 16) : (here ? 14 : 22)) * u;
 }
 
-/// Rounding of a relative velocity where periods are added: seven operations or less on each component. Without
-/// an image a component is one difference, and nothing of its size is lost.
+/// Rounding of a relative velocity to which periods are added, by at most seven operations on each component.
+/// Without an image each component is one difference, whose rounding is relative.
 double lost_to_periods(const Layout& layout, const std::vector<double>& v, const Contact& pair) {
     double size = 0;
     if (!pair.image.is_here()) {
@@ -61,10 +61,10 @@ std::array<std::size_t, 2> grains_of(const Contact& c, std::size_t disks) {
     return {disks, disks};
 }
 
-/// Shares of a force and differences of motions below this are taken as zero: a guess, whose list is counted exactly.
+/// Shares of a force and differences of motions below this count as zero: a guess, since the list is counted exactly.
 constexpr double carries_or_moves = 1e-8;
 
-/// a with row of the pair = sum a_l (row of l), in double.
+/// The coefficients a with row of the pair = sum a_l (row of l), in double.
 std::vector<double> shares_of(const Packing& packing, const IsostaticStructure& structure,
                               const Factorisation& factorisation, const Contact& pair) {
     const GapGradient g = gap_gradient(packing, pair);
@@ -80,8 +80,8 @@ std::vector<double> shares_of(const Packing& packing, const IsostaticStructure& 
     return a;
 }
 
-/// The contacts whose force balances that of a pair, as far as doubles tell: what is left out or taken in makes a count
-/// fail. None when `opened` is one of them, or a held coordinate.
+/// The contacts whose force balances that of a pair, as far as doubles tell: a wrong contact too many or too few
+/// makes the count fail. Empty when `opened` is one of them, or a held coordinate.
 std::vector<Contact> carriers(const Packing& packing, const IsostaticStructure& structure,
                               const Factorisation& factorisation, ContactId opened, const Contact& pair) {
     const std::vector<double> a = shares_of(packing, structure, factorisation, pair);
@@ -121,11 +121,11 @@ std::vector<Contact> closed_among(const Packing& packing, const IsostaticStructu
     return among;
 }
 
-/// Where a disk is, seen from the first of a pair, and how it moves: from contact to contact, through images.
+/// Position and velocity of a disk relative to the first of a pair, found from contact to contact, through images.
 struct Seen {
     PerAxis<double> place{};
     PerAxis<double> velocity{};
-    /// The grain behind a contact: of its second disk, or (`sign` -1) of its first.
+    /// The grain at the other end of a contact: its second disk, or its first when `sign` is -1.
     [[nodiscard]] Seen across(const Packing& packing, const std::vector<double>& v, const Contact& c, int sign) const {
         const auto d = separation(packing.layout(), packing.q, c);
         const auto w = separation(packing.layout(), v, c);
@@ -138,14 +138,14 @@ struct Seen {
     }
 };
 
-/// Contacts that stay closed when `opened` opens and join, to the grains of a pair, grains that move with them as a
-/// body, as far as doubles tell; `v`: the motion. Walls are grains of a body that does not turn.
+/// Contacts that stay closed when `opened` opens and that join to the grains of a pair the grains that move with
+/// them as one body, as far as doubles tell; `v`: the motion. Walls are grains of a body that does not turn.
 std::vector<Contact> moving_alike(const Packing& packing, const IsostaticStructure& structure, ContactId opened,
                                   const std::vector<double>& v, const Contact& pair) {
     const std::size_t disks = packing.radius.size();
     const double fastest =
         std::abs(*std::max_element(v.begin(), v.end(), [](double a, double b) { return std::abs(a) < std::abs(b); }));
-    std::vector<std::optional<Seen>> body(disks + 2 * packing.axes()); // of walls: nothing in it
+    std::vector<std::optional<Seen>> body(disks + 2 * packing.axes()); // for walls the entry is empty
     const auto grains = grains_of(pair, disks);
     body[grains[0]].emplace();
     double turn = 0;
@@ -172,7 +172,7 @@ std::vector<Contact> moving_alike(const Packing& packing, const IsostaticStructu
                 continue;
             }
             const auto [i, j] = grains_of(c, disks);
-            Seen other; // of a wall nothing is asked
+            Seen other; // unused for a wall
             if (!c.of_disks()) {
                 if (!body[i] || turns) {
                     continue;
@@ -195,9 +195,9 @@ std::vector<Contact> moving_alike(const Packing& packing, const IsostaticStructu
     return list;
 }
 
-/// Whether contacts that stay closed when `opened` opens make one body of the two grains of a pair. Any body may be
-/// tried: the grains whose contacts carry the force of the pair, and all contacts among them; the grains that move
-/// alike. Of spheres nothing is said.
+/// Whether contacts that stay closed when `opened` opens make the two grains of a pair one body. Any set of
+/// contacts may be tried. Tried are those among the grains whose contacts carry the force of the pair, then those among
+/// grains that move alike. Always false for spheres.
 bool rests(const Packing& packing, const IsostaticStructure& structure, const Factorisation& factorisation,
            ContactId opened, const std::vector<double>& v, const Contact& pair) {
     if (packing.dimension != plane) {
@@ -237,7 +237,7 @@ FirstOrder::FirstOrder(const Packing& packing, const IsostaticStructure& structu
     change_ = velocity(approach, norm_above(rounding));
 }
 
-/// v with G v = approach: |v - v*|_2 <= (|G v - approach| + |G - G*| |v|) / sigma_min.
+/// Solves G v = approach: |v - v*|_2 <= (|G v - approach| + |G - G*| |v|) / sigma_min.
 FirstOrder::Velocity FirstOrder::velocity(const std::vector<double>& approach, double approach_error) const {
     const sparse::Matrix<double>& h = structure_->matrix();
     std::vector<double> v = approach;
@@ -278,7 +278,7 @@ Enclosure FirstOrder::gap_rate(const Contact& contact, const Velocity& velocity)
         terms += std::abs(term);
     }
     const double weight = separation_weight(contact);
-    double turned = 0; // the normal of the true vertex is another one
+    double turned = 0; // the normal of the true vertex differs
     if (contact.of_disks()) {
         double square = 0;
         for (const double r : separation(packing_->layout(), velocity.v, contact)) {
@@ -301,7 +301,7 @@ Enclosure FirstOrder::gap(const Contact& contact) const {
 }
 
 Enclosure FirstOrder::rate(ContactId opened, int direction, const Contact& contact) const {
-    // h_m = sum a_l h_l over the structure: the rate is a multiple of a_opened, which may be a structural zero.
+    // h_m = sum a_l h_l over the structure: the rate is proportional to a_opened, which may be a structural zero.
     const std::vector<int> rows = touched_rows(structure_->dofs(), contact);
     if (ContactPattern(*packing_, *structure_, true).carrying(rows)[opened.index()] == 0) {
         return {0, 0};
@@ -365,7 +365,7 @@ FirstOrder::LoadChange FirstOrder::load_change(const std::vector<Enclosure>& f0,
             on.error[k] += std::abs(sign) * (unknown + 2 * u * std::abs(push)) + 2 * u * std::abs(on.value[k]);
         });
     }
-    if (load.kind == LoadKind::true_stress) { // the force on a wall follows the other lengths
+    if (load.kind == LoadKind::true_stress) { // the force on a wall depends on the other lengths
         for (std::size_t a = 0; a < packing_->axes(); ++a) {
             const double off =
                 load.path ? stress_error * std::abs(load.rate_of(a)) + 2 * u * std::abs(load.stress[a]) : stress_error;
@@ -375,12 +375,12 @@ FirstOrder::LoadChange FirstOrder::load_change(const std::vector<Enclosure>& f0,
     return on;
 }
 
-/// -stress (L_b' L_c + L_b L_c'); in the plane the other length alone.
+/// Adds -stress (L_b' L_c + L_b L_c'); in the plane -stress times the rate of the other length.
 void FirstOrder::add_stress_change(std::size_t axis, double stress, double stress_error, LoadChange& on) const {
     const bool in_plane = packing_->dimension == plane;
     double sum = 0;
     double size = 0;
-    double open = 0; // error of the sum, but for its rounding
+    double open = 0; // error of the sum without its rounding
     for (std::size_t b = 0; b < packing_->axes(); ++b) {
         if (b == axis) {
             continue;

@@ -15,8 +15,8 @@ namespace isostat {
 
 /// Derivatives with respect to eps at eps = 0 of the true vertex with the contacts of `structure`, each enclosed. The
 /// contacts stay closed: v = dq/deps solves (G v)_l = -(rho_i + rho_j) (walls: -rho_i; held coordinates: 0).
-/// Arithmetic: double, bounds by |H^-1|_2 <= 1 / sigma_min with the distance of the stored from the true vertex
-/// included. The arguments must outlive the object. Cost: one solve, and one for each further question.
+/// Arithmetic: double, bounds by |H^-1|_2 <= 1 / sigma_min that include the distance from the stored to the true
+/// vertex. The arguments must outlive the object. Cost: one solve, and one for each call.
 class FirstOrder {
   public:
     /// \pre inverse and enclosure proved; one rho per disk, taken as exact.
@@ -26,16 +26,16 @@ class FirstOrder {
     /// c_m: the gap of a pair that is no contact of the structure is h_m + eps c_m + O(eps^2).
     [[nodiscard]] Enclosure gap(const Contact& contact) const;
     /// Rate of the gap of `contact` when the gap of `opened` grows at unit rate (`direction` -1: falls, for held
-    /// coordinates) and all others stay closed. Exactly 0, radius 0, when it vanishes for structural reasons.
+    /// coordinates) and the other contacts stay closed. Exactly 0, radius 0, when it vanishes for structural reasons.
     [[nodiscard]] Enclosure rate(ContactId opened, int direction, const Contact& contact) const;
-    /// a with row of `contact` = sum a_l (row of l), in double: nothing is proved of it.
+    /// Coefficients a with row of `contact` = sum a_l (row of l), in double: nothing is proved of them.
     [[nodiscard]] std::vector<double> shares(const Contact& contact) const;
-    /// Whether the gap of a pair that touches stays 0 on the whole motion that opens `opened`, though grains between
-    /// the two move against each other (R2, degenerate.md). False says nothing. At first order it need not stay as it
-    /// is.
+    /// Whether the gap of a touching pair stays 0 on the whole motion that opens
+    /// `opened`, though grains between its two disks move relative to each other (R2,
+    /// degenerate.md). False proves nothing. The first-order gap may still change.
     [[nodiscard]] bool moves_as_linkage(ContactId opened, const Contact& contact) const;
     /// f1 in f = f0 + eps f1 + O(eps^2) at a fixed stress: H f1 = F1 - H1 f0, H1 and F1 the derivatives of the normals
-    /// and (true stresses) of the load along v. `f0`, `structural_zero`: one per contact; f1 is {0, 0} where the second
+    /// and (true stresses) of the load along v. `f0`, `structural_zero`: one per contact; f1 is {0, 0} where the latter
     /// says that the force vanishes for all positions of the grains. The loaded stress is known to `stress_error`.
     [[nodiscard]] std::vector<Enclosure> forces(const std::vector<Enclosure>& f0,
                                                 const std::vector<unsigned char>& structural_zero, const Load& load,
@@ -48,7 +48,7 @@ class FirstOrder {
     };
     [[nodiscard]] Velocity velocity(const std::vector<double>& approach, double approach_error) const;
     [[nodiscard]] Enclosure gap_rate(const Contact& contact, const Velocity& velocity) const;
-    /// F1 - H1 f0: what turning normals, and walls whose force follows a length, ask the first-order forces to balance.
+    /// F1 - H1 f0: the load on first-order forces from turning normals, and from walls whose force depends on a length.
     struct LoadChange {
         std::vector<double> value; ///< on coordinates
         std::vector<double> error; ///< bound, component by component

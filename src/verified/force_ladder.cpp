@@ -8,7 +8,7 @@
 
 namespace isostat {
 
-/// Shared with the shifts made of it: the ladder may move, and end before them.
+/// The shifts made by a ladder share this: the ladder may be moved, and may end before the shifts.
 struct ForceLadder::Implementation {
     explicit Implementation(LadderProblem of, double accuracy)
         : problem(std::move(of)), rung(double_rung(problem, accuracy)) {}
@@ -28,13 +28,13 @@ struct ForceLadder::Implementation {
         }
         return false;
     }
-    /// Part `number`, solved on the present rung.
+    /// Part `number`, solved on the current rung.
     RightHandSide& solved(int number) {
         RightHandSide& part = problem.part(number);
         rung->bring(part);
         return part;
     }
-    /// -(p + (at - from) s) / s, after as many climbs as it takes.
+    /// -(p + (at - from) s) / s, after as many climbs as the bits require.
     class Zero;
 };
 

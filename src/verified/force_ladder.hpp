@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Contact forces at every precision behind one interface, and proved comparisons of them.
+/// Contact forces at every precision through one interface, and proved comparisons of forces.
 
 #include "verified/configuration.hpp"
 #include "verified/force_solution.hpp"
@@ -17,43 +17,43 @@ namespace isostat {
 
 class PreciseInterval;
 
-/// What the stored stress lacks to the exact one, for a limit load: known to any number of bits.
+/// The exact stress minus the stored stress, for a limit load: computable to any number of bits.
 class LoadShift {
   public:
     virtual ~LoadShift() = default;
-    /// An interval of about `bits` bits, as far as the ladder behind it goes.
+    /// An interval of about `bits` bits, or of as many as its ladder has.
     [[nodiscard]] virtual PreciseInterval value(int bits) const = 0;
 };
 
 /// A quantity by which contacts are ordered: p_l + (at - from) s_l with p, s the solutions of two right-hand sides,
-/// possibly divided by |d_l|, d a third solution, then proved not zero. All doubles are exact.
+/// possibly divided by |d_l|, where d is a third solution, proved not zero. All doubles are exact.
 struct ForceExpression {
     ContactId contact;
     int part = 0;
-    int slope_part = -1; ///< -1: no second term
+    int slope_part = -1; ///< -1: there is no second term
     double at = 0;
     double from = 0;
-    const LoadShift* shift = nullptr; ///< added to `at`; not on the rung exact
-    bool minus_magnitude = false;     ///< -|.| instead of the sum (held coordinates)
-    int divisor_part = -1;            ///< d; -1: none
+    const LoadShift* shift = nullptr; ///< added to `at`; not used on the rung exact
+    bool minus_magnitude = false;     ///< for held coordinates: -|.| instead of the sum
+    int divisor_part = -1;            ///< right-hand side of d; -1: no divisor
 };
 
-/// What a right-hand side is besides its doubles.
+/// How a right-hand side differs from its doubles.
 struct LoadTerms {
-    /// Rows whose component is a product, of which the double is the rounded value: on every rung the exact one is
-    /// meant.
+    /// Rows whose exact component is a product, of which the double
+    /// is the rounded value: every rung uses the exact product.
     std::vector<ExactProduct> products;
     /// The force itself depends on the configuration: |F(q) - F(q*)|_2 <= rate |q - q*|_2 (true stresses).
     double rate = 0;
 };
 
-/// The solutions of H f = F for several right-hand sides, all on one rung, each with its proved bound:
-///   double -> refined with residuals in double-double -> in MPFR with first_bits, twice as many, ... max_bits ->
-///   exact.
+/// The solutions of H f = F for several right-hand sides, all on one rung, each
+/// with its proved bound: double -> refined with residuals in double-double ->
+/// in MPFR with first_bits, twice as many, ... max_bits -> exact.
 /// With `first_accuracy` the rung double has two steps: see LadderOptions.
 /// The rungs in floating point need the bound of the inverse (V3) and are skipped when there is none or when a climb
-/// gained nothing; exact numbers need only the proof of rank that `structure` is. Solutions are computed when asked
-/// for. The arguments must outlive the object.
+/// gained nothing; exact numbers need only the rank, which `structure` proves. Solutions are computed on first use. The
+/// arguments must outlive the object.
 class ForceLadder {
 
   public:
@@ -63,35 +63,35 @@ class ForceLadder {
     ForceLadder(ForceLadder&&) noexcept;
     ForceLadder& operator=(ForceLadder&&) noexcept;
 
-    /// Adds a right-hand side (one number per degree of freedom, taken as exact); returns its number, from 0.
-    /// `guess`: of the solution, or empty; changes the cost.
+    /// Adds a right-hand side (one number per degree of freedom, taken as exact); returns its number, from 0. `guess`
+    /// of the solution, or empty: changes the cost.
     int add(std::vector<double> force, LoadTerms terms = {}, std::vector<double> guess = {});
     [[nodiscard]] const std::vector<double>& force(int part) const;
 
     /// The solution on the present rung. A zero right-hand side has the exact solution 0 with bound 0 on every rung.
     [[nodiscard]] const ForceSolution& solution(int part) const;
-    /// What is known of the solution so far, without solving: empty, or one number per contact.
+    /// The solution as known so far, without solving: empty, or one number per contact.
     [[nodiscard]] std::span<const double> known(int part) const;
     /// Component l of the solution on the present rung, as a hexadecimal floating-point number with `bits` bits of
     /// mantissa (rounded to nearest): for records and references.
     [[nodiscard]] std::string digits(int part, ContactId contact, int bits) const;
 
-    /// log2 of a proved bound of the error of what `digits` rounds (every component): -infinity for exact numbers.
-    /// Below the range of double it says more than `solution().bound`.
+    /// log2 of a proved bound of the error, in every component, of the number that `digits` rounds: -infinity for exact
+    /// numbers. It keeps its precision below the range of double, where `solution().bound` loses it.
     [[nodiscard]] double bound_exponent(int part) const;
 
-    /// Goes to the next rung that can tell more; false when there is none.
+    /// Goes to the next rung that can decide more; false when there is none.
     bool climb();
     [[nodiscard]] Rung rung() const;
     [[nodiscard]] int bits() const;
-    /// A bound of |H - H*|_2 between the stored configuration and the one that is spoken of (0 without a vertex).
+    /// A bound of |H - H*|_2 between the stored configuration and the true vertex (0 without a vertex).
     [[nodiscard]] double normal_uncertainty() const;
 
-    /// The rung exact is not used: for expressions with a shift.
+    /// The rung exact is not used from now on: for expressions with a shift.
     void without_exact_numbers();
-    /// What must be added to `force.at` for the quantity (without divisor) to vanish. \pre its slope is proved not 0.
-    /// The arguments of the ladder must outlive the result; the ladder itself need not, and climbs when more bits are
-    /// asked for.
+    /// The amount to add to `force.at` so that the quantity (without divisor) vanishes.
+    /// \pre its slope is proved not 0. The arguments of the ladder must outlive the
+    /// result; the ladder itself need not. The result climbs when more bits are asked for.
     [[nodiscard]] std::shared_ptr<const LoadShift> zero_of(const ForceExpression& force) const;
 
     /// Sign of a quantity, and of the difference a - b, on the present rung.
@@ -100,7 +100,7 @@ class ForceLadder {
 
   private:
     struct Implementation;
-    std::shared_ptr<Implementation> implementation_; ///< with the results of `zero_of`
+    std::shared_ptr<Implementation> implementation_; ///< shared with the results of `zero_of`
 };
 
 } // namespace isostat

@@ -8,10 +8,10 @@
 
 namespace isostat {
 
-/// What one arithmetic knows of the solutions, and of expressions in them. The problem must outlive the rung.
+/// Solutions in one arithmetic, and expressions of them. The problem must outlive the rung.
 class ForceRung {
   public:
-    /// `rough`: estimated solutions (`first_accuracy`) are enough.
+    /// `rough`: solutions of estimated accuracy (`first_accuracy`) suffice.
     ForceRung(LadderProblem& problem, Rung rung, int bits, bool rough = false)
         : problem_(problem), rung_(rung), bits_(bits), rough_(rough) {}
     ForceRung(const ForceRung&) = delete;
@@ -20,7 +20,7 @@ class ForceRung {
 
     [[nodiscard]] Rung rung() const { return rung_; }
     [[nodiscard]] int bits() const { return bits_; }
-    /// Brings `part.solution` to this rung, from whatever is known of it. Asked for every force of every decision.
+    /// Brings `part.solution` to this rung from what is known of it. Called for every force of every decision.
     void bring(RightHandSide& part) {
         const ForceSolution& s = part.solution;
         if (s.value.empty() || s.rung != rung_ || s.bits != bits_ || (part.rough && !rough_)) {
@@ -29,14 +29,14 @@ class ForceRung {
     }
     virtual Order sign(const ForceExpression& a) = 0;
     virtual Order compare(const ForceExpression& a, const ForceExpression& b) = 0;
-    /// See `ForceLadder::zero_of`; of about `bits` bits where more are known.
+    /// See `ForceLadder::zero_of`; with about `bits` bits where more are known.
     virtual PreciseInterval zero_of(const ForceExpression& force, int bits) = 0;
     /// Component l of a part that is not zero, rounded once to `bits` bits.
     [[nodiscard]] virtual Real digits(const RightHandSide& part, ContactId contact, int bits) const = 0;
     [[nodiscard]] virtual double bound_exponent(const RightHandSide& part) const = 0;
-    /// A bound of |H - H*|_2 between the stored configuration and the one that is meant.
+    /// A bound of |H - H*|_2 between the stored configuration and the true vertex.
     virtual double normal_uncertainty() = 0;
-    /// The next rung in floating point; null when there is none, or when it would not tell more.
+    /// The next rung in floating point; null when there is none, or when it would not decide more.
     virtual std::unique_ptr<ForceRung> next() = 0;
 
   protected:
@@ -52,16 +52,16 @@ class ForceRung {
     bool rough_;
 };
 
-/// `accuracy` > 0: solutions to this relative accuracy, estimated, are enough.
+/// `accuracy` > 0: solutions to this relative accuracy, estimated, suffice.
 std::unique_ptr<ForceRung> double_rung(LadderProblem& problem, double accuracy);
-/// Null when lengths or loads leave the range in which products of doubles are exact, or when no true vertex was
-/// enclosed in double-double, though one is meant.
+/// Null when lengths or loads leave the range in which products of doubles are exact, or when forces of the true vertex
+/// are asked for and double-double did not enclose it.
 std::unique_ptr<ForceRung> double_double_rung(LadderProblem& problem);
-/// Null when no true vertex was enclosed to so many bits, though one is meant. `start`: a correction of the stored
-/// coordinates near it, or empty.
+/// Null when forces of the true vertex are asked for and it was not enclosed with this many bits. `start`: a correction
+/// of the stored coordinates near the vertex, or empty.
 std::unique_ptr<ForceRung> multiprecision_rung(LadderProblem& problem, int bits, const std::vector<Real>& start = {});
-/// Null when exact numbers would be too expensive, would not be about what is meant, or when the matrix is not regular.
-/// `last`: the rung before, which says how far normals are from those that are meant.
+/// Null when exact numbers would be too expensive or would not be those of the true vertex, or when the matrix is not
+/// regular. `last`: the previous rung, which bounds the distance of the normals from those of the true vertex.
 std::unique_ptr<ForceRung> exact_rung(LadderProblem& problem, ForceRung& last);
 
 } // namespace isostat

@@ -12,7 +12,7 @@ namespace {
 
 using roundoff::u;
 
-/// Largest magnitude; NaN when there is one.
+/// Largest magnitude, or NaN when a number is NaN.
 double max_abs(const std::vector<double>& x) {
     double largest = 0;
     for (const double c : x) {
@@ -21,7 +21,7 @@ double max_abs(const std::vector<double>& x) {
     return largest;
 }
 
-/// Upper bound of the 2-norm of an exact residual, and the part of it that is rounding of its evaluation.
+/// Upper bound of the 2-norm of an exact residual, and the part of the bound that is rounding of its evaluation.
 struct Residual {
     double bound;
     double rounding;
@@ -34,8 +34,8 @@ struct Row {
     int terms;
 };
 
-/// Residual F - H x in double, with a bound of its distance from the exact residual (exact H: entries of fl(H) carry
-/// the error of V0). Returns an upper bound of the 2-norm of the exact residual.
+/// Residual F - H x in double, with a bound of its distance from the exact residual (of the exact H: entries of
+/// fl(H) err by the bound of V0). Returns an upper bound of the 2-norm of the exact residual.
 Residual residual_in_double(const sparse::Matrix<double>& h, const std::vector<double>& x,
                             const std::vector<double>& force, std::vector<double>& r) {
     const auto n = static_cast<std::size_t>(h.rows);
@@ -57,7 +57,7 @@ Residual residual_in_double(const sparse::Matrix<double>& h, const std::vector<d
             ++at.terms;
         }
     }
-    // Entries and products that underflow err by an absolute amount besides.
+    // Entries and products that underflow err by an absolute amount as well.
     const double lost = underflow_unit * (1 + max_abs(x));
     std::vector<double> unknown(n);
     std::vector<double> bound(n);

@@ -9,7 +9,7 @@
 namespace isostat {
 
 /// A lower bound of the smallest of the `h.rows` singular values of the exact matrix that `h` is rounded from
-/// (statement V1, which asks for no square matrix); 0: none was found, and nothing is known. Cost: a Cholesky
+/// (statement V1, which needs no square matrix); 0: no bound was found, and nothing is known. Cost: a Cholesky
 /// factorisation for every factor 2 that it is below 1.
 double smallest_row_singular_value(const sparse::Matrix<double>& h, int dimension);
 

@@ -8,7 +8,7 @@
 
 namespace isostat {
 
-/// One answer per candidate. Cost: that of one, and a gap per rung for each.
+/// One result per candidate. Cost: that of one candidate, and a gap per rung for each further one.
 std::vector<Order> gap_signs_at_vertex(const Packing& packing, const IsostaticStructure& structure,
                                        const Factorisation& factorisation, const InverseBound& inverse,
                                        const std::vector<Contact>& candidates, const LadderOptions& options = {});

@@ -1,13 +1,13 @@
 #pragma once
-// What the rungs in floating point share: private to the room.
+// The common part of the rungs in floating point: private to the room.
 
 #include "verified/force_rung.hpp"
 
 namespace isostat {
 
-constexpr mpfr_prec_t low_bits = 160; ///< of comparisons on the rungs double and double-double, and of exact roots
+constexpr mpfr_prec_t low_bits = 160; ///< for comparisons on the rungs double and double-double, and for exact roots
 
-/// Expressions as intervals, made of what the rung knows of single components.
+/// Expressions as intervals, made of the enclosures of single components on the rung.
 class IntervalRung : public ForceRung {
   public:
     using ForceRung::ForceRung;
@@ -18,7 +18,7 @@ class IntervalRung : public ForceRung {
     [[nodiscard]] double bound_exponent(const RightHandSide& part) const override;
 
   protected:
-    /// Component l of a part that is not zero and was brought here.
+    /// Component l of a part that is not zero and is on this rung.
     [[nodiscard]] virtual PreciseInterval enclosed(const RightHandSide& part, std::size_t l) const;
 
   private:

@@ -23,7 +23,7 @@ namespace {
 using roundoff::gamma;
 using roundoff::u;
 
-/// Estimate of sigma_min^2 from above by inverse iteration; also improves the guess.
+/// Estimates sigma_min^2 from above by inverse iteration; improves the guess x as well.
 double estimate(const ApproximateInverse& inverse, std::vector<double>& x, int iterations) {
     double lambda = 0;
     for (int k = 0; k < iterations; ++k) {
@@ -92,7 +92,7 @@ InverseBound by_rows(const sparse::Matrix<double>& h, int dimension, const Facto
     return {Verdict::proved, 1 / bound * (1 - 1e-15), InverseBound::Route::rows};
 }
 
-/// Outcome of the first route, with what the others need.
+/// Outcome of the first route, with the numbers that the other routes need.
 struct CholeskyOutcome {
     InverseBound bound;
     double estimated = 0;   ///< sigma_min^2, from above, not proved
@@ -107,7 +107,7 @@ CholeskyOutcome by_cholesky(const sparse::Matrix<double>& unscaled, int dimensio
     for (std::size_t e = 0; e < h.row.size(); ++e) {
         h.value[e] *= scale[static_cast<std::size_t>(h.row[e])]; // exact: sigma_min(S H) <= sigma_min(H) for S <= 1
     }
-    int iterations = 1; // of a good guess: a shift that is too large only costs a second factorisation
+    int iterations = 1; // from a good guess; a shift that is too large only costs a second factorisation
     if (cache.vector.size() != n || !std::isfinite(euclidean_norm(cache.vector)) || euclidean_norm(cache.vector) == 0) {
         cache.vector.resize(n);
         std::mt19937_64 random(12345);
@@ -118,7 +118,7 @@ CholeskyOutcome by_cholesky(const sparse::Matrix<double>& unscaled, int dimensio
     }
     count_work(Work::inverse_bounds);
     CholeskyOutcome outcome;
-    outcome.entry_error = rounding_of_entries(unscaled, dimension); // scaled it is smaller
+    outcome.entry_error = rounding_of_entries(unscaled, dimension); // scaling makes this smaller
     if (cache.workspace == nullptr) {
         cache.workspace = std::make_shared<BlockCholesky>();
     }
@@ -134,7 +134,7 @@ CholeskyOutcome by_cholesky(const sparse::Matrix<double>& unscaled, int dimensio
                 continue;
             }
             const double square = shift - cholesky.error_bound(shift);
-            // A bound that lost more than half to rounding is left to the next attempt: the same in double-double.
+            // A bound that lost more than half to rounding is left to the next attempt, which is in double-double.
             const double sigma = smallest_singular_value(square, outcome.entry_error);
             if (square > 0.25 * shift && sigma > 0) {
                 outcome.bound = {Verdict::proved, sigma, InverseBound::Route::cholesky};
@@ -169,7 +169,7 @@ InverseBound bound_inverse(const IsostaticStructure& structure, const Factorisat
             return {Verdict::proved, sigma, InverseBound::Route::double_double};
         }
         if (proved > 0) {
-            break; // the entries themselves are not known well enough
+            break; // the entries have too large errors
         }
         square /= 64;
     }

@@ -15,44 +15,44 @@ namespace isostat {
 
 /// Proved lower bound of the smallest singular value of H, the *exact* unit-normal matrix of the stored configuration.
 /// verdict `proved`: sigma_min(H) >= sigma_min > 0, hence |H^-1|_2 = |G^-1|_2 <= 1 / sigma_min. `undecided`: no bound
-/// was found with double precision; sigma_min is 0 and says nothing.
+/// was found with double precision; sigma_min is 0 and implies nothing.
 struct InverseBound {
     Verdict verdict = Verdict::undecided;
     double sigma_min = 0;
-    /// Which argument proved it.
+    /// The argument that proved the bound.
     enum class Route : unsigned char { cholesky, double_double, rows, multiprecision, carried } route = Route::cholesky;
-    /// Of a carried bound: sigma_min of the one that it started from; else 0.
+    /// For a carried bound: sigma_min of the bound at the start of the chain; else 0.
     double carried_from = 0;
 };
 
 /// An order of elimination of little fill, for the blocks of a Cholesky factorisation.
 struct FillOrder {
-    std::vector<int> rows; ///< two by two they make a block
-    double work = 0;       ///< of a factorisation in this order when it was made
+    std::vector<int> rows; ///< two by two these rows make a block
+    double work = 0;       ///< work of a factorisation in this order when it was computed
 };
 
 class BlockCholesky; // private to the room
 
-/// What one bound leaves for the next one, at a neighbouring vertex: changes the cost, never the validity. Copies share
-/// the memory: not for concurrent use.
+/// Data that one bound leaves for the next one, at a neighbouring vertex: they change the cost, never what is proved.
+/// Copies share the memory, so they are not for concurrent use.
 struct InverseBoundCache {
-    std::vector<double> vector; ///< guess of the singular vector that belongs to sigma_min
+    std::vector<double> vector; ///< guess of the singular vector of sigma_min
     FillOrder order;
     std::shared_ptr<BlockCholesky> workspace;
-    /// Back to an empty cache that keeps its memory: what follows does not depend on what was before.
+    /// Empties the cache but keeps its memory, so that what follows does not depend on what was before.
     void forget() {
         vector.clear();
         order = {};
     }
 };
 
-/// First route: Cholesky factorisation (in doubles, blocks of 2 x 2) of H H^T - s I with s chosen from a
-/// few inverse iterations; when it runs to the end, lambda_min(H H^T) >= s - E with E bounded a priori (statement V1 in
-/// proofs/). Works down to sigma_min ~ 1e-5; 3 to 9 ms at n = 1936 to 4900. Second route, when rounding hides sigma_min
-/// there: the same in double-double (Eigen), down to sigma_min ~ 1e-12; about 0.3 s at n = 4900. Third route:
-/// R ~ H^-1 row by row from the LU factors, |H^-1| <= |R| / (1 - |I - R H|) in the 1 and the infinity norm (statement
-/// V2); one solve per row, tried when size <= `row_limit`. The second and third take long: where the structure is not
-/// proved yet, `worth_more` is asked first, and false ends it with `undecided`.
+/// First route: Cholesky factorisation (in doubles, blocks of 2 x 2) of H H^T - s I with s chosen from a few inverse
+/// iterations; when it runs to the end, lambda_min(H H^T) >= s - E with E bounded a priori (statement V1 in proofs/).
+/// Works down to sigma_min ~ 1e-5; 3 to 9 ms at n = 1936 to 4900. Second route, when rounding hides sigma_min: the same
+/// in double-double (Eigen), down to sigma_min ~ 1e-12; about 0.3 s at n = 4900. Third route: R ~ H^-1 row by row from
+/// the LU factors, |H^-1| <= |R| / (1 - |I - R H|) in the 1 and the infinity norm (statement V2); one solve per row,
+/// tried when size <= `row_limit`. The second and third route are slow: for a structure that is not proved yet,
+/// `worth_more` is called before them, and false ends with `undecided`.
 InverseBound bound_inverse(const IsostaticStructure& structure, const Factorisation& factorisation,
                            InverseBoundCache& cache, const std::function<bool()>& worth_more = {},
                            int row_limit = 20000);
@@ -63,15 +63,15 @@ struct ProvedExchange {
     RegularityProof proof;
 };
 
-/// By Cholesky (statement V1), for a matrix that is not known to be regular yet. `inverse` guesses the shift and proves
-/// nothing. Nothing when the factorisation fails or rounding hides sigma_min: then ask `IsostaticStructure::prove`.
-/// Cost: 2 ms at n = 1936, 9 ms at n = 4900.
+/// By Cholesky (statement V1), for a matrix that is not known to be regular. `inverse` only
+/// guesses the shift. Nothing when the factorisation fails or rounding hides sigma_min:
+/// then use `IsostaticStructure::prove`. Cost: 2 ms at n = 1936, 9 ms at n = 4900.
 std::optional<ProvedExchange> bound_exchanged(const ExchangedContacts& contacts, const ApproximateInverse& inverse,
                                               InverseBoundCache& cache);
 
-/// The bound of the structure before carried over an exchange (statement V8 in proofs/exchange.md): the kept rows of G
-/// keep at least `bound.sigma_min` minus the norm of their change; what the new row adds is measured by the forces z
-/// that balance the mechanism. Loses a factor below sqrt 2 per exchange when the grains hardly move; no factorisation.
+/// Carries the bound of the previous structure over an exchange (statement V8 in proofs/exchange.md): the kept rows of
+/// G keep at least `bound.sigma_min` minus the norm of their change; the forces z that balance the mechanism measure
+/// what the new row adds. Loses a factor below sqrt 2 per exchange when the grains hardly move; no factorisation.
 /// `mechanism` (on degrees of freedom) is a guess of the null vector of the kept rows at the end, `inverse` makes the
 /// other guesses; neither is trusted. Nothing when the grains moved too far, or when less than `worth` of the last
 /// bound that was not carried is left. Cost: 2 to 4 passes.

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A proved bound of the inverse where double precision has none: small structures, any condition.
+/// A proved bound of the inverse where double precision gives no bound: small structures, any condition number.
 
 #include "verified/inverse_bound.hpp"
 

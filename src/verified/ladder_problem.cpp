@@ -13,7 +13,7 @@ namespace isostat {
 namespace {
 
 using roundoff::u;
-/// What is said of forces in records holds to this fraction of the largest.
+/// Accuracy of the forces in records, as a fraction of the largest force.
 constexpr double recorded_accuracy = 1e-7;
 
 double largest_of(const std::vector<double>& x) {
@@ -79,7 +79,7 @@ void LadderProblem::solve_in_double(RightHandSide& part, double accuracy) const 
     part.rough = accuracy > 0;
     s = solve_forces(structure, factorisation, inverse, part.force, s.value.empty() ? part.guess : s.value, accuracy);
     part.guess.clear();
-    // The accuracy was estimated: where the bound does not confirm what records say, to rounding at once.
+    // The accuracy was estimated: a force whose bound does not confirm it is solved again, down to rounding.
     if (part.rough && !(s.bound <= recorded_accuracy * largest_of(s.value))) {
         part.rough = false;
         s = solve_forces(structure, factorisation, inverse, part.force, s.value);
@@ -98,7 +98,7 @@ void LadderProblem::inflate(RightHandSide& part) {
         s.bound = std::numeric_limits<double>::infinity();
         return;
     }
-    const double turned = std::min(here.uncertainty * norm_above(s.value) * (1 + 4 * u), // bound of |(H* - H) x|
+    const double turned = std::min(here.uncertainty * norm_above(s.value) * (1 + 4 * u), // bounds |(H* - H) x|
                                    turn_of_forces(packing, structure.contacts(), s.value) * here.away);
     const double residual = s.bound * sigma + turned + part.terms.rate * here.away;
     s.bound = residual / left * (1 + 16 * u);

@@ -1,5 +1,5 @@
 #pragma once
-// What a ladder of forces was asked, and what its rungs share: private to the room.
+// The input of a ladder of forces, and data that its rungs share: private to the room.
 
 #include "verified/contact_system.hpp"
 #include "verified/force_ladder.hpp"
@@ -11,7 +11,7 @@
 
 namespace isostat {
 
-/// One right-hand side with what is known of its solution on every rung reached.
+/// One right-hand side with its solution on every rung reached.
 struct RightHandSide {
     std::vector<double> force;
     LoadTerms terms;
@@ -35,23 +35,23 @@ class LadderProblem {
     const Factorisation& factorisation;
     const InverseBound& inverse;
     LadderOptions options;
-    const VertexEnclosure* vertex; ///< null: the stored configuration is meant
+    const VertexEnclosure* vertex; ///< null: forces are those of the stored configuration
     std::vector<RightHandSide> parts;
 
     [[nodiscard]] RightHandSide& part(int number) { return parts[static_cast<std::size_t>(number)]; }
-    /// |H(q) - H(q')|_2 per |q - q'|_2 near the true vertex; 0 without one. As it is at the first request.
+    /// |H(q) - H(q')|_2 per |q - q'|_2 near the true vertex; 0 without one. Fixed at the first call.
     [[nodiscard]] double normal_rate();
-    /// Bounds of |q* - q| and of |H* - H| at the stored configuration q; 0 when that is meant. As they are at the first
-    /// request.
+    /// Bounds of |q* - q| and of |H* - H| at the stored configuration q;
+    /// 0 when forces of q itself are asked for. Fixed at the first call.
     struct Distance {
         double away = 0;
         double uncertainty = 0;
     };
     [[nodiscard]] const Distance& stored_distance();
-    /// Solves in double, unless a solution of at least this accuracy is there. `accuracy`: as in `solve_forces`.
+    /// Solves in double, unless a solution of this accuracy is known. `accuracy`: as in `solve_forces`.
     void solve_in_double(RightHandSide& part, double accuracy) const;
-    /// The bound of a solution at the stored configuration becomes one for the true vertex: |H*^-1| <= 1 / (sigma - |H*
-    /// - H|), |H* x - F*| <= |H x - F| + |(H* - H) x| + |F* - F|.
+    /// Turns the bound of a solution at the stored configuration into one for the true vertex: |H*^-1| <= 1 / (sigma -
+    /// |H* - H|), |H* x - F*| <= |H x - F| + |(H* - H) x| + |F* - F|.
     void inflate(RightHandSide& part);
 
   private:

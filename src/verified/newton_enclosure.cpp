@@ -38,8 +38,8 @@ Pair exact_square(double a) {
     return {square, ((high * high - square) + 2 * high * low) + low * low};
 }
 
-/// What V4 needs of the gaps at the stored configuration, in one pass over the contacts. Lengths are multiplied by
-/// `scale`, a power of two that brings the largest near 1.
+/// The numbers of V4 on the gaps of the stored configuration, from one pass over the contacts. Lengths are
+/// multiplied by `scale`, a power of two that brings the largest near 1.
 struct Constraints {
     std::vector<double> f;     ///< F_l
     std::vector<double> error; ///< bound of its error
@@ -55,7 +55,7 @@ struct Constraint {
     double error = 0;
 };
 
-/// Of two disks at the distance `distance` of their centres, by coordinates; d = R_i + R_j.
+/// F of two disks from the coordinates `distance` of their relative position; d = R_i + R_j.
 Constraint between_disks(std::span<const Pair> distance, Pair d) {
     constexpr double underflow = 0x1p-1000; // far above 16 * 2^-1074, which is slow to multiply with
     const Pair target_square = exact_square(d.sum);
@@ -70,7 +70,7 @@ Constraint between_disks(std::span<const Pair> distance, Pair d) {
     return {f, 4 * u * std::abs(f) + 0x1p-98 * d.sum + underflow * inverse};
 }
 
-/// x_j - x_i + A m: of an image it is one double, exact on the grid (proofs/cells.md, C2).
+/// x_j - x_i + A m; for an image the difference is one double, exact on the grid (proofs/cells.md, C2).
 template <class At, class Minus>
 PerAxis<Pair> distance_of(const Separation& separation, const Contact& contact, At at, Minus minus) {
     if (contact.image.is_here()) [[likely]] {
@@ -143,7 +143,7 @@ Constraints constraints(const Packing& packing, const std::vector<Contact>& cont
     return result;
 }
 
-/// What a step leaves of F: r = F - approach, and a bound of what it leaves of the exact F.
+/// What a step leaves of F: the residual r = F - approach, and a bound of what the step leaves of the exact F.
 struct Rest {
     std::vector<double> r;
     std::vector<double> bound;
@@ -169,7 +169,7 @@ struct Rest {
     }
 };
 
-/// Power of two that brings the largest coordinate near 1, unless it is out of the range in which F is computed.
+/// Power of two that brings the largest coordinate near 1; empty when F cannot be computed in that range.
 std::optional<double> scale_of(const std::vector<double>& q) {
     double longest = 0;
     for (const double x : q) {
@@ -180,15 +180,15 @@ std::optional<double> scale_of(const std::vector<double>& q) {
     return std::abs(exponent) > 400 ? std::nullopt : std::optional(std::ldexp(1.0, -exponent));
 }
 
-/// Steps of Newton's method from the stored place, and the enclosure around each that is proved (V4); lengths are those
-/// of `at`.
+/// Takes steps of Newton's method from the stored configuration,
+/// each with its proved enclosure (V4); lengths have the unit of `at`.
 VertexEnclosure newton(const Constraints& at, const sparse::Matrix<double>& h, const Factorisation& factorisation,
                        double inverse_norm) {
     constexpr int max_passes = 4;
-    constexpr double enough = 2; // more passes would at most divide the radius by 3
+    constexpr double enough = 2; // further passes divide the radius by 3 at most
     VertexEnclosure vertex;
     vertex.radius = roundoff::infinity;
-    std::vector<double> step = at.f; // with approach velocities equal to the gaps they close
+    std::vector<double> step = at.f; // approach velocities equal to the gaps that they close
     factorisation.approximate().velocities(step);
     Rest left(step.size());
     for (int pass = 1; pass <= max_passes; ++pass) {
@@ -202,7 +202,7 @@ VertexEnclosure newton(const Constraints& at, const sparse::Matrix<double>& h, c
             vertex.verdict = Verdict::proved;
             vertex.radius = radius;
         }
-        // The exact step is `rest` away, and the vertex at most eta * product from where that leads.
+        // The exact step ends within `rest` of this one, and the vertex is at most eta * product from its end.
         vertex.step_radius = product <= 0.25 ? (rest + eta * product) * (1 + 8 * u) : roundoff::infinity;
         if (!(rest > enough * length) || pass == max_passes) {
             break;

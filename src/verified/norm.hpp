@@ -7,24 +7,24 @@
 
 namespace isostat {
 
-/// One product or quotient that underflows errs by at most this (2^-1075 in truth).
+/// A product or quotient that underflows errs by at most this (in truth 2^-1075).
 inline constexpr double underflow_unit = 0x1p-1074;
 
-/// An upper bound of the 2-norm: scaled by a power of two where a square might under- or overflow. NaN or infinity when
-/// an entry is.
+/// An upper bound of the 2-norm, scaled by a power of two where a
+/// square might under- or overflow. NaN or infinity when an entry is.
 inline double norm_above(std::span<const double> x) {
     double plain = 0;
     for (const double c : x) {
         plain += c * c;
     }
-    if (plain > 0x1p-900 && plain < 0x1p1000) { // what underflowed is below 2^-1022 n
+    if (plain > 0x1p-900 && plain < 0x1p1000) { // the underflow is below 2^-1022 n
         return std::sqrt(plain) * (1 + 1e-10);
     }
     double largest = 0;
     for (const double entry : x) {
         const double c = std::abs(entry);
         if (!(c <= 0x1p1020)) {
-            return c * 16; // NaN, infinity, or too large to be of use
+            return c * 16; // NaN, infinity, or too large to be used
         }
         largest = std::max(largest, c);
     }
@@ -38,7 +38,7 @@ inline double norm_above(std::span<const double> x) {
     double sum = 0;
     for (const double c : x) {
         const double scaled = c * scale;
-        sum += scaled * scaled; // what underflows here is below 2^-1022 n, and the largest term then at least 1/4
+        sum += scaled * scaled; // the underflow here is below 2^-1022 n, and the largest term is then at least 1/4
     }
     return std::ldexp(std::sqrt(sum) * (1 + 1e-10), exponent) + underflow_unit;
 }

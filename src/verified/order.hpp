@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Answers of proved comparisons, and how far they may climb.
+/// Results of proved comparisons, and limits of their precision.
 
 #include <isostat/core/verdict.hpp>
 
@@ -8,19 +8,19 @@
 
 namespace isostat {
 
-/// How far a ladder may climb.
+/// The precision that a ladder may climb to.
 struct LadderOptions {
-    /// Of the first solutions, with factors taken over: relative, estimated. They are improved to rounding, still on
-    /// the rung double, by the first climb. 0: at rounding at once, as with fresh factors.
+    /// Relative accuracy, estimated, of the first solutions with reused factors. The first climb improves them to
+    /// rounding, still on the rung double. 0: to rounding at once, as with fresh factors.
     double first_accuracy = 0;
-    int first_bits = 256;  ///< of the first rung in MPFR; doubled on every climb
-    int max_bits = 4096;   ///< cap: a comparison that is open there is a tie "to max_bits bits", unless exact
+    int first_bits = 256;  ///< bits of the first rung in MPFR; doubled on every climb
+    int max_bits = 4096;   ///< cap: a comparison undecided there is a tie "to max_bits bits", unless exact
     int exact_size = 2000; ///< largest N_f for exact numbers (0.04 s at 200, 1 s at 800, grows like N_f^2.5)
 };
 
-/// Answer of a comparison: the sign of a quantity or of a difference.
+/// Result of a comparison: the sign of a quantity or of a difference.
 struct Order {
-    bool decided = false; ///< false: open at the precision reached; `sign` says nothing
+    bool decided = false; ///< false: undecided at the precision reached; `sign` then means nothing
     int sign = 0;         ///< -1, 0 or +1; 0 is *proved*: both sides are exactly equal
     double margin = 0;    ///< |centre| / radius of the enclosure that decided; infinite for exact numbers
     Rung rung = Rung::none;
@@ -29,10 +29,10 @@ struct Order {
     double exponent = std::numeric_limits<double>::infinity();
 };
 
-/// Bits below the size of the terms to which two quantities must agree to be called tied when no exact number says so.
+/// Bits, below the size of the terms, to which two quantities must agree to count as tied without an exact zero.
 inline constexpr int tie_bits = 1000;
 
-/// A tie: proved to be exactly 0, or to be smaller than `size` 2^-tie_bits. `size` > 0 is that of the terms.
+/// A tie: proved to be exactly 0, or to be smaller than `size` 2^-tie_bits. `size` > 0: size of the terms.
 bool is_tie(const Order& order, double size);
 
 } // namespace isostat

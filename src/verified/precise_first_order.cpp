@@ -16,7 +16,7 @@ struct PreciseFirstOrder::Rung {
         }
     }
     EnclosedVertex<Real> vertex;
-    std::unique_ptr<ContactSystem<Real>> system; ///< null: nothing is known
+    std::unique_ptr<ContactSystem<Real>> system; ///< null: nothing could be enclosed
 };
 
 namespace {
@@ -51,8 +51,8 @@ PreciseInterval gap_rate(const EnclosedVertex<Real>& vertex, const DofMap& dofs,
         speed += a.size(w[k]);
         size += a.size(x[k]);
     }
-    // |x.v - x*.v*| <= |x| |v - v*| + |x - x*| |v*|; a component of x within 8 unit |x|, of v within 8 unit of `speed`,
-    // and two products and sums.
+    // |x.v - x*.v*| <= |x| |v - v*| + |x - x*| |v*|; a component of x errs by at most 8 unit |x|, one of v by 8 unit
+    // of `speed`; two products and sums follow.
     const UpperBound away = separation_weight(pair) * vertex.radius();
     const UpperBound error = size * unknown + away * (speed + unknown) + 32 * a.unit() * size * speed;
     const PreciseInterval product(sum, error.real(), a.bits());
@@ -60,7 +60,7 @@ PreciseInterval gap_rate(const EnclosedVertex<Real>& vertex, const DofMap& dofs,
     return product / PreciseInterval(length, (a.unit() * a.size(length)).real(), a.bits());
 }
 
-/// Part of the second derivative of a gap of 0 that its velocity makes: (|w|^2 - (n.w)^2) / D, w the relative velocity.
+/// Part of the second derivative of a zero gap due to its velocity: (|w|^2 - (n.w)^2) / D, w the relative velocity.
 PreciseInterval turning(const EnclosedVertex<Real>& vertex, const DofMap& dofs, const BoundedVector<Real>& motion,
                         const Contact& pair) {
     const Arithmetic<Real>& a = vertex.at().arithmetic();
@@ -122,7 +122,7 @@ Enclosure PreciseFirstOrder::climb(const std::vector<Sum>& approach, const Sum& 
             break;
         }
         const Arithmetic<Real>& a = at->vertex.at().arithmetic();
-        bool exact = true; // else the two are too far apart for these bits
+        bool exact = true; // false: the two addends are too far apart for these bits
         const auto sum = [&](const Sum& two) {
             Real total(a.bits());
             exact = mpfr_add(total.get(), a.number(two[0]).get(), a.number(two[1]).get(), MPFR_RNDN) == 0 && exact;
@@ -167,7 +167,7 @@ Enclosure PreciseFirstOrder::bend(ContactId opened, int direction, const Contact
     if (velocity.value.empty()) {
         return unknown;
     }
-    // The gaps of the contacts stay as they are, that of `opened` grows at a constant rate: g.w + turning = 0.
+    // The gaps of the contacts stay constant, and the gap of `opened` grows at a constant rate: g.w + turning = 0.
     std::vector<UpperBound> open;
     for (std::size_t l = 0; l < contacts.size(); ++l) {
         const PreciseInterval t = turning(at->vertex, structure_.dofs(), velocity, contacts[l]);

@@ -7,7 +7,7 @@
 
 namespace isostat {
 
-/// Statement V5 with any number of bits. The arguments must outlive it.
+/// Statement V5 with any number of bits. The arguments must outlive the object.
 class PreciseVertex {
   public:
     PreciseVertex(const Packing& packing, const IsostaticStructure& structure, const Factorisation& factorisation,
@@ -15,11 +15,11 @@ class PreciseVertex {
         : packing_(packing), structure_(structure), factorisation_(factorisation),
           at_q_(Neighbourhood::of(packing, structure.contacts(), inverse)) {}
 
-    /// Encloses it, beginning where fewer bits ended; false: no vertex was proved. Cost: N gaps and a solve per 30
-    /// bits or so.
+    /// Encloses the vertex, starting from the place found with fewer bits; false: no vertex was proved. Cost: N gaps
+    /// and a solve per 30 bits or so.
     bool enclose(int bits);
-    /// Coordinate k of the true vertex, in the bits of the last `enclose`; what cannot move is where it is stored.
-    /// \pre `enclose` succeeded.
+    /// Coordinate k of the true vertex, in the bits of the last `enclose`; the stored value for coordinates that cannot
+    /// move. \pre `enclose` succeeded.
     [[nodiscard]] PreciseInterval operator[](std::size_t k) const;
 
   private:

@@ -25,7 +25,7 @@ Enclosure PreciseInterval::rounded() const {
     Real over(64);
     mpfr_sub(below.get(), value.get(), low.get(), MPFR_RNDU);
     mpfr_sub(over.get(), high.get(), value.get(), MPFR_RNDU);
-    // mpfr_max ignores a NaN: both ends must be numbers.
+    // mpfr_max ignores a NaN, so both ends are tested.
     const bool known = mpfr_number_p(low.get()) != 0 && mpfr_number_p(high.get()) != 0;
     mpfr_max(over.get(), over.get(), below.get(), MPFR_RNDU);
     return {value.nearest(), known ? over.above() : std::numeric_limits<double>::infinity()};

@@ -1,5 +1,5 @@
 #pragma once
-// MPFR numbers with their lifetime, and intervals of them: private to the room.
+// MPFR numbers as values, and intervals of them: private to the room.
 
 #include <isostat/core/verdict.hpp>
 
@@ -10,10 +10,10 @@
 
 namespace isostat {
 
-/// An MPFR number of a precision of its own. Assignment takes value and precision. MPFR's exponents have 63 bits:
-/// nothing over- or underflows here. Not Boost's mpfr_float, which is as fast: its precision is one of decimal digits,
-/// kept for the whole process and changed by every operation (two threads at two precisions would race), and its
-/// functions do not round down or up.
+/// An MPFR number with its own precision. Assignment takes value and precision. MPFR's exponents
+/// have 63 bits, so nothing over- or underflows. Boost's mpfr_float is as fast, but its
+/// precision is in decimal digits, kept for the whole process and changed by every operation
+/// (two threads at two precisions would race), and its functions do not round down or up.
 class Real {
   public:
     Real() : Real(53) {}
@@ -36,7 +36,7 @@ class Real {
     [[nodiscard]] int sign() const { return mpfr_sgn(x_); }
     /// Nearest double (may underflow to 0).
     [[nodiscard]] double nearest() const { return mpfr_get_d(x_, MPFR_RNDN); }
-    /// Smallest double that is not below: positive for every positive number.
+    /// Smallest double that is not smaller: positive for every positive number.
     [[nodiscard]] double above() const { return mpfr_get_d(x_, MPFR_RNDU); }
     [[nodiscard]] double below() const { return mpfr_get_d(x_, MPFR_RNDD); }
 
@@ -44,7 +44,7 @@ class Real {
     mpfr_t x_;
 };
 
-/// Rounded to nearest, with the bits of the longer operand; `+=` and `-=` keep those of the left one.
+/// Rounded to nearest, with the bits of the longer operand; `+=` and `-=` keep the bits of the left one.
 template <int (*operation)(mpfr_ptr, mpfr_srcptr, mpfr_srcptr, mpfr_rnd_t)> Real rounded(const Real& a, const Real& b) {
     Real result(std::max(mpfr_get_prec(a.get()), mpfr_get_prec(b.get())));
     operation(result.get(), a.get(), b.get(), MPFR_RNDN);
@@ -79,7 +79,7 @@ inline Real sqrt(Real a) {
     return a;
 }
 
-/// A real number between low and high; all operations round outwards, with `bits` of the object. NaN: nothing is known.
+/// A real number between low and high; operations round outwards, with `bits` of the object. NaN: nothing is known.
 class PreciseInterval {
   public:
     PreciseInterval() = default;
@@ -100,7 +100,7 @@ class PreciseInterval {
     [[nodiscard]] bool zero() const { return mpfr_zero_p(low.get()) != 0 && mpfr_zero_p(high.get()) != 0; }
     /// |centre| / radius, infinite for a point.
     [[nodiscard]] double margin() const;
-    /// The same in doubles: the middle rounded, with what that may lose.
+    /// The interval in doubles: the rounded middle, with the loss added to the radius.
     [[nodiscard]] Enclosure rounded() const;
 };
 

@@ -14,7 +14,7 @@ namespace {
 
 using roundoff::u;
 
-/// What was found with fewer digits, as a guess.
+/// The result with fewer digits, as a guess.
 dd_real sum_of(const Arithmetic<dd_real>&, double high, double low) {
     return {high, low};
 }
@@ -22,7 +22,7 @@ Real sum_of(const Arithmetic<Real>& arithmetic, double high, double low) {
     return arithmetic.number(high) + arithmetic.number(low);
 }
 
-/// The contact matrix in double-double or MPFR, at the true vertex enclosed with as many digits when that is meant.
+/// The contact matrix in double-double or MPFR, at the true vertex, enclosed with as many digits, when that is meant.
 template <class T> class RefinedRung final : public IntervalRung {
   public:
     using A = Arithmetic<T>;
@@ -68,14 +68,14 @@ template <class T> class RefinedRung final : public IntervalRung {
         }
         return {part.refined.value[l], part.refined.bound.real(), this->bits() + 32};
     }
-    /// The bits were used: more of them will tell more.
+    /// Whether the bounds are below 2^(-bits/2) of the largest force, so that more bits will decide more.
     [[nodiscard]] bool converged() const;
 
-    std::optional<EnclosedVertex<T>> vertex_; ///< none: the stored configuration is meant
+    std::optional<EnclosedVertex<T>> vertex_; ///< empty: the stored configuration is meant
     ContactSystem<T> system_;
 };
 
-/// Products of two doubles are exact; the residual grants two roundings to those of three.
+/// Products of two doubles are exact; the bound of the residual allows two roundings for a product of three.
 template <class T> std::vector<T> RefinedRung<T>::load(const RightHandSide& part) const {
     const A& a = system_.arithmetic();
     std::vector<T> force;
@@ -113,7 +113,7 @@ template <class T> void RefinedRung<T>::solve(RightHandSide& part) {
     const double error = rate == 0 || !vertex_ ? 0 : rate * above(vertex_->distance()) * (1 + 4 * u);
     std::vector<T> start = guess(part);
     BoundedVector<T> solved = system_.forces(load(part), error, start);
-    if (solved.value.empty()) { // nothing is known
+    if (solved.value.empty()) { // no bound is known
         solved.value = std::move(start);
     }
     take(std::move(solved), part);
@@ -164,7 +164,7 @@ template <class T> std::unique_ptr<ForceRung> RefinedRung<T>::next() {
     }
 }
 
-/// Null when no true vertex was enclosed, though one is meant.
+/// Null when the true vertex is meant and no enclosure of the true vertex exists.
 template <class T>
 std::unique_ptr<ForceRung> refined_rung(LadderProblem& problem, const Arithmetic<T>& arithmetic,
                                         const std::vector<T>& start, int bits) {

@@ -28,7 +28,7 @@ inline double rounding_of_entries(const sparse::Matrix<double>& h, int dimension
     return roundoff::entry_units(dimension) * u * std::sqrt(column_norm * row_norm);
 }
 
-/// Lower bound of sigma_min(H) from one of sigma_min(fl(H))^2 and |H - fl(H)|_2; not positive: there is none.
+/// Lower bound of sigma_min(H) from one of sigma_min(fl(H))^2 and |H - fl(H)|_2; if not positive, no bound.
 inline double smallest_singular_value(double square, double entry_error) {
     using roundoff::u;
     return square > 0 ? std::sqrt(square) * (1 - 4 * u) - entry_error : 0;

@@ -19,9 +19,9 @@ double largest_gap(const Packing& packing, const std::vector<Contact>& contacts)
     return largest;
 }
 
-/// A cell that keeps its shape: the rest of it follows the last period, the only one that moves. `step`: that of the
-/// degrees of freedom with the rest at rest. With the rest stretched by beta it is step + beta * answer, and beta is
-/// the stretch of the last period.
+/// For a cell that keeps its shape, where the last period is a degree of freedom and the rest of the cell follows.
+/// `step` moves the degrees of freedom while the rest is at rest. When the rest is stretched by beta the step is step +
+/// beta * answer, and beta is the stretch of the last period.
 void keep_shape(Packing& packing, const std::vector<Contact>& contacts, const Factorisation& factorisation,
                 std::vector<double>& step) {
     const std::size_t first = packing.length_at(0);
@@ -35,7 +35,7 @@ void keep_shape(Packing& packing, const std::vector<Contact>& contacts, const Fa
         }
     }
     factorisation.solve_velocities(answer);
-    const double beta = step.back() / (packing.q[leads] - answer.back()); // no other coordinate of the cell moves
+    const double beta = step.back() / (packing.q[leads] - answer.back()); // the cell has no other degree of freedom
     for (std::size_t mu = 0; mu < step.size(); ++mu) {
         step[mu] += beta * answer[mu];
     }
@@ -44,7 +44,7 @@ void keep_shape(Packing& packing, const std::vector<Contact>& contacts, const Fa
     }
 }
 
-/// One step; failure when the matrix is not proved regular.
+/// Takes one step; fails when the matrix is not proved regular.
 std::optional<Failure> newton_step(Packing& packing, const std::vector<Contact>& contacts) {
     const auto structure = IsostaticStructure::prove(packing, contacts);
     if (!structure.ok()) {
@@ -53,7 +53,7 @@ std::optional<Failure> newton_step(Packing& packing, const std::vector<Contact>&
     const Factorisation factorisation(structure.value());
     std::vector<double> step(contacts.size());
     for (std::size_t l = 0; l < contacts.size(); ++l) {
-        step[l] = gap(packing, contacts[l]); // approach by the gap
+        step[l] = gap(packing, contacts[l]); // each gap is to be closed
     }
     factorisation.solve_velocities(step);
     if (packing.cell.keeps_shape) {
@@ -83,7 +83,7 @@ std::optional<Failure> to_vertex(Packing& packing, const std::vector<Contact>& c
         ++steps;
         const double now = largest_gap(next, contacts);
         if (!(now < before)) {
-            // Rounding level when the gaps are within a few grid steps; otherwise the start was too far.
+            // Gaps of a few grid steps are at the level of rounding; larger gaps mean that the start was too far.
             if (before <= 64 * grid_step(here)) {
                 break;
             }

@@ -5,7 +5,7 @@
 
 namespace isostat {
 
-/// A number >= 0 known from above: 64 bits, any exponent, every operation rounded up. A NaN compares with nothing.
+/// An upper bound of a number >= 0: 64 bits, any exponent, every operation rounded up. Comparisons with NaN are false.
 class UpperBound {
   public:
     UpperBound(double value = 0) : x_(value, bits) {} // NOLINT(google-explicit-constructor): as doubles do
@@ -31,7 +31,7 @@ class UpperBound {
         mpfr_mul(x_.get(), x_.get(), b.x_.get(), MPFR_RNDU);
         return *this;
     }
-    /// \pre b > 0 is the number itself, or a lower bound.
+    /// \pre b > 0 is exact, or a lower bound.
     UpperBound& operator/=(const UpperBound& b) {
         mpfr_div(x_.get(), x_.get(), b.x_.get(), MPFR_RNDU);
         return *this;

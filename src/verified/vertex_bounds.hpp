@@ -1,5 +1,5 @@
 #pragma once
-// What the bounds of the true vertex share (statement V4): private to the room.
+// Bounds that several proofs of the true vertex use (statement V4): private to the room.
 
 #include "contact/separation.hpp"
 #include "core/roundoff.hpp"
@@ -14,23 +14,23 @@
 
 namespace isostat {
 
-/// Sum of the radii of a contact, the length of a bar: the length D that scales the rounding of the gap.
+/// Sum of the radii of a contact, or the length of a bar: the length D that scales the rounding of the gap.
 inline double target(const Packing& packing, const Contact& contact) {
     return zero_distance(packing, contact);
 }
 
-/// Products of such doubles, and what rounding leaves of them, keep all digits (V0).
+/// Whether products of such doubles, and their rounding errors, keep all digits (V0).
 inline bool in_range_of_products(double size) {
     return size > 1e-100 && size < 1e100;
 }
-/// Of all lengths.
+/// Whether this holds for all lengths of a packing.
 inline bool in_range_of_products(const Packing& packing) {
     const auto longer = [](double a, double b) { return std::abs(a) < std::abs(b); };
     return in_range_of_products(packing.min_radius()) &&
            std::abs(*std::max_element(packing.q.begin(), packing.q.end(), longer)) < 1e100;
 }
 
-/// |m| of a contact: how strongly r depends on the cell. 0 without an image.
+/// |m| of a contact, which bounds the change of r per change of the cell. 0 without an image.
 inline double cell_weight(const Contact& contact) {
     const auto& m = contact.image.m;
     return contact.image.is_here() ? 0.0 : std::sqrt(static_cast<double>(m[0] * m[0] + m[1] * m[1] + m[2] * m[2]));
@@ -46,7 +46,7 @@ inline double separation_weight(const Contact& contact) {
     return contact.image.is_here() ? root2 : std::sqrt(separation_weight_square(contact)) * (1 + 0x1p-50);
 }
 
-/// What multiplies unit normals at most: 1 without images.
+/// Bound of the factors of unit normals in the matrix: 1 without images.
 inline double largest_multiple(const std::vector<Contact>& contacts) {
     int most = 1;
     for (const Contact& contact : contacts) {
@@ -57,7 +57,7 @@ inline double largest_multiple(const std::vector<Contact>& contacts) {
     return most;
 }
 
-/// Largest sum of what contacts give to a disk, or those with an image to the cell.
+/// Largest sum of the parts that contacts add to a disk or, for contacts with an image, to the cell.
 class HeaviestSum {
   public:
     explicit HeaviestSum(std::size_t disks) : at_disk_(disks, 0.0) {}
@@ -68,12 +68,12 @@ class HeaviestSum {
         }
         cell_ += to_cell;
     }
-    /// Of the turn of forces (C5), `part` = |f_l| / D_l.
+    /// Adds the turn of a force (C5), `part` = |f_l| / D_l.
     void add_turn(const Contact& contact, double part) {
         const double w = cell_weight(contact);
         add(contact, part * (2 + w), part * w * (contact.i == contact.j ? w : 2 + w));
     }
-    /// Roundings of up to 10^6 terms included.
+    /// The largest sum, including roundings of up to 10^6 terms.
     [[nodiscard]] double largest() const {
         return std::max(cell_, *std::max_element(at_disk_.begin(), at_disk_.end())) * (1 + 1e-9);
     }
@@ -125,8 +125,8 @@ inline double worst_gap_ratio(const Packing& packing, const std::vector<Contact>
 }
 
 /// |H(q) - H(q')|_2 <= normal_rate |q - q'| for the unit normals between the stored configuration and the true vertex:
-/// unit vectors of d and d' differ by at most |d - d'| / min(|d|, |d'|), and every distance there is above 0.99 D
-/// (\pre worst_gap_ratio below 1e-3 and |q - q'| below D_min / 1000, as V4 checks); then as in V4 (a).
+/// unit vectors of d and d' differ by at most |d - d'| / min(|d|, |d'|), and every distance there is above 0.99 D (\pre
+/// worst_gap_ratio below 1e-3 and |q - q'| below D_min / 1000, as V4 checks); then as in V4 (a).
 inline double normal_rate(double lipschitz_constant) {
     return 1.02 * lipschitz_constant;
 }
@@ -134,9 +134,9 @@ inline double normal_rate(const Packing& packing, const std::vector<Contact>& co
     return normal_rate(lipschitz(packing, contacts));
 }
 
-/// |(H(q) - H(q')) x|_2 <= turn_of_forces |q - q'| for the same normals as in `normal_rate`: 2 max_i sum_{l at i} |x_l|
-/// / D_l as in V6, in a cell the sums of C5; which is smaller than normal_rate |x|_2 by about the square root of the
-/// number of contacts.
+/// |(H(q) - H(q')) x|_2 <= turn_of_forces |q - q'| for the same normals as in `normal_rate`:
+/// 2 max_i sum_{l at i} |x_l| / D_l as in V6, in a cell the sums of C5. This bound is
+/// smaller than normal_rate |x|_2 by about the square root of the number of contacts.
 inline double turn_of_forces(const Packing& packing, const std::vector<Contact>& contacts,
                              const std::vector<double>& x) {
     if (packing.cell.any()) {

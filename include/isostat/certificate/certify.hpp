@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Claims about one state, each of them proved: what a certificate says; and what is known of a state without moving
-/// it.
+/// What a certificate claims of one state, each claim proved;
+/// and what `inspect` says of a state, which it never moves.
 
 #include <isostat/core/result.hpp>
 #include <isostat/io/state_file.hpp>
@@ -14,14 +14,14 @@
 
 namespace isostat {
 
-/// What is asked for.
+/// Options of `certify`.
 struct CertifyOptions {
     /// The last arithmetic that is tried for a sign: `double_bound`, `double_double` or `multiprecision` (100 digits).
     Rung highest = Rung::multiprecision;
 };
 
-/// How many finite forces of contacts at the true vertex are proved to be what; bars and held coordinates do not count.
-/// All 0 when no true vertex was found.
+/// Numbers of finite forces of contacts at the true vertex by their proved sign; bars and held coordinates do not
+/// count. All are 0 when no true vertex was found.
 struct ForceSigns {
     int positive = 0;
     int structural_zero = 0; ///< exactly 0
@@ -29,64 +29,60 @@ struct ForceSigns {
     int undecided = 0;
 };
 
-/// Claims, and what became of the others.
+/// The claims that were proved, and why the other claims were not.
 struct Certification {
     int dimension = 2; ///< of the grains
     CertificateClaims claims;
-    /// `proved`: every claim is there, so the true vertex is an isostatic, stable equilibrium without overlap; or the
-    /// one of a minimum is (`MinimumClaim`): an equilibrium that is stable and not isostatic.
-    /// `refuted`: one of them is proved to be wrong (`refuted` says which). `undecided`: neither.
+    /// `proved`: every claim is proved, so the true vertex is an isostatic, stable equilibrium without overlap; or the
+    /// claim of a minimum is proved (`MinimumClaim`): an equilibrium that is stable and not isostatic. `refuted`: a
+    /// claim is proved to be wrong (`refuted` says which). `undecided`: neither was shown.
     Verdict verdict = Verdict::undecided;
-    std::vector<std::string> refuted; ///< one sentence each; they are among `claims.undecided` too
+    std::vector<std::string> refuted; ///< one sentence each, which `claims.undecided` has too
     Counting counting;                ///< of the stored coordinates; `rank_exact` undecided: the rank is a lower bound
     ForceSigns signs;
-    /// Finite forces at the true vertex, one per contact, as far as they are known, also where a sign is not proved;
-    /// empty without a true vertex. 1 in `structural_zero`: exactly 0.
+    /// Finite forces at the true vertex, one per contact, as well as they are known, also where a sign is not proved;
+    /// empty without a true vertex. 1 in `structural_zero`: this force is exactly 0.
     std::vector<Interval> finite;
     std::vector<unsigned char> structural_zero;
-    std::string potential;     ///< words: what has a strict local minimum where `claims.stable`
+    std::string potential;     ///< in words: the potential that has a strict local minimum where `claims.stable`
     double stored_gap = 0;     ///< largest |gap| of a contact at the stored coordinates, rounded up
-    double smallest_sigma = 0; ///< proved lower bound of the smallest singular value of the contact matrix at the true
-                               ///< vertex; 0: none
+    double smallest_sigma = 0; ///< proved lower bound of the smallest singular value of
+                               ///< the contact matrix at the true vertex; 0: no bound
 };
 
-/// Of disks and of spheres: where a statement counts roundings or axes differently in space, its page says both
-/// (proofs/status.md).
+/// For disks and for spheres. Where a statement counts roundings or axes differently in space, its page says so for
+/// both dimensions (proofs/status.md).
 ///
-/// Proves what it can of `state` with its coordinates exactly as they are stored (they are not put on the grid):
+/// Proves what can be proved of `state` with its coordinates exactly as they are stored (they are not put on the grid):
 /// 1. counting: exact rank of the contact matrix of the stored coordinates (T4; where the rank mod p is not full and
 ///    the matrix is small, a kernel checked in rationals);
-/// 2. vertex: Newton-Kantorovich (T9, V4, V5) at the stored coordinates, or, when they are too far from a vertex for
-///    that, at the end of a Newton iteration that starts there; the claims of radii are about the stored ones;
+/// 2. vertex: Newton-Kantorovich (T9, V4, V5) at the stored coordinates, or, when these are too far from a vertex, at
+/// the end of a Newton iteration from them; the claimed radii are distances from the stored coordinates;
 /// 3. the smallest singular value at the true vertex, from the same theorem (V5): its rank is N_f;
-/// 4. forces at the true vertex (V6): finite ones, structural zeros by the pattern of all entries that a contact can
-///    have (T11), their infinitesimal forces;
+/// 4. forces at the true vertex (V6): finite forces, structural zeros by the pattern of all entries that a contact can
+/// have (T11), and the infinitesimal forces of these zeros;
 /// 5. gaps of all other pairs at the true vertex, complete by T5 and T6; pairs that cannot move relative to each other
 ///    must not overlap either (exactly), but do not count among the gaps claimed;
 /// 6. ends of the supported interval at the true vertex (V7);
 /// 7. stability (T8): forces positive in the lexicographic order, no mechanism; dead loads, or true stresses without
 ///    forces on disks (their potential: sum sigma_a ln L_a, S5).
-/// Every sign is tried in double, then with a corrected vertex in double-double, then in MPFR; `rung` of a claim is the
-/// arithmetic that proved it. States that are not isostatic, that hold coordinates, or whose true stresses act
-/// together with forces on disks (no potential: no claim of stability) get the claims that can be made. Load, pattern,
-/// pairs and point: proofs/definition.md. Lengths or
-/// loads beyond 1e-100 and 1e100: no claim. Deterministic. Cost: a rank proof, two
+/// Every sign is tried in double, then with a corrected vertex in double-double, then in MPFR;
+/// `rung` of a claim is the arithmetic that proved it. States that are not isostatic, that hold
+/// coordinates, or whose true stresses act together with forces on disks (no potential: no claim of
+/// stability) get the other claims. Load, pattern, pairs and point: proofs/definition.md. No claim
+/// is made for lengths or loads beyond 1e-100 and 1e100. Deterministic. Cost: a rank proof, two
 /// factorisations, a candidate list and ten solves in the usual case; each climb adds some solves.
 ///
 /// Clumps: bars are rows of either sign that never open; N_f, N and rank are counted without them. Coordinates may be
 /// held where the load acts on none of them, by the pattern: k is their number, each is a free motion (a rattler, or a
-/// body that turns about the one member through which it is held), and all claims speak of the place where they are
+/// body that turns about the one member through which it is held), and all claims hold for the place where they are
 /// held; the minimum is strict but for these motions (proofs/clumps.md).
 Certification certify(const State& state, const CertifyOptions& options = {});
 
-/// Of a packing with bars: holds the coordinates that leave no mechanism, where the list has no held one and is short
-/// of contacts (h = 0). Other states are returned as they are. Cost: a rank.
+/// Holds coordinates of a packing with bars until no mechanism is left, when its list holds none and has too few
+/// contacts (h = 0). Other states are returned unchanged. Cost: a rank.
 State with_free_motions_held(State state);
 
-/// What is known of a state with mechanisms. Coordinates are held until the structure is isostatic (or already in the
-/// state); when every force is positive and the multipliers of the held coordinates cannot be told from 0, the state is
-/// an equilibrium *as far as the stored numbers say*, and `stable` tells what the potential does along the mechanism
-/// (k = 1; statement T8).
 /// How an equilibrium with mechanisms follows the loaded stress while its contacts stay as they are (proofs/clumps.md,
 /// U10): it moves continuously towards the load.
 struct Yielding {
@@ -101,8 +97,12 @@ struct Yielding {
     Event up, down;
 };
 
+/// What is known of a state with mechanisms. Coordinates are held until the structure is isostatic (or the state holds
+/// them already); when every force is positive and the multipliers of the held coordinates cannot be told from 0, the
+/// state is an equilibrium *up to the rounding of the stored numbers*, and `stable` says what the potential does along
+/// the mechanism (k = 1; statement T8).
 struct MechanismInspection {
-    EquilibriumRecord record;                   ///< `record.verdict` is `refuted`: not isostatic
+    EquilibriumRecord record;                   ///< `record.verdict` is `refuted`: the state is not isostatic
     std::vector<Contact> contacts;              ///< those of the state, then the held coordinates
     std::vector<double> forces;                 ///< f0, one per entry of `contacts`
     std::vector<unsigned char> structural_zero; ///< 1: f0 vanishes for every load on the walls
@@ -121,15 +121,15 @@ struct MechanismInspection {
 /// regular, `undecided` when no bound of the inverse or no true vertex near the stored one was proved.
 Result<MechanismInspection> inspect_mechanism(const State& state, const Counting& counting);
 
-/// The answers of `certify` about the state as it is given, with the numbers that people ask for. With fewer contacts
-/// than degrees of freedom (h = 0, k > 0), or with held coordinates, those of `inspect_mechanism`. Of clumps free
-/// motions are to be held first (`with_free_motions_held`).
+/// What `certify` proves about the state as it is given, with the numbers that people ask for. With fewer contacts than
+/// degrees of freedom (h = 0, k > 0), or with held coordinates, what `inspect_mechanism` finds. Free motions of clumps
+/// have to be held before (`with_free_motions_held`).
 struct Inspection {
     Certification truth;
     Counting counting; ///< N_f, N, rank, h, k
-    /// `record.verdict`: is it an isostatic equilibrium without overlap. Forces, ends of the interval: middles of the
-    /// intervals of `truth`; `record.force_bound`: of every force; ends that are not decided are NaN. `min_gap`: lower
-    /// bound, NaN when there is none. Not computed (0): `balance`, `virtual_power`.
+    /// `record.verdict`: whether the state is an isostatic equilibrium without overlap. Forces and ends of the interval
+    /// are middles of the intervals of `truth`; `record.force_bound` bounds the error of every force; undecided ends
+    /// are NaN. `min_gap`: lower bound, NaN without one. Not computed (0): `balance`, `virtual_power`.
     EquilibriumRecord record;
     std::vector<Contact> contacts;              ///< those of the state, then the held coordinates
     std::vector<double> forces;                 ///< f0, one per entry of `contacts`
@@ -146,45 +146,45 @@ struct Inspection {
 };
 
 /// Failure: `not_isostatic` when h > 0, or when the rank is not proved (the message gives N_f, N, rank, h, k),
-/// `undecided` when no bound of the inverse or no true vertex near the given place was proved. Cost: as `certify`.
+/// `undecided` when no bound of the inverse or no true vertex near the stored place was proved. Cost: as `certify`.
 Result<Inspection> inspect_vertex(const State& state);
 
 /// Finite forces at the true vertex of the state under the loaded stress `sigma` instead of its own, one per contact in
-/// its order: enclosures from `certify`, structural zeros [0, 0]. Also beyond the supported interval, where some are
-/// negative: then no equilibrium has them. Failure: `not_isostatic` when the counting is not proved, `undecided` when
-/// no true vertex near the given place was. Cost: as `certify`.
+/// its order: enclosures from `certify`, structural zeros [0, 0]. Beyond the supported interval some forces are
+/// negative: no equilibrium has such forces. Failure: `not_isostatic` when the counting is not proved, `undecided` when
+/// no true vertex near the stored place was proved. Cost: as `certify`.
 Result<std::vector<Interval>> forces_at(State state, double sigma);
 
-/// Of every packing whose grains, and cell or box, are within `within` of the stored coordinates (2-norm), with
-/// whatever radii, in which the listed contacts all close: `proved`, each is jammed; `refuted`, each in which no other
-/// pair touches is not (proofs/cells.md, C14). Whether there is such a packing is not asked: doubles alone do not tell.
+/// A statement about every packing in which the listed contacts all close and whose grains, and cell or box, are within
+/// `within` of the stored coordinates (2-norm), whatever its radii: `proved`: every such packing is jammed; `refuted`:
+/// every one without further touching pairs is not (proofs/cells.md, C14). Whether such a packing exists stays open.
 struct JammedIfClosed {
     Verdict verdict = Verdict::undecided;
-    int contacts = 0; ///< those of the list, without those of rattlers by coordination
+    int contacts = 0; ///< of the list, without the contacts of rattlers by coordination
     double within = 0;
 };
 
-/// Whether a packing is jammed, and the words why.
+/// Whether a packing is jammed, and the reason in words.
 struct JammingAnswer {
     Verdict verdict = Verdict::undecided;
     std::string reason;
-    std::optional<JammedIfClosed> if_closed = {}; ///< where `verdict` is undecided
+    std::optional<JammedIfClosed> if_closed = {}; ///< when `verdict` is undecided
 };
 
-/// Counts of the stored coordinates, in the order of `strains`; the rest speaks of the true vertex.
+/// `counts` are of the stored coordinates, in the order of `strains`; the other members are of the true vertex.
 ///
-/// *Backbone*: disks and contacts with finite force, known where the forces are. Of it (proofs/cells.md, C6 and C7):
-/// - locally jammed: no disk of it can move alone while the others stay;
-/// - collectively jammed: no motion of its disks in the fixed cell keeps all gaps >= 0, but for translations of all;
-/// - strictly jammed: no motion of its disks and of the cell with a volume that does not grow, but for the same.
-/// `proved` and `refuted` need an equilibrium that is proved: positive forces are the self-stress that such proofs ask
-/// for. Without one all are `undecided`, whatever the counts. Strictly, where every strain of the cell moves or closes
-/// an own image: by the forces under an isotropic pressure. Own images that touch are counted in all rows, also those
-/// between which nothing moves.
+/// *Backbone*: disks and contacts with finite force, when the forces are known. On it (proofs/cells.md, C6 and C7):
+/// - locally jammed: no disk of the backbone can move alone while the others stay;
+/// - collectively jammed: no motion of its disks in the fixed cell keeps all gaps >= 0, except translations of all;
+/// - strictly jammed: no motion of its disks and of the cell with a volume that does not grow, with the same exception.
+/// `proved` and `refuted` need a proved equilibrium, because its positive forces are the self-stress in such proofs.
+/// Without one all three are `undecided`, whatever the counts. Strict jamming is decided, where every strain of the
+/// cell moves or closes an own image, by the forces under an isotropic pressure. Touching own images count in all rows,
+/// also in rows where nothing moves between them.
 struct CellInspection {
     int dimension = 2;
     StrainCounts all;
-    std::optional<StrainCounts> backbone; ///< none: the forces are not known
+    std::optional<StrainCounts> backbone; ///< absent when the forces are not known
     int backbone_disks = 0;
     JammingAnswer local, collective, strict;
 };

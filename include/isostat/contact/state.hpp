@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Contacts, gaps and their gradients; and a state: what a file stores of a sample, packing, load and the contacts that
-/// define it.
+/// Contacts, gaps and their gradients; and a state:
+/// packing, load and contacts, as a file stores them.
 
 #include <isostat/core/contact.hpp>
 #include <isostat/core/verdict.hpp>
@@ -30,26 +30,26 @@ struct GapGradient {
     std::array<double, most> value{};
 };
 
-/// Gap h: distance of the surfaces, >= 0 in an admissible packing. Of a bar: distance of the centres less its length.
-/// Held: 0.
-/// Error: at most 4 ulp of the distance of the centres beyond the exactly rounded operations, for coordinates on the
-/// grid.
+/// Gap h: distance of the surfaces, >= 0 in an admissible packing. For a bar the distance of the centres minus its
+/// length, for a held coordinate 0.
+/// Error: at most 4 ulp of the distance of the centres beyond the exactly rounded
+/// operations, for coordinates on the grid.
 double gap(const Packing& packing, const Contact& contact);
 
 /// Gradient of the gap. Each component has relative error <= 4u (u = 2^-53) for coordinates on the grid.
 GapGradient gap_gradient(const Packing& packing, const Contact& contact);
 
-/// Second derivative of the gap along a velocity v (on coordinates): |tangential relative velocity|^2 / distance; 0 for
-/// walls.
+/// Second derivative of the gap along a velocity v (on coordinates): |tangential relative
+/// velocity|^2 / distance; 0 for walls.
 double gap_curvature(const Packing& packing, const Contact& contact, const double* v);
 
-/// What a run under `ties = "choose"` adds to a state: it speaks of the grains with radii R_i + eps rho_i, eps > 0
+/// What a run under `ties = "choose"` adds to a state: it describes the grains with radii R_i + eps rho_i, eps > 0
 /// smaller than every positive number (proofs/perturbation.md).
 struct RadiusPerturbation {
     unsigned long long seed = 0;
     std::vector<double> rho; ///< one per disk; short dyadic numbers
-    /// i >= 0: the stress is not the stored one but that near it at which the force of this contact vanishes, and
-    /// `stress_rate` is its first-order term.
+    /// i >= 0: the stress is not the stored one but the nearby one at which the force of this contact vanishes, and
+    /// `stress_rate` is the first-order term of that stress.
     Contact load_zero{ContactKind::disk_disk, -1, -1};
     Enclosure stress_rate{0, 0};
     /// Results, not input: pairs that touch in the base and are open at first order, with their first-order gaps, and
@@ -66,8 +66,8 @@ struct State {
     Load load;
     std::vector<Contact> contacts;
     int equilibrium = 0;                            ///< its number in the run that made it
-    std::optional<RadiusPerturbation> perturbation; ///< none: the state speaks of its own radii
-    std::string provenance; ///< JSON text: version, command line, seeds, `rounding` of a file; no proof looks at it
+    std::optional<RadiusPerturbation> perturbation; ///< absent: the state has the stored radii
+    std::string provenance; ///< JSON text: version, command line, seeds, `rounding` of a file; proofs ignore it
 };
 
 } // namespace isostat

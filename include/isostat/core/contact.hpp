@@ -10,17 +10,17 @@
 
 namespace isostat {
 
-/// The most axes, and tilts of a cell, that there are. Arrays over axes and tilts have a place for each; places that
-/// the dimension does not need hold 0.
+/// The largest number of axes, and of tilts of a cell. Arrays over axes and tilts have an entry for each; entries that
+/// the dimension does not use hold 0.
 inline constexpr std::size_t most_axes = 3;
 inline constexpr std::size_t most_tilts = 3;
-/// The dimension of what is true in the plane only; files that use this constant are not entered with spheres.
+/// The dimension of statements that hold in the plane only; files that use this constant never get spheres.
 inline constexpr int plane = 2;
 template <class T> using PerAxis = std::array<T, most_axes>;
 template <class T> using PerTilt = std::array<T, most_tilts>;
 
-/// Where the coordinates of a packing stand (`Packing::q`): those of disk i from d i on, L_a at d n + a, then the
-/// tilts.
+/// Where `Packing::q` has each coordinate: disk i
+/// from d i on, L_a at d n + a, the tilts last.
 struct Layout {
     int dimension = 2; ///< d
     int disks = 0;     ///< n
@@ -28,13 +28,13 @@ struct Layout {
     [[nodiscard]] constexpr std::size_t tilts() const { return axes() * (axes() - 1) / 2; }
     [[nodiscard]] constexpr std::size_t of_disk(int disk) const { return axes() * static_cast<std::size_t>(disk); }
     [[nodiscard]] constexpr std::size_t of_length(std::size_t axis) const { return of_disk(disks) + axis; }
-    /// Of A_ab, a < b.
+    /// The index of A_ab, a < b.
     [[nodiscard]] constexpr std::size_t of_tilt(std::size_t a, std::size_t b) const {
         return of_length(axes()) + a + b * (b - 1) / 2;
     }
 };
 
-/// An index with a meaning. `Tag` is never defined; it only keeps the families apart. Cost: that of an int.
+/// An index with a meaning. `Tag` is never defined; it only keeps index types apart. Cost: that of an int.
 template <class Tag> class Id {
   public:
     constexpr Id() = default;
@@ -57,8 +57,8 @@ using DiskId = Id<struct DiskTag>;
 using ContactId = Id<struct ContactTag>;
 
 /// What touches what. Two kinds are no contacts: `bar` keeps two members of one body at a distance (`Packing::bars`),
-/// whatever the sign of its force; `held` keeps a coordinate at its value, from where the power of the load turned
-/// (proofs/stability.md, S3) or where a free motion begins (proofs/clumps.md).
+/// whatever the sign of its force; `held` keeps a coordinate at its value, because the power of the load changed sign
+/// there (proofs/stability.md, S3) or because a free motion begins there (proofs/clumps.md).
 enum class ContactKind : std::uint8_t { disk_disk, bar, lower_wall, upper_wall, held };
 
 /// Which image of a disk in a periodic cell: m_a periods further along the period vector a. All 0 in a box.
@@ -89,9 +89,9 @@ struct Contact {
     constexpr Contact() = default;
     constexpr Contact(ContactKind what, int first, int second, Image of_second = {})
         : kind(what), image(of_second), i(first), j(second) {}
-    /// Between two disks: j is one.
+    /// The contact or bar joins two disks, and j is a disk.
     [[nodiscard]] constexpr bool of_disks() const { return kind <= ContactKind::bar; }
-    /// The row of a contact: its force is not negative, and it may open.
+    /// A row of which the force is not negative and which may open.
     [[nodiscard]] constexpr bool is_unilateral() const { return kind != ContactKind::bar && kind != ContactKind::held; }
     friend constexpr bool operator==(const Contact& a, const Contact& b) {
         return a.i == b.i && a.j == b.j && a.kind == b.kind && a.image == b.image;
@@ -108,7 +108,7 @@ struct Contact {
     }
 };
 
-/// Two disks, in the one order that stands for both.
+/// Two disks in the canonical order of a pair.
 constexpr Contact pair_of(int i, int j, Image image = {}) {
     return i < j || (i == j && image > Image{}) ? Contact(ContactKind::disk_disk, i, j, image)
                                                 : Contact(ContactKind::disk_disk, j, i, image.opposite());

@@ -10,8 +10,8 @@
 
 namespace isostat {
 
-/// Which exit status an error leads to (the values of sysexits.h). `internal`: this computer or this program is not as
-/// it must be; nothing is said about the input.
+/// Which exit status an error leads to (the values of sysexits.h). `internal`: this computer or this program has a
+/// defect; the error says nothing about the input.
 enum class ErrorKind { usage, bad_input, internal, cannot_write };
 
 /// Bad input, or a file that cannot be read or written. `what()` is the complete message: file, line or field, the

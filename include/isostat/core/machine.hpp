@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// What the library asks of the machine. Threads; and the arithmetic that every error bound counts with: IEEE double,
+/// What the library requires of the machine: threads, and the arithmetic that every error bound assumes: IEEE double,
 /// each operation rounded to nearest, subnormal numbers kept, no product fused into a sum. Headers with numbers include
-/// this one, so that a compiler told to compute in another way refuses them.
+/// this file, so that compiling with other arithmetic is refused.
 
 #include <cfloat>
 
@@ -17,22 +17,22 @@
 
 namespace isostat {
 
-/// What of the arithmetic is not as it must be, in words; nullptr when all is well: rounding to nearest (of the unit
-/// that computes and as `fegetround` says), subnormal numbers, no more digits than a double has, and the library
-/// compiled without contraction. Looks at results of operations, not at registers, so that it holds on any processor.
-/// Cost: 0.1 microseconds.
+/// What is wrong with the arithmetic, in words; nullptr when nothing is: rounding to nearest
+/// (of the computing unit and as `fegetround` says), subnormal numbers, no more digits than
+/// a double has, and the library compiled without contraction. Tests results of operations,
+/// not registers, because these differ between processors. Cost: 0.1 microseconds.
 const char* floating_point_defect();
 
 /// Throws `Error(internal)` when there is a defect. Called where work begins: by the program, by the readers, by every
 /// function that proves something, and by each thread for each piece of work that it takes over.
 void require_floating_point();
 
-/// Threads of this process, the calling one included: results have the same bits for any number. \pre count >= 1. Not
-/// while work is going on. Before the first call: 1, so that a library does not start threads unasked. Where the system
-/// refuses threads, fewer do the work.
+/// Sets the number of threads of this process, the calling one included: results have the same bits for any number.
+/// \pre count >= 1, and no work is going on. Before the first call the number is 1, so that a library does not start
+/// threads unasked. Where the system refuses threads, fewer threads do the work.
 void set_threads(int count);
 
-/// What `set_threads` asked for.
+/// The number given to `set_threads`.
 int threads();
 
 /// Cores that this process may use (its affinity mask), at least 1.

@@ -19,7 +19,7 @@ enum class FailureKind {
     tie,           ///< two candidates could not be ordered: several contacts at once
     undecided,     ///< a sign could not be decided with the arithmetic allowed
     no_limit,      ///< the load can grow for ever: nothing opens
-    flows,         ///< a dead shear force moves the tilt of a cell on and on
+    flows,         ///< a dead shear force moves the tilt of a cell without end
     unbounded,     ///< a motion finds no new contact, or a linear programme is unbounded
     not_converged, ///< an iteration stopped short
     cap_reached,   ///< a cap on arcs or strain: the sample fails at this load
@@ -30,10 +30,10 @@ enum class FailureKind {
 /// The word used in records and messages.
 const char* to_string(FailureKind kind);
 
-/// Words for a reader, put together when they are asked for, and what they name.
+/// Words for a reader, put together on request, and the contacts and disks that they name.
 class Words {
   public:
-    Words() = default;                                      ///< none
+    Words() = default;                                      ///< no words
     Words(std::string fixed);                               // NOLINT(google-explicit-constructor)
     Words(const char* fixed) : Words(std::string(fixed)) {} // NOLINT(google-explicit-constructor)
     /// `make` is given the dimension; it must own all that it needs.
@@ -45,9 +45,9 @@ class Words {
     [[nodiscard]] bool empty() const { return make_ == nullptr; }
     /// `dimension`: of the grains, which the names of contacts depend on.
     [[nodiscard]] std::string text(int dimension = 2) const { return make_ ? make_(dimension) : std::string(); }
-    /// What these name is named too.
+    /// Adds the contacts and disks that these words name.
     void name(const Words& others);
-    /// One after the other.
+    /// Appends `more`.
     Words& operator+=(const Words& more);
 
   private:
@@ -67,13 +67,13 @@ struct Failure {
 /// Where a failure happened: put before its message, so that the last line of a run says all.
 Failure located(const Failure& failure, Words where);
 
-/// A `value()` was asked of a failure, or a `failure()` of a value: throws std::logic_error, which says why there is no
-/// value.
+/// Throws std::logic_error, with the reason why there is no value:
+/// a `value()` was asked of a failure, or a `failure()` of a value.
 [[noreturn]] void throw_no_value(const Failure& failure);
 [[noreturn]] void throw_no_failure();
 
-/// Either a value or a `Failure`. To ask for the one that is not there is a defect of the caller: in every build it
-/// throws std::logic_error, with the message of the failure if there is one.
+/// Either a value or a `Failure`. Asking for the alternative that is absent is a defect of the caller: in every build
+/// this throws std::logic_error, with the message of the failure if there is one.
 template <class T> class [[nodiscard]] Result {
   public:
     Result(T value) : content_(std::in_place_index<0>, std::move(value)) {} // NOLINT(google-explicit-constructor)

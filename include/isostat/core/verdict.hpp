@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Answers about real numbers that are known to a bound. A question about such numbers has three answers, and the third
-/// must not be usable as one of the other two by accident.
+/// Answers about real numbers that are known up to a bound. A question about such numbers has three answers, and the
+/// type keeps callers from using the third as one of the others.
 
 #include <isostat/core/machine.hpp>
 
@@ -11,11 +11,11 @@
 
 namespace isostat {
 
-/// Answer of a check.
+/// The answer of a check.
 /// - `proved`: the statement holds, and the function that returned it says by which argument;
 /// - `refuted`: the negation of the statement holds;
-/// - `undecided`: neither was shown with the arithmetic that was allowed. It says nothing about which one is true.
-/// There is no conversion to bool: compare with the value that is meant.
+/// - `undecided`: neither was shown with the arithmetic that was allowed; each of the two may still be true.
+/// There is no conversion to bool: compare with the verdict you mean.
 enum class Verdict : std::uint8_t { proved, refuted, undecided };
 
 /// The word used in records and messages.
@@ -48,13 +48,13 @@ constexpr std::string_view to_string(Rung rung) {
     return "none";
 }
 
-/// The exact value lies in [value - radius, value + radius]. NaN anywhere means: nothing is known.
+/// The exact value lies in [value - radius, value + radius]. With a NaN nothing is known.
 struct Enclosure {
     double value = 0;
     double radius = 0;
     [[nodiscard]] bool positive() const { return value > radius; }
     [[nodiscard]] bool negative() const { return -value > radius; }
-    /// The sign is proved. False says nothing.
+    /// True: the sign is proved. False says nothing.
     [[nodiscard]] bool decided() const { return positive() || negative(); }
     /// |value| / radius: above 1 the sign is proved. Infinity when the radius is 0 and the value is not.
     [[nodiscard]] double margin() const { return std::abs(value) / radius; }

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
 /// Real numbers kept exactly: sums of rationals times square roots of rationals (multi-quadratic numbers); and linear
-/// algebra with them: rank, kernel, systems of inequalities. Every answer is proved.
+/// algebra over them: rank, kernel, systems of inequalities. Every result is proved.
 
 #include <isostat/core/verdict.hpp>
 
@@ -32,7 +32,7 @@ class Number {
     Number(int integer) : Number(static_cast<long long>(integer)) {}  // NOLINT(google-explicit-constructor)
     explicit Number(std::shared_ptr<const Terms> terms) : terms_(std::move(terms)) {} ///< canonical terms; null = 0
 
-    /// The dyadic rational that a finite double is. \pre finite
+    /// The dyadic rational that equals a finite double. \pre finite
     static Number from_double(double value);
 
     /// Reads the text form: sums and differences of products and quotients of numbers and `sqrt(q)`:
@@ -40,8 +40,8 @@ class Number {
     /// `sqrt(3)/2`. Under the root: one non-negative number or quotient of two. Spaces may stand between the tokens.
     /// Throws `Error(bad_input)` with the text, the position (from 1) and what was expected there, for anything else:
     /// nested roots, other functions, parentheses, trailing text, inf and nan, division by zero, exponents beyond
-    /// +-10000, and a radicand from which no square-free part can be found (a factor above 10^18 left after the small
-    /// primes).
+    /// +-10000, and a radicand from which no square-free part can be found (a factor above
+    /// 10^18 left after the small primes).
     static Number parse(std::string_view text);
 
     [[nodiscard]] bool is_zero() const { return terms_ == nullptr; }
@@ -84,7 +84,7 @@ class Number {
 /// cannot be factored (see `Number::parse`).
 Number sqrt(const Number& rational);
 
-/// Columns of (row, non-zero value), rows increasing.
+/// A matrix by columns of (row, non-zero value), rows increasing.
 struct NumberMatrix {
     int rows = 0;
     std::vector<std::vector<std::pair<int, Number>>> column;
@@ -100,9 +100,9 @@ std::vector<Number> product(const NumberMatrix& matrix, const std::vector<Number
 struct RankBound {
     int rank = 0;
     std::uint64_t prime = 0;
-    std::vector<int> columns;   ///< `rank` columns, greedy in their order; with the rows that are not in `free_rows`
-                                ///< they are a regular submatrix: proved independent
-    std::vector<int> free_rows; ///< the other rows
+    std::vector<int> columns;   ///< `rank` columns, greedy in their order; proved independent, because with the rows
+                                ///< outside `free_rows` they are a regular submatrix
+    std::vector<int> free_rows; ///< the rows that this submatrix does not use
 };
 
 /// Sparse elimination, one matrix column after the other; stops as soon as the rank is min(rows, cols).
@@ -110,15 +110,15 @@ struct RankBound {
 RankBound rank_bound(const NumberMatrix& matrix);
 
 struct KernelLimits {
-    long long cells = 100000; ///< rows x cols beyond which no kernel is sought (dense elimination)
+    long long cells = 100000; ///< rows x cols beyond which no kernel is computed (dense elimination)
     int primes = 512;         ///< how many primes of 61 bits the reconstruction may use
 };
 
-/// Kernel of a matrix, by elimination mod p, reconstruction of the rationals, and an exact check.
-/// `rank` is always a proved lower bound. With `exact == proved`, `basis` holds cols - rank vectors, each verified
-/// exactly (A v = 0 in the field) and independent by their form (vector k has 1 at free[k] and 0 at the other free
-/// columns), so `rank` is the rank: the upper bound needs no trust in the primes. With `undecided`, the limits were
-/// reached: the rank may be larger, the basis is empty.
+/// Kernel of a matrix, by elimination mod p, reconstruction of the rationals, and an exact check. `rank` is always a
+/// proved lower bound. With `exact == proved`, `basis` holds cols - rank vectors, each verified exactly (A v = 0 in the
+/// field) and independent by their form (vector k has 1 at free[k] and 0 at the other free columns), so `rank` is the
+/// rank: the upper bound needs no trust in the primes. With `undecided` the limits were reached: the rank may be
+/// larger, the basis is empty.
 struct Kernel {
     int rank = 0;
     std::vector<int> pivots;                ///< independent columns, greedy in their order
@@ -132,7 +132,7 @@ struct Kernel {
 /// sign choice.
 Kernel kernel(const NumberMatrix& matrix, const KernelLimits& limits = {});
 
-/// Answer to: is there z >= 0 with A z = b? Exactly one certificate is filled, and it was checked by substitution.
+/// Whether some z >= 0 has A z = b. Exactly one certificate is filled, and substitution confirmed it.
 /// - feasible: `solution` = z;
 /// - not feasible: `farkas` = u with u A <= 0 in every column and u b > 0 (Farkas' lemma).
 struct Feasibility {
@@ -142,12 +142,12 @@ struct Feasibility {
 };
 
 /// `rows[i]` is row i of A (all of size `cols`). First phase of the primal simplex method with Bland's rule (it ends),
-/// dense, in exact arithmetic. Cost: pivots * rows * (rows + cols) exact operations; for some ten rows and a hundred
-/// columns.
+/// dense, in exact arithmetic. Cost: pivots * rows * (rows + cols) exact operations; for some
+/// ten rows and a hundred columns.
 Feasibility feasible_point(const std::vector<std::vector<Number>>& rows, const std::vector<Number>& b, int cols);
 
-/// The least cost z of the z >= 0 with A z = b; nothing where there is no such z. Checked by a solution of the dual.
-/// \pre the cost has a lower bound there. Cost: as `feasible_point`.
+/// The smallest cost z over all z >= 0 with A z = b; nothing when there is no such z. Checked by a solution of the
+/// dual. \pre the cost has a lower bound there. Cost: as `feasible_point`.
 std::optional<Number> least(const std::vector<std::vector<Number>>& rows, const std::vector<Number>& b,
                             const std::vector<Number>& cost);
 
@@ -158,8 +158,8 @@ enum class OneSign {
     none     ///< every combination that is not zero has components of both signs
 };
 
-/// What the span of `vectors` has in its first `size` components; `combination` is such a vector (empty: `none`). An
-/// empty list spans 0: none. Gordan's and Stiemke's alternatives, each answer with its certificate checked.
+/// The signs on the span of `vectors`, in the first `size` components, with an example in `combination` (empty:
+/// `none`). An empty list spans 0: none. Gordan's and Stiemke's alternatives; each certificate is checked.
 struct OneSignAnswer {
     OneSign kind = OneSign::none;
     std::vector<Number> combination;

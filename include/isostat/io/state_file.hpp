@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Files: a state, and a certificate of what is proved of it.
+/// Files of states and of certificates.
 
 #include <isostat/contact/state.hpp>
 #include <isostat/core/verdict.hpp>
@@ -13,11 +13,11 @@
 
 namespace isostat {
 
-/// What a state file holds.
+/// The content of a state file.
 struct StateFile {
     State state;
     std::vector<double>
-        forces; ///< empty, or f0 of every contact of the state: for pictures, never a start of a computation
+        forces; ///< empty, or f0 of every contact of the state: used for pictures, never as the start of a computation
 };
 
 /// The JSON text of a state (format "isostat-state", version 2): packing, load, contacts, provenance, and forces when
@@ -28,15 +28,15 @@ std::string state_text(const State& state, std::span<const double> forces = {});
 /// Writes `state_text` atomically. Throws `Error(cannot_write)`.
 void write_state(const std::filesystem::path& path, const State& state, std::span<const double> forces = {});
 
-/// Writes what a failed preparation reached, for pictures: format "isostat-packing", disks and box only, with the
-/// reason. No command takes it for a state. Throws `Error(cannot_write)`.
+/// Writes where a failed preparation stopped, for pictures: format "isostat-packing", disks and box only, with the
+/// reason. No command reads this format as a state. Throws `Error(cannot_write)`.
 void write_packing(const std::filesystem::path& path, const Packing& packing, const std::string& reason);
 
 /// Reads a state from text; `source` (a file name) starts every message. Numbers may also be strings with a hexadecimal
 /// float. Throws `Error(bad_input)` with file, field, value and what was expected: text that is not complete JSON,
 /// unknown or missing fields, numbers that are not finite, radii that are not positive, disks larger than the box,
-/// contacts out of range, of a disk with itself or given twice. It does not look at the geometry (gaps, overlaps) nor
-/// count contacts: see `check_start`. A state with a periodic cell is refused: most of the program takes boxes only.
+/// contacts out of range, of a disk with itself or given twice. Gaps, overlaps and the number of contacts are not
+/// checked here: see `check_start`. A periodic cell is refused, because most of the program takes boxes only.
 StateFile parse_state(const std::string& text, const std::string& source);
 
 /// Spheres are refused by what takes disks only, which says so (`require_plane`), and clumps by what takes single
@@ -59,7 +59,7 @@ struct Interval {
     friend bool operator==(const Interval&, const Interval&) = default;
 };
 
-/// N_f, N, rank of H, h = N - rank, k = N_f - rank. Of the *stored* coordinates as rational numbers and, where
+/// N_f, N, rank of H, h = N - rank, k = N_f - rank, of the *stored* coordinates as rational numbers and, if
 /// `CertificateClaims::vertex` is claimed too, of the true vertex.
 struct CountingClaim {
     int dof_count = 0;
@@ -80,11 +80,11 @@ struct VertexClaim {
 };
 
 /// Forces at the true vertex under the load of the state, compressive positive, one per contact in the state's order.
-/// Those listed in `structural_zeros` are exactly 0 there for combinatorial reasons: some set of degrees of freedom
-/// without finite load is touched by exactly as many contacts, all of them listed. Their infinitesimal forces (per unit
-/// of eps, same order as the list) decide. All finite forces of contacts that are no structural zeros, and all their
-/// infinitesimal ones listed, are claimed to lie in intervals above 0; bars and held coordinates are structural zeros
-/// or bear any force.
+/// Forces listed in `structural_zeros` are exactly 0 there for combinatorial reasons: some set of degrees of freedom
+/// without finite load is touched by exactly as many contacts, all of them listed. Their signs are decided by
+/// infinitesimal forces (per unit of eps, same order as the list). Claimed to lie in intervals above 0 are all finite
+/// forces of contacts that are no structural zeros, and all infinitesimal forces of listed contacts; bars and held
+/// coordinates are structural zeros or bear a force of any sign.
 struct ForcesClaim {
     std::vector<Interval> finite;
     std::vector<int> structural_zeros; ///< increasing positions in the contact list
@@ -92,10 +92,10 @@ struct ForcesClaim {
     Rung rung = Rung::double_bound;
 };
 
-/// Every pair of grains that is not a contact (and can move relative to each other) has a gap >= `smallest` > 0 at the
-/// true vertex; `where` is the pair that comes nearest, or one whose gap is as small up to
-/// 2^-46 of the largest coordinate or radius. Without any such pair `smallest` is infinite and `where` is not
-/// written.
+/// Every pair of grains that is not a contact (and can move relative to each other)
+/// has a gap >= `smallest` > 0 at the true vertex; `where` is the nearest pair, or
+/// one whose gap is as small up to 2^-46 of the largest coordinate or radius.
+/// Without any such pair `smallest` is infinite and `where` is not written.
 struct GapsClaim {
     double smallest = 0;
     Contact where;
@@ -107,7 +107,7 @@ struct GapsClaim {
 struct LoadEndClaim {
     bool unbounded = false;
     Interval stress;
-    Contact opens; ///< where several forces vanish together for structural reasons: one of them
+    Contact opens; ///< where several forces vanish together for structural reasons: one of their contacts
 };
 
 /// The supported interval of the loaded stress.
@@ -117,11 +117,11 @@ struct LoadIntervalClaim {
     Rung rung = Rung::double_bound;
 };
 
-/// Of clumps with mechanisms that the load reaches. Next to the stored configuration, no coordinate farther from it
-/// than `away`, there is an equilibrium: the listed contacts and bars are closed, all contacts bear positive forces, no
-/// held coordinate bears a multiplier, and no other pair touches. It is a strict local minimum of the potential of the
-/// load, but for motions that change no force: d2W is at least `curvature` times |dc|^2 there, c the coordinates that
-/// are held and that the load reaches (statement U8).
+/// For clumps with mechanisms on which the load acts. An equilibrium exists with no coordinate
+/// farther than `away` from the stored one: the listed contacts and bars are closed, all contacts
+/// bear positive forces, no held coordinate bears a multiplier, and no other pair touches. There the
+/// potential of the load has a strict local minimum, except for motions that change no force: d2W is
+/// at least `curvature` times |dc|^2, c the held coordinates on which the load acts (statement U8).
 struct MinimumClaim {
     double away = 0;
     double curvature = 0;
@@ -137,7 +137,7 @@ struct CertificateClaims {
     std::optional<GapsClaim> gaps;
     std::optional<LoadIntervalClaim> load_interval;
     bool stable = false;
-    std::optional<MinimumClaim> minimum; ///< in the place of all others: h = 0, and k is not 0
+    std::optional<MinimumClaim> minimum; ///< instead of all others: h = 0, and k is not 0
     std::vector<std::string> undecided;  ///< one sentence per claim that is absent
 };
 
@@ -161,8 +161,8 @@ std::string certificate_text(const Certificate& certificate);
 
 /// Reads what `certificate_text` wrote; `source` (a file name) starts every message. Throws `Error(bad_input)` with
 /// file, field, value and what was expected: unknown, missing or repeated fields, lists of the wrong length, NaN,
-/// intervals whose ends are in the wrong order, and a digest that does not belong to the content. It does not check the
-/// claims, except that they can be understood: counts, radii and the smallest gap have the signs that such things have.
+/// intervals whose ends are in the wrong order, and a digest that does not belong to the content. Claims are not proved
+/// again here; only the signs of counts, radii and the smallest gap are checked.
 Certificate parse_certificate(const std::string& text, const std::string& source);
 
 /// Reads a certificate file. Throws `Error(bad_input)`.
@@ -171,8 +171,8 @@ Certificate read_certificate(const std::filesystem::path& path);
 /// Writes `certificate_text` atomically. Throws `Error(cannot_write)`.
 void write_certificate(const std::filesystem::path& path, const Certificate& certificate);
 
-/// The format of a text, or empty: "state", "vertex", "packing" are those of this program (`read_state`,
-/// `crafted::read_packing`), the others those of `read_foreign`. From the content only.
+/// The format of a text from its content alone, or empty: "state", "vertex", "packing" are formats of this program
+/// (`read_state`, `crafted::read_packing`), the others those of `read_foreign`.
 std::string recognise_format(const std::string& text);
 
 } // namespace isostat

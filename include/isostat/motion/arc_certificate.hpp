@@ -9,15 +9,15 @@
 
 namespace isostat {
 
-/// Where a checker should look: nothing in it is to be trusted. The grains that move, and configurations on the way
-/// from the start vertex to the end vertex, so close that neighbours are joined by one piece of the curve.
+/// Data that help a checker and that it need not trust: the grains that move, and configurations along the way from the
+/// start vertex to the end vertex, so close that one piece of the curve joins neighbours.
 struct ArcWitness {
     struct Centre {
-        int held = 0;          ///< coordinate that moves fast and monotonely there
+        int held = 0;          ///< coordinate that changes fast and monotonically on this piece
         std::vector<double> q; ///< the coordinates of the moving grains that are degrees of freedom, in their order
     };
     bool whole = true;       ///< every grain takes part
-    std::vector<int> grains; ///< else: those that do (walls: after the last disk)
+    std::vector<int> grains; ///< otherwise the grains that take part (walls: after the last disk)
     std::vector<Centre> centres;
     std::vector<double> end; ///< the end vertex, like `Centre::q`
 };
@@ -26,28 +26,28 @@ struct ArcWitness {
 /// - verdict proved: from the true start vertex the kept contacts define exactly one curve in the direction in which
 ///   the opened gap grows; it reaches the true end vertex; strictly between the two every other gap is positive, the
 ///   opened one included.
-/// - verdict undecided: nothing is known; `reason` names the pair and the place or the test that failed. It is not a
-///   refutation.
-/// The power is judged apart: `power` proved: it is positive all along the arc, but for the shares of the arc (in the
-/// parameter of the first and of the last piece) `power_open_start` at the start of an arc at a limit load, where it
-/// grows from 0, and `power_open_end` before a power turn, where it ends at 0 (at most 1e-2 each). Under
-/// `true_stress` nothing is claimed.
+/// - verdict undecided: nothing is known, and nothing refuted;
+///   `reason` names the pair and the place or the test that failed.
+/// The power is judged apart. `power` proved: the power is positive all along the arc, except for two shares of the arc
+/// (in the parameter of the first and of the last piece): `power_open_start` at the start of an arc at a limit load,
+/// where it grows from 0, and `power_open_end` before a power turn, where it ends at 0 (at most 1e-2 each). Nothing is
+/// claimed under `true_stress`.
 struct ArcCertificate {
     Verdict verdict = Verdict::undecided;
-    std::string reason;     ///< when undecided
-    int pieces = 0;         ///< stretches of the curve with a tube of their own
+    std::string reason;     ///< filled when undecided
+    int pieces = 0;         ///< stretches of the curve that have their own tube
     int factorisations = 0; ///< fresh centres: rank proof, factorisation and bound of the inverse, each once
-    int moving = 0;         ///< coordinates that take part
-    bool turning = false;   ///< the gap of the opened contact is proved to fall at the end: it grew, and turned back
+    int moving = 0;         ///< number of coordinates that take part
+    bool turning = false;   ///< the gap of the opened contact is proved to fall at the end, after it grew
     long gap_tests = 0;     ///< stretches on which a gap was bounded
     double tube = 0;        ///< largest radius of a tube (2-norm over all coordinates)
     double tube_margin = 0; ///< smallest (1/4) / (beta^2 K rho) of Kantorovich's test
-    double gap_margin = 0;  ///< smallest |gap or rate| / (what the tube leaves open) over the stretches
+    double gap_margin = 0;  ///< smallest |gap or rate| / (uncertainty from the tube) over the stretches
     Verdict power = Verdict::undecided;
     double power_open_start = 0;
     double power_open_end = 0;
-    std::string power_reason; ///< when the power is undecided
-    ArcWitness witness;       ///< when proved
+    std::string power_reason; ///< filled when the power is undecided
+    ArcWitness witness;       ///< filled when proved
 };
 
 } // namespace isostat

@@ -25,8 +25,8 @@ enum class RadiiLaw {
     power       ///< density ~ d^-`exponent` between `smallest` and `largest`
 };
 
-/// A law with its parameters, lengths in the user's unit. A law that is cut draws again until `smallest` <= d <=
-/// `largest`.
+/// A law with its parameters, lengths in the user's unit. For a law marked as cut, values are drawn again until
+/// `smallest` <= d <= `largest`.
 struct DiameterLaw {
     double smallest = 1;
     double largest = 2;
@@ -38,35 +38,35 @@ struct DiameterLaw {
     double exponent = 3;
 };
 
-/// What makes no sense in a law, in words; empty: nothing. A law that is cut must have `diameter` inside and an
-/// interval that is at least one deviation wide: at least a third of what is drawn is then kept.
+/// What is wrong with a law, in words; empty: nothing. A law that is cut must have `diameter` inside and an interval at
+/// least one deviation wide, so that at least a third of the drawn values is kept.
 std::string fault_of(const DiameterLaw& law);
 
-/// `count` radii, independent, from a 64-bit Mersenne twister. Logarithms and exponentials are rounded correctly
-/// (MPFR), and nothing else is not. Throws `Error(bad_input)` for a law with a fault, or count < 1. Cost: 5 us per disk
+/// `count` radii, independent, from a 64-bit Mersenne twister. Logarithms and exponentials, the only functions used,
+/// are rounded correctly (MPFR). Throws `Error(bad_input)` for a law with a fault, or count < 1. Cost: 5 us per disk
 /// for laws with logarithms.
 std::vector<double> draw_radii(const DiameterLaw& law, int count, std::uint64_t seed);
 
-/// R_i (1 + size rho_i) to the nearest double, rho_i uniform in [-1, 1), independent, from a stream of `seed` that is
-/// not that of the radii: the equal radii of a mixture become different ones, and ties of their packings are no more.
-/// \pre 0 <= size < 1
+/// R_i (1 + size rho_i) to the nearest double, rho_i uniform in [-1, 1), independent,
+/// from a stream of `seed` other than that of the radii: equal radii of a mixture
+/// become different, so that their packings have no ties. \pre 0 <= size < 1
 std::vector<double> with_jitter(std::vector<double> radius, double size, std::uint64_t seed);
 
-/// Where a preparation is. `fraction` in [0, 1] is an estimate within the stage.
+/// Progress of a preparation. `fraction` in [0, 1] is an estimate within the stage.
 struct PreparationProgress {
     std::string stage;
     double fraction = 0;
     std::string text;
 };
 
-/// What holds the disks or spheres together: a fixed and a movable wall along each axis; a rectangular (orthorhombic)
-/// cell whose periods move; such a cell whose tilts move too, without shear stresses on them (triclinic); a rectangle
-/// that keeps its shape (`aspect`), under a pressure on its size. Soft grains are compressed in a rectangle in any
-/// case, and the tilts are set free with the linear programmes.
+/// What confines the disks or spheres: a fixed and a movable wall along each axis; a rectangular (orthorhombic) cell
+/// whose periods move; such a cell whose tilts move too, without shear stresses on them (triclinic); a rectangle that
+/// keeps its shape (`aspect`), under a pressure on its size. Soft grains are always compressed in a rectangle; tilts
+/// begin to move with the linear programmes.
 enum class PreparedCell { none, rectangular, tilted, isotropic };
 
-/// What to prepare. The defaults of the last group suit sizes 1 ... 10^5; they change the way and the cost, never the
-/// validity.
+/// What to prepare. The defaults of the last group suit sizes 1 ...
+/// 10^5; they change the way and the cost, never what is proved.
 struct PreparationOptions {
     int dimension = 2;         ///< 3: spheres
     int disks = 0;             ///< n >= 1, disks or spheres; ignored when `radii` is given
@@ -78,15 +78,15 @@ struct PreparationOptions {
     double ratio = 1;          ///< sigma_2 / sigma_1 > 0 of `find_vertex`; `prepare` takes 1 only
     double aspect = 1;         ///< Ly / Lx, in space Lz / Lx = Lz / Ly, of the loose box; the final box is free
     LoadKind load = LoadKind::nominal;
-    /// A cell instead of walls: at most `large_above` disks, and enough for periods of four diameters, in space one.
+    /// A cell instead of walls: at most `large_above` disks, periods of at least four diameters (in space one).
     PreparedCell cell = PreparedCell::none;
-    /// What the programme will change, as `Load::loaded_axis`: by default the stress of the last axis; of tilted cells
-    /// also a shear stress.
+    /// What the programme will change, as `Load::loaded_axis`: by default
+    /// the stress of the last axis; in tilted cells also a shear stress.
     std::optional<int> loaded_axis = {};
     std::optional<StressRates> path = {}; ///< or several stresses, as `Load::follow`
 
     const std::atomic<bool>* stop = nullptr;                       ///< set by Ctrl-C
-    std::function<void(const PreparationProgress&)> progress = {}; ///< called now and then; not copied, not kept
+    std::function<void(const PreparationProgress&)> progress = {}; ///< called now and then; neither copied nor kept
 
     double loose_fraction = 0; ///< solid fraction of the random start; 0: 0.6 of disks, 0.4 of spheres
     [[nodiscard]] double start_fraction() const {
@@ -97,21 +97,21 @@ struct PreparationOptions {
     long max_steps = 200000;  ///< of each stage of the dynamics; the next stage starts from what was reached
     double infinitesimal_weight = 1e-7; ///< eps of the linear programmes: weight of g against the mean contact force
     int max_programmes = 200;
-    /// Above this number of disks: the dynamics presses harder first (1e-2 of the stiffness), in patches, with fewer
+    /// Above this number of disks the dynamics presses harder first (1e-2 of the stiffness), in patches, with fewer
     /// steps, and ends at 3 `relaxation`; an interior-point descent comes before the programmes and mostly ends at
-    /// their vertex; programmes that are expected to change many contacts are solved by an interior-point method. The
-    /// pivots of the simplex method grow as n (13 000 at n = 20 000, 5 ms each), interior-point iterations hardly do
-    /// (24 at 20 000, 28 at 100 000).
+    /// their vertex; programmes that are expected to change many contacts are solved by an interior-point method,
+    /// because the number of simplex pivots grows as n (13 000 at n = 20 000, 5 ms each), that of interior-point
+    /// iterations hardly (24 at 20 000, 28 at 100 000).
     int large_above = 8192;
-    /// Above this number too: Newton steps follow the dynamics, at `softness` and down to a hundredth of it, and no
-    /// programme goes to the simplex method first (at 100 000 one with 419 changes had not ended after 330 s).
+    /// Above this number, besides, Newton steps follow the dynamics, at `softness` and down to a hundredth of it, and
+    /// no programme is first tried with the simplex method (at 100 000 one with 419 changes had not ended after 330 s).
     int newton_above = 50000;
 };
 
-/// Figures of one stage.
+/// Figures of one stage of the preparation.
 struct PreparationStage {
     std::string name;
-    bool completed = false; ///< its own goal was reached
+    bool completed = false; ///< the stage reached its own goal
     double seconds = 0;     ///< wall clock
     double cpu_seconds = 0; ///< this process
     long iterations = 0;    ///< steps of the dynamics, pivots of the simplex method, Newton iterations
@@ -122,41 +122,41 @@ struct PreparationStage {
     double overlap = 0;        ///< largest overlap / mean diameter
 };
 
-/// What was done, also after a failure.
+/// What was done; filled after a failure too.
 struct PreparationReport {
     std::vector<PreparationStage> stages;
     int programmes = 0;                   ///< linear programmes solved
     long pivots = 0;                      ///< simplex iterations in all of them
     std::uint64_t infinitesimal_seed = 0; ///< argument of `generic_infinitesimal` for the loads of the state
     double solid_fraction = 0;            ///< walls included
-    int rattlers = 0;                     ///< disks without a force-carrying contact
+    int rattlers = 0;                     ///< disks that carry no force
     double min_force = 0;                 ///< smallest backbone force
     double min_gap = 0;                   ///< smallest gap of a pair that is not a contact
     double sigma_min_bound = 0;           ///< proved lower bound of the smallest singular value of H
     /// After the failures `undecided` and `tie` of `find_vertex`: contacts and configuration that are a vertex as far
-    /// as rounded numbers say, and that could not be proved to be one in double-double. Proves nothing; `certify` may,
-    /// or a run that settles ties.
+    /// as rounded numbers say, but could not be proved to be one in double-double. Nothing is proved of this state;
+    /// `certify` may prove it, or a run that settles ties.
     std::optional<State> candidate;
     std::optional<Packing> last; ///< after a failure: the last configuration (overlaps of the dynamics included)
 };
 
 /// A vertex under isotropic pressure from random disks.
 /// 1. Radii; random positions in a loose box; disks pushed apart.
-/// 2. Soft disks (pressure / stiffness = 1e-3 first) compressed by servo-controlled walls with viscous damping, then
-/// relaxed by damped dynamics
-///    while the stiffness grows to 1 / softness.
+/// 2. Soft disks (pressure / stiffness = 1e-3 first) are compressed
+/// by servo-controlled walls with viscous damping, then relaxed by
+/// damped dynamics while the stiffness grows to 1 / softness.
 /// 3. `find_vertex`.
-/// \post On success the state is one as described for `find_vertex`, and depends on nothing but the options (same seed,
-/// same bits; lengths scaled by a power of two give the state scaled by it). On failure `report.last` holds what was
-/// reached. Throws `Error(bad_input)` for options that make no sense, naming the field and the value. Cost: see
+/// \post On success the state is as described for `find_vertex` and depends on the options alone (same seed, same bits;
+/// lengths scaled by a power of two give the state scaled by it). On failure `report.last` holds the last
+/// configuration. Throws `Error(bad_input)` for options that make no sense, naming the field and the value. Cost: see
 /// tests/bench/preparation.cpp; the dynamics takes most of it.
 Result<State> prepare(const PreparationOptions& options, PreparationReport& report);
 
-/// The vertex downhill from a packing that is nearly jammed in the box with two fixed and two movable walls, or with
-/// periods that move instead of them along one axis (a channel) or both (small overlaps are allowed). In a cell the
-/// disk with the most overlaps or contacts is pinned, and N_f = 2n + 1 in a channel, 2n with two periods, 2n + 1 with a
-/// tilt that moves (spheres: 3n with three periods, 3n + 3 with three tilts); no shear stress is on it. A tilt that
-/// does not move changes only where overlaps need a dilation of everything.
+/// The vertex downhill from a nearly jammed packing in the box with two fixed and two movable walls, or with periods
+/// that move instead of walls along one axis (a channel) or both (small overlaps are allowed). In a cell the disk with
+/// the most overlaps or contacts is pinned, and N_f = 2n + 1 in a channel, 2n with two periods, 2n + 1 with a tilt that
+/// moves (spheres: 3n with three periods, 3n + 3 with three tilts); no shear stress acts on a tilt. A tilt that does
+/// not move changes only where overlaps need a dilation of everything.
 ///
 /// Sequential linear programming: minimise F1 dLx + F2 dLy - eps g.dx, with F1 = sigma_1 Ly, F2 = sigma_2 Lx of the
 /// current box (in space three forces, on areas), subject to h_l + n_l.(dx_j - dx_i) >= 0 for *all* pairs that a step
@@ -164,9 +164,9 @@ Result<State> prepare(const PreparationOptions& options, PreparationReport& repo
 /// contacts are the rows with a multiplier in the basis (Clp, warm starts); once no trust bound is in the basis there
 /// are exactly N_f = 2n + 2 of them (3n + 3 of spheres), and Newton solves gaps = 0.
 ///
-/// The multipliers of Clp say nothing below its tolerances, 1e-9: when Newton or the proofs fail at a converged basis,
-/// exchanges of one contact at a time at the true vertex (gaps and forces in double-double) go on from there, so that
-/// radii perturbed by 1e-12 are told apart.
+/// Below its tolerances of 1e-9 the multipliers of Clp have no meaning: when Newton or the proofs fail at a converged
+/// basis, exchanges of one contact at a time at the true vertex (gaps and forces in double-double) go on from this
+/// basis, so that radii that differ by 1e-12 are told apart.
 ///
 /// \post On success: N_f contacts, sorted, from the basis; coordinates on the grid; rank proved for the stored
 /// coordinates; a true vertex within a proved distance; every other gap proved positive there; every force proved

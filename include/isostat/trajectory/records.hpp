@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What a run reports: one record per arc and one per equilibrium, and the interface that receives them.
+/// What a run reports, one record per arc and one per equilibrium, and the interface that receives the records.
 
 #include <isostat/contact/state.hpp>
 #include <isostat/core/result.hpp>
@@ -17,8 +17,8 @@
 
 namespace isostat {
 
-/// What an arc begins with: the first one of a rearrangement, at the limit load; a contact with a negative force; one
-/// with a negative force under the infinitesimal loads alone (only rattlers move); a held coordinate.
+/// How an arc begins: the first arc of a rearrangement, at the limit load; a contact with a negative force opens; one
+/// with a negative force under the infinitesimal loads alone (only rattlers move); a held coordinate is released.
 enum class ArcKind { limit, tension, rattler, release };
 inline constexpr std::array all_arc_kinds{ArcKind::limit, ArcKind::tension, ArcKind::rattler, ArcKind::release};
 constexpr std::string_view to_string(ArcKind kind) {
@@ -31,22 +31,22 @@ constexpr std::string_view to_string(ArcKind kind) {
     return "release";
 }
 
-/// One arc: a contact opened, the mechanism followed, a contact (or a power turn) met.
+/// One arc: a contact opens, the grains follow the mechanism until a contact closes or the power of the load vanishes.
 struct ArcRecord {
     long step = 0;       ///< number of the arc in the run, from 1
     int equilibrium = 0; ///< number of the equilibrium that its rearrangement leads to, if it leads to one
     int arc = 0;         ///< number within the rearrangement, from 1
     ArcKind kind = ArcKind::limit;
-    Contact opened;          ///< contact opened (or held coordinate released)
-    Contact closed;          ///< contact met, or the coordinate held at a power turn
+    Contact opened;          ///< contact that opened, or held coordinate that was released
+    Contact closed;          ///< contact that closed, or the coordinate held at a power turn
     double held_at = 0;      ///< power turns: the value of the coordinate held
     bool power_turn = false; ///< true: the arc ended where the power of the load vanished
     double stress = 0;       ///< sigma_2
     double strain = 0;       ///< eps_2 at the end of the arc
-    double force = 0;        ///< in the opened contact: 0 at a limit; the infinitesimal one for arcs of rattlers
+    double force = 0;        ///< force in the opened contact: 0 at a limit; infinitesimal force for arcs of rattlers
     double power = 0; ///< -dW/dh at the end, h the gap that closes: the force of the new contact; 0 at a power turn
-    double work = 0;  ///< of the finite loads along the arc: the decrease of W
-    /// Proved bounds of the errors of these; NaN: none (the power at a turn, work of true stresses).
+    double work = 0;  ///< work of the finite loads along the arc: the decrease of W
+    /// Proved bounds of the errors of these values; NaN: no bound (the power at a turn, work of true stresses).
     double strain_bound = std::numeric_limits<double>::quiet_NaN();
     double force_bound = std::numeric_limits<double>::quiet_NaN();
     double power_bound = std::numeric_limits<double>::quiet_NaN();
@@ -55,8 +55,8 @@ struct ArcRecord {
     int steps = 0;                ///< predictor steps
     double margin = 0;            ///< smallest |quantity| / bound over the decisions of this arc (> 1: decided); or NaN
     Rung decided_by = Rung::none; ///< highest rung that was needed
-    std::optional<ArcCertificate> certificate; ///< level `arcs` only
-    std::vector<TieDecision> perturbed; ///< what first-order terms settled, or the rule chose, from opening to end
+    std::optional<ArcCertificate> certificate; ///< at level `arcs` only
+    std::vector<TieDecision> perturbed; ///< ties from opening to end that first-order terms settled or the rule chose
 };
 
 /// One equilibrium, checked.
@@ -66,13 +66,13 @@ struct EquilibriumRecord {
     double stress = 0;     ///< sigma_2 at which it was reached
     double stress_low = 0; ///< supported interval of sigma_2: [stress_low, stress_high]
     double stress_high = 0;
-    double stress_low_bound = 0; ///< of the error; 0 where the interval is unbounded
+    double stress_low_bound = 0; ///< bound of the error of `stress_low`; 0 where the interval is unbounded
     double stress_high_bound = 0;
-    Contact opens_low; ///< contact whose force vanishes at stress_low (i = -1: none, the interval is unbounded)
+    Contact opens_low; ///< contact whose force vanishes at stress_low (i = -1: the interval is unbounded)
     Contact opens_high;
     double sigma1 = 0;
-    double mean_stress = 0, deviator = 0; ///< p and q, as `Load` has them
-    /// Of the true vertex, with bounds of the errors, rounding included.
+    double mean_stress = 0, deviator = 0; ///< p and q as in `Load`
+    /// The following three are of the true vertex, with bounds of the errors, rounding included.
     std::vector<double> strain; ///< (L_a^0 - L_a) / L_a^0, one per axis: positive in compression
     std::vector<double> strain_bound;
     std::vector<double> length; ///< L_a
@@ -88,12 +88,12 @@ struct EquilibriumRecord {
     int rattlers = 0;
     int backbone = 0; ///< contacts whose force is not a structural zero
     int held = 0;     ///< held coordinates (0 in an ordinary equilibrium)
-    /// Pairs that touch besides the contacts, where ties are settled at first order: as many self-stresses more.
+    /// Where ties are settled at first order: pairs that touch without being contacts. Each adds a self-stress.
     std::optional<int> touching;
     double min_force = 0; ///< smallest backbone force
     Contact min_force_contact;
-    /// Smallest gap of all pairs that are not contacts and can move relative to each other, at the true vertex;
-    /// infinity, and no contact (i = -1), when there is none.
+    /// Smallest gap at the true vertex of all pairs that are not contacts and can move relative to each other;
+    /// infinity, with i = -1 for the contact, when there is no such pair.
     double min_gap = 0;
     double min_gap_bound = 0;
     Contact min_gap_contact;
@@ -105,16 +105,16 @@ struct EquilibriumRecord {
     double margin = 0;          ///< smallest |quantity| / bound over the decisions since the previous equilibrium
     Rung decided_by = Rung::none;
     Verdict verdict = Verdict::undecided; ///< proved: every check of this record holds for the stored configuration
-    std::optional<Verdict> certified;     ///< of its certificate file, from level `states` on
+    std::optional<Verdict> certified;     ///< verdict of its certificate file, from level `states` on
     double seconds = 0;                   ///< since the start of the run
 };
 
 /// What a decision was about.
 enum class DecisionKind : unsigned char {
-    gaps,       ///< no candidate overlaps at the end of an arc: which gap closed first
-    power,      ///< the power of the load is positive where an arc ends
-    opening,    ///< which contact opens: an arc was started with it
-    equilibrium ///< every force positive, both ends of the supported interval and what opens there
+    gaps,       ///< whether candidates overlap at the end of an arc: which gap closed first
+    power,      ///< whether the power of the load is positive where an arc ends
+    opening,    ///< which contact opens: an arc was started with this contact
+    equilibrium ///< whether every force is positive, both ends of the supported interval, what opens there
 };
 inline constexpr int decision_kinds = 4;
 constexpr std::string_view to_string(DecisionKind kind) {
@@ -129,10 +129,10 @@ constexpr std::string_view to_string(DecisionKind kind) {
 
 /// How much of a run is proved.
 /// - decisions: the equilibria (rank, signs of all forces, both ends of the supported interval, no overlap) and every
-///   comparison that steers between them, with a bound on both sides;
-/// - states: besides, a certificate file for each equilibrium (an observer writes them);
-/// - arcs: besides, each arc enclosed between its events (`certify_arc`). An arc that is not certified does not stop
-///   the run: it is counted and its record tells why.
+///   comparison that the path depends on, with a bound of the error on both sides;
+/// - states: in addition a certificate file for each equilibrium (an observer writes these files);
+/// - arcs: in addition each arc is enclosed between its events (`certify_arc`). An arc that is not certified does not
+///   stop the run: it is counted and its record says why.
 enum class CertifyLevel : unsigned char { decisions, states, arcs };
 
 /// "decisions", "states", "arcs".
@@ -145,24 +145,24 @@ constexpr const char* to_string(CertifyLevel level) {
     return "arcs";
 }
 
-/// Equilibria counted by what their certificates say (from level `states` on).
+/// Equilibria counted by the verdict of their certificates (from level `states` on).
 struct StateTally {
     long proved = 0;
     long refuted = 0;
     long undecided = 0;
-    double seconds = 0; ///< spent on the certificates
+    double seconds = 0; ///< time of the certificates
 };
 
-/// Arcs counted by what their certificates say (level `arcs`).
+/// Arcs counted by the verdict of their certificates (level `arcs`).
 struct ArcTally {
     long certified = 0;
     long undecided = 0;
     long power_undecided = 0; ///< among the certified ones
     long pieces = 0;
     long factorisations = 0; ///< fresh centres: one rank proof, factorisation and bound of the inverse each
-    double tube_margin = 0;  ///< smallest of all certified arcs (0: none yet)
+    double tube_margin = 0;  ///< smallest over all certified arcs (0: none yet)
     double gap_margin = 0;
-    double seconds = 0; ///< spent on the certificates
+    double seconds = 0; ///< time of the certificates
 };
 
 /// Decisions counted by the rung that settled them.
@@ -172,15 +172,15 @@ struct Tally {
     long double_double = 0;
     long multiprecision = 0;
     long exact = 0;
-    long undecided = 0; ///< ended a segment: a sign or an order that no rung settled
-    long ties = 0;      ///< of `undecided`: ties, equal exactly or to the last bit tried
+    long undecided = 0; ///< segments ended by a sign or an order that no rung settled
+    long ties = 0;      ///< of `undecided`: quantities equal exactly or to the last bit tried
     long structural_ties =
         0; ///< forces that vanish together for a structural reason, ordered by the infinitesimal loads
-    /// Decisions that a first-order comparison settled, by kind (they are among the counted ones).
+    /// Decisions that a first-order comparison settled, by kind (included in the counts above).
     std::array<long, decision_kinds> perturbed{};
-    long choices = 0;           ///< ties in records of arcs that first-order terms did not settle: the rule chose
-    double smallest_margin = 0; ///< smallest |quantity| / bound among the decided ones (0: none yet)
-    /// The same by kind: decisions on the rungs combinatorial, double, double-double, mpfr, exact.
+    long choices = 0;           ///< ties in records of arcs that first-order terms left open and the rule chose
+    double smallest_margin = 0; ///< smallest |quantity| / bound over the decided ones (0: none yet)
+    /// decisions of each kind on the rungs combinatorial, double, double-double, mpfr, exact
     std::array<std::array<long, 5>, decision_kinds> by_kind{};
     std::array<double, decision_kinds> smallest_margin_of{}; ///< 0: none yet
 
@@ -190,19 +190,19 @@ struct Tally {
 
 struct Segment;
 
-/// Receives the records of a run as they are made. Each call returns before the run goes on: a killed run has written
-/// everything that it had found. After each equilibrium the run asks for an objection, and ends with it.
+/// Receives the records of a run as they are made. Each call returns before the run goes on, so a killed run has
+/// written everything that it had found. After each equilibrium the run asks for an objection, which ends the run.
 class RunObserver {
 
   public:
     virtual ~RunObserver() = default;
-    /// Before a segment of a programme (`play`): its number, its goal, equilibria that were made in it already (after a
-    /// resume), and the state it starts from.
+    /// Called before a segment of a programme (`play`): number and goal of the segment, equilibria already made in it
+    /// (after a resume), and the state that it starts from.
     virtual void on_segment(int /*number*/, const Segment& /*goal*/, int /*made*/, const State& /*from*/) {}
     virtual void on_arc(const ArcRecord& /*arc*/) {}
     virtual void on_equilibrium(const EquilibriumRecord& /*record*/, const State& /*state*/,
                                 const std::vector<double>& /*forces, one per contact of the state*/) {}
-    /// Why the run must not go on after the equilibrium that it has just received: none.
+    /// Why the run must not go on after the equilibrium that it has just passed on; nothing: it goes on.
     [[nodiscard]] virtual std::optional<Failure> objection() const { return std::nullopt; }
 };
 

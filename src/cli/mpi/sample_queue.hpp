@@ -6,8 +6,8 @@
 
 namespace isostat::cli {
 
-/// Initialises MPI; the destructor finalises it. Ranks ask rank 0 for numbers, which answers in `idle` and `finish`: a
-/// rank that is slower or has longer samples gets fewer.
+/// Initialises MPI; the destructor finalises it. Ranks ask rank 0 for numbers, and rank 0 replies in `idle` and
+/// `finish`: a rank that is slower or has longer samples gets fewer.
 class MpiQueue final : public SampleQueue {
   public:
     explicit MpiQueue(std::size_t count);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr Contact none{ContactKind::disk_disk, -1, -1};
 
-/// The load at which a force that is almost 0 at the stored stress vanishes. \pre its slope is told from 0.
+/// The load at which a force that is almost 0 at the stored stress vanishes. \pre its slope is decided.
 LimitLoad zero_load(Statics& statics, ContactId at_zero, const Load& load) {
     LimitLoad at{load};
     const Enclosure slope = statics.slope(at_zero);
@@ -24,9 +24,9 @@ LimitLoad zero_load(Statics& statics, ContactId at_zero, const Load& load) {
     return at;
 }
 
-/// At the stored load and at the exact one, with as many digits as it takes.
+/// Whether a force is positive at the stored load and at the exact one, with as many digits as needed.
 bool is_positive(Statics& statics, ContactId l, const LimitLoad& limit) {
-    statics.set_shift(nullptr, 0); // exact numbers do not know the exact load
+    statics.set_shift(nullptr, 0); // exact numbers cannot use the exact load
     ForceExpression force = statics.force_expression(l, limit.stress());
     const Order stored = statics.sign(force);
     force.shift = limit.shift.get();

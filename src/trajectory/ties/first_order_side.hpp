@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// A run under `ties = "choose"`: what it knows of its radii R_i + eps rho_i besides the base. Private
-/// to the room.
+/// The first-order part of a run under `ties = "choose"`,
+/// whose radii are R_i + eps rho_i. Private to the room.
 
 #include "trajectory/ties/settling.hpp"
 #include "trajectory/ties/ties.hpp"
@@ -10,11 +10,11 @@
 
 namespace isostat {
 
-/// The first-order side of a run. What of it outlives a vertex is in the state: rho, and what its load means.
+/// The first-order part of a run. The state stores what outlives a vertex: rho, and the exact load that is meant.
 class FirstOrderSide final : public TieSettling {
   public:
-    /// rho is made from `seed` unless the state has one. The state must outlive the side. `choose`: see
-    /// `RunOptions::chooses`.
+    /// rho is made from `seed` unless the state has it. The state
+    /// must outlive this object. `choose`: see `RunOptions::chooses`.
     FirstOrderSide(State& state, std::uint64_t seed, bool choose);
 
     [[nodiscard]] bool settles() const override { return true; }
@@ -22,8 +22,8 @@ class FirstOrderSide final : public TieSettling {
     [[nodiscard]] std::optional<Failure> choose_contacts() const override;
     [[nodiscard]] std::optional<Failure> resume(Vertex& vertex, const ZeroGaps& touching) const override;
     void set_limit(LimitLoad& at, Vertex& vertex, ContactId opens, double error) const override;
-    /// The load is the stored stress, when every force is positive there as at the exact one; otherwise the stress at
-    /// which one of the forces that vanish does so.
+    /// The load is the stress at which a force of `zeros` vanishes, where the slope of one is decided; otherwise the
+    /// stored stress, at which every other force has to be positive.
     [[nodiscard]] std::optional<Failure> settle_end(Vertex& vertex, const LimitLoad& limit,
                                                     const std::vector<ContactId>& zeros,
                                                     const ZeroGaps& touching) const override;

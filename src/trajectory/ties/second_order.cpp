@@ -20,11 +20,11 @@ struct Sharer {
     [[nodiscard]] Enclosure bears() const { return quotient(force, share); }
 };
 
-/// With rattlers that move the infinitesimal loads decide, and the finite ones only among contacts that bear these.
-/// `may_leave`: per contact.
+/// When rattlers move, the infinitesimal loads decide, and the finite loads only among contacts that bear finite
+/// forces. `may_leave`: per contact.
 std::vector<Sharer> sharers(const Vertex& from, const Opening& opening, const Contact& pair, double stress,
                             const std::vector<bool>& may_leave) {
-    constexpr double seen = 1e-8; // a share that is not: another contact gives way
+    constexpr double seen = 1e-8; // smaller coefficients count as 0
     const std::vector<double> shares = from.perturbed->first.shares(pair);
     std::vector<Sharer> all;
     bool rattles = false;
@@ -51,7 +51,7 @@ std::vector<Sharer> sharers(const Vertex& from, const Opening& opening, const Co
     return all;
 }
 
-/// Of those the one that bears least; of quotients that are not told apart the first by name. \pre there is one
+/// The exchange for the contact that bears least; of quotients not told apart the first by name. \pre there is one
 ListExchange exchange_for(const Vertex& from, const std::vector<Sharer>& all, TieDecision decision) {
     const auto& contacts = from.structure.contacts();
     const auto unbeaten = [&](const Sharer& a) {
@@ -84,9 +84,9 @@ Eigen::MatrixXd rates_of(const Packing& at, const DofMap& dofs, const std::vecto
     return rows;
 }
 
-/// x with m x = 0 as far as doubles tell, in columns, the largest entry of each 1.
+/// Columns x with m x = 0 in double precision, the largest entry of each 1.
 Eigen::MatrixXd kernel_of(const Eigen::MatrixXd& m) {
-    constexpr double dependent = 1e-6; // double places an end with dependent contacts no better
+    constexpr double dependent = 1e-6; // double locates an end with dependent contacts no better
     Eigen::FullPivLU<Eigen::MatrixXd> lu(m);
     lu.setThreshold(dependent);
     if (lu.isInvertible()) {
@@ -101,7 +101,7 @@ Eigen::MatrixXd kernel_of(const Eigen::MatrixXd& m) {
 
 /// The rows that are not 0.
 std::vector<bool> not_zero(const Eigen::MatrixXd& m) {
-    constexpr double seen = 1e-3; // a guess: another row serves as well
+    constexpr double seen = 1e-3; // a guess: another row would serve as well
     std::vector<bool> is;
     for (Eigen::Index k = 0; k < m.rows(); ++k) {
         is.push_back(m.row(k).cwiseAbs().maxCoeff() > seen);
@@ -125,7 +125,7 @@ Result<ListExchange> give_way(const Vertex& from, const Opening& opening, const 
 }
 
 std::optional<ListExchange> list_for_the_end(const Vertex& from, const ArcProposal& arc, double stress) {
-    constexpr std::size_t most_contacts = 1000; // of a dense matrix
+    constexpr std::size_t most_contacts = 1000; // for a dense matrix
     const ContactId opened = arc.opening.contact;
     std::vector<Contact> contacts = from.structure.contacts();
     if (contacts[opened.index()].kind == ContactKind::held || contacts.size() > most_contacts) {
@@ -137,7 +137,7 @@ std::optional<ListExchange> list_for_the_end(const Vertex& from, const ArcPropos
     if (motions.cols() == 0) {
         return {};
     }
-    const std::vector<bool> may_leave = not_zero(kernel_of(rates.transpose())); // they bear a self-stress
+    const std::vector<bool> may_leave = not_zero(kernel_of(rates.transpose())); // these bear a self-stress
     std::vector<Contact> resting = arc.resting;
     resting.insert(resting.end(), arc.taken_to_rest.begin(), arc.taken_to_rest.end());
     std::sort(resting.begin(), resting.end());

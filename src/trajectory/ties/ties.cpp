@@ -23,7 +23,7 @@ std::string shown(const Enclosure& e) {
     return fmt::format("{:.6g} +- {:.3g}", e.value, e.radius);
 }
 
-/// c / |rate| of a pair that closes.
+/// Step length c / |rate| of a pair that closes.
 Enclosure length_of_way(const Enclosure& gap, const Enclosure& rate) {
     const double value = gap.value / std::abs(rate.value);
     const double smallest = std::abs(rate.value) - rate.radius;
@@ -52,24 +52,24 @@ std::vector<double> tie_direction(const std::vector<double>& radius, std::uint64
 
 namespace {
 
-/// As far as `tie_bits` tell.
+/// Whether the rate is 0 to within `tie_bits`.
 bool vanishes(const Enclosure& rate) {
     return std::abs(rate.value) + rate.radius <= std::ldexp(1.0, -tie_bits);
 }
 
-/// First-order terms of a vertex: in double, then with more bits where that does not tell.
+/// First-order terms of a vertex: in double, then with more bits where double does not decide.
 class Terms {
   public:
     explicit Terms(const Vertex& vertex)
         : first_(vertex.perturbed->first), rho_(*vertex.perturbed->rho),
           precise_(vertex.packing, vertex.structure, vertex.factorisation, vertex.inverse, vertex.ladder) {}
 
-    /// Exactly 0, radius 0, when it is 0 for a reason.
+    /// Exactly 0, radius 0, when it is 0 for a structural reason.
     Enclosure rate(ContactId opened, int direction, const Contact& pair) {
         const Enclosure rate = first_.rate(opened, direction, pair);
         return rate.decided() || rate.radius == 0 ? rate : precise_.rate(opened, direction, pair);
     }
-    /// Second derivative of a gap whose rate vanishes as far as `tie_bits` tell; otherwise nothing is known.
+    /// Second derivative of a gap whose rate vanishes to within `tie_bits`; otherwise unknown.
     Enclosure bend(const Enclosure& rate, ContactId opened, int direction, const Contact& pair) {
         return vanishes(rate) ? precise_.bend(opened, direction, pair)
                               : Enclosure{0, std::numeric_limits<double>::infinity()};
@@ -78,8 +78,8 @@ class Terms {
         const Enclosure c = first_.gap(pair);
         return c.decided() ? c : precise_.gap(rho_, pair);
     }
-    /// Of a pair that closes, its first-order gap known already. Contacts that are nearly singular leave a way in
-    /// double that is told from no other.
+    /// Step length of a pair that closes, from its first-order gap. With nearly singular contacts step lengths in
+    /// double cannot be told apart.
     Enclosure way(const Enclosure& gap, const Enclosure& rate, ContactId opened, int direction, const Contact& pair) {
         constexpr double enough = 1e-9;
         const Enclosure way = length_of_way(gap, rate);
@@ -101,8 +101,8 @@ struct Closing {
     Enclosure way;
 };
 
-/// Of those that close at once the one that is proved to be first; where ties are chosen, of those that no other is
-/// proved to come before, the first by name.
+/// The pair that is proved to close first of those that close at once; where ties are chosen, the first by name of the
+/// pairs before which no other is proved to close.
 Result<Contact> first_of(const std::vector<Closing>& closing, bool choose, std::vector<TieDecision>& settled) {
     const auto before = [](const Closing& a, const Closing& b) { return (b.way - a.way).positive(); };
     auto first = std::min_element(closing.begin(), closing.end(),
@@ -191,7 +191,7 @@ Result<Departure> depart(const Vertex& from, ContactId opened, int direction) {
 
 namespace {
 
-/// What is chosen of a pair that touches and stays watched.
+/// The recorded choice for a pair that touches and stays watched.
 TieChoice watched(const Enclosure& gap) {
     return gap.positive() ? TieChoice::none : gap.negative() ? TieChoice::watched : TieChoice::zero;
 }
@@ -199,8 +199,8 @@ TieChoice watched(const Enclosure& gap) {
 /// A pair that touches where an arc ends.
 struct TouchingPair {
     Enclosure gap;  ///< at first order
-    bool touched;   ///< before too
-    Enclosure back; ///< rate of its gap on the way back, where it did not
+    bool touched;   ///< touched at the start too
+    Enclosure back; ///< rate of its gap backwards from the end, where it did not
 };
 
 Result<TouchingPair> touching_pair(Terms& terms, bool chooses, const Contact& closed, const Contact& contact,
@@ -214,10 +214,10 @@ Result<TouchingPair> touching_pair(Terms& terms, bool chooses, const Contact& cl
     if (way.stays || std::find(way.resting.begin(), way.resting.end(), contact) != way.resting.end()) {
         return TouchingPair{c, true, {}};
     }
-    // Simple roots (P3): going back opens both.
+    // Simple roots (P3): backwards from the end both open.
     const Enclosure back = terms.rate(way.slot, +1, contact);
     const Enclosure bend = terms.bend(back, way.slot, +1, contact);
-    const bool grazes = chooses && vanishes(back) && !bend.negative(); // as far as the end tells (C1 f)
+    const bool grazes = chooses && vanishes(back) && !bend.negative(); // as far as the end decides (C1 f)
     if (!grazes && (closed.kind == ContactKind::held || !back.positive())) {
         return failed(FailureKind::undecided,
                       "{} touch where {} closes, but are not proved to close there: the rate of their gap is {} times "
@@ -238,8 +238,8 @@ Result<Arrival> arrive(Vertex& to, const ZeroGaps& zero, const Way& way) {
     side.zero = zero;
     const Contact& closed = to.structure.contacts()[way.slot.index()];
     Terms terms(to);
-    double first = 0;                // where on the way, of those that closed before; in eps
-    std::optional<Failure> doubtful; // of this end: another may come before
+    double first = 0;                // where, in eps, the first of the pairs closed that closed before
+    std::optional<Failure> doubtful; // this end is doubtful, because another pair may close first
     for (const auto& [contact, order] : zero) {
         const auto pair = touching_pair(terms, chooses, closed, contact, way);
         if (!pair.ok()) {

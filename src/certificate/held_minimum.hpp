@@ -27,10 +27,10 @@ HeldMotion least_curved(const Vertex& vertex, const std::vector<double>& forces,
 
 /// A strict local minimum of the potential of dead loads, at which no held coordinate bears a multiplier.
 struct HeldMinimum {
-    double away = 0;          ///< 2-norm of what the equilibrium is from the stored configuration, at most
-    double curvature = 0;     ///< the form d2W on the held coordinates is at least this times |dc|^2, up to there
-    std::vector<double> rate; ///< dc per unit of the loaded stress
-    double rate_bound = 0;    ///< 2-norm of its error
+    double away = 0;            ///< 2-norm of what the equilibrium is from the stored configuration, at most
+    double curvature = 0;       ///< the form d2W on the held coordinates is at least this times |dc|^2, up to there
+    std::vector<double> rate{}; ///< dc per unit of the loaded stress
+    double rate_bound = 0;      ///< 2-norm of its error
     PerAxis<Enclosure> length_rate{};
 };
 

@@ -45,8 +45,8 @@ ArcBodies::ArcBodies(const Packing& packing) : packing_(packing) {
             around += side;
         }
         farthest_ = std::min(farthest_, shortest * shortest / (9 * around));
-        const double known =
-            shortest > least_share * around ? slack / 16 * std::min(shortest, packing.min_radius()) : 0;
+        const bool fit = shortest > least_share * around && turn(ring).is_once();
+        const double known = fit ? slack / 16 * std::min(shortest, packing.min_radius()) : 0;
         known_to_ = std::min({known_to_, farthest_, known});
         blur_ = std::max(blur_, 2 * around * slack * slack);
     }
@@ -155,6 +155,20 @@ std::optional<std::array<double, 2>> ArcBodies::angles(int member) const {
     return std::array{from, to > from ? to : to + 2 * std::numbers::pi};
 }
 
+bool ArcBodies::Turn::is_once() const {
+    return convex && std::abs(together - 2 * std::numbers::pi) < 1; // a multiple of 2 pi
+}
+
+ArcBodies::Turn ArcBodies::turn(const std::vector<int>& ring) const {
+    Turn turn;
+    for (const int member : ring) {
+        const auto sector = *angles(member);
+        turn.together += sector[1] - sector[0];
+        turn.convex = turn.convex && std::sin(sector[1] - sector[0]) > least_sine;
+    }
+    return turn;
+}
+
 void validate_arcs(const Packing& packing, const std::string& source) {
     const auto bad = [&](std::size_t b, const std::string& what) {
         throw Error(ErrorKind::bad_input, fmt::format("{}: arcs[{}]: {}", source, b, what));
@@ -207,17 +221,10 @@ void validate_arcs(const Packing& packing, const std::string& source) {
     }
     const ArcBodies arcs(packing);
     for (std::size_t b = 0; b < packing.arcs.size(); ++b) {
-        double turn = 0;
-        bool convex = true;
-        for (const int member : packing.arcs[b]) {
-            const auto sector = *arcs.angles(member);
-            turn += sector[1] - sector[0];
-            convex = convex && std::sin(sector[1] - sector[0]) > least_sine;
-        }
-        if (!convex || !(std::abs(turn - 2 * std::numbers::pi) < 1)) {
+        if (const ArcBodies::Turn turn = arcs.turn(packing.arcs[b]); !turn.is_once()) {
             bad(b, fmt::format("the arcs turn by {:.6g}{}: expected a convex curve, counterclockwise, whose arcs turn "
                                "by less than pi each and by 2 pi together",
-                               turn, convex ? "" : ", one of them by less than 0 or more than pi"));
+                               turn.together, turn.convex ? "" : ", one of them by less than 0 or more than pi"));
         }
     }
 }

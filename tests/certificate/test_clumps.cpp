@@ -331,6 +331,21 @@ BOOST_AUTO_TEST_CASE(a_contact_at_a_joint_or_beyond_is_no_contact_of_arcs) {
     BOOST_TEST(!certify(with_free_motions_held(circle_of_an_oval_in_a_corner())).claims.minimum.has_value());
 }
 
+/// Stored, the arcs turn to the left; where the bars have their lengths, the joints 0-1 and 1-2 are in the other order.
+BOOST_AUTO_TEST_CASE(a_ring_that_is_convex_only_as_it_is_stored_proves_nothing) {
+    const State state = isostat::test::clumps_of(R"({"format": "isostat-state", "version": 2, "length": [100, 100],
+        "walls": {"lower": ["absent", "absent"], "upper": ["absent", "absent"]},
+        "load": {"stress": [0, 0], "reference_length": [1, 1]}, "contacts": [], "arcs": [[0, 1, 2, 3, 4]],
+        "disks": [[0, 0, 5.796875], [0.07743, 0.7931, 5], [-0.01775, -0.20236, 6], [-0.1432, -0.38156, 5.78125],
+                  [-0.8586, 0.14893, 6.671875]],
+        "bars": [[0, 1, 0.796875], [0, 4, 0.875], [1, 2, 1], [1, 3, 1.195383822673135], [1, 4, 1.1378028342522102],
+                 [2, 3, 0.21875], [3, 4, 0.890625]]})");
+    const auto found = certify(with_free_motions_held(state));
+    BOOST_TEST(found.claims.vertex.has_value()); // 0.003 away
+    BOOST_TEST(!found.claims.gaps.has_value());
+    BOOST_TEST(!found.claims.stable);
+}
+
 /// Newton's method and elimination in 200 digits, which share nothing with the program.
 BOOST_AUTO_TEST_CASE(intervals_of_the_forces_of_clumps_hold_those_of_200_digits) {
     for (const char* const name : {"dimer_20_1", "dimer2_20_2", "trimer_20_1"}) {

@@ -346,6 +346,22 @@ BOOST_AUTO_TEST_CASE(a_ring_that_is_convex_only_as_it_is_stored_proves_nothing) 
     BOOST_TEST(!found.claims.stable);
 }
 
+/// The cap touches the bottom 1e-11 beside the joint with the flank, whose circle reaches 2.5e-22 below: in doubles
+/// both arcs are as near.
+BOOST_AUTO_TEST_CASE(an_oval_that_touches_beside_a_joint_is_not_said_to_overlap) {
+    const State state = isostat::test::clumps_of(R"({"format": "isostat-state", "version": 2, "length": [100, 100],
+        "walls": {"lower": ["fixed", "fixed"], "upper": ["absent", "absent"]},
+        "load": {"stress": [0, 0], "reference_length": [1, 1]}, "arcs": [[3, 0, 1, 2]],
+        "disks": [[20, 1, 1], [15.199999999986, -0.39999999995199964, 6], [15.200000000036, 4.600000000048, 1],
+                  [20.00000000005, 6, 6]],
+        "bars": [[0, 1, 5], [0, 2, 6], [0, 3, 5], [1, 2, 5], [2, 3, 5]],
+        "contacts": [["held", 0], ["held", 1], ["held", 6]]})");
+    const auto found = certify(state);
+    BOOST_TEST(found.claims.vertex.has_value());
+    BOOST_TEST(!found.claims.gaps.has_value());
+    BOOST_TEST(found.refuted.empty());
+}
+
 /// Newton's method and elimination in 200 digits, which share nothing with the program.
 BOOST_AUTO_TEST_CASE(intervals_of_the_forces_of_clumps_hold_those_of_200_digits) {
     for (const char* const name : {"dimer_20_1", "dimer2_20_2", "trimer_20_1"}) {

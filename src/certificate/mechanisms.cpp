@@ -212,6 +212,9 @@ Result<MechanismInspection> inspect_mechanism(const State& state, const Counting
     EquilibriumRecord& record = inspection.record;
     record.number = state.equilibrium;
     record.stress = sigma;
+    record.stress_low = record.stress_high = std::numeric_limits<double>::quiet_NaN(); // not asked
+    record.opens_low = record.opens_high = {ContactKind::disk_disk, -1, -1};
+    record.force_bound = vertex.statics.bound(sigma);
     record.dof_count = counting.dof_count;
     record.contact_count = counting.contact_count;
     record.rank = counting.rank;

@@ -278,6 +278,10 @@ BOOST_AUTO_TEST_CASE(an_oval_between_four_walls_rests_up_to_the_ratio_of_its_arm
     BOOST_TEST(inspection.value().record.dof_count == 5);
     BOOST_TEST(inspection.value().record.contact_count == 4);
     BOOST_TEST(inspection.value().record.mechanisms == 1);
+    BOOST_TEST(inspection.value().record.force_bound > 0);
+    BOOST_TEST(std::abs(inspection.value().forces[0] - 1) <= inspection.value().record.force_bound);
+    BOOST_TEST(std::isnan(inspection.value().record.stress_low)); // not asked
+    BOOST_TEST(inspection.value().record.opens_low.i == -1);
     BOOST_TEST(inspection.value().curvature <
                2.0 / 9); // 2 per radian squared: of a cap, that moves by 3, or of a flank
     BOOST_TEST(inspection.value().curvature > 0.124);

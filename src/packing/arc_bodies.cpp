@@ -224,7 +224,8 @@ void validate_arcs(const Packing& packing, const std::string& source) {
         if (const ArcBodies::Turn turn = arcs.turn(packing.arcs[b]); !turn.is_once()) {
             bad(b, fmt::format("the arcs turn by {:.6g}{}: expected a convex curve, counterclockwise, whose arcs turn "
                                "by less than pi each and by 2 pi together",
-                               turn.together, turn.convex ? "" : ", one of them by less than 0 or more than pi"));
+                               turn.together,
+                               turn.convex ? "" : ", one of them by less than 2^-16 or by nearly pi or more"));
         }
     }
 }
@@ -232,8 +233,8 @@ void validate_arcs(const Packing& packing, const std::string& source) {
 void require_no_arcs(const Packing& packing, const std::string& source, const std::string& what) {
     if (!packing.arcs.empty()) {
         throw Error(ErrorKind::bad_input,
-                    fmt::format("{}: {} bodies bounded by arcs; {} takes disks and unions of disks only; inspect, "
-                                "certify, verify (of certificates) and picture take such bodies",
+                    fmt::format("{}: {} bodies bounded by arcs; {} does not take them: inspect, certify, verify (of "
+                                "certificates) and report do",
                                 source, packing.arcs.size(), what));
     }
 }

@@ -73,7 +73,7 @@ class ArcBodies {
 /// close to a convex curve, with bars between neighbours whose length is the difference of the radii.
 void validate_arcs(const Packing& packing, const std::string& source);
 
-/// Throws `Error(bad_input)` when there are bodies bounded by arcs: `what` takes disks and unions of disks only.
+/// Throws `Error(bad_input)` when there are bodies bounded by arcs, which `what` does not take.
 void require_no_arcs(const Packing& packing, const std::string& source, const std::string& what);
 
 } // namespace isostat

@@ -53,7 +53,7 @@ ArcBodies::ArcBodies(const Packing& packing) : packing_(packing) {
 }
 
 double ArcBodies::below(double gap) const {
-    return any() ? std::nextafter(gap - blur_, -std::numeric_limits<double>::infinity()) : gap;
+    return any() && std::isfinite(gap) ? std::nextafter(gap - blur_, -std::numeric_limits<double>::infinity()) : gap;
 }
 
 ArcBodies::Vector ArcBodies::between(int from, int to) const {

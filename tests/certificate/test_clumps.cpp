@@ -265,6 +265,7 @@ BOOST_AUTO_TEST_CASE(unions_of_an_independent_program_are_proved_with_its_counts
             BOOST_TEST(inspection.counting.mechanisms - 3 * rattlers == expected["k"].get<int>());
             BOOST_TEST(inspection.record.min_gap <= expected["smallest_other_gap"].get<double>() + 1e-12);
             BOOST_TEST(inspection.record.min_gap > expected["smallest_other_gap"].get<double>() - 1e-9);
+            BOOST_TEST(inspection.record.min_gap_bound == 0); // a lower bound
         }
     }
 }
@@ -282,6 +283,7 @@ BOOST_AUTO_TEST_CASE(an_oval_between_four_walls_rests_up_to_the_ratio_of_its_arm
     BOOST_TEST(std::abs(inspection.value().forces[0] - 1) <= inspection.value().record.force_bound);
     BOOST_TEST(std::isnan(inspection.value().record.stress_low)); // not asked
     BOOST_TEST(inspection.value().record.opens_low.i == -1);
+    BOOST_TEST(std::isinf(inspection.value().record.min_gap)); // no pair is left
     BOOST_TEST(inspection.value().curvature <
                2.0 / 9); // 2 per radian squared: of a cap, that moves by 3, or of a flank
     BOOST_TEST(inspection.value().curvature > 0.124);

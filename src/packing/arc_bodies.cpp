@@ -17,8 +17,9 @@ namespace {
 
 constexpr double slack = 0x1p-36; // of sines: far above the roundings of directions
 constexpr double roundings = 0x1p-46;
-constexpr double least_share = 0x1p-20; // of the shortest bar of a ring in the sum of all
-constexpr double least_sine = 0x1p-16;  // of a sector: a narrower one, or one as wide, is no arc
+constexpr double least_share = 0x1p-20;   // of the shortest bar of a ring in the sum of all
+constexpr double never_turning = 0x1p400; // length of the normal of a wall: beside it every displacement is 0
+constexpr double least_sine = 0x1p-16;    // of a sector: a narrower one, or one as wide, is no arc
 
 double cross(double ax, double ay, double bx, double by) {
     return ax * by - ay * bx;
@@ -70,8 +71,8 @@ ArcBodies::Vector ArcBodies::normal(const Contact& contact) const {
     if (contact.of_disks()) {
         return between(contact.i, contact.j);
     }
-    const double sign = contact.kind == ContactKind::upper_wall ? 1 : -1;
-    return contact.j == 0 ? Vector{sign, 0} : Vector{0, sign};
+    const double along = contact.kind == ContactKind::upper_wall ? never_turning : -never_turning;
+    return contact.j == 0 ? Vector{along, 0} : Vector{0, along};
 }
 
 /// The smaller one of the sines of the angles from the joints to a direction n, less what a displacement of the centres

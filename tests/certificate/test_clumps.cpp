@@ -297,6 +297,19 @@ BOOST_AUTO_TEST_CASE(an_oval_between_four_walls_rests_up_to_the_ratio_of_its_arm
     BOOST_TEST((stable(1, 1, 0.1) != Verdict::proved));
 }
 
+BOOST_AUTO_TEST_CASE(the_unit_of_length_of_an_oval_does_not_matter) {
+    for (const double unit : {0x1p-300, 0x1p300}) {
+        State state = oval_in_a_box(1, 1);
+        for (std::vector<double>* lengths : {&state.packing.q, &state.packing.radius}) {
+            std::transform(lengths->begin(), lengths->end(), lengths->begin(), [&](double x) { return x * unit; });
+        }
+        for (isostat::Bar& bar : state.packing.bars) {
+            bar.length *= unit;
+        }
+        BOOST_TEST((inspected(state).stable == Verdict::proved), unit);
+    }
+}
+
 /// A force g upwards on the right cap turns the oval: tan theta = 3 g / (8 F_2 - 6 F_1 - 4 g), here 5/12 with g = 5/28.
 BOOST_AUTO_TEST_CASE(a_turned_oval_yields_at_the_rate_of_its_closed_form) {
     State state = oval_in_a_box(1, 1, std::atan2(5, 12));

@@ -88,7 +88,7 @@ double ArcBodies::inside(int member, Vector n, double moved) const {
     const auto sine = [&](double times, const Vector& at_joint) {
         const double length = std::hypot(at_joint.x, at_joint.y);
         // A vector of two centres turns by an angle whose sine is at most 2 moved over its length.
-        return times / (length * size) - 2.2 * moved * (1 / length + 1 / size) - (moved > 0 ? roundings : 0);
+        return times / (length * size) - 2.2 * moved * (1 / length + 1 / size);
     };
     return std::min(sine(cross(from.x, from.y, n.x, n.y), from), sine(cross(n.x, n.y, to.x, to.y), to));
 }
@@ -101,7 +101,7 @@ double ArcBodies::inside(const Contact& contact, double moved) const {
 
 bool ArcBodies::faces(const Contact& contact, double moved) const {
     return !any() || contact.kind == ContactKind::bar || contact.kind == ContactKind::held ||
-           (moved < farthest_ && inside(contact, moved) > 0);
+           (moved < farthest_ && inside(contact, moved) > roundings);
 }
 
 std::vector<int> ArcBodies::shape(int member) const {

@@ -467,7 +467,7 @@ bool Prover::prove_gaps() {
         doubtful.clear();
         for (const Contact& pair : pairs.near) {
             Interval h = vertex_->gap(pair);
-            h.lower = arcs.below(h.lower);
+            h = {arcs.below(h.lower), -arcs.below(-h.upper)}; // beside a joint the other arc may be farther out
             gaps.push_back(h);
             if (h.upper < 0) {
                 refute("gaps", fmt::format("{} overlap: the gap is in {}", named(pair), shown(h)));

@@ -245,7 +245,7 @@ class HeldForm {
                 const double c = minimum.rate[i];
                 const double off = (motions_[i].residual + turned_ * motions_[i].size) / sigma_min_ * up;
                 value += v * c;
-                bound += (std::abs(v) + off) * minimum.rate_bound + (off + 16 * u * std::abs(v)) * std::abs(c);
+                bound += (std::abs(v) + off) * minimum.rate_bound + (off + roundings * std::abs(v)) * std::abs(c);
             }
             minimum.length_rate[a] = {value, bound * up};
         }

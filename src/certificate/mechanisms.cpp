@@ -212,6 +212,11 @@ Result<MechanismInspection> inspect_mechanism(const State& state, const Counting
     EquilibriumRecord& record = inspection.record;
     record.number = state.equilibrium;
     record.stress = sigma;
+    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+    record.stress_low = record.stress_high = unknown; // not asked
+    record.opens_low = record.opens_high = record.min_gap_contact = {ContactKind::disk_disk, -1, -1};
+    record.min_gap = unknown;
+    record.force_bound = vertex.statics.bound(sigma);
     record.dof_count = counting.dof_count;
     record.contact_count = counting.contact_count;
     record.rank = counting.rank;
@@ -226,6 +231,9 @@ Result<MechanismInspection> inspect_mechanism(const State& state, const Counting
             return *failure;
         }
         judge_minimum(inspection, vertex, state.load, acting, candidates.contacts);
+        const double least = std::max(0.0, (record.min_gap - record.min_gap_bound) * (1 - 2 * u)); // it is no overlap
+        record.min_gap = ArcBodies(state.packing).below(least);
+        record.min_gap_bound = 0;
     }
     return inspection;
 }

@@ -11,7 +11,7 @@ namespace isostat {
 std::optional<std::string> beyond_sectors(const ArcBodies& arcs, const std::vector<Contact>& contacts,
                                           double distance) {
     if (arcs.any() && !(distance < arcs.known_to())) {
-        return "the vertex is not known well enough to say which arcs are nearest";
+        return "the vertex is not known well enough to say which arcs are nearest, or arcs are no convex curve there";
     }
     const auto outside = std::find_if(contacts.begin(), contacts.end(),
                                       [&](const Contact& contact) { return !arcs.faces(contact, distance); });

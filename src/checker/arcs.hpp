@@ -16,7 +16,8 @@ class NearestArcs {
     /// The three must outlive it.
     NearestArcs(const Packing& packing, const std::vector<double>& q, const std::vector<double>& radius);
     /// Of the members of these bodies, or of a body and a wall, whose normal is in both sectors or so near that doubles
-    /// do not tell: whether this pair has the largest gap. True where no member is an arc.
+    /// do not tell: whether this pair has the largest gap, or one that doubles do not tell from it. True where no
+    /// member is an arc. \pre no length is above 1
     [[nodiscard]] bool contains(const Contact& pair) const;
 
   private:

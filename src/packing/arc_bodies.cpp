@@ -17,8 +17,9 @@ namespace {
 
 constexpr double slack = 0x1p-36; // of sines: far above the roundings of directions
 constexpr double roundings = 0x1p-46;
-constexpr double least_share = 0x1p-20; // of the shortest bar of a ring in the sum of all
-constexpr double least_sine = 0x1p-16;  // of a sector: a narrower one, or one as wide, is no arc
+constexpr double least_share = 0x1p-20;   // of the shortest bar of a ring in the sum of all
+constexpr double never_turning = 0x1p400; // length of the normal of a wall: beside it every displacement is 0
+constexpr double least_sine = 0x1p-16;    // of a sector: a narrower one, or one as wide, is no arc
 
 double cross(double ax, double ay, double bx, double by) {
     return ax * by - ay * bx;
@@ -45,15 +46,15 @@ ArcBodies::ArcBodies(const Packing& packing) : packing_(packing) {
             around += side;
         }
         farthest_ = std::min(farthest_, shortest * shortest / (9 * around));
-        const double known =
-            shortest > least_share * around ? slack / 16 * std::min(shortest, packing.min_radius()) : 0;
+        const bool fit = shortest > least_share * around && turn(ring).is_once();
+        const double known = fit ? slack / 16 * std::min(shortest, packing.min_radius()) : 0;
         known_to_ = std::min({known_to_, farthest_, known});
         blur_ = std::max(blur_, 2 * around * slack * slack);
     }
 }
 
 double ArcBodies::below(double gap) const {
-    return any() ? std::nextafter(gap - blur_, -std::numeric_limits<double>::infinity()) : gap;
+    return any() && std::isfinite(gap) ? std::nextafter(gap - blur_, -std::numeric_limits<double>::infinity()) : gap;
 }
 
 ArcBodies::Vector ArcBodies::between(int from, int to) const {
@@ -70,8 +71,8 @@ ArcBodies::Vector ArcBodies::normal(const Contact& contact) const {
     if (contact.of_disks()) {
         return between(contact.i, contact.j);
     }
-    const double sign = contact.kind == ContactKind::upper_wall ? 1 : -1;
-    return contact.j == 0 ? Vector{sign, 0} : Vector{0, sign};
+    const double along = contact.kind == ContactKind::upper_wall ? never_turning : -never_turning;
+    return contact.j == 0 ? Vector{along, 0} : Vector{0, along};
 }
 
 /// The smaller one of the sines of the angles from the joints to a direction n, less what a displacement of the centres
@@ -87,7 +88,7 @@ double ArcBodies::inside(int member, Vector n, double moved) const {
     const auto sine = [&](double times, const Vector& at_joint) {
         const double length = std::hypot(at_joint.x, at_joint.y);
         // A vector of two centres turns by an angle whose sine is at most 2 moved over its length.
-        return times / (length * size) - 2.2 * moved * (1 / length + 1 / size) - (moved > 0 ? roundings : 0);
+        return times / (length * size) - 2.2 * moved * (1 / length + 1 / size);
     };
     return std::min(sine(cross(from.x, from.y, n.x, n.y), from), sine(cross(n.x, n.y, to.x, to.y), to));
 }
@@ -100,7 +101,7 @@ double ArcBodies::inside(const Contact& contact, double moved) const {
 
 bool ArcBodies::faces(const Contact& contact, double moved) const {
     return !any() || contact.kind == ContactKind::bar || contact.kind == ContactKind::held ||
-           (moved < farthest_ && inside(contact, moved) > 0);
+           (moved < farthest_ && inside(contact, moved) > roundings);
 }
 
 std::vector<int> ArcBodies::shape(int member) const {
@@ -155,6 +156,20 @@ std::optional<std::array<double, 2>> ArcBodies::angles(int member) const {
     return std::array{from, to > from ? to : to + 2 * std::numbers::pi};
 }
 
+bool ArcBodies::Turn::is_once() const {
+    return convex && std::abs(together - 2 * std::numbers::pi) < 1; // a multiple of 2 pi
+}
+
+ArcBodies::Turn ArcBodies::turn(const std::vector<int>& ring) const {
+    Turn turn;
+    for (const int member : ring) {
+        const auto sector = *angles(member);
+        turn.together += sector[1] - sector[0];
+        turn.convex = turn.convex && std::sin(sector[1] - sector[0]) > least_sine;
+    }
+    return turn;
+}
+
 void validate_arcs(const Packing& packing, const std::string& source) {
     const auto bad = [&](std::size_t b, const std::string& what) {
         throw Error(ErrorKind::bad_input, fmt::format("{}: arcs[{}]: {}", source, b, what));
@@ -207,17 +222,11 @@ void validate_arcs(const Packing& packing, const std::string& source) {
     }
     const ArcBodies arcs(packing);
     for (std::size_t b = 0; b < packing.arcs.size(); ++b) {
-        double turn = 0;
-        bool convex = true;
-        for (const int member : packing.arcs[b]) {
-            const auto sector = *arcs.angles(member);
-            turn += sector[1] - sector[0];
-            convex = convex && std::sin(sector[1] - sector[0]) > least_sine;
-        }
-        if (!convex || !(std::abs(turn - 2 * std::numbers::pi) < 1)) {
+        if (const ArcBodies::Turn turn = arcs.turn(packing.arcs[b]); !turn.is_once()) {
             bad(b, fmt::format("the arcs turn by {:.6g}{}: expected a convex curve, counterclockwise, whose arcs turn "
                                "by less than pi each and by 2 pi together",
-                               turn, convex ? "" : ", one of them by less than 0 or more than pi"));
+                               turn.together,
+                               turn.convex ? "" : ", one of them by less than 2^-16 or by nearly pi or more"));
         }
     }
 }
@@ -225,8 +234,8 @@ void validate_arcs(const Packing& packing, const std::string& source) {
 void require_no_arcs(const Packing& packing, const std::string& source, const std::string& what) {
     if (!packing.arcs.empty()) {
         throw Error(ErrorKind::bad_input,
-                    fmt::format("{}: {} bodies bounded by arcs; {} takes disks and unions of disks only; inspect, "
-                                "certify, verify (of certificates) and picture take such bodies",
+                    fmt::format("{}: {} bodies bounded by arcs; {} does not take them: inspect, certify, verify (of "
+                                "certificates) and report do",
                                 source, packing.arcs.size(), what));
     }
 }

@@ -30,13 +30,21 @@ class ArcBodies {
     /// Displacements up to this length change the distance of two bodies by less than twice as much (U9).
     [[nodiscard]] double farthest() const { return farthest_; }
     /// Where the packing is known to this length, no pair is taken for the nearest one but that which is, or one whose
-    /// gap differs by less than what `below` leaves open.
+    /// gap differs by less than what `below` leaves open. 0 where the arcs of a body are no convex curve at these
+    /// coordinates, which need not be those of a file.
     [[nodiscard]] double known_to() const { return known_to_; }
     /// The distance of two bodies is not below this, where the gap of their nearest members is not below `gap`: sectors
     /// are known to `slack`. Without arcs `gap` itself.
     [[nodiscard]] double below(double gap) const;
     /// The sector of a member as two angles, the first in [-pi, pi], the second above it; nothing: a full circle.
     [[nodiscard]] std::optional<std::array<double, 2>> angles(int member) const;
+    /// By how much the arcs of a body turn, all together; each of them is to be narrower than pi.
+    struct Turn {
+        double together = 0;
+        bool convex = true;
+        [[nodiscard]] bool is_once() const;
+    };
+    [[nodiscard]] Turn turn(const std::vector<int>& ring) const;
 
   private:
     struct Vector {
@@ -65,7 +73,7 @@ class ArcBodies {
 /// close to a convex curve, with bars between neighbours whose length is the difference of the radii.
 void validate_arcs(const Packing& packing, const std::string& source);
 
-/// Throws `Error(bad_input)` when there are bodies bounded by arcs: `what` takes disks and unions of disks only.
+/// Throws `Error(bad_input)` when there are bodies bounded by arcs, which `what` does not take.
 void require_no_arcs(const Packing& packing, const std::string& source, const std::string& what);
 
 } // namespace isostat

@@ -260,6 +260,7 @@ double shared_by_members(const Packing& packing, std::span<const int> left_out) 
 }
 
 void require_single_grains(const Packing& packing, const std::string& source, const std::string& what) {
+    require_no_arcs(packing, source, what);
     if (!packing.bars.empty()) {
         throw Error(ErrorKind::bad_input,
                     fmt::format("{}: a packing of clumps ({} bars); {} takes single grains only; inspect, certify, run "

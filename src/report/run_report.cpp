@@ -6,6 +6,7 @@
 #include "io/folders.hpp"
 #include "io/json.hpp"
 #include "io/record_digests.hpp"
+#include "packing/arc_bodies.hpp"
 #include "report/charts.hpp"
 #include "report/gnuplot.hpp"
 #include "report/page.hpp"
@@ -64,6 +65,9 @@ class Writer {
     void picture(const fs::path& path, const std::string& name) {
         const StateFile file = read(path);
         const State& state = file.state;
+        if (options_.vtk) { // the file has the grains as points with radii
+            require_no_arcs(state.packing, path.string(), "--vtk");
+        }
         const std::string caption =
             state.packing.dimension != plane
                 ? fmt::format("{} spheres", state.packing.disk_count())

@@ -265,6 +265,7 @@ BOOST_AUTO_TEST_CASE(unions_of_an_independent_program_are_proved_with_its_counts
             BOOST_TEST(inspection.counting.mechanisms - 3 * rattlers == expected["k"].get<int>());
             BOOST_TEST(inspection.record.min_gap <= expected["smallest_other_gap"].get<double>() + 1e-12);
             BOOST_TEST(inspection.record.min_gap > expected["smallest_other_gap"].get<double>() - 1e-9);
+            BOOST_TEST(inspection.record.min_gap_bound == 0); // a lower bound
         }
     }
 }
@@ -278,6 +279,11 @@ BOOST_AUTO_TEST_CASE(an_oval_between_four_walls_rests_up_to_the_ratio_of_its_arm
     BOOST_TEST(inspection.value().record.dof_count == 5);
     BOOST_TEST(inspection.value().record.contact_count == 4);
     BOOST_TEST(inspection.value().record.mechanisms == 1);
+    BOOST_TEST(inspection.value().record.force_bound > 0);
+    BOOST_TEST(std::abs(inspection.value().forces[0] - 1) <= inspection.value().record.force_bound);
+    BOOST_TEST(std::isnan(inspection.value().record.stress_low)); // not asked
+    BOOST_TEST(inspection.value().record.opens_low.i == -1);
+    BOOST_TEST(std::isinf(inspection.value().record.min_gap)); // no pair is left
     BOOST_TEST(inspection.value().curvature <
                2.0 / 9); // 2 per radian squared: of a cap, that moves by 3, or of a flank
     BOOST_TEST(inspection.value().curvature > 0.124);
@@ -289,6 +295,19 @@ BOOST_AUTO_TEST_CASE(an_oval_between_four_walls_rests_up_to_the_ratio_of_its_arm
     BOOST_TEST((stable(4, 3) == Verdict::undecided));
     BOOST_TEST((stable(1, 1, 0x1p-40) == Verdict::proved)); // a minimum is near
     BOOST_TEST((stable(1, 1, 0.1) != Verdict::proved));
+}
+
+BOOST_AUTO_TEST_CASE(the_unit_of_length_of_an_oval_does_not_matter) {
+    for (const double unit : {0x1p-300, 0x1p300}) {
+        State state = oval_in_a_box(1, 1);
+        for (std::vector<double>* lengths : {&state.packing.q, &state.packing.radius}) {
+            std::transform(lengths->begin(), lengths->end(), lengths->begin(), [&](double x) { return x * unit; });
+        }
+        for (isostat::Bar& bar : state.packing.bars) {
+            bar.length *= unit;
+        }
+        BOOST_TEST((inspected(state).stable == Verdict::proved), unit);
+    }
 }
 
 /// A force g upwards on the right cap turns the oval: tan theta = 3 g / (8 F_2 - 6 F_1 - 4 g), here 5/12 with g = 5/28.
@@ -329,6 +348,37 @@ BOOST_AUTO_TEST_CASE(a_contact_at_a_joint_or_beyond_is_no_contact_of_arcs) {
     BOOST_TEST((beyond.stable != Verdict::proved));
     BOOST_TEST(beyond.remark.find("not inside the arcs") != std::string::npos, beyond.remark);
     BOOST_TEST(!certify(with_free_motions_held(circle_of_an_oval_in_a_corner())).claims.minimum.has_value());
+}
+
+/// Stored, the arcs turn to the left; where the bars have their lengths, the joints 0-1 and 1-2 are in the other order.
+BOOST_AUTO_TEST_CASE(a_ring_that_is_convex_only_as_it_is_stored_proves_nothing) {
+    const State state = isostat::test::clumps_of(R"({"format": "isostat-state", "version": 2, "length": [100, 100],
+        "walls": {"lower": ["absent", "absent"], "upper": ["absent", "absent"]},
+        "load": {"stress": [0, 0], "reference_length": [1, 1]}, "contacts": [], "arcs": [[0, 1, 2, 3, 4]],
+        "disks": [[0, 0, 5.796875], [0.07743, 0.7931, 5], [-0.01775, -0.20236, 6], [-0.1432, -0.38156, 5.78125],
+                  [-0.8586, 0.14893, 6.671875]],
+        "bars": [[0, 1, 0.796875], [0, 4, 0.875], [1, 2, 1], [1, 3, 1.195383822673135], [1, 4, 1.1378028342522102],
+                 [2, 3, 0.21875], [3, 4, 0.890625]]})");
+    const auto found = certify(with_free_motions_held(state));
+    BOOST_TEST(found.claims.vertex.has_value()); // 0.003 away
+    BOOST_TEST(!found.claims.gaps.has_value());
+    BOOST_TEST(!found.claims.stable);
+}
+
+/// The cap touches the bottom 1e-11 beside the joint with the flank, whose circle reaches 2.5e-22 below: in doubles
+/// both arcs are as near.
+BOOST_AUTO_TEST_CASE(an_oval_that_touches_beside_a_joint_is_not_said_to_overlap) {
+    const State state = isostat::test::clumps_of(R"({"format": "isostat-state", "version": 2, "length": [100, 100],
+        "walls": {"lower": ["fixed", "fixed"], "upper": ["absent", "absent"]},
+        "load": {"stress": [0, 0], "reference_length": [1, 1]}, "arcs": [[3, 0, 1, 2]],
+        "disks": [[20, 1, 1], [15.199999999986, -0.39999999995199964, 6], [15.200000000036, 4.600000000048, 1],
+                  [20.00000000005, 6, 6]],
+        "bars": [[0, 1, 5], [0, 2, 6], [0, 3, 5], [1, 2, 5], [2, 3, 5]],
+        "contacts": [["held", 0], ["held", 1], ["held", 6]]})");
+    const auto found = certify(state);
+    BOOST_TEST(found.claims.vertex.has_value());
+    BOOST_TEST(!found.claims.gaps.has_value());
+    BOOST_TEST(found.refuted.empty());
 }
 
 /// Newton's method and elimination in 200 digits, which share nothing with the program.

@@ -267,6 +267,33 @@ BOOST_AUTO_TEST_CASE(the_smallest_gap_of_ovals_is_that_of_their_nearest_arcs) {
     BOOST_TEST(std::abs(gaps.front().value.lower.get_d() - expected) < 1e-9);
 }
 
+BOOST_AUTO_TEST_CASE(an_oval_alone_without_walls_has_no_gap) {
+    State state = oval_in_a_box(1, 1);
+    std::erase_if(state.contacts, [](const Contact& c) { return c.is_unilateral(); });
+    for (std::size_t a = 0; a < 2; ++a) {
+        state.packing.walls.lower[a] = state.packing.walls.upper[a] = isostat::WallKind::absent;
+    }
+    state.load.stress = {};
+    const Verification verification = read_and_verified(of_clumps(state));
+    BOOST_TEST((verification.verdict == Verdict::proved), verification.checks.back().detail);
+}
+
+/// Both arcs have the gap, and roundings say which one has the larger: the prover may name the other one.
+BOOST_AUTO_TEST_CASE(an_oval_above_a_wall_that_a_joint_points_to_verifies) {
+    for (int k = 0; k < 20; ++k) {
+        State state = oval_in_a_box(1, 1, std::atan2(4, 3) - std::acos(-1) / 2 + 1e-15 * k);
+        std::erase_if(state.contacts, [](const Contact& c) { return c.is_unilateral(); });
+        state.packing.walls.upper[0] = state.packing.walls.upper[1] = isostat::WallKind::absent;
+        state.load.stress = {};
+        for (std::size_t i = 0; i < 8; ++i) {
+            state.packing.q[i] += 5 + k * (i % 2 == 0 ? 0.37 : 0.317);
+        }
+        std::rotate(state.packing.arcs[0].begin(), state.packing.arcs[0].begin() + k % 4, state.packing.arcs[0].end());
+        const Verification verification = read_and_verified(of_clumps(state));
+        BOOST_TEST((verification.verdict == Verdict::proved), k);
+    }
+}
+
 BOOST_AUTO_TEST_CASE(forged_minima_do_not_verify) {
     const Certificate right = of_clumps(disk_in_a_corner(0x1p-20));
     BOOST_TEST((read_and_verified(right).verdict == Verdict::proved));

@@ -3,6 +3,7 @@
 #include "report/page.hpp"
 #include "report/page_bytes.hpp"
 #include "report/run_walk.hpp"
+#include "support/clumps.hpp"
 
 #include <isostat/core/error.hpp>
 
@@ -160,6 +161,21 @@ BOOST_AUTO_TEST_CASE(integers_take_a_byte_when_they_are_small) {
     BOOST_TEST((bytes(-64) == "\x7f"));
     BOOST_TEST((bytes(64) == "\x80\x01"));
     BOOST_TEST((bytes(-1000000) == "\xff\x88\x7a"));
+}
+
+/// A ParaView file has members as points with radii, the picture the arcs.
+BOOST_AUTO_TEST_CASE(a_report_draws_bodies_bounded_by_arcs_and_writes_no_disks_of_them) {
+    const scratch::Folder folder;
+    scratch::write(folder / "oval.json", state_text(isostat::test::oval_in_a_box(1, 1)));
+    const auto drawn = [&](std::vector<std::string> extra) {
+        std::vector<std::string> words{"report", folder.at("oval.json"), "-o", folder.at("pictures")};
+        words.insert(words.end(), extra.begin(), extra.end());
+        return run(words);
+    };
+    expect(drawn({"--vtk"}), 65);
+    BOOST_TEST(!fs::exists(folder / "pictures" / "forces_oval.vtk"));
+    expect(drawn({}), 0);
+    BOOST_TEST(fs::exists(folder / "pictures" / "forces_oval.svg"));
 }
 
 BOOST_AUTO_TEST_SUITE_END()

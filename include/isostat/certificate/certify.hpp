@@ -102,7 +102,7 @@ struct Yielding {
 /// state is an equilibrium *up to the rounding of the stored numbers*, and `stable` says what the potential does along
 /// the mechanism (k = 1; statement T8).
 struct MechanismInspection {
-    EquilibriumRecord record;                   ///< `record.verdict` is `refuted`: the state is not isostatic
+    EquilibriumRecord record;                   ///< `verdict` is `refuted`: not isostatic; `min_gap` as in `Inspection`
     std::vector<Contact> contacts;              ///< those of the state, then the held coordinates
     std::vector<double> forces;                 ///< f0, one per entry of `contacts`
     std::vector<unsigned char> structural_zero; ///< 1: f0 vanishes for every load on the walls

@@ -3,7 +3,7 @@
 
   python3 proofs/coq/mutants.py FOLDER [NAME ...]     all mutants, or those whose names contain NAME
 
-By night: six minutes of processor time. The sources are compiled in FOLDER, so that those of the project stay as they are. Of each
+By night: four minutes of processor time. The sources are compiled in FOLDER, so that those of the project stay as they are. Of each
 mutant the changed file is compiled again, with those that need it, until one of them fails. That has to be *after* the changed definition:
 a mutant that is no definition at all says nothing. Exit status 1: a mutant still has a proof, or does not fit the sources."""
 import pathlib

@@ -609,19 +609,22 @@ std::vector<Contact> rows_of(const State& state) {
     return rows;
 }
 
-bool bears_force(int disk, const std::vector<Contact>& contacts, const std::vector<bool>& zeros) {
-    for (std::size_t l = 0; l < contacts.size(); ++l) {
-        const Contact& c = contacts[l];
-        if (!zeros[l] && (c.i == disk || (c.of_disks() && c.j == disk))) {
+/// Of a cell.
+bool pinned_disk_bears_force(const State& state, const ForcesClaim& forces) {
+    const int pin = state.packing.cell.pin;
+    const std::vector<int>& zeros = forces.structural_zeros;
+    for (std::size_t l = 0; l < state.contacts.size(); ++l) {
+        const Contact& c = state.contacts[l];
+        const bool zero = std::find(zeros.begin(), zeros.end(), static_cast<int>(l)) != zeros.end();
+        if (!zero && (c.i == pin || (c.of_disks() && c.j == pin))) {
             return true;
         }
     }
     return false;
 }
 
-void write_certificate(const State& state, const CertificateClaims& claims) {
+void require_covered(const State& state, const CertificateClaims& claims, const std::vector<Contact>& rows) {
     const Packing& packing = state.packing;
-    const std::vector<Contact> rows = rows_of(state);
     const std::pair<bool, const char*> not_covered[] = {
         {packing.dimension != 2, "spheres"},
         {!packing.bars.empty(), "clumps"},
@@ -632,12 +635,20 @@ void write_certificate(const State& state, const CertificateClaims& claims) {
         {claims.gaps && !std::isfinite(claims.gaps->smallest), "packings without a pair that does not touch"},
         {!claims.vertex || !claims.forces || !claims.gaps || !claims.load_interval,
          "certificates without one of the claims vertex, forces, gaps, load interval"},
+        {packing.cell.any() && claims.forces && !pinned_disk_bears_force(state, *claims.forces),
+         "cells whose pinned disk bears no force"},
     };
     for (const auto& [found, what] : not_covered) {
         if (found) {
             throw Undecided(std::string("the checker in Coq does not cover ") + what);
         }
     }
+}
+
+void write_certificate(const State& state, const CertificateClaims& claims) {
+    const Packing& packing = state.packing;
+    const std::vector<Contact> rows = rows_of(state);
+    require_covered(state, claims, rows);
     const Vertex v = vertex_of(packing, rows, claims.vertex->unique_radius);
     ForcesClaim forces = *claims.forces;
     forces.finite.resize(rows.size()); // nothing is claimed of what is held
@@ -647,9 +658,6 @@ void write_certificate(const State& state, const CertificateClaims& claims) {
         const std::size_t l = Integers::index(forces.structural_zeros[k]);
         zeros[l] = true;
         infinitesimal[l] = forces.infinitesimal[k];
-    }
-    if (packing.cell.any() && !bears_force(packing.cell.pin, state.contacts, zeros)) {
-        throw Undecided("the checker in Coq does not cover cells whose pinned disk bears no force");
     }
     const ForceUnits units = force_units(state, claims, infinitesimal);
     const Numbers load = finite_load(state, units.force);

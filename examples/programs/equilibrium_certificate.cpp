@@ -1,5 +1,5 @@
-// A certificate of an equilibrium for a proof assistant: what `isostat certify` claims of a packing in the box, as a
-// Coq file with the integers from which proofs/coq/load_certificate.v proves it. Usage:
+// A certificate of an equilibrium for a proof assistant: what `isostat certify` claims of a packing in a box or a
+// periodic cell, as a Coq file with the integers from which proofs/coq/load_certificate.v proves it. Usage:
 // equilibrium_certificate [CERTIFICATE.json | DISKS [SEED]] > file.v; without a file a random packing is prepared.
 // Nothing here has to be right: Coq checks every number, and proofs/coq/compare.py compares them with the file.
 #include <isostat/certificate/certify.hpp>
@@ -17,6 +17,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <map>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -71,14 +72,27 @@ int unit_exponent(const std::vector<double>& values, int e) {
     return e;
 }
 
-/// One row of the derivative: coordinates and entries.
+/// One row of the derivative: coordinates and entries, and how much an entry changes when no coordinate changes by more
+/// than 1.
 struct Entry {
     int coordinate = 0;
     Number value;
+    int change = 0;
 };
 
-/// The packing in integers of one unit. Coordinates that do not move are held at their places, by rows after those of
-/// the contacts.
+/// A coordinate in a separation, with its factor.
+struct Term {
+    int coordinate = 0;
+    int factor = 0;
+};
+
+int spread(const std::vector<Term>& terms) {
+    return std::accumulate(terms.begin(), terms.end(), 0,
+                           [](int sum, const Term& term) { return sum + std::abs(term.factor); });
+}
+
+/// The packing in integers of one unit. The coordinates are x_0 y_0 x_1 y_1 ... Lx Ly and the tilt, of a box as well.
+/// Those that do not move are held at their places, by rows after those of the contacts.
 struct Integers {
     int disks = 0;
     Numbers radius;
@@ -88,11 +102,45 @@ struct Integers {
 
     [[nodiscard]] int at(int disk, int axis) const { return 2 * disk + axis; }
 
+    /// What the separation of disk i from the image of disk j is the sum of, along axis a.
+    [[nodiscard]] std::vector<Term> along(const Contact& c, int a) const {
+        std::vector<Term> terms;
+        if (c.i != c.j) {
+            terms = {{at(c.i, a), 1}, {at(c.j, a), -1}};
+        }
+        if (c.image.m[index(a)] != 0) {
+            terms.push_back({at(disks, a), -c.image.m[index(a)]});
+        }
+        if (a == 0 && c.image.m[1] != 0) {
+            terms.push_back({at(disks, 2), -c.image.m[1]});
+        }
+        return terms;
+    }
+    [[nodiscard]] Number separation(const Contact& c, int a, const Numbers& q) const {
+        Number sum;
+        for (const Term& term : along(c, a)) {
+            sum += term.factor * q[index(term.coordinate)];
+        }
+        return sum;
+    }
+    /// K1 (b): 8 where no disk touches an image.
+    [[nodiscard]] int curvature() const {
+        int most = 1;
+        for (const Contact& c : contacts) {
+            if (c.kind == ContactKind::disk_disk) {
+                const int x = spread(along(c, 0));
+                const int y = spread(along(c, 1));
+                most = std::max(most, x * x + y * y);
+            }
+        }
+        return most;
+    }
+
     /// Twice the polynomial of a contact, and half its derivative: those of proofs/coq/box.v.
     [[nodiscard]] Number doubled_gap(const Contact& c, const Numbers& q) const {
         if (c.kind == ContactKind::disk_disk) {
-            const Number x = q[index(at(c.i, 0))] - q[index(at(c.j, 0))];
-            const Number y = q[index(at(c.i, 1))] - q[index(at(c.j, 1))];
+            const Number x = separation(c, 0, q);
+            const Number y = separation(c, 1, q);
             const Number sum = radius[index(c.i)] + radius[index(c.j)];
             return x * x + y * y - sum * sum;
         }
@@ -105,9 +153,15 @@ struct Integers {
     }
     [[nodiscard]] std::vector<Entry> gradient(const Contact& c, const Numbers& q) const {
         if (c.kind == ContactKind::disk_disk) {
-            const Number x = q[index(at(c.i, 0))] - q[index(at(c.j, 0))];
-            const Number y = q[index(at(c.i, 1))] - q[index(at(c.j, 1))];
-            return {{at(c.i, 0), x}, {at(c.i, 1), y}, {at(c.j, 0), -x}, {at(c.j, 1), -y}};
+            std::vector<Entry> entries;
+            for (int a = 0; a < 2; ++a) {
+                const Number size = separation(c, a, q);
+                const std::vector<Term> terms = along(c, a);
+                for (const Term& term : terms) {
+                    entries.push_back({term.coordinate, term.factor * size, std::abs(term.factor) * spread(terms)});
+                }
+            }
+            return entries;
         }
         if (c.kind != ContactKind::upper_wall) {
             return {{at(c.i, c.j), weight}};
@@ -216,11 +270,11 @@ Quotients quotients(const Integers& packing, const Numbers& q, const Numbers& lo
             const Number& g = result.value[l];
             for (const Entry& e : packing.gradient(packing.contacts[l], q)) {
                 residual[Integers::index(e.coordinate)] += e.value * g;
-                blur[Integers::index(e.coordinate)] += size(g);
+                blur[Integers::index(e.coordinate)] += e.change * size(g);
             }
         }
         if (step == 12) {
-            result.slack = above((largest(residual) + 2 * error * largest(blur)) / stiffness);
+            result.slack = above((largest(residual) + error * largest(blur)) / stiffness);
             return result;
         }
         add_rounded(result.value, system.solve_transposed(-to_doubles(residual)));
@@ -261,10 +315,14 @@ std::string name(const Contact& c) {
     if (c.kind == ContactKind::held) {
         return "Held " + std::to_string(2 * c.i + c.j);
     }
+    const auto both = std::to_string(c.i) + " " + std::to_string(c.j);
+    if (c.kind == ContactKind::disk_disk && !c.image.is_here()) {
+        return "Image " + both + " (" + std::to_string(c.image.m[0]) + ") (" + std::to_string(c.image.m[1]) + ")";
+    }
     const char* kind = c.kind == ContactKind::disk_disk    ? "Disks"
                        : c.kind == ContactKind::lower_wall ? "Lower"
                                                            : "Upper";
-    return std::string(kind) + " " + std::to_string(c.i) + " " + std::to_string(c.j);
+    return std::string(kind) + " " + both;
 }
 
 /// Columns of P^T L, P the permutation of the factor: A^T A - s I = L L^T, in integers of the unit. Coq merges them
@@ -333,12 +391,14 @@ Vertex vertex_of(const Packing& packing, const std::vector<Contact>& rows, doubl
     v.unit = unit_exponent(packing.radius, unit_exponent(packing.q, 0));
     v.fine = v.unit - zoom_exponent;
     v.stored = multiples(packing.q, v.unit);
+    v.stored.resize(rows.size()); // a box has no tilt
     v.packing = {packing.disk_count(), multiples(packing.radius, v.unit), v.stored,
                  power_of_two(std::ilogb(packing.radius[0]) - v.unit + 1), rows};
     const Approximate coarse(v.packing, v.stored);
     const double shift = 0.7 * coarse.smallest_eigenvalue();
     const double ball = std::ceil(std::ldexp(unique_radius, -v.unit));
-    const double stiffness = 0.9 * shift / (2.0 * static_cast<double>(v.stored.size())) - 64 * ball * ball;
+    const double bend = v.packing.curvature() * ball;
+    const double stiffness = 0.9 * shift / (2.0 * static_cast<double>(v.stored.size())) - bend * bend;
     if (!(stiffness > 0)) {
         throw Undecided("the claimed radius of uniqueness is too large for this certificate");
     }
@@ -364,10 +424,15 @@ Vertex vertex_of(const Packing& packing, const std::vector<Contact>& rows, doubl
     return v;
 }
 
+/// Of disks, of lengths, and the tilt.
+std::size_t coordinates_of(const Packing& packing) {
+    return packing.length_at(packing.axes()) + 1;
+}
+
 /// The wall forces are exact products of two stored numbers.
 Numbers finite_load(const State& state, int exponent) {
     Numbers load = multiples(state.load.disk_force, exponent);
-    load.resize(state.packing.q.size());
+    load.resize(coordinates_of(state.packing));
     for (const WallForce& wall : state.load.wall_forces(state.packing)) {
         const Number force = Number::from_double(wall.stress) * Number::from_double(wall.length);
         load[Integers::index(wall.coordinate)] = -force / power_of_two(exponent);
@@ -377,7 +442,7 @@ Numbers finite_load(const State& state, int exponent) {
 
 /// Its change per unit of the loaded stress.
 Numbers unit_load(const State& state, int exponent) {
-    Numbers load(state.packing.q.size());
+    Numbers load(coordinates_of(state.packing));
     for (const WallForce& wall : state.load.wall_forces(state.packing)) {
         load[Integers::index(wall.coordinate)] =
             -Number::from_double(wall.rate) * Number::from_double(wall.length) / power_of_two(exponent);
@@ -407,7 +472,7 @@ std::vector<bool> unloaded_by(const Vertex& v, const Numbers& load, const std::v
     return result;
 }
 
-void write_vertex(const Vertex& v, const Walls& walls) {
+void write_vertex(const Vertex& v, const Packing& packing) {
     std::vector<std::string> contacts;
     for (const Contact& c : v.packing.contacts) {
         contacts.push_back(name(c));
@@ -419,14 +484,16 @@ void write_vertex(const Vertex& v, const Walls& walls) {
         "Definition touching : seq contact := %s.\nOpen Scope Z_scope.\n",
         list(contacts).c_str());
     std::vector<bool> there;
-    for (const auto& kinds : {walls.lower, walls.upper}) {
+    for (const auto& kinds : {packing.walls.lower, packing.walls.upper}) {
         there.insert(there.end(), {kinds[0] != WallKind::absent, kinds[1] != WallKind::absent});
     }
-    std::printf(
-        "Definition the_vertex : vertex_certificate := {|\n  disks := %d;\n  contacts := touching;\n"
-        "  walls := %s;\n  stored := %s;\n  radii := %s;\n  weight := %s;\n  zoom := 2 ^ %d;\n  refined := %s;\n",
-        v.packing.disks, list(there).c_str(), list(v.stored).c_str(), list(v.packing.radius).c_str(),
-        v.packing.weight.text().c_str(), zoom_exponent, list(v.refined).c_str());
+    std::printf("Definition the_vertex : vertex_certificate := {|\n  disks := %d;\n  contacts := touching;\n"
+                "  walls := %s;\n  periodic := %s;\n  stored := %s;\n  radii := %s;\n  weight := %s;\n  zoom := 2 ^ "
+                "%d;\n  refined := %s;\n",
+                v.packing.disks, list(there).c_str(),
+                list(std::vector<bool>{packing.cell.periodic[0], packing.cell.periodic[1]}).c_str(),
+                list(v.stored).c_str(), list(v.packing.radius).c_str(), v.packing.weight.text().c_str(), zoom_exponent,
+                list(v.refined).c_str());
     std::printf("  error := %s;\n  distance := %s;\n  ball := %s;\n  stiffness := %s;\n  shift := %s;\n"
                 "  factor := %s |}.\n",
                 v.error.text().c_str(), v.distance.text().c_str(), v.ball.text().c_str(), v.stiffness.text().c_str(),
@@ -536,28 +603,52 @@ std::vector<Contact> rows_of(const State& state) {
             rows.push_back({ContactKind::held, k / 2, k % 2});
         }
     }
+    if (!state.packing.cell.any()) {
+        rows.push_back({ContactKind::held, state.packing.disk_count() + 1, 0}); // a box has no tilt
+    }
     return rows;
 }
 
-void write_certificate(const State& state, const CertificateClaims& claims) {
+/// Of a cell.
+bool pinned_disk_bears_force(const State& state, const ForcesClaim& forces) {
+    const int pin = state.packing.cell.pin;
+    const std::vector<int>& zeros = forces.structural_zeros;
+    for (std::size_t l = 0; l < state.contacts.size(); ++l) {
+        const Contact& c = state.contacts[l];
+        const bool zero = std::find(zeros.begin(), zeros.end(), static_cast<int>(l)) != zeros.end();
+        if (!zero && (c.i == pin || (c.of_disks() && c.j == pin))) {
+            return true;
+        }
+    }
+    return false;
+}
+
+void require_covered(const State& state, const CertificateClaims& claims, const std::vector<Contact>& rows) {
     const Packing& packing = state.packing;
-    const std::vector<Contact> rows = rows_of(state);
     const std::pair<bool, const char*> not_covered[] = {
         {packing.dimension != 2, "spheres"},
         {!packing.bars.empty(), "clumps"},
-        {packing.cell.any(), "periodic cells"},
+        {packing.cell.keeps_shape, "isotropic cells"},
         {state.load.path.has_value(), "paths in stress space"},
         {state.load.kind != LoadKind::nominal, "true stresses"},
-        {rows.size() != packing.q.size(), "packings that are not isostatic"},
+        {rows.size() != coordinates_of(packing), "packings that are not isostatic"},
         {claims.gaps && !std::isfinite(claims.gaps->smallest), "packings without a pair that does not touch"},
         {!claims.vertex || !claims.forces || !claims.gaps || !claims.load_interval,
          "certificates without one of the claims vertex, forces, gaps, load interval"},
+        {packing.cell.any() && claims.forces && !pinned_disk_bears_force(state, *claims.forces),
+         "cells whose pinned disk bears no force"},
     };
     for (const auto& [found, what] : not_covered) {
         if (found) {
             throw Undecided(std::string("the checker in Coq does not cover ") + what);
         }
     }
+}
+
+void write_certificate(const State& state, const CertificateClaims& claims) {
+    const Packing& packing = state.packing;
+    const std::vector<Contact> rows = rows_of(state);
+    require_covered(state, claims, rows);
     const Vertex v = vertex_of(packing, rows, claims.vertex->unique_radius);
     ForcesClaim forces = *claims.forces;
     forces.finite.resize(rows.size()); // nothing is claimed of what is held
@@ -572,7 +663,7 @@ void write_certificate(const State& state, const CertificateClaims& claims) {
     const Numbers load = finite_load(state, units.force);
     const Numbers rate = unit_load(state, units.force - units.stress);
     Numbers small_load = multiples(state.load.infinitesimal, units.small);
-    small_load.resize(packing.q.size());
+    small_load.resize(rows.size());
     const Number zoom = power_of_two(zoom_exponent);
     const Integers small = enlarged(v.packing, zoom);
     const Approximate system(small, v.refined);
@@ -582,7 +673,7 @@ void write_certificate(const State& state, const CertificateClaims& claims) {
     const Quotients finite = solved(load);
     const Quotients slopes = solved(rate);
 
-    write_vertex(v, packing.walls);
+    write_vertex(v, packing);
     std::printf(
         "(* The units are 2 to these powers: of lengths, of refined lengths, of forces, of infinitesimal ones, of "
         "stresses. *)\nDefinition exponents : seq Z := [:: %d; %d; %d; %d; %d].\n",

@@ -1,4 +1,4 @@
-(** The certificate of a vertex in a box, as integers, and the check that Coq evaluates.
+(** The certificate of a vertex in a box or a cell, as integers, and the check that Coq evaluates.
 
     Lengths of the stored packing are multiples of a unit; the refined configuration is given in a unit that is
     [zoom] times smaller. The check computes A^T A - s I - L L^T of the stored configuration exactly (K15), and the
@@ -14,9 +14,10 @@ Import Order.Theory GRing.Theory Num.Theory.
 
 Record vertex_certificate := VertexCertificate {
   disks : nat;
-  contacts : seq contact;     (* and the coordinates that are held: 2 n + 2 rows *)
+  contacts : seq contact;     (* and the coordinates that are held: 2 n + 3 rows *)
   walls : seq bool;           (* which there are: the two lower ones, the two upper ones *)
-  stored : seq Z;             (* coordinates x_0 y_0 x_1 y_1 ... Lx Ly *)
+  periodic : seq bool;        (* which axes are *)
+  stored : seq Z;             (* coordinates x_0 y_0 x_1 y_1 ... Lx Ly and the tilt *)
   radii : seq Z;
   weight : Z;                 (* a length: rows of walls are multiplied by it *)
   zoom : Z;
@@ -32,7 +33,7 @@ Record vertex_certificate := VertexCertificate {
 Section Check.
 Variable v : vertex_certificate.
 Let n := disks v.
-Let N := (n.*2.+2)%N.
+Let N := (n.*2.+3)%N.
 Local Open Scope Z_scope.
 
 Definition stored_at : nat -> Z := nth 0 (stored v).
@@ -46,8 +47,9 @@ Definition matrix_rows : seq sparse := [seq sparse_of (gradient n (weight v) sto
 Definition factor_columns : seq sparse := [seq [seq (Z.to_N e.1, e.2) | e <- column] | column <- factor v].
 Definition defect_rows : seq sparse :=
   add_all_products 1 matrix_rows (add_all_products (-1) factor_columns (diagonal N (- shift v))).
+Definition bend : Z := Z.of_nat (curvature n (contacts v)).
 Definition largest_defect : Z :=
-  shift v - 2 * Z.of_nat N * (stiffness v * stiffness v + 64 * (ball v * ball v)).
+  shift v - 2 * Z.of_nat N * (stiffness v * stiffness v + bend * bend * (ball v * ball v)).
 Definition well_conditioned : bool := let most := largest_defect in all (fun row => sizes row <=? most) defect_rows.
 
 Definition nearly_closed : bool :=
@@ -58,10 +60,10 @@ Definition near_the_stored_one : bool :=
 
 Definition well_posed : bool :=
   [&& (size (stored v) == N) && (size (refined v) == N), (size (radii v) == n) && all (Z.ltb 0) (radii v),
-    (size (contacts v) == N) && all (in_the_packing n (walls v)) (contacts v), size (factor v) == N
+    (size (contacts v) == N) && all (in_the_packing n (walls v) (periodic v)) (contacts v), size (factor v) == N
     & [&& 0 <? weight v, 0 <? zoom v & 0 <? stiffness v]].
 Definition vertex_check : bool :=
-  [&& well_posed, nearly_closed, near_the_stored_one, 32 * error v <=? fine_stiffness & well_conditioned].
+  [&& well_posed, nearly_closed, near_the_stored_one, 4 * bend * error v <=? fine_stiffness & well_conditioned].
 End Check.
 
 Local Open Scope ring_scope.
@@ -69,7 +71,7 @@ Local Open Scope ring_scope.
 Section Correct.
 Variables (F : archiFieldType) (v : vertex_certificate).
 Let n := disks v.
-Let N := (n.*2.+2)%N.
+Let N := (n.*2.+3)%N.
 
 Definition configuration (x : nat -> Z) : 'cV[F]_N := \col_k real (x k).
 Definition stored_configuration := configuration (fine_place v).
@@ -109,7 +111,9 @@ Lemma derivative_at_the_stored_one : A stored_configuration = real (zoom v) *: m
 Proof.
 have finer c : gradient n (real (fine_weight v)) (at_ stored_configuration) c
     = [seq (e.1, real (zoom v) * real e.2 : F) | e <- gradient n (weight v) (stored_at v) c].
-  by case: c => * /=; rewrite /separation ?at_stored !(rmorphM, rmorphN, rmorphB) /= ?mulrN ?mulrBr.
+  case: c => [i j k l|i a|i a|k] /=; rewrite ?real_times ?rmorphN ?mulrN ?real_times // map_cat -!map_comp.
+  by congr (_ ++ _); apply: eq_map => e /=; rewrite /separation (sum_at_scale _ at_stored) rmorphMz -mulrzAr
+    (sum_at_morphism (real_rmorphism F)).
 apply/matrixP=> l m; rewrite !mxE (nth_map (Lower 0 0)) ?size_contacts // sparse_of_entry.
 by rewrite finer big_map rmorph_sum mulr_sumr.
 Qed.
@@ -144,7 +148,9 @@ Let q1 := refined_configuration.
 Let b : F := real (fine_stiffness v).
 Let rho : F := real (zoom v * ball v).
 
-Let strong x : well_conditioned v -> 2%:R * N%:R * (b ^+ 2 + 64%:R * rho ^+ 2) * square x <= square (A q0 *m x).
+Let C : F := (curvature n (contacts v))%:R.
+
+Let strong x : well_conditioned v -> 2%:R * N%:R * (b ^+ 2 + C ^+ 2 * rho ^+ 2) * square x <= square (A q0 *m x).
 Proof.
 move=> well; have := shifted_factor_bounds_from_below (fun i => small_defect i well) x.
 have [_ z0 _] := positive; have zz : 0 <= real (zoom v) ^+ 2 :> F by apply: sqr_ge0.
@@ -152,9 +158,9 @@ move=> /(ler_wpmul2l zz); rewrite derivative_at_the_stored_one -scalemxAl.
 have -> : square (real (zoom v) *: (map_mx real B *m x)) = real (zoom v) ^+ 2 * square (map_mx real B *m x) :> F.
   by rewrite /square mulr_sumr; apply: eq_bigr => k _; rewrite mxE exprMn.
 move=> bound; apply: le_trans _ bound; rewrite [X in _ <= X]mulrA ler_wpmul2r ?square_ge0 //.
-have -> : largest_defect v = shift v - Z.of_nat 2 * Z.of_nat N * (stiffness v ^+ 2 + Z.of_nat 64 * ball v ^+ 2) by rewrite !expr2.
-rewrite /b /rho [fine_stiffness v](_ : _ = zoom v * stiffness v) // !(rmorphX, rmorphM, rmorphB, rmorphD).
-rewrite !real_morphism !real_of_nat.
+have -> : largest_defect v = shift v - Z.of_nat 2 * Z.of_nat N * (stiffness v ^+ 2 + bend v ^+ 2 * ball v ^+ 2) by rewrite !expr2.
+rewrite /b /rho /bend [fine_stiffness v](_ : _ = zoom v * stiffness v) // !(rmorphX, rmorphM, rmorphB, rmorphD).
+rewrite !real_morphism !real_of_nat -/n -/C.
 rewrite le_eqVlt; apply/orP; left; apply/eqP; ring.
 Qed.
 
@@ -190,8 +196,8 @@ have radius_gt0 i : (i < n)%N -> 0 < radius i.
   move=> i_n; have := pR 0 i; rewrite sR => /(_ i_n) Ri.
   by rewrite /radius -(rmorph0 (real_rmorphism F)) real_lt; apply/Z.ltb_lt/Z.mul_pos_pos; [lia|exact/Z.ltb_lt].
 case: (ltnP l N) => lN; last by rewrite /contact_at nth_default ?size_contacts //= ltr01.
-have := formed (Lower 0 0) l; rewrite size_contacts => /(_ lN)/andP[+ _]; rewrite /contact_at.
-case: (nth _ _ _) => [i j|i a|i a|k] /=; rewrite ?ltr01 // => /and3P[i_n j_n _].
+have := formed (Lower 0 0) l; rewrite size_contacts => /(_ lN); rewrite /contact_at.
+case: (nth _ _ _) => [i j k m|i a|i a|k] /=; rewrite ?ltr01 // => /and5P[i_n j_n _ _ _].
 by rewrite addr_gt0 ?radius_gt0.
 Qed.
 
@@ -221,8 +227,8 @@ Proof.
 move=> full /and5P[_ closed near step well]; have [w0 z0 s0] := positive.
 have w1 : real (fine_weight v) != 0 :> F by rewrite real_eq0 /fine_weight; nia.
 have b0 : 0 < b by rewrite -(rmorph0 (real_rmorphism F)) real_lt /fine_stiffness; nia.
-have short : 32%:R * r <= b.
-  by move: step; rewrite -(real_le F) -[Z.mul 32 _]/(Z.of_nat 32 * error v) rmorphM real_morphism real_of_nat.
+have short : 4%:R * C * r <= b.
+  by move: step; rewrite -(real_le F) -[Z.mul (Z.mul 4 _) _]/(Z.of_nat 4 * bend v * error v) /bend !rmorphM !real_morphism !real_of_nat -/n -/C -real_times.
 have enough : norm (q1 - q0) + 2%:R * r <= rho.
   by apply: le_trans (inside near); rewrite mulr_natl mulr2n addrA ler_add2r near_stored.
 have [q [q_near q_ball root regular alone]] := one_configuration_closes_all_contacts b0 (strong^~ well) (small closed)

@@ -1,9 +1,10 @@
-(** Statements K6 and K7 (../checker.md) for a packing in a box: forces at the true vertex.
+(** Statements K6 and K7 (../checker.md) for a packing in a box or a cell: forces at the true vertex.
 
     q is the true vertex, q1 a configuration within r of it. Forces that balance a load exist once; approximate ones
     whose residual at q1 is small are near them. Forces of a set of contacts vanish exactly where as many unloaded
     degrees of freedom are touched by no other contact. *)
 From mathcomp Require Import all_ssreflect all_algebra ring.
+From mathcomp Require Import zify.
 From Isostat Require Import shifted_factor max_norm contact_certificate box.
 Set Implicit Arguments.
 Unset Strict Implicit.
@@ -80,7 +81,7 @@ End Blocks.
 
 Section Forces.
 Variables (F : realFieldType) (n : nat) (w : F) (radius : nat -> F) (contacts : seq contact).
-Let N := (n.*2.+2)%N.
+Let N := (n.*2.+3)%N.
 Variables (q q1 : 'cV[F]_N) (b r : F).
 Let A := derivative w contacts : 'cV[F]_N -> 'M[F]_N.
 Let scale_at (l : nat) : F := scale w radius (contact_at contacts l).
@@ -98,30 +99,24 @@ have unit : (normals radius contacts q)^T \in unitmx by rewrite unitmx_tr.
 by move=> e e'; rewrite -(mulKmx unit f) -(mulKmx unit f'); congr (_ *m _); apply: (addIr load); rewrite e.
 Qed.
 
-(** Degrees of freedom that contact c touches, by name, whatever the entries. *)
-Definition support (c : contact) : seq nat := [seq e.1 | e <- gradient n (0 : F) (fun _ => 0) c].
-
 Lemma entry_moves_little l (m : 'I_N) : norm (q - q1) <= r ->
-  `|A q l m - A q1 l m| <= 2%:R * r * (count_mem (m : nat) (support (contact_at contacts l)))%:R.
+  `|A q l m - A q1 l m| <= r * (\sum_(e <- entry_changes n (contact_at contacts l) | e.1 == m) e.2)%:R.
 Proof.
-move=> near; rewrite !mxE.
-have r0 : 0 <= 2%:R * r by rewrite mulr_ge0 ?ler0n // (le_trans (norm_ge0 _) near).
-have moved i j a : `|separation (at_ q) i j a - separation (at_ q1) i j a| <= 2%:R * r.
-  have -> : separation (at_ q) i j a - separation (at_ q1) i j a = at_ (q - q1) (i.*2 + a) - at_ (q - q1) (j.*2 + a).
-    by rewrite /separation !at_sub; ring.
-  apply: le_trans (ler_norm_sub _ _) _; rewrite mulr_natl mulr2n.
-  by apply: ler_add; apply: le_trans near; apply: at_norm.
-have lists (s t : seq (nat * F)) : all2 (fun e f => (e.1 == f.1) && (`|e.2 - f.2| <= 2%:R * r)) s t ->
-    `|\sum_(e <- s | e.1 == m) e.2 - \sum_(e <- t | e.1 == m) e.2| <= 2%:R * r * (count_mem (m : nat) (unzip1 s))%:R.
-  elim: s t => [|e s IH] [|f t] //=; first by rewrite !big_nil subrr normr0 mulr0.
-  case/andP=> /andP[/eqP same small] /IH rest; rewrite !big_cons -same.
-  case: ifP => _ //=; rewrite natrD mulrDr mulr1 opprD addrACA.
-  by apply: le_trans (ler_norm_add _ _) _; apply: ler_add.
-have -> : support (contact_at contacts l) = unzip1 (gradient n w (at_ q) (contact_at contacts l)).
-  by rewrite /support; case: (contact_at _ _).
-have opposite i j a : `|- separation (at_ q) i j a - - separation (at_ q1) i j a| <= 2%:R * r.
-  by rewrite -opprD normrN moved.
-by apply: lists; case: (contact_at _ _) => [i j|i a|i a|k] /=; rewrite ?subrr ?normr0 ?r0 ?eqxx ?moved ?opposite.
+move=> near; rewrite !mxE; case: (contact_at contacts l) => [i j k k'|i a|i a|k] /=;
+  rewrite ?subrr ?normr0 ?big_nil ?mulr0 //.
+have moved a : `|separation n (at_ q) i j k k' a - separation n (at_ q1) i j k k' a| <= (spread (along n i j k k' a))%:R * r.
+  rewrite /separation -sum_at_sub; apply: sum_at_bound => d.
+  by apply: le_trans near; apply: at_norm.
+have lists (s : seq (nat * int)) t (u z : F) : `|u - z| <= t%:R * r ->
+    `|\sum_(e <- [seq (e.1, u *~ e.2) | e <- s] | e.1 == m) e.2 - \sum_(e <- [seq (e.1, z *~ e.2) | e <- s] | e.1 == m) e.2|
+      <= r * (\sum_(e <- [seq (e.1, `|e.2| * t)%N | e <- s] | e.1 == m) e.2)%:R.
+  move=> small; elim: s => [|e s IH] /=; first by rewrite !big_nil subrr normr0 mulr0.
+  rewrite !big_cons /=; case: ifP => _ //; rewrite natrD mulrDr opprD addrACA.
+  apply: le_trans (ler_norm_add _ _) _; apply: ler_add IH.
+  rewrite -mulrzBl -mulrzr normrM -intr_norm natrM natr_absz mulrC mulrCA [r * _]mulrC.
+  by rewrite ler_wpmul2l ?ler0z.
+rewrite cats0 !big_cat natrD mulrDr opprD addrACA; apply: le_trans (ler_norm_add _ _) _.
+by apply: ler_add; apply: lists.
 Qed.
 
 Hypothesis b0 : 0 < b.
@@ -130,7 +125,7 @@ Hypothesis near : norm (q - q1) <= r.
 
 Theorem forces_are_enclosed (load G : 'cV[F]_N) (fraction c : F) : 0 <= c ->
   (forall k, `|fraction * load k 0 + ((A q1)^T *m G) k 0|
-     + \sum_(l < N) 2%:R * r * (count_mem (k : nat) (support (contact_at contacts l)))%:R * `|G l 0| <= b * c) ->
+     + \sum_(l < N) r * (\sum_(e <- entry_changes n (contact_at contacts l) | e.1 == k) e.2)%:R * `|G l 0| <= b * c) ->
   exists f, [/\ balanced load f, (forall f', balanced load f' -> f' = f)
     & forall l : 'I_N, `|fraction * f l 0 - scale_at l * G l 0| <= `|scale_at l| * c].
 Proof.
@@ -164,19 +159,17 @@ have -> : fraction * f l 0 - scale_at l * G l 0 = scale_at l * (fraction *: g - 
 by rewrite normrM ler_wpmul2l // (le_trans (entry_norm _ _)).
 Qed.
 
-Lemma untouched_entry (k l : 'I_N) : (k : nat) \notin support (contact_at contacts l) ->
+Lemma untouched_entry (k l : 'I_N) : (k : nat) \notin coordinates n (contact_at contacts l) ->
   (normals radius contacts q)^T k l = 0.
 Proof.
-have -> : support (contact_at contacts l) = unzip1 (gradient n 1 (at_ q) (contact_at contacts l)).
-  by rewrite /support; case: (contact_at _ _).
-move=> absent; rewrite !mxE big1_seq ?mul0r // => e /andP[/eqP e1 es]; case/negP: absent.
+rewrite -(gradient_coordinates n 1 (at_ q)) => absent; rewrite !mxE big1_seq ?mul0r // => e /andP[/eqP e1 es]; case/negP: absent.
 by rewrite -e1 map_f.
 Qed.
 
 (** K7. [zeros] are contacts, [free] degrees of freedom. *)
 Theorem structural_zeros (load f : 'cV[F]_N) (zeros free : {set 'I_N}) : balanced load f -> #|free| = #|zeros| ->
   (forall k, k \in free -> load k 0 = 0) ->
-  (forall (k l : 'I_N), k \in free -> l \notin zeros -> (k : nat) \notin support (contact_at contacts l)) ->
+  (forall (k l : 'I_N), k \in free -> l \notin zeros -> (k : nat) \notin coordinates n (contact_at contacts l)) ->
   forall l, l \in zeros -> f l 0 = 0.
 Proof.
 move=> bal same unloaded apart; have unit : (normals radius contacts q)^T \in unitmx by rewrite unitmx_tr.
@@ -186,6 +179,64 @@ by rewrite mxE unloaded ?oppr0.
 Qed.
 End Forces.
 
+Section Pins.
+Variables (F : realFieldType) (n : nat) (radius : nat -> F) (contacts : seq contact).
+Let N := (n.*2.+3)%N.
+Variable q : 'cV[F]_N.
+
+(** C1 (../cells.md). A row that holds a disk along axis a. *)
+Definition pins (a : nat) (c : contact) : bool := if c is Held k then (k < n.*2)%N && (odd k == a :> nat) else false.
+(** Rows that move no disk when all move together along a. *)
+Definition blind (a : nat) (c : contact) : bool :=
+  match c with
+  | Image i j _ _ => (i < n) && (j < n)
+  | Lower i b | Upper i b => [&& i < n, b < 2 & b != a]
+  | Held k => true
+  end%N.
+
+(** Contacts push a disk as much as its neighbours: what holds one disk along an axis bears the sum of the loads there. *)
+Theorem one_pin_bears_nothing (a : nat) (load f : 'cV[F]_N) : balanced radius contacts q load f -> (a < 2)%N ->
+  \sum_(i < n) at_ load (i.*2 + a) = 0 -> (forall l : 'I_N, blind a (contact_at contacts l)) ->
+  (forall l l' : 'I_N, pins a (contact_at contacts l) -> pins a (contact_at contacts l') -> l = l') ->
+  forall l : 'I_N, pins a (contact_at contacts l) -> f l 0 = 0.
+Proof.
+move=> bal a2 cancel blind_rows alone l pinned.
+pose moved k := (k < n.*2)%N && (odd k == a :> nat).
+pose e : 'cV[F]_N := \col_k (moved k)%:R; pose M := normals radius contacts q.
+have at_e k : at_ e k = (moved k)%:R.
+  case: (ltnP k N) => kN; first by rewrite (at_ordinal e (Ordinal kN)) mxE.
+  rewrite /at_ big1 => [|m /eqP mk]; last by have := ltn_ord m; rewrite mk ltnNge kN.
+  by rewrite /moved ltnNge (leq_trans _ kN) // /N; lia.
+have disk i z : (i < n)%N -> (z < 2)%N -> moved (i.*2 + z)%N = (z == a) by move=> i_n z2; rewrite /moved; lia.
+have cell z : moved (n.*2 + z)%N = false by rewrite /moved ltnNge leq_addr.
+have together i j p m z : (i < n)%N -> (j < n)%N -> (z < 2)%N -> separation n (at_ e) i j p m z = 0.
+  move=> i_n j_n z2; rewrite separation_is_from_the_image // /image_at !at_e disk //.
+  move: (disk j z j_n z2) (cell 0%N) (cell 1%N) (cell 2%N); rewrite addn0 addn1 addn2 => <- c0 c1 c2.
+  by case: z z2 => [|[|z]] // _; rewrite ?addn0 ?c0 ?c1 ?c2 !mul0rz !addr0 subrr.
+have rows k : (M *m e) k 0 = (pins a (contact_at contacts k))%:R.
+  have -> : (M *m e) k 0 = (derivative 1 contacts q *m e) k 0 / scale 1 radius (contact_at contacts k).
+    by rewrite !mxE mulr_suml; apply: eq_bigr => m _; rewrite !mxE mulrAC.
+  rewrite derivative_entry; have := blind_rows k; case: (contact_at contacts k) => [i j p m|i z|i z|m] /=.
+  - by case/andP=> i_n j_n; rewrite big_cat /= !sum_at_dot -!/(separation _ _ _ _ _ _ _) !together // !mulr0 addr0 mul0r.
+  - by case/and3P=> i_n z2 /negPf za; rewrite big_seq1 /= at_e disk // za mulr0 mul0r.
+  - by case/and3P=> i_n z2 /negPf za; rewrite big_cons big_seq1 /= !at_e cell disk // za !mulr0 addr0 mul0r.
+  by rewrite big_seq1 /= at_e mul1r divr1.
+have counted (k : nat) : (moved k)%:R = \sum_(i < n) (k == i.*2 + a)%N%:R :> F.
+  rewrite /moved; case: (ltnP k n.*2) => k_n /=; last by rewrite big1 // => i _; case: eqP => // ki; have := ltn_ord i; lia.
+  have i_n : (k./2 < n)%N by lia.
+  rewrite (bigD1 (Ordinal i_n)) //= big1 => [|i /eqP ne]; last by case: eqP => // ki; case: ne; apply: val_inj => /=; lia.
+  by rewrite addr0; congr (nat_of_bool _)%:R; lia.
+have load_e : dot load e = 0.
+  rewrite -cancel /dot; under eq_bigr => k _ do rewrite mxE counted mulr_sumr.
+  rewrite exchange_big; apply: eq_bigr => i _; rewrite /at_ [RHS]big_mkcond; apply: eq_bigr => k _.
+  by case: eqP; rewrite ?mulr1 ?mulr0.
+have : dot (M^T *m f + load) e = 0 by rewrite bal -(scale0r load) dot_scale mul0r.
+rewrite dot_add load_e addr0 dot_transpose trmxK /dot (bigD1 l) //= rows pinned mulr1 big1 ?addr0 // => k /eqP kl.
+by rewrite rows; case: (boolP (pins _ _)) => [pk|_]; [case: kl; apply: alone|rewrite mulr0].
+Qed.
+End Pins.
+
 Print Assumptions balancing_forces_are_unique.
 Print Assumptions forces_are_enclosed.
 Print Assumptions structural_zeros.
+Print Assumptions one_pin_bears_nothing.

@@ -1,4 +1,4 @@
-(** Statement K10 (../checker.md) for a packing in a box: how far a load may change before a contact opens.
+(** Statement K10 (../checker.md) for a packing in a box or a cell: how far a load may change before a contact opens.
 
     The load is moved along a straight line; the forces follow along one. Up to the end of the interval contacts that
     push bear the load, beyond it none do. *)
@@ -11,7 +11,7 @@ Local Open Scope ring_scope.
 
 Section Load.
 Variables (F : realFieldType) (n : nat) (radius : nat -> F) (contacts : seq contact).
-Let N := (n.*2.+2)%N.
+Let N := (n.*2.+3)%N.
 Variable q : 'cV[F]_N.
 Let bal := balanced radius contacts q.
 
@@ -44,7 +44,7 @@ Hypothesis pushing : forall l : 'I_N, ~~ holds (contact_at contacts l) -> 0 <= f
 (** [mute]: contacts that bear nothing at the end. [free]: degrees of freedom without load that no other contact
     touches. *)
 Variables mute free : {set 'I_N}.
-Hypothesis untouched : forall k l : 'I_N, k \in free -> l \notin mute -> (k : nat) \notin support F n (contact_at contacts l).
+Hypothesis untouched : forall k l : 'I_N, k \in free -> l \notin mute -> (k : nat) \notin coordinates n (contact_at contacts l).
 Hypothesis free_of_rate : forall k, k \in free -> rate k 0 = 0.
 
 Let X_zero (k l : 'I_N) : k \in free -> l \notin mute -> (normals radius contacts q)^T k l = 0.

@@ -1,4 +1,4 @@
-(** Statement K11 (../checker.md) for a box under dead loads: an equilibrium is a strict local minimum of the potential.
+(** Statement K11 (../checker.md) for a box or a cell under dead loads: an equilibrium is a strict local minimum of the potential.
 
     Configurations compete in which no listed contact overlaps and held coordinates are at their places. Where the potential of the finite load does not grow, as
     only grains without finite force have moved, that of the infinitesimal loads does. *)
@@ -11,7 +11,8 @@ Local Open Scope ring_scope.
 
 Section Minimum.
 Variables (F : realFieldType) (n : nat) (w : F) (radius place : nat -> F) (contacts : seq contact).
-Let N := (n.*2.+2)%N.
+Let N := (n.*2.+3)%N.
+Let C : F := (curvature n contacts)%:R.
 Variables (q : 'cV[F]_N) (b : F).
 Let gaps := gaps w radius place contacts : 'cV[F]_N -> 'cV[F]_N.
 Let A : 'M[F]_N := derivative w contacts q.
@@ -31,6 +32,7 @@ Hypothesis closed : gaps q = 0.
 Hypothesis b0 : 0 < b.
 Hypothesis inverse : forall x, b * norm x <= norm (A *m x).
 
+Let C0 : 0 < C. Proof. by rewrite ltr0n curvature_is_positive. Qed.
 Let s0 l : 0 < s l.
 Proof. by rewrite /s; have := scales l; case: (contact_at _ _). Qed.
 
@@ -54,7 +56,7 @@ Qed.
 
 (** Nearer than this the second order of the gaps does not matter. *)
 Definition reach (S : {set 'I_N}) (f : 'cV[F]_N) : F :=
-  (8%:R / b + \sum_(l in S) 8%:R * (\sum_(k in S) f k 0 / s k) / (b * (f l 0 / s l)))^-1.
+  (C / b + \sum_(l in S) C * (\sum_(k in S) f k 0 / s k) / (b * (f l 0 / s l)))^-1.
 
 Section Growth.
 Variables (S : {set 'I_N}) (load f : 'cV[F]_N).
@@ -64,9 +66,9 @@ Let h l := f l 0 / s l.
 Let H := \sum_(k in S) h k.
 Let h0 l : l \in S -> 0 < h l. Proof. by move=> lS; rewrite divr_gt0 ?pushing. Qed.
 Let H0 : 0 <= H. Proof. by apply: sumr_ge0 => l /h0/ltW. Qed.
-Let terms l : l \in S -> 0 <= 8%:R * H / (b * h l).
-Proof. by move=> lS; apply: divr_ge0; [rewrite mulr_ge0 ?ler0n|rewrite ltW // mulr_gt0 ?h0]. Qed.
-Let first : 0 < 8%:R / b. Proof. by rewrite divr_gt0 ?ltr0n. Qed.
+Let terms l : l \in S -> 0 <= C * H / (b * h l).
+Proof. by move=> lS; apply: divr_ge0; [rewrite mulr_ge0 // ltW|rewrite ltW // mulr_gt0 ?h0]. Qed.
+Let first : 0 < C / b. Proof. exact: divr_gt0. Qed.
 
 Lemma reach_is_positive : 0 < reach S f.
 Proof. by rewrite invr_gt0 ltr_paddr // sumr_ge0. Qed.
@@ -79,46 +81,46 @@ set t := norm (p - q) => near free rest [l0 l0S far]; pose y := A *m (p - q).
 have t0 : 0 < t.
   rewrite lt_neqAle norm_ge0 andbT; apply: contraTneq far => t0.
   by rewrite -t0 mulr0 (norm_eq0 (esym t0)) mulmx0 mxE normr0 ltxx.
-have low l : l \in S -> - (4%:R * t ^+ 2) <= y l 0.
+have low l : l \in S -> - (C / 2%:R * t ^+ 2) <= y l 0.
   move=> /free open; pose z := derivative w contacts (2%:R^-1 *: (p + q)) *m (p - q).
   have gz : gaps p = z by rewrite /z -(gaps_at_the_middle w radius place) -/gaps closed subr0.
   have mid : 2%:R^-1 *: (p + q) - q = 2%:R^-1 *: (p - q).
     by apply/colP=> k; rewrite !mxE; move: (p k 0) (q k 0) => *; field.
   have := derivative_is_lipschitz w contacts (2%:R^-1 *: (p + q)) q (p - q).
   rewrite mid norm_scale ger0_norm ?invr_ge0 ?ler0n // -/t -/z -/A -/y.
-  have -> : 8%:R * (2%:R^-1 * t) * t = 4%:R * t ^+ 2 by field.
+  rewrite -/C; have -> : C * (2%:R^-1 * t) * t = C / 2%:R * t ^+ 2 by field.
   move=> /(le_trans (entry_norm (z - y) l)); rewrite ler_norml => /andP[_ up].
   have split : (z - y) l 0 = z l 0 - y l 0 by rewrite [LHS]mxE [X in _ + X]mxE.
   by rewrite ler_oppl; apply: le_trans up; rewrite split ler_addr -gz.
-have small : t * (8%:R / b + \sum_(l in S) 8%:R * H / (b * h l)) < 1.
+have small : t * (C / b + \sum_(l in S) C * H / (b * h l)) < 1.
   by move: near; rewrite -[reach S f]mul1r ltr_pdivl_mulr // ltr_paddr // sumr_ge0.
-have tb : 8%:R * t <= b.
+have tb : C * t <= b.
   rewrite -[b]mul1r -ler_pdivr_mulr //; apply: le_trans _ (ltW small).
   by rewrite -mulrA mulrC -mulrA [_^-1 * _]mulrC ler_wpmul2l ?(ltW t0) // ler_addl sumr_ge0.
-have th : 8%:R * t * H < b * h l0.
+have th : C * t * H < b * h l0.
   rewrite -[b * _]mul1r -ltr_pdivr_mulr ?(mulr_gt0 b0 (h0 l0S)) //.
   apply: le_lt_trans _ small.
-  have -> : 8%:R * t * H / (b * h l0) = t * (8%:R * H / (b * h l0)) by rewrite -!mulrA mulrCA.
+  have -> : C * t * H / (b * h l0) = t * (C * H / (b * h l0)) by rewrite -!mulrA mulrCA.
   rewrite ler_wpmul2l ?(ltW t0) // (bigD1 l0) //= addrCA ler_addl addr_ge0 ?(ltW first) // sumr_ge0 // => l /andP[lS _].
   exact: terms.
 have up : b / 2%:R * t < y l0 0.
   move: far; rewrite -/y; case: (ger0P (y l0 0)) => // neg; rewrite ltNge => /negP[].
   rewrite ler_oppl; apply: le_trans (low _ l0S); rewrite ler_opp2.
-  have -> : 4%:R * t ^+ 2 = 8%:R * t / 2%:R * t by field.
+  have -> : C / 2%:R * t ^+ 2 = C * t / 2%:R * t by field.
   by rewrite ler_wpmul2r ?(ltW t0) // ler_wpmul2r ?invr_ge0 ?ler0n.
 rewrite -subr_gt0 (potential_grows_by_work _ bal) -/y.
 have -> : \sum_l f l 0 / s l * y l 0 = \sum_(l in S) h l * y l 0.
   rewrite [RHS]big_mkcond; apply: eq_bigr => l _; case: ifPn => // /rest zero.
   by rewrite mulrAC zero mul0r.
-have -> : \sum_(l in S) h l * y l 0 = \sum_(l in S) h l * (y l 0 + 4%:R * t ^+ 2) - 4%:R * t ^+ 2 * H.
-  by rewrite /H mulr_sumr -sumrB; apply: eq_bigr => l _; rewrite mulrDr [4%:R * _ * _]mulrC addrK.
+have -> : \sum_(l in S) h l * y l 0 = \sum_(l in S) h l * (y l 0 + C / 2%:R * t ^+ 2) - C / 2%:R * t ^+ 2 * H.
+  by rewrite /H mulr_sumr -sumrB; apply: eq_bigr => l _; rewrite mulrDr [C / 2%:R * _ * _]mulrC addrK.
 rewrite subr_gt0 (bigD1 l0) //=; apply: lt_le_trans (_ : h l0 * (y l0 0) <= _); last first.
-  apply: le_trans (_ : h l0 * (y l0 0 + 4%:R * t ^+ 2) <= _).
-    by rewrite ler_wpmul2l ?(ltW (h0 l0S)) // ler_addl mulr_ge0 ?ler0n ?sqr_ge0.
+  apply: le_trans (_ : h l0 * (y l0 0 + C / 2%:R * t ^+ 2) <= _).
+    by rewrite ler_wpmul2l ?(ltW (h0 l0S)) // ler_addl mulr_ge0 ?sqr_ge0 ?divr_ge0 ?ler0n ?(ltW C0).
   rewrite ler_addl sumr_ge0 // => l /andP[lS _]; rewrite mulr_ge0 ?(ltW (h0 lS)) //.
   by rewrite -ler_subl_addr sub0r low.
 apply: lt_trans (_ : h l0 * (b / 2%:R * t) < _); last by rewrite ltr_pmul2l ?h0.
-have -> : 4%:R * t ^+ 2 * H = 8%:R * t * H * (t / 2%:R) by field.
+have -> : C / 2%:R * t ^+ 2 * H = C * t * H * (t / 2%:R) by field.
 have -> : h l0 * (b / 2%:R * t) = b * h l0 * (t / 2%:R) by field.
 by rewrite ltr_pmul2r ?divr_gt0 ?ltr0n.
 Qed.
@@ -128,7 +130,7 @@ End Growth.
 Variables (zeros free : {set 'I_N}) (load f small g : 'cV[F]_N).
 Hypothesis same : #|free| = #|zeros|.
 Hypothesis unloaded : forall k, k \in free -> load k 0 = 0.
-Hypothesis untouched : forall k l : 'I_N, k \in free -> l \notin zeros -> (k : nat) \notin support F n (contact_at contacts l).
+Hypothesis untouched : forall k l : 'I_N, k \in free -> l \notin zeros -> (k : nat) \notin coordinates n (contact_at contacts l).
 Hypothesis balance : balanced radius contacts q load f.
 Hypothesis small_balance : balanced radius contacts q small g.
 Hypothesis no_force : forall l, l \in zeros -> f l 0 = 0.
@@ -139,7 +141,7 @@ Hypothesis small_force : forall l, l \in zeros -> 0 < g l 0.
 Let A_zero (k l : 'I_N) : k \in free -> l \notin zeros -> A l k = 0.
 Proof.
 move=> kf lz; rewrite mxE big1_seq // => e /andP[/eqP e1 es]; case/negP: (untouched kf lz).
-by rewrite -e1 /support; move: es; case: (contact_at _ _) => [i j|i a|i a|k'] /= /(map_f fst).
+by rewrite -e1 -(gradient_coordinates n w (at_ q)) map_f.
 Qed.
 
 (** The vertex with those coordinates of p that are not free. *)
@@ -147,12 +149,9 @@ Let without (p : 'cV[F]_N) : 'cV[F]_N := \col_k (if k \in free then q k 0 else p
 
 Let same_gaps p l : l \notin zeros -> gaps (without p) l 0 = gaps p l 0.
 Proof.
-move=> lz; rewrite !mxE; congr (_ * _).
-have away k : k \in support F n (contact_at contacts l) -> at_ (without p) k = at_ p k.
-  move=> touched; rewrite /at_; apply: eq_bigr => m /eqP mk; rewrite mxE; case: ifP => // /untouched/(_ lz).
-  by rewrite mk touched.
-move: away; rewrite /support; case: (contact_at _ _) => [i j|i a|i a|k] /= away; rewrite /separation ?away //;
-  by rewrite ?inE ?eqxx ?orbT.
+move=> lz; rewrite !mxE; congr (_ * _); apply: doubled_gap_depends => k touched.
+rewrite /at_; apply: eq_bigr => m /eqP mk; rewrite mxE; case: ifP => // /untouched/(_ lz).
+by rewrite mk touched.
 Qed.
 
 Let same_potential p : potential load (without p) = potential load p.
@@ -212,7 +211,7 @@ exists (Num.min (reach bearing f) (reach zeros g)).
 move=> p; rewrite lt_minr => /andP[near near_small] pq free_of_overlap.
 have open l : 0 <= gaps p l 0.
   rewrite mxE mulr_ge0 ?invr_ge0 ?ler0n //; have := free_of_overlap l.
-  case: (contact_at _ _) => [i j|i a|i a|k] /=; rewrite /separation ?addr0 ?addn0 ?subr_ge0 -?expr2 //.
+  case: (contact_at _ _) => [i j k m|i a|i a|k] /=; rewrite ?separation_is_from_the_image // ?addr0 ?addn0 ?subr_ge0 -?expr2 //.
   - by move=> low; rewrite mulr_ge0 ?subr_ge0 // addr_ge0 // ltW.
   - by move=> low; rewrite mulr_ge0 ?subr_ge0 ?ler_subr_addl // addr_ge0 // ltW.
   by move=> ->; rewrite subrr mulr0.

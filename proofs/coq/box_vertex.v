@@ -1,4 +1,4 @@
-(** Statements K4, K5 and K15 (../checker.md) for a packing in a box: one configuration with all contacts closed.
+(** Statements K4, K5 and K15 (../checker.md) for a packing in a box or a cell: one configuration with all contacts closed.
 
     q0 is the stored configuration, q1 a refined one, rho the radius of a ball around q0. From a bound of |A(q0) x|
     below comes one of |A(p) x| for all p of the ball; from that existence (kantorovich.v), distance and uniqueness. *)
@@ -11,30 +11,32 @@ Local Open Scope ring_scope.
 
 Section Vertex.
 Variables (F : archiFieldType) (n : nat) (w : F) (radius place : nat -> F) (contacts : seq contact).
-Let N := (n.*2.+2)%N.
+Let N := (n.*2.+3)%N.
+Let C : F := (curvature n contacts)%:R.
 Variables (q0 q1 : 'cV[F]_N) (b rho r : F).
 Let A := derivative w contacts : 'cV[F]_N -> 'M[F]_N.
 Let gaps := gaps w radius place contacts : 'cV[F]_N -> 'cV[F]_N.
 Hypothesis b0 : 0 < b.
-Hypothesis strong : forall x, 2%:R * N%:R * (b ^+ 2 + 64%:R * rho ^+ 2) * square x <= square (A q0 *m x).
+Hypothesis strong : forall x, 2%:R * N%:R * (b ^+ 2 + C ^+ 2 * rho ^+ 2) * square x <= square (A q0 *m x).
 
 Let N0 : 0 < N%:R :> F. Proof. by rewrite ltr0n. Qed.
+Let C0 : 0 <= C. Proof. exact: ler0n. Qed.
 
 Lemma strong_in_the_ball p x : norm (p - q0) <= rho -> N%:R * b ^+ 2 * square x <= square (A p *m x).
 Proof.
 move=> near; have rho0 : 0 <= rho := le_trans (norm_ge0 _) near.
 have split : A q0 *m x = A p *m x - (A p *m x - A q0 *m x) by rewrite opprB addrC subrK.
 have := square_add (A p *m x) (- (A p *m x - A q0 *m x)); rewrite -split => /(le_trans (strong x)).
-set change := square (- _); have small : change <= 64%:R * N%:R * rho ^+ 2 * square x.
-  apply: le_trans (square_norm _) _; rewrite norm_opp [64%:R * _]mulrC -!mulrA ler_pmul2l //.
-  apply: le_trans (_ : (8%:R * rho * norm x) ^+ 2 <= _).
+set change := square (- _); have small : change <= C ^+ 2 * N%:R * rho ^+ 2 * square x.
+  apply: le_trans (square_norm _) _; rewrite norm_opp [C ^+ 2 * _]mulrC -!mulrA ler_pmul2l //.
+  apply: le_trans (_ : (C * rho * norm x) ^+ 2 <= _).
     rewrite ler_pexpn2r ?nnegrE ?norm_ge0 ?mulr_ge0 ?ler0n ?norm_ge0 //.
     apply: le_trans (derivative_is_lipschitz _ _ _ _ _) _.
-    by rewrite ler_wpmul2r ?norm_ge0 // ler_wpmul2l ?ler0n.
-  by rewrite !exprMn -natrX -!mulrA !ler_wpmul2l ?ler0n ?norm_square.
+    by rewrite ler_wpmul2r ?norm_ge0 // ler_wpmul2l.
+  by rewrite !exprMn -!mulrA !ler_wpmul2l ?exprn_ge0 ?norm_square.
 move: (square x) (square (A p *m x)) change small => s t u small.
-have -> : 2%:R * N%:R * (b ^+ 2 + 64%:R * rho ^+ 2) * s
-   = 2%:R * (N%:R * b ^+ 2 * s) + 2%:R * (64%:R * N%:R * rho ^+ 2 * s) by ring.
+have -> : 2%:R * N%:R * (b ^+ 2 + C ^+ 2 * rho ^+ 2) * s
+   = 2%:R * (N%:R * b ^+ 2 * s) + 2%:R * (C ^+ 2 * N%:R * rho ^+ 2 * s) by ring.
 rewrite -!mulrDr ler_pmul2l ?ltr0n // => sum; rewrite -(ler_add2r u); apply: le_trans sum; exact: ler_add.
 Qed.
 
@@ -72,7 +74,7 @@ by rewrite ler_pdivr_mull ?ltr0n // mulr_natl mulr2n ler_add.
 Qed.
 
 Hypothesis small : norm (gaps q1) <= b * r.
-Hypothesis step : 32%:R * r <= b.
+Hypothesis step : 4%:R * C * r <= b.
 Hypothesis inside : norm (q1 - q0) + 2%:R * r <= rho.
 
 Let r0 : 0 <= r. Proof. by rewrite -(pmulr_rge0 _ b0); apply: le_trans small; apply: norm_ge0. Qed.
@@ -94,16 +96,17 @@ Theorem one_configuration_closes_all_contacts : complete F ->
 Proof.
 move=> full; have regular1 := regular_in_the_ball near1.
 have [] := @root_exists F _ (@norm F N) (@norm_triangle F N) (@norm_opp F N) (@norm_scale F N) (@norm_eq0 F N)
-  gaps (fun p => [linear of mulmx (A p)]) [linear of mulmx (invmx (A q1))] q1 (8%:R / b) r.
+  gaps (fun p => [linear of mulmx (A p)]) [linear of mulmx (invmx (A q1))] q1 (C / b) r.
 - by move=> p q; apply: gaps_at_the_middle.
 - by move=> v; rewrite /= mulKmx.
 - by move=> v /= /(congr1 (mulmx (A q1))); rewrite mulKVmx // mulmx0.
 - move=> p v /=; rewrite -(ler_pmul2l b0); apply: le_trans (inverse _) _.
   apply: le_trans (derivative_is_lipschitz _ _ _ _ _) _.
-  by have -> : b * (8%:R / b * norm (p - q1) * norm v) = 8%:R * norm (p - q1) * norm v by field; rewrite gt_eqF.
-- by rewrite divr_ge0 ?ler0n ?ltW.
+  by have -> : b * (C / b * norm (p - q1) * norm v) = C * norm (p - q1) * norm v by field; rewrite gt_eqF.
+- by rewrite divr_ge0 // ltW.
 - by rewrite /= -(ler_pmul2l b0); apply: le_trans (inverse _) small.
-- by rewrite mulrA mulrA -natrM mulrAC ler_pdivr_mulr // mul1r.
+- have -> : 4%:R * (C / b * r) = 4%:R * C * r / b by ring.
+  by rewrite ler_pdivr_mulr // mul1r.
 - by move=> u halves; apply: vectors_with_halving_steps_converge.
 move=> q [near closed]; have nq := close near; exists q; split=> //; last 1 first.
 - move=> q' nq' closed'; apply/eqP; rewrite -subr_eq0; apply/eqP/norm_eq0/eqP; rewrite eq_le norm_ge0 andbT.

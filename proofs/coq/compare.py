@@ -40,8 +40,8 @@ def printed(log):
 
 
 def name(contact):
-    i, j = contact
-    return UPPER[j].format(i) if isinstance(j, str) else f"Disks {i} {j}"
+    i, j, *image = contact
+    return UPPER[j].format(i) if isinstance(j, str) else " ".join(map(str, ["Image", i, j, *(image[0] if image else [0, 0])]))
 
 
 def main(certificate_path, log_path, data_path):
@@ -53,11 +53,11 @@ def main(certificate_path, log_path, data_path):
         certificate = json.load(file)
     with open(log_path, encoding="utf-8") as file:
         values = printed(file.read())
-    ((unit, fine, force, small, unit_stress), n, contacts, walls, stored, radii, zoom, distance, ball, load, low, high, zeros, load_small,
+    ((unit, fine, force, small, unit_stress), n, contacts, walls, periodic, stored, radii, zoom, distance, ball, load, low, high, zeros, load_small,
      low_small, high_small, gap, rate, loaded, *ends) = values
     state, claims = certificate["state"], certificate["claims"]
     same("formats", [certificate["format"], certificate["version"], state["version"]], ["isostat-certificate", 1, 2])
-    known = {"format", "version", "dimension", "equilibrium", "provenance", "load", "walls", "length", "disks", "fixed",
+    known = {"format", "version", "dimension", "equilibrium", "provenance", "load", "walls", "cell", "length", "disks", "fixed",
              "disk_force", "infinitesimal", "contacts", "forces"}
     if set(state) - known:
         differ(f"the state has what Coq was not told of: {sorted(set(state) - known)}")
@@ -68,17 +68,27 @@ def main(certificate_path, log_path, data_path):
         return [x * two**exponent for x in numbers]
 
     same("number of disks", n, len(state["disks"]))
-    same("coordinates", scaled(stored, unit), [Fraction(x) for d in state["disks"] for x in d[:2]] + lengths)
+    cell = state.get("cell", {"axes": ["walls", "walls"], "moves": [], "tilt": [0], "pin": None})
+    if set(cell) != {"axes", "moves", "tilt", "pin"} or set(cell["moves"]) - {"x", "y", "xy"} or set(cell["axes"]) - {"periodic", "walls"}:
+        differ(f"this cell is not what Coq was told of: {cell}")
+    repeats = [kind == "periodic" for kind in cell["axes"]]
+    same("periodic axes", periodic, repeats)
+    same("coordinates", scaled(stored, unit), [Fraction(x) for d in state["disks"] for x in d[:2]] + lengths + [Fraction(cell["tilt"][0])])
+    if not all(repeats) and (cell["tilt"] != [0] or "xy" in cell["moves"]):
+        differ("a tilt beside walls")
     same("radii", scaled(radii, unit), [Fraction(d[2]) for d in state["disks"]])
     lower, upper = state["walls"]["lower"], state["walls"]["upper"]
     if set(state["walls"]) != {"lower", "upper"} or set(lower) - {"fixed", "absent"} or set(upper) - {"fixed", "absent", "movable"}:
         differ(f"these walls are not what Coq was told of: {state['walls']}")
     same("walls", walls, [kind != "absent" for kind in lower + upper])
-    movable = [kind == "movable" for kind in upper]
-    held = [2 * i + a for i in state.get("fixed", []) for a in range(2)] + [2 * n + a for a in range(2) if not movable[a]]
+    if any(repeats[a] and {lower[a], upper[a]} != {"absent"} for a in range(2)) or any(repeats) and state.get("fixed"):
+        differ("a cell with a wall on a periodic axis, or with fixed disks")
+    movable = ["xy"[a] in cell["moves"] if repeats[a] else upper[a] == "movable" for a in range(2)] + ["xy" in cell["moves"]]
+    held = [2 * i + a for i in range(n) for a in range(2) if i in state.get("fixed", []) or (repeats[a] and i == cell["pin"])]
+    held += [2 * n + a for a in range(3) if not movable[a]]
     same("contacts and what is held", contacts, [name(c) for c in state["contacts"]] + [f"Held {k}" for k in held])
     same("units", zoom * two**fine, two**unit)
-    counting, moving = claims["counting"], 2 * n + 2 - len(held)
+    counting, moving = claims["counting"], 2 * n + 3 - len(held)
     same("counting", [moving, moving, moving, 0, 0],
          [counting[k] for k in ("dof_count", "contact_count", "rank", "hyperstaticity", "hypostaticity")])
     if distance * two**fine > Fraction(claims["vertex"]["radius"]):
@@ -88,14 +98,18 @@ def main(certificate_path, log_path, data_path):
 
     loads = state["load"]
     same("kind of load", loads["kind"], "nominal")
-    if set(loads) - {"kind", "stress", "loaded_axis", "reference_length"}:
+    if set(loads) - {"kind", "stress", "loaded_axis", "reference_length", "shear", "reference_tilt"}:
         differ(f"the load has what Coq was not told of: {sorted(loads)}")
     disk_force = [Fraction(x) for d in state.get("disk_force", []) for x in d] or [Fraction(0)] * (2 * n)
+    infinitesimal = [Fraction(x) for d in state["infinitesimal"] for x in d]
+    for a in range(2):
+        if repeats[a] and (sum(disk_force[a::2]) != 0 or sum(infinitesimal[a::2]) != 0):
+            differ(f"loads on the disks do not cancel along periodic axis {a}")
     reference = [Fraction(x) for x in loads["reference_length"]]
-    stress = [Fraction(x) for x in loads["stress"]]
-    same("load", scaled(load, force), disk_force + [-stress[a] * reference[1 - a] if movable[a] else Fraction(0) for a in range(2)])
-    same("infinitesimal load", scaled(load_small, small),
-         [Fraction(x) for d in state["infinitesimal"] for x in d] + [Fraction(0)] * 2)
+    presses_on = [reference[1], reference[0], reference[0]] # along x, y, and of the tilt
+    stress = [Fraction(x) for x in loads["stress"] + loads.get("shear", [0])]
+    same("load", scaled(load, force), disk_force + [-stress[a] * presses_on[a] if movable[a] else Fraction(0) for a in range(3)])
+    same("infinitesimal load", scaled(load_small, small), infinitesimal + [Fraction(0)] * 3)
     claim = claims["forces"]
     same("structural zeros", [l for l, zero in enumerate(zeros) if zero], claim["structural_zeros"])
 
@@ -115,7 +129,7 @@ def main(certificate_path, log_path, data_path):
     axis = loads["loaded_axis"]
     same("loaded stress", loaded * two**unit_stress, stress[axis])
     same("load per unit of stress", scaled(rate, force - unit_stress),
-         [Fraction(0)] * (2 * n) + [-reference[1 - a] if a == axis and movable[a] else Fraction(0) for a in range(2)])
+         [Fraction(0)] * (2 * n) + [-presses_on[a] if a == axis and movable[a] else Fraction(0) for a in range(3)])
     interval = claims["load_interval"]
     for end, claimed, (opens, places) in (("low", interval["low"], ends[:2]), ("high", interval["high"], ends[2:])):
         same(f"{end} end of the load: what opens", [contacts[l] for l in opens], [] if claimed["unbounded"] else [name(claimed["opens"])])

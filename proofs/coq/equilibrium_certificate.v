@@ -1,4 +1,4 @@
-(** The certificate of an equilibrium in a box, and the check that Coq evaluates.
+(** The certificate of an equilibrium in a box or a cell, and the check that Coq evaluates.
 
     It adds to that of the vertex: approximate forces under the finite load and under the infinitesimal one, in
     fractions of a force unit, the intervals that are claimed, the contacts whose finite force is exactly 0 with the
@@ -38,18 +38,19 @@ Section Check.
 Variable e : equilibrium_certificate.
 Let v := vertex e.
 Let n := disks v.
-Let N := (n.*2.+2)%N.
+Let N := (n.*2.+3)%N.
 Local Open Scope Z_scope.
 
 Definition rows_at_the_refined_one (c : contact) : seq (nat * Z) := gradient n (fine_weight v) (refined_at v) c.
-Definition contributions (value : Z -> Z -> Z) (p : force_solution) : seq (nat * Z) :=
-  flatten [seq [seq (d.1, value d.2 cg.2) | d <- rows_at_the_refined_one cg.1] | cg <- zip (contacts v) (quotients p)].
-Definition residual (p : force_solution) : seq Z := put_all (contributions Z.mul p) [seq fraction p * z | z <- load p].
-Definition blur (p : force_solution) : seq Z := dense N (contributions (fun _ g => Z.abs g) p).
+Definition contributions (T : Type) (rows : contact -> seq (nat * T)) (value : T -> Z -> Z) (p : force_solution) : seq (nat * Z) :=
+  flatten [seq [seq (d.1, value d.2 cg.2) | d <- rows cg.1] | cg <- zip (contacts v) (quotients p)].
+Definition residual (p : force_solution) : seq Z :=
+  put_all (contributions rows_at_the_refined_one Z.mul p) [seq fraction p * z | z <- load p].
+Definition blur (p : force_solution) : seq Z := dense N (contributions (entry_changes n) (fun m g => Z.of_nat m * Z.abs g) p).
 Definition nearly_balanced (p : force_solution) : bool :=
   let res := residual p in let bl := blur p in
   [&& size (load p) == N, size (quotients p) == N, 0 <? fraction p, 0 <=? slack p
-    & all (fun k => Z.abs (nth 0 res k) + 2 * error v * nth 0 bl k <=? fine_stiffness v * slack p) (iota 0 N)].
+    & all (fun k => Z.abs (nth 0 res k) + error v * nth 0 bl k <=? fine_stiffness v * slack p) (iota 0 N)].
 
 Definition scale_of (l : nat) : Z := scale (fine_weight v) (fine_radius v) (contact_at (contacts v) l).
 (** The interval of force l holds what the quotient proves, and is positive. *)
@@ -64,7 +65,7 @@ Definition zero_at (l : nat) : bool := nth false (zeros e) l.
 Definition counted (more : nat) (mask free : seq bool) : bool :=
   [&& size mask == N, size free == N, count id mask == (count id free + more)%N
     & all (fun l => nth false mask l
-        || all (fun d => ~~ nth false free d.1) (rows_at_the_refined_one (contact_at (contacts v) l))) (iota 0 N)].
+        || all (fun k => ~~ nth false free k) (coordinates n (contact_at (contacts v) l))) (iota 0 N)].
 Definition free_of (p : seq Z) (free : seq bool) : bool :=
   all (fun k => ~~ nth false free k || (nth 0 p k =? 0)) (iota 0 N).
 Definition zeros_are_structural : bool := counted 0 (zeros e) (unloaded e) && free_of (load (finite e)) (unloaded e).
@@ -72,11 +73,17 @@ Definition forces_claimed : bool :=
   all (fun l => if held_at l then ~~ zero_at l else
     interval_claimed (if zero_at l then infinitesimal e else finite e) l) (iota 0 N).
 
+(** Along a periodic axis one row holds a disk, and no wall bears a force. *)
+Definition one_pin (a : nat) : bool :=
+  ~~ nth false (periodic v) a || let first := find (pins n a) (contacts v) in
+    [&& ~~ nth false (walls v) a, ~~ nth false (walls v) (2 + a)
+      & all (fun l => (l == first) || ~~ pins n a (contact_at (contacts v) l)) (iota 0 N)].
+
 Definition widest : Z := foldr Z.max 0 [seq fine_radius v i | i <- iota 0 n].
 Definition equilibrium_check : bool :=
   [&& vertex_check v, nearly_balanced (finite e), nearly_balanced (infinitesimal e), zeros_are_structural
-    & forces_claimed && (0 <? gap e)
-      && gaps_check n (walls v) (contacts v) (fine_radius v) (fine_place v) (refined_at v) (error v) (gap e) widest].
+    & [&& forces_claimed, one_pin 0, one_pin 1
+      & gaps_check n (walls v) (periodic v) (contacts v) (fine_radius v) (fine_place v) (refined_at v) (error v) (gap e) widest]].
 End Check.
 
 Local Open Scope ring_scope.
@@ -85,7 +92,7 @@ Section Correct.
 Variables (F : archiFieldType) (e : equilibrium_certificate).
 Let v := vertex e.
 Let n := disks v.
-Let N := (n.*2.+2)%N.
+Let N := (n.*2.+3)%N.
 Let q1 : 'cV[F]_N := refined_configuration F v.
 Let q0 : 'cV[F]_N := stored_configuration F v.
 Let w : F := real (fine_weight v).
@@ -103,10 +110,9 @@ rewrite mxE (gradient_ext _ _ _ (at_refined _ posed)) (gradient_morphism (real_r
 by rewrite rmorph_sum.
 Qed.
 
-Lemma contributions_sum (value : Z -> Z -> Z) p k : size (quotients p) = N ->
-  \sum_(d <- contributions e value p | d.1 == k) d.2
-    = \sum_(l < N) \sum_(d <- rows_at_the_refined_one e (contact_at (contacts v) l) | d.1 == k)
-        value d.2 (nth 0 (quotients p) l).
+Lemma contributions_sum (T : Type) (rows : contact -> seq (nat * T)) (value : T -> Z -> Z) p k : size (quotients p) = N ->
+  \sum_(d <- contributions e rows value p | d.1 == k) d.2
+    = \sum_(l < N) \sum_(d <- rows (contact_at (contacts v) l) | d.1 == k) value d.2 (nth 0 (quotients p) l).
 Proof.
 move=> sG; rewrite /contributions big_flatten big_map (big_nth (Lower 0 0, 0)) big_mkord size_zip size_contacts sG minnn.
 by apply: eq_bigr => l _; rewrite nth_zip ?sG ?size_contacts // big_map.
@@ -116,19 +122,18 @@ Definition load_vector (p : force_solution) : 'cV[F]_N := \col_k real (nth 0 (lo
 Definition quotient_vector (p : force_solution) : 'cV[F]_N := \col_l real (nth 0 (quotients p) l).
 
 Let blur_is_sum p (k : 'I_N) : size (quotients p) = N ->
-  \sum_(l < N) 2%:R * real (error v) * (count_mem (k : nat) (support F n (contact_at (contacts v) l)))%:R
-      * `|quotient_vector p l 0| = 2%:R * real (error v) * real (nth 0 (blur e p) k).
+  \sum_(l < N) real (error v) * (\sum_(d <- entry_changes n (contact_at (contacts v) l) | d.1 == k) d.2)%:R
+      * `|quotient_vector p l 0| = real (error v) * real (nth 0 (blur e p) k).
 Proof.
 move=> sG; rewrite dense_entry // contributions_sum // rmorph_sum mulr_sumr; apply: eq_bigr => l _.
-rewrite -mulrA; congr (_ * _); rewrite big_const_seq iter_addr_0 /= rmorphMn /= mulr_natl mxE real_abs; congr (_ *+ _).
-rewrite -(count_map fst (pred1 (k : nat))); congr (count _ _).
-by rewrite /support /rows_at_the_refined_one; case: (contact_at _ _).
+rewrite -mulrA; congr (_ * _); rewrite mxE real_abs natr_sum mulr_suml rmorph_sum; apply: eq_bigr => d _.
+by rewrite -real_of_nat -real_times.
 Qed.
 
 Let residual_is_sum p (k : 'I_N) : size (load p) = N -> size (quotients p) = N ->
   real (fraction p) * load_vector p k 0 + ((A q1)^T *m quotient_vector p) k 0 = real (nth 0 (residual e p) k).
 Proof.
-move=> sL sG; have [_ entry] := put_all_entry (contributions e Z.mul p) [seq fraction p * z | z <- load p] k.
+move=> sL sG; have [_ entry] := put_all_entry (contributions e (rows_at_the_refined_one e) Z.mul p) [seq fraction p * z | z <- load p] k.
 rewrite /residual [nth _ _ _]entry ?size_map ?sL // (nth_map 0) ?sL // contributions_sum // rmorphD rmorphM !mxE.
 congr (_ + _); rewrite rmorph_sum; apply: eq_bigr => l _.
 by rewrite [_^T _ _]mxE [quotient_vector p _ _]mxE derivative_at_the_refined_one -rmorphM mulr_suml.
@@ -145,7 +150,7 @@ Lemma scale_is_positive l : 0 < real (scale_of e l) :> F.
 Proof.
 have : 0 < scale w (radius F v) (contact_at (contacts v) l).
   by have := scales_are_positive F posed l; case: (contact_at _ _) => //= *; apply: w_gt0.
-by congr (0 < _); rewrite /scale_of; case: (contact_at _ _) => //= i j; rewrite real_plus.
+by congr (0 < _); rewrite /scale_of; case: (contact_at _ _) => //= i j _ _; rewrite real_plus.
 Qed.
 
 (** What a solution proves of the forces at the true vertex q. *)
@@ -165,11 +170,10 @@ have slack0 : 0 <= real (slack p) :> F by rewrite -(real_zero F) real_le.
 have [] := forces_are_enclosed w1 scales unit b0 inverse near (load := load_vector p) (G := quotient_vector p)
   (fraction := real (fraction p)) slack0.
   move=> k; rewrite blur_is_sum // residual_is_sum // real_abs -real_times.
-  have := res (k : nat); rewrite mem_iota ltn_ord => /(_ isT); rewrite -(real_le F) real_plus !real_times.
-  by rewrite -[Zpos 2]/(Z.of_nat 2) real_of_nat.
+  have := res (k : nat); rewrite mem_iota ltn_ord => /(_ isT); by rewrite -(real_le F) real_plus !real_times.
 move=> f [bal alone close]; exists f; split=> // l.
 have SE : scale w (radius F v) (contact_at (contacts v) l) = real (scale_of e l).
-  by rewrite /scale_of; case: (contact_at _ _) => //= i j; rewrite real_plus.
+  by rewrite /scale_of; case: (contact_at _ _) => //= i j _ _; rewrite real_plus.
 have := close l; rewrite SE (gtr0_norm (scale_is_positive l)) mxE ler_distl -mulrBr -mulrDr.
 by rewrite real_minus real_plus.
 Qed.
@@ -188,7 +192,7 @@ Qed.
 Definition flagged (mask : seq bool) : {set 'I_N} := [set k : 'I_N | nth false mask k].
 Lemma counted_sets more mask free : counted e more mask free -> #|flagged mask| = (#|flagged free| + more)%N /\
   forall k l : 'I_N, k \in flagged free -> l \notin flagged mask ->
-    (k : nat) \notin support F n (contact_at (contacts v) l).
+    (k : nat) \notin coordinates n (contact_at (contacts v) l).
 Proof.
 case/and4P=> /eqP sM /eqP sU /eqP same /allP apart.
 have card (m : seq bool) : size m = N -> #|flagged m| = count id m.
@@ -196,9 +200,7 @@ have card (m : seq bool) : size m = N -> #|flagged m| = count id m.
   by rewrite sm /mkseq -val_enum_ord -map_comp enumT.
 split=> [|k m]; first by rewrite !card.
 rewrite !inE => uk /negPf nz; have := apart (m : nat); rewrite mem_iota ltn_ord nz => /(_ isT)/allP away.
-apply/negP; have -> : support F n (contact_at (contacts v) m) = unzip1 (rows_at_the_refined_one e (contact_at (contacts v) m)).
-  by rewrite /support /rows_at_the_refined_one; case: (contact_at _ _).
-by case/mapP=> d dr kd; have := away d dr; rewrite -kd uk.
+by apply/negP => /away; rewrite uk.
 Qed.
 
 Lemma counted_size more mask free : counted e more mask free -> size mask = N.
@@ -214,7 +216,7 @@ Let structural : zeros_are_structural e. Proof. by case/and5P: check. Qed.
 Let zeros_counted : #|flagged (unloaded e)| = #|flagged (zeros e)|.
 Proof. by case/andP: structural => /counted_sets[-> _]; rewrite addn0. Qed.
 Let zeros_apart (k l : 'I_N) : k \in flagged (unloaded e) -> l \notin flagged (zeros e) ->
-  (k : nat) \notin support F n (contact_at (contacts v) l).
+  (k : nat) \notin coordinates n (contact_at (contacts v) l).
 Proof. by case/andP: structural => /counted_sets[_ apart] _; apply: apart. Qed.
 Let zeros_unloaded : forall k, k \in flagged (unloaded e) -> load_vector (finite e) k 0 = 0.
 Proof. by case/andP: structural => _ /free_of_load. Qed.
@@ -227,10 +229,10 @@ Qed.
 
 (** What is said of a configuration: the statement of the theorem, in full. *)
 Definition is_the_equilibrium (q : 'cV[F]_N) : Prop :=
-  [/\ forall l : 'I_N, in_the_packing n (walls v) (contact_at (contacts v) l)
+  [/\ forall l : 'I_N, in_the_packing n (walls v) (periodic v) (contact_at (contacts v) l)
        /\ touch n (radius F v) (place F v) (at_ q) (contact_at (contacts v) l),
      normals (radius F v) (contacts v) q \in unitmx,
-     forall c, in_the_packing n (walls v) c -> ~~ holds c -> ~~ listed (contacts v) c ->
+     forall c, in_the_packing n (walls v) (periodic v) c -> ~~ holds c -> ~~ listed (contacts v) c ->
        apart n (radius F v) (place F v) (at_ q) (if immobile n (contacts v) c then 0 else real (gap e)) c,
      exists f : 'cV[F]_N, [/\ balanced (radius F v) (contacts v) q (load_vector (finite e)) f,
        forall f', balanced (radius F v) (contacts v) q (load_vector (finite e)) f' -> f' = f
@@ -267,7 +269,7 @@ Theorem one_equilibrium : complete F -> certified_equilibrium.
 Proof.
 move=> full; have [q [near close closed unit alone]] := one_vertex posed full vertex_ok.
 have inside_q := inside near close.
-have /and5P[_ bal bal_small _ /andP[/andP[/allP claims g0] gaps_ok]] := check.
+have /and5P[_ bal bal_small _ /and4P[/allP claims _ _ gaps_ok]] := check.
 have claimed (l : 'I_N) : if held_at e l then ~~ zero_at e l
     else interval_claimed e (if zero_at e l then infinitesimal e else finite e) l.
   by apply: claims; rewrite mem_iota ltn_ord.
@@ -298,5 +300,30 @@ exists q; split=> //.
   + by move=> l; rewrite inE => zl /(pushing l zl)[].
   by move=> l; rewrite inE => /pushing_small[].
 Qed.
+
+(** Loads that cancel along a periodic axis, and forces that balance them: what holds a disk there bears nothing. The
+    forces are those of contacts alone, whichever disk is held. *)
+Definition pins_bear_nothing (q : 'cV[F]_N) : Prop :=
+  forall (a : nat) (any f : 'cV[F]_N), nth false (periodic v) a -> balanced (radius F v) (contacts v) q any f ->
+    \sum_(i < n) at_ any (i.*2 + a) = 0 -> forall l : 'I_N, pins n a (contact_at (contacts v) l) -> f l 0 = 0.
+
+Lemma no_pin_bears_anything q : pins_bear_nothing q.
+Proof.
+move=> a any f along bal cancel l pinned; have /and5P[_ _ _ _ /and4P[_ pin0 pin1 _]] := check.
+have a2 : (a < 2)%N by move: pinned; case: (contact_at _ _) => //= k /andP[_ /eqP <-]; case: (odd k).
+have : one_pin e a by case: a a2 {along cancel pinned} => [|[|a]].
+rewrite /one_pin along => /and3P[low high /allP alone].
+apply: (one_pin_bears_nothing bal a2 cancel _ _ pinned) => [m|m m' pm pm'].
+  have /and5P[_ _ /andP[/eqP sC /all_nthP rows] _ _] := posed.
+  have := rows (Lower 0 0) m; rewrite sC => /(_ (ltn_ord m)); rewrite /contact_at.
+  case: (nth _ _ m) => [i j p r /and5P[i_n j_n _ _ _]|i z /and3P[i_n z2 there]|i z /and3P[i_n z2 there]|//];
+    rewrite /blind i_n ?j_n ?z2 //=.
+    by apply: contraTneq there => ->.
+  by apply: contraTneq there => ->.
+have first k : pins n a (contact_at (contacts v) (k : 'I_N)) -> (k : nat) = find (pins n a) (contacts v).
+  by move=> pk; have := alone (k : nat); rewrite mem_iota ltn_ord pk orbF => /(_ isT)/eqP.
+by apply: val_inj; rewrite /= (first _ pm) (first _ pm').
+Qed.
 End Correct.
+Print Assumptions no_pin_bears_anything.
 Print Assumptions one_equilibrium.

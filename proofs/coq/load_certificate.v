@@ -32,7 +32,7 @@ Variable c : load_certificate.
 Let e := equilibrium c.
 Let v := vertex e.
 Let n := disks v.
-Let N := (n.*2.+2)%N.
+Let N := (n.*2.+3)%N.
 Local Open Scope Z_scope.
 
 (** How fast a quotient falls, and how far ahead a stress is, when the stress grows or, [up = false], becomes less. *)
@@ -71,7 +71,7 @@ Variables (F : archiFieldType) (c : load_certificate).
 Let e := equilibrium c.
 Let v := vertex e.
 Let n := disks v.
-Let N := (n.*2.+2)%N.
+Let N := (n.*2.+3)%N.
 
 (** The load when the stress is [s], and which of two stresses comes first. *)
 Definition load_at (s : F) : 'cV[F]_N := load_vector F e (finite e) + (s - real (stress c)) *: load_vector F e (rate c).
@@ -201,7 +201,7 @@ have ahead s : first up (real (stress c)) s -> 0 <= sign up * (s - real (stress 
   by move=> /firstE; rewrite mulrBr subr_ge0.
 case/andP: check => _; rewrite /is_the_end; case: (opens x) => [m|].
   case/and5P=> counted_ok /(free_of_load F) unloaded /andP[mute_m] /norP[zm hm0] falls /andP[between others].
-  have [same untouched] := counted_sets F counted_ok.
+  have [same untouched] := counted_sets counted_ok.
   have mN : (m < N)%N.
     by apply: contraTT mute_m; rewrite -leqNgt => Nm; rewrite nth_default // (counted_size counted_ok).
   pose m' := Ordinal mN; have hm : 0 < h m'.
@@ -231,7 +231,7 @@ case/andP: check => _; rewrite /is_the_end; case: (opens x) => [m|].
     by rewrite (val_inj (lm : val l = val m')); apply: gone; rewrite inE.
   by rewrite /=; case: ifPn => lm; [apply: gone|apply: louder]; rewrite ?inE.
 case/andP=> counted_ok /allP rising s /ahead s0; rewrite (load_ahead up).
-have [same untouched] := counted_sets F counted_ok.
+have [same untouched] := counted_sets counted_ok.
 apply: (the_load_is_borne_without_end regular bal signed_rate pushing untouched free_of_rate) => // [|l lm touch].
   by rewrite same addn0.
 have := rising (l : nat); rewrite mem_iota ltn_ord => /(_ isT); move: lm touch; rewrite inE /held_at => /negPf -> /negPf -> /= rise.
@@ -243,7 +243,7 @@ End End.
 
 (** The statement of the certificate, in full. *)
 Definition certified : Prop := exists q : 'cV[F]_N,
-  [/\ is_certified q, is_the_end q false (lower_end c) & is_the_end q true (upper_end c)].
+  [/\ is_certified q, is_the_end q false (lower_end c), is_the_end q true (upper_end c) & pins_bear_nothing q].
 
 Theorem equilibrium_with_its_interval : complete F -> load_check c -> certified.
 Proof.
@@ -257,7 +257,9 @@ have fg := alone _ gbal; rewrite {}fg in gbal g_known.
 have pushing (l : 'I_N) : ~~ zero_at e l -> ~~ held_at e l -> 0 < f l 0.
   by move=> zl hl; have := signs l hl; rewrite (negPf zl) => -[].
 have none (l : 'I_N) : ~~ held_at e l -> 0 <= f l 0 by move=> hl; have := signs l hl; case: ifP => [_ -> //|_ [/ltW]].
-by exists q; split=> //; apply: end_is_proved equilibrium_ok regular bal u_bal g_known u_known pushing none solved rate_solved _.
+exists q; split=> //; last exact: no_pin_bears_anything.
+  exact: end_is_proved equilibrium_ok regular bal u_bal g_known u_known pushing none solved rate_solved low.
+exact: end_is_proved equilibrium_ok regular bal u_bal g_known u_known pushing none solved rate_solved high.
 Qed.
 End Correct.
 

@@ -51,7 +51,7 @@ BOOST_AUTO_TEST_CASE(without_coq_nothing_is_said_to_be_proved_by_it) {
     const std::string missing = undecided_because("Coq is not installed (Debian packages coq, ");
     const Outcome one = says(here.verify({file}), 2, {"stable         proved", missing, "equilibrium    undecided"});
     BOOST_TEST(!contains(one.out, "coq            proved"));
-    for (const char* const name : {"pegs", "slot"}) { // fixed disks and walls are covered
+    for (const char* const name : {"pegs", "slot", "channel", "lattice"}) { // fixed disks and walls, cells
         run({"certify", std::string(ISOSTAT_TEST_DATA) + "/coq/" + name + ".json", "-o", here.folder.at(name)});
         says(here.verify({here.folder.at(name)}), 2, {"stable         proved", missing});
     }
@@ -71,10 +71,13 @@ BOOST_AUTO_TEST_CASE(packings_that_the_checker_in_coq_does_not_cover_are_named) 
     touching_dimer.contacts[static_cast<std::size_t>(
         std::find(touching_dimer.contacts.begin(), touching_dimer.contacts.end(), crafted::pair(0, 1)) -
         touching_dimer.contacts.begin())] = {isostat::ContactKind::bar, 0, 1};
-    const std::string cell = here.folder.at("cell.json");
-    run({"certify", std::string(ISOSTAT_EXAMPLES) + "/cells/tilted-100.json", "-o", cell});
+    isostat::State pinned = isostat::read_any_state(std::string(ISOSTAT_EXAMPLES) + "/cells/tilted-100.json").state;
+    isostat::State isotropic = pinned;
+    isotropic.packing.cell.keep_shape();
+    pinned.packing.cell.pin = 30; // a rattler
     const std::vector<std::pair<std::string, std::string>> cases{
-        {cell, "periodic cells"},
+        {here.certificate(isotropic, "isotropic"), "isotropic cells"},
+        {here.certificate(pinned, "pinned"), "cells whose pinned disk bears no force"},
         {here.certificate(isostat::test::state_of_spheres(isostat::test::read_spheres("box_uniform_30_1")), "spheres"),
          "spheres"},
         {here.certificate(touching_dimer, "clumps"), "clumps"},

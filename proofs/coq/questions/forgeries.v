@@ -19,7 +19,7 @@ Definition rebuilt (lists : seq (seq Z)) (scalars : seq Z) (flags : seq (seq boo
   let l := nth [::] lists in let s := nth 0 scalars in let f := nth [::] flags in let o := nth None opening in
   LoadCertificate
     (EquilibriumCertificate
-      (VertexCertificate (disks v) touching (f 6%N) (l 0%N) (l 1%N) (s 0%N) (s 1%N) (l 2%N) (s 2%N) (s 3%N) (s 4%N) (s 5%N) (s 6%N) rows)
+      (VertexCertificate (disks v) touching (f 6%N) (f 7%N) (l 0%N) (l 1%N) (s 0%N) (s 1%N) (l 2%N) (s 2%N) (s 3%N) (s 4%N) (s 5%N) (s 6%N) rows)
       (ForceClaim (ForceSolution (l 3%N) (s 7%N) (l 6%N) (s 8%N)) (l 4%N) (l 5%N))
       (ForceClaim (ForceSolution (l 7%N) (s 9%N) (l 10%N) (s 10%N)) (l 8%N) (l 9%N))
       (f 0%N) (f 1%N) (s 11%N))
@@ -33,7 +33,7 @@ Definition above := upper_end whole.
 Definition scalars : seq Z := [:: weight v; zoom v; error v; distance v; ball v; stiffness v; shift v;
   fraction (finite c); slack (finite c); fraction (infinitesimal c); slack (infinitesimal c); gap c;
   fraction (rate whole); slack (rate whole); stress whole; near below; far below; near above; far above].
-Definition flags : seq (seq bool) := [:: zeros c; unloaded c; mute below; free below; mute above; free above; walls v].
+Definition flags : seq (seq bool) := [:: zeros c; unloaded c; mute below; free below; mute above; free above; walls v; periodic v].
 Definition opening : seq (option nat) := [:: opens below; opens above].
 
 (** All lists that differ from l in one place, there by f. *)
@@ -47,7 +47,8 @@ Definition with_list (k : nat) (l : seq Z) := rebuilt (set_nth [::] lists k l) s
 Definition in_list (k : nat) (f : nat -> Z -> Z) : seq load_certificate :=
   [seq with_list k l | l <- changed f (nth [::] lists k)].
 
-(** A wall that is touched is said to be none. Without contacts it may be: less is claimed then. *)
+(** A wall that is touched is said to be none. Without contacts it may be: less is claimed then. Along a periodic axis
+    there is said to be one. *)
 Definition touched (k : nat) : bool :=
   has (fun d => match d with Lower _ a => a == k | Upper _ a => 2 + a == k | _ => false end)%N (contacts v).
 
@@ -67,9 +68,12 @@ Definition forged_rows : seq load_certificate :=
     | row <- changed (fun _ e => (e.1, away e.2)) (nth [::] (factor v) k)] | k <- iota 0 (size (factor v))].
 
 Definition next (l : nat) : contact := nth (Lower 0 0) (contacts v) (if l is l'.+1 then l' else 1).
+Definition another_image (along_y : bool) (_ : nat) (d : contact) : contact :=
+  if d is Image i j k l then if along_y then Image i j k (l + 1) else Image i j (k + 1) l else Lower 0 2.
 Definition forged_contacts : seq load_certificate :=
   [seq rebuilt lists scalars flags l (factor v) opening
-    | l <- changed (fun l _ => next l) (contacts v) ++ changed (fun _ _ => Lower 0 2) (contacts v)].
+    | l <- changed (fun l _ => next l) (contacts v) ++ changed (another_image false) (contacts v)
+      ++ changed (another_image true) (contacts v)].
 
 (** Another contact is said to open: one that bears a force there. Or none at all; or one where none does. *)
 Definition forged_opening : seq load_certificate :=
@@ -92,9 +96,9 @@ Definition bad_scalar (k : nat) (x : Z) : Z :=
   | 18 => Z.pred (near above)
   | _ => Z.mul 1000 x              (* ball and stiffness *)
   end%N.
-(** An end that is not there has no place. *)
+(** An end that is not there has no place, and infinitesimal loads that are 0 are balanced by forces that are. *)
 Definition matters (k : nat) : bool :=
-  if (k < 14)%N then true else if k == 14%N then isSome (opens below) || isSome (opens above)
+  if (k == 9)%N || (k == 10)%N then has (fun x => ~~ (x =? 0)) (load (infinitesimal c)) else if (k < 14)%N then true else if k == 14%N then isSome (opens below) || isSome (opens above)
   else isSome (opens (if (k < 17)%N then below else above)).
 Definition forgeries : seq load_certificate :=
   in_list 0 (fun _ x => x + 2 * ball v) ++ in_list 1 (fun _ x => x + 1) ++ in_list 2 (fun _ x => x + 64 * error v)
@@ -106,8 +110,9 @@ Definition forgeries : seq load_certificate :=
     | k <- iota 0 (size scalars) & matters k]
   ++ flatten [seq [seq rebuilt lists scalars (set_nth [::] flags k f) (contacts v) (factor v) opening
     | f <- changed (fun _ => negb) (nth [::] flags k)] | k <- iota 0 6]
-  ++ [seq rebuilt lists scalars (set_nth [::] flags 6 (set_nth false (walls v) k false)) (contacts v) (factor v) opening
-    | k <- iota 0 4 & touched k]
+  ++ [seq rebuilt lists scalars (set_nth [::] flags 6 (set_nth false (walls v) k (~~ nth false (walls v) k))) (contacts v) (factor v) opening
+    | k <- iota 0 4 & touched k || nth false (periodic v) (odd k)]
+  ++ [seq rebuilt lists scalars (set_nth [::] flags 7 f) (contacts v) (factor v) opening | f <- changed (fun _ => negb) (periodic v)]
   ++ forged_contacts ++ forged_rows ++ forged_opening.
 
 Lemma rebuilding_changes_nothing : load_check genuine = true.

@@ -22,6 +22,7 @@ Eval vm_compute in (Data.certificate.exponents : seq Z).
 Eval vm_compute in disks (vertex c).
 Eval vm_compute in contacts (vertex c).
 Eval vm_compute in walls (vertex c).
+Eval vm_compute in periodic (vertex c).
 Eval vm_compute in stored (vertex c).
 Eval vm_compute in radii (vertex c).
 Eval vm_compute in zoom (vertex c).

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double slack = 0x1p-36; // of the sine of an angle to a joint, in doubles
 // Of the largest length: beside a joint both arcs have one gap, but for roundings.
-constexpr double equally_near = 0x1p-48;
+constexpr double indistinguishable = 0x1p-48;
 
 struct Direction {
     Integer x, y;
@@ -220,7 +220,7 @@ bool NearestArcs::contains(const Contact& pair) const {
             largest = std::max(largest, pair.of_disks() ? gap_if_facing(i, j) : gap_if_facing(i, j, sign));
         }
     }
-    return own >= largest - equally_near;
+    return own >= largest - indistinguishable;
 }
 
 } // namespace isostat::checker

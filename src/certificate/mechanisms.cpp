@@ -172,6 +172,18 @@ void judge_minimum(MechanismInspection& inspection, const Vertex& vertex, const 
     }
 }
 
+/// Which pair overlaps, or why the gaps are not known; empty: none does.
+std::string overlap_of(const Packing& packing, const Result<Vertex::Gaps>& gaps) {
+    if (!gaps.ok()) {
+        return gaps.failure().message(packing.dimension);
+    }
+    if (gaps.value().negative) {
+        return fmt::format("{} overlap", to_string(*gaps.value().negative, packing.dimension));
+    }
+    const auto pair = fixed_overlap(packing);
+    return pair ? fmt::format("{} overlap, and cannot move", to_string(*pair, packing.dimension)) : "";
+}
+
 } // namespace
 
 Result<MechanismInspection> inspect_mechanism(const State& state, const Counting& counting) {
@@ -195,15 +207,7 @@ Result<MechanismInspection> inspect_mechanism(const State& state, const Counting
     KeptCandidates kept;
     auto gaps = vertex.check_gaps(candidates, kept);
     const auto joint = beyond_sectors(ArcBodies(state.packing), state.contacts, vertex.enclosure.distance());
-    if (joint) {
-        inspection.remark = *joint;
-    } else if (!gaps.ok()) {
-        inspection.remark = gaps.failure().message(state.packing.dimension);
-    } else if (gaps.value().negative) {
-        inspection.remark = fmt::format("{} overlap", to_string(*gaps.value().negative, state.packing.dimension));
-    } else if (const auto pair = fixed_overlap(state.packing)) {
-        inspection.remark = fmt::format("{} overlap, and cannot move", to_string(*pair, state.packing.dimension));
-    }
+    inspection.remark = joint ? *joint : overlap_of(state.packing, gaps);
     inspection.forces = finite_forces(vertex, state.load);
     for (std::size_t l = 0; l < inspection.contacts.size(); ++l) {
         inspection.structural_zero.push_back(vertex.statics.is_structural_zero(ContactId(l)) ? 1 : 0);

@@ -108,7 +108,7 @@ std::string unfit_arcs(const Problem& problem, const State& state, const TrueVer
     const Directions at(problem, vertex);
     std::vector<std::array<int, 2>> joints(packing.radius.size(), {-1, -1}); // neighbours before and after
     for (const std::vector<int>& ring : packing.arcs) {
-        if (const std::string why = not_convex(state, at, ring); !why.empty()) {
+        if (std::string why = not_convex(state, at, ring); !why.empty()) {
             return why;
         }
         double shortest = std::numeric_limits<double>::infinity();

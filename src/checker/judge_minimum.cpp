@@ -46,7 +46,7 @@ std::string not_positive(const Evidence& e) {
             return fmt::format("the force of {} is in {}", e.name(l), shown(e.forces[l]));
         }
     }
-    if (const std::string unfit = unfit_arcs(e.problem, e.state, e.vertex); !unfit.empty()) {
+    if (std::string unfit = unfit_arcs(e.problem, e.state, e.vertex); !unfit.empty()) {
         return unfit;
     }
     for (const Gap& gap : smallest_gaps(e.problem, e.state, e.vertex)) {

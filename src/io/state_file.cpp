@@ -129,6 +129,25 @@ void read_cell(const Field& field, Packing& packing) {
     }
 }
 
+/// What bars connect, and which bodies arcs bound.
+void read_bodies(const Field& document, Packing& packing) {
+    const auto disk = [&](const Field& field) { return field.integer(0, packing.disk_count() - 1); };
+    for (std::size_t k = 0; document.has("bars") && k < document.at("bars").size(); ++k) {
+        const Field bar = document.at("bars").at(k);
+        bar.require_size(3, "[disk, disk, length]");
+        packing.bars.push_back(
+            {disk(bar.at(std::size_t{0})), disk(bar.at(std::size_t{1})), bar.at(std::size_t{2}).number()});
+    }
+    std::sort(packing.bars.begin(), packing.bars.end());
+    for (std::size_t b = 0; document.has("arcs") && b < document.at("arcs").size(); ++b) {
+        const Field ring = document.at("arcs").at(b);
+        packing.arcs.emplace_back();
+        for (std::size_t k = 0; k < ring.size(); ++k) {
+            packing.arcs.back().push_back(disk(ring.at(k)));
+        }
+    }
+}
+
 Packing packing_of(const Field& document) {
     Packing packing;
     if (document.has("dimension")) {
@@ -171,25 +190,7 @@ Packing packing_of(const Field& document) {
             packing.fixed[static_cast<std::size_t>(i)] = 1;
         }
     }
-    if (document.has("bars")) {
-        const Field bars = document.at("bars");
-        for (std::size_t k = 0; k < bars.size(); ++k) {
-            const Field bar = bars.at(k);
-            bar.require_size(3, "[disk, disk, length]");
-            const auto disk = [&](std::size_t at) { return bar.at(at).integer(0, packing.disk_count() - 1); };
-            packing.bars.push_back({disk(0), disk(1), bar.at(std::size_t{2}).number()});
-        }
-        std::sort(packing.bars.begin(), packing.bars.end());
-    }
-    if (document.has("arcs")) {
-        const Field arcs = document.at("arcs");
-        for (std::size_t b = 0; b < arcs.size(); ++b) {
-            std::vector<int>& ring = packing.arcs.emplace_back();
-            for (std::size_t k = 0; k < arcs.at(b).size(); ++k) {
-                ring.push_back(arcs.at(b).at(k).integer(0, packing.disk_count() - 1));
-            }
-        }
-    }
+    read_bodies(document, packing);
     return packing;
 }
 

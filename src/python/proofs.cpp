@@ -164,6 +164,14 @@ void bind_inspect(py::module_& module) {
         "the rank is not proved, Undecided when no bound was proved.");
 }
 
+py::list length_rates(const Inspection& inspection) {
+    py::list rates;
+    for (std::size_t a = 0; inspection.yielding && a < static_cast<std::size_t>(inspection.truth.dimension); ++a) {
+        rates.append(inspection.yielding->length_rate[a]);
+    }
+    return rates;
+}
+
 void bind_inspection(py::module_& module) {
     using Seen = Inspection;
     const auto record = [](auto member) { return [member](const Seen& self) { return self.record.*member; }; };
@@ -195,14 +203,7 @@ void bind_inspection(py::module_& module) {
             "second_order", [](const Seen& self) { return self.second_order; },
             "(value, bound): second derivative of the potential along the mechanism (k = 1).")
         .def_property_readonly(
-            "length_rates",
-            [](const Seen& self) {
-                py::list rates;
-                for (std::size_t a = 0; self.yielding && a < static_cast<std::size_t>(self.truth.dimension); ++a) {
-                    rates.append(self.yielding->length_rate[a]);
-                }
-                return rates;
-            },
+            "length_rates", &length_rates,
             "(value, bound) per axis: change of the length per unit of the loaded stress, where the potential has a "
             "minimum along mechanisms; else empty.")
         .def_property_readonly(

@@ -46,6 +46,22 @@ py::dict walls_dict(const Walls& walls, int dimension) {
     return dict;
 }
 
+py::list bar_rows(const Packing& packing) {
+    py::list rows;
+    for (const Bar& bar : packing.bars) {
+        rows.append(py::make_tuple(bar.i, bar.j, bar.length));
+    }
+    return rows;
+}
+
+py::list arc_rows(const Packing& packing) {
+    py::list rows;
+    for (const std::vector<int>& ring : packing.arcs) {
+        rows.append(py::tuple(py::cast(ring)));
+    }
+    return rows;
+}
+
 /// Binds the properties of a packing, also for a state; `of` returns the packing of an object.
 template <class Bound, class Of> void bind_grains(Bound& bound, const Of& of) {
     bound
@@ -70,24 +86,10 @@ template <class Bound, class Of> void bind_grains(Bound& bound, const Of& of) {
             "fixed", [of](const py::object& self) { return view(of(self).fixed, self); },
             "(n,) flags, 1: cannot move; empty where no disk is fixed.")
         .def_property_readonly(
-            "bars",
-            [of](const py::object& self) {
-                py::list rows;
-                for (const Bar& bar : of(self).bars) {
-                    rows.append(py::make_tuple(bar.i, bar.j, bar.length));
-                }
-                return rows;
-            },
+            "bars", [of](const py::object& self) { return bar_rows(of(self)); },
             "(i, j, length): two members of a clump and the distance of their centres; empty without clumps.")
         .def_property_readonly(
-            "arcs",
-            [of](const py::object& self) {
-                py::list rows;
-                for (const std::vector<int>& ring : of(self).arcs) {
-                    rows.append(py::tuple(py::cast(ring)));
-                }
-                return rows;
-            },
+            "arcs", [of](const py::object& self) { return arc_rows(of(self)); },
             "Bodies bounded by arcs: their members, counterclockwise; empty where all bodies are unions of disks.")
         .def_property_readonly(
             "walls", [of](const py::object& self) { return walls_dict(of(self).walls, of(self).dimension); },

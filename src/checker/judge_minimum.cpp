@@ -181,6 +181,9 @@ ClaimCheck judge_minimum(const Evidence& e, const MinimumClaim& claim) {
                                                    multiplier, claim.curvature));
     }
     const double swing = swing_above(e, acting);
+    if (!std::isfinite(product_above(swing, reach))) { // levers beyond the range of double
+        return answer(check, Verdict::undecided, "velocities are beyond the range of double");
+    }
     const Evidence wide = evidence_around(e, swing, reach);
     if (!wide.vertex.found) {
         return answer(check, Verdict::undecided, "no vertices around the stored place are proved");

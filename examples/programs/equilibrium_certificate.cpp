@@ -91,28 +91,30 @@ int spread(const std::vector<Term>& terms) {
                            [](int sum, const Term& term) { return sum + std::abs(term.factor); });
 }
 
-/// The packing in integers of one unit. The coordinates are x_0 y_0 x_1 y_1 ... Lx Ly and the tilt, of a box as well.
-/// Those that do not move are held at their places, by rows after those of the contacts.
+/// The packing in integers of one unit. The coordinates are those of the grains, the lengths and the tilts, of a box as
+/// well. Those that do not move are held at their places, by rows after those of the contacts.
 struct Integers {
+    int dimension = 2;
     int disks = 0;
     Numbers radius;
     Numbers place;
     Number weight;
     std::vector<Contact> contacts;
 
-    [[nodiscard]] int at(int disk, int axis) const { return 2 * disk + axis; }
+    [[nodiscard]] int at(int disk, int axis) const { return dimension * disk + axis; }
 
-    /// What the separation of disk i from the image of disk j is the sum of, along axis a.
+    /// What the separation of grain i from the image of grain j is the sum of, along axis a.
     [[nodiscard]] std::vector<Term> along(const Contact& c, int a) const {
         std::vector<Term> terms;
         if (c.i != c.j) {
             terms = {{at(c.i, a), 1}, {at(c.j, a), -1}};
         }
-        if (c.image.m[index(a)] != 0) {
-            terms.push_back({at(disks, a), -c.image.m[index(a)]});
-        }
-        if (a == 0 && c.image.m[1] != 0) {
-            terms.push_back({at(disks, 2), -c.image.m[1]});
+        const Layout layout{dimension, disks};
+        for (std::size_t b = index(a); b < layout.axes(); ++b) {
+            if (c.image.m[b] != 0) {
+                const std::size_t period = b == index(a) ? layout.of_length(b) : layout.of_tilt(index(a), b);
+                terms.push_back({static_cast<int>(period), -c.image.m[b]});
+            }
         }
         return terms;
     }
@@ -123,14 +125,17 @@ struct Integers {
         }
         return sum;
     }
-    /// K1 (b): 8 where no disk touches an image.
+    /// K1 (b): where no grain touches an image 8 in the plane, 12 in space.
     [[nodiscard]] int curvature() const {
         int most = 1;
         for (const Contact& c : contacts) {
             if (c.kind == ContactKind::disk_disk) {
-                const int x = spread(along(c, 0));
-                const int y = spread(along(c, 1));
-                most = std::max(most, x * x + y * y);
+                int sum = 0;
+                for (int a = 0; a < dimension; ++a) {
+                    const int change = spread(along(c, a));
+                    sum += change * change;
+                }
+                most = std::max(most, sum);
             }
         }
         return most;
@@ -139,10 +144,13 @@ struct Integers {
     /// Twice the polynomial of a contact, and half its derivative: those of proofs/coq/box.v.
     [[nodiscard]] Number doubled_gap(const Contact& c, const Numbers& q) const {
         if (c.kind == ContactKind::disk_disk) {
-            const Number x = separation(c, 0, q);
-            const Number y = separation(c, 1, q);
             const Number sum = radius[index(c.i)] + radius[index(c.j)];
-            return x * x + y * y - sum * sum;
+            Number gap = -(sum * sum);
+            for (int a = 0; a < dimension; ++a) {
+                const Number x = separation(c, a, q);
+                gap += x * x;
+            }
+            return gap;
         }
         const Number x = q[index(at(c.i, c.j))];
         if (c.kind == ContactKind::held) {
@@ -154,7 +162,7 @@ struct Integers {
     [[nodiscard]] std::vector<Entry> gradient(const Contact& c, const Numbers& q) const {
         if (c.kind == ContactKind::disk_disk) {
             std::vector<Entry> entries;
-            for (int a = 0; a < 2; ++a) {
+            for (int a = 0; a < dimension; ++a) {
                 const Number size = separation(c, a, q);
                 const std::vector<Term> terms = along(c, a);
                 for (const Term& term : terms) {
@@ -311,13 +319,17 @@ std::string list(const std::vector<bool>& flags) {
     return list(items);
 }
 
-std::string name(const Contact& c) {
+std::string name(const Integers& packing, const Contact& c) {
     if (c.kind == ContactKind::held) {
-        return "Held " + std::to_string(2 * c.i + c.j);
+        return "Held " + std::to_string(packing.at(c.i, c.j));
     }
     const auto both = std::to_string(c.i) + " " + std::to_string(c.j);
     if (c.kind == ContactKind::disk_disk && !c.image.is_here()) {
-        return "Image " + both + " (" + std::to_string(c.image.m[0]) + ") (" + std::to_string(c.image.m[1]) + ")";
+        std::string text = "Image " + both;
+        for (const int periods : c.image.m) {
+            text += " (" + std::to_string(periods) + ")";
+        }
+        return text;
     }
     const char* kind = c.kind == ContactKind::disk_disk    ? "Disks"
                        : c.kind == ContactKind::lower_wall ? "Lower"
@@ -392,8 +404,12 @@ Vertex vertex_of(const Packing& packing, const std::vector<Contact>& rows, doubl
     v.fine = v.unit - zoom_exponent;
     v.stored = multiples(packing.q, v.unit);
     v.stored.resize(rows.size()); // a box has no tilt
-    v.packing = {packing.disk_count(), multiples(packing.radius, v.unit), v.stored,
-                 power_of_two(std::ilogb(packing.radius[0]) - v.unit + 1), rows};
+    v.packing = {packing.dimension,
+                 packing.disk_count(),
+                 multiples(packing.radius, v.unit),
+                 v.stored,
+                 power_of_two(std::ilogb(packing.radius[0]) - v.unit + 1),
+                 rows};
     const Approximate coarse(v.packing, v.stored);
     const double shift = 0.7 * coarse.smallest_eigenvalue();
     const double ball = std::ceil(std::ldexp(unique_radius, -v.unit));
@@ -424,17 +440,22 @@ Vertex vertex_of(const Packing& packing, const std::vector<Contact>& rows, doubl
     return v;
 }
 
-/// Of disks, of lengths, and the tilt.
+/// Of grains, lengths and tilts.
 std::size_t coordinates_of(const Packing& packing) {
-    return packing.length_at(packing.axes()) + 1;
+    return packing.length_at(packing.axes()) + packing.tilts();
 }
 
-/// The wall forces are exact products of two stored numbers.
+/// What a stress presses on: a length in the plane, an area in space.
+Number area_of(const WallForce& wall) {
+    return Number::from_double(wall.length) * Number::from_double(wall.other);
+}
+
+/// The wall forces are exact products of stored numbers.
 Numbers finite_load(const State& state, int exponent) {
     Numbers load = multiples(state.load.disk_force, exponent);
     load.resize(coordinates_of(state.packing));
     for (const WallForce& wall : state.load.wall_forces(state.packing)) {
-        const Number force = Number::from_double(wall.stress) * Number::from_double(wall.length);
+        const Number force = Number::from_double(wall.stress) * area_of(wall);
         load[Integers::index(wall.coordinate)] = -force / power_of_two(exponent);
     }
     return load;
@@ -445,7 +466,7 @@ Numbers unit_load(const State& state, int exponent) {
     Numbers load(coordinates_of(state.packing));
     for (const WallForce& wall : state.load.wall_forces(state.packing)) {
         load[Integers::index(wall.coordinate)] =
-            -Number::from_double(wall.rate) * Number::from_double(wall.length) / power_of_two(exponent);
+            -Number::from_double(wall.rate) * area_of(wall) / power_of_two(exponent);
     }
     return load;
 }
@@ -475,7 +496,7 @@ std::vector<bool> unloaded_by(const Vertex& v, const Numbers& load, const std::v
 void write_vertex(const Vertex& v, const Packing& packing) {
     std::vector<std::string> contacts;
     for (const Contact& c : v.packing.contacts) {
-        contacts.push_back(name(c));
+        contacts.push_back(name(v.packing, c));
     }
     std::printf(
         "(* The data of a certificate, for proofs/coq/questions/verdict.v. *)\n"
@@ -485,15 +506,18 @@ void write_vertex(const Vertex& v, const Packing& packing) {
         list(contacts).c_str());
     std::vector<bool> there;
     for (const auto& kinds : {packing.walls.lower, packing.walls.upper}) {
-        there.insert(there.end(), {kinds[0] != WallKind::absent, kinds[1] != WallKind::absent});
+        for (std::size_t a = 0; a < packing.axes(); ++a) {
+            there.push_back(kinds[a] != WallKind::absent);
+        }
     }
-    std::printf("Definition the_vertex : vertex_certificate := {|\n  disks := %d;\n  contacts := touching;\n"
-                "  walls := %s;\n  periodic := %s;\n  stored := %s;\n  radii := %s;\n  weight := %s;\n  zoom := 2 ^ "
-                "%d;\n  refined := %s;\n",
-                v.packing.disks, list(there).c_str(),
-                list(std::vector<bool>{packing.cell.periodic[0], packing.cell.periodic[1]}).c_str(),
-                list(v.stored).c_str(), list(v.packing.radius).c_str(), v.packing.weight.text().c_str(), zoom_exponent,
-                list(v.refined).c_str());
+    const std::vector<bool> periodic(packing.cell.periodic.begin(), packing.cell.periodic.begin() + packing.dimension);
+    std::printf(
+        "Definition the_vertex : vertex_certificate := {|\n  lies_in := %s;\n  disks := %d;\n  contacts := touching;\n"
+        "  walls := %s;\n  periodic := %s;\n  stored := %s;\n  radii := %s;\n  weight := %s;\n  zoom := 2 ^ "
+        "%d;\n  refined := %s;\n",
+        packing.dimension == plane ? "Plane" : "Space", v.packing.disks, list(there).c_str(), list(periodic).c_str(),
+        list(v.stored).c_str(), list(v.packing.radius).c_str(), v.packing.weight.text().c_str(), zoom_exponent,
+        list(v.refined).c_str());
     std::printf("  error := %s;\n  distance := %s;\n  ball := %s;\n  stiffness := %s;\n  shift := %s;\n"
                 "  factor := %s |}.\n",
                 v.error.text().c_str(), v.distance.text().c_str(), v.ball.text().c_str(), v.stiffness.text().c_str(),
@@ -585,12 +609,13 @@ ForceUnits force_units(const State& state, const CertificateClaims& claims,
             units.stress = unit_exponent({end.stress.lower, end.stress.upper}, units.stress);
         }
     }
-    int lengths = 0;
+    int areas = 0;
     for (const WallForce& wall : state.load.wall_forces(state.packing)) {
-        lengths = unit_exponent(wall.length, lengths);
-        units.force = std::min(units.force, unit_exponent(wall.stress, 0) + unit_exponent(wall.length, 0));
+        const int area = unit_exponent(wall.length, 0) + unit_exponent(wall.other, 0);
+        areas = std::min(areas, area);
+        units.force = std::min(units.force, unit_exponent(wall.stress, 0) + area);
     }
-    units.force = std::min(units.force, units.stress + lengths);
+    units.force = std::min(units.force, units.stress + areas);
     return units;
 }
 
@@ -598,13 +623,11 @@ ForceUnits force_units(const State& state, const CertificateClaims& claims,
 std::vector<Contact> rows_of(const State& state) {
     std::vector<Contact> rows = state.contacts;
     const DofMap dofs(state.packing);
-    for (int k = 0; k < dofs.coordinate_count(); ++k) {
-        if (dofs.dof_of(Integers::index(k)) < 0) {
-            rows.push_back({ContactKind::held, k / 2, k % 2});
+    const int d = state.packing.dimension;
+    for (int k = 0; k < static_cast<int>(coordinates_of(state.packing)); ++k) {
+        if (k >= dofs.coordinate_count() || dofs.dof_of(Integers::index(k)) < 0) { // a box has no tilt
+            rows.push_back({ContactKind::held, k / d, k % d});
         }
-    }
-    if (!state.packing.cell.any()) {
-        rows.push_back({ContactKind::held, state.packing.disk_count() + 1, 0}); // a box has no tilt
     }
     return rows;
 }
@@ -626,7 +649,6 @@ bool pinned_disk_bears_force(const State& state, const ForcesClaim& forces) {
 void require_covered(const State& state, const CertificateClaims& claims, const std::vector<Contact>& rows) {
     const Packing& packing = state.packing;
     const std::pair<bool, const char*> not_covered[] = {
-        {packing.dimension != 2, "spheres"},
         {!packing.bars.empty(), "clumps"},
         {packing.cell.keeps_shape, "isotropic cells"},
         {state.load.path.has_value(), "paths in stress space"},

@@ -13,11 +13,12 @@ Unset Strict Implicit.
 Import Order.Theory GRing.Theory Num.Theory.
 
 Record vertex_certificate := VertexCertificate {
-  disks : nat;
-  contacts : seq contact;     (* and the coordinates that are held: 2 n + 3 rows *)
-  walls : seq bool;           (* which there are: the two lower ones, the two upper ones *)
+  lies_in : dimension;
+  disks : nat;                (* spheres in space *)
+  contacts : seq contact;     (* and the coordinates that are held: as many rows as coordinates *)
+  walls : seq bool;           (* which there are: the lower ones, the upper ones *)
   periodic : seq bool;        (* which axes are *)
-  stored : seq Z;             (* coordinates x_0 y_0 x_1 y_1 ... Lx Ly and the tilt *)
+  stored : seq Z;             (* coordinates of the grains, lengths, tilts *)
   radii : seq Z;
   weight : Z;                 (* a length: rows of walls are multiplied by it *)
   zoom : Z;
@@ -32,8 +33,9 @@ Record vertex_certificate := VertexCertificate {
 
 Section Check.
 Variable v : vertex_certificate.
+Let d := lies_in v.
 Let n := disks v.
-Let N := (n.*2.+3)%N.
+Let N := (coordinates_of d n)%N.
 Local Open Scope Z_scope.
 
 Definition stored_at : nat -> Z := nth 0 (stored v).
@@ -43,24 +45,24 @@ Definition fine_place (k : nat) : Z := zoom v * stored_at k.
 Definition fine_weight : Z := zoom v * weight v.
 Definition fine_stiffness : Z := zoom v * stiffness v.
 
-Definition matrix_rows : seq sparse := [seq sparse_of (gradient n (weight v) stored_at c) | c <- contacts v].
+Definition matrix_rows : seq sparse := [seq sparse_of (gradient d n (weight v) stored_at c) | c <- contacts v].
 Definition factor_columns : seq sparse := [seq [seq (Z.to_N e.1, e.2) | e <- column] | column <- factor v].
 Definition defect_rows : seq sparse :=
   add_all_products 1 matrix_rows (add_all_products (-1) factor_columns (diagonal N (- shift v))).
-Definition bend : Z := Z.of_nat (curvature n (contacts v)).
+Definition bend : Z := Z.of_nat (curvature d n (contacts v)).
 Definition largest_defect : Z :=
   shift v - 2 * Z.of_nat N * (stiffness v * stiffness v + bend * bend * (ball v * ball v)).
 Definition well_conditioned : bool := let most := largest_defect in all (fun row => sizes row <=? most) defect_rows.
 
 Definition nearly_closed : bool :=
-  all (fun c => Z.abs (doubled_gap n fine_weight fine_radius fine_place refined_at c) <=? 2 * (fine_stiffness * error v)) (contacts v).
+  all (fun c => Z.abs (doubled_gap d n fine_weight fine_radius fine_place refined_at c) <=? 2 * (fine_stiffness * error v)) (contacts v).
 Definition near_the_stored_one : bool :=
   (distance v + error v <=? zoom v * ball v)
   && all (fun k => Z.abs (refined_at k - zoom v * stored_at k) + error v <=? distance v) (iota 0 N).
 
 Definition well_posed : bool :=
   [&& (size (stored v) == N) && (size (refined v) == N), (size (radii v) == n) && all (Z.ltb 0) (radii v),
-    (size (contacts v) == N) && all (in_the_packing n (walls v) (periodic v)) (contacts v), size (factor v) == N
+    (size (contacts v) == N) && all (in_the_packing d n (walls v) (periodic v)) (contacts v), size (factor v) == N
     & [&& 0 <? weight v, 0 <? zoom v & 0 <? stiffness v]].
 Definition vertex_check : bool :=
   [&& well_posed, nearly_closed, near_the_stored_one, 4 * bend * error v <=? fine_stiffness & well_conditioned].
@@ -70,8 +72,9 @@ Local Open Scope ring_scope.
 
 Section Correct.
 Variables (F : archiFieldType) (v : vertex_certificate).
+Let d := lies_in v.
 Let n := disks v.
-Let N := (n.*2.+3)%N.
+Let N := (coordinates_of d n)%N.
 
 Definition configuration (x : nat -> Z) : 'cV[F]_N := \col_k real (x k).
 Definition stored_configuration := configuration (fine_place v).
@@ -109,11 +112,11 @@ Let L := (matrix_of N (factor_columns v))^T.
 
 Lemma derivative_at_the_stored_one : A stored_configuration = real (zoom v) *: map_mx real B.
 Proof.
-have finer c : gradient n (real (fine_weight v)) (at_ stored_configuration) c
-    = [seq (e.1, real (zoom v) * real e.2 : F) | e <- gradient n (weight v) (stored_at v) c].
-  case: c => [i j k l|i a|i a|k] /=; rewrite ?real_times ?rmorphN ?mulrN ?real_times // map_cat -!map_comp.
-  by congr (_ ++ _); apply: eq_map => e /=; rewrite /separation (sum_at_scale _ at_stored) rmorphMz -mulrzAr
-    (sum_at_morphism (real_rmorphism F)).
+have finer c : gradient d n (real (fine_weight v)) (at_ stored_configuration) c
+    = [seq (e.1, real (zoom v) * real e.2 : F) | e <- gradient d n (weight v) (stored_at v) c].
+  case: c => [i j k l m|i a|i a|k]; rewrite /gradient /= ?real_times ?rmorphN ?mulrN ?real_times // map_flatten -map_comp.
+  congr flatten; apply: eq_map => a /=; rewrite -map_comp; apply: eq_map => e /=.
+  by rewrite /separation (sum_at_scale _ at_stored) rmorphMz -mulrzAr (sum_at_morphism (real_rmorphism F)).
 apply/matrixP=> l m; rewrite !mxE (nth_map (Lower 0 0)) ?size_contacts // sparse_of_entry.
 by rewrite finer big_map rmorph_sum mulr_sumr.
 Qed.
@@ -148,7 +151,7 @@ Let q1 := refined_configuration.
 Let b : F := real (fine_stiffness v).
 Let rho : F := real (zoom v * ball v).
 
-Let C : F := (curvature n (contacts v))%:R.
+Let C : F := (curvature d n (contacts v))%:R.
 
 Let strong x : well_conditioned v -> 2%:R * N%:R * (b ^+ 2 + C ^+ 2 * rho ^+ 2) * square x <= square (A q0 *m x).
 Proof.
@@ -172,7 +175,7 @@ have bound l : `|gaps (real (fine_weight v)) radius place (contacts v) q1 l 0| <
   rewrite -(doubled_gap_morphism (real_rmorphism F)) -[Z.mul _ _]/(Z.of_nat 2 * (fine_stiffness v * error v)).
   rewrite [real (Z.of_nat 2 * _)]rmorphM.
   rewrite !real_morphism real_of_nat mxE normrM ger0_norm ?invr_ge0 ?ler0n // ler_pdivr_mull ?ltr0n //.
-  by rewrite (doubled_gap_ext _ _ _ _ _ at_refined).
+  by rewrite (doubled_gap_ext _ _ _ _ _ _ at_refined).
 by apply: norm_le => //; apply: le_trans (bound ord0).
 Qed.
 
@@ -197,7 +200,7 @@ have radius_gt0 i : (i < n)%N -> 0 < radius i.
   by rewrite /radius -(rmorph0 (real_rmorphism F)) real_lt; apply/Z.ltb_lt/Z.mul_pos_pos; [lia|exact/Z.ltb_lt].
 case: (ltnP l N) => lN; last by rewrite /contact_at nth_default ?size_contacts //= ltr01.
 have := formed (Lower 0 0) l; rewrite size_contacts => /(_ lN); rewrite /contact_at.
-case: (nth _ _ _) => [i j k m|i a|i a|k] /=; rewrite ?ltr01 // => /and5P[i_n j_n _ _ _].
+case: (nth _ _ _) => [i j k m m'|i a|i a|k] /=; rewrite ?ltr01 // => /and5P[i_n j_n _ _ _].
 by rewrite addr_gt0 ?radius_gt0.
 Qed.
 
@@ -219,10 +222,10 @@ Qed.
 
 Theorem one_vertex : complete F -> vertex_check v -> exists q : 'cV[F]_N,
   [/\ norm (q - q1) <= r, norm (q - q0) <= real (distance v),
-     forall l : 'I_N, touch n radius place (at_ q) (contact_at (contacts v) l),
+     forall l : 'I_N, touch d n radius place (at_ q) (contact_at (contacts v) l),
      normals radius (contacts v) q \in unitmx
    & forall q' : 'cV[F]_N, norm (q' - q0) <= rho ->
-       (forall l : 'I_N, touch n radius place (at_ q') (contact_at (contacts v) l)) -> q' = q].
+       (forall l : 'I_N, touch d n radius place (at_ q') (contact_at (contacts v) l)) -> q' = q].
 Proof.
 move=> full /and5P[_ closed near step well]; have [w0 z0 s0] := positive.
 have w1 : real (fine_weight v) != 0 :> F by rewrite real_eq0 /fine_weight; nia.

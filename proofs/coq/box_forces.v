@@ -80,8 +80,8 @@ Qed.
 End Blocks.
 
 Section Forces.
-Variables (F : realFieldType) (n : nat) (w : F) (radius : nat -> F) (contacts : seq contact).
-Let N := (n.*2.+3)%N.
+Variables (F : realFieldType) (d : dimension) (n : nat) (w : F) (radius : nat -> F) (contacts : seq contact).
+Let N := (coordinates_of d n)%N.
 Variables (q q1 : 'cV[F]_N) (b r : F).
 Let A := derivative w contacts : 'cV[F]_N -> 'M[F]_N.
 Let scale_at (l : nat) : F := scale w radius (contact_at contacts l).
@@ -100,12 +100,13 @@ by move=> e e'; rewrite -(mulKmx unit f) -(mulKmx unit f'); congr (_ *m _); appl
 Qed.
 
 Lemma entry_moves_little l (m : 'I_N) : norm (q - q1) <= r ->
-  `|A q l m - A q1 l m| <= r * (\sum_(e <- entry_changes n (contact_at contacts l) | e.1 == m) e.2)%:R.
+  `|A q l m - A q1 l m| <= r * (\sum_(e <- entry_changes d n (contact_at contacts l) | e.1 == m) e.2)%:R.
 Proof.
-move=> near; rewrite !mxE; case: (contact_at contacts l) => [i j k k'|i a|i a|k] /=;
-  rewrite ?subrr ?normr0 ?big_nil ?mulr0 //.
-have moved a : `|separation n (at_ q) i j k k' a - separation n (at_ q1) i j k k' a| <= (spread (along n i j k k' a))%:R * r.
-  rewrite /separation -sum_at_sub; apply: sum_at_bound => d.
+move=> near; rewrite !mxE; case: (contact_at contacts l) => [i j k k' k''|i a|i a|k];
+  rewrite /= ?subrr ?normr0 ?big_nil ?mulr0 //.
+have moved a : `|separation d n (at_ q) i j k k' k'' a - separation d n (at_ q1) i j k k' k'' a|
+    <= (spread (along d n i j k k' k'' a))%:R * r.
+  rewrite /separation -sum_at_sub; apply: sum_at_bound => c.
   by apply: le_trans near; apply: at_norm.
 have lists (s : seq (nat * int)) t (u z : F) : `|u - z| <= t%:R * r ->
     `|\sum_(e <- [seq (e.1, u *~ e.2) | e <- s] | e.1 == m) e.2 - \sum_(e <- [seq (e.1, z *~ e.2) | e <- s] | e.1 == m) e.2|
@@ -115,8 +116,13 @@ have lists (s : seq (nat * int)) t (u z : F) : `|u - z| <= t%:R * r ->
   apply: le_trans (ler_norm_add _ _) _; apply: ler_add IH.
   rewrite -mulrzBl -mulrzr normrM -intr_norm natrM natr_absz mulrC mulrCA [r * _]mulrC.
   by rewrite ler_wpmul2l ?ler0z.
-rewrite cats0 !big_cat natrD mulrDr opprD addrACA; apply: le_trans (ler_norm_add _ _) _.
-by apply: ler_add; apply: lists.
+rewrite !big_axes !overE -sumrB; apply: le_trans (ler_norm_sum _ _ _) _.
+have -> : (\sum_(e <- flatten [seq [seq (e.1, `|e.2| * spread (along d n i j k k' k'' a))%N | e <- along d n i j k k' k'' a]
+    | a <- iota 0 d] | e.1 == m) e.2)%:R
+  = over d (fun a => (\sum_(e <- [seq (e.1, `|e.2| * spread (along d n i j k k' k'' a))%N | e <- along d n i j k k' k'' a]
+    | e.1 == m) e.2)%:R) :> F.
+  by rewrite big_flatten big_map /over; elim: (iota 0 d) => [|a s IH]; rewrite ?big_nil // big_cons natrD IH.
+by rewrite overE mulr_sumr; apply: ler_sum => a _; apply: lists.
 Qed.
 
 Hypothesis b0 : 0 < b.
@@ -125,7 +131,7 @@ Hypothesis near : norm (q - q1) <= r.
 
 Theorem forces_are_enclosed (load G : 'cV[F]_N) (fraction c : F) : 0 <= c ->
   (forall k, `|fraction * load k 0 + ((A q1)^T *m G) k 0|
-     + \sum_(l < N) r * (\sum_(e <- entry_changes n (contact_at contacts l) | e.1 == k) e.2)%:R * `|G l 0| <= b * c) ->
+     + \sum_(l < N) r * (\sum_(e <- entry_changes d n (contact_at contacts l) | e.1 == k) e.2)%:R * `|G l 0| <= b * c) ->
   exists f, [/\ balanced load f, (forall f', balanced load f' -> f' = f)
     & forall l : 'I_N, `|fraction * f l 0 - scale_at l * G l 0| <= `|scale_at l| * c].
 Proof.
@@ -159,17 +165,17 @@ have -> : fraction * f l 0 - scale_at l * G l 0 = scale_at l * (fraction *: g - 
 by rewrite normrM ler_wpmul2l // (le_trans (entry_norm _ _)).
 Qed.
 
-Lemma untouched_entry (k l : 'I_N) : (k : nat) \notin coordinates n (contact_at contacts l) ->
+Lemma untouched_entry (k l : 'I_N) : (k : nat) \notin coordinates d n (contact_at contacts l) ->
   (normals radius contacts q)^T k l = 0.
 Proof.
-rewrite -(gradient_coordinates n 1 (at_ q)) => absent; rewrite !mxE big1_seq ?mul0r // => e /andP[/eqP e1 es]; case/negP: absent.
+rewrite -(gradient_coordinates d n 1 (at_ q)) => absent; rewrite !mxE big1_seq ?mul0r // => e /andP[/eqP e1 es]; case/negP: absent.
 by rewrite -e1 map_f.
 Qed.
 
 (** K7. [zeros] are contacts, [free] degrees of freedom. *)
 Theorem structural_zeros (load f : 'cV[F]_N) (zeros free : {set 'I_N}) : balanced load f -> #|free| = #|zeros| ->
   (forall k, k \in free -> load k 0 = 0) ->
-  (forall (k l : 'I_N), k \in free -> l \notin zeros -> (k : nat) \notin coordinates n (contact_at contacts l)) ->
+  (forall (k l : 'I_N), k \in free -> l \notin zeros -> (k : nat) \notin coordinates d n (contact_at contacts l)) ->
   forall l, l \in zeros -> f l 0 = 0.
 Proof.
 move=> bal same unloaded apart; have unit : (normals radius contacts q)^T \in unitmx by rewrite unitmx_tr.
@@ -180,52 +186,58 @@ Qed.
 End Forces.
 
 Section Pins.
-Variables (F : realFieldType) (n : nat) (radius : nat -> F) (contacts : seq contact).
-Let N := (n.*2.+3)%N.
+Variables (F : realFieldType) (d : dimension) (n : nat) (radius : nat -> F) (contacts : seq contact).
+Let N := (coordinates_of d n)%N.
 Variable q : 'cV[F]_N.
 
-(** C1 (../cells.md). A row that holds a disk along axis a. *)
-Definition pins (a : nat) (c : contact) : bool := if c is Held k then (k < n.*2)%N && (odd k == a :> nat) else false.
-(** Rows that move no disk when all move together along a. *)
+(** C1 (../cells.md). A row that holds a grain along axis a. *)
+Definition pins (a : nat) (c : contact) : bool := if c is Held k then (k < n * d)%N && (k %% d == a)%N else false.
+(** Rows that move no grain when all move together along a. *)
 Definition blind (a : nat) (c : contact) : bool :=
   match c with
-  | Image i j _ _ => (i < n) && (j < n)
-  | Lower i b | Upper i b => [&& i < n, b < 2 & b != a]
+  | Image i j _ _ _ => (i < n) && (j < n)
+  | Lower i b | Upper i b => [&& i < n, b < d & b != a]
   | Held k => true
   end%N.
 
-(** Contacts push a disk as much as its neighbours: what holds one disk along an axis bears the sum of the loads there. *)
-Theorem one_pin_bears_nothing (a : nat) (load f : 'cV[F]_N) : balanced radius contacts q load f -> (a < 2)%N ->
-  \sum_(i < n) at_ load (i.*2 + a) = 0 -> (forall l : 'I_N, blind a (contact_at contacts l)) ->
+(** Contacts push a grain as much as its neighbours: what holds one grain along an axis bears the sum of the loads there. *)
+Theorem one_pin_bears_nothing (a : nat) (load f : 'cV[F]_N) : balanced radius contacts q load f -> (a < d)%N ->
+  \sum_(i < n) at_ load (i * d + a) = 0 -> (forall l : 'I_N, blind a (contact_at contacts l)) ->
   (forall l l' : 'I_N, pins a (contact_at contacts l) -> pins a (contact_at contacts l') -> l = l') ->
   forall l : 'I_N, pins a (contact_at contacts l) -> f l 0 = 0.
 Proof.
-move=> bal a2 cancel blind_rows alone l pinned.
-pose moved k := (k < n.*2)%N && (odd k == a :> nat).
+move=> bal ad cancel blind_rows alone l pinned.
+pose moved k := (k < n * d)%N && (k %% d == a)%N.
 pose e : 'cV[F]_N := \col_k (moved k)%:R; pose M := normals radius contacts q.
 have at_e k : at_ e k = (moved k)%:R.
   case: (ltnP k N) => kN; first by rewrite (at_ordinal e (Ordinal kN)) mxE.
   rewrite /at_ big1 => [|m /eqP mk]; last by have := ltn_ord m; rewrite mk ltnNge kN.
   by rewrite /moved ltnNge (leq_trans _ kN) // /N; lia.
-have disk i z : (i < n)%N -> (z < 2)%N -> moved (i.*2 + z)%N = (z == a) by move=> i_n z2; rewrite /moved; lia.
-have cell z : moved (n.*2 + z)%N = false by rewrite /moved ltnNge leq_addr.
-have together i j p m z : (i < n)%N -> (j < n)%N -> (z < 2)%N -> separation n (at_ e) i j p m z = 0.
-  move=> i_n j_n z2; rewrite separation_is_from_the_image // /image_at !at_e disk //.
-  move: (disk j z j_n z2) (cell 0%N) (cell 1%N) (cell 2%N); rewrite addn0 addn1 addn2 => <- c0 c1 c2.
-  by case: z z2 => [|[|z]] // _; rewrite ?addn0 ?c0 ?c1 ?c2 !mul0rz !addr0 subrr.
+have grain i z : (i < n)%N -> (z < d)%N -> moved (i * d + z)%N = (z == a).
+  move=> i_n zd; rewrite /moved modnMDl modn_small // andb_idl // => _.
+  by apply: leq_trans (_ : i.+1 * d <= _)%N; rewrite ?leq_mul2r ?i_n ?orbT // mulSn addnC ltn_add2r.
+have cell z : moved (n * d + z)%N = false by rewrite /moved ltnNge leq_addr.
+have together i j p p' p'' z : (i < n)%N -> (j < n)%N -> (z < d)%N -> separation d n (at_ e) i j p p' p'' z = 0.
+  move=> i_n j_n zd; rewrite separation_is_from_the_image /image_at !at_e; case: z zd => [|[|z]] zd /=;
+    by rewrite ?at_e !cell !mul0rz !addr0 !grain // subrr.
 have rows k : (M *m e) k 0 = (pins a (contact_at contacts k))%:R.
   have -> : (M *m e) k 0 = (derivative 1 contacts q *m e) k 0 / scale 1 radius (contact_at contacts k).
     by rewrite !mxE mulr_suml; apply: eq_bigr => m _; rewrite !mxE mulrAC.
-  rewrite derivative_entry; have := blind_rows k; case: (contact_at contacts k) => [i j p m|i z|i z|m] /=.
-  - by case/andP=> i_n j_n; rewrite big_cat /= !sum_at_dot -!/(separation _ _ _ _ _ _ _) !together // !mulr0 addr0 mul0r.
-  - by case/and3P=> i_n z2 /negPf za; rewrite big_seq1 /= at_e disk // za mulr0 mul0r.
-  - by case/and3P=> i_n z2 /negPf za; rewrite big_cons big_seq1 /= !at_e cell disk // za !mulr0 addr0 mul0r.
+  rewrite derivative_entry; have := blind_rows k; case: (contact_at contacts k) => [i j p p' p''|i z|i z|m].
+  - case/andP=> i_n j_n; rewrite gradient_dot overE big1 ?mul0r // => z _.
+    by rewrite -/(separation _ _ _ _ _ _ _ _ _) [X in _ * X]together ?mulr0.
+  - by case/and3P=> i_n zd /negPf za; rewrite big_seq1 /= at_e grain // za mulr0 mul0r.
+  - by case/and3P=> i_n zd /negPf za; rewrite big_cons big_seq1 /= !at_e cell grain // za !mulr0 addr0 mul0r.
   by rewrite big_seq1 /= at_e mul1r divr1.
-have counted (k : nat) : (moved k)%:R = \sum_(i < n) (k == i.*2 + a)%N%:R :> F.
-  rewrite /moved; case: (ltnP k n.*2) => k_n /=; last by rewrite big1 // => i _; case: eqP => // ki; have := ltn_ord i; lia.
-  have i_n : (k./2 < n)%N by lia.
-  rewrite (bigD1 (Ordinal i_n)) //= big1 => [|i /eqP ne]; last by case: eqP => // ki; case: ne; apply: val_inj => /=; lia.
-  by rewrite addr0; congr (nat_of_bool _)%:R; lia.
+have d0 : (0 < d)%N by case: (d).
+have counted (k : nat) : (moved k)%:R = \sum_(i < n) (k == i * d + a)%N%:R :> F.
+  rewrite /moved; case: (ltnP k (n * d)) => k_n /=; last first.
+    rewrite big1 // => i _; case: eqP => // ki; move: k_n; rewrite ki leqNgt.
+    by have := grain i a (ltn_ord i) ad; rewrite eqxx /moved => /andP[->].
+  have i_n : (k %/ d < n)%N by rewrite ltn_divLR.
+  rewrite (bigD1 (Ordinal i_n)) //= big1 ?addr0 => [|i /eqP ne].
+    by rewrite {2}(divn_eq k d) eqn_add2l.
+  by case: eqP => // ki; case: ne; apply: val_inj; rewrite /= ki divnMDl // divn_small ?addn0.
 have load_e : dot load e = 0.
   rewrite -cancel /dot; under eq_bigr => k _ do rewrite mxE counted mulr_sumr.
   rewrite exchange_big; apply: eq_bigr => i _; rewrite /at_ [RHS]big_mkcond; apply: eq_bigr => k _.

@@ -10,8 +10,8 @@ Import Order.Theory GRing.Theory Num.Theory.
 Local Open Scope ring_scope.
 
 Section Load.
-Variables (F : realFieldType) (n : nat) (radius : nat -> F) (contacts : seq contact).
-Let N := (n.*2.+3)%N.
+Variables (F : realFieldType) (d : dimension) (n : nat) (radius : nat -> F) (contacts : seq contact).
+Let N := (coordinates_of d n)%N.
 Variable q : 'cV[F]_N.
 Let bal := balanced radius contacts q.
 
@@ -44,7 +44,7 @@ Hypothesis pushing : forall l : 'I_N, ~~ holds (contact_at contacts l) -> 0 <= f
 (** [mute]: contacts that bear nothing at the end. [free]: degrees of freedom without load that no other contact
     touches. *)
 Variables mute free : {set 'I_N}.
-Hypothesis untouched : forall k l : 'I_N, k \in free -> l \notin mute -> (k : nat) \notin coordinates n (contact_at contacts l).
+Hypothesis untouched : forall k l : 'I_N, k \in free -> l \notin mute -> (k : nat) \notin coordinates d n (contact_at contacts l).
 Hypothesis free_of_rate : forall k, k \in free -> rate k 0 = 0.
 
 Let X_zero (k l : 'I_N) : k \in free -> l \notin mute -> (normals radius contacts q)^T k l = 0.

@@ -10,9 +10,9 @@ Import Order.Theory GRing.Theory Num.Theory.
 Local Open Scope ring_scope.
 
 Section Minimum.
-Variables (F : realFieldType) (n : nat) (w : F) (radius place : nat -> F) (contacts : seq contact).
-Let N := (n.*2.+3)%N.
-Let C : F := (curvature n contacts)%:R.
+Variables (F : realFieldType) (d : dimension) (n : nat) (w : F) (radius place : nat -> F) (contacts : seq contact).
+Let N := (coordinates_of d n)%N.
+Let C : F := (curvature d n contacts)%:R.
 Variables (q : 'cV[F]_N) (b : F).
 Let gaps := gaps w radius place contacts : 'cV[F]_N -> 'cV[F]_N.
 Let A : 'M[F]_N := derivative w contacts q.
@@ -23,7 +23,7 @@ Definition potential (load p : 'cV[F]_N) : F := - \sum_k load k 0 * p k 0.
 (** Every other configuration near p, without an overlap at a listed contact, costs work of the finite load, or none of
     it and work of the infinitesimal one. *)
 Definition strict_minimum (load small p : 'cV[F]_N) : Prop := exists2 e, 0 < e & forall p', norm (p' - p) < e -> p' != p ->
-  (forall l : 'I_N, apart n radius place (at_ p') 0 (contact_at contacts l)) ->
+  (forall l : 'I_N, apart d n radius place (at_ p') 0 (contact_at contacts l)) ->
   potential load p < potential load p' \/ potential load p = potential load p' /\ potential small p < potential small p'.
 
 Hypothesis w0 : 0 < w.
@@ -40,17 +40,17 @@ Proof. by rewrite /s; have := scales l; case: (contact_at _ _). Qed.
 Lemma potential_grows_by_work load f p : balanced radius contacts q load f ->
   potential load p - potential load q = \sum_l f l 0 / s l * (A *m (p - q)) l 0.
 Proof.
-move=> bal; pose M := normals radius contacts q; pose d := p - q.
+move=> bal; pose M := normals radius contacts q; pose h := p - q.
 have AM : A = diag_mx (\row_l s l) *m M.
   by apply: derivative_scales; rewrite ?gt_eqF // => l; rewrite gt_eqF.
-have -> : potential load p - potential load q = - dot load d.
+have -> : potential load p - potential load q = - dot load h.
   rewrite /potential /dot opprK addrC -sumrB -sumrN; apply: eq_bigr => k _; rewrite !mxE.
   by move: (load k 0) (p k 0) (q k 0) => *; ring.
-have -> : - dot load d = dot (M^T *m f) d.
+have -> : - dot load h = dot (M^T *m f) h.
   have -> : load = - (M^T *m f) by apply/eqP; rewrite -addr_eq0 addrC; apply/eqP.
   by rewrite -scaleN1r dot_scale mulN1r opprK.
 rewrite dot_transpose trmxK; apply: eq_bigr => l _.
-have -> : (A *m d) l 0 = s l * (M *m d) l 0 by rewrite AM -mulmxA mul_diag_mx [LHS]mxE [X in X * _]mxE.
+have -> : (A *m h) l 0 = s l * (M *m h) l 0 by rewrite AM -mulmxA mul_diag_mx [LHS]mxE [X in X * _]mxE.
 by rewrite mulrA divfK // gt_eqF.
 Qed.
 
@@ -130,7 +130,7 @@ End Growth.
 Variables (zeros free : {set 'I_N}) (load f small g : 'cV[F]_N).
 Hypothesis same : #|free| = #|zeros|.
 Hypothesis unloaded : forall k, k \in free -> load k 0 = 0.
-Hypothesis untouched : forall k l : 'I_N, k \in free -> l \notin zeros -> (k : nat) \notin coordinates n (contact_at contacts l).
+Hypothesis untouched : forall k l : 'I_N, k \in free -> l \notin zeros -> (k : nat) \notin coordinates d n (contact_at contacts l).
 Hypothesis balance : balanced radius contacts q load f.
 Hypothesis small_balance : balanced radius contacts q small g.
 Hypothesis no_force : forall l, l \in zeros -> f l 0 = 0.
@@ -141,7 +141,7 @@ Hypothesis small_force : forall l, l \in zeros -> 0 < g l 0.
 Let A_zero (k l : 'I_N) : k \in free -> l \notin zeros -> A l k = 0.
 Proof.
 move=> kf lz; rewrite mxE big1_seq // => e /andP[/eqP e1 es]; case/negP: (untouched kf lz).
-by rewrite -e1 -(gradient_coordinates n w (at_ q)) map_f.
+by rewrite -e1 -(gradient_coordinates d n w (at_ q)) map_f.
 Qed.
 
 (** The vertex with those coordinates of p that are not free. *)
@@ -167,14 +167,14 @@ have := entry_norm (p - q) k; rewrite !mxE; case: ifP => // _ _.
 by rewrite subrr normr0 norm_ge0.
 Qed.
 
-(** If y bounds A d on S alone, and nothing else of A d counts for d, then some entry of S is not small. *)
-Let some_entry (S : {set 'I_N}) (d u : 'cV[F]_N) : d != 0 -> norm d <= norm (invmx A *m u) -> A \in unitmx ->
-  (forall l, l \notin S -> u l 0 = 0) -> exists2 l, l \in S & b / 2%:R * norm d < `|u l 0|.
+(** If y bounds A h on S alone, and nothing else of A h counts for h, then some entry of S is not small. *)
+Let some_entry (S : {set 'I_N}) (h u : 'cV[F]_N) : h != 0 -> norm h <= norm (invmx A *m u) -> A \in unitmx ->
+  (forall l, l \notin S -> u l 0 = 0) -> exists2 l, l \in S & b / 2%:R * norm h < `|u l 0|.
 Proof.
 move=> nz bound unit outside; have [/existsP[l /andP[lS far]]|/existsPn none] :=
-  boolP [exists l, (l \in S) && (b / 2%:R * norm d < `|u l 0|)]; first by exists l.
-have half0 : 0 <= b / 2%:R * norm d by rewrite !mulr_ge0 ?invr_ge0 ?ler0n ?norm_ge0 // ltW.
-have : b * norm d <= b / 2%:R * norm d.
+  boolP [exists l, (l \in S) && (b / 2%:R * norm h < `|u l 0|)]; first by exists l.
+have half0 : 0 <= b / 2%:R * norm h by rewrite !mulr_ge0 ?invr_ge0 ?ler0n ?norm_ge0 // ltW.
+have : b * norm h <= b / 2%:R * norm h.
   apply: le_trans (_ : norm u <= _); last first.
     apply: norm_le => // l; have := none l; case lS: (l \in S) => /=; first by rewrite -leNgt.
     by rewrite outside ?lS ?normr0.
@@ -211,7 +211,7 @@ exists (Num.min (reach bearing f) (reach zeros g)).
 move=> p; rewrite lt_minr => /andP[near near_small] pq free_of_overlap.
 have open l : 0 <= gaps p l 0.
   rewrite mxE mulr_ge0 ?invr_ge0 ?ler0n //; have := free_of_overlap l.
-  case: (contact_at _ _) => [i j k m|i a|i a|k] /=; rewrite ?separation_is_from_the_image // ?addr0 ?addn0 ?subr_ge0 -?expr2 //.
+  case: (contact_at _ _) => [i j k k' m|i a|i a|k] /=; rewrite ?distance_by_separations ?addr0 ?subr_ge0 -?expr2 //.
   - by move=> low; rewrite mulr_ge0 ?subr_ge0 // addr_ge0 // ltW.
   - by move=> low; rewrite mulr_ge0 ?subr_ge0 ?ler_subr_addl // addr_ge0 // ltW.
   by move=> ->; rewrite subrr mulr0.

@@ -10,9 +10,9 @@ Import Order.Theory GRing.Theory Num.Theory.
 Local Open Scope ring_scope.
 
 Section Vertex.
-Variables (F : archiFieldType) (n : nat) (w : F) (radius place : nat -> F) (contacts : seq contact).
-Let N := (n.*2.+3)%N.
-Let C : F := (curvature n contacts)%:R.
+Variables (F : archiFieldType) (d : dimension) (n : nat) (w : F) (radius place : nat -> F) (contacts : seq contact).
+Let N := (coordinates_of d n)%N.
+Let C : F := (curvature d n contacts)%:R.
 Variables (q0 q1 : 'cV[F]_N) (b rho r : F).
 Let A := derivative w contacts : 'cV[F]_N -> 'M[F]_N.
 Let gaps := gaps w radius place contacts : 'cV[F]_N -> 'cV[F]_N.

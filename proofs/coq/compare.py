@@ -5,11 +5,13 @@ Every number of the file is a double, hence an exact fraction; those that Coq pr
 Packing, contacts and loads have to be equal; claims of the file have to follow from what was proved. Exit status 1 and
 the first difference otherwise."""
 import json
+import math
 import re
 import sys
 from fractions import Fraction
 
-UPPER = {"left": "Lower {} 0", "bottom": "Lower {} 1", "right": "Upper {} 0", "top": "Upper {} 1"}
+WALLS = {"left": "Lower {} 0", "bottom": "Lower {} 1", "back": "Lower {} 2", "right": "Upper {} 0", "top": "Upper {} 1", "front": "Upper {} 2"}
+AXES = "xyz"
 
 
 def differ(what):
@@ -41,7 +43,8 @@ def printed(log):
 
 def name(contact):
     i, j, *image = contact
-    return UPPER[j].format(i) if isinstance(j, str) else " ".join(map(str, ["Image", i, j, *(image[0] if image else [0, 0])]))
+    periods = image[0] if image else []
+    return WALLS[j].format(i) if isinstance(j, str) else " ".join(map(str, ["Image", i, j, *periods, *[0] * (3 - len(periods))]))
 
 
 def main(certificate_path, log_path, data_path):
@@ -53,7 +56,7 @@ def main(certificate_path, log_path, data_path):
         certificate = json.load(file)
     with open(log_path, encoding="utf-8") as file:
         values = printed(file.read())
-    ((unit, fine, force, small, unit_stress), n, contacts, walls, periodic, stored, radii, zoom, distance, ball, load, low, high, zeros, load_small,
+    ((unit, fine, force, small, unit_stress), d, n, contacts, walls, periodic, stored, radii, zoom, distance, ball, load, low, high, zeros, load_small,
      low_small, high_small, gap, rate, loaded, *ends) = values
     state, claims = certificate["state"], certificate["claims"]
     same("formats", [certificate["format"], certificate["version"], state["version"]], ["isostat-certificate", 1, 2])
@@ -61,34 +64,38 @@ def main(certificate_path, log_path, data_path):
              "disk_force", "infinitesimal", "contacts", "forces"}
     if set(state) - known:
         differ(f"the state has what Coq was not told of: {sorted(set(state) - known)}")
+    same("dimension", d, state["dimension"])
     lengths = [Fraction(x) for x in state["length"]]
+    tilts = [(a, b) for b in range(d) for a in range(b)]
+    places = [AXES[a] for a in range(d)] + [AXES[a] + AXES[b] for a, b in tilts]
     two = Fraction(2)
 
     def scaled(numbers, exponent):
         return [x * two**exponent for x in numbers]
 
     same("number of disks", n, len(state["disks"]))
-    cell = state.get("cell", {"axes": ["walls", "walls"], "moves": [], "tilt": [0], "pin": None})
-    if set(cell) != {"axes", "moves", "tilt", "pin"} or set(cell["moves"]) - {"x", "y", "xy"} or set(cell["axes"]) - {"periodic", "walls"}:
+    cell = state.get("cell", {"axes": ["walls"] * d, "moves": [], "tilt": [0] * len(tilts), "pin": None})
+    if set(cell) != {"axes", "moves", "tilt", "pin"} or set(cell["moves"]) - set(places) or set(cell["axes"]) - {"periodic", "walls"}:
         differ(f"this cell is not what Coq was told of: {cell}")
     repeats = [kind == "periodic" for kind in cell["axes"]]
     same("periodic axes", periodic, repeats)
-    same("coordinates", scaled(stored, unit), [Fraction(x) for d in state["disks"] for x in d[:2]] + lengths + [Fraction(cell["tilt"][0])])
-    if not all(repeats) and (cell["tilt"] != [0] or "xy" in cell["moves"]):
-        differ("a tilt beside walls")
-    same("radii", scaled(radii, unit), [Fraction(d[2]) for d in state["disks"]])
+    same("coordinates", scaled(stored, unit), [Fraction(x) for grain in state["disks"] for x in grain[:d]] + lengths + [Fraction(x) for x in cell["tilt"]])
+    for (a, b), tilt, moves in zip(tilts, cell["tilt"], places[d:]):
+        if not (repeats[a] and repeats[b]) and (tilt != 0 or moves in cell["moves"]):
+            differ(f"a tilt {moves} beside walls")
+    same("radii", scaled(radii, unit), [Fraction(grain[d]) for grain in state["disks"]])
     lower, upper = state["walls"]["lower"], state["walls"]["upper"]
     if set(state["walls"]) != {"lower", "upper"} or set(lower) - {"fixed", "absent"} or set(upper) - {"fixed", "absent", "movable"}:
         differ(f"these walls are not what Coq was told of: {state['walls']}")
     same("walls", walls, [kind != "absent" for kind in lower + upper])
-    if any(repeats[a] and {lower[a], upper[a]} != {"absent"} for a in range(2)) or any(repeats) and state.get("fixed"):
+    if any(repeats[a] and {lower[a], upper[a]} != {"absent"} for a in range(d)) or any(repeats) and state.get("fixed"):
         differ("a cell with a wall on a periodic axis, or with fixed disks")
-    movable = ["xy"[a] in cell["moves"] if repeats[a] else upper[a] == "movable" for a in range(2)] + ["xy" in cell["moves"]]
-    held = [2 * i + a for i in range(n) for a in range(2) if i in state.get("fixed", []) or (repeats[a] and i == cell["pin"])]
-    held += [2 * n + a for a in range(3) if not movable[a]]
+    movable = [upper[a] == "movable" if a < d and not repeats[a] else place in cell["moves"] for a, place in enumerate(places)]
+    held = [d * i + a for i in range(n) for a in range(d) if i in state.get("fixed", []) or (repeats[a] and i == cell["pin"])]
+    held += [d * n + a for a in range(len(places)) if not movable[a]]
     same("contacts and what is held", contacts, [name(c) for c in state["contacts"]] + [f"Held {k}" for k in held])
     same("units", zoom * two**fine, two**unit)
-    counting, moving = claims["counting"], 2 * n + 3 - len(held)
+    counting, moving = claims["counting"], d * n + len(places) - len(held)
     same("counting", [moving, moving, moving, 0, 0],
          [counting[k] for k in ("dof_count", "contact_count", "rank", "hyperstaticity", "hypostaticity")])
     if distance * two**fine > Fraction(claims["vertex"]["radius"]):
@@ -100,16 +107,16 @@ def main(certificate_path, log_path, data_path):
     same("kind of load", loads["kind"], "nominal")
     if set(loads) - {"kind", "stress", "loaded_axis", "reference_length", "shear", "reference_tilt"}:
         differ(f"the load has what Coq was not told of: {sorted(loads)}")
-    disk_force = [Fraction(x) for d in state.get("disk_force", []) for x in d] or [Fraction(0)] * (2 * n)
-    infinitesimal = [Fraction(x) for d in state["infinitesimal"] for x in d]
-    for a in range(2):
-        if repeats[a] and (sum(disk_force[a::2]) != 0 or sum(infinitesimal[a::2]) != 0):
+    disk_force = [Fraction(x) for grain in state.get("disk_force", []) for x in grain] or [Fraction(0)] * (d * n)
+    infinitesimal = [Fraction(x) for grain in state["infinitesimal"] for x in grain]
+    for a in range(d):
+        if repeats[a] and (sum(disk_force[a::d]) != 0 or sum(infinitesimal[a::d]) != 0):
             differ(f"loads on the disks do not cancel along periodic axis {a}")
     reference = [Fraction(x) for x in loads["reference_length"]]
-    presses_on = [reference[1], reference[0], reference[0]] # along x, y, and of the tilt
-    stress = [Fraction(x) for x in loads["stress"] + loads.get("shear", [0])]
-    same("load", scaled(load, force), disk_force + [-stress[a] * presses_on[a] if movable[a] else Fraction(0) for a in range(3)])
-    same("infinitesimal load", scaled(load_small, small), infinitesimal + [Fraction(0)] * 3)
+    presses_on = [math.prod(reference[:b] + reference[b + 1:]) for b in [*range(d), *(b for _, b in tilts)]] # lengths of the other axes
+    stress = [Fraction(x) for x in loads["stress"] + loads.get("shear", [0] * len(tilts))]
+    same("load", scaled(load, force), disk_force + [-stress[a] * presses_on[a] if movable[a] else Fraction(0) for a in range(len(places))])
+    same("infinitesimal load", scaled(load_small, small), infinitesimal + [Fraction(0)] * len(places))
     claim = claims["forces"]
     same("structural zeros", [l for l, zero in enumerate(zeros) if zero], claim["structural_zeros"])
 
@@ -129,16 +136,16 @@ def main(certificate_path, log_path, data_path):
     axis = loads["loaded_axis"]
     same("loaded stress", loaded * two**unit_stress, stress[axis])
     same("load per unit of stress", scaled(rate, force - unit_stress),
-         [Fraction(0)] * (2 * n) + [-presses_on[a] if a == axis and movable[a] else Fraction(0) for a in range(3)])
+         [Fraction(0)] * (d * n) + [-presses_on[a] if a == axis and movable[a] else Fraction(0) for a in range(len(places))])
     interval = claims["load_interval"]
-    for end, claimed, (opens, places) in (("low", interval["low"], ends[:2]), ("high", interval["high"], ends[2:])):
+    for end, claimed, (opens, between) in (("low", interval["low"], ends[:2]), ("high", interval["high"], ends[2:])):
         same(f"{end} end of the load: what opens", [contacts[l] for l in opens], [] if claimed["unbounded"] else [name(claimed["opens"])])
         if not claimed["unbounded"]:
-            intervals([min(places)], [max(places)], unit_stress, [0], [claimed["stress"]], f"{end} end of the load")
+            intervals([min(between)], [max(between)], unit_stress, [0], [claimed["stress"]], f"{end} end of the load")
     same("claim of stability", claims["stable"], True)
     if gap * two**fine < Fraction(claims["gaps"]["smallest"]):
         differ("a larger gap is claimed than Coq proved")
-    print(f"{n} disks: Coq's packing is that of the certificate; counting, vertex, forces, gaps, load interval and stability follow")
+    print(f"{n} {'disks' if d == 2 else 'spheres'}: Coq's packing is that of the certificate; counting, vertex, forces, gaps, load interval and stability follow")
 
 
 main(*sys.argv[1:])

@@ -15,11 +15,15 @@ Set Implicit Arguments.
 Unset Strict Implicit.
 Import Order.Theory GRing.Theory Num.Theory.
 
-(** Disks and axes are numbered from 0. [Image i j k l]: disk i and disk j, moved by k periods along x and l along y; in a
-  box there are none. [Held k] is no contact but a row like one: coordinate k, of a fixed disk or of a wall that does not
-  move, stays where it is. *)
-Inductive contact := Image of nat & nat & Z & Z | Lower of nat & nat | Upper of nat & nat | Held of nat.
-Definition Disks (i j : nat) : contact := Image i j Z0 Z0.
+(** Disks of the plane, spheres of space: the number of axes. *)
+Inductive dimension := Plane | Space.
+Coercion axes (d : dimension) : nat := if d is Plane then 2 else 3.
+
+(** Grains and axes are numbered from 0. [Image i j k l m]: grain i and grain j, moved by k periods along x, l along y and
+  m along z; in a box there are none. [Held k] is no contact but a row like one: coordinate k, of a fixed grain or of a
+  wall that does not move, stays where it is. *)
+Inductive contact := Image of nat & nat & Z & Z & Z | Lower of nat & nat | Upper of nat & nat | Held of nat.
+Definition Disks (i j : nat) : contact := Image i j Z0 Z0 Z0.
 Definition holds (c : contact) : bool := if c is Held _ then true else false.
 
 Section Check.
@@ -32,7 +36,7 @@ Definition difference (i j a : nat) : Z := Z.sub (coordinate (j.*2 + a)) (coordi
 (** Minus the gradient of the gap, multiplied by the distance of the centres: approach velocity times distance. *)
 Definition sparse_row (c : contact) : seq (nat * Z) :=
   match c with
-  | Image i j _ _ => [:: (i.*2, difference i j 0); (i.*2 + 1, difference i j 1); (j.*2, difference j i 0);
+  | Image i j _ _ _ => [:: (i.*2, difference i j 0); (i.*2 + 1, difference i j 1); (j.*2, difference j i 0);
     (j.*2 + 1, difference j i 1)]
   | Lower i a => [:: (i.*2 + a, Zneg xH)]
   | Upper i a => [:: (i.*2 + a, Zpos xH); (n.*2 + a, Zneg xH)]
@@ -43,7 +47,7 @@ Definition sparse_row (c : contact) : seq (nat * Z) :=
   the walls for a disk, and [Lower 0 5] would be [Lower 2 1]. *)
 Definition well_formed (c : contact) : bool :=
   match c with
-  | Image i j k l => [&& i < n, j < n, i != j, k == Z0 & l == Z0]
+  | Image i j k l m => [&& i < n, j < n, i != j, k == Z0 & (l == Z0) && (m == Z0)]
   | Lower i a | Upper i a => (i < n) && (a < 2)
   | Held k => k < N
   end%N.
@@ -91,7 +95,7 @@ by split=> // j; rewrite e0 entry big_cons.
 Qed.
 
 Lemma well_formed_rows_are_in_range c : well_formed c -> all (fun e => e.1 < N)%N (sparse_row c).
-Proof. by case: c => [i j k l|i a|i a|k] /=; rewrite /N; lia. Qed.
+Proof. by case: c => [i j k l m|i a|i a|k] /=; rewrite /N; lia. Qed.
 
 Lemma certified_inverse p (B : table) (l j : 'I_N) : certified p B ->
   Z.modulo (Z.sub ((integer_matrix *m \matrix_(k, m) nth 0 (nth [::] B k) m) l j) (if l == j then Zpos xH else Z0)) p
@@ -123,7 +127,7 @@ Qed.
 Variable F : rcfType.
 Definition length_of (c : contact) : F :=
   match c with
-  | Image i j _ _ => Num.sqrt ((int_of_Z (difference i j 0))%:~R ^+ 2 + (int_of_Z (difference i j 1))%:~R ^+ 2)
+  | Image i j _ _ _ => Num.sqrt ((int_of_Z (difference i j 0))%:~R ^+ 2 + (int_of_Z (difference i j 1))%:~R ^+ 2)
   | _ => 1
   end.
 Definition contact_matrix : 'M[F]_N :=
@@ -146,14 +150,14 @@ by split=> // load f; apply: forces_exist_and_are_unique.
 Qed.
 (** Two different centres: a boolean that can be evaluated. *)
 Definition distinct_centres : bool :=
-  all (fun c => if c is Image i j _ _ then ~~ (Z.eqb (difference i j 0) Z0 && Z.eqb (difference i j 1) Z0) else true)
+  all (fun c => if c is Image i j _ _ _ then ~~ (Z.eqb (difference i j 0) Z0 && Z.eqb (difference i j 1) Z0) else true)
     contacts.
 
 Lemma distinct_centres_have_lengths : size contacts = N -> distinct_centres ->
   forall l : 'I_N, length_of (nth contact0 contacts l) != 0.
 Proof.
 move=> sC /(all_nthP contact0) away l; have := away l; rewrite sC => /(_ (ltn_ord l)).
-case: (nth _ _ _) => [i j ? ?|? ?|? ?|?] /=; rewrite ?oner_eq0 //.
+case: (nth _ _ _) => [i j ? ? ?|? ?|? ?|?] /=; rewrite ?oner_eq0 //.
 apply: contra; set x := difference i j 0; set y := difference i j 1.
 have zero (z : Z) : (int_of_Z z)%:~R ^+ 2 = 0 :> F -> Z.eqb z Z0.
   by move/eqP; rewrite sqrf_eq0 intr_eq0 => /eqP z0; apply/Z.eqb_eq/(can_inj int_of_ZK).

@@ -37,16 +37,17 @@ Record equilibrium_certificate := EquilibriumCertificate {
 Section Check.
 Variable e : equilibrium_certificate.
 Let v := vertex e.
+Let d := lies_in v.
 Let n := disks v.
-Let N := (n.*2.+3)%N.
+Let N := (coordinates_of d n)%N.
 Local Open Scope Z_scope.
 
-Definition rows_at_the_refined_one (c : contact) : seq (nat * Z) := gradient n (fine_weight v) (refined_at v) c.
+Definition rows_at_the_refined_one (c : contact) : seq (nat * Z) := gradient d n (fine_weight v) (refined_at v) c.
 Definition contributions (T : Type) (rows : contact -> seq (nat * T)) (value : T -> Z -> Z) (p : force_solution) : seq (nat * Z) :=
-  flatten [seq [seq (d.1, value d.2 cg.2) | d <- rows cg.1] | cg <- zip (contacts v) (quotients p)].
+  flatten [seq [seq (t.1, value t.2 cg.2) | t <- rows cg.1] | cg <- zip (contacts v) (quotients p)].
 Definition residual (p : force_solution) : seq Z :=
   put_all (contributions rows_at_the_refined_one Z.mul p) [seq fraction p * z | z <- load p].
-Definition blur (p : force_solution) : seq Z := dense N (contributions (entry_changes n) (fun m g => Z.of_nat m * Z.abs g) p).
+Definition blur (p : force_solution) : seq Z := dense N (contributions (entry_changes d n) (fun m g => Z.of_nat m * Z.abs g) p).
 Definition nearly_balanced (p : force_solution) : bool :=
   let res := residual p in let bl := blur p in
   [&& size (load p) == N, size (quotients p) == N, 0 <? fraction p, 0 <=? slack p
@@ -65,7 +66,7 @@ Definition zero_at (l : nat) : bool := nth false (zeros e) l.
 Definition counted (more : nat) (mask free : seq bool) : bool :=
   [&& size mask == N, size free == N, count id mask == (count id free + more)%N
     & all (fun l => nth false mask l
-        || all (fun k => ~~ nth false free k) (coordinates n (contact_at (contacts v) l))) (iota 0 N)].
+        || all (fun k => ~~ nth false free k) (coordinates d n (contact_at (contacts v) l))) (iota 0 N)].
 Definition free_of (p : seq Z) (free : seq bool) : bool :=
   all (fun k => ~~ nth false free k || (nth 0 p k =? 0)) (iota 0 N).
 Definition zeros_are_structural : bool := counted 0 (zeros e) (unloaded e) && free_of (load (finite e)) (unloaded e).
@@ -75,15 +76,15 @@ Definition forces_claimed : bool :=
 
 (** Along a periodic axis one row holds a disk, and no wall bears a force. *)
 Definition one_pin (a : nat) : bool :=
-  ~~ nth false (periodic v) a || let first := find (pins n a) (contacts v) in
-    [&& ~~ nth false (walls v) a, ~~ nth false (walls v) (2 + a)
-      & all (fun l => (l == first) || ~~ pins n a (contact_at (contacts v) l)) (iota 0 N)].
+  ~~ repeats d (periodic v) a || let first := find (pins d n a) (contacts v) in
+    [&& ~~ nth false (walls v) a, ~~ nth false (walls v) (d + a)
+      & all (fun l => (l == first) || ~~ pins d n a (contact_at (contacts v) l)) (iota 0 N)].
 
 Definition widest : Z := foldr Z.max 0 [seq fine_radius v i | i <- iota 0 n].
 Definition equilibrium_check : bool :=
   [&& vertex_check v, nearly_balanced (finite e), nearly_balanced (infinitesimal e), zeros_are_structural
-    & [&& forces_claimed, one_pin 0, one_pin 1
-      & gaps_check n (walls v) (periodic v) (contacts v) (fine_radius v) (fine_place v) (refined_at v) (error v) (gap e) widest]].
+    & [&& forces_claimed, all one_pin (iota 0 d)
+      & gaps_check d n (walls v) (periodic v) (contacts v) (fine_radius v) (fine_place v) (refined_at v) (error v) (gap e) widest]].
 End Check.
 
 Local Open Scope ring_scope.
@@ -91,8 +92,9 @@ Local Open Scope ring_scope.
 Section Correct.
 Variables (F : archiFieldType) (e : equilibrium_certificate).
 Let v := vertex e.
+Let d := lies_in v.
 Let n := disks v.
-Let N := (n.*2.+3)%N.
+Let N := (coordinates_of d n)%N.
 Let q1 : 'cV[F]_N := refined_configuration F v.
 Let q0 : 'cV[F]_N := stored_configuration F v.
 Let w : F := real (fine_weight v).
@@ -104,15 +106,15 @@ Let posed : well_posed v. Proof. by case/and5P: vertex_ok. Qed.
 Let size_contacts : size (contacts v) = N. Proof. by case/and5P: posed => _ _ /andP[/eqP]. Qed.
 
 Lemma derivative_at_the_refined_one (l k : 'I_N) : A q1 l k
-  = real (\sum_(d <- rows_at_the_refined_one e (contact_at (contacts v) l) | d.1 == k) d.2).
+  = real (\sum_(t <- rows_at_the_refined_one e (contact_at (contacts v) l) | t.1 == k) t.2).
 Proof.
-rewrite mxE (gradient_ext _ _ _ (at_refined _ posed)) (gradient_morphism (real_rmorphism F)) big_map.
+rewrite mxE (gradient_ext _ _ _ _ (at_refined _ posed)) (gradient_morphism (real_rmorphism F)) big_map.
 by rewrite rmorph_sum.
 Qed.
 
 Lemma contributions_sum (T : Type) (rows : contact -> seq (nat * T)) (value : T -> Z -> Z) p k : size (quotients p) = N ->
-  \sum_(d <- contributions e rows value p | d.1 == k) d.2
-    = \sum_(l < N) \sum_(d <- rows (contact_at (contacts v) l) | d.1 == k) value d.2 (nth 0 (quotients p) l).
+  \sum_(t <- contributions e rows value p | t.1 == k) t.2
+    = \sum_(l < N) \sum_(t <- rows (contact_at (contacts v) l) | t.1 == k) value t.2 (nth 0 (quotients p) l).
 Proof.
 move=> sG; rewrite /contributions big_flatten big_map (big_nth (Lower 0 0, 0)) big_mkord size_zip size_contacts sG minnn.
 by apply: eq_bigr => l _; rewrite nth_zip ?sG ?size_contacts // big_map.
@@ -122,11 +124,11 @@ Definition load_vector (p : force_solution) : 'cV[F]_N := \col_k real (nth 0 (lo
 Definition quotient_vector (p : force_solution) : 'cV[F]_N := \col_l real (nth 0 (quotients p) l).
 
 Let blur_is_sum p (k : 'I_N) : size (quotients p) = N ->
-  \sum_(l < N) real (error v) * (\sum_(d <- entry_changes n (contact_at (contacts v) l) | d.1 == k) d.2)%:R
+  \sum_(l < N) real (error v) * (\sum_(t <- entry_changes d n (contact_at (contacts v) l) | t.1 == k) t.2)%:R
       * `|quotient_vector p l 0| = real (error v) * real (nth 0 (blur e p) k).
 Proof.
 move=> sG; rewrite dense_entry // contributions_sum // rmorph_sum mulr_sumr; apply: eq_bigr => l _.
-rewrite -mulrA; congr (_ * _); rewrite mxE real_abs natr_sum mulr_suml rmorph_sum; apply: eq_bigr => d _.
+rewrite -mulrA; congr (_ * _); rewrite mxE real_abs natr_sum mulr_suml rmorph_sum; apply: eq_bigr => t _.
 by rewrite -real_of_nat -real_times.
 Qed.
 
@@ -150,7 +152,7 @@ Lemma scale_is_positive l : 0 < real (scale_of e l) :> F.
 Proof.
 have : 0 < scale w (radius F v) (contact_at (contacts v) l).
   by have := scales_are_positive F posed l; case: (contact_at _ _) => //= *; apply: w_gt0.
-by congr (0 < _); rewrite /scale_of; case: (contact_at _ _) => //= i j _ _; rewrite real_plus.
+by congr (0 < _); rewrite /scale_of; case: (contact_at _ _) => //= i j _ _ _; rewrite real_plus.
 Qed.
 
 (** What a solution proves of the forces at the true vertex q. *)
@@ -173,7 +175,7 @@ have [] := forces_are_enclosed w1 scales unit b0 inverse near (load := load_vect
   have := res (k : nat); rewrite mem_iota ltn_ord => /(_ isT); by rewrite -(real_le F) real_plus !real_times.
 move=> f [bal alone close]; exists f; split=> // l.
 have SE : scale w (radius F v) (contact_at (contacts v) l) = real (scale_of e l).
-  by rewrite /scale_of; case: (contact_at _ _) => //= i j _ _; rewrite real_plus.
+  by rewrite /scale_of; case: (contact_at _ _) => //= i j _ _ _; rewrite real_plus.
 have := close l; rewrite SE (gtr0_norm (scale_is_positive l)) mxE ler_distl -mulrBr -mulrDr.
 by rewrite real_minus real_plus.
 Qed.
@@ -192,7 +194,7 @@ Qed.
 Definition flagged (mask : seq bool) : {set 'I_N} := [set k : 'I_N | nth false mask k].
 Lemma counted_sets more mask free : counted e more mask free -> #|flagged mask| = (#|flagged free| + more)%N /\
   forall k l : 'I_N, k \in flagged free -> l \notin flagged mask ->
-    (k : nat) \notin coordinates n (contact_at (contacts v) l).
+    (k : nat) \notin coordinates d n (contact_at (contacts v) l).
 Proof.
 case/and4P=> /eqP sM /eqP sU /eqP same /allP apart.
 have card (m : seq bool) : size m = N -> #|flagged m| = count id m.
@@ -216,7 +218,7 @@ Let structural : zeros_are_structural e. Proof. by case/and5P: check. Qed.
 Let zeros_counted : #|flagged (unloaded e)| = #|flagged (zeros e)|.
 Proof. by case/andP: structural => /counted_sets[-> _]; rewrite addn0. Qed.
 Let zeros_apart (k l : 'I_N) : k \in flagged (unloaded e) -> l \notin flagged (zeros e) ->
-  (k : nat) \notin coordinates n (contact_at (contacts v) l).
+  (k : nat) \notin coordinates d n (contact_at (contacts v) l).
 Proof. by case/andP: structural => /counted_sets[_ apart] _; apply: apart. Qed.
 Let zeros_unloaded : forall k, k \in flagged (unloaded e) -> load_vector (finite e) k 0 = 0.
 Proof. by case/andP: structural => _ /free_of_load. Qed.
@@ -229,11 +231,11 @@ Qed.
 
 (** What is said of a configuration: the statement of the theorem, in full. *)
 Definition is_the_equilibrium (q : 'cV[F]_N) : Prop :=
-  [/\ forall l : 'I_N, in_the_packing n (walls v) (periodic v) (contact_at (contacts v) l)
-       /\ touch n (radius F v) (place F v) (at_ q) (contact_at (contacts v) l),
+  [/\ forall l : 'I_N, in_the_packing d n (walls v) (periodic v) (contact_at (contacts v) l)
+       /\ touch d n (radius F v) (place F v) (at_ q) (contact_at (contacts v) l),
      normals (radius F v) (contacts v) q \in unitmx,
-     forall c, in_the_packing n (walls v) (periodic v) c -> ~~ holds c -> ~~ listed (contacts v) c ->
-       apart n (radius F v) (place F v) (at_ q) (if immobile n (contacts v) c then 0 else real (gap e)) c,
+     forall c, in_the_packing d n (walls v) (periodic v) c -> ~~ holds c -> ~~ listed (contacts v) c ->
+       apart d n (radius F v) (place F v) (at_ q) (if immobile d n (contacts v) c then 0 else real (gap e)) c,
      exists f : 'cV[F]_N, [/\ balanced (radius F v) (contacts v) q (load_vector (finite e)) f,
        forall f', balanced (radius F v) (contacts v) q (load_vector (finite e)) f' -> f' = f
        & forall l : 'I_N, ~~ held_at e l -> if zero_at e l then f l 0 = 0 else
@@ -253,7 +255,7 @@ Definition is_certified (q : 'cV[F]_N) : Prop :=
   [/\ norm (q - q1) <= real (error v), norm (q - q0) <= real (distance v), is_the_equilibrium q,
      strict_minimum (radius F v) (place F v) (contacts v) (load_vector (finite e)) (load_vector (infinitesimal e)) q
    & forall q' : 'cV[F]_N, norm (q' - q0) <= real (zoom v * ball v) ->
-       (forall l : 'I_N, touch n (radius F v) (place F v) (at_ q') (contact_at (contacts v) l)) -> q' = q].
+       (forall l : 'I_N, touch d n (radius F v) (place F v) (at_ q') (contact_at (contacts v) l)) -> q' = q].
 Definition certified_equilibrium : Prop := exists q, is_certified q.
 
 Let inside (q : 'cV[F]_N) : norm (q - q1) <= real (error v) -> norm (q - q0) <= real (distance v) ->
@@ -269,7 +271,7 @@ Theorem one_equilibrium : complete F -> certified_equilibrium.
 Proof.
 move=> full; have [q [near close closed unit alone]] := one_vertex posed full vertex_ok.
 have inside_q := inside near close.
-have /and5P[_ bal bal_small _ /and4P[/allP claims _ _ gaps_ok]] := check.
+have /and5P[_ bal bal_small _ /and3P[/allP claims _ gaps_ok]] := check.
 have claimed (l : 'I_N) : if held_at e l then ~~ zero_at e l
     else interval_claimed e (if zero_at e l then infinitesimal e else finite e) l.
   by apply: claims; rewrite mem_iota ltn_ord.
@@ -304,23 +306,23 @@ Qed.
 (** Loads that cancel along a periodic axis, and forces that balance them: what holds a disk there bears nothing. The
     forces are those of contacts alone, whichever disk is held. *)
 Definition pins_bear_nothing (q : 'cV[F]_N) : Prop :=
-  forall (a : nat) (any f : 'cV[F]_N), nth false (periodic v) a -> balanced (radius F v) (contacts v) q any f ->
-    \sum_(i < n) at_ any (i.*2 + a) = 0 -> forall l : 'I_N, pins n a (contact_at (contacts v) l) -> f l 0 = 0.
+  forall (a : nat) (any f : 'cV[F]_N), repeats d (periodic v) a -> balanced (radius F v) (contacts v) q any f ->
+    \sum_(i < n) at_ any (i * d + a) = 0 -> forall l : 'I_N, pins d n a (contact_at (contacts v) l) -> f l 0 = 0.
 
 Lemma no_pin_bears_anything q : pins_bear_nothing q.
 Proof.
-move=> a any f along bal cancel l pinned; have /and5P[_ _ _ _ /and4P[_ pin0 pin1 _]] := check.
-have a2 : (a < 2)%N by move: pinned; case: (contact_at _ _) => //= k /andP[_ /eqP <-]; case: (odd k).
-have : one_pin e a by case: a a2 {along cancel pinned} => [|[|a]].
+move=> a any f along bal cancel l pinned; have /and5P[_ _ _ _ /and3P[_ /allP pin _]] := check.
+have /andP[ad _] := along.
+have : one_pin e a by apply: pin; rewrite mem_iota.
 rewrite /one_pin along => /and3P[low high /allP alone].
-apply: (one_pin_bears_nothing bal a2 cancel _ _ pinned) => [m|m m' pm pm'].
+apply: (one_pin_bears_nothing bal ad cancel _ _ pinned) => [m|m m' pm pm'].
   have /and5P[_ _ /andP[/eqP sC /all_nthP rows] _ _] := posed.
   have := rows (Lower 0 0) m; rewrite sC => /(_ (ltn_ord m)); rewrite /contact_at.
-  case: (nth _ _ m) => [i j p r /and5P[i_n j_n _ _ _]|i z /and3P[i_n z2 there]|i z /and3P[i_n z2 there]|//];
-    rewrite /blind i_n ?j_n ?z2 //=.
+  case: (nth _ _ m) => [i j p r r' /and5P[i_n j_n _ _ _]|i z /and3P[i_n zd there]|i z /and3P[i_n zd there]|//];
+    rewrite /blind i_n ?j_n ?zd //=.
     by apply: contraTneq there => ->.
   by apply: contraTneq there => ->.
-have first k : pins n a (contact_at (contacts v) (k : 'I_N)) -> (k : nat) = find (pins n a) (contacts v).
+have first k : pins d n a (contact_at (contacts v) (k : 'I_N)) -> (k : nat) = find (pins d n a) (contacts v).
   by move=> pk; have := alone (k : nat); rewrite mem_iota ltn_ord pk orbF => /(_ isT)/eqP.
 by apply: val_inj; rewrite /= (first _ pm) (first _ pm').
 Qed.

@@ -8,6 +8,7 @@ From Isostat Require Import contact_certificate max_norm box_certificate equilib
 Definition touching : seq contact := [:: Disks 0 1; Lower 1 0; Lower 1 1; Upper 0 0; Upper 0 1; Upper 1 1; Held 6].
 Open Scope Z_scope.
 Definition the_vertex : vertex_certificate := {|
+  lies_in := Plane;
   disks := 2;
   contacts := touching;
   walls := [:: true; true; true; true];
@@ -88,7 +89,7 @@ Definition two_disks : equilibrium_certificate := equilibrium the_certificate.
 Definition with_gap (g : Z) : equilibrium_certificate :=
   EquilibriumCertificate the_vertex the_forces the_infinitesimal_forces (zeros two_disks) (unloaded two_disks) g.
 Definition with_contacts (cs : seq contact) : vertex_certificate :=
-  VertexCertificate 2 cs (walls the_vertex) (periodic the_vertex) (stored the_vertex) (radii the_vertex) (weight the_vertex) (zoom the_vertex)
+  VertexCertificate Plane 2 cs (walls the_vertex) (periodic the_vertex) (stored the_vertex) (radii the_vertex) (weight the_vertex) (zoom the_vertex)
     (refined the_vertex) (error the_vertex) (distance the_vertex) (ball the_vertex) (stiffness the_vertex)
     (shift the_vertex) (factor the_vertex).
 Definition pulling : force_claim :=

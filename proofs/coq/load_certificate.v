@@ -32,7 +32,7 @@ Variable c : load_certificate.
 Let e := equilibrium c.
 Let v := vertex e.
 Let n := disks v.
-Let N := (n.*2.+3)%N.
+Let N := (coordinates_of (lies_in v) n)%N.
 Local Open Scope Z_scope.
 
 (** How fast a quotient falls, and how far ahead a stress is, when the stress grows or, [up = false], becomes less. *)
@@ -71,7 +71,7 @@ Variables (F : archiFieldType) (c : load_certificate).
 Let e := equilibrium c.
 Let v := vertex e.
 Let n := disks v.
-Let N := (n.*2.+3)%N.
+Let N := (coordinates_of (lies_in v) n)%N.
 
 (** The load when the stress is [s], and which of two stresses comes first. *)
 Definition load_at (s : F) : 'cV[F]_N := load_vector F e (finite e) + (s - real (stress c)) *: load_vector F e (rate c).

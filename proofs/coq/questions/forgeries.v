@@ -19,7 +19,7 @@ Definition rebuilt (lists : seq (seq Z)) (scalars : seq Z) (flags : seq (seq boo
   let l := nth [::] lists in let s := nth 0 scalars in let f := nth [::] flags in let o := nth None opening in
   LoadCertificate
     (EquilibriumCertificate
-      (VertexCertificate (disks v) touching (f 6%N) (f 7%N) (l 0%N) (l 1%N) (s 0%N) (s 1%N) (l 2%N) (s 2%N) (s 3%N) (s 4%N) (s 5%N) (s 6%N) rows)
+      (VertexCertificate (lies_in v) (disks v) touching (f 6%N) (f 7%N) (l 0%N) (l 1%N) (s 0%N) (s 1%N) (l 2%N) (s 2%N) (s 3%N) (s 4%N) (s 5%N) (s 6%N) rows)
       (ForceClaim (ForceSolution (l 3%N) (s 7%N) (l 6%N) (s 8%N)) (l 4%N) (l 5%N))
       (ForceClaim (ForceSolution (l 7%N) (s 9%N) (l 10%N) (s 10%N)) (l 8%N) (l 9%N))
       (f 0%N) (f 1%N) (s 11%N))
@@ -50,7 +50,7 @@ Definition in_list (k : nat) (f : nat -> Z -> Z) : seq load_certificate :=
 (** A wall that is touched is said to be none. Without contacts it may be: less is claimed then. Along a periodic axis
     there is said to be one. *)
 Definition touched (k : nat) : bool :=
-  has (fun d => match d with Lower _ a => a == k | Upper _ a => 2 + a == k | _ => false end)%N (contacts v).
+  has (fun d => match d with Lower _ a => a == k | Upper _ a => lies_in v + a == k | _ => false end)%N (contacts v).
 
 (** Intervals of forces that are used are moved beyond their own other end; the others stay out of this. *)
 Definition used (zero : bool) : seq nat := [seq l <- iota 0 (size (zeros c)) | (zero_at c l == zero) && ~~ held_at c l].
@@ -68,12 +68,13 @@ Definition forged_rows : seq load_certificate :=
     | row <- changed (fun _ e => (e.1, away e.2)) (nth [::] (factor v) k)] | k <- iota 0 (size (factor v))].
 
 Definition next (l : nat) : contact := nth (Lower 0 0) (contacts v) (if l is l'.+1 then l' else 1).
-Definition another_image (along_y : bool) (_ : nat) (d : contact) : contact :=
-  if d is Image i j k l then if along_y then Image i j k (l + 1) else Image i j (k + 1) l else Lower 0 2.
+Definition another_image (a : nat) (_ : nat) (d : contact) : contact :=
+  if d is Image i j k l m then match a with
+    | 0%N => Image i j (k + 1) l m | 1%N => Image i j k (l + 1) m | _ => Image i j k l (m + 1) end else Lower 0 3.
 Definition forged_contacts : seq load_certificate :=
   [seq rebuilt lists scalars flags l (factor v) opening
-    | l <- changed (fun l _ => next l) (contacts v) ++ changed (another_image false) (contacts v)
-      ++ changed (another_image true) (contacts v)].
+    | l <- changed (fun l _ => next l) (contacts v)
+      ++ flatten [seq changed (another_image a) (contacts v) | a <- iota 0 3]].
 
 (** Another contact is said to open: one that bears a force there. Or none at all; or one where none does. *)
 Definition forged_opening : seq load_certificate :=
@@ -111,7 +112,7 @@ Definition forgeries : seq load_certificate :=
   ++ flatten [seq [seq rebuilt lists scalars (set_nth [::] flags k f) (contacts v) (factor v) opening
     | f <- changed (fun _ => negb) (nth [::] flags k)] | k <- iota 0 6]
   ++ [seq rebuilt lists scalars (set_nth [::] flags 6 (set_nth false (walls v) k (~~ nth false (walls v) k))) (contacts v) (factor v) opening
-    | k <- iota 0 4 & touched k || nth false (periodic v) (odd k)]
+    | k <- iota 0 (2 * lies_in v) & touched k || nth false (periodic v) (k %% lies_in v)]
   ++ [seq rebuilt lists scalars (set_nth [::] flags 7 f) (contacts v) (factor v) opening | f <- changed (fun _ => negb) (periodic v)]
   ++ forged_contacts ++ forged_rows ++ forged_opening.
 

@@ -19,6 +19,7 @@ Proof. move=> full; exact: equilibrium_with_its_interval full accepted. Qed.
 Print Assumptions packing_is_in_equilibrium.
 Set Printing Depth 1000000.
 Eval vm_compute in (Data.certificate.exponents : seq Z).
+Eval vm_compute in (lies_in (vertex c) : nat).
 Eval vm_compute in disks (vertex c).
 Eval vm_compute in contacts (vertex c).
 Eval vm_compute in walls (vertex c).

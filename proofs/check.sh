@@ -17,7 +17,7 @@ fi
 make --no-print-directory -j "$(nproc)" -C proofs/coq
 if [ $# -gt 0 ]; then
   bash proofs/coq/check_certificates.sh "$1/examples/example_rank_certificate" "$1/certificates" 6 24
-  bash proofs/coq/check_equilibria.sh "$1/isostat" "$1/examples/example_equilibrium_certificate" "$1/certificates" 6 30 100 tests/data/coq/*.json tests/data/cells/*_16.json examples/cells/tilted-100.json
+  bash proofs/coq/check_equilibria.sh "$1/isostat" "$1/examples/example_equilibrium_certificate" "$1/certificates" 6 30 100 30-spheres tests/data/coq/*.json tests/data/cells/*_16.json examples/cells/tilted-100.json
 else
   echo "proofs/coq: no build folder given, no certificate was written"
 fi

@@ -70,13 +70,13 @@ Proof. by rewrite big_flatten big_map /over; elim: (iota 0 d) => [|a l IH]; rewr
 (** What the separation of grain i from an image of grain j is the sum of, along axis a. That of an own image depends on
     the periods alone. *)
 Definition along (d : dimension) (n i j : nat) (k l m : Z) (a : nat) : seq (nat * int) :=
-  let cell b := (n * d + b)%N in
   let periods := match a with
-    | 0%N => [:: (cell 0%N, - int_of_Z k); (cell d, - int_of_Z l); (cell d.+1, - int_of_Z m)]
-    | 1%N => [:: (cell 1%N, - int_of_Z l); (cell d.+2, - int_of_Z m)]
-    | _ => [:: (cell 2%N, - int_of_Z m)]
+    | 0%N => [:: (0%N, k); (d : nat, l); (d.+1, m)]
+    | 1%N => [:: (1%N, l); (d.+2, m)]
+    | _ => [:: (2%N, m)]
     end in
-  (if i == j then [::] else [:: ((i * d + a)%N, 1); ((j * d + a)%N, -1)]) ++ [seq e <- periods | e.2 != 0].
+  (if i == j then [::] else [:: ((i * d + a)%N, 1); ((j * d + a)%N, -1)])
+    ++ [seq ((n * d + e.1)%N, - int_of_Z e.2) | e <- periods & e.2 != 0].
 
 Definition repeats (d : dimension) (periodic : seq bool) (a : nat) : bool := (a < d)%N && nth false periodic a.
 
@@ -104,7 +104,7 @@ Definition coordinates (d : dimension) (n : nat) (c : contact) : seq nat :=
 Definition entry_changes (d : dimension) (n : nat) (c : contact) : seq (nat * nat) :=
   match c with
   | Image i j k l m =>
-      flatten [seq [seq (e.1, `|e.2| * spread (along d n i j k l m a))%N | e <- along d n i j k l m a] | a <- iota 0 d]
+      flatten [seq let s := along d n i j k l m a in let t := spread s in [seq (e.1, `|e.2| * t)%N | e <- s] | a <- iota 0 d]
   | _ => [::]
   end.
 
@@ -131,8 +131,7 @@ Definition doubled_gap (c : contact) : R :=
 (** Half the derivative of the doubled gap: coordinates that the contact depends on, with the entries. *)
 Definition gradient (c : contact) : seq (nat * R) :=
   match c with
-  | Image i j k l m => flatten [seq let s := separation i j k l m a in [seq (e.1, s *~ e.2) | e <- along d n i j k l m a]
-      | a <- iota 0 d]
+  | Image i j k l m => flatten [seq let s := along d n i j k l m a in let u := sum_at x s in [seq (e.1, u *~ e.2) | e <- s] | a <- iota 0 d]
   | Lower i a => [:: ((i * d + a)%N, w)]
   | Upper i a => [:: ((n * d + a)%N, w); ((i * d + a)%N, - w)]
   | Held k => [:: (k, w)]
@@ -158,11 +157,14 @@ Definition image_at (j : nat) (k l m : Z) (a : nat) : R :=
 
 Lemma separation_is_from_the_image i j k l m a : separation i j k l m a = x (i * d + a)%N - image_at j k l m a.
 Proof.
-have dropped s : sum_at x [seq e <- s | e.2 != 0] = sum_at x s.
-  by elim: s => //= e s <-; case: ifPn => //=; rewrite negbK => /eqP ->; rewrite mulr0z add0r.
+have dropped s : sum_at x [seq ((n * d + e.1)%N, - int_of_Z e.2) | e <- s & e.2 != 0]
+    = - foldr (fun e sum => x (n * d + e.1)%N *~ int_of_Z e.2 + sum) 0 s.
+  elim: s => [|e s IH] /=; first by rewrite oppr0.
+  case: ifPn => [_|]; first by rewrite /= IH mulrNz opprD.
+  by rewrite negbK => /eqP ->; rewrite IH rmorph0 mulr0z add0r.
 have ends b : sum_at x (if i == j then [::] else [:: ((i * d + b)%N, 1); ((j * d + b)%N, -1)]) = x (i * d + b)%N - x (j * d + b)%N.
   by case: eqP => [->|_] /=; rewrite ?subrr // mulr1z mulrNz mulr1z addr0.
-by rewrite /separation /along sum_at_cat dropped ends /image_at; case: a => [|[|a]] /=; rewrite !mulrNz; ring.
+by rewrite /separation /along sum_at_cat dropped ends /image_at; case: a => [|[|a]] /=; ring.
 Qed.
 End Polynomials.
 

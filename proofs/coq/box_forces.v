@@ -122,7 +122,7 @@ have -> : (\sum_(e <- flatten [seq [seq (e.1, `|e.2| * spread (along d n i j k k
   = over d (fun a => (\sum_(e <- [seq (e.1, `|e.2| * spread (along d n i j k k' k'' a))%N | e <- along d n i j k k' k'' a]
     | e.1 == m) e.2)%:R) :> F.
   by rewrite big_flatten big_map /over; elim: (iota 0 d) => [|a s IH]; rewrite ?big_nil // big_cons natrD IH.
-by rewrite overE mulr_sumr; apply: ler_sum => a _; apply: lists.
+by rewrite overE mulr_sumr; apply: ler_sum => a _; apply/lists/moved.
 Qed.
 
 Hypothesis b0 : 0 < b.

@@ -70,9 +70,9 @@ Definition blur : Z := 256 * error.
 Definition reach : Z := 2 * widest + gap + 2 * blur.
 
 Definition far_seen (s t : sight) : bool :=
-  let u := size_of s + size_of t + gap in
-  let dx := surely (abscissa s - abscissa t) (2 * blur) in let dy := surely (ordinate s - ordinate t) (2 * blur) in
-  let dz := surely (applicate s - applicate t) (2 * blur) in u * u <=? dx * dx + dy * dy + dz * dz.
+  let u := size_of s + size_of t + gap in let e := 2 * blur in
+  let dx := surely (abscissa s - abscissa t) e in let dy := surely (ordinate s - ordinate t) e in
+  let dz := surely (applicate s - applicate t) e in u * u <=? dx * dx + dy * dy + dz * dz.
 
 (** Contacts in binary numbers. *)
 Definition code (c : contact) : Z * Z * (Z * Z * Z) :=
@@ -324,9 +324,10 @@ rewrite (@over_ext _ d _ (fun a => separation d n y i j k l m a * separation d n
 suff -> : immobile d n contacts (Image j i (Z.opp k) (Z.opp l) (Z.opp m)) = immobile d n contacts (Image i j k l m) by [].
 have all_flatten (f : pred nat) ss : all f (flatten ss) = all (all f) ss by elim: ss => //= first ss <-; rewrite all_cat.
 rewrite /immobile /coordinates !all_flatten !all_map; apply: eq_all => a /=.
-rewrite /along eq_sym !(rmorphN [rmorphism of int_of_Z]) /unzip1 !map_cat !all_cat; congr (_ && _).
+have opp0 (u : Z) : (Z.opp u != Z0) = (u != Z0) by case: u.
+rewrite /along eq_sym /unzip1 !map_cat !all_cat; congr (_ && _).
   by case: (i == j) => //=; rewrite !andbT andbC.
-by case: a => [|[|a]] /=; rewrite !oppr_eq0; do 3?[case: ifP => _].
+by case: a => [|[|a]] /=; rewrite !opp0; do 3?[case: ifP => _].
 Qed.
 Let turn_good i j k l m : good (Image i j k l m) -> good (Image j i (Z.opp k) (Z.opp l) (Z.opp m)).
 Proof. by move=> g; apply: turned_is_good; rewrite !Z.opp_involutive. Qed.

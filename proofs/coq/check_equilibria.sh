@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Certificates of equilibria, made by the program, proved again by Coq alone:
-#   bash proofs/coq/check_equilibria.sh ISOSTAT WRITER FOLDER STATE.json | DISKS ...
+#   bash proofs/coq/check_equilibria.sh ISOSTAT WRITER FOLDER STATE.json | DISKS | COUNT-spheres ...
 # Each one must be accepted, and what Coq prints of it must agree with the file (compare.py). The first one and those of
 # a folder coq, which are small, are forged, one number at a time: Coq must compute that each forgery is refused, and compare.py must see each change of the file.
 set -euo pipefail
@@ -28,7 +28,9 @@ for packing in "$@"; do
   if [ -f "$packing" ]; then
     cp "$packing" "$place/state.json"
   else
-    printf '[packing]\ndisks = %d\ndiameters = [1.0, 2.0]\nseed = 1\n' "$packing" >"$place/scene.toml"
+    grains=disks
+    [[ "$packing" != *-spheres ]] || grains=spheres
+    printf '[packing]\n%s = %d\ndiameters = [1.0, 2.0]\nseed = 1\n' "$grains" "${packing%-spheres}" >"$place/scene.toml"
     "$isostat" prepare "$place/scene.toml" -o "$place/state.json" --quiet
   fi
   "$isostat" certify "$place/state.json" -o "$place/certificate.json" >"$place/certify.log"
@@ -83,7 +85,8 @@ changes = {
     "a force from below": lambda c: c["claims"]["forces"]["finite"][-1].__setitem__(0, c["claims"]["forces"]["finite"][-1][1]),
     "a force from above": lambda c: c["claims"]["forces"]["finite"][-1].__setitem__(1, c["claims"]["forces"]["finite"][-1][0]),
     "a coordinate": scale("state", "disks", 0, 0, by=1 + 2**-52),
-    "a radius of a disk": scale("state", "disks", 0, 2, by=1 + 2**-52),
+    "a radius": scale("state", "disks", 0, genuine["state"]["dimension"], by=1 + 2**-52),
+    "the dimension": lambda c: c["state"].__setitem__("dimension", 5 - c["state"]["dimension"]),
     "a length": scale("state", "length", 1, by=1 + 2**-52),
     "a stress": scale("state", "load", "stress", genuine["state"]["load"]["loaded_axis"], by=1.5),
     "an infinitesimal load": lambda c: c["state"]["infinitesimal"][0].__setitem__(0, 1.5 * c["state"]["infinitesimal"][0][0] + 1),
@@ -104,7 +107,7 @@ changes = {
 }
 if "cell" in genuine["state"]:
     cell = genuine["state"]["cell"]
-    shifted = [m[:2] + [[m[2][0] + 1, m[2][1]]] if len(m) == 3 else m for m in genuine["state"]["contacts"]]
+    shifted = [m[:2] + [[m[2][0] + 1, *m[2][1:]]] if len(m) == 3 else m for m in genuine["state"]["contacts"]]
     changes.update({
         "a cell": lambda c: c["state"].pop("cell"),
         "an axis": lambda c: c["state"]["cell"]["axes"].__setitem__(1, "walls" if cell["axes"][1] == "periodic" else "periodic"),
@@ -115,7 +118,7 @@ if "cell" in genuine["state"]:
         "images": lambda c: c["state"].__setitem__("contacts", shifted),
     })
     if "xy" in cell["moves"]:
-        changes["a shear stress"] = lambda c: c["state"]["load"].__setitem__("shear", [0.5])
+        changes["a shear stress"] = lambda c: c["state"]["load"].__setitem__("shear", [0.5] * len(cell["tilt"]))
 if genuine["claims"]["load_interval"]["high"]["unbounded"]:
     for name in ("the nearer end of the load", "what opens", "an end that is none"):
         del changes[name]

@@ -294,8 +294,8 @@ Examples: isostat verify certificate.json --input state.json
                "CERT.json|DIR");
         option(command, "--input", a.input, "also check that this is the file that the certificate speaks of", "FILE");
         auto* coq = command.add_flag("--coq", a.coq,
-                                     "also put the certificate through the checker that is proved in Coq (disks in a "
-                                     "box or a periodic cell; minutes; Debian packages: see proofs/coq_checker.md)");
+                                     "also put the certificate through the checker that is proved in Coq (disks or "
+                                     "spheres in boxes or cells; minutes; Debian packages: see proofs/coq_checker.md)");
         option(command, "--coq-limit", a.coq_limit, "seconds for each certificate (default: as long as it takes)",
                ranges::number(1, 1e9), "SECONDS")
             ->needs(coq);

@@ -1,7 +1,6 @@
 // `verify --coq` without Coq: what is proved with it is for proofs/coq/check_equilibria.sh.
 #include "cli/program.hpp"
 #include "support/crafted.hpp"
-#include "support/spheres.hpp"
 
 #include <isostat/io/state_file.hpp>
 
@@ -78,8 +77,6 @@ BOOST_AUTO_TEST_CASE(packings_that_the_checker_in_coq_does_not_cover_are_named) 
     const std::vector<std::pair<std::string, std::string>> cases{
         {here.certificate(isotropic, "isotropic"), "isotropic cells"},
         {here.certificate(pinned, "pinned"), "cells whose pinned disk bears no force"},
-        {here.certificate(isostat::test::state_of_spheres(isostat::test::read_spheres("box_uniform_30_1")), "spheres"),
-         "spheres"},
         {here.certificate(touching_dimer, "clumps"), "clumps"},
         {here.certificate(true_stress, "true"), "true stresses"},
     };

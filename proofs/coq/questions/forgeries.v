@@ -13,18 +13,19 @@ Definition whole : load_certificate := Data.certificate.the_certificate.
 Definition c : equilibrium_certificate := equilibrium whole.
 Definition v := vertex c.
 
-(** The certificate with other lists, scalars, flags, contacts, rows of L, and contacts that open. *)
-Definition rebuilt (lists : seq (seq Z)) (scalars : seq Z) (flags : seq (seq bool)) (touching : seq contact)
+(** The certificate in another dimension, with other lists, scalars, flags, contacts, rows of L, and contacts that open. *)
+Definition rebuilt_in (d : dimension) (lists : seq (seq Z)) (scalars : seq Z) (flags : seq (seq bool)) (touching : seq contact)
     (rows : seq (seq (Z * Z))) (opening : seq (option nat)) : load_certificate :=
   let l := nth [::] lists in let s := nth 0 scalars in let f := nth [::] flags in let o := nth None opening in
   LoadCertificate
     (EquilibriumCertificate
-      (VertexCertificate (lies_in v) (disks v) touching (f 6%N) (f 7%N) (l 0%N) (l 1%N) (s 0%N) (s 1%N) (l 2%N) (s 2%N) (s 3%N) (s 4%N) (s 5%N) (s 6%N) rows)
+      (VertexCertificate d (disks v) touching (f 6%N) (f 7%N) (l 0%N) (l 1%N) (s 0%N) (s 1%N) (l 2%N) (s 2%N) (s 3%N) (s 4%N) (s 5%N) (s 6%N) rows)
       (ForceClaim (ForceSolution (l 3%N) (s 7%N) (l 6%N) (s 8%N)) (l 4%N) (l 5%N))
       (ForceClaim (ForceSolution (l 7%N) (s 9%N) (l 10%N) (s 10%N)) (l 8%N) (l 9%N))
       (f 0%N) (f 1%N) (s 11%N))
     (ForceSolution (l 11%N) (s 12%N) (l 12%N) (s 13%N)) (s 14%N)
     (LoadEnd (o 0%N) (f 2%N) (f 3%N) (s 15%N) (s 16%N)) (LoadEnd (o 1%N) (f 4%N) (f 5%N) (s 17%N) (s 18%N)).
+Definition rebuilt := rebuilt_in (lies_in v).
 Definition force_lists (p : force_claim) : seq (seq Z) := [:: load p; low p; high p; quotients p].
 Definition lists : seq (seq Z) := [:: stored v; radii v; refined v] ++ force_lists (finite c)
   ++ force_lists (infinitesimal c) ++ [:: load (rate whole); quotients (rate whole)].
@@ -114,7 +115,8 @@ Definition forgeries : seq load_certificate :=
   ++ [seq rebuilt lists scalars (set_nth [::] flags 6 (set_nth false (walls v) k (~~ nth false (walls v) k))) (contacts v) (factor v) opening
     | k <- iota 0 (2 * lies_in v) & touched k || nth false (periodic v) (k %% lies_in v)]
   ++ [seq rebuilt lists scalars (set_nth [::] flags 7 f) (contacts v) (factor v) opening | f <- changed (fun _ => negb) (periodic v)]
-  ++ forged_contacts ++ forged_rows ++ forged_opening.
+  ++ forged_contacts ++ forged_rows ++ forged_opening
+  ++ [:: rebuilt_in (if lies_in v is Plane then Space else Plane) lists scalars flags (contacts v) (factor v) opening].
 
 Lemma rebuilding_changes_nothing : load_check genuine = true.
 Proof. vm_cast_no_check (erefl true). Qed.

@@ -94,7 +94,7 @@ changes = {
     "the further end of the load": lambda c: c["claims"]["load_interval"]["low"]["stress"].__setitem__(0, c["claims"]["load_interval"]["low"]["stress"][1]),
     "what opens": lambda c: c["claims"]["load_interval"]["low"].__setitem__("opens", c["claims"]["load_interval"]["high"]["opens"]),
     "an end that is none": lambda c: c["claims"]["load_interval"].__setitem__("high", {"unbounded": True}),
-    "the loaded axis": lambda c: c["state"]["load"].__setitem__("loaded_axis", 0),
+    "the loaded axis": lambda c: c["state"]["load"].__setitem__("loaded_axis", 0 if genuine["state"]["load"]["loaded_axis"] else 1),
     "a path of the load": lambda c: c["state"]["load"].__setitem__("path", [0, 1]),
     "stability": lambda c: c["claims"].__setitem__("stable", False),
     "a contact": lambda c: c["state"]["contacts"].reverse(),

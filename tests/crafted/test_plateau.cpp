@@ -8,7 +8,7 @@
 #include <isostat/preparation/preparation.hpp>
 #include <isostat/rigidity/counting.hpp>
 
-#include <crafted/hold.hpp>
+#include <crafted/inspection_parts.hpp>
 
 namespace {
 

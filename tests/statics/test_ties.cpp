@@ -178,7 +178,7 @@ BOOST_AUTO_TEST_CASE(a_candidate_that_touches_at_the_vertex_is_told_from_one_tha
     BOOST_TEST_REQUIRE(count(square) == 10);
     AtVertex at(square);
     const auto sign = [](const AtVertex& v, const Contact& c) {
-        return gap_sign_at_vertex(v.state.packing, v.structure, v.factorisation, v.inverse, c);
+        return gap_signs_at_vertex(v.state.packing, v.structure, v.factorisation, v.inverse, {c})[0];
     };
     const Order touches = sign(at, pair(2, 3));
     BOOST_TEST((touches.decided && touches.sign == 0 && touches.rung == Rung::exact));

@@ -291,10 +291,7 @@ int main(int argc, char** argv) {
     std::vector<std::vector<State>> states(levels.size());
     for (int repeat = 0; repeat < repeats; ++repeat) {
         for (std::size_t k = 0; k < levels.size(); ++k) {
-            bench::StretchOptions options;
-            options.level = levels[k];
-            options.equilibria = equilibria;
-            options.reference_every = 1;
+            bench::StretchOptions options{.level = levels[k], .equilibria = equilibria, .reference_every = 1};
             states[k].clear();
             options.visit = [&](const State& state) { states[k].push_back(state); };
             runs[k].runs.push_back(bench::run_stretch(*start, options));

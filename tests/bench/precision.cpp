@@ -185,8 +185,7 @@ int main(int argc, char** argv) {
     bool holds = true;
     for (const std::string& word : sizes) {
         const int n = std::atoi(word.c_str());
-        PreparationOptions options;
-        options.disks = n;
+        PreparationOptions options{.disks = n};
         PreparationReport report;
         auto state = prepare(options, report);
         if (state.ok()) {

@@ -1,15 +1,30 @@
 #include "../../src/contact/near_pairs.hpp"
 #include "../../src/contact/pair_list.hpp"
 #include "contact/candidates.hpp"
-#include "oracle/gaps.hpp"
+#include "oracle/geometry.hpp"
 #include "oracle/packings.hpp"
 #include "oracle/pairs.hpp"
 #include "support/scale.hpp"
+
+#include <gmpxx.h>
 
 using namespace isostat;
 using namespace isostat::oracle;
 
 namespace {
+
+/// Over the rationals.
+struct ExactGaps : Geometry<mpq_class> {
+    using Geometry<mpq_class>::Geometry;
+    /// Sign of gap - bound (bound >= -(R_i + R_j) for disk pairs).
+    [[nodiscard]] int sign_beyond(const Contact& contact, double bound) const {
+        if (!is_pair(contact)) {
+            return cmp(linear_gap(contact), mpq_class(bound));
+        }
+        const mpq_class d = target(contact) + mpq_class(bound);
+        return sgn(d) < 0 ? 1 : cmp(square(between(contact)), mpq_class(d * d));
+    }
+};
 
 /// Two-sided: nothing below the reach is missing, nothing above it (beyond rounding) is listed.
 void check_against_every_pair(const Packing& packing, double fraction) {

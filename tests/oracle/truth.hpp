@@ -131,7 +131,7 @@ template <class Real> class TruthIn : public Geometry<Real> {
     std::string why;     ///< when not
     Real moved = 0;      ///< largest difference of a coordinate from the stored one
     Real stored_gap = 0; ///< largest |gap| of a contact at the stored coordinates
-    Vector force, rate;  ///< at the stored load, and per unit of the loaded stress
+    Vector force, rate;  ///< at the stored load, and per unit of the loaded stress of axes
     Vector infinitesimal;
     Real force_scale = 0;
     std::vector<OtherPair> others; ///< by increasing gap
@@ -295,9 +295,7 @@ template <class Real> void TruthIn<Real>::find_forces() {
         const auto axis = static_cast<std::size_t>(a);
         const Real length = without(axis, load.kind != LoadKind::nominal);
         add(finite, wall(a), -Real(load.stress[axis]) * length);
-        if (a == load.loaded_axis) {
-            add(unit, wall(a), -length);
-        }
+        add(unit, wall(a), -Real(load.rate_of(axis)) * length);
     }
     force = h.solve(finite);
     rate = h.solve(unit);

@@ -9,19 +9,13 @@
 
 #include <cmath>
 
-using isostat::Contact;
-using isostat::ContactKind;
-using isostat::RunCounters;
-using isostat::RunOptions;
-using isostat::State;
+using namespace isostat;
 using isostat::test::with_infinitesimal;
 
 namespace {
 
 RunOptions whatever_the_strain() {
-    RunOptions options;
-    options.max_strain = HUGE_VAL;
-    return options;
+    return {.max_strain = HUGE_VAL};
 }
 
 } // namespace

@@ -295,6 +295,26 @@ BOOST_AUTO_TEST_CASE(unions_of_an_independent_program_are_proved_with_its_counts
     }
 }
 
+/// Contacts are closed and bear positive forces, and W'' is negative as the body turns on which a torque acts. Where
+/// the angles are free motions the same kinds of packings are proved, above.
+BOOST_AUTO_TEST_CASE(places_where_held_angles_bear_torques_are_no_equilibria) {
+    const std::vector<State> places = held_angles();
+    BOOST_TEST(places.size() == 15U);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        BOOST_TEST_CONTEXT("place " << i) {
+            const Inspection inspection = inspected(places[i]);
+            BOOST_TEST((inspection.record.verdict == Verdict::refuted));
+            BOOST_TEST((inspection.stable != Verdict::proved));
+            BOOST_TEST(inspection.remark.find("the mechanism moves") != std::string::npos, inspection.remark);
+            const Certification truth = certify(with_free_motions_held(places[i]));
+            BOOST_TEST((truth.verdict != Verdict::proved));
+            BOOST_TEST(!truth.claims.minimum.has_value());
+            BOOST_TEST(!truth.claims.counting.has_value());
+            BOOST_TEST(!truth.claims.stable);
+        }
+    }
+}
+
 /// The caps of an oval between four walls turn by nothing but the load: a minimum up to F_1 / F_2 = 4/3.
 BOOST_AUTO_TEST_CASE(an_oval_between_four_walls_rests_up_to_the_ratio_of_its_arms) {
     const auto inspection = inspect_mechanism(

@@ -197,46 +197,30 @@ class HeldForm {
         return (m.residual + turned_ * m.size) / sigma_min_ * up;
     }
 
-    /// d2W = - sum f_l D_l v_i . D_l v_j / D_l, as the kept gaps do not change: and by how much it may be off.
-    void add(std::size_t l) {
-        const double d = zero_distance(vertex_.packing, contacts_[l]);
-        const double f = force(l).value;
-        const double f_error = (force(l).radius + force_changes_) * up;
-        std::vector<PerAxis<double>> at;
-        std::vector<double> size, off; // of D_l v
-        for (const HeldMotion& m : motions_) {
-            at.push_back(separation(vertex_.packing.layout(), m.v, contacts_[l]));
-            double square = 0;
-            for (const double x : at.back()) {
-                square += x * x;
-            }
-            size.push_back(std::sqrt(square) * up);
-            off.push_back(std::sqrt(2.0) * velocity_error(m) * up);
-        }
-        for (std::size_t i = 0; i < motions_.size(); ++i) {
-            for (std::size_t j = 0; j < motions_.size(); ++j) {
-                double product = 0;
-                for (std::size_t a = 0; a < vertex_.packing.axes(); ++a) {
-                    product += at[i][a] * at[j][a];
-                }
-                const auto row = static_cast<Eigen::Index>(i);
-                const auto column = static_cast<Eigen::Index>(j);
-                const double moved = (size[i] + off[i]) * (size[j] + off[j]);
-                const double open = (size[i] * off[j] + off[i] * (size[j] + off[j])) * up;
-                form_(row, column) -= f * product / d;
-                error_(row, column) += (std::abs(f) * (open + roundings_ * moved) + f_error * moved) / d * up;
-            }
-        }
-    }
-
-    /// The form and what it may be off by, anywhere within reach.
+    /// d2W = - sum f_l D_l v_i . D_l v_j / D_l, as the kept gaps do not change: and by how much it may be off, anywhere
+    /// within reach.
     void find_form() {
         const auto k = static_cast<Eigen::Index>(motions_.size());
         form_ = error_ = Eigen::MatrixXd::Zero(k, k);
+        Eigen::MatrixXd at(k, static_cast<Eigen::Index>(most_axes)); // D_l v
+        Eigen::VectorXd off(k);
         for (std::size_t l = 0; l < contacts_.size(); ++l) {
-            if (contacts_[l].of_disks()) {
-                add(l);
+            if (!contacts_[l].of_disks()) {
+                continue;
             }
+            for (Eigen::Index i = 0; i < k; ++i) {
+                const HeldMotion& m = motions_[static_cast<std::size_t>(i)];
+                const auto rate = separation(vertex_.packing.layout(), m.v, contacts_[l]);
+                at.row(i) = Eigen::Map<const Eigen::RowVectorXd>(rate.data(), at.cols());
+                off(i) = std::sqrt(2.0) * velocity_error(m) * up;
+            }
+            const double d = zero_distance(vertex_.packing, contacts_[l]);
+            const Enclosure f = force(l);
+            const Eigen::VectorXd size = at.rowwise().norm() * up;
+            const Eigen::MatrixXd moved = (size + off) * (size + off).transpose();
+            const Eigen::MatrixXd open = size * off.transpose() + off * (size + off).transpose() + roundings_ * moved;
+            form_ -= f.value / d * (at * at.transpose());
+            error_ += (std::abs(f.value) * open + (f.radius + force_changes_) * moved) * (up * up / d);
         }
     }
 
@@ -442,18 +426,13 @@ Enclosure least_curvature(const Vertex& vertex, double sigma, const std::vector<
 std::optional<HeldMinimum> minimum_near(const Vertex& vertex, double sigma, const std::vector<std::size_t>& acting,
                                         double nearest) {
     HeldForm form(vertex, sigma, acting);
-    std::optional<HeldMinimum> best;
-    for (double share = 0x1p-3; share > 0x1p-40; share *= 0x1p-3) { // on a shorter way the form changes less
+    for (double share = 0x1p-39; share < 1; share *= 0x1p3) { // on a shorter way the form changes less
         if (auto minimum = form.prove(share * vertex.packing.min_radius(), nearest)) {
-            best = std::move(minimum);
-        } else if (best) {
-            break;
+            form.describe(*minimum);
+            return minimum;
         }
     }
-    if (best) {
-        form.describe(*best);
-    }
-    return best;
+    return {};
 }
 
 } // namespace isostat

@@ -480,6 +480,19 @@ BOOST_AUTO_TEST_CASE(ovals_of_an_independent_program_rest_in_strict_minima_with_
     }
 }
 
+/// Forces are positive and nothing overlaps, as in the packings above.
+BOOST_AUTO_TEST_CASE(a_saddle_of_ovals_is_no_minimum) {
+    const State saddle = clumps("saddle_1.1_20_102");
+    const Inspection inspection = inspected(saddle);
+    BOOST_TEST(!inspection.equilibrium);
+    BOOST_TEST((inspection.stable == Verdict::refuted), inspection.remark);
+    BOOST_TEST(!inspection.yielding.has_value());
+    const Certification truth = certify(with_free_motions_held(saddle));
+    BOOST_TEST((truth.verdict != Verdict::proved));
+    BOOST_TEST(!truth.claims.minimum.has_value());
+    BOOST_TEST(!truth.claims.stable);
+}
+
 BOOST_AUTO_TEST_CASE(the_stress_of_clumps_is_that_of_the_walls) {
     const State state = clumps("trimer_20_1");
     const isostat::ForceAverages mean = isostat::force_averages(state, certify(state));

@@ -157,3 +157,9 @@ for packing in "$@"; do
   echo "forgeries of '$packing' by the extracted program: $answer"
   [[ "$answer" == [1-9]*" refused, 0 accepted" ]]
 done
+# What only the reader can refuse: a natural number that is negative.
+for change in 's/disks := /&-/' 's/Disks [1-9]/Disks -9/' 's/Some /&-/'; do
+  sed "$change" "$first/certificate.v" >"$first/negative.v"
+  ! "$(python3 -B "$theory/prove.py" --cache --extracted)/program" "$first/negative.v" >"$first/negative.log" 2>&1
+  grep -q 'a natural number was expected' "$first/negative.log"
+done

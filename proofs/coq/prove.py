@@ -22,6 +22,7 @@ here = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(here))
 from compare import CLOSED, EXTRACTED # noqa: E402
 PACKAGES = "coq, libcoq-mathcomp-algebra, libcoq-mathcomp-algebra-tactics, libcoq-mathcomp-zify"
+COQC = ["coqc", "-q", "-noglob", "-w", "none"]
 OCAML_PACKAGES = "ocaml, ocaml-findlib, libzarith-ocaml-dev"
 QUESTIONS = ("integers_in_zarith", "extract")
 SOURCES = ("zarith.ml", "checker.mli", "checker.ml", "reader.ml", "program.ml") # Coq writes the second and the third
@@ -30,9 +31,6 @@ SOURCES = ("zarith.ml", "checker.mli", "checker.ml", "reader.ml", "program.ml") 
 def undecided(detail):
     print("undecided", " ".join(detail.split())[:1000])
     sys.exit(2)
-
-
-COQC = ["coqc", "-q", "-noglob", "-w", "none"]
 
 
 class Runner:
@@ -144,7 +142,7 @@ def compiled(run):
 
 def extracted(run):
     """The program that Coq extracts from the check of which the theorem speaks."""
-    if subprocess.run(["ocamlfind", "query", "zarith"], capture_output=True, check=False).returncode != 0:
+    if not shutil.which("ocamlfind") or subprocess.run(["ocamlfind", "query", "zarith"], capture_output=True, check=False).returncode != 0:
         undecided(f"OCaml or Zarith is not installed (Debian packages {OCAML_PACKAGES})")
     folder = compiled(run)
 

@@ -11,7 +11,8 @@ isostat_packages=(
 )
 
 # For the machine-checked part of proofs/: optional, installed by continuous integration.
-isostat_proof_packages=(make coq libcoq-mathcomp-algebra libcoq-mathcomp-algebra-tactics libcoq-mathcomp-zify)
+isostat_proof_packages=(make coq libcoq-mathcomp-algebra libcoq-mathcomp-algebra-tactics libcoq-mathcomp-zify
+  ocaml ocaml-findlib libzarith-ocaml-dev)
 # For `mpirun isostat ensemble` (ISOSTAT_WITH_MPI): optional, built and tested by continuous integration.
 isostat_mpi_packages=(libopenmpi-dev openmpi-bin)
 # For the Python module: installed where ISOSTAT_WITH_PYTHON is ON, as in continuous integration.

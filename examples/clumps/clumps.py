@@ -3,11 +3,15 @@
 A body has the coordinates (X, Y, angle); the lengths L_x, L_y of the box are the last two. A contact is a pair (i, j) of members, i < j,
 or (i, -1 - w) with w the position in WALLS. Where G is the matrix of the gaps' derivatives, an equilibrium is a place where the gaps of
 its contacts are 0 and G^T f = dW/dq, W the potential of the load on L_x and L_y. Everything is in double precision."""
+import itertools
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize
+from scipy.sparse import bmat, csr_matrix, diags
+from scipy.sparse.linalg import splu
+from scipy.spatial import cKDTree
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -47,10 +51,9 @@ class Clumps:
             end = np.unwrap(np.arctan2(joint[:, 1], joint[:, 0]))
             self.half[ring] = (end - np.roll(end, 1)) % (2 * np.pi) / 2
             self.middle[ring] = end - self.half[ring]
-        first, second = np.triu_indices(len(self.body), 1)
-        others = self.body[first] != self.body[second]
-        walls = [(i, -1 - w) for i in range(len(self.body)) for w in range(4)]
-        self.candidates = np.concatenate([np.stack([first[others], second[others]], axis=1), np.array(walls)])
+        self.members = np.split(np.arange(len(self.body)), np.flatnonzero(np.diff(self.body)) + 1)
+        around = [members[:1] if self.half[members[0]] < np.inf else members for members in self.members]  # the caps of an oval
+        self.size = np.array([(np.hypot(*self.place[m].T) + self.radius[m]).max() for m in around])  # the body is in a circle about its origin
         self.load = np.zeros(3 * self.count + 2)
         self.load[-2:] = 1
 
@@ -77,10 +80,20 @@ class Clumps:
         gap = np.where(wall, reach, distance - self.radius[other]) - self.radius[i]
         return gap, normal, np.where(wall, 0, 1 / distance)
 
-    def distances(self, q: Vector) -> Vector:
-        """Gaps of the candidates. Of two bodies bounded by arcs, or of one and a wall, that of the members whose normals are in their
+    def near(self, q: Vector, reach: float) -> Indices:
+        """All pairs of members of two bodies, and of a body and a wall, whose circles about the origins have gaps below `reach`."""
+        origin, wide = q[: 3 * self.count].reshape(-1, 3)[:, :2], self.size + reach / 2
+        pairs = cKDTree(origin).query_pairs(2 * wide.max(), output_type="ndarray")
+        first, second = np.sort(pairs[np.hypot(*(origin[pairs[:, 0]] - origin[pairs[:, 1]]).T) < wide[pairs].sum(axis=1)], axis=1).T
+        found = [[(i, j) for i in self.members[a] for j in self.members[b]] for a, b in zip(first, second)]
+        for w, gap in enumerate(np.concatenate([origin.T, q[-2:, None] - origin.T])):
+            found.append([(i, -1 - w) for b in np.flatnonzero(gap < self.size + reach) for i in self.members[b]])
+        return np.array(sorted(itertools.chain(*found)), dtype=np.int64).reshape(-1, 2)
+
+    def distances(self, q: Vector, pairs: Indices) -> Vector:
+        """Gaps of pairs (`near`). Of two bodies bounded by arcs, or of one and a wall, that of the members whose normals are in their
         sectors, the largest one if there are several; all others are infinite."""
-        gap, normal, _ = self.gaps(q, self.candidates)
+        gap, normal, _ = self.gaps(q, pairs)
         if not self.rings:
             return gap
         angle = q[2 : 3 * self.count : 3][self.body]
@@ -89,61 +102,78 @@ class Clumps:
             off = np.arctan2(n[:, 1], n[:, 0]) - angle[member] - self.middle[member]
             return abs((off + np.pi) % (2 * np.pi) - np.pi) <= self.half[member] + 1e-9
 
-        i, j = self.candidates.T
+        i, j = pairs.T
         facing = faces(i, normal) & ((j < 0) | faces(np.maximum(j, 0), -normal))
-        key = np.where(j < 0, self.count + j + 4, self.body[np.maximum(j, 0)]) + (self.count + 4) * self.body[i]
-        union = ~np.isin(np.arange(len(self.body)), np.concatenate(self.rings).astype(int))
-        alone = union[i] & ((j < 0) | union[np.maximum(j, 0)])
-        key = np.where(alone, -1 - np.arange(len(key)), key)
+        whole = self.body + len(self.body)  # of a body bounded by arcs one member counts, of unions each
+        alone = ~np.isin(np.arange(len(self.body)), np.concatenate(self.rings))
+        side = np.where(alone, np.arange(len(self.body)), whole)
+        key = np.where(j < 0, j, side[np.maximum(j, 0)]) + (2 * len(self.body) + 4) * side[i]
         order = np.lexsort((-gap, ~facing, key))
         first = order[np.unique(key[order], return_index=True)[1]]
         distance = np.full(len(gap), np.inf)
         distance[first] = np.where(facing[first], gap[first], np.inf)
         return distance
 
-    def rows(self, q: Vector, contacts: Indices, direction: Matrix) -> Matrix:
+    def rows(self, q: Vector, contacts: Indices, direction: Matrix) -> csr_matrix:
         """The component of the relative velocity of each contact along its direction, as rows over the coordinates."""
-        matrix, swing, lines = np.zeros((len(contacts), len(q))), turned(self.arms(q)), np.arange(len(contacts))
+        swing, lines = turned(self.arms(q)), np.arange(len(contacts))
+        line, column, value = [], [], []
         for side, sign in ((0, -1), (1, 1)):
             member = contacts[:, side]
             there = member >= 0
-            at, line, along = 3 * self.body[member[there]], lines[there], sign * direction[there]
-            matrix[line, at] += along[:, 0]
-            matrix[line, at + 1] += along[:, 1]
-            matrix[line, at + 2] += (along * swing[member[there]]).sum(axis=1)
+            at, along = 3 * self.body[member[there]], sign * direction[there]
+            line.append(np.tile(lines[there], 3))
+            column.append(np.concatenate([at, at + 1, at + 2]))
+            value.append(np.concatenate([along[:, 0], along[:, 1], (along * swing[member[there]]).sum(axis=1)]))
         upper = contacts[:, 1] <= -3
-        matrix[lines[upper], 3 * self.count - 3 - contacts[upper, 1]] = 1
-        return matrix
+        line.append(lines[upper])
+        column.append(3 * self.count - 3 - contacts[upper, 1])
+        value.append(np.ones(int(upper.sum())))
+        return csr_matrix((np.concatenate(value), (np.concatenate(line), np.concatenate(column))), shape=(len(contacts), len(q)))
 
-    def second(self, q: Vector, contacts: Indices, force: Vector) -> Matrix:
+    def second(self, q: Vector, contacts: Indices, force: Vector) -> csr_matrix:
         """The second derivatives of sum force gap: the second variation of W is minus this form."""
         _, normal, curvature = self.gaps(q, contacts)
         along = self.rows(q, contacts, turned(normal))
-        form = along.T @ ((force * curvature)[:, None] * along)
+        turning = np.zeros(len(q))
         for side, sign in ((0, 1), (1, -1)):
             there = contacts[:, side] >= 0
             member = contacts[there, side]
             lever = (normal[there] * self.arms(q)[member]).sum(axis=1)
-            angle = 3 * self.body[member] + 2
-            np.add.at(form, (angle, angle), sign * force[there] * lever)
-        return form
+            np.add.at(turning, 3 * self.body[member] + 2, sign * force[there] * lever)
+        return along.T @ diags(force * curvature) @ along + diags(turning)
+
+    def members_that_bear(self, contacts: Indices) -> list[set[int]]:
+        """For each body its members in contacts."""
+        bear: list[set[int]] = [set() for _ in range(self.count)]
+        for member in contacts[contacts >= 0]:
+            bear[self.body[member]].add(int(member))
+        return bear
 
 
-def closed(clumps: Clumps, q: Vector, contacts: Indices, force: Vector) -> tuple[Vector, Vector]:
-    """Newton's method for G^T f = dW/dq, gap = 0. Motions that change nothing (a body that bears no force, or is held through one
-    member) make the system singular: the shortest step solves it."""
-    size = len(q)
+def closed(clumps: Clumps, q: Vector, contacts: Indices, force: Vector, held: list[int] | None = None) -> tuple[Vector, Vector]:
+    """Newton's method for G^T f = dW/dq, gap = 0. Motions that change nothing would make the system singular: bodies that bear no force, and
+    the angles of bodies held through one member, stay as they are. So do coordinates `held`, whatever they bear."""
+    bear = enumerate(clumps.members_that_bear(contacts))
+    loose = [k for b, members in bear for k in (3 * b, 3 * b + 1, 3 * b + 2) if not members or k % 3 == 2 and len(members) == 1]
+    unknown = np.setdiff1d(np.arange(len(q) + len(force)), loose + (held or []))
+    last = np.inf
     for _ in range(40):
         gap, normal, _ = clumps.gaps(q, contacts)
         rows = clumps.rows(q, contacts, normal)
         rest = np.concatenate([clumps.load - rows.T @ force, -gap])
-        system = np.block([[clumps.second(q, contacts, force), rows.T], [rows, np.zeros((len(contacts), len(contacts)))]])
-        step = np.linalg.lstsq(system, rest, rcond=1e-10)[0]
-        if not abs(step[:size]).max() < 1:
+        system = bmat([[clumps.second(q, contacts, force), rows.T], [rows, None]], format="csc")
+        step = np.zeros(len(rest))
+        try:
+            step[unknown] = splu(system[unknown][:, unknown]).solve(rest[unknown])
+        except RuntimeError:  # singular
             break
-        q, force = q + step[:size], force + step[size:]
-        if abs(step).max() < 2e-14:
+        if not abs(step[: len(q)]).max() < 1:
+            break
+        q, force = q + step[: len(q)], force + step[len(q) :]
+        if last < 1e-11:
             return q, force
+        last = abs(step).max()
     raise Failed("Newton's method did not close the contacts")
 
 
@@ -156,48 +186,43 @@ class Packing:
     force: Vector
     contacts: Indices
 
-    def members_that_bear(self) -> list[set[int]]:
-        """For each body its members that bear force."""
-        bear: list[set[int]] = [set() for _ in range(self.clumps.count)]
-        for member in self.contacts[self.contacts >= 0]:
-            bear[self.clumps.body[member]].add(int(member))
-        return bear
-
-    def others(self) -> NDArray[np.bool_]:
-        """Which candidates are no contacts."""
+    def __post_init__(self) -> None:
+        self.near = self.clumps.near(self.q, 1)
         known = set(map(tuple, self.contacts))
-        return np.array([tuple(pair) not in known for pair in self.clumps.candidates])
+        self.others = np.array([tuple(pair) not in known for pair in self.near], dtype=bool)  # which of these are no contacts
 
     def least_other_gap(self) -> float:
-        return float(self.clumps.distances(self.q)[self.others()].min())
+        return float(self.clumps.distances(self.q, self.near)[self.others].min(initial=np.inf))
 
     def inside_sectors(self) -> bool:
         """Every contact is of the members that are nearest."""
-        return int((abs(self.clumps.distances(self.q)[~self.others()]) < LEAST_GAP).sum()) == len(self.contacts)
+        return int((abs(self.clumps.distances(self.q, self.near)[~self.others]) < LEAST_GAP).sum()) == len(self.contacts)
 
     def settle(self) -> None:
-        """Bodies that bear no force move, and bodies held through one member turn about it, until they keep clear of others."""
-        loose = [(b, next(iter(bear), None)) for b, bear in enumerate(self.members_that_bear()) if len(bear) < 2]
-        pairs = self.clumps.candidates
-        sides = np.where(pairs >= 0, self.clumps.body[np.maximum(pairs, 0)], -1)
-        near = self.others() & (self.clumps.gaps(self.q, pairs)[0] < 1) & np.isin(sides, [b for b, _ in loose]).any(axis=1)
+        """Bodies that bear no force move, and bodies held through one member turn about it, one by one, until they keep clear of others."""
+        loose = [(b, next(iter(bear), None)) for b, bear in enumerate(self.clumps.members_that_bear(self.contacts)) if len(bear) < 2]
+        sides = np.where(self.near >= 0, self.clumps.body[np.maximum(self.near, 0)], -1)
 
-        def moved(motion: Vector) -> Vector:
+        def moved(b: int, pivot: int | None, motion: Vector) -> Vector:
             q = self.q.copy()
-            for (b, pivot), (x, y, turn) in zip(loose, motion.reshape(-1, 3)):
-                q[3 * b + 2] += turn
-                if pivot is None:
-                    q[3 * b : 3 * b + 2] += (x, y)
-                else:
-                    q[3 * b : 3 * b + 2] += self.clumps.arms(self.q)[pivot] - self.clumps.arms(q)[pivot]
+            q[3 * b + 2] += motion[0]
+            q[3 * b : 3 * b + 2] += motion[1:] if pivot is None else (self.clumps.arms(self.q) - self.clumps.arms(q))[pivot]
             return q
 
         for margin in (1e-2, 1e-3, 1e-4):
-            if self.clumps.distances(self.q)[near].min(initial=1) > margin / 10:
+            for _, (b, pivot) in itertools.product(range(5), loose):
+                all_of = (sides == b).any(axis=1)
+                pairs, others = self.near[all_of], self.others[all_of]
+
+                def penalty(motion: Vector) -> float:
+                    gaps = self.clumps.distances(moved(b, pivot, motion), pairs)[others]
+                    return float((np.minimum(gaps / margin - 1, 0) ** 2).sum())
+
+                start = np.zeros(3 if pivot is None else 1)
+                if penalty(start) > 0:
+                    self.q = moved(b, pivot, minimize(penalty, start).x)
+            if self.least_other_gap() > margin / 10:
                 return
-            start = np.zeros(3 * len(loose))
-            found = minimize(lambda z: (np.minimum(self.clumps.distances(moved(z))[near] / margin - 1, 0) ** 2).sum(), start)
-            self.q = moved(found.x)
 
 
 @dataclass
@@ -237,24 +262,24 @@ class Counts:
 def counted(packing: Packing) -> Counts:
     """The rank is that of the matrix in lengths of the mean radius of the members."""
     clumps, q = packing.clumps, packing.q
-    bear = packing.members_that_bear()
+    bear = clumps.members_that_bear(packing.contacts)
     scale = np.ones(len(q))
     scale[2:-2:3] = clumps.radius.mean()
     loaded = np.array([k for k in range(len(q)) if k >= 3 * clumps.count or bear[k // 3]])
-    rows = clumps.rows(q, packing.contacts, clumps.gaps(q, packing.contacts)[1])
+    rows = clumps.rows(q, packing.contacts, clumps.gaps(q, packing.contacts)[1]).toarray()
     _, values, right = np.linalg.svd((rows / scale)[:, loaded])
     rank = int((values > 1e-9 * values[0]).sum())
     kernel = np.linalg.qr(right[rank:].T / scale[loaded, None])[0]
-    form = -clumps.second(q, packing.contacts, packing.force)[np.ix_(loaded, loaded)]
+    form = -clumps.second(q, packing.contacts, packing.force).toarray()[np.ix_(loaded, loaded)]
     pairs = [tuple(pair) for pair in clumps.body[packing.contacts[packing.contacts[:, 1] >= 0]]]
     doubled = len({pair for pair in pairs if pairs.count(pair) > 1})
     none, one = ([b for b, members in enumerate(bear) if len(members) == size] for size in (0, 1))
     return Counts(len(loaded), len(packing.contacts), rank, none, one, doubled, np.linalg.eigvalsh(kernel.T @ form @ kernel))
 
 
-def equilibrium(clumps: Clumps, q: Vector, contacts: Indices, force: Vector) -> tuple[Packing, Counts]:
-    """The equilibrium with these contacts next to q. Raises `Failed` unless forces are positive and nothing overlaps."""
-    packing = Packing(clumps, *closed(clumps, q, contacts, force), contacts)
+def equilibrium(clumps: Clumps, q: Vector, contacts: Indices, force: Vector, held: list[int] | None = None) -> tuple[Packing, Counts]:
+    """The equilibrium with these contacts next to q, but for what is `held`. Raises `Failed` unless forces are positive and nothing overlaps."""
+    packing = Packing(clumps, *closed(clumps, q, contacts, force, held), contacts)
     if packing.force.min() < LEAST_FORCE:
         raise Failed(f"a contact bears the force {packing.force.min():.1e}")
     packing.settle()

@@ -4,6 +4,7 @@
     prepare.py trimer --seed 3 -o trimer.json           a packing of 20 trimers
     prepare.py oval --aspect 1.4 -n 16 -o oval.json     a packing of 16 ovals
     prepare.py trimer --seed 3 --saddle -o saddle.json  an equilibrium of trimers that is a saddle of the potential
+    prepare.py dimer --seed 7 --held 0.75 -o held.json  what rests under this force on the top wall while rotational rattlers cannot turn
     prepare.py --from FILE -o state.json                a packing in a file of format "bodies-1"
     prepare.py --table 10                               what ten packings of each kind count; no files
 
@@ -20,11 +21,12 @@ from decimal import Context, Decimal
 from typing import Any, Iterator
 
 import numpy as np
-from scipy.linalg import LinAlgError, cho_factor, cho_solve
+from scipy.sparse import csc_matrix, identity
+from scipy.sparse.linalg import splu
 
 from clumps import LEAST_FORCE, LEAST_GAP, WALLS, Clumps, Counts, Failed, Matrix, Packing, Vector, closed, counted, equilibrium
 
-KINDS = {"dimer": 2, "dimer2": 2, "trimer": 3, "oval": 4}
+KINDS = {"dimer": 2, "dimer2": 2, "trimer": 3, "oval": 4, "mixed": 0}
 RING = [0, 1, 2, 3]  # right cap, upper flank, left cap, lower flank
 GRID = 2.0**-44  # radii are multiples of this: their differences are not rounded
 STIFFNESSES = [10.0**e for e in range(1, 6)]
@@ -60,6 +62,10 @@ def bodies(kind: str, count: int, aspect: float, rng: np.random.Generator) -> Cl
     """Members that overlap or just touch; sizes, distances and, for "dimer2", ratios of radii vary from body to body."""
     if kind == "oval":
         return ovals(count, aspect, rng)
+    if kind == "mixed":
+        round_ones, others = ovals(count - count // 2, aspect, rng), bodies("dimer2", count // 2, aspect, rng)
+        body = np.concatenate([round_ones.body, round_ones.count + others.body])
+        return Clumps(body, np.concatenate([round_ones.place, others.place]), np.concatenate([round_ones.radius, others.radius]), round_ones.rings)
     place: list[list[float]] = []
     radius: list[float] = []
     for _ in range(count):
@@ -88,37 +94,59 @@ def scattered(clumps: Clumps, rng: np.random.Generator) -> Vector:
     return q
 
 
-def softly(clumps: Clumps, q: Vector, stiffness: float) -> Vector:
-    """A minimum of the penalty energy, by Newton's method with a damping that keeps the form positive definite."""
-    everything, damping = clumps.candidates, 1.0
+def descent(form: csc_matrix, gradient: Vector) -> Vector | None:
+    """- form^-1 gradient; nothing unless the form is positive definite: its pivots on the diagonal are positive."""
+    try:
+        factors = splu(form, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0, options={"SymmetricMode": True})
+    except RuntimeError:  # singular
+        return None
+    regular = (factors.perm_r == factors.perm_c).all() and (factors.U.diagonal() > 0).all()
+    return -factors.solve(gradient) if regular else None
+
+
+def softly(clumps: Clumps, q: Vector, stiffness: float, held: list[int] | None = None) -> Vector:
+    """A minimum of the penalty energy, by Newton's method with a damping that keeps the form positive definite. Coordinates `held` stay."""
+    damping, move = 1.0, np.setdiff1d(np.arange(len(q)), held or [])
+    listed, pairs = q, clumps.near(q, 1)
 
     def energy(at: Vector) -> tuple[float, Vector]:
-        gap = clumps.distances(at)
+        nonlocal listed, pairs
+        shift = at - listed
+        if max(np.hypot(shift[0:-2:3], shift[1:-2:3]).max(), abs(shift[-2:]).max()) > 0.5:  # pairs that are not listed may touch
+            listed, pairs = at, clumps.near(at, 1)
+        gap = clumps.distances(at, pairs)
         return float(clumps.load @ at + stiffness / 2 * (np.minimum(gap, 0) ** 2).sum()), gap
 
     value, gap = energy(q)
-    for _ in range(2000):
-        touching = everything[gap < 0]
+    for _ in range(max(2000, 100 * clumps.count)):
+        touching = pairs[gap < 0]
         force = -stiffness * gap[gap < 0]
         rows = clumps.rows(q, touching, clumps.gaps(q, touching)[1])
-        gradient = clumps.load - rows.T @ force
+        gradient = (clumps.load - rows.T @ force)[move]
         if abs(gradient).max() < 1e-8:
             return q
-        form = stiffness * rows.T @ rows - clumps.second(q, touching, force)
+        form = (stiffness * rows.T @ rows - clumps.second(q, touching, force)).tocsc()[move][:, move]
         while damping < 1e12:
-            try:
-                step = -cho_solve(cho_factor(form + damping * np.eye(len(q))), gradient)
-            except LinAlgError:
-                damping *= 4
-                continue
-            after, gap = energy(q + step)
-            if abs(step).max() < 0.5 and after <= value + 1e-15 * abs(value):
-                break
+            found = descent(form + damping * identity(len(move), format="csc"), gradient)
+            if found is not None and abs(found).max() < 0.5:
+                step = np.zeros(len(q))
+                step[move] = found
+                after, gap = energy(q + step)
+                if after <= value + 1e-14 * abs(value):
+                    break
             damping *= 4
         else:
             break
         q, value, damping = q + step, after, max(damping / 5, 1e-10)
     raise Failed("the penalty energy has no minimum that was found")
+
+
+def borne(clumps: Clumps, q: Vector, held: list[int] | None = None) -> tuple[Packing, Counts]:
+    """The equilibrium next to a minimum of the penalty energy, but for what is `held`."""
+    pairs = clumps.near(q, 1)
+    force = -STIFFNESSES[-1] * clumps.distances(q, pairs)
+    bears = force > LEAST_FORCE
+    return equilibrium(clumps, q, pairs[bears], force[bears], held)
 
 
 def jammed(kind: str, count: int, rng: np.random.Generator, aspect: float) -> tuple[Packing, Counts]:
@@ -127,9 +155,7 @@ def jammed(kind: str, count: int, rng: np.random.Generator, aspect: float) -> tu
     q = scattered(clumps, rng)
     for stiffness in STIFFNESSES:
         q = softly(clumps, q, stiffness)
-    force = -STIFFNESSES[-1] * clumps.distances(q)
-    bears = force > LEAST_FORCE
-    return equilibrium(clumps, q, clumps.candidates[bears], force[bears])
+    return borne(clumps, q)
 
 
 def saddles(packing: Packing) -> Iterator[tuple[Packing, Counts]]:
@@ -145,13 +171,33 @@ def saddles(packing: Packing) -> Iterator[tuple[Packing, Counts]]:
             yield found, counts
 
 
-def prepared(kind: str, count: int, seed: int, saddle: bool, aspect: float = 1.4) -> tuple[Packing, Counts, int]:
+def held_angles(packing: Packing, ratio: float) -> tuple[Packing, Counts]:
+    """What rests under the force `ratio` on the top wall while the rotational rattlers keep their angles: where one of these bodies touches
+    something with another member it bears a torque, and the place is no equilibrium."""
+    clumps, q = packing.clumps, packing.q
+    clumps.load[-1] = ratio
+    held = [3 * body + 2 for body in counted(packing).rotational]
+    for stiffness in STIFFNESSES[1:]:
+        q = softly(clumps, q, stiffness, held)
+    found, counts = borne(clumps, q, held)
+    normal = clumps.gaps(found.q, found.contacts)[1]
+    torque = abs((clumps.rows(found.q, found.contacts, normal).T @ found.force)[held]).max(initial=0)
+    if torque < LEAST_FORCE:
+        raise Failed("no body whose angle is held bears a torque: an equilibrium")
+    return found, counts
+
+
+def prepared(kind: str, count: int, seed: int, saddle: bool, aspect: float = 1.4, held: float | None = None) -> tuple[Packing, Counts, int]:
     """The first attempt that succeeds, and its number; says why others did not."""
     for attempt in range(1, ATTEMPTS + 1):
         try:
             packing, counts = jammed(kind, count, np.random.default_rng([seed, attempt]), aspect)
             if saddle:
                 return *next(saddles(packing)), attempt
+            if held is not None and counts.rotational:
+                return *held_angles(packing, held), attempt
+            if held is not None:
+                raise Failed("no body is held through one member")
             if counts.variation.min(initial=0) > SADDLE:
                 return packing, counts, attempt
             reason = f"a saddle, W'' = {counts.variation[0]:.2g}"
@@ -247,11 +293,11 @@ def bars(clumps: Clumps) -> list[list[Any]]:
         x, y = (exact.subtract(Decimal(float(a)), Decimal(float(b))) for a, b in zip(clumps.place[i], clumps.place[j]))
         return float(exact.sqrt(exact.add(exact.multiply(x, x), exact.multiply(y, y))))
 
-    if clumps.rings:
-        sides = [[min(pair), max(pair), abs(clumps.radius[pair[0]] - clumps.radius[pair[1]])] for r in clumps.rings for pair in zip(r, r[1:] + r[:1])]
-        return sorted(sides + [[r[0], r[2], apart(r[0], r[2])] for r in clumps.rings])
-    members = (np.flatnonzero(clumps.body == b).tolist() for b in range(clumps.count))
-    return [[i, j, apart(i, j)] for body in members for i, j in itertools.combinations(body, 2)]
+    pairs = (zip(r, r[1:] + r[:1]) for r in clumps.rings)
+    sides = [[min(i, j), max(i, j), abs(clumps.radius[i] - clumps.radius[j])] for i, j in itertools.chain(*pairs)]
+    across = [(r[0], r[2]) for r in clumps.rings]
+    across += [pair for m in clumps.members if len(m) < 4 for pair in itertools.combinations(m.tolist(), 2)]
+    return sorted(sides + [[i, j, apart(i, j)] for i, j in across])
 
 
 def state(packing: Packing, origin: dict[str, Any]) -> str:
@@ -297,11 +343,12 @@ def table(kinds: list[str], count: int, aspect: float, seeds: int, saddle: bool)
 
 def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("kind", nargs="?", choices=list(KINDS), help="dimer: equal members; dimer2: unequal ones; trimer: an equilateral triangle; oval: four arcs")
+    parser.add_argument("kind", nargs="?", choices=list(KINDS), help="dimer: equal members; dimer2: unequal ones; trimer: an equilateral triangle; oval: four arcs; mixed: ovals and dimer2")
     parser.add_argument("-n", type=int, default=20, help="bodies (20)")
     parser.add_argument("--aspect", type=float, default=1.4, help="length over width of the ovals (1.4)")
     parser.add_argument("--seed", type=int, default=1, help="of the random numbers (1)")
     parser.add_argument("--saddle", action="store_true", help="an equilibrium with a contact less, where W has no minimum")
+    parser.add_argument("--held", type=float, metavar="F", help="what rests under the force F on the top wall while rotational rattlers keep their angles")
     parser.add_argument("--from", dest="source", metavar="FILE", help='a packing of format "bodies-1"')
     parser.add_argument("--table", type=int, metavar="N", help="count in seeds 1 to N, of all kinds unless one is given")
     parser.add_argument("-o", dest="output", metavar="FILE", help="where the state goes; a file that is there stays (standard output)")
@@ -322,8 +369,8 @@ def main() -> None:
         packing, counts = converted(given.source)
         origin = {"file": os.path.basename(given.source)}
     else:
-        packing, counts, attempt = prepared(given.kind, given.n, given.seed, given.saddle, given.aspect)
-        origin = {"kind": given.kind, "bodies": given.n, "seed": given.seed, "attempt": attempt, "saddle": given.saddle}
+        packing, counts, attempt = prepared(given.kind, given.n, given.seed, given.saddle, given.aspect, given.held)
+        origin = {"kind": given.kind, "bodies": given.n, "seed": given.seed, "attempt": attempt, "saddle": given.saddle, "held": given.held}
         print(COLUMNS, line(given.kind, given.seed, packing, counts, time.process_time()), sep="\n", file=sys.stderr)
     text = state(packing, origin)
     if given.output is None:

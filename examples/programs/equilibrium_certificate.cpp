@@ -37,7 +37,7 @@ class Undecided : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-constexpr int zoom_exponent = 40; // the unit of the refined configuration is 2^40 times smaller
+constexpr int zoom_exponent = 64; // the unit of the refined configuration is 2^64 times smaller
 
 Number power_of_two(int exponent) {
     return Number::from_double(std::ldexp(1.0, exponent));
@@ -513,11 +513,11 @@ void write_vertex(const Vertex& v, const Packing& packing) {
     const std::vector<bool> periodic(packing.cell.periodic.begin(), packing.cell.periodic.begin() + packing.dimension);
     std::printf(
         "Definition the_vertex : vertex_certificate := {|\n  lies_in := %s;\n  disks := %d;\n  contacts := touching;\n"
-        "  walls := %s;\n  periodic := %s;\n  stored := %s;\n  radii := %s;\n  weight := %s;\n  zoom := 2 ^ "
-        "%d;\n  refined := %s;\n",
+        "  walls := %s;\n  periodic := %s;\n  stored := %s;\n  radii := %s;\n  weight := %s;\n  zoom := "
+        "%s;\n  refined := %s;\n",
         packing.dimension == plane ? "Plane" : "Space", v.packing.disks, list(there).c_str(), list(periodic).c_str(),
-        list(v.stored).c_str(), list(v.packing.radius).c_str(), v.packing.weight.text().c_str(), zoom_exponent,
-        list(v.refined).c_str());
+        list(v.stored).c_str(), list(v.packing.radius).c_str(), v.packing.weight.text().c_str(),
+        numeral(power_of_two(zoom_exponent)).c_str(), list(v.refined).c_str());
     std::printf("  error := %s;\n  distance := %s;\n  ball := %s;\n  stiffness := %s;\n  shift := %s;\n"
                 "  factor := %s |}.\n",
                 v.error.text().c_str(), v.distance.text().c_str(), v.ball.text().c_str(), v.stiffness.text().c_str(),
@@ -525,8 +525,9 @@ void write_vertex(const Vertex& v, const Packing& packing) {
 }
 
 void write_solution(const Numbers& load, const Quotients& forces) {
-    std::printf("{|\n  load := %s;\n  fraction := 2 ^ %d;\n  quotients := %s;\n  slack := %s |}", list(load).c_str(),
-                forces.fraction, list(forces.value).c_str(), forces.slack.text().c_str());
+    std::printf("{|\n  load := %s;\n  fraction := %s;\n  quotients := %s;\n  slack := %s |}", list(load).c_str(),
+                numeral(power_of_two(forces.fraction)).c_str(), list(forces.value).c_str(),
+                forces.slack.text().c_str());
 }
 
 void write_forces(const char* title, const Numbers& load, const Quotients& forces,

@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # Certificates of equilibria, made by the program, proved again by Coq alone:
 #   bash proofs/coq/check_equilibria.sh ISOSTAT WRITER FOLDER STATE.json | DISKS | COUNT-spheres ...
-# Each one must be accepted, and what Coq prints of it must agree with the file (compare.py). The first one and those of
-# a folder coq, which are small, are forged, one number at a time: Coq must compute that each forgery is refused, and compare.py must see each change of the file.
+# Each one must be accepted, and what Coq prints of it must agree with the file (compare.py). The extracted program must accept it too, print the
+# same values, and refuse every forgery, one number each. Of the first one and those of a folder coq, which are small, Coq must compute
+# that each forgery is refused, and compare.py must see each change of the file.
 set -euo pipefail
 isostat=$(realpath "$1")
 writer=$(realpath "$2")
@@ -36,7 +37,19 @@ for packing in "$@"; do
   "$isostat" certify "$place/state.json" -o "$place/certificate.json" >"$place/certify.log"
   answer=$(python3 -B "$theory/prove.py" "$writer" "$place/certificate.json" --keep "$place" | tail -1) || { echo "$answer"; exit 1; }
   echo "equilibrium '$packing': $answer"
+  mkdir -p "$place/extracted"
+  answer=$(python3 -B "$theory/prove.py" --extracted "$writer" "$place/certificate.json" --keep "$place/extracted" | tail -1) || { echo "$answer"; exit 1; }
+  python3 -B - "$theory" "$place" <<'END'
+import sys
+sys.path.insert(0, sys.argv[1])
+from compare import CLOSED, EXTRACTED, printed
+kernel, extracted = (printed(open(f"{sys.argv[2]}/{log}", encoding="utf-8").read(), first) for log, first in (("verdict.log", CLOSED), ("extracted/verdict.log", EXTRACTED)))
+if kernel != extracted:
+    sys.exit("the extracted program prints other values than Coq")
+END
+  echo "  the extracted program: the same values ($(grep -o '[0-9.]* s of processor time' <<<"$answer"))"
 done
+python3 -B "$theory/check_extraction.py" "$folder/arithmetic"
 
 first=${forged[0]}
 # The same by `isostat verify --coq`, of a file and of one with a larger gap (its digest is the one that the program asks for).
@@ -46,6 +59,7 @@ says() { # STATUS WORDS FILE...
   grep -qE "$2" <<<"$answer" && [ "$status" -eq "$1" ] || { echo "$answer"; echo "expected status $1 and '$2', found status $status"; exit 1; }
 }
 says 0 '^coq +proved' "$first/certificate.json"
+says 0 '^coq-extracted +proved .*trusted besides' --coq-extracted "$first/certificate.json"
 python3 - "$first" "$isostat" <<'END'
 import json, re, subprocess, sys
 first, isostat = sys.argv[1:]
@@ -58,9 +72,10 @@ for _ in range(2):
     forged["digest"] = (re.findall(r"[0-9a-f]{64}", answer) or [""])[-1]
 END
 says 1 '^coq +undecided not accepted' "$first/forged.json"
+says 1 '^coq-extracted +undecided not accepted.*false' --coq-extracted "$first/forged.json"
 answer=$(python3 -B "$theory/prove.py" "$writer" "$first/certificate.json" --sha256 "$(sha256sum <"$first/forged.json" | cut -c1-64)" | tail -1) || true
 [ "$answer" = "undecided the certificate has changed since it was read" ] || { echo "$answer"; exit 1; }
-echo "isostat verify --coq: accepts '$1', refuses the one with a larger gap"
+echo "isostat verify --coq, --coq-extracted: each accepts '$1', refuses the one with a larger gap"
 
 for place in "${forged[@]}"; do
 cp "$theory/questions/forgeries.v" "$place"
@@ -133,4 +148,21 @@ for name, change in changes.items():
         sys.exit(f"compare.py did not see the change of {name}")
 print(f"{len(changes)} changes of the file: compare.py sees each")
 END
+done
+
+# Forgeries by the extracted program, also those that would take Coq minutes.
+cp "$theory"/questions/{integers_in_zarith,extract,extract_forgeries}.v "$theory"/extracted/*.ml "$first"
+for question in integers_in_zarith extract extract_forgeries; do coq "$first" $question; done
+(cd "$first" && ocamlfind ocamlopt -package zarith -linkpkg -w -a zarith.ml checker.mli checker.ml reader.ml test.ml -o test)
+for packing in "$@"; do
+  [[ "$packing" != *100* ]] || continue # a minute each
+  answer=$("$first/test" "$folder/equilibrium_$(basename "$packing" .json)/certificate.v")
+  echo "forgeries of '$packing' by the extracted program: $answer"
+  [[ "$answer" == [1-9]*" refused, 0 accepted" ]]
+done
+# What only the reader can refuse: a natural number that is negative.
+for change in 's/disks := /&-/' 's/Disks [1-9]/Disks -9/' 's/Some /&-/'; do
+  sed "$change" "$first/certificate.v" >"$first/negative.v"
+  ! "$(python3 -B "$theory/prove.py" --cache --extracted)/program" "$first/negative.v" >"$first/negative.log" 2>&1
+  grep -q 'a natural number was expected' "$first/negative.log"
 done

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""Lays what Coq printed (verdict.v) beside the certificate of the program:  python3 compare.py CERT.json VERDICT.log DATA.v
+"""Lays what Coq printed (verdict.v) beside the certificate of the program:  python3 compare.py CERT.json VERDICT.log DATA.v [FIRST LINE]
 
+The first line of the log says what was proved; an extracted program says other words than Coq, and prints the same values.
 Every number of the file is a double, hence an exact fraction; those that Coq printed are integers times powers of two.
 Packing, contacts and loads have to be equal; claims of the file have to follow from what was proved. Exit status 1 and
 the first difference otherwise."""
@@ -10,6 +11,8 @@ import re
 import sys
 from fractions import Fraction
 
+CLOSED = "Closed under the global context" # what Print Assumptions says of a theorem without axioms
+EXTRACTED = "the extracted check is true"
 WALLS = {"left": "Lower {} 0", "bottom": "Lower {} 1", "back": "Lower {} 2", "right": "Upper {} 0", "top": "Upper {} 1", "front": "Upper {} 2"}
 AXES = "xyz"
 
@@ -26,10 +29,10 @@ def same(what, proved, claimed):
         differ(f"{what}: Coq printed {proved}, the certificate has {claimed}")
 
 
-def printed(log):
-    """The values after Print Assumptions, in the order of verdict.v."""
+def printed(log, first):
+    """The values after the first line, in the order of verdict.v."""
     head, *values = re.split(r"^     = ", log, flags=re.M)
-    same("assumptions", head.strip(), "Closed under the global context")
+    same("first line", head.strip(), first)
     result = []
     for value in values:
         text, kind = re.fullmatch(r"(.*?)\n     : (.*?)\n?", value, flags=re.S).groups()
@@ -47,7 +50,7 @@ def name(contact):
     return WALLS[j].format(i) if isinstance(j, str) else " ".join(map(str, ["Image", i, j, *periods, *[0] * (3 - len(periods))]))
 
 
-def main(certificate_path, log_path, data_path):
+def main(certificate_path, log_path, data_path, first=CLOSED):
     with open(data_path, encoding="utf-8") as data:
         for sentence in re.sub(r"\(\*.*?\*\)", " ", data.read(), flags=re.S).split("."):
             if sentence.strip() and not re.match(r"\s+(From (Coq|mathcomp|Isostat) Require Import|Definition|Open Scope) ", f"\n{sentence}"):
@@ -55,7 +58,7 @@ def main(certificate_path, log_path, data_path):
     with open(certificate_path, encoding="utf-8") as file:
         certificate = json.load(file)
     with open(log_path, encoding="utf-8") as file:
-        values = printed(file.read())
+        values = printed(file.read(), first)
     ((unit, fine, force, small, unit_stress), d, n, contacts, walls, periodic, stored, radii, zoom, distance, ball, load, low, high, zeros, load_small,
      low_small, high_small, gap, rate, loaded, *ends) = values
     state, claims = certificate["state"], certificate["claims"]
@@ -148,4 +151,5 @@ def main(certificate_path, log_path, data_path):
     print(f"{n} {'disks' if d == 2 else 'spheres'}: Coq's packing is that of the certificate; counting, vertex, forces, gaps, load interval and stability follow")
 
 
-main(*sys.argv[1:])
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -140,6 +140,15 @@ void print_yielding(std::string& out, const Inspection& inspection, const Load& 
         rates += fmt::format("{}L{} by {}", a == 0 ? "" : ", ", axis_names[a],
                              with_bound(rate.value - rate.radius, rate.value + rate.radius));
     }
+    std::string values;
+    double bound = 0;
+    for (const Enclosure& value : y.second_variation) {
+        values += fmt::format("{:.6g} ", value.value);
+        bound = std::max(bound, value.radius);
+    }
+    if (!values.empty()) {
+        say(out, "W'' in (X, Y, angle)     {}within {}\n", values, rounded_up(bound, 2));
+    }
     say(out, "yields                   {} per unit of {}\n", rates, load.stress_name());
     for (const auto& [where, event] : {std::pair{"rising", &y.up}, {"falling", &y.down}}) {
         if (event->contact.i >= 0) {
@@ -266,10 +275,15 @@ void add_inspection(Json& object, const State& state, const Inspection& inspecti
                                           {"what", e.opens ? "opens" : "closes"},
                                           {"stress", or_null(e.stress)}};
         };
-        Json rates = Json::array();
-        for (std::size_t a = 0; a < static_cast<std::size_t>(inspection.truth.dimension); ++a) {
-            rates.push_back({or_null(y.length_rate[a].value), or_null(y.length_rate[a].radius)});
-        }
+        const auto pairs = [](std::span<const Enclosure> values) {
+            Json out = Json::array();
+            for (const Enclosure& value : values) {
+                out.push_back({or_null(value.value), or_null(value.radius)});
+            }
+            return out;
+        };
+        const Json rates = pairs(std::span(y.length_rate).first(static_cast<std::size_t>(inspection.truth.dimension)));
+        object["second_variation"] = pairs(y.second_variation);
         object["yielding"] = {{"length_rates", rates}, {"up", event(y.up)}, {"down", event(y.down)}};
     }
 }

@@ -3,10 +3,12 @@
 #include "contact/separation.hpp"
 #include "core/roundoff.hpp"
 #include "packing/arc_bodies.hpp"
+#include "packing/bodies.hpp"
 #include "verified/vertex_bounds.hpp"
 
 #include <Eigen/Dense>
 
+#include <algorithm>
 #include <cmath>
 
 namespace isostat {
@@ -17,8 +19,14 @@ using roundoff::u;
 
 constexpr double up = 1 + 1e-9; // sums and products of fewer than 10^6 bounds, three deep
 
-} // namespace
+/// Velocities on which one held coordinate moves at the rate 1 and no other row changes.
+struct HeldMotion {
+    std::vector<double> v; // on coordinates
+    double size = 0;       // 2-norm
+    double residual = 0;   // 2-norm of G v - e at the stored configuration
+};
 
+/// \pre the row `slot` is of a held coordinate. Cost: a solve.
 HeldMotion motion_of(const Vertex& vertex, std::size_t slot) {
     const auto& contacts = vertex.structure.contacts();
     std::vector<double> on_dofs(contacts.size(), 0.0);
@@ -49,82 +57,102 @@ HeldMotion motion_of(const Vertex& vertex, std::size_t slot) {
     return motion;
 }
 
-HeldMotion least_curved(const Vertex& vertex, const std::vector<double>& forces,
-                        const std::vector<std::size_t>& slots) {
-    const auto& contacts = vertex.structure.contacts();
-    std::vector<HeldMotion> motions;
-    for (const std::size_t slot : slots) {
-        motions.push_back(motion_of(vertex, slot));
-    }
-    const auto k = static_cast<Eigen::Index>(motions.size());
-    Eigen::MatrixXd form = Eigen::MatrixXd::Zero(k, k);
-    Eigen::MatrixXd at(k, static_cast<Eigen::Index>(most_axes)); // relative velocities in one contact
-    for (std::size_t l = 0; l < contacts.size(); ++l) {
-        if (contacts[l].of_disks()) {
-            for (Eigen::Index i = 0; i < k; ++i) {
-                const auto u_l =
-                    separation(vertex.packing.layout(), motions[static_cast<std::size_t>(i)].v, contacts[l]);
-                at.row(i) = Eigen::Map<const Eigen::RowVectorXd>(u_l.data(), at.cols());
-            }
-            form -= forces[l] / zero_distance(vertex.packing, contacts[l]) * at * at.transpose();
-        }
-    }
-    const Eigen::VectorXd least = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(form).eigenvectors().col(0);
-    HeldMotion sum{std::vector<double>(vertex.packing.q.size(), 0.0)};
-    for (Eigen::Index i = 0; i < k; ++i) {
-        const HeldMotion& m = motions[static_cast<std::size_t>(i)];
-        const double share = least(i) / std::abs(least.cwiseAbs().maxCoeff());
-        for (std::size_t c = 0; c < sum.v.size(); ++c) {
-            sum.v[c] += share * m.v[c];
-        }
-        sum.size += std::abs(share) * m.size * up;
-        sum.residual += std::abs(share) * (m.residual + 16 * static_cast<double>(k) * u * m.size) * up;
-    }
-    return sum;
-}
+constexpr std::size_t most_mechanisms = 256; // of which eigenvalues are said
 
-namespace {
+/// Eigenvalues x of (form - x columns^T columns), ascending, whatever form is within `error`, entry by entry, and the
+/// columns within `off` (Frobenius norm): in the basis that makes both forms diagonal, as it is computed, by Weyl's
+/// inequality: |x - x~| <= (o + |x~| s) / (1 - s), o and s what the forms are from their diagonals (U8).
+std::vector<Enclosure> eigenvalues(const Eigen::MatrixXd& form, const Eigen::MatrixXd& error,
+                                   const Eigen::MatrixXd& columns, double off) {
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(form, columns.transpose() * columns);
+    const Eigen::MatrixXd& q = solver.eigenvectors();
+    const Eigen::VectorXd& values = solver.eigenvalues();
+    const auto norm = [](const Eigen::MatrixXd& m) { return m.cwiseAbs().rowwise().sum().maxCoeff(); };
+    const double roundings = 4 * static_cast<double>(columns.rows() + 2) * u;
+    const Eigen::MatrixXd size = q.cwiseAbs();
+    const Eigen::MatrixXd rest = q.transpose() * form * q - Eigen::MatrixXd(values.asDiagonal());
+    const double open = norm(rest.cwiseAbs() + size.transpose() * (error + roundings * form.cwiseAbs()) * size) * up;
+    const Eigen::MatrixXd turned = columns * q;
+    const double moved = (off + roundings * columns.norm()) * q.norm() * up;
+    const double stretch = (norm(turned.transpose() * turned - Eigen::MatrixXd::Identity(q.rows(), q.rows())) +
+                            roundings * turned.squaredNorm() + (2 * turned.norm() + moved) * moved) *
+                           up;
+    std::vector<Enclosure> all;
+    for (const double value : values) {
+        all.push_back(
+            {value, stretch < 1 ? (open + std::abs(value) * stretch) / (1 - stretch) * up : roundoff::infinity});
+    }
+    return all;
+}
 
 /// The proof for held coordinates that move by a `reach`, on which the configuration moves by at most `way` (2-norms).
 class HeldForm {
   public:
     HeldForm(const Vertex& vertex, double sigma, const std::vector<std::size_t>& acting)
         : vertex_(vertex), contacts_(vertex.structure.contacts()), sigma_(sigma), acting_(acting),
-          lipschitz_(lipschitz(vertex.packing, contacts_)), arcs_(vertex.packing) {
-        double square = 0;
-        for (std::size_t l = 0; l < contacts_.size(); ++l) {
-            const Enclosure f = force(l);
-            square += (std::abs(f.value) + f.radius) * (std::abs(f.value) + f.radius);
-        }
-        force_size_ = std::sqrt(square) * up;
+          lipschitz_(lipschitz(vertex.packing, contacts_)), arcs_(vertex.packing),
+          force_size_(force_norm(vertex, sigma)) {
         for (const std::size_t slot : acting_) {
             motions_.push_back(motion_of(vertex, slot));
         }
     }
 
     std::optional<HeldMinimum> prove(double way, double nearest) {
-        const double turned = (vertex_.statics.normal_uncertainty() + lipschitz_ * way) * up;
-        sigma_min_ = (vertex_.inverse.sigma_min - turned) / up;
-        if (!(sigma_min_ > 0) || !(arcs_.below(nearest) > 2 * way) || !stay_in_sectors(way)) {
+        if (!(arcs_.below(nearest) > 2 * way) || !stay_in_sectors(way) || !look_at(way) || !forces_stay_positive()) {
             return {};
         }
-        turned_ = turned;
-        reach_ = way / fastest();
-        force_changes_ = lipschitz_ * way / sigma_min_ * force_size_ * up;
-        if (!forces_stay_positive()) {
-            return {};
-        }
-        const double curvature = least_curvature();
+        const double reach = way / fastest();
+        find_form();
+        const Eigen::Index k = form_.rows();
+        const Enclosure least = eigenvalues(form_, error_, Eigen::MatrixXd::Identity(k, k), 0).front();
+        const double curvature = (least.value - least.radius) / up;
         const double multiplier = multiplier_size();
-        if (!(curvature > 0) || !(multiplier < 0.49 * curvature * reach_)) {
+        if (!(curvature > 0) || !(multiplier < 0.49 * curvature * reach)) {
             return {};
         }
-        HeldMinimum minimum{(vertex_.enclosure.distance() + multiplier / curvature * fastest()) * up, curvature};
+        nearer_ = multiplier / curvature * fastest() * up;
+        return HeldMinimum{(vertex_.enclosure.distance() + nearer_) * up, curvature};
+    }
+
+    /// Rates and eigenvalues at the minimum that was proved last.
+    void describe(HeldMinimum& minimum) {
+        (void)look_at(nearer_); // nearer than what was looked at before
+        find_form();
         find_rates(minimum);
-        return minimum;
+        find_variation(minimum);
+    }
+
+    /// The motions become one, along which d2W is least as far as double tells. \return d2W/ds2, s its fastest
+    /// coordinate
+    Enclosure least_curvature() {
+        find_form();
+        const Eigen::VectorXd least = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(form_).eigenvectors().col(0);
+        HeldMotion sum{std::vector<double>(vertex_.packing.q.size(), 0.0)};
+        for (std::size_t i = 0; i < motions_.size(); ++i) {
+            const HeldMotion& m = motions_[i];
+            const double share = least(static_cast<Eigen::Index>(i)) / least.cwiseAbs().maxCoeff();
+            for (std::size_t c = 0; c < sum.v.size(); ++c) {
+                sum.v[c] += share * m.v[c];
+            }
+            sum.size += std::abs(share) * m.size * up;
+            sum.residual +=
+                std::abs(share) * (m.residual + 16 * static_cast<double>(motions_.size()) * u * m.size) * up;
+        }
+        const double fastest = Eigen::Map<const Eigen::ArrayXd>(sum.v.data(), std::ssize(sum.v)).abs().maxCoeff();
+        const double bound = look_at(0) ? 1.001 / (fastest * fastest) : roundoff::infinity;
+        motions_ = {std::move(sum)};
+        find_form();
+        return {form_(0, 0) / (fastest * fastest), (error_(0, 0) + 8 * u * std::abs(form_(0, 0))) * bound};
     }
 
   private:
+    /// What the matrix and the forces change by within a `way`; false: the matrix is not proved regular there.
+    bool look_at(double way) {
+        turned_ = (vertex_.statics.normal_uncertainty() + lipschitz_ * way) * up;
+        sigma_min_ = (vertex_.inverse.sigma_min - turned_) / up;
+        force_changes_ = lipschitz_ * way / sigma_min_ * force_size_ * up;
+        return sigma_min_ > 0;
+    }
     [[nodiscard]] bool stay_in_sectors(double way) const {
         const double distance = vertex_.enclosure.distance();
         const double moved = (way + distance) * up;
@@ -158,83 +186,64 @@ class HeldForm {
     [[nodiscard]] double fastest() const {
         double square = 0;
         for (const HeldMotion& m : motions_) {
-            const double most = m.size + (m.residual + turned_ * m.size) / sigma_min_ * up;
+            const double most = m.size + velocity_error(m);
             square += most * most;
         }
         return std::sqrt(square) * up;
     }
 
-    /// |D_l (v - v~)| of a motion, anywhere within reach.
-    [[nodiscard]] double relative_error(const HeldMotion& m) const {
-        return std::sqrt(2.0) * (m.residual + turned_ * m.size) / sigma_min_ * up;
+    /// |v - v~| of a motion, anywhere within reach.
+    [[nodiscard]] double velocity_error(const HeldMotion& m) const {
+        return (m.residual + turned_ * m.size) / sigma_min_ * up;
     }
 
-    /// d2W = - sum f_l D_l v_i . D_l v_j / D_l, as the kept gaps do not change: and by how much it may be off.
-    void add(std::size_t l, Eigen::MatrixXd& form, Eigen::MatrixXd& error) const {
-        const double d = zero_distance(vertex_.packing, contacts_[l]);
-        const double f = force(l).value;
-        const double f_error = (force(l).radius + force_changes_) * up;
-        const double roundings = (static_cast<double>(contacts_.size()) + 32) * u;
-        std::vector<PerAxis<double>> at;
-        std::vector<double> size;
-        for (const HeldMotion& m : motions_) {
-            at.push_back(separation(vertex_.packing.layout(), m.v, contacts_[l]));
-            double square = 0;
-            for (const double x : at.back()) {
-                square += x * x;
-            }
-            size.push_back(std::sqrt(square) * up);
-        }
-        for (std::size_t i = 0; i < motions_.size(); ++i) {
-            for (std::size_t j = 0; j < motions_.size(); ++j) {
-                double product = 0;
-                for (std::size_t a = 0; a < vertex_.packing.axes(); ++a) {
-                    product += at[i][a] * at[j][a];
-                }
-                const auto row = static_cast<Eigen::Index>(i);
-                const auto column = static_cast<Eigen::Index>(j);
-                const double moved = (size[i] + relative_error(motions_[i])) * (size[j] + relative_error(motions_[j]));
-                const double open = moved - size[i] * size[j] / (up * up * up * up);
-                form(row, column) -= f * product / d;
-                error(row, column) += (std::abs(f) * (open + roundings * moved) + f_error * moved) / d * up;
-            }
-        }
-    }
-
-    /// The form and what it may be off by, anywhere within reach.
-    [[nodiscard]] std::pair<Eigen::MatrixXd, Eigen::MatrixXd> second_variation() const {
+    /// d2W = - sum f_l D_l v_i . D_l v_j / D_l, as the kept gaps do not change: and by how much it may be off, anywhere
+    /// within reach.
+    void find_form() {
         const auto k = static_cast<Eigen::Index>(motions_.size());
-        Eigen::MatrixXd form = Eigen::MatrixXd::Zero(k, k);
-        Eigen::MatrixXd error = form;
+        form_ = error_ = Eigen::MatrixXd::Zero(k, k);
+        Eigen::MatrixXd at(k, static_cast<Eigen::Index>(most_axes)); // D_l v
+        Eigen::VectorXd off(k);
         for (std::size_t l = 0; l < contacts_.size(); ++l) {
-            if (contacts_[l].of_disks()) {
-                add(l, form, error);
+            if (!contacts_[l].of_disks()) {
+                continue;
             }
+            for (Eigen::Index i = 0; i < k; ++i) {
+                const HeldMotion& m = motions_[static_cast<std::size_t>(i)];
+                const auto rate = separation(vertex_.packing.layout(), m.v, contacts_[l]);
+                at.row(i) = Eigen::Map<const Eigen::RowVectorXd>(rate.data(), at.cols());
+                off(i) = std::sqrt(2.0) * velocity_error(m) * up;
+            }
+            const double d = zero_distance(vertex_.packing, contacts_[l]);
+            const Enclosure f = force(l);
+            const Eigen::VectorXd size = at.rowwise().norm() * up;
+            const Eigen::MatrixXd moved = (size + off) * (size + off).transpose();
+            const Eigen::MatrixXd open = size * off.transpose() + off * (size + off).transpose() + roundings_ * moved;
+            form_ -= f.value / d * (at * at.transpose());
+            error_ += (std::abs(f.value) * open + (f.radius + force_changes_) * moved) * (up * up / d);
         }
-        return {form, error};
     }
 
     /// dc = - M^-1 dmu: what that leaves over the smallest eigenvalue (U10). At the minimum, which is within reach.
     void find_rates(HeldMinimum& minimum) const {
-        const auto [form, error] = second_variation();
         double slopes = 0;
         for (std::size_t l = 0; l < contacts_.size(); ++l) {
             const Enclosure f = vertex_.statics.slope(ContactId(l));
             slopes += (std::abs(f.value) + f.radius) * (std::abs(f.value) + f.radius);
         }
         const double changes = force_changes_ / force_size_ * std::sqrt(slopes) * up;
-        Eigen::VectorXd multiplier(form.rows());
-        Eigen::VectorXd open(form.rows());
+        Eigen::VectorXd multiplier(form_.rows());
+        Eigen::VectorXd open(form_.rows());
         for (std::size_t i = 0; i < acting_.size(); ++i) {
             const Enclosure slope = vertex_.statics.slope(ContactId(acting_[i]));
             multiplier(static_cast<Eigen::Index>(i)) = slope.value;
             open(static_cast<Eigen::Index>(i)) = slope.radius + changes;
         }
-        const Eigen::VectorXd rate = -form.ldlt().solve(multiplier);
-        const double roundings = static_cast<double>(form.rows() + 4) * u;
-        const Eigen::VectorXd size = form.cwiseAbs() * rate.cwiseAbs() + multiplier.cwiseAbs();
+        const Eigen::VectorXd rate = -form_.ldlt().solve(multiplier);
+        const double roundings = static_cast<double>(form_.rows() + 4) * u;
+        const Eigen::VectorXd size = form_.cwiseAbs() * rate.cwiseAbs() + multiplier.cwiseAbs();
         const Eigen::VectorXd rest =
-            (form * rate + multiplier).cwiseAbs() + error * rate.cwiseAbs() + open + roundings * size;
+            (form_ * rate + multiplier).cwiseAbs() + error_ * rate.cwiseAbs() + open + roundings * size;
         minimum.rate.assign(rate.begin(), rate.end());
         minimum.rate_bound = rest.norm() / minimum.curvature * up;
         for (std::size_t a = 0; a < vertex_.packing.axes(); ++a) {
@@ -243,7 +252,7 @@ class HeldForm {
             for (std::size_t i = 0; i < motions_.size(); ++i) {
                 const double v = motions_[i].v[vertex_.packing.length_at(a)];
                 const double c = minimum.rate[i];
-                const double off = (motions_[i].residual + turned_ * motions_[i].size) / sigma_min_ * up;
+                const double off = velocity_error(motions_[i]);
                 value += v * c;
                 bound += (std::abs(v) + off) * minimum.rate_bound + (off + roundings * std::abs(v)) * std::abs(c);
             }
@@ -251,29 +260,74 @@ class HeldForm {
         }
     }
 
-    /// A number that no eigenvalue of the form is below, anywhere within reach: eigenvectors as they are computed, and
-    /// Gershgorin's discs of what they leave.
-    [[nodiscard]] double least_curvature() const {
-        const auto [form, error] = second_variation();
-        const auto k = form.rows();
-        const Eigen::MatrixXd q = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(form).eigenvectors();
-        const Eigen::MatrixXd rotated = q.transpose() * form * q;
-        const double roundings = 4 * static_cast<double>(k + 2) * u;
-        const Eigen::MatrixXd size = q.cwiseAbs();
-        const Eigen::MatrixXd off = size.transpose() * (error + roundings * form.cwiseAbs()) * size * up;
-        const Eigen::MatrixXd square = (q.transpose() * q).cwiseAbs();
-        double least = std::numeric_limits<double>::infinity();
-        double stretch = 0;
-        for (Eigen::Index i = 0; i < k; ++i) {
-            const double others = rotated.row(i).cwiseAbs().sum() - std::abs(rotated(i, i));
-            const double disc = rotated(i, i) - (others + off.row(i).sum()) * up;
-            if (!std::isfinite(disc)) { // loads or lengths beyond the range of double
-                return 0;
-            }
-            least = std::min(least, disc);
-            stretch = std::max(stretch, square.row(i).sum() + roundings * static_cast<double>(k));
+    /// Columns: velocities of the bodies in (X, Y, angle), X and Y of the mean of the centres of their members, and of
+    /// the walls; and the error of all columns together (Frobenius norm) where the configuration is within `moved` of
+    /// the stored one (2-norm). The angle turns at arms x v / |arms|^2, an inversion of the arms. \pre the plane
+    [[nodiscard]] std::pair<Eigen::MatrixXd, double> of_bodies(const std::vector<HeldMotion>& motions,
+                                                               double moved) const {
+        const Packing& packing = vertex_.packing;
+        const Bodies bodies(packing);
+        const int n = packing.disk_count();
+        const auto at = [](const std::vector<double>& q, int i) {
+            return Eigen::Map<const Eigen::RowVector2d>(&q[2 * static_cast<std::size_t>(i)]);
+        };
+        Eigen::MatrixX2d middle = Eigen::MatrixX2d::Zero(n, 2);
+        Eigen::VectorXd members = Eigen::VectorXd::Zero(n); // of bodies, at their first members
+        Eigen::VectorXd inertia = members;
+        for (int i = 0; i < n; ++i) {
+            middle.row(bodies.of(i)) += at(packing.q, i);
+            ++members[bodies.of(i)];
         }
-        return least / (stretch * up);
+        Eigen::MatrixX2d arm(n, 2);
+        for (int i = 0; i < n; ++i) {
+            arm.row(i) = at(packing.q, i) - middle.row(bodies.of(i)) / members[bodies.of(i)];
+            inertia[bodies.of(i)] += arm.row(i).squaredNorm();
+        }
+        const double shortest = std::sqrt((members.array() > 1).select(inertia.array(), roundoff::infinity).minCoeff());
+        moved += roundings_ * Eigen::Map<const Eigen::VectorXd>(packing.q.data(), 2 * n).norm();
+        Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(3 * n + 2, static_cast<Eigen::Index>(motions.size()));
+        double off = 0;
+        for (Eigen::Index c = 0; c < columns.cols(); ++c) {
+            const HeldMotion& m = motions[static_cast<std::size_t>(c)];
+            for (int i = 0; i < n; ++i) {
+                const int body = bodies.of(i);
+                const Eigen::Vector2d v = at(m.v, i).transpose();
+                columns.col(c).segment<2>(3 * body) += v / members[body];
+                if (members[body] > 1) {
+                    columns(3 * body + 2, c) += (arm(i, 0) * v.y() - arm(i, 1) * v.x()) / inertia[body];
+                }
+            }
+            columns.col(c).tail<2>() = at(m.v, n).transpose(); // the walls
+            const double e = velocity_error(m) + roundings_ * m.size;
+            const double most =
+                e * (1 + 1 / shortest) + (m.size + e) * moved / (shortest * std::max(shortest - moved, 0.0));
+            off += most * most;
+        }
+        return {columns, std::sqrt(off) * up};
+    }
+
+    /// Eigenvalues of d2W on all mechanisms in (X, Y, angle), without the zeros of the free motions.
+    void find_variation(HeldMinimum& minimum) const {
+        std::vector<HeldMotion> motions;
+        for (std::size_t l = 0; l < contacts_.size(); ++l) {
+            if (contacts_[l].kind == ContactKind::held && !std::binary_search(acting_.begin(), acting_.end(), l)) {
+                motions.push_back(motion_of(vertex_, l));
+            }
+        }
+        motions.insert(motions.end(), motions_.begin(), motions_.end());
+        if (motions.size() > most_mechanisms || vertex_.packing.dimension != plane) {
+            return;
+        }
+        const auto [columns, off] = of_bodies(motions, minimum.away);
+        const Eigen::Index k = form_.rows();
+        Eigen::MatrixXd form = Eigen::MatrixXd::Zero(columns.cols(), columns.cols());
+        Eigen::MatrixXd error = form;
+        form.bottomRightCorner(k, k) = form_;
+        error.bottomRightCorner(k, k) = error_;
+        const std::vector<Enclosure> all = eigenvalues(form, error, columns, off);
+        if (std::all_of(all.begin(), all.end(), [](const Enclosure& value) { return std::isfinite(value.radius); })) {
+            minimum.second_variation.assign(all.end() - k, all.end());
+        }
     }
 
     const Vertex& vertex_;
@@ -282,19 +336,30 @@ class HeldForm {
     const std::vector<std::size_t>& acting_;
     double lipschitz_;
     ArcBodies arcs_;
-    double force_size_ = 0;
+    double roundings_ = (static_cast<double>(contacts_.size()) + 32) * u; // relative, of sums over the contacts
+    double force_size_;
     std::vector<HeldMotion> motions_;
-    double reach_ = 0, turned_ = 0, sigma_min_ = 0, force_changes_ = 0;
+    Eigen::MatrixXd form_, error_;
+    double nearer_ = 0, turned_ = 0, sigma_min_ = vertex_.inverse.sigma_min, force_changes_ = 0;
 };
 
 /// Where something that changes at a `rate`, a sum of `terms` in magnitude, is 0: counted in the direction of the
 /// stress.
 double way_to_zero(double value, double rate, double terms, int direction) {
     const double falls = -direction * rate;
-    return falls > 0x1p-40 * terms ? value / falls : std::numeric_limits<double>::infinity();
+    return falls > 0x1p-40 * terms ? value / falls : roundoff::infinity;
 }
 
 } // namespace
+
+double force_norm(const Vertex& vertex, double sigma) {
+    double square = 0;
+    for (int l = 0; l < vertex.structure.size(); ++l) {
+        const Enclosure f = vertex.statics.force(ContactId(l), sigma);
+        square += (std::abs(f.value) + f.radius) * (std::abs(f.value) + f.radius);
+    }
+    return std::sqrt(square) * up;
+}
 
 Yielding yielding_at(const Vertex& vertex, double sigma, const std::vector<std::size_t>& acting,
                      const HeldMinimum& minimum, const std::vector<Contact>& candidates) {
@@ -322,9 +387,10 @@ Yielding yielding_at(const Vertex& vertex, double sigma, const std::vector<std::
     vertex.factorisation.solve_forces(turning);
     Yielding yielding;
     yielding.length_rate = minimum.length_rate;
+    yielding.second_variation = minimum.second_variation;
     for (const int direction : {-1, 1}) {
         Yielding::Event& event = direction < 0 ? yielding.down : yielding.up;
-        double nearest = std::numeric_limits<double>::infinity();
+        double nearest = roundoff::infinity;
         const auto look = [&](const Contact& contact, bool opens, double value, double rate, double terms) {
             if (const double way = way_to_zero(value, rate, terms, direction); way < nearest) {
                 nearest = way;
@@ -353,18 +419,20 @@ Yielding yielding_at(const Vertex& vertex, double sigma, const std::vector<std::
     return yielding;
 }
 
+Enclosure least_curvature(const Vertex& vertex, double sigma, const std::vector<std::size_t>& slots) {
+    return HeldForm(vertex, sigma, slots).least_curvature();
+}
+
 std::optional<HeldMinimum> minimum_near(const Vertex& vertex, double sigma, const std::vector<std::size_t>& acting,
                                         double nearest) {
     HeldForm form(vertex, sigma, acting);
-    std::optional<HeldMinimum> best;
-    for (double share = 0x1p-3; share > 0x1p-40; share *= 0x1p-3) { // on a shorter way the form changes less
+    for (double share = 0x1p-39; share < 1; share *= 0x1p3) { // on a shorter way the form changes less
         if (auto minimum = form.prove(share * vertex.packing.min_radius(), nearest)) {
-            best = std::move(minimum);
-        } else if (best) {
-            break;
+            form.describe(*minimum);
+            return minimum;
         }
     }
-    return best;
+    return {};
 }
 
 } // namespace isostat

@@ -12,18 +12,12 @@
 
 namespace isostat {
 
-/// Velocities on which one held coordinate moves at the rate 1 and no other row changes.
-struct HeldMotion {
-    std::vector<double> v; ///< on coordinates
-    double size = 0;       ///< 2-norm
-    double residual = 0;   ///< 2-norm of G v - e at the stored configuration
-};
-/// \pre the row `slot` is of a held coordinate. Cost: a solve.
-HeldMotion motion_of(const Vertex& vertex, std::size_t slot);
+/// 2-norm of the forces, at most.
+double force_norm(const Vertex& vertex, double sigma);
 
-/// Of all motions of these rows together the one along which d2W is least, as far as double tells. Cost: a solve for
-/// each, and their products over the contacts.
-HeldMotion least_curved(const Vertex& vertex, const std::vector<double>& forces, const std::vector<std::size_t>& slots);
+/// d2W/ds2 at the true vertex along the motion of these rows together, all others kept, along which d2W is least as far
+/// as double tells, s its fastest coordinate. Cost: a solve for each row, and their products over the contacts.
+Enclosure least_curvature(const Vertex& vertex, double sigma, const std::vector<std::size_t>& slots);
 
 /// A strict local minimum of the potential of dead loads, at which no held coordinate bears a multiplier.
 struct HeldMinimum {
@@ -32,6 +26,7 @@ struct HeldMinimum {
     std::vector<double> rate{}; ///< dc per unit of the loaded stress
     double rate_bound = 0;      ///< 2-norm of its error
     PerAxis<Enclosure> length_rate{};
+    std::vector<Enclosure> second_variation{}; ///< as in `Yielding`
 };
 
 /// `acting`: rows of the held coordinates that the load reaches, all others being free motions. `nearest`: lower bound

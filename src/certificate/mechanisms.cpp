@@ -1,10 +1,8 @@
 #include "certificate/held_minimum.hpp"
 #include "certificate/sectors.hpp"
 #include "contact/other_pairs.hpp"
-#include "contact/separation.hpp"
 #include "core/decimal.hpp"
 #include "core/roundoff.hpp"
-#include "motion/arc.hpp"
 #include "trajectory/record.hpp"
 #include "trajectory/vertex.hpp"
 
@@ -20,72 +18,6 @@
 namespace isostat {
 
 namespace {
-
-using roundoff::u;
-
-/// d2W/ds2 = -sum f_l |u_t|^2 / d_l along a mechanism, s its fastest coordinate: with the kept gaps at rest, grad W =
-/// sum f_l grad h_l and grad h_l . q'' = -|u_t|^2 / d_l. At the true vertex.
-Enclosure curvature_of_potential(const Vertex& vertex, const std::vector<double>& forces, const HeldMotion& motion,
-                                 double sigma) {
-    const auto& contacts = vertex.structure.contacts();
-    double largest = 0;
-    for (const double x : motion.v) {
-        largest = std::max(largest, std::abs(x));
-    }
-    const double away = vertex.enclosure.distance();
-    const double turned = vertex.statics.normal_uncertainty(); // of the matrix, at the true vertex
-    const double sigma_min = vertex.inverse.sigma_min - turned;
-    const double velocity_error = sigma_min > 0 ? (motion.residual + turned * motion.size) * (1 + 1e-10) / sigma_min
-                                                : std::numeric_limits<double>::infinity();
-    double value = 0;
-    double error = 0;
-    for (std::size_t l = 0; l < contacts.size(); ++l) {
-        if (!contacts[l].of_disks()) {
-            continue;
-        }
-        const double bend = gap_curvature(vertex.packing, contacts[l], motion.v.data());
-        const double d = zero_distance(vertex.packing, contacts[l]);
-        // |u_t|^2 changes by at most (2 |u_t| + e) e: the velocities change, and the normal turns by 4 away / d at
-        // most.
-        const double e = 2 * velocity_error + 8 * largest * 4 * away / d;
-        const double bend_error = (2 * std::sqrt(bend * d) + e) * e / d + bend * (16 * u + 4 * away / d);
-        value -= forces[l] * bend;
-        error += vertex.statics.force(ContactId(l), sigma).radius * bend + std::abs(forces[l]) * bend_error;
-    }
-    const double scale = largest * largest;
-    return {value / scale, (error + 8 * u * std::abs(value)) / scale * 1.001};
-}
-
-/// Largest number of disk contacts of one disk.
-int most_contacts(int disks, const std::vector<Contact>& contacts) {
-    std::vector<int> count(static_cast<std::size_t>(disks), 0);
-    int most = 1;
-    for (const Contact& c : contacts) {
-        if (c.of_disks()) {
-            most = std::max({most, ++count[static_cast<std::size_t>(c.i)], ++count[static_cast<std::size_t>(c.j)]});
-        }
-    }
-    return most;
-}
-
-/// Half of the shortest bar, or the smallest radius.
-double shortest_distance(const Packing& packing) {
-    double shortest = packing.min_radius();
-    for (const Bar& bar : packing.bars) {
-        shortest = std::min(shortest, bar.length / 2);
-    }
-    return shortest;
-}
-
-/// 2-norm of the forces: what a change of the matrix acts on.
-double force_norm(const Vertex& vertex, double sigma) {
-    double sum = 0;
-    for (int l = 0; l < vertex.structure.size(); ++l) {
-        const double f = vertex.statics.force(ContactId(l), sigma).value;
-        sum += f * f;
-    }
-    return std::sqrt(sum);
-}
 
 /// The potential of the load falls where W does: dead loads; true stresses >= 0 without forces on disks (S2, S5).
 bool falls_with_work(const Load& load) {
@@ -119,12 +51,9 @@ std::vector<std::size_t> judge_forces(MechanismInspection& inspection, Vertex& v
         } else {
             ++record.held;
             acting.push_back(l);
-            // Known only as well as the stored configuration: a displacement of 2-norm r changes the matrix by at
-            // most 2 sqrt(z) r / D_min in the 2-norm (V4), the forces by |H^-1| times that times |f|.
+            // Known only as well as the stored configuration: the forces change by |H^-1| times what the matrix does.
             const double uncertain =
-                1.01 * std::sqrt(static_cast<double>(most_contacts(state.packing.disk_count(), inspection.contacts))) *
-                vertex.enclosure.distance() / shortest_distance(state.packing) * force_norm(vertex, sigma) /
-                vertex.inverse.sigma_min;
+                1.01 * vertex.statics.normal_uncertainty() * force_norm(vertex, sigma) / vertex.inverse.sigma_min;
             at_rest = at_rest && std::abs(f.value) <= f.radius + uncertain;
             if (std::abs(f.value) > f.radius + uncertain && inspection.remark.empty()) {
                 inspection.remark = fmt::format("not an equilibrium: the mechanism moves, force {:.6g} on the {}",
@@ -134,8 +63,7 @@ std::vector<std::size_t> judge_forces(MechanismInspection& inspection, Vertex& v
     }
     const std::size_t most = state.packing.bars.empty() ? 1 : acting.size(); // of clumps any one of several
     if (positive && at_rest && !acting.empty() && acting.size() <= most && inspection.remark.empty()) {
-        const HeldMotion least = least_curved(vertex, inspection.forces, acting);
-        const Enclosure second = curvature_of_potential(vertex, inspection.forces, least, sigma);
+        const Enclosure second = least_curvature(vertex, sigma, acting);
         if (state.load.kind == LoadKind::nominal) {
             inspection.second_order = second;
         }
@@ -235,7 +163,8 @@ Result<MechanismInspection> inspect_mechanism(const State& state, const Counting
             return *failure;
         }
         judge_minimum(inspection, vertex, state.load, acting, candidates.contacts);
-        const double least = std::max(0.0, (record.min_gap - record.min_gap_bound) * (1 - 2 * u)); // it is no overlap
+        const double least =
+            std::max(0.0, (record.min_gap - record.min_gap_bound) * (1 - 2 * roundoff::u)); // it is no overlap
         record.min_gap = ArcBodies(state.packing).below(least);
         record.min_gap_bound = 0;
     }

@@ -107,6 +107,8 @@ std::string unfit_arcs(const Problem& problem, const State& state, const TrueVer
     }
     const Directions at(problem, vertex);
     std::vector<std::array<int, 2>> joints(packing.radius.size(), {-1, -1}); // neighbours before and after
+    const double thinnest = packing.min_radius();
+    const double largest = approximate(largest_of(vertex.middle), problem.fine);
     for (const std::vector<int>& ring : packing.arcs) {
         if (std::string why = not_convex(state, at, ring); !why.empty()) {
             return why;
@@ -119,8 +121,7 @@ std::string unfit_arcs(const Problem& problem, const State& state, const TrueVer
             joints[static_cast<std::size_t>(ring[k])][1] = next_of(ring, k);
             joints[static_cast<std::size_t>(next_of(ring, k))][0] = ring[k];
         }
-        const double smallest = std::min(shortest, packing.min_radius());
-        const double largest = approximate(largest_of(vertex.middle), problem.fine);
+        const double smallest = std::min(shortest, thinnest);
         if (!(vertex.radius < Rational(shortest * (shortest / (9 * around)))) || !(smallest > 0x1p-13 * largest)) {
             return "the vertex is not known well enough, or the box too large, to say which arcs are nearest";
         }

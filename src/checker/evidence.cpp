@@ -66,14 +66,20 @@ Evidence::Evidence(const State& checked, CheckerArithmetic arithmetic, bool held
     rank = problem.dofs();
     if (vertex.found) {
         finite_load = checker::finite_load(problem, state, vertex);
-        unit_load = checker::unit_load(problem, state, vertex);
         forces = contact_forces(problem, *solver, inverse, vertex, finite_load);
     }
 }
 
+const Forces& Evidence::unit_load() const {
+    if (!unit_load_) {
+        unit_load_ = vertex.found ? checker::unit_load(problem, state, vertex) : Forces();
+    }
+    return *unit_load_;
+}
+
 const std::vector<Range>& Evidence::slopes() const {
     if (!slopes_) {
-        slopes_ = vertex.found ? contact_forces(problem, *solver, inverse, vertex, unit_load) : std::vector<Range>();
+        slopes_ = vertex.found ? contact_forces(problem, *solver, inverse, vertex, unit_load()) : std::vector<Range>();
     }
     return *slopes_;
 }

@@ -28,9 +28,10 @@ struct Evidence {
     TrueVertex vertex;
     // At the true vertex, if it was found:
     Forces finite_load;
-    Forces unit_load;
     std::vector<Range> forces; ///< under the load of the state
-    /// Forces per unit of the loaded stress, and per unit of eps: computed on first use, by one thread.
+    /// The load per unit of the loaded stress, forces per that unit, and per unit of eps: computed on first use, by one
+    /// thread.
+    [[nodiscard]] const Forces& unit_load() const;
     [[nodiscard]] const std::vector<Range>& slopes() const;
     [[nodiscard]] const std::vector<Range>& infinitesimal() const;
     std::shared_ptr<const Solver> solver; ///< filled when the matrix is square
@@ -46,6 +47,7 @@ struct Evidence {
     [[nodiscard]] std::string why_no_vertex() const;
 
   private:
+    mutable std::optional<Forces> unit_load_;
     mutable std::optional<std::vector<Range>> slopes_;
     mutable std::optional<std::vector<Range>> infinitesimal_;
 };

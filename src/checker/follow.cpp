@@ -140,7 +140,7 @@ class Walk {
         if (Followed there = arrive_at_once(); there.end || motion_.displacement == 0) {
             return there;
         }
-        double longest = std::min(motion_.displacement / 4, motion_.step * from_.packing.min_radius());
+        double longest = std::min(motion_.displacement / 3.5, motion_.step * from_.packing.min_radius());
         auto steps = static_cast<long>(std::min(8 * motion_.displacement / longest + 16, 1e5)) + motion_.doublings;
         double step = std::ldexp(longest, -motion_.doublings);
         int zooms = 0;

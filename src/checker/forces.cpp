@@ -93,9 +93,13 @@ class Balance {
   public:
     Balance(const Problem& problem, const TrueVertex& vertex, const Forces& load, long shift)
         : problem_(problem), sought_(problem.rows.size()), blur_(ceiling_of(2 * vertex.radius, -problem.fine)) {
-        for (const Range& force : load) {
-            target_.push_back(floor_of(-force.upper, shift - problem.fine));
-            unknown_.push_back(ceiling_of(-force.lower, shift - problem.fine) - target_.back());
+        target_.resize(load.size());
+        unknown_.resize(load.size());
+        for (std::size_t j = 0; j < load.size(); ++j) {
+            if (const auto& [lower, upper] = load[j]; lower != 0 || upper != 0) {
+                target_[j] = floor_of(-upper, shift - problem.fine);
+                unknown_[j] = ceiling_of(-lower, shift - problem.fine) - target_[j];
+            }
         }
         for (const Row& row : problem.rows) {
             for (std::size_t a = 0; row.quadratic && a < problem.layout.axes(); ++a) {
@@ -158,9 +162,9 @@ class Balance {
     void find_residual() {
         residual_ = target_;
         auto difference = difference_.begin();
+        std::array<Integer, most_axes> products;
         for (std::size_t l = 0; l < sought_.size(); ++l) {
             const Row& row = problem_.rows[l];
-            std::array<Integer, most_axes> products;
             for (std::size_t a = 0; row.quadratic && a < problem_.layout.axes(); ++a) {
                 products[a] = *difference++ * sought_[l];
             }
@@ -213,12 +217,11 @@ std::vector<Range> contact_forces(const Problem& problem, const Solver& solver, 
     }
     const Rational error =
         Rational(balance.residual_at_vertex()) / (1 - vertex.column_residual) * power_of_two(problem.fine);
-    const Rational* column = nullptr;
-    Integer around;
+    const auto around_by = [&error](const Rational& column_sum) { return ceiling_of(error * column_sum); };
+    Integer around = around_by(inverse.column_sum_max);
     for (std::size_t l = 0; l < forces.size(); ++l) {
-        if (column == nullptr || *column != inverse.column_sum[l]) { // with a singular value all are one number
-            column = &inverse.column_sum[l];
-            around = ceiling_of(error * *column);
+        if (!inverse.column_sum.empty()) {
+            around = around_by(inverse.column_sum[l]);
         }
         const Integer factor = problem.force_units(static_cast<int>(l));
         const Integer& g = balance.sought()[l];

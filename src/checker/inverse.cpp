@@ -337,7 +337,6 @@ InverseBound bound_by_singular_value(const Problem& problem) {
     const auto size = static_cast<unsigned long>(problem.dofs());
     bound.row_sum = short_above(root(size) / *sigma);
     bound.column_sum_max = bound.row_sum;
-    bound.column_sum.assign(size, bound.row_sum);
     if (problem.column_curvature() > 0) {
         bound.quadratic_sum = bound.row_sum;
         bound.regular_within = *sigma / root(problem.row_curvature() * problem.column_curvature());

@@ -26,7 +26,7 @@ struct InverseBound {
     Rational row_sum;                 ///< >= |R|_inf
     Rational quadratic_sum;           ///< as `row_sum`, over contacts of two disks only
     Rational column_sum_max;          ///< >= |R|_1
-    std::vector<Rational> column_sum; ///< per contact l: >= sum_k |R_kl|
+    std::vector<Rational> column_sum; ///< per contact l: >= sum_k |R_kl|; empty: `column_sum_max` is all that is known
 };
 
 /// \pre the problem is square.

@@ -45,7 +45,7 @@ struct End {
         }
         // Forces that do not depend on the loaded stress have a slope of exactly 0, by counting.
         const bool constant =
-            unclear.empty() || vanish_structurally(evidence.problem, having_zero(slopes), evidence.unit_load);
+            unclear.empty() || vanish_structurally(evidence.problem, having_zero(slopes), evidence.unit_load());
         text = constant ? "no limit" : fmt::format("no limit, if {} slopes are not", unclear.size());
         return constant ? Verdict::proved : Verdict::undecided;
     }
@@ -89,8 +89,8 @@ struct End {
         // Exactly 0 there: forces that vanish at every stress, and multiples of the named one.
         Forces any_load = evidence.finite_load;
         for (std::size_t j = 0; j < any_load.size(); ++j) {
-            if (evidence.unit_load[j].lower != 0 || evidence.unit_load[j].upper != 0) {
-                any_load[j] = evidence.unit_load[j];
+            if (evidence.unit_load()[j].lower != 0 || evidence.unit_load()[j].upper != 0) {
+                any_load[j] = evidence.unit_load()[j];
             }
         }
         if (vanish_with(evidence, any_load, unclear, opens)) {

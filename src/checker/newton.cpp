@@ -171,13 +171,21 @@ bool System::newton_in_quadruple(std::vector<double>& q, const std::optional<Way
     constexpr int most = 60; // steps halve the distance to one of two nearby zeros
     const double scale = packing_.max_radius();
     std::vector<Quadruple> at(q.begin(), q.end());
+    double last = std::numeric_limits<double>::infinity();
+    bool stale = solver_ != nullptr; // the factors are those of another place
     for (int k = 0; k < most; ++k) {
-        renew(q);
+        if (!stale) {
+            renew(q);
+        }
         if (!solver_->usable()) {
             return false;
         }
         const Eigen::VectorXd x = step_at(at, way);
         const double size = x.lpNorm<Eigen::Infinity>();
+        if (stale && !(size < slow * last)) {
+            stale = false;
+            continue;
+        }
         if (!(size < scale)) {
             return false;
         }
@@ -185,9 +193,11 @@ bool System::newton_in_quadruple(std::vector<double>& q, const std::optional<Way
             at[coordinate(d)] += x(static_cast<Eigen::Index>(d));
             q[coordinate(d)] = static_cast<double>(at[coordinate(d)]);
         }
-        if (size <= 0x1p-38 * scale) { // the next step would be its square, or rounding
+        if (size <= (stale ? 0x1p-46 : 0x1p-38) * scale) { // the next step would be its square, or rounding
             return true;
         }
+        stale = true;
+        last = size;
     }
     return false;
 }

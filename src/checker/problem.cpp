@@ -26,13 +26,13 @@ long granularity(double value, long if_zero) {
 Integer in_units(double value, long unit) {
     int exponent = 0;
     const double fraction = std::frexp(value, &exponent);
-    const Integer mantissa(std::ldexp(fraction, 53)); // exact: at most 53 bits
+    Integer result(std::ldexp(fraction, 53)); // exact: at most 53 bits
     const long shift = exponent - 53 - unit;
     if (shift >= 0) {
-        return shifted_left(mantissa, shift);
+        mpz_mul_2exp(result.get_mpz_t(), result.get_mpz_t(), static_cast<mp_bitcnt_t>(shift));
+    } else {
+        mpz_tdiv_q_2exp(result.get_mpz_t(), result.get_mpz_t(), static_cast<mp_bitcnt_t>(-shift));
     }
-    Integer result;
-    mpz_tdiv_q_2exp(result.get_mpz_t(), mantissa.get_mpz_t(), static_cast<mp_bitcnt_t>(-shift));
     return result;
 }
 

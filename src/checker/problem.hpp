@@ -65,7 +65,9 @@ struct Row {
     }
 };
 
-/// `Problem::digits` when more are not asked for.
+/// `Problem::digits` of the vertices of a run, most of which are passed on the way.
+inline constexpr int few_digits = 40;
+/// The same when more are not asked for.
 inline constexpr int usual_digits = 80;
 /// Asked next where those do not tell, and from the beginning where radii are R_i + eps rho_i: records of such runs
 /// call a number 0 only below 2^-1000, and bounds of others may end next to the number.

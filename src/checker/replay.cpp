@@ -103,8 +103,10 @@ Range Place::length(int axis) const {
     return coordinate(evidence->problem.layout.of_length(static_cast<std::size_t>(axis)));
 }
 
-Objections make_place(State state, Place& place, const ExactLoad& load, int fresh, std::shared_ptr<const Solver> near,
-                      int digits) {
+namespace {
+
+Objections place_with(int digits, State state, Place& place, const ExactLoad& load, int fresh,
+                      std::shared_ptr<const Solver> near) {
     place.state = std::make_unique<State>(std::move(state));
     place.evidence = std::make_unique<Evidence>(*place.state, CheckerArithmetic::automatic, true, std::move(near),
                                                 place.state->perturbation ? std::max(digits, more_digits) : digits);
@@ -138,6 +140,15 @@ Objections make_place(State state, Place& place, const ExactLoad& load, int fres
         std::erase_if(place.zeros, [&](int l) { return !contains(*structural, static_cast<std::size_t>(l)); });
     }
     return {};
+}
+
+} // namespace
+
+Objections make_place(State state, Place& place, const ExactLoad& load, int fresh,
+                      const std::shared_ptr<const Solver>& near, int digits) {
+    Objections open = place_with(digits, std::move(state), place, load, fresh, near);
+    return open && digits < usual_digits ? place_with(usual_digits, State(*place.state), place, load, fresh, near)
+                                         : open;
 }
 
 ExactLoad meant_load(const State& state) {

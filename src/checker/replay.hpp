@@ -92,9 +92,10 @@ struct Place {
 };
 
 /// The vertex near a configuration; an objection when no vertex is proved there, or a force is neither told from 0 nor
-/// a structural zero. `near`: factors of the matrix nearby, or null. `digits`: of the problem.
+/// a structural zero. `near`: factors of the matrix nearby, or null. `digits`: of the problem, and `usual_digits` where
+/// fewer leave an objection.
 Objections make_place(State state, Place& place, const ExactLoad& load = {}, int fresh = -1,
-                      std::shared_ptr<const Solver> near = {}, int digits = usual_digits);
+                      const std::shared_ptr<const Solver>& near = {}, int digits = few_digits);
 /// The exact load of a stored state: if the state says so, the load next to the stored one at which a force vanishes.
 ExactLoad meant_load(const State& state);
 /// The same vertex with more digits; on failure the old one stays. Returns the objections of `make_place`.

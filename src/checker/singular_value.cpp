@@ -7,7 +7,11 @@
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 
+#include <algorithm>
+#include <bit>
 #include <cstdint>
+#include <span>
+#include <tuple>
 
 namespace isostat::checker {
 
@@ -38,59 +42,41 @@ Integer integer_of(WideMagnitude value) {
 struct Normal {
     long scale = 0;           ///< A is below 2^scale units of the problem
     std::size_t touching = 1; ///< most entries in a column or row of A
+    int most_periods = 1;     ///< the largest factor of an entry, which multiplies its rounding
     bool usable = false;
-    std::vector<int> place; ///< position of each degree of freedom
     /// The lower triangle of B column by column, rows ascending; times 2^(2 point).
-    std::vector<std::size_t> start{0};
+    std::vector<int> start{0};
     std::vector<int> row;
     std::vector<Wide> value;
 
     explicit Normal(const Problem& problem) {
-        const int n = problem.dofs();
-        if (n > most_rows) {
+        if (problem.dofs() > most_rows || !round(problem)) {
             return;
-        }
-        std::vector<std::array<Integer, Row::most>> exact(problem.rows.size());
-        for (int l = 0; l < n; ++l) {
-            for (int k = 0; k < problem.rows[at(l)].count; ++k) {
-                exact[at(l)][at(k)] = problem.entry(l, k, problem.stored);
-                scale = std::max(scale, bits(exact[at(l)][at(k)]));
-            }
-        }
-        entries_.resize(problem.rows.size());
-        for (int l = 0; l < n; ++l) {
-            const Row& contact = problem.rows[at(l)];
-            for (int k = 0; k < contact.count; ++k) {
-                const int dof = problem.dof_of[at(contact.coordinate[at(k)])];
-                if (dof >= 0) {
-                    entries_[at(l)].push_back({dof, fixed_point(exact[at(l)][at(k)])});
-                }
-            }
-            touching = std::max(touching, entries_[at(l)].size());
         }
         for (const std::vector<int>& contacts : problem.contacts_of) {
             touching = std::max(touching, contacts.size());
         }
-        usable = static_cast<double>(touching) <= largest_square / 2; // an entry of B is at most that
+        usable = static_cast<double>(touching) <= largest_square / 2 && // an entry of B is at most that
+                 std::ranges::none_of(problem.contacts_of, &std::vector<int>::empty);
         if (usable) {
-            choose_order(n);
             multiply(problem);
+            arrange();
         }
     }
+
+    /// What entries of a column or row of A are off by together, in units of 2^-point of the scale.
+    [[nodiscard]] unsigned long rounding() const { return touching * static_cast<unsigned long>(most_periods); }
 
     /// B - shift I in double.
     [[nodiscard]] Sparse approximate(double shift) const {
         const auto n = static_cast<Eigen::Index>(start.size()) - 1;
-        std::vector<Eigen::Triplet<double>> entries;
-        entries.reserve(row.size());
-        for (Eigen::Index j = 0; j < n; ++j) {
-            for (std::size_t p = start[static_cast<std::size_t>(j)]; p < start[static_cast<std::size_t>(j) + 1]; ++p) {
-                const double b = std::ldexp(as_double(value[p]), -2 * point);
-                entries.emplace_back(row[p], static_cast<int>(j), row[p] == j ? b - shift : b);
-            }
-        }
         Sparse b(n, n);
-        b.setFromTriplets(entries.begin(), entries.end());
+        b.resizeNonZeros(static_cast<Eigen::Index>(row.size()));
+        std::copy(start.begin(), start.end(), b.outerIndexPtr());
+        std::copy(row.begin(), row.end(), b.innerIndexPtr());
+        std::transform(value.begin(), value.end(), b.valuePtr(),
+                       [](Wide entry) { return std::ldexp(as_double(entry), -2 * point); });
+        b.diagonal().array() -= shift;
         return b;
     }
 
@@ -99,71 +85,113 @@ struct Normal {
         int dof;
         std::int64_t value;
     };
-    std::vector<std::vector<Entry>> entries_; ///< of each row
+    std::vector<Entry> entries_;        ///< row by row
+    std::vector<std::size_t> first_{0}; ///< of each row
 
-    /// Rounded towards zero, by less than one.
-    [[nodiscard]] std::int64_t fixed_point(const Integer& exact) const {
-        if (scale <= point) {
-            return shifted_left(exact, point - scale).get_si();
-        }
-        Integer result;
-        mpz_tdiv_q_2exp(result.get_mpz_t(), exact.get_mpz_t(), static_cast<mp_bitcnt_t>(scale - point));
-        return result.get_si();
+    [[nodiscard]] std::span<const Entry> entries_of(int contact) const {
+        return std::span(entries_).subspan(first_[at(contact)], first_[at(contact) + 1] - first_[at(contact)]);
     }
 
-    void choose_order(int n) {
-        std::vector<Eigen::Triplet<double>> pattern;
-        for (const std::vector<Entry>& contact : entries_) {
-            for (const Entry& a : contact) {
-                for (const Entry& b : contact) {
-                    pattern.emplace_back(a.dof, b.dof, 1.0);
-                }
+    /// Entries of A, rounded towards zero by less than `most_periods`. False: a separation is above twice the length at
+    /// which some contact is closed.
+    bool round(const Problem& problem) {
+        scale = problem.weight_bits + 1;
+        for (std::size_t l = 0; l < problem.rows.size(); ++l) {
+            const Row& contact = problem.rows[l];
+            scale = std::max(scale, contact.quadratic ? bits(problem.sum[l]) + 1 : 0);
+            for (std::size_t k = 0; k < static_cast<std::size_t>(contact.count); ++k) {
+                most_periods = std::max(most_periods, std::abs(contact.sign[k]));
             }
         }
-        Sparse b(n, n);
-        b.setFromTriplets(pattern.begin(), pattern.end());
-        Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
-        Eigen::AMDOrdering<int>()(b, order);
-        place.resize(static_cast<std::size_t>(n));
-        for (int k = 0; k < n; ++k) {
-            place[at(order.indices()[k])] = k;
+        const int factors = std::bit_width(static_cast<unsigned>(most_periods - 1));
+        scale += factors;
+        Integer entry;
+        for (const Row& contact : problem.rows) {
+            std::array<std::int64_t, most_axes> separation{};
+            for (std::size_t a = 0; a < most_axes; ++a) {
+                if (contact.quadratic) {
+                    contact.separate(problem.stored, a, entry);
+                } else {
+                    entry = problem.weight();
+                }
+                if (bits(entry) > scale - factors) {
+                    return false;
+                }
+                if (scale <= point) {
+                    mpz_mul_2exp(entry.get_mpz_t(), entry.get_mpz_t(), static_cast<mp_bitcnt_t>(point - scale));
+                } else {
+                    mpz_tdiv_q_2exp(entry.get_mpz_t(), entry.get_mpz_t(), static_cast<mp_bitcnt_t>(scale - point));
+                }
+                separation[a] = entry.get_si();
+            }
+            for (std::size_t k = 0; k < static_cast<std::size_t>(contact.count); ++k) {
+                if (const int dof = problem.dof_of[at(contact.coordinate[k])]; dof >= 0) {
+                    entries_.push_back({dof, contact.sign[k] * separation[contact.axis[k]]});
+                }
+            }
+            touching = std::max(touching, entries_.size() - first_.back());
+            first_.push_back(entries_.size());
         }
+        return true;
     }
 
+    /// B in the order of the degrees of freedom.
     void multiply(const Problem& problem) {
-        const std::size_t n = place.size();
-        std::vector<int> dof_at(n);
-        for (std::size_t dof = 0; dof < n; ++dof) {
-            dof_at[at(place[dof])] = static_cast<int>(dof);
-        }
-        std::vector<Wide> sum(n, 0);
-        std::vector<int> met(n, -1);
+        const int n = problem.dofs();
+        std::vector<Wide> sum(at(n), 0);
         std::vector<int> rows;
-        for (int j = 0; j < static_cast<int>(n); ++j) {
+        for (int j = 0; j < n; ++j) {
             rows.clear();
-            for (const int l : problem.contacts_of[at(dof_at[at(j)])]) {
+            for (const int l : problem.contacts_of[at(j)]) {
                 std::int64_t own = 0;
-                for (const Entry& e : entries_[at(l)]) {
-                    own = e.dof == dof_at[at(j)] ? e.value : own;
+                for (const Entry& e : entries_of(l)) {
+                    own = e.dof == j ? e.value : own;
                 }
-                for (const Entry& e : entries_[at(l)]) {
-                    const int i = place[at(e.dof)];
-                    if (i < j) {
-                        continue;
+                for (const Entry& e : entries_of(l)) {
+                    if (e.dof >= j) {
+                        sum[at(e.dof)] += static_cast<Wide>(e.value) * own;
+                        rows.push_back(e.dof);
                     }
-                    if (std::exchange(met[at(i)], j) != j) {
-                        sum[at(i)] = 0;
-                        rows.push_back(i);
-                    }
-                    sum[at(i)] += static_cast<Wide>(e.value) * own;
                 }
             }
             std::sort(rows.begin(), rows.end());
+            rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
             for (const int i : rows) {
                 row.push_back(i);
-                value.push_back(sum[at(i)]);
+                value.push_back(std::exchange(sum[at(i)], 0));
             }
-            start.push_back(row.size());
+            start.push_back(static_cast<int>(row.size()));
+        }
+    }
+
+    /// Puts B in an order that fills little.
+    void arrange() {
+        Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
+        Eigen::AMDOrdering<int>()(approximate(0).selfadjointView<Eigen::Lower>(), order);
+        const std::size_t n = start.size() - 1;
+        std::vector<int> place(n);
+        for (std::size_t k = 0; k < n; ++k) {
+            place[at(order.indices()[static_cast<Eigen::Index>(k)])] = static_cast<int>(k);
+        }
+        struct Moved {
+            int column, row;
+            Wide value;
+        };
+        std::vector<Moved> moved;
+        moved.reserve(row.size());
+        for (std::size_t j = 0; j < n; ++j) {
+            for (std::size_t p = at(start[j]); p < at(start[j + 1]); ++p) {
+                const auto [column, below] = std::minmax(place[j], place[at(row[p])]);
+                moved.push_back({column, below, value[p]});
+            }
+        }
+        std::sort(moved.begin(), moved.end(),
+                  [](const Moved& a, const Moved& b) { return std::tie(a.column, a.row) < std::tie(b.column, b.row); });
+        start.assign(n + 1, 0);
+        for (std::size_t p = 0; p < moved.size(); ++p) {
+            start[at(moved[p].column) + 1] = static_cast<int>(p) + 1; // the last of them stays
+            row[p] = moved[p].row;
+            value[p] = moved[p].value;
         }
     }
 };
@@ -215,61 +243,65 @@ struct Factor {
     }
 };
 
+/// Whether all products of entries of a column of L, and the column of B, lie where the columns of L have entries: what
+/// is left of a column k below its first entry p off the diagonal lies in column p, and so on from column to column.
+bool closed_under_products(const Normal& b, const Factor& l) {
+    const auto rows_of = [](const auto& matrix, std::size_t j, std::size_t skipped) {
+        return std::span(matrix.row)
+            .subspan(static_cast<std::size_t>(matrix.start[j]) + skipped,
+                     static_cast<std::size_t>(matrix.start[j + 1] - matrix.start[j]) - skipped);
+    };
+    for (std::size_t j = 0; j + 1 < l.start.size(); ++j) {
+        const auto own = rows_of(l, j, 0);
+        if (own.empty() || own[0] != static_cast<int>(j) || !std::ranges::includes(own, rows_of(b, j, 0)) ||
+            (own.size() > 1 && !std::ranges::includes(rows_of(l, at(own[1]), 0), rows_of(l, j, 1)))) {
+            return false;
+        }
+    }
+    return true;
+}
+
 /// Largest row sum of magnitudes of B - L L^T - shift I, times 2^(2 point), exact; nothing when an entry is too large.
 std::optional<Integer> residual_norm(const Normal& b, const Factor& l, Wide shift) {
+    if (!closed_under_products(b, l)) {
+        return std::nullopt;
+    }
     const std::size_t n = b.start.size() - 1;
     std::vector<WideMagnitude> row_sum(n, 0);
-    std::vector<Wide> w(n, 0);
+    std::vector<Wide> w(n, 0); // of the column; 0 again afterwards
     // Columns k of L with an entry in row j, linked; `next_entry[k]` is the position of that entry.
     std::vector<int> first(n, -1);
     std::vector<int> next(n, -1);
     std::vector<std::size_t> next_entry(n);
-    std::vector<int> met(n, -1);
-    std::vector<int> rows;
+    const auto subtract_column = [&](std::size_t k, std::size_t entry) {
+        const Wide factor = l.value[entry]; // in row j
+        for (std::size_t p = entry; p < l.start[k + 1]; ++p) {
+            w[at(l.row[p])] -= factor * l.value[p];
+        }
+        next_entry[k] = entry + 1; // the column waits until the row of its next entry
+        if (entry + 1 < l.start[k + 1]) {
+            next[k] = std::exchange(first[at(l.row[entry + 1])], static_cast<int>(k));
+        }
+    };
     for (std::size_t j = 0; j < n; ++j) {
-        rows.clear();
-        const auto add = [&](int i, Wide value) {
-            if (std::exchange(met[static_cast<std::size_t>(i)], static_cast<int>(j)) != static_cast<int>(j)) {
-                w[static_cast<std::size_t>(i)] = 0;
-                rows.push_back(i);
-            }
-            w[static_cast<std::size_t>(i)] += value;
-        };
-        for (std::size_t p = b.start[j]; p < b.start[j + 1]; ++p) {
-            add(b.row[p], b.value[p] - (b.row[p] == static_cast<int>(j) ? shift : 0));
+        for (std::size_t p = at(b.start[j]); p < at(b.start[j + 1]); ++p) {
+            w[at(b.row[p])] = b.value[p];
         }
-        const auto subtract_column = [&](std::size_t from, std::size_t end) {
-            const Wide factor = l.value[from]; // in row j
-            for (std::size_t p = from; p < end; ++p) {
-                add(l.row[p], -factor * l.value[p]);
-            }
-        };
-        const auto wait = [&](std::size_t k, std::size_t entry) { // until the row of this entry
-            next_entry[k] = entry;
-            if (entry < l.start[k + 1]) {
-                int& list = first[static_cast<std::size_t>(l.row[entry])];
-                next[k] = std::exchange(list, static_cast<int>(k));
-            }
-        };
+        w[j] -= shift;
         for (int k = first[j]; k >= 0;) {
-            const auto column = static_cast<std::size_t>(k);
+            const std::size_t column = at(k);
             k = next[column];
-            subtract_column(next_entry[column], l.start[column + 1]);
-            wait(column, next_entry[column] + 1);
+            subtract_column(column, next_entry[column]);
         }
-        if (l.start[j] < l.start[j + 1] && l.row[l.start[j]] == static_cast<int>(j)) {
-            subtract_column(l.start[j], l.start[j + 1]);
-            wait(j, l.start[j] + 1);
-        } else {
-            return std::nullopt;
-        }
-        for (const int i : rows) {
-            const WideMagnitude size = magnitude(w[static_cast<std::size_t>(i)]);
+        subtract_column(j, l.start[j]);
+        for (std::size_t p = l.start[j]; p < l.start[j + 1]; ++p) {
+            const auto i = at(l.row[p]);
+            const WideMagnitude size = magnitude(std::exchange(w[i], 0));
             if (size >> residual_bits != 0) {
                 return std::nullopt;
             }
             row_sum[j] += size;
-            row_sum[static_cast<std::size_t>(i)] += static_cast<std::size_t>(i) != j ? size : 0;
+            row_sum[i] += i != j ? size : 0;
         }
     }
     return integer_of(*std::max_element(row_sum.begin(), row_sum.end()));
@@ -312,7 +344,7 @@ std::optional<Rational> smallest_singular_value(const Problem& problem) {
         if (square <= 0) {
             continue;
         }
-        const Integer rounding(static_cast<unsigned long>(normal.touching));
+        const Integer rounding(normal.rounding());
         const Integer sigma = sqrt(square) - rounding;
         if (sigma > 0) {
             return Rational(sigma) * power_of_two(normal.scale + problem.fine - point);

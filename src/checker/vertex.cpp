@@ -35,10 +35,14 @@ std::vector<Integer> improved(const Problem& problem, const Solver& solver) {
 
 Integer largest_move(const Problem& problem, const std::vector<Integer>& q) {
     Integer most = 0;
+    Integer move;
     for (std::size_t k = 0; k < q.size(); ++k) {
-        most = std::max<Integer>(most, abs(q[k] - problem.stored[k]));
+        move = q[k] - problem.stored[k];
+        if (mpz_cmpabs(move.get_mpz_t(), most.get_mpz_t()) > 0) {
+            most = move;
+        }
     }
-    return most;
+    return abs(most);
 }
 
 } // namespace
@@ -53,11 +57,11 @@ TrueVertex find_vertex(const Problem& problem, const Solver& solver, const Inver
                        const Rational& around) {
     TrueVertex vertex;
     const Rational slope = problem.row_curvature() * inverse.quadratic_sum;
-    std::vector<std::vector<Integer>> starts{problem.stored};
-    if (solver.usable()) {
-        starts.insert(starts.begin(), improved(problem, solver));
-    }
-    for (const std::vector<Integer>& start : starts) {
+    for (const bool at_stored : {false, true}) {
+        if (!at_stored && !solver.usable()) {
+            continue;
+        }
+        std::vector<Integer> start = at_stored ? problem.stored : improved(problem, solver);
         const Rational largest = Rational(largest_of(problem.twice_residuals(start)));
         const Rational moved = problem.length(largest_move(problem, start));
         const Rational error = inverse.residual_row + slope * moved;
@@ -67,7 +71,7 @@ TrueVertex find_vertex(const Problem& problem, const Solver& solver, const Inver
         if (room <= 0) {
             continue;
         }
-        vertex.middle = start;
+        vertex.middle = std::move(start);
         vertex.radius = short_above(2 * step / room);
         vertex.moved_least = std::max<Rational>(0, moved - vertex.radius);
         vertex.moved_most = moved + vertex.radius;

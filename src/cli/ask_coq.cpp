@@ -56,10 +56,12 @@ std::string last_line(const std::string& command, bool quiet) {
 
 } // namespace
 
-ClaimCheck ask_coq(const std::string& certificate, const std::string& digest, double limit, bool quiet) {
+ClaimCheck ask_coq(CoqChecker checker, const std::string& certificate, const std::string& digest, double limit,
+                   bool quiet) {
+    const bool extracted = checker == CoqChecker::extracted;
     const CoqFiles files = coq_files();
     ClaimCheck check;
-    check.claim = "coq";
+    check.claim = extracted ? "coq-extracted" : "coq";
     check.claimed = true;
     if (!fs::exists(files.script) || !fs::exists(files.writer)) {
         check.detail =
@@ -68,8 +70,9 @@ ClaimCheck ask_coq(const std::string& certificate, const std::string& digest, do
         return check;
     }
     const std::string answer = last_line(
-        fmt::format("exec python3 -I -B {} {} {} --sha256 {} --limit {}", text::shell(files.script.string()),
-                    text::shell(files.writer.string()), text::shell(fs::absolute(certificate).string()), digest, limit),
+        fmt::format("exec python3 -I -B {} {} {} --sha256 {} --limit {}{}", text::shell(files.script.string()),
+                    text::shell(files.writer.string()), text::shell(fs::absolute(certificate).string()), digest, limit,
+                    extracted ? " --extracted" : ""),
         quiet);
     constexpr std::string_view proved = "proved ";
     constexpr std::string_view undecided = "undecided ";

@@ -86,6 +86,7 @@ struct VerifyArguments {
     std::vector<std::string> certificates; ///< certificates, or the folder of a run
     std::string input;                     ///< empty, or the file that the certificate is of
     bool coq = false;                      ///< also check with the checker that is proved in Coq
+    bool coq_extracted = false;            ///< ... with the program that Coq extracts from it
     double coq_limit = 0;                  ///< seconds for each certificate; 0: no limit
 };
 /// Checks a certificate with code that shares nothing with its maker. Exit status 0 only when every claim of an

@@ -288,17 +288,19 @@ first order included; the first wrong record is named. Runs with
 states_every = 1 can be taken up again after an arc that the replay cannot follow. Of an ensemble every run is: 1 when one is
 refuted, else 65 when one cannot be read, else 2 when one is undecided, unfinished or missing.
 Examples: isostat verify certificate.json --input state.json
-          isostat verify out/certificates/eq_*.json --coq
+          isostat verify out/certificates/eq_*.json --coq-extracted
           isostat verify out)");
         needed(command, "certificate", a.certificates, "certificates (JSON), or the folder of a run or of an ensemble",
                "CERT.json|DIR");
         option(command, "--input", a.input, "also check that this is the file that the certificate speaks of", "FILE");
-        auto* coq = command.add_flag("--coq", a.coq,
-                                     "also put the certificate through the checker that is proved in Coq (disks or "
-                                     "spheres in boxes or cells; minutes; Debian packages: see proofs/coq_checker.md)");
+        command.add_flag("--coq", a.coq,
+                         "also put the certificate through the checker that is proved in Coq (disks or "
+                         "spheres in boxes or cells; minutes; Debian packages: see proofs/coq_checker.md)");
+        command.add_flag("--coq-extracted", a.coq_extracted,
+                         "the same by the program that Coq extracts from that checker: seconds; it trusts Coq's "
+                         "extraction, OCaml's compiler and Zarith besides (see there)");
         option(command, "--coq-limit", a.coq_limit, "seconds for each certificate (default: as long as it takes)",
-               ranges::number(1, 1e9), "SECONDS")
-            ->needs(coq);
+               ranges::number(1, 1e9), "SECONDS");
         add_threads(command, a.common);
         does(command, a, verify, true);
     }

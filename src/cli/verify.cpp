@@ -67,9 +67,12 @@ Verdict verify_certificate(const std::string& file, const VerifyArguments& argum
     if (!arguments.input.empty()) {
         verification.checks.push_back(check_input(certificate, arguments.input));
     }
-    if (arguments.coq) {
-        const bool quiet = arguments.common.json || arguments.common.quiet;
-        verification.checks.push_back(ask_coq(file, sha256(text), arguments.coq_limit, quiet));
+    const bool quiet = arguments.common.json || arguments.common.quiet;
+    for (const auto& [asked, checker] :
+         {std::pair(arguments.coq, CoqChecker::kernel), std::pair(arguments.coq_extracted, CoqChecker::extracted)}) {
+        if (asked) {
+            verification.checks.push_back(ask_coq(checker, file, sha256(text), arguments.coq_limit, quiet));
+        }
     }
     for (std::size_t k = claims; k < verification.checks.size(); ++k) {
         verification.verdict = worst(verification.verdict, verification.checks[k].verdict);
@@ -106,10 +109,15 @@ Verdict verify_certificate(const std::string& file, const VerifyArguments& argum
 int verify(const VerifyArguments& arguments) {
     end_at_interrupts();
     const std::string& first = arguments.certificates.front();
+    const bool asks_coq = arguments.coq || arguments.coq_extracted;
+    if (arguments.coq_limit > 0 && !asks_coq) {
+        throw Error(ErrorKind::usage, "--coq-limit belongs to --coq or --coq-extracted");
+    }
     const bool one = arguments.certificates.size() == 1;
     if (one && std::filesystem::is_directory(first)) {
-        if (!arguments.input.empty() || arguments.coq) {
-            throw Error(ErrorKind::usage, "--input and --coq belong to a certificate, not to a folder");
+        if (!arguments.input.empty() || asks_coq) {
+            throw Error(ErrorKind::usage,
+                        "--input, --coq and --coq-extracted belong to a certificate, not to a folder");
         }
         return is_ensemble(first) ? verify_ensemble(first, arguments.common) : verify_folder(first, arguments.common);
     }

@@ -76,10 +76,6 @@ void predict(PathEquilibrium& e, int direction, double stiffness) {
     e.stiffness_needed = stiffness_needed(backbone, exact).value_or(unknown);
 }
 
-} // namespace
-
-namespace {
-
 /// Runs along the loads, segment by segment.
 class Follower {
   public:

@@ -67,10 +67,6 @@ void sort_pairs(std::vector<Contact>& pairs, std::size_t disk_count) {
     pairs = std::move(sorted);
 }
 
-} // namespace
-
-namespace {
-
 /// `for_each_edge(visit)`: visit(i, j), i < j, of a regular triangulation.
 template <class Edges>
 std::optional<std::vector<Contact>> near_among(const Packing& packing, double reach, Edges for_each_edge) {

@@ -1,7 +1,6 @@
-#include "crafted/hold.hpp"
-
 #include "contact/separation.hpp"
 #include "crafted/able.hpp"
+#include "crafted/inspection_parts.hpp"
 
 #include <utility>
 

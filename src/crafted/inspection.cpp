@@ -1,9 +1,7 @@
 #include "contact/contact_set.hpp"
-#include "crafted/hold.hpp"
-#include "crafted/jamming.hpp"
-#include "crafted/load_range.hpp"
+#include "core/splitmix.hpp"
+#include "crafted/inspection_parts.hpp"
 #include "crafted/rigid_motions.hpp"
-#include "crafted/second_order.hpp"
 #include "rigidity/strained_matrix.hpp"
 
 #include <isostat/core/machine.hpp>
@@ -20,13 +18,8 @@ namespace {
 exact::NumberMatrix generic_matrix(const ExactPacking& packing, const DofMap& dofs,
                                    const std::vector<Contact>& contacts) {
     ExactPacking random = packing;
-    std::uint64_t state = 0x9e3779b97f4a7c15u; // splitmix64, which gives the same points at every call
-    const auto next = [&] {
-        std::uint64_t z = state += 0x9e3779b97f4a7c15u;
-        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-        z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-        return Number(static_cast<long long>((z ^ (z >> 31)) >> 3)); // 61 bits
-    };
+    std::uint64_t place = 1; // the same points at every call
+    const auto next = [&] { return Number(static_cast<long long>(splitmix(0, ++place) >> 3)); }; // 61 bits
     for (std::size_t i = 0; i < random.radius.size(); ++i) {
         for (std::size_t a = 0; a < packing.axes(); ++a) {
             random.centre[i][a] = next();

@@ -1,4 +1,4 @@
-#include "crafted/jamming.hpp"
+#include "crafted/inspection_parts.hpp"
 
 #include <algorithm>
 

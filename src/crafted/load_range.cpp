@@ -1,4 +1,4 @@
-#include "crafted/load_range.hpp"
+#include "crafted/inspection_parts.hpp"
 
 namespace isostat::crafted {
 

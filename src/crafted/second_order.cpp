@@ -1,7 +1,6 @@
-#include "crafted/second_order.hpp"
-
 #include "contact/separation.hpp"
 #include "crafted/able.hpp"
+#include "crafted/inspection_parts.hpp"
 
 #include <functional>
 

@@ -33,6 +33,7 @@ ArcBodies::ArcBodies(const Packing& packing) : packing_(packing) {
     }
     neighbours_.resize(packing.radius.size());
     farthest_ = known_to_ = std::numeric_limits<double>::infinity();
+    const double thinnest = packing.min_radius();
     for (std::size_t b = 0; b < packing.arcs.size(); ++b) {
         const std::vector<int>& ring = packing.arcs[b];
         double shortest = std::numeric_limits<double>::infinity();
@@ -47,7 +48,7 @@ ArcBodies::ArcBodies(const Packing& packing) : packing_(packing) {
         }
         farthest_ = std::min(farthest_, shortest * shortest / (9 * around));
         const bool fit = shortest > least_share * around && turn(ring).is_once();
-        const double known = fit ? slack / 16 * std::min(shortest, packing.min_radius()) : 0;
+        const double known = fit ? slack / 16 * std::min(shortest, thinnest) : 0;
         known_to_ = std::min({known_to_, farthest_, known});
         blur_ = std::max(blur_, 2 * around * slack * slack);
     }

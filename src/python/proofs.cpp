@@ -207,6 +207,11 @@ void bind_inspection(py::module_& module) {
             "(value, bound) per axis: change of the length per unit of the loaded stress, where the potential has a "
             "minimum along mechanisms; else empty.")
         .def_property_readonly(
+            "second_variation",
+            [](const Seen& self) { return self.yielding ? self.yielding->second_variation : std::vector<Enclosure>(); },
+            "(value, bound) of the eigenvalues of the second variation at that minimum on the mechanisms that the load "
+            "reaches, in (X, Y, angle) and lengths; X, Y: mean of the centres of the members.")
+        .def_property_readonly(
             "remark", [](const Seen& self) { return self.remark; },
             "Where it is no equilibrium: which contact, and by how much.")
         .def_property_readonly("sigma2", record(&Record::stress), "Loaded stress.")

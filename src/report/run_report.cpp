@@ -160,10 +160,6 @@ class Writer {
     ReportResult result_;
 };
 
-} // namespace
-
-namespace {
-
 /// Counts of decisions by kind and by the rung that decided.
 std::string decision_table(const json::Field& decisions) {
     constexpr std::array<const char*, 5> rungs{"combinatorial", "double", "double-double", "mpfr", "exact"};

@@ -1,8 +1,7 @@
 #include "io/files.hpp"
 #include "io/text.hpp"
 #include "io/toml.hpp"
-#include "scene/radii_file.hpp"
-#include "scene/radii_law.hpp"
+#include "scene/radii.hpp"
 #include "scene/section.hpp"
 
 #include <isostat/core/error.hpp>

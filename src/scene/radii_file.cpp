@@ -1,7 +1,6 @@
-#include "scene/radii_file.hpp"
-
 #include "io/files.hpp"
 #include "io/lines.hpp"
+#include "scene/radii.hpp"
 
 #include <fmt/format.h>
 

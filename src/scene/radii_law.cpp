@@ -1,6 +1,4 @@
-#include "scene/radii_law.hpp"
-
-#include "scene/radii_file.hpp"
+#include "scene/radii.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

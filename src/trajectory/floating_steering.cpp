@@ -1,6 +1,7 @@
 #include "trajectory/floating_steering.hpp"
 
 #include "contact/words.hpp"
+#include "core/splitmix.hpp"
 #include "trajectory/descent.hpp"
 #include "trajectory/record.hpp"
 
@@ -17,11 +18,8 @@ Words names(const ArcRecord& record) {
 
 } // namespace
 
-std::uint64_t bits_for(std::uint64_t seed, long step) { // splitmix64 finaliser
-    std::uint64_t z = seed + 0x9e3779b97f4a7c15ULL * static_cast<std::uint64_t>(step + 1);
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
-    return z ^ (z >> 31);
+std::uint64_t bits_for(std::uint64_t seed, long step) {
+    return splitmix(seed, static_cast<std::uint64_t>(step + 1));
 }
 
 ArcKind kind_of(const Contact& opened, bool infinitesimal) {

@@ -123,10 +123,6 @@ void record_potential(EquilibriumRecord& record, const TrueCoordinates& q, const
     record.potential_bound = potential.radius;
 }
 
-} // namespace
-
-namespace {
-
 /// First members of bodies without a contact that bears a force.
 std::vector<int> rattling_bodies(const Packing& packing, const std::vector<Contact>& carrying) {
     const Bodies bodies(packing);

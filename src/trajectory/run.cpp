@@ -297,10 +297,6 @@ std::optional<Failure> Run::report(int arcs, std::optional<Result<Description>> 
     return recorder_.observer.objection();
 }
 
-} // namespace
-
-namespace {
-
 /// First-order ties are only proved for single grains.
 void require_no_ties_of_clumps(const State& state, const RunOptions& options) {
     if (!state.packing.bars.empty() && options.at_first_order()) {

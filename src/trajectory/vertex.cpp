@@ -4,7 +4,6 @@
 #include "contact/words.hpp"
 #include "motion/arc.hpp"
 #include "trajectory/steering.hpp"
-#include "verified/gap_signs.hpp"
 #include "verified/inverse_bound_multiprecision.hpp"
 
 #include <algorithm>

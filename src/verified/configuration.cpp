@@ -3,7 +3,6 @@
 #include "contact/gap_sign.hpp"
 #include "core/roundoff.hpp"
 #include "verified/enclosed_vertex.hpp"
-#include "verified/gap_signs.hpp"
 #include "verified/norm.hpp"
 #include "verified/vertex_bounds.hpp"
 
@@ -116,10 +115,6 @@ PreciseInterval gap_at(const EnclosedVertex<Real>& vertex, const Contact& contac
     return {h, radius.real(), a.bits()};
 }
 
-} // namespace
-
-namespace {
-
 /// The sign of a gap as far as one enclosure of the vertex decides the sign.
 Order sign_at(const EnclosedVertex<Real>& vertex, const Contact& contact) {
     const PreciseInterval gap_there = gap_at(vertex, contact);
@@ -171,12 +166,6 @@ std::vector<Order> gap_signs_at_vertex(const Packing& packing, const IsostaticSt
         }
     }
     return orders;
-}
-
-Order gap_sign_at_vertex(const Packing& packing, const IsostaticStructure& structure,
-                         const Factorisation& factorisation, const InverseBound& inverse, const Contact& contact,
-                         const LadderOptions& options) {
-    return gap_signs_at_vertex(packing, structure, factorisation, inverse, {contact}, options)[0];
 }
 
 } // namespace isostat

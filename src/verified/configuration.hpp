@@ -48,11 +48,12 @@ VertexEnclosure enclose_vertex_double_double(const Packing& packing, const Isost
 /// Gap at the true vertex, for any candidate.
 Enclosure gap_at_vertex(const Packing& packing, const VertexEnclosure& vertex, const Contact& contact);
 
-/// Sign of the gap of a candidate at the true vertex, beyond double-double: first the vertex in MPFR with first_bits
+/// Signs of the gaps of candidates at the true vertex, beyond double-double: first the vertex in MPFR with first_bits
 /// ... max_bits bits; then, when every kept gap is exactly 0 at the stored configuration (which is then the true
-/// vertex), exact numbers. Sign 0: the candidate is proved to touch. Cost: N gaps and a solve per 30 bits or so.
-Order gap_sign_at_vertex(const Packing& packing, const IsostaticStructure& structure,
-                         const Factorisation& factorisation, const InverseBound& inverse, const Contact& contact,
-                         const LadderOptions& options = {});
+/// vertex), exact numbers. Sign 0: the candidate is proved to touch. One result per candidate. Cost: N gaps and a solve
+/// per 30 bits or so, and a gap per rung for each candidate.
+std::vector<Order> gap_signs_at_vertex(const Packing& packing, const IsostaticStructure& structure,
+                                       const Factorisation& factorisation, const InverseBound& inverse,
+                                       const std::vector<Contact>& candidates, const LadderOptions& options = {});
 
 } // namespace isostat

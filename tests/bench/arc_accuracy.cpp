@@ -46,23 +46,13 @@ double length_of(const dd_real& x) {
 }
 
 /// Velocity at q that opens one contact, refined with residuals in double-double.
-std::vector<double> velocity_at(const std::vector<double>& radius, const std::vector<dd_real>& q,
+std::vector<double> velocity_at(const Packing& packing, const std::vector<dd_real>& q,
                                 const std::vector<Contact>& contacts, std::size_t opened) {
-    const oracle::ContactEquations<dd_real> equations(radius, contacts);
-    const oracle::DoubleJacobian jacobian(equations, q);
-    std::vector<dd_real> v(q.size(), dd_real(0.0));
-    for (int k = 0; k < 4 && jacobian.usable; ++k) {
-        Eigen::VectorXd right(static_cast<Eigen::Index>(contacts.size()));
-        for (std::size_t l = 0; l < contacts.size(); ++l) {
-            dd_real r = l == opened ? 1.0 : 0.0;
-            equations.derivative(q, contacts[l], [&](std::size_t c, const dd_real& value) { r -= value * v[c]; });
-            right[static_cast<Eigen::Index>(l)] = oracle::as_double(r);
-        }
-        const Eigen::VectorXd step = jacobian.lu->solve(right);
-        for (std::size_t c = 0; c < v.size(); ++c) {
-            v[c] += dd_real(step[static_cast<Eigen::Index>(c)]);
-        }
-    }
+    using Matrix = oracle::RefinedMatrix<dd_real>;
+    const Matrix derivative = oracle::ContactEquations<dd_real>(packing, contacts, q).derivative();
+    std::vector<dd_real> opening(q.size(), dd_real(0.0));
+    opening[opened] = 1.0;
+    const auto v = derivative.solve(opening, Matrix::Of::matrix, derivative.usable ? 4 : 0).x;
     const auto fastest =
         std::max_element(v.begin(), v.end(), [](const dd_real& a, const dd_real& b) { return abs(a) < abs(b); });
     std::vector<double> out;
@@ -76,13 +66,12 @@ True truth_of(const Packing& start, const std::vector<Contact>& contacts, std::s
               const std::vector<Contact>& end_contacts, const Load& load) {
     True out;
     const auto polished = [&](const Packing& near, const std::vector<Contact>& list) {
-        return oracle::polish<dd_real>(near.radius, std::vector<dd_real>(near.q.begin(), near.q.end()), list, 1e-27,
-                                       12);
+        return oracle::polish<dd_real>(near, std::vector<dd_real>(near.q.begin(), near.q.end()), list, 1e-27, 12);
     };
     const auto from = polished(start, contacts);
     const auto to = polished(end, end_contacts);
     const auto forces =
-        oracle::affine_forces<dd_real>(end.radius, to.q, end_contacts, load.fixed_force(end), load.unit_force(end), 4);
+        oracle::affine_forces<dd_real>(end, to.q, end_contacts, load.fixed_force(end), load.unit_force(end), 4);
     out.known = from.residual < 1e-24 && to.residual < 1e-24 && !forces.fixed.empty();
     out.residual = std::max(from.residual, to.residual);
     out.end = to.q;
@@ -91,7 +80,7 @@ True truth_of(const Packing& start, const std::vector<Contact>& contacts, std::s
     for (std::size_t l = 0; l < out.fixed.size(); ++l) {
         out.largest = std::max(out.largest, length_of(out.fixed[l] + load.stress[1] * out.unit[l]));
     }
-    out.velocity = velocity_at(start.radius, from.q, contacts, opened);
+    out.velocity = velocity_at(start, from.q, contacts, opened);
     return out;
 }
 
@@ -302,10 +291,7 @@ int main(int argc, char** argv) {
     std::vector<std::vector<State>> states(levels.size());
     for (int repeat = 0; repeat < repeats; ++repeat) {
         for (std::size_t k = 0; k < levels.size(); ++k) {
-            bench::StretchOptions options;
-            options.level = levels[k];
-            options.equilibria = equilibria;
-            options.reference_every = 1;
+            bench::StretchOptions options{.level = levels[k], .equilibria = equilibria, .reference_every = 1};
             states[k].clear();
             options.visit = [&](const State& state) { states[k].push_back(state); };
             runs[k].runs.push_back(bench::run_stretch(*start, options));

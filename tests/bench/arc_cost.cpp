@@ -164,10 +164,7 @@ int main(int argc, char** argv) {
         }
         Row row;
         row.n = begin_state->packing.disk_count();
-        bench::StretchOptions options;
-        options.equilibria = equilibria;
-        options.arcs = arcs;
-        options.threads = std::max(1, threads);
+        bench::StretchOptions options{.equilibria = equilibria, .arcs = arcs, .threads = std::max(1, threads)};
         Levels levels;
         for (int repeat = 0; repeat < repeats; ++repeat) {
             options.level = CertifyLevel::decisions;

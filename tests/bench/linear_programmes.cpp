@@ -30,9 +30,7 @@ int fail(const std::string& what) {
 
 /// First line: disks, seed, eps; then radius, x, y, gx, gy of each disk; then the lengths.
 int write_start(int disks, std::uint64_t seed, const std::string& file) {
-    PreparationOptions options;
-    options.disks = disks;
-    options.seed = seed;
+    PreparationOptions options{.disks = disks, .seed = seed};
     options.max_programmes = 0; // only the dynamics
     PreparationReport report;
     (void)prepare(options, report);

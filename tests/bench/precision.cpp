@@ -1,20 +1,20 @@
 // Error against run time: contact forces on every rung of the ladder, n = 100 to 5000, condition 1e3 to 1e12. Error
-// against a reference of 1400 bits that is made apart from the library (UMFPACK and GMP floats), the proved bound, CPU
+// against a reference of 1400 bits that is made apart from the library (Eigen's LU and MPFR), the proved bound, CPU
 // time (median and range; also in units of one KLU analysis + factorisation). Writes error-time.csv and, with gnuplot,
 // error-time.svg into the folder. The status is 1 when a bound is below an error. Usage:
 //   bench_precision [--json FILE] [--repeats R] [folder [n ...]]        default: . 100 400 1936 4900, 3 repeats
 
 #include "bench/shared/references.hpp"
 #include "bench/shared/report.hpp"
-#include "oracle/reference.hpp"
+#include "oracle/refined.hpp"
 #include "oracle/structures.hpp"
+#include "oracle/truth.hpp"
 #include "verified/force_ladder.hpp"
 #include "verified/inverse_bound_multiprecision.hpp"
 
 #include <isostat/preparation/preparation.hpp>
 
 #include <fmt/format.h>
-#include <mpfr.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -26,7 +26,8 @@ using namespace isostat;
 
 namespace {
 
-constexpr unsigned reference_bits = 1400;
+constexpr int reference_bits = 1400;
+using Digits = oracle::Decimal<422>;
 
 struct Line {
     std::string family;
@@ -41,21 +42,9 @@ struct Line {
     double bound;               ///< log10 of the proved bound / max |f|
 };
 
-mpf_class read(const std::string& hexadecimal) {
-    mpfr_t x;
-    mpfr_init2(x, reference_bits);
-    mpfr_set_str(x, hexadecimal.c_str(), 16, MPFR_RNDN);
-    mpf_class result(0, reference_bits);
-    mpfr_get_f(result.get_mpf_t(), x, MPFR_RNDN);
-    mpfr_clear(x);
-    return result;
-}
-
 /// log10 of a float of any size; -infinity for 0.
-double log10_of(const mpf_class& x) {
-    long exponent = 0;
-    const double mantissa = mpf_get_d_2exp(&exponent, x.get_mpf_t());
-    return std::log10(std::abs(mantissa)) + static_cast<double>(exponent) * std::log10(2.0);
+double log10_of(const Digits& x) {
+    return static_cast<double>(log10(Digits(abs(x))));
 }
 
 /// All rungs of one structure; returns false when a bound is below an error.
@@ -66,16 +55,12 @@ bool measure(const std::string& family, const Packing& packing, const std::vecto
         fmt::print("{}: {}\n", family, proved.failure().message());
         return true;
     }
-    const std::vector<mpf_class> reference = oracle::refined_forces(packing, contacts, force, reference_bits);
+    const auto reference = oracle::refined_forces<Digits>(packing, contacts, force, reference_bits - 64);
     if (reference.empty()) {
         fmt::print("{}: the reference does not converge\n", family);
         return true;
     }
-    mpf_class largest(0, reference_bits);
-    for (const mpf_class& f : reference) {
-        largest = std::max(largest, mpf_class(abs(f)));
-    }
-    const double scale = log10_of(largest);
+    const double scale = log10_of(oracle::largest_of(reference));
     const double before = bench::cpu_milliseconds();
     const Factorisation factorisation(proved.value());
     const double factor_time = bench::cpu_milliseconds() - before;
@@ -92,16 +77,15 @@ bool measure(const std::string& family, const Packing& packing, const std::vecto
     const std::size_t first = lines.size();
     bool holds = true;
     const auto line = [&](const ForceLadder& ladder, int part) {
-        mpf_class worst(0, reference_bits);
+        Digits worst = 0;
         for (std::size_t l = 0; l < reference.size(); ++l) {
-            const mpf_class f = read(ladder.digits(part, ContactId(l), static_cast<int>(reference_bits)));
-            const mpf_class error = abs(mpf_class(f - reference[l]));
-            worst = std::max(worst, error);
+            const auto f = oracle::from_hexadecimal<Digits>(ladder.digits(part, ContactId(l), reference_bits));
+            worst = std::max(worst, Digits(abs(f - reference[l])));
         }
         const double error = log10_of(worst) - scale;
         const double bound = ladder.bound_exponent(part) * std::log10(2.0) - scale;
         // The reference itself errs by about 2^-(bits - 64) cond: nothing is said below.
-        const double known = -(static_cast<double>(reference_bits) - 64) * std::log10(2.0) -
+        const double known = -(reference_bits - 64.0) * std::log10(2.0) -
                              (inverse.sigma_min > 0 ? std::log10(inverse.sigma_min) : 0.0) - scale + 2;
         if (error > std::max(bound + 1e-9, known)) {
             fmt::print(stderr, "{}: rung {} with {} bits: error 1e{:.3f} above the bound 1e{:.3f}\n", family,
@@ -201,8 +185,7 @@ int main(int argc, char** argv) {
     bool holds = true;
     for (const std::string& word : sizes) {
         const int n = std::atoi(word.c_str());
-        PreparationOptions options;
-        options.disks = n;
+        PreparationOptions options{.disks = n};
         PreparationReport report;
         auto state = prepare(options, report);
         if (state.ok()) {

@@ -77,9 +77,7 @@ int main(int argc, char** argv) {
     int size_before = 0;
     for (const std::string& word : sizes) {
         const int n = std::atoi(word.c_str());
-        PreparationOptions options;
-        options.disks = n;
-        options.seed = static_cast<std::uint64_t>(seed);
+        PreparationOptions options{.disks = n, .seed = static_cast<std::uint64_t>(seed)};
         PreparationReport report;
         std::vector<Stage> seen;
         Sample wall;

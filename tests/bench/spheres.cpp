@@ -78,9 +78,7 @@ bool measure(const State& state, const Settings& settings, bench::Table& table, 
     bench::Cell arc = std::monostate();
     long arcs = 0;
     if (settings.arcs > 0) {
-        bench::StretchOptions options;
-        options.equilibria = 1000;
-        options.arcs = settings.arcs;
+        bench::StretchOptions options{.equilibria = 1000, .arcs = settings.arcs};
         const bench::Stretch run = bench::run_stretch(state, options);
         arcs = run.counters.steps;
         const sparse::Matrix<double> last =

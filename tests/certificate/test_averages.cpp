@@ -6,10 +6,7 @@
 
 #include <cmath>
 
-using isostat::Certification;
-using isostat::certify;
-using isostat::ForceAverages;
-using isostat::State;
+using namespace isostat;
 
 namespace {
 

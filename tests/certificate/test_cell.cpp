@@ -1,17 +1,10 @@
 #include "support/disguised_cells.hpp"
+#include "support/prepared.hpp"
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/io/state_file.hpp>
-#include <isostat/preparation/preparation.hpp>
 
-using isostat::Certification;
-using isostat::certify;
-using isostat::Contact;
-using isostat::Counting;
-using isostat::Interval;
-using isostat::State;
-using isostat::StateFile;
-using isostat::Verdict;
+using namespace isostat;
 
 namespace {
 
@@ -316,15 +309,9 @@ BOOST_AUTO_TEST_CASE(states_with_a_mechanism_are_counted_not_followed) {
 namespace {
 
 State isotropic(std::uint64_t seed) {
-    isostat::PreparationOptions options;
-    options.disks = 30;
-    options.seed = seed;
-    options.aspect = 1.25;
+    isostat::PreparationOptions options{.disks = 30, .seed = seed, .aspect = 1.25};
     options.cell = isostat::PreparedCell::isotropic;
-    isostat::PreparationReport report;
-    const auto state = isostat::prepare(options, report);
-    BOOST_TEST_REQUIRE(state.ok());
-    return state.value();
+    return prepared(options);
 }
 
 /// Power of the finite forces in a stretch of the whole cell, the disks at rest, and how far they are from balance on

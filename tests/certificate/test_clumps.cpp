@@ -162,6 +162,10 @@ BOOST_AUTO_TEST_CASE(a_disk_in_a_corner_under_an_eccentric_load_has_a_minimum_th
     BOOST_TEST(std::abs(hanging.second_order.value - 12.5) <= hanging.second_order.radius);
     BOOST_TEST(hanging.remark.find("W'' >= 12.4") != std::string::npos, hanging.remark);
     BOOST_TEST(hanging.rotational_rattlers.empty()); // the load turns it
+    const Enclosure second =
+        hanging.yielding->second_variation.at(0); // 25/8, the mean of the members at an arm of 5/16
+    BOOST_TEST(std::abs(second.value - 3.125 / (1 + 25.0 / 256)) <= second.radius);
+    BOOST_TEST(second.radius < 1e-9);
     BOOST_TEST((inspected(disk_in_a_corner(std::acos(-1))).stable == Verdict::refuted));
     // Stored beside the minimum, which is at most as far as said, and that far.
     const Inspection beside = inspected(disk_in_a_corner(0x1p-20));
@@ -192,6 +196,23 @@ BOOST_AUTO_TEST_CASE(several_mechanisms_have_a_minimum_together_or_none) {
     touching.contacts.erase(
         std::find(touching.contacts.begin(), touching.contacts.end(), Contact{ContactKind::disk_disk, 0, 2}));
     BOOST_TEST((inspected(touching).stable != Verdict::proved));
+}
+
+/// Ovals and dimers; two dimers turn about their one member with contacts, and where that moves on a mechanism a held
+/// coordinate turns them. Eigenvalues do not depend on which coordinate is held.
+BOOST_AUTO_TEST_CASE(free_motions_leave_the_eigenvalues_of_the_others_as_they_are) {
+    const State state = clumps("mixed_16_3");
+    const auto expected = nlohmann::json::parse(state.provenance)["expected"];
+    const Inspection inspection = inspected(state);
+    BOOST_TEST_REQUIRE((inspection.stable == Verdict::proved), inspection.remark);
+    BOOST_TEST(inspection.rotational_rattlers.size() == 2U);
+    std::vector<Enclosure> all = inspection.yielding->second_variation;
+    all.insert(all.begin(), 2, Enclosure{0, 0}); // of the free motions
+    BOOST_TEST_REQUIRE(all.size() == expected["second_variation"].size());
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        BOOST_TEST(std::abs(all[i].value - expected["second_variation"][i].get<double>()) < 1e-9);
+        BOOST_TEST(all[i].radius < 1e-7);
+    }
 }
 
 /// The row of such a bar is 0 along x where it is level with what it hangs from. The motion is no free one.
@@ -266,27 +287,52 @@ BOOST_AUTO_TEST_CASE(unions_of_an_independent_program_are_proved_with_its_counts
             BOOST_TEST(inspection.record.min_gap <= expected["smallest_other_gap"].get<double>() + 1e-12);
             BOOST_TEST(inspection.record.min_gap > expected["smallest_other_gap"].get<double>() - 1e-9);
             BOOST_TEST(inspection.record.min_gap_bound == 0); // a lower bound
+            BOOST_TEST(!inspection.yielding.has_value());     // of free motions W'' is 0, by counting
+            for (const auto& value : expected["second_variation"]) {
+                BOOST_TEST(std::abs(value.get<double>()) < 1e-9);
+            }
+        }
+    }
+}
+
+/// Contacts are closed and bear positive forces, and W'' is negative as the body turns on which a torque acts. Where
+/// the angles are free motions the same kinds of packings are proved, above.
+BOOST_AUTO_TEST_CASE(places_where_held_angles_bear_torques_are_no_equilibria) {
+    const std::vector<State> places = held_angles();
+    BOOST_TEST(places.size() == 15U);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        BOOST_TEST_CONTEXT("place " << i) {
+            const Inspection inspection = inspected(places[i]);
+            BOOST_TEST((inspection.record.verdict == Verdict::refuted));
+            BOOST_TEST((inspection.stable != Verdict::proved));
+            BOOST_TEST(inspection.remark.find("the mechanism moves") != std::string::npos, inspection.remark);
+            const Certification truth = certify(with_free_motions_held(places[i]));
+            BOOST_TEST((truth.verdict != Verdict::proved));
+            BOOST_TEST(!truth.claims.minimum.has_value());
+            BOOST_TEST(!truth.claims.counting.has_value());
+            BOOST_TEST(!truth.claims.stable);
         }
     }
 }
 
 /// The caps of an oval between four walls turn by nothing but the load: a minimum up to F_1 / F_2 = 4/3.
 BOOST_AUTO_TEST_CASE(an_oval_between_four_walls_rests_up_to_the_ratio_of_its_arms) {
-    const auto inspection = inspect_mechanism(
-        oval_in_a_box(1, 1), count_contacts(oval_in_a_box(1, 1).packing, oval_in_a_box(1, 1).contacts));
-    BOOST_REQUIRE(inspection.ok());
-    BOOST_TEST((inspection.value().stable == Verdict::proved), inspection.value().remark);
-    BOOST_TEST(inspection.value().record.dof_count == 5);
-    BOOST_TEST(inspection.value().record.contact_count == 4);
-    BOOST_TEST(inspection.value().record.mechanisms == 1);
-    BOOST_TEST(inspection.value().record.force_bound > 0);
-    BOOST_TEST(std::abs(inspection.value().forces[0] - 1) <= inspection.value().record.force_bound);
-    BOOST_TEST(std::isnan(inspection.value().record.stress_low)); // not asked
-    BOOST_TEST(inspection.value().record.opens_low.i == -1);
-    BOOST_TEST(std::isinf(inspection.value().record.min_gap)); // no pair is left
-    BOOST_TEST(inspection.value().curvature <
-               2.0 / 9); // 2 per radian squared: of a cap, that moves by 3, or of a flank
-    BOOST_TEST(inspection.value().curvature > 0.124);
+    const auto inspection = required(inspect_mechanism(
+        oval_in_a_box(1, 1), count_contacts(oval_in_a_box(1, 1).packing, oval_in_a_box(1, 1).contacts)));
+    BOOST_TEST((inspection.stable == Verdict::proved), inspection.remark);
+    BOOST_TEST(inspection.record.dof_count == 5);
+    BOOST_TEST(inspection.record.contact_count == 4);
+    BOOST_TEST(inspection.record.mechanisms == 1);
+    BOOST_TEST(inspection.record.force_bound > 0);
+    BOOST_TEST(std::abs(inspection.forces[0] - 1) <= inspection.record.force_bound);
+    BOOST_TEST(std::isnan(inspection.record.stress_low)); // not asked
+    BOOST_TEST(inspection.record.opens_low.i == -1);
+    BOOST_TEST(std::isinf(inspection.record.min_gap)); // no pair is left
+    BOOST_TEST(inspection.curvature < 2.0 / 9);        // 2 per radian squared: of a cap, that moves by 3, or of a flank
+    BOOST_TEST(inspection.curvature > 0.124);
+    const Enclosure upright = inspection.yielding->second_variation.at(0);
+    BOOST_TEST(std::abs(upright.value - 2) <= upright.radius); // no body and no wall moves but the angle
+    BOOST_TEST(upright.radius < 1e-9);
     const auto stable = [](double f1, double f2, double angle = 0) {
         return inspected(oval_in_a_box(f1, f2, angle)).stable;
     };
@@ -322,6 +368,12 @@ BOOST_AUTO_TEST_CASE(a_turned_oval_yields_at_the_rate_of_its_closed_form) {
     BOOST_TEST(std::abs(rate[0].value + 6 * 5.0 / 13 * turning) <= rate[0].radius);
     BOOST_TEST(std::abs(rate[1].value - 8 * 5.0 / 13 * turning) <= rate[1].radius);
     BOOST_TEST(rate[1].radius < 1e-6);
+    // W'' = (8 F_2 - 6 F_1 - 4 g) cos + 3 g sin per radian squared; the middle moves by 3 sin and 4 sin, the walls
+    // twice.
+    const Enclosure second = inspection.yielding->second_variation.at(0);
+    BOOST_TEST(std::abs(second.value - (9.0 / 7 * 12 / 13 + 15.0 / 28 * 5 / 13) / (1 + 125.0 * 25 / 169)) <=
+               second.radius);
+    BOOST_TEST(second.radius < 1e-9);
     // The forces of the walls are F_1 on both sides, F_2 on the lid and F_2 - g on the bottom.
     BOOST_TEST((inspection.yielding->down.contact == Contact{ContactKind::lower_wall, 3, 1}));
     BOOST_TEST(inspection.yielding->down.opens);
@@ -415,8 +467,28 @@ BOOST_AUTO_TEST_CASE(ovals_of_an_independent_program_rest_in_strict_minima_with_
             BOOST_TEST(inspection.counting.hyperstaticity == 0);
             BOOST_TEST(inspection.counting.mechanisms - 3 * rattlers == expected["k"].get<int>());
             BOOST_TEST(std::abs(inspection.record.min_gap - expected["smallest_other_gap"].get<double>()) < 1e-9);
+            const auto& eigenvalues = inspection.yielding->second_variation;
+            BOOST_TEST_REQUIRE(eigenvalues.size() == expected["second_variation"].size());
+            for (std::size_t i = 0; i < eigenvalues.size(); ++i) {
+                BOOST_TEST(std::abs(eigenvalues[i].value - expected["second_variation"][i].get<double>()) < 1e-9);
+                BOOST_TEST(eigenvalues[i].radius > 0);
+                BOOST_TEST(eigenvalues[i].radius < 1e-5);
+            }
         }
     }
+}
+
+/// Forces are positive and nothing overlaps, as in the packings above.
+BOOST_AUTO_TEST_CASE(a_saddle_of_ovals_is_no_minimum) {
+    const State saddle = clumps("saddle_1.1_20_102");
+    const Inspection inspection = inspected(saddle);
+    BOOST_TEST(!inspection.equilibrium);
+    BOOST_TEST((inspection.stable == Verdict::refuted), inspection.remark);
+    BOOST_TEST(!inspection.yielding.has_value());
+    const Certification truth = certify(with_free_motions_held(saddle));
+    BOOST_TEST((truth.verdict != Verdict::proved));
+    BOOST_TEST(!truth.claims.minimum.has_value());
+    BOOST_TEST(!truth.claims.stable);
 }
 
 BOOST_AUTO_TEST_CASE(the_stress_of_clumps_is_that_of_the_walls) {

@@ -1,5 +1,6 @@
 // One definition of the problem (proofs/definition.md): inspection, certificate, checker and the engine of runs speak
 // of the same load, pattern, pairs and point.
+#include "checker/claims.hpp"
 #include "linear/factorisation.hpp"
 #include "statics/decisions.hpp"
 #include "support/crafted.hpp"
@@ -7,8 +8,6 @@
 #include "support/scratch.hpp"
 #include "verified/configuration.hpp"
 
-#include <isostat/certificate/certify.hpp>
-#include <isostat/checker/verify.hpp>
 #include <isostat/io/state_file.hpp>
 
 #include <boost/test/data/test_case.hpp>
@@ -55,17 +54,8 @@ constexpr std::array<Known, 9> known_states{{{"load-product", Verdict::refuted},
                                              {"11-same-height-refuted", Verdict::proved},
                                              {"fixed-pair", Verdict::refuted}}};
 
-std::vector<ClaimCheck> checks(const State& state, const CertificateClaims& claims) {
-    return verify({state, "state", sha256(""), "test", claims}).checks;
-}
-
-Verdict of_claim(const std::vector<ClaimCheck>& all, const std::string& claim) {
-    for (const ClaimCheck& check : all) {
-        if (check.claim == claim) {
-            return check.verdict;
-        }
-    }
-    return Verdict::undecided;
+Verdict answer(const State& state, const CertificateClaims& made, const std::string& claim) {
+    return claims::verdict_on(verify(claims::certificate_of(state, made)), claim);
 }
 
 } // namespace
@@ -74,27 +64,24 @@ BOOST_AUTO_TEST_SUITE(certificate)
 
 BOOST_DATA_TEST_CASE(inspection_certificate_checker_and_runs_give_one_answer, known_states, known) {
     const State state = stored(known.name);
-    const auto inspection = inspect_vertex(state);
-    BOOST_REQUIRE(inspection.ok());
-    BOOST_TEST((inspection.value().record.verdict == known.verdict), inspection.value().remark);
-    const Certification& truth = inspection.value().truth;
+    const auto inspection = required(inspect_vertex(state));
+    BOOST_TEST((inspection.record.verdict == known.verdict), inspection.remark);
+    const Certification& truth = inspection.truth;
     BOOST_TEST((truth.verdict == known.verdict));
-    BOOST_TEST(
-        (inspection.value().stable == (known.verdict == Verdict::proved ? Verdict::proved : Verdict::undecided)));
-    for (const ClaimCheck& check : checks(state, truth.claims)) {
+    BOOST_TEST((inspection.stable == (known.verdict == Verdict::proved ? Verdict::proved : Verdict::undecided)));
+    for (const ClaimCheck& check : verify(claims::certificate_of(state, truth.claims)).checks) {
         BOOST_TEST((!check.claimed || check.verdict == Verdict::proved), check.claim << ": " << check.detail);
     }
     if (known.name == std::string("02-tension")) {
         return; // a centimetre off its vertex: nothing that a run could start from
     }
     std::optional<LoadLimit> low;
-    const auto decision = decided(state, &low);
-    BOOST_REQUIRE_MESSAGE(decision.ok(), (decision.ok() ? "" : decision.failure().message()));
+    const auto decision = required(decided(state, &low));
     const bool negative = truth.signs.negative > 0;
-    BOOST_TEST(decision.value().opening.has_value() == negative);
+    BOOST_TEST(decision.opening.has_value() == negative);
     if (negative) {
-        const std::size_t l = decision.value().opening->contact.index();
-        BOOST_TEST(!decision.value().opening->infinitesimal);
+        const std::size_t l = decision.opening->contact.index();
+        BOOST_TEST(!decision.opening->infinitesimal);
         BOOST_TEST(truth.finite[l].upper < 0);
     } else if (truth.claims.load_interval && !truth.claims.load_interval->low.unbounded) {
         const LoadEndClaim& end = truth.claims.load_interval->low;
@@ -109,27 +96,24 @@ BOOST_AUTO_TEST_CASE(the_load_is_the_exact_product_on_every_rung) {
     // Where a force is 0 but for what rounding does to stress times length, the sign is that of the exact product; with
     // the length that the rounded product has, it is the other one.
     const State state = stored("load-product");
-    const auto rounded = decided(state);
-    BOOST_REQUIRE(rounded.ok());
-    BOOST_REQUIRE(rounded.value().opening.has_value());
-    BOOST_TEST((rounded.value().opening->rung >= Rung::double_double));
+    const auto rounded = required(decided(state));
+    BOOST_REQUIRE(rounded.opening.has_value());
+    BOOST_TEST((rounded.opening->rung >= Rung::double_double));
     State exact = state;
     for (std::size_t a = 0; a < 2; ++a) { // stresses that are the rounded products, lengths 1
         exact.load.stress[a] = state.load.stress[a] * state.load.reference_length[1 - a];
         exact.load.reference_length[1 - a] = 1;
     }
-    const auto other = decided(exact);
-    BOOST_REQUIRE(other.ok());
-    BOOST_TEST(!other.value().opening.has_value());
+    const auto other = required(decided(exact));
+    BOOST_TEST(!other.opening.has_value());
     BOOST_TEST((inspect_vertex(exact).value().record.verdict == Verdict::proved));
 }
 
 BOOST_AUTO_TEST_CASE(the_state_that_is_inspected_is_the_one_that_is_given) {
     const State state = stored("01-overlap"); // a fixed disk, and a wall that is absent with a length of 1e15
-    const auto inspection = inspect_vertex(state);
-    BOOST_REQUIRE(inspection.ok());
-    BOOST_TEST((inspection.value().record.verdict == Verdict::refuted));
-    BOOST_TEST(inspection.value().remark.find("0-1 overlap") != std::string::npos, inspection.value().remark);
+    const auto inspection = required(inspect_vertex(state));
+    BOOST_TEST((inspection.record.verdict == Verdict::refuted));
+    BOOST_TEST(inspection.remark.find("0-1 overlap") != std::string::npos, inspection.remark);
     State apart = state;
     apart.packing.q[2] = 2.5;
     BOOST_TEST((inspect_vertex(apart).value().record.verdict == Verdict::proved));
@@ -147,13 +131,13 @@ BOOST_AUTO_TEST_CASE(pairs_that_cannot_move_must_not_overlap_either) {
     apart.packing.q[6] = apart.packing.q[4] + 0.5; // 0.2 + 0.2 < 0.5
     const Certification free = certify(apart);
     BOOST_TEST((free.verdict == Verdict::proved));
-    BOOST_TEST((of_claim(checks(apart, free.claims), "gaps") == Verdict::proved));
-    BOOST_TEST((of_claim(checks(state, free.claims), "gaps") == Verdict::refuted));
+    BOOST_TEST((answer(apart, free.claims, "gaps") == Verdict::proved));
+    BOOST_TEST((answer(state, free.claims, "gaps") == Verdict::refuted));
     // A fixed disk in a wall that does not move.
     State sunk = apart;
     sunk.packing.q[4] = std::nextafter(0.2, 0.0);
     BOOST_TEST((certify(sunk).verdict == Verdict::refuted));
-    BOOST_TEST((of_claim(checks(sunk, free.claims), "gaps") == Verdict::refuted));
+    BOOST_TEST((answer(sunk, free.claims, "gaps") == Verdict::refuted));
     sunk.packing.q[4] = 0.2; // touches
     BOOST_TEST((certify(sunk).verdict == Verdict::proved));
 }
@@ -163,14 +147,14 @@ BOOST_AUTO_TEST_CASE(true_stresses_without_loads_on_disks_have_a_strict_minimum)
     state.load.kind = LoadKind::true_stress;
     const Certification free = certify(state);
     BOOST_TEST(free.claims.stable);
-    BOOST_TEST((of_claim(checks(state, free.claims), "stable") == Verdict::proved));
+    BOOST_TEST((answer(state, free.claims, "stable") == Verdict::proved));
     state.load.disk_force = {1e-3, 0, 0, 0};
     const Certification loaded = certify(state);
     BOOST_TEST(loaded.claims.forces.has_value());
     BOOST_TEST(!loaded.claims.stable);
     CertificateClaims claimed = loaded.claims;
     claimed.stable = true;
-    BOOST_TEST((of_claim(checks(state, claimed), "stable") == Verdict::undecided));
+    BOOST_TEST((answer(state, claimed, "stable") == Verdict::undecided));
     state.load.kind = LoadKind::nominal;
     BOOST_TEST(certify(state).claims.stable);
 }

@@ -89,9 +89,8 @@ BOOST_AUTO_TEST_SUITE(certificate)
 BOOST_AUTO_TEST_CASE(the_centre_has_the_constants_of_V4) {
     for (const double size : {0.0, 1e-5}) {
         const State state = pushed(read_state(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state, size);
-        const auto made = Centre::make(state.packing, state.contacts);
-        BOOST_TEST_REQUIRE(made.ok());
-        const Centre& centre = *made.value();
+        const auto made = required(Centre::make(state.packing, state.contacts));
+        const Centre& centre = *made;
         std::vector<int> count(state.packing.radius.size(), 0);
         double smallest = 1e300;
         double ratio = 0;

@@ -10,14 +10,7 @@
 #include <optional>
 #include <tuple>
 
-using isostat::CellInspection;
-using isostat::Certification;
-using isostat::certify;
-using isostat::Contact;
-using isostat::Inspection;
-using isostat::Interval;
-using isostat::State;
-using isostat::Verdict;
+using namespace isostat;
 using isostat::test::exactly;
 using isostat::test::Json;
 

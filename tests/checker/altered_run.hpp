@@ -98,22 +98,7 @@ inline void walk(const Json& root, const Json::json_pointer& at, const std::stri
     }
 }
 
-inline std::vector<std::string> split(const std::string& text, char separator) {
-    std::vector<std::string> parts;
-    std::istringstream in(text);
-    for (std::string part; std::getline(in, part, separator);) {
-        parts.push_back(part);
-    }
-    return parts;
-}
-
-inline std::string joined(const std::vector<std::string>& parts, const std::string& separator) {
-    std::string text;
-    for (const std::string& part : parts) {
-        text += (text.empty() ? "" : separator) + part;
-    }
-    return text;
-}
+using scratch::joined, scratch::split;
 
 /// Lines, one of them altered or left out or there twice. `of_line` gives its alterations.
 template <class OfLine> std::vector<Altered> in_lines(const std::string& text, Budget& budget, const OfLine& of_line) {
@@ -123,17 +108,17 @@ template <class OfLine> std::vector<Altered> in_lines(const std::string& text, B
         for (Altered& one : of_line(k, lines[k])) {
             std::vector<std::string> changed = lines;
             changed[k] = one.text;
-            list.push_back({one.field, one.how, joined(changed, "\n") + "\n"});
+            list.push_back({one.field, one.how, joined(changed, '\n') + "\n"});
         }
         if (!budget.take("line", "")) {
             continue;
         }
         std::vector<std::string> changed = lines;
         changed.erase(changed.begin() + static_cast<std::ptrdiff_t>(k));
-        list.push_back({"line", "left out", joined(changed, "\n") + (changed.empty() ? "" : "\n")});
+        list.push_back({"line", "left out", joined(changed, '\n') + (changed.empty() ? "" : "\n")});
         changed = lines;
         changed.insert(changed.begin() + static_cast<std::ptrdiff_t>(k), lines[k]);
-        list.push_back({"line", "twice", joined(changed, "\n") + "\n"});
+        list.push_back({"line", "twice", joined(changed, '\n') + "\n"});
     }
     return list;
 }
@@ -169,7 +154,7 @@ inline std::vector<Altered> of_table(const std::string& text, Budget& budget) {
             const auto with = [&](std::string cell) {
                 std::vector<std::string> changed = cells;
                 changed[c] = std::move(cell);
-                return (line == 0 ? "# " : "") + joined(changed, ",");
+                return (line == 0 ? "# " : "") + joined(changed, ',');
             };
             for (const Altered& one :
                  line == 0 ? std::vector<Altered>{{"", "renamed", names[c] + "x"}, {"", "twice", names[c == 0 ? 1 : 0]}}

@@ -1,5 +1,6 @@
 // Certificates of periodic cells: the checker against approximations of its own, against the program that proves, and
 // against forgers.
+#include "checker/claims.hpp"
 #include "checker/forces.hpp"
 #include "checker/gaps.hpp"
 #include "checker/maker.hpp"
@@ -10,12 +11,10 @@
 #include "support/cells.hpp"
 #include "support/scale.hpp"
 
-#include <isostat/certificate/certify.hpp>
-#include <isostat/checker/verify.hpp>
 #include <isostat/core/error.hpp>
 #include <isostat/io/state_file.hpp>
 
-using namespace isostat;
+using namespace claims;
 
 namespace {
 
@@ -54,42 +53,12 @@ std::vector<State> small_cells() {
     return {cells::one_disk(2, 3), cells::one_tilted_disk(2, 1, 0.25), channel_disk(), with_a_rattler(0.3)};
 }
 
-void is_proved(const Verification& verification) {
-    for (const ClaimCheck& check : verification.checks) {
-        BOOST_TEST((check.verdict == Verdict::proved),
-                   check.claim << ": " << to_string(check.verdict) << ": " << check.detail);
-    }
-    BOOST_TEST((verification.verdict == Verdict::proved));
-}
-
-Certificate proved(const State& state) {
-    Certificate made;
-    made.state = state;
-    made.input = "state";
-    made.input_hash = sha256("state");
-    made.program = "certify";
-    const Certification result = certify(state);
-    BOOST_TEST((result.verdict == Verdict::proved));
-    made.claims = result.claims;
-    return made;
-}
-
-/// As `isostat verify` does it: read from a file whose digest is right.
 bool accepted(const Certificate& certificate) {
     try {
-        return verify(parse_certificate(certificate_text(certificate), "forged")).verdict == Verdict::proved;
+        return read_and_verified(certificate).verdict == Verdict::proved;
     } catch (const Error&) {
         return false;
     }
-}
-
-ClaimCheck check_of(const Verification& verification, const std::string& claim) {
-    for (const ClaimCheck& check : verification.checks) {
-        if (check.claim == claim) {
-            return check;
-        }
-    }
-    return {};
 }
 
 } // namespace
@@ -98,10 +67,8 @@ BOOST_AUTO_TEST_SUITE(checker)
 
 BOOST_AUTO_TEST_CASE(every_arithmetic_proves_small_cells) {
     for (const State& state : small_cells()) {
-        for (const CheckerArithmetic arithmetic :
-             {CheckerArithmetic::automatic, CheckerArithmetic::singular_value, CheckerArithmetic::rows,
-              CheckerArithmetic::fixed64, CheckerArithmetic::gmp, CheckerArithmetic::rational}) {
-            is_proved(verify(maker::certificate(state), arithmetic));
+        for (const CheckerArithmetic arithmetic : every_arithmetic) {
+            are_proved(verify(maker::certificate(state), arithmetic));
         }
     }
 }
@@ -109,7 +76,7 @@ BOOST_AUTO_TEST_CASE(every_arithmetic_proves_small_cells) {
 BOOST_AUTO_TEST_CASE(ties_by_inversion_are_claimed_by_nobody) {
     const State state = sheared_rectangle();
     Certificate made = maker::certificate(state);
-    BOOST_TEST((check_of(verify(made), "load_interval").verdict == Verdict::undecided));
+    BOOST_TEST((answer_to(verify(made), "load_interval").verdict == Verdict::undecided));
     const Certification result = certify(state);
     BOOST_TEST((result.verdict == Verdict::undecided));
     BOOST_TEST(!result.claims.load_interval.has_value());
@@ -124,14 +91,14 @@ BOOST_AUTO_TEST_CASE(what_is_certified_in_a_cell_verifies) {
     std::vector<State> states = small_cells();
     for (const char* name : {"rect", "tilt", "channel"}) {
         states.push_back(of_file(name));
-        is_proved(verify(maker::certificate(states.back())));
+        are_proved(verify(maker::certificate(states.back())));
     }
     for (const State& state : states) {
-        const std::string text = certificate_text(proved(state));
+        const std::string text = certificate_text(certified(state));
         const Certificate read = parse_certificate(text, "text");
         BOOST_TEST(certificate_text(read) == text);
         BOOST_TEST(state_difference(read.state, state).empty());
-        is_proved(verify(read));
+        are_proved(verify(read));
     }
 }
 
@@ -144,9 +111,9 @@ BOOST_AUTO_TEST_CASE(claims_do_not_depend_on_pin_or_representatives) {
         shift[3] = cells::image(1, 0);
         shift[6] = cells::image(-1, 0);
         other = cells::with_other_representatives(other, shift);
-        Certificate certificate = proved(other);
-        const Certificate original = proved(state);
-        is_proved(verify(certificate));
+        Certificate certificate = certified(other);
+        const Certificate original = certified(state);
+        are_proved(verify(certificate));
         certificate.claims.forces = original.claims.forces;
         certificate.claims.load_interval = original.claims.load_interval;
         for (const std::size_t end : {0U, 1U}) { // the same contact by its new name
@@ -156,7 +123,7 @@ BOOST_AUTO_TEST_CASE(claims_do_not_depend_on_pin_or_representatives) {
                 std::find(state.contacts.begin(), state.contacts.end(), claim.opens) - state.contacts.begin();
             claim.opens = other.contacts[static_cast<std::size_t>(at)];
         }
-        is_proved(verify(certificate));
+        are_proved(verify(certificate));
     }
 }
 
@@ -199,7 +166,7 @@ BOOST_AUTO_TEST_CASE(forged_certificates_of_cells_do_not_verify) {
         {"the other end", [](Certificate& c) { std::swap(c.claims.load_interval->low, c.claims.load_interval->high); }},
         {"a degree of freedom more", [](Certificate& c) { ++c.claims.counting->dof_count; }}};
     for (const char* name : {"rect", "tilt", "channel"}) {
-        const Certificate original = proved(of_file(name));
+        const Certificate original = certified(of_file(name));
         for (const Forgery& forgery : forgeries) {
             Certificate forged = original;
             forgery.forge(forged);
@@ -209,11 +176,11 @@ BOOST_AUTO_TEST_CASE(forged_certificates_of_cells_do_not_verify) {
     for (const char* name : {"rect", "tilt"}) { // where the lengths are those of reference it is the same load
         State state = of_file(name);
         state.load.reference_length[0] *= 1 + 0x1p-10;
-        Certificate forged = proved(state);
+        Certificate forged = certified(state);
         forged.state.load.kind = LoadKind::true_stress;
         BOOST_TEST(!accepted(forged), name << ": true stresses");
     }
-    Certificate sheared = proved(cells::one_tilted_disk(2, 1, 0.25));
+    Certificate sheared = certified(cells::one_tilted_disk(2, 1, 0.25));
     sheared.state.load.shear[0] *= 1 + 1e-9;
     BOOST_TEST((verify(sheared).verdict == Verdict::refuted));
 }
@@ -230,7 +197,7 @@ BOOST_AUTO_TEST_CASE(another_pin_or_shear_is_another_state) {
 
 BOOST_AUTO_TEST_CASE(an_overlap_with_an_image_is_refuted) {
     const auto verdict = [](double radius) { // beside it there is room up to sqrt 2 - 1
-        return check_of(verify(maker::certificate(with_a_rattler(radius))), "gaps").verdict;
+        return answer_to(verify(maker::certificate(with_a_rattler(radius))), "gaps").verdict;
     };
     BOOST_TEST((verdict(0.41) == Verdict::proved));
     BOOST_TEST((verdict(0.42) == Verdict::refuted));
@@ -241,7 +208,7 @@ BOOST_AUTO_TEST_CASE(own_images_at_rest_must_not_overlap) {
     const auto gaps_of = [](double period) {
         State state = cells::in_cell({{1, 0, 0}}, {2, period, 0}, false, 1, 1, {cells::across(0, 0, 1, 0)});
         state.packing.cell.period_moves = {true, false};
-        return check_of(verify(maker::certificate(state)), "gaps");
+        return answer_to(verify(maker::certificate(state)), "gaps");
     };
     BOOST_TEST((gaps_of(2).verdict == Verdict::proved)); // they touch
     const ClaimCheck overlap = gaps_of(2 - 0x1p-40);
@@ -251,13 +218,13 @@ BOOST_AUTO_TEST_CASE(own_images_at_rest_must_not_overlap) {
 
 BOOST_AUTO_TEST_CASE(cells_with_too_many_images_are_left_undecided) {
     State state = cells::one_tilted_disk(2, 1, 0.25);
-    Certificate certificate = proved(state);
+    Certificate certificate = certified(state);
     certificate.state.packing.q.back() += 60 * certificate.state.packing.lattice(0, 0); // another basis of the lattice
     for (Contact& c : certificate.state.contacts) {
         c.image.m[0] = static_cast<std::int8_t>(c.image.m[0] - 60 * c.image.m[1]);
         c = pair_of(c.i, c.j, c.image);
     }
-    const ClaimCheck check = check_of(verify(certificate), "gaps");
+    const ClaimCheck check = answer_to(verify(certificate), "gaps");
     BOOST_TEST((check.verdict == Verdict::undecided));
     BOOST_TEST(check.detail.find("too sheared") != std::string::npos, check.detail);
 }

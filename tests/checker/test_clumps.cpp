@@ -1,55 +1,22 @@
 // Certificates of clumps: bars and held coordinates, and what a forger makes of them.
+#include "checker/claims.hpp"
 #include "checker/evidence.hpp"
 #include "checker/gaps.hpp"
 #include "support/clumps.hpp"
 #include "support/test.hpp"
 
-#include <isostat/certificate/certify.hpp>
-#include <isostat/checker/verify.hpp>
-
 #include <cmath>
 #include <functional>
 #include <utility>
 
-using namespace isostat;
-using isostat::test::circle_of_an_oval_in_a_corner;
-using isostat::test::clumps;
-using isostat::test::clumps_of;
-using isostat::test::dimer_across;
-using isostat::test::disk_in_a_corner;
-using isostat::test::disk_with_a_dangling_member;
-using isostat::test::lying_dimer;
-using isostat::test::lying_dimer_in_space;
-using isostat::test::oval_in_a_box;
-using isostat::test::pendulums;
-using isostat::test::row_of_dimers;
-using isostat::test::sphere_in_a_corner;
-using isostat::test::two_disks_in_a_corner;
+using namespace claims;
+using namespace isostat::test;
 
 namespace {
 
 Certificate of_clumps(const State& state) {
-    Certificate made;
-    made.state = with_free_motions_held(state);
-    made.input = "state";
-    made.input_hash = isostat::sha256("state");
-    made.program = "certify";
-    made.claims = certify(made.state).claims;
-    return made;
-}
-
-Verification read_and_verified(const Certificate& certificate,
-                               CheckerArithmetic arithmetic = CheckerArithmetic::automatic) {
-    return verify(parse_certificate(certificate_text(certificate), "certificate"), arithmetic);
-}
-
-Verdict verdict_on(const Verification& verification, const std::string& claim) {
-    for (const ClaimCheck& check : verification.checks) {
-        if (check.claim == claim) {
-            return check.verdict;
-        }
-    }
-    return Verdict::undecided;
+    const State held = with_free_motions_held(state);
+    return certificate_of(held, certify(held).claims);
 }
 
 } // namespace

@@ -13,11 +13,6 @@
 #include <isostat/io/run_directory.hpp>
 #include <isostat/io/state_file.hpp>
 
-#include <boost/test/unit_test.hpp>
-
-#include <functional>
-#include <sstream>
-
 using namespace isostat;
 namespace fs = std::filesystem;
 using json::Json;
@@ -105,43 +100,18 @@ State swing(double x, double y) {
         .state;
 }
 
-std::vector<std::string> lines_of(const fs::path& file) {
-    std::vector<std::string> lines;
-    std::istringstream in(scratch::read(file));
-    for (std::string line; std::getline(in, line);) {
-        lines.push_back(line);
-    }
-    return lines;
-}
-
-void write_lines(const fs::path& file, const std::vector<std::string>& lines) {
-    std::string text;
-    for (const std::string& line : lines) {
-        text += line + "\n";
-    }
-    scratch::write(file, text);
-}
-
 std::vector<std::string> fields_of(const fs::path& run, std::size_t row) {
-    std::vector<std::string> fields;
-    std::istringstream in(lines_of(run / "equilibria.csv")[row]);
-    for (std::string field; std::getline(in, field, ',');) {
-        fields.push_back(field);
-    }
-    return fields;
+    return scratch::split(scratch::lines_of(run / "equilibria.csv")[row], ',');
 }
 
 /// Writes into one field of equilibria.csv, `otherwise` when it says so already.
 void set_field(const fs::path& run, std::size_t row, std::size_t column, const std::string& value,
                const std::string& otherwise) {
-    std::vector<std::string> text = lines_of(run / "equilibria.csv");
+    std::vector<std::string> text = scratch::lines_of(run / "equilibria.csv");
     std::vector<std::string> fields = fields_of(run, row);
     fields[column] = fields[column] == value ? otherwise : value;
-    text[row].clear();
-    for (const std::string& field : fields) {
-        text[row] += (text[row].empty() ? "" : ",") + field;
-    }
-    write_lines(run / "equilibria.csv", text);
+    text[row] = scratch::joined(fields, ',');
+    scratch::write(run / "equilibria.csv", scratch::joined(text, '\n') + "\n");
 }
 
 /// A run, the verdict of which is words, every alteration of it tried.
@@ -203,8 +173,10 @@ std::vector<Sample> samples() {
 std::set<std::string> listed(std::size_t column) {
     const std::string page = scratch::read(fs::path(ISOSTAT_EXAMPLES) / "../proofs/checker.md");
     std::set<std::string> all;
-    std::istringstream in(page.substr(page.find("| file | not checked |")));
-    for (std::string line; std::getline(in, line) && line.starts_with("|");) {
+    for (const std::string& line : scratch::split(page.substr(page.find("| file | not checked |")), '\n')) {
+        if (!line.starts_with("|")) {
+            break;
+        }
         std::vector<std::string> cells = altered_run::split(line, '|');
         const auto quoted = [](const std::string& cell) {
             std::vector<std::string> names = altered_run::split(cell, '`');
@@ -319,7 +291,7 @@ BOOST_AUTO_TEST_CASE(what_is_no_record_of_a_run_is_bad_input) {
         });
         altered_run::write_signed(run, file, original);
     };
-    const std::string event = lines_of(run / "events.jsonl")[0];
+    const std::string event = scratch::lines_of(run / "events.jsonl")[0];
     const std::string opened =
         event.substr(event.find("\"opened\":"), event.find(",\"closed\"") - event.find("\"opened\":"));
     for (const char* other :

@@ -38,8 +38,7 @@ BOOST_AUTO_TEST_CASE(the_checker_includes_nothing_of_what_it_checks) {
     for (const char* folder : {"/../src/checker", "/../include/isostat/checker"}) {
         for (const auto& entry : std::filesystem::directory_iterator(std::string(ISOSTAT_EXAMPLES) + folder)) {
             ++files;
-            std::istringstream text(scratch::read(entry.path()));
-            for (std::string line; std::getline(text, line);) {
+            for (const std::string& line : scratch::lines_of(entry.path())) {
                 if (!line.starts_with("#include ")) {
                     continue;
                 }

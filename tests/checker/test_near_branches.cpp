@@ -1,9 +1,9 @@
 // Nearly equal disks: where some stand nearly in line two branches of the motion come near each other, and steps in
 // double may end on the wrong one. Small steps from the equilibrium before tell them apart.
 #include "support/played.hpp"
+#include "support/prepared.hpp"
 
 #include <isostat/checker/verify.hpp>
-#include <isostat/preparation/preparation.hpp>
 #include <isostat/trajectory/trajectory.hpp>
 
 #include <tuple>
@@ -15,15 +15,11 @@ namespace {
 
 /// 36 disks, equal but for a jitter of 1e-9.
 void play(std::uint64_t seed, int equilibria, const fs::path& folder) {
-    PreparationOptions options;
-    options.disks = 36;
+    PreparationOptions options{.disks = 36};
     options.diameters.kind = RadiiLaw::equal;
     options.jitter = 1e-9;
     options.seed = seed;
-    PreparationReport report;
-    auto prepared = prepare(options, report);
-    BOOST_REQUIRE(prepared.ok());
-    BOOST_REQUIRE(played::into(folder, prepared.value(), {towards(equilibria)}).completed);
+    BOOST_REQUIRE(played::into(folder, prepared(options), {towards(equilibria)}).completed);
 }
 
 } // namespace

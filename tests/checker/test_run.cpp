@@ -25,11 +25,7 @@ void play_and_store(const State& start, const std::vector<int>& segments, const 
 }
 
 std::string line_of(const std::string& text, int number) {
-    std::size_t begin = 0;
-    for (int k = 1; k < number; ++k) {
-        begin = text.find('\n', begin) + 1;
-    }
-    return text.substr(begin, text.find('\n', begin) - begin);
+    return scratch::split(text, '\n').at(static_cast<std::size_t>(number - 1));
 }
 
 /// A number of the records, changed in one line of a file.
@@ -77,12 +73,9 @@ void same_with_threads(const std::filesystem::path& folder, const RunVerificatio
 void finds(const std::filesystem::path& folder, const Alteration& alteration) {
     BOOST_TEST_INFO_SCOPE(alteration.file << ":" << alteration.line << " " << alteration.from << " -> "
                                           << alteration.to);
-    const std::string original = scratch::read(folder / alteration.file);
-    const std::string line = line_of(original, alteration.line);
-    const std::string changed = scratch::replaced(line, alteration.from, alteration.to);
-    BOOST_REQUIRE(changed != line);
-    scratch::write(folder / alteration.file, scratch::replaced(original, line, changed));
-    forger::seal(folder);
+    const std::string line = line_of(scratch::read(folder / alteration.file), alteration.line);
+    const forger::Alteration there(folder, alteration.file, line,
+                                   scratch::replaced(line, alteration.from, alteration.to));
     const RunVerification run = verify_run(folder);
     same_with_threads(folder, run);
     BOOST_TEST((run.verdict == Verdict::refuted));
@@ -91,8 +84,6 @@ void finds(const std::filesystem::path& folder, const Alteration& alteration) {
         const std::string where = "events.jsonl:" + std::to_string(alteration.line) + ":";
         BOOST_TEST((run.wrong.find(where) != std::string::npos), run.wrong);
     }
-    scratch::write(folder / alteration.file, original);
-    forger::seal(folder);
 }
 
 /// Where the field of a column begins and ends in a line of equilibria.csv.
@@ -118,11 +109,8 @@ Alteration in_row(const std::string& csv, int line, const std::string& column, c
 /// checkpoint.json and summary.json of a run whose last row is that of equilibrium `last`, in its first segment.
 void count_until(const std::filesystem::path& folder, int last, int arcs) {
     using json::Json;
-    const std::string csv = scratch::read(folder / "equilibria.csv");
-    const auto value = [&](const std::string& column) {
-        const auto [begin, end] = field_of(csv, last + 2, column);
-        return Json::parse(line_of(csv, last + 2).substr(begin, end - begin));
-    };
+    const auto row = scratch::row_of(folder / "equilibria.csv", static_cast<std::size_t>(last));
+    const auto value = [&row](const std::string& column) { return Json::parse(row.at(column)); };
     Json point = Json::parse(scratch::read(folder / "checkpoint.json"));
     Json summary = Json::parse(scratch::read(folder / "summary.json"));
     point["counters"]["arcs"] = arcs;

@@ -1,40 +1,18 @@
 // Certificates of small packings whose answers are known in closed form, or that need something special.
+#include "checker/claims.hpp"
 #include "checker/maker.hpp"
 #include "checker/small_states.hpp"
 
-#include <isostat/checker/verify.hpp>
-
-using namespace isostat;
+using namespace claims;
 
 namespace {
 
 constexpr double inf = std::numeric_limits<double>::infinity();
 
-void is_proved(const State& state, CheckerArithmetic arithmetic = CheckerArithmetic::automatic) {
-    const Verification verification = verify(maker::certificate(state), arithmetic);
-    for (const ClaimCheck& check : verification.checks) {
-        BOOST_TEST((check.verdict == Verdict::proved),
-                   check.claim << ": " << to_string(check.verdict) << ": " << check.detail);
-    }
-    BOOST_TEST((verification.verdict == Verdict::proved));
-}
-
-Verdict verdict_of(const Verification& verification, const std::string& claim) {
-    for (const ClaimCheck& check : verification.checks) {
-        if (check.claim == claim) {
-            return check.verdict;
-        }
-    }
-    BOOST_ERROR("no claim " << claim);
-    return Verdict::undecided;
-}
-
 double number_of(const Verification& verification, const std::string& claim, const std::string& name) {
-    for (const ClaimCheck& check : verification.checks) {
-        for (const auto& [key, value] : check.numbers) {
-            if (check.claim == claim && key == name) {
-                return value;
-            }
+    for (const auto& [key, value] : answer_to(verification, claim).numbers) {
+        if (key == name) {
+            return value;
         }
     }
     BOOST_ERROR("no number " << name << " of " << claim);
@@ -51,15 +29,13 @@ Interval neighbours(double value) {
 BOOST_AUTO_TEST_SUITE(checker)
 
 BOOST_AUTO_TEST_CASE(every_arithmetic_proves_the_small_cases) {
-    for (const CheckerArithmetic arithmetic :
-         {CheckerArithmetic::automatic, CheckerArithmetic::singular_value, CheckerArithmetic::rows,
-          CheckerArithmetic::fixed64, CheckerArithmetic::gmp, CheckerArithmetic::rational}) {
-        is_proved(crafted::one_disk(1, 2), arithmetic);
-        is_proved(crafted::two_disks(1, 2, 1, 1), arithmetic);
-        is_proved(crafted::three_disks(1, 1.1, 1.3, 1, 1), arithmetic);
-        is_proved(small_states::with_a_rattler(), arithmetic);
-        is_proved(small_states::with_a_fixed_disk(), arithmetic);
-        is_proved(small_states::in_a_corner(), arithmetic);
+    for (const CheckerArithmetic arithmetic : every_arithmetic) {
+        are_proved(verify(maker::certificate(crafted::one_disk(1, 2)), arithmetic));
+        are_proved(verify(maker::certificate(crafted::two_disks(1, 2, 1, 1)), arithmetic));
+        are_proved(verify(maker::certificate(crafted::three_disks(1, 1.1, 1.3, 1, 1)), arithmetic));
+        are_proved(verify(maker::certificate(small_states::with_a_rattler()), arithmetic));
+        are_proved(verify(maker::certificate(small_states::with_a_fixed_disk()), arithmetic));
+        are_proved(verify(maker::certificate(small_states::in_a_corner()), arithmetic));
     }
 }
 
@@ -85,12 +61,12 @@ BOOST_AUTO_TEST_CASE(two_disks_with_the_tightest_claims) {
     for (std::size_t l = 0; l < forces.size(); ++l) {
         Certificate beside = certificate;
         beside.claims.forces->finite[l] = {std::nextafter(std::nextafter(forces[l], inf), inf), 10};
-        BOOST_TEST((verdict_of(verify(beside), "forces") == Verdict::refuted), "force " << l);
+        BOOST_TEST((verdict_on(verify(beside), "forces") == Verdict::refuted), "force " << l);
         beside.claims.forces->finite[l] = {-1, std::nextafter(std::nextafter(forces[l], -inf), -inf)};
-        BOOST_TEST((verdict_of(verify(beside), "forces") == Verdict::refuted), "force " << l);
+        BOOST_TEST((verdict_on(verify(beside), "forces") == Verdict::refuted), "force " << l);
     }
     certificate.claims.gaps->smallest = std::nextafter(gap, 2);
-    BOOST_TEST((verdict_of(verify(certificate), "gaps") == Verdict::refuted));
+    BOOST_TEST((verdict_on(verify(certificate), "gaps") == Verdict::refuted));
 }
 
 // The distance to the true vertex is known in closed form: both sides of it are told apart.
@@ -107,7 +83,7 @@ BOOST_AUTO_TEST_CASE(the_pair_named_is_the_nearest_to_2_to_the_minus_46_of_the_l
         state.load.infinitesimal.clear();
         Certificate certificate = maker::certificate(state);
         certificate.claims.gaps = GapsClaim{1 - 0x1p-40, crafted::pair(2, 4), Rung::exact};
-        BOOST_TEST((verdict_of(verify(certificate), "gaps") == verdict), units);
+        BOOST_TEST((verdict_on(verify(certificate), "gaps") == verdict), units);
     }
 }
 
@@ -117,9 +93,9 @@ BOOST_AUTO_TEST_CASE(the_distance_to_the_true_vertex_is_known_from_both_sides) {
     state.packing.q[0] += shift; // the disk in the corner is off the wall by this much; nothing else must move
     Certificate certificate = maker::certificate(state);
     certificate.claims.vertex->radius = shift * (1 + 1e-12);
-    BOOST_TEST((verdict_of(verify(certificate), "vertex") == Verdict::proved));
+    BOOST_TEST((verdict_on(verify(certificate), "vertex") == Verdict::proved));
     certificate.claims.vertex->radius = shift * (1 - 1e-12);
-    BOOST_TEST((verdict_of(verify(certificate), "vertex") == Verdict::refuted));
+    BOOST_TEST((verdict_on(verify(certificate), "vertex") == Verdict::refuted));
     BOOST_TEST(number_of(verify(certificate), "vertex", "radius") == shift, boost::test_tools::tolerance(1e-12));
 }
 
@@ -129,15 +105,15 @@ BOOST_AUTO_TEST_CASE(a_configuration_far_from_any_vertex_is_undecided) {
         x += x > 2 ? 1 : 0;
     }
     const Verification verification = verify(certificate);
-    BOOST_TEST((verdict_of(verification, "vertex") != Verdict::proved));
+    BOOST_TEST((verdict_on(verification, "vertex") != Verdict::proved));
     BOOST_TEST((verification.verdict != Verdict::proved));
 }
 
 BOOST_AUTO_TEST_CASE(a_negative_force_refutes_the_forces_and_the_stability) {
     const Verification verification = verify(maker::certificate(crafted::two_disks(1, 2, 1, 0.3)));
-    BOOST_TEST((verdict_of(verification, "vertex") == Verdict::proved));
-    BOOST_TEST((verdict_of(verification, "forces") == Verdict::refuted));
-    BOOST_TEST((verdict_of(verification, "stable") == Verdict::refuted));
+    BOOST_TEST((verdict_on(verification, "vertex") == Verdict::proved));
+    BOOST_TEST((verdict_on(verification, "forces") == Verdict::refuted));
+    BOOST_TEST((verdict_on(verification, "stable") == Verdict::refuted));
 }
 
 // Case 3: under less vertical load the pair of the base would open at a higher stress than the bottoms at a lower one.
@@ -146,11 +122,11 @@ BOOST_AUTO_TEST_CASE(a_contact_that_opens_later_is_refuted_as_the_end_of_the_int
     BOOST_TEST((certificate.claims.load_interval->low.opens == crafted::pair(0, 1)) == false);
     BOOST_TEST((certificate.claims.load_interval->high.opens == crafted::pair(0, 1)));
     const Verification right = verify(certificate);
-    BOOST_TEST((verdict_of(right, "load_interval") == Verdict::proved));
+    BOOST_TEST((verdict_on(right, "load_interval") == Verdict::proved));
     int refuted = 0;
     for (const Contact& contact : certificate.state.contacts) {
         certificate.claims.load_interval->low = {false, {-inf, inf}, contact};
-        refuted += verdict_of(verify(certificate), "load_interval") == Verdict::refuted ? 1 : 0;
+        refuted += verdict_on(verify(certificate), "load_interval") == Verdict::refuted ? 1 : 0;
     }
     BOOST_TEST(refuted >= 4);
 }
@@ -160,7 +136,7 @@ BOOST_AUTO_TEST_CASE(true_stresses_have_forces_and_a_potential_of_their_own) {
     state.load.kind = LoadKind::true_stress;
     const Verification verification = verify(maker::certificate(state));
     for (const char* claim : {"counting", "vertex", "forces", "gaps", "load_interval", "stable"}) {
-        BOOST_TEST((verdict_of(verification, claim) == Verdict::proved), claim);
+        BOOST_TEST((verdict_on(verification, claim) == Verdict::proved), claim);
     }
 }
 
@@ -178,9 +154,9 @@ BOOST_AUTO_TEST_CASE(absent_claims_are_undecided_and_nothing_may_speak_of_a_vert
     Certificate certificate = maker::certificate(crafted::three_disks(1, 1.1, 1.3, 1, 1));
     certificate.claims.vertex = {};
     const Verification verification = verify(certificate);
-    BOOST_TEST((verdict_of(verification, "counting") == Verdict::proved));
+    BOOST_TEST((verdict_on(verification, "counting") == Verdict::proved));
     for (const char* claim : {"vertex", "forces", "gaps", "load_interval", "stable"}) {
-        BOOST_TEST((verdict_of(verification, claim) == Verdict::undecided), claim);
+        BOOST_TEST((verdict_on(verification, claim) == Verdict::undecided), claim);
     }
     certificate.claims = {};
     BOOST_TEST((verify(certificate).verdict == Verdict::undecided));
@@ -191,9 +167,9 @@ BOOST_AUTO_TEST_CASE(the_rank_of_a_hyperstatic_lattice_is_exact) {
     Certificate certificate;
     certificate.state = crafted::square_lattice(4);
     certificate.claims.counting = CountingClaim{34, 40, 34, 6, 0, Rung::exact};
-    BOOST_TEST((verdict_of(verify(certificate), "counting") == Verdict::proved));
+    BOOST_TEST((verdict_on(verify(certificate), "counting") == Verdict::proved));
     certificate.claims.counting = CountingClaim{34, 40, 33, 7, 1, Rung::exact};
-    BOOST_TEST((verdict_of(verify(certificate), "counting") == Verdict::refuted));
+    BOOST_TEST((verdict_on(verify(certificate), "counting") == Verdict::refuted));
 }
 
 // A disk that is nearly on the line of its two contacts. Above the line the matrix is regular, on it singular: the
@@ -203,18 +179,16 @@ BOOST_AUTO_TEST_CASE(a_family_that_approaches_a_singular_matrix) {
     for (const int exponent : {-1, -10, -26, -40, -52, -60, -100, -500, -1000}) {
         certificate.state = small_states::between_two(std::ldexp(1.0, exponent));
         certificate.claims.counting = CountingClaim{2, 2, 2, 0, 0, Rung::exact};
-        BOOST_TEST((verdict_of(verify(certificate), "counting") == Verdict::proved), "2^" << exponent);
+        BOOST_TEST((verdict_on(verify(certificate), "counting") == Verdict::proved), "2^" << exponent);
         certificate.claims.counting = CountingClaim{2, 2, 1, 1, 1, Rung::exact};
-        BOOST_TEST((verdict_of(verify(certificate), "counting") == Verdict::refuted), "2^" << exponent);
+        BOOST_TEST((verdict_on(verify(certificate), "counting") == Verdict::refuted), "2^" << exponent);
     }
     certificate.state = small_states::between_two(0);
-    for (const CheckerArithmetic arithmetic :
-         {CheckerArithmetic::automatic, CheckerArithmetic::singular_value, CheckerArithmetic::rows,
-          CheckerArithmetic::fixed64, CheckerArithmetic::gmp, CheckerArithmetic::rational}) {
+    for (const CheckerArithmetic arithmetic : every_arithmetic) {
         certificate.claims.counting = CountingClaim{2, 2, 2, 0, 0, Rung::exact};
-        BOOST_TEST((verdict_of(verify(certificate, arithmetic), "counting") == Verdict::refuted));
+        BOOST_TEST((verdict_on(verify(certificate, arithmetic), "counting") == Verdict::refuted));
         certificate.claims.counting = CountingClaim{2, 2, 1, 1, 1, Rung::exact};
-        BOOST_TEST((verdict_of(verify(certificate, arithmetic), "counting") == Verdict::proved));
+        BOOST_TEST((verdict_on(verify(certificate, arithmetic), "counting") == Verdict::proved));
     }
 }
 
@@ -233,11 +207,8 @@ BOOST_AUTO_TEST_CASE(scales_from_tiny_to_huge) {
         certificate.claims.vertex->radius = std::ldexp(certificate.claims.vertex->radius, exponent);
         certificate.claims.vertex->unique_radius = std::ldexp(certificate.claims.vertex->unique_radius, exponent);
         certificate.claims.gaps->smallest = std::ldexp(certificate.claims.gaps->smallest, exponent);
-        const Verification verification = verify(certificate);
-        for (const ClaimCheck& check : verification.checks) {
-            BOOST_TEST((check.verdict == Verdict::proved),
-                       "2^" << exponent << " " << check.claim << ": " << check.detail);
-        }
+        BOOST_TEST_INFO_SCOPE("2^" << exponent);
+        are_proved(verify(certificate));
     }
 }
 

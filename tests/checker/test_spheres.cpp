@@ -1,14 +1,16 @@
 // Certificates of spheres: the checker against the digits of an independent program, against brute force, and against
 // forgers; its constants of three axes against their worst cases.
+#include "checker/claims.hpp"
 #include "checker/dense.hpp"
 #include "checker/evidence.hpp"
 #include "checker/gaps.hpp"
 #include "checker/images.hpp"
 #include "checker/singular_value.hpp"
+#include "checker/smallest_gap.hpp"
+#include "oracle/pairs.hpp"
 #include "support/spheres.hpp"
 #include "support/test.hpp"
 
-#include <isostat/certificate/certify.hpp>
 #include <isostat/core/error.hpp>
 
 #include <Eigen/SVD>
@@ -16,51 +18,16 @@
 #include <functional>
 #include <random>
 
-using namespace isostat;
-using isostat::checker::Evidence;
-using isostat::checker::fixed_overlap;
-using isostat::checker::Integer;
-using isostat::checker::is_free_pair;
-using isostat::checker::Problem;
-using isostat::checker::Range;
-using isostat::checker::Rational;
-using isostat::checker::smallest_gaps;
+using namespace claims;
+using namespace isostat::checker;
+using namespace isostat::test;
 namespace room = isostat::checker;
-using isostat::test::exactly;
-using isostat::test::read_spheres;
-using isostat::test::state_of_spheres;
 
 namespace {
 
 const std::vector<std::string> random_packings{"box_uniform_30_1",    "box_bidisperse_30_1", "box_jitter_30_1",
                                                "slab_uniform_30_1",   "ortho_uniform_30_1",  "tri_uniform_30_1",
                                                "tri_bidisperse_60_1", "ortho_jitter_100_1",  "box_bidisperse_100_1"};
-
-Certificate of_spheres(const State& state, Verdict expected = Verdict::proved) {
-    Certificate made;
-    made.state = state;
-    made.input = "state";
-    made.input_hash = sha256("state");
-    made.program = "certify";
-    const Certification result = certify(state);
-    BOOST_TEST((result.verdict == expected), (result.claims.undecided.empty() ? "" : result.claims.undecided[0]));
-    made.claims = result.claims;
-    return made;
-}
-
-ClaimCheck answer_to(const Verification& verification, const std::string& claim) {
-    const auto found = std::find_if(verification.checks.begin(), verification.checks.end(),
-                                    [&claim](const ClaimCheck& check) { return check.claim == claim; });
-    return found == verification.checks.end() ? ClaimCheck{} : *found;
-}
-
-void verifies(const Certificate& certificate, CheckerArithmetic arithmetic = CheckerArithmetic::automatic) {
-    const Verification verification =
-        verify(parse_certificate(certificate_text(certificate), "certificate"), arithmetic);
-    for (const ClaimCheck& check : verification.checks) {
-        BOOST_TEST((check.verdict == Verdict::proved), check.claim << ": " << check.detail);
-    }
-}
 
 /// All given digits but the last ones.
 bool has_digits(const Range& range, const mpq_class& value) {
@@ -103,17 +70,17 @@ BOOST_AUTO_TEST_SUITE(checker)
 BOOST_AUTO_TEST_CASE(what_is_certified_of_spheres_verifies) {
     for (const std::string& name : random_packings) {
         BOOST_TEST_CONTEXT(name) {
-            verifies(of_spheres(state_of_spheres(read_spheres(name))));
+            are_proved(read_and_verified(certified(state_of_spheres(read_spheres(name)))));
         }
     }
     for (const char* name : {"closed_one", "closed_rattler", "closed_two", "closed_three", "closed_tetra"}) {
         BOOST_TEST_CONTEXT(name) {
             State state = state_of_spheres(read_spheres(name));
             state.load.stress = {1, 1.3, 1.7};
-            const Certificate certificate = of_spheres(state);
+            const Certificate certificate = certified(state);
             for (const CheckerArithmetic arithmetic : {CheckerArithmetic::singular_value, CheckerArithmetic::fixed64,
                                                        CheckerArithmetic::gmp, CheckerArithmetic::rational}) {
-                verifies(certificate, arithmetic);
+                are_proved(read_and_verified(certificate, arithmetic));
             }
         }
     }
@@ -226,7 +193,7 @@ BOOST_AUTO_TEST_CASE(forged_certificates_of_spheres_do_not_verify, *boost::unit_
         {"true stresses", "", [](Certificate& c) { c.state.load.kind = LoadKind::true_stress; }},
         {"another loaded axis", "load_interval", [](Certificate& c) { c.state.load.loaded_axis = 1; }}};
     for (const char* name : {"box_bidisperse_30_1", "tri_uniform_30_1"}) {
-        const Certificate original = of_spheres(state_of_spheres(read_spheres(name)));
+        const Certificate original = certified(state_of_spheres(read_spheres(name)));
         BOOST_TEST((verify(original).verdict == Verdict::proved));
         for (const Forgery& forgery : forgeries) {
             BOOST_TEST_INFO_SCOPE(name << ": " << forgery.name);
@@ -254,8 +221,8 @@ BOOST_AUTO_TEST_CASE(tilts_of_spheres_are_loaded_by_the_lengths_of_the_other_axe
     state.load.shear = {0x1p-14 * forces[0], -0x1p-15 * forces[0], 0x1p-14 * forces[0]};
     for (int axis = 0; axis < 6; ++axis) {
         state.load.loaded_axis = axis;
-        const Certificate made = of_spheres(state);
-        verifies(made);
+        const Certificate made = certified(state);
+        are_proved(read_and_verified(made));
         if (axis >= 3) {
             Certificate forged = made;
             forged.state.load.shear[static_cast<std::size_t>(axis) - 3] *= 2;
@@ -276,7 +243,7 @@ BOOST_AUTO_TEST_CASE(true_stresses_press_on_areas_at_the_true_vertex) {
     for (std::size_t l = 0; l < now.forces.size(); ++l) {
         BOOST_TEST(std::abs(now.forces[l].lower.get_d() - dead.forces[l].lower.get_d()) < 1e-10);
     }
-    verifies(of_spheres(state));
+    are_proved(read_and_verified(certified(state)));
 }
 
 // K1 (b) and K2: with three axes the worst cases are attained.
@@ -395,41 +362,8 @@ BOOST_AUTO_TEST_CASE(the_sweep_finds_the_smallest_gap_of_spheres_among_images) {
             p.walls.lower[2] = WallKind::fixed;
             p.walls.upper[2] = WallKind::movable;
         }
-        const Problem problem(state);
-        const std::vector<room::Gap> found = smallest_gaps(problem, state, blurred(problem, 0));
-        double smallest = std::numeric_limits<double>::infinity();
-        for (int i = 0; i < p.disk_count(); ++i) {
-            for (int j = i; j < p.disk_count(); ++j) {
-                room::for_each_image({far, far, far}, [&](const room::Periods& m) {
-                    const auto times = [&m](std::size_t a) { return static_cast<std::int8_t>(m[a]); };
-                    const Contact pair = pair_of(i, j, {{times(0), times(1), times(2)}});
-                    for (std::size_t a = 0; a < 3; ++a) {
-                        if (pair.image.m[a] != 0 && !p.cell.periodic[a]) {
-                            return;
-                        }
-                    }
-                    if ((i != j || !pair.image.is_here()) && is_free_pair(state, pair)) {
-                        smallest = std::min(smallest, std::sqrt(room::Row(pair, p.layout()).square(p.q, 3)) -
-                                                          p.radius[static_cast<std::size_t>(i)] -
-                                                          p.radius[static_cast<std::size_t>(j)]);
-                    }
-                });
-            }
-            for (const ContactKind wall : {ContactKind::lower_wall, ContactKind::upper_wall}) {
-                if (is_free_pair(state, {wall, i, 2})) {
-                    const double z = p.coordinate(DiskId(i), 2);
-                    smallest = std::min(smallest, (wall == ContactKind::lower_wall ? z : p.length(2) - z) -
-                                                      p.radius[static_cast<std::size_t>(i)]);
-                }
-            }
-        }
-        double least = std::numeric_limits<double>::infinity();
-        for (const room::Gap& gap : found) {
-            BOOST_TEST_REQUIRE(gap.pair.i >= 0);
-            least = std::min(least, gap.value.lower.get_d());
-        }
-        BOOST_TEST((least == smallest || std::abs(least - smallest) < 1e-12),
-                   sample << ": " << least << ", " << smallest);
+        BOOST_TEST_INFO_SCOPE(sample);
+        small_states::lists_the_smallest_gap(state, oracle::all_pairs(p, far));
     }
 }
 
@@ -478,7 +412,9 @@ BOOST_AUTO_TEST_CASE(a_lattice_whose_other_pairs_touch_is_not_proved) {
     p.q.insert(p.q.end(), 3, 4.0);
     state.load.loaded_axis = 2;
     state.load.stress = state.load.reference_length = {1, 1, 1};
-    Certificate certificate = of_spheres(state, Verdict::undecided);
+    const Certification lattice = certify(state);
+    BOOST_TEST((lattice.verdict == Verdict::undecided));
+    Certificate certificate = certificate_of(state, lattice.claims);
     BOOST_TEST(certificate.claims.counting.has_value());
     BOOST_TEST(!certificate.claims.gaps.has_value());
     certificate.claims.gaps = GapsClaim{0x1p-1000, Contact(ContactKind::upper_wall, 7, 2)};
@@ -507,7 +443,7 @@ BOOST_AUTO_TEST_CASE(own_images_of_spheres_at_rest_must_not_overlap) {
 
 BOOST_AUTO_TEST_CASE(contacts_of_spheres_have_their_names) {
     State state = state_of_spheres(read_spheres("tri_uniform_30_1"));
-    Certificate certificate = of_spheres(state);
+    Certificate certificate = certified(state);
     certificate.claims.gaps->smallest *= 2;
     BOOST_TEST(answer_to(verify(certificate), "gaps").detail.find(to_string(certificate.claims.gaps->where, 3)) !=
                std::string::npos);

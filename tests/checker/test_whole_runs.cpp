@@ -111,8 +111,7 @@ BOOST_AUTO_TEST_CASE(arcs_that_lead_to_no_equilibrium_are_replayed) {
 
 BOOST_AUTO_TEST_CASE(what_the_rule_random_draws_is_drawn_again) {
     const scratch::Folder folder;
-    RunOptions options{.rule = OpeningRule::random, .rule_seed = 5};
-    play_whole(prepared(36, 3), 2, options, folder / "run");
+    play_whole(prepared(36, 3), 2, {.rule = OpeningRule::random, .rule_seed = 5}, folder / "run");
     all_is_proved(folder / "run");
     const RunVerification other = forger::altered(folder / "run", "run.json", "\"rule_seed\": 5", "\"rule_seed\": 6");
     BOOST_TEST(other.wrong.find("the rule 'random' draws") != std::string::npos, other.wrong);

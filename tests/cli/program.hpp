@@ -65,6 +65,14 @@ inline nlohmann::json json_of(const Outcome& outcome, int status = 0) {
     return nlohmann::json::parse(outcome.out);
 }
 
+/// What an answer has under names, or under paths like "counts/h".
+inline void has(const nlohmann::json& found, const nlohmann::json& expected) {
+    for (const auto& [path, value] : expected.items()) {
+        const auto& there = found.at(nlohmann::json::json_pointer("/" + path));
+        BOOST_TEST(there == value, path << " is " << there << ", not " << value);
+    }
+}
+
 /// Two runs have the same records, states and certificates, but for times and for the names of their folders.
 inline void same_records(const std::filesystem::path& a, const std::filesystem::path& b) {
     namespace fs = std::filesystem;

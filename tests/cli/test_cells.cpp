@@ -9,9 +9,7 @@
 
 namespace {
 
-using program::contains;
-using program::expect;
-using program::run;
+using namespace program;
 
 const std::string rectangle = scratch::data("cells/rect_16.json");
 
@@ -164,22 +162,6 @@ BOOST_AUTO_TEST_CASE(a_run_that_changes_the_shear_is_written_resumed_and_replaye
     expect(run({"verify", folder.at("last.cert.json")}), 0);
 }
 
-/// One row of equilibria.csv by the names of its columns.
-std::map<std::string, std::string> row_of(const std::filesystem::path& csv, int number) {
-    std::istringstream text(scratch::read(csv));
-    std::string names, row;
-    std::getline(text, names);
-    for (int k = 0; k <= number; ++k) {
-        std::getline(text, row);
-    }
-    std::map<std::string, std::string> found;
-    std::istringstream name(names.substr(2)), value(row);
-    for (std::string a, b; std::getline(name, a, ',') && std::getline(value, b, ',');) {
-        found[a] = b;
-    }
-    return found;
-}
-
 BOOST_AUTO_TEST_CASE(a_prepared_cell_begins_at_no_shear_strain_and_the_words_are_those_of_a_shear) {
     const scratch::Folder folder;
     const std::string scene = folder.at("cell.toml");
@@ -190,7 +172,7 @@ BOOST_AUTO_TEST_CASE(a_prepared_cell_begins_at_no_shear_strain_and_the_words_are
     const auto start = isostat::read_any_state(out / "states" / "eq_000000.json").state;
     BOOST_TEST(start.packing.lattice(0, 1) != 0);
     BOOST_TEST(start.load.reference_tilt[0] == start.packing.lattice(0, 1));
-    const auto first = row_of(out / "equilibria.csv", 0), later = row_of(out / "equilibria.csv", 4);
+    const auto first = scratch::row_of(out / "equilibria.csv", 0), later = scratch::row_of(out / "equilibria.csv", 4);
     BOOST_TEST(std::abs(std::stod(first.at("eps2"))) < 1e-12);
     BOOST_TEST(std::stod(later.at("eps2")) > 0); // the shear does work
     const double height = start.load.reference_length[1];
@@ -224,7 +206,7 @@ BOOST_AUTO_TEST_CASE(a_rectangle_is_prepared_and_followed_under_true_stresses) {
                                           kind));
         expect(run({"run", scene, "-o", (folder / kind).string()}), 0);
         expect(run({"verify", (folder / kind).string()}), 0);
-        last[kind] = row_of(folder / kind / "equilibria.csv", 3);
+        last[kind] = scratch::row_of(folder / kind / "equilibria.csv", 3);
     }
     const auto of = [&](const char* kind, const char* name) { return std::stod(last[kind].at(name)); };
     // The same way: sigma2 L1 / (sigma1 L2) is the ratio of the forces, of the lengths of the moment or of the start.

@@ -27,6 +27,17 @@ BOOST_AUTO_TEST_CASE(clumps_are_inspected_certified_verified_and_drawn) {
     BOOST_TEST(!contains(picture, "class=\"traction\"")); // bars under tension are no contacts
 }
 
+BOOST_AUTO_TEST_CASE(eigenvalues_of_the_second_variation_are_said_where_a_minimum_is_proved) {
+    const scratch::Folder folder;
+    isostat::write_state(folder.at("oval.json"), isostat::test::oval_in_a_box(1, 1));
+    isostat::write_state(folder.at("falls.json"), isostat::test::oval_in_a_box(3, 1));
+    says(run({"inspect", folder.at("oval.json")}), 1, {"W'' in (X, Y, angle)     2 within "});
+    const auto seen = nlohmann::json::parse(run({"inspect", folder.at("oval.json"), "--json"}).out);
+    BOOST_TEST_REQUIRE(seen["second_variation"].size() == 1U);
+    BOOST_TEST(std::abs(seen["second_variation"][0][0].get<double>() - 2) < 1e-9);
+    BOOST_TEST(!contains(run({"inspect", folder.at("falls.json")}).out, "W'' in"));
+}
+
 BOOST_AUTO_TEST_CASE(a_run_of_clumps_goes_on_where_it_was_stopped_and_is_verified_and_reported) {
     const scratch::Folder folder;
     isostat::State state = isostat::test::lying_dimer(12, 12);

@@ -42,11 +42,7 @@ BOOST_AUTO_TEST_CASE(inspect_tells_the_closed_form_of_two_disks) {
     const scratch::Folder folder;
     scratch::write(folder / "two.json", state_text(crafted::two_disks(1, 2, 1, 1)));
     const auto j = json_of(run({"inspect", folder.at("two.json"), "--json"}));
-    BOOST_TEST(j["N_f"] == 6);
-    BOOST_TEST(j["N"] == 6);
-    BOOST_TEST(j["rank"] == 6);
-    BOOST_TEST(j["h"] == 0);
-    BOOST_TEST(j["k"] == 0);
+    has(j, {{"N_f", 6}, {"N", 6}, {"rank", 6}, {"h", 0}, {"k", 0}});
     BOOST_TEST(j["rattlers"].empty());
     BOOST_TEST(j["verdict"] == "proved");
     const double t = 1 / (2 * std::sqrt(2.0));
@@ -136,10 +132,8 @@ BOOST_AUTO_TEST_CASE(plan_prints_a_scene_that_gives_the_same_plan) {
         const Outcome again = run({"plan", folder.at("again.toml")});
         expect(again, 0);
         const auto settings = [](const std::string& text) { // without the remarks on lines
-            std::istringstream in(text.substr(text.find("\n[packing]")));
-            std::string line;
             std::string kept;
-            while (std::getline(in, line)) {
+            for (const std::string& line : scratch::split(text.substr(text.find("\n[packing]")), '\n')) {
                 kept += line.substr(0, line.find(" #")) + "\n";
             }
             return kept;
@@ -178,10 +172,8 @@ BOOST_AUTO_TEST_CASE(a_run_with_cycles_writes_everything_and_says_so) {
     BOOST_TEST(run_json["status"] == "completed");
     BOOST_TEST(contains(run_json["scene"].get<std::string>(), "equilibria = 6"));
     BOOST_TEST(run_json["settings"]["run"]["rule"] == "most_negative");
-    std::istringstream events(scratch::read(out + "/events.jsonl"));
-    std::string line;
     long step = 0;
-    while (std::getline(events, line)) {
+    for (const std::string& line : scratch::lines_of(out + "/events.jsonl")) {
         const json event = json::parse(line);
         BOOST_TEST(event["step"] == ++step);
         BOOST_TEST(event["margin"].get<double>() > 1);
@@ -196,9 +188,7 @@ BOOST_AUTO_TEST_CASE(json_output_is_one_object_and_nothing_else) {
     const Outcome outcome = run({"run", folder.at("s.toml"), "-o", folder.at("run"), "--json"});
     expect(outcome, 0);
     const json j = json::parse(outcome.out);
-    BOOST_TEST(j["status"] == "completed");
-    BOOST_TEST(j["counters"]["equilibria"] == 6);
-    BOOST_TEST(j["counters"]["decisions"]["undecided"] == 0);
+    has(j, {{"status", "completed"}, {"counters/equilibria", 6}, {"counters/decisions/undecided", 0}});
     BOOST_TEST(outcome.err.empty());
     scratch::write(folder / "p.toml", "[packing]\ndisks = 9\n");
     const Outcome prepared = run({"prepare", folder.at("p.toml"), "-o", folder.at("p.json"), "--json"});

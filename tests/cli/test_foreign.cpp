@@ -4,9 +4,7 @@
 
 namespace {
 
-using program::contains;
-using program::expect;
-using program::run;
+using namespace program;
 
 const std::string packings = std::string(ISOSTAT_EXAMPLES) + "/packings/";
 

@@ -247,8 +247,7 @@ BOOST_AUTO_TEST_CASE(a_run_is_exported_as_frames_with_displacements) {
     BOOST_TEST(text.find("\n100\n", second + 1) == std::string::npos);
     BOOST_TEST(contains(text, ":displacement:R:3"));
     const Packing last = read_state(folder / "run/states/eq_000002.json").state.packing;
-    ForeignOptions options;
-    options.walls = ForeignWalls::box;
+    ForeignOptions options{.walls = ForeignWalls::box};
     const Packing read = read_foreign(folder / "run.xyz", options).packing;
     BOOST_TEST((read.q == last.q));
     BOOST_TEST((read.radius == last.radius));

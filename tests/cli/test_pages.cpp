@@ -19,12 +19,7 @@ namespace {
 const fs::path project = fs::path(ISOSTAT_EXAMPLES).parent_path();
 
 std::vector<std::string> lines(const std::string& text) {
-    std::vector<std::string> result;
-    std::istringstream stream(text);
-    for (std::string line; std::getline(stream, line);) {
-        result.push_back(line);
-    }
-    return result;
+    return scratch::split(text, '\n');
 }
 
 /// The part of a page from a line that begins with `heading` to the next heading.

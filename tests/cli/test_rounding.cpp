@@ -44,8 +44,7 @@ BOOST_AUTO_TEST_CASE(a_hyperstatic_packing_is_not_isostatic_by_rounding) {
 BOOST_AUTO_TEST_CASE(nor_is_it_in_a_mirror_elsewhere_or_of_another_size) {
     const scratch::Folder folder;
     const ForeignPacking read = [] {
-        ForeignOptions options;
-        options.columns = {"-", "x", "y"};
+        ForeignOptions options{.columns = {"-", "x", "y"}};
         options.size = SizeStatement{SizeMeaning::radius, "", std::stod(radius_of_13)};
         return read_foreign(file_of("square13.txt"), options);
     }();

@@ -237,8 +237,7 @@ BOOST_AUTO_TEST_CASE(report_says_where_soft_grains_would_leave_the_structures_of
     const auto ends = [&](const std::string& stiffness) {
         says(run({"report", out, "--no-charts", "--stiffness", stiffness}), 0, {"K for 1e-3"});
         std::vector<std::array<double, 3>> rows; // exact, soft, stiffness needed
-        std::istringstream table(scratch::read(folder / "out" / "figures" / "soft_limits.csv"));
-        for (std::string line; std::getline(table, line);) {
+        for (const std::string& line : scratch::lines_of(folder / "out" / "figures" / "soft_limits.csv")) {
             std::array<double, 3> row{};
             if (std::sscanf(line.c_str(), "%*d,%*[a-z],%lf,%lf,%lf", row.data(), &row[1], &row[2]) == 3) {
                 rows.push_back(row);

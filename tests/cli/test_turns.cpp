@@ -10,11 +10,7 @@ std::vector<std::string> events_of_scene(const std::string& scene) {
     const scratch::Folder folder;
     const fs::path out = folder / "run";
     expect(run({"run", scratch::data("../../examples/turns/" + scene), "-o", out.string(), "-q"}), 0);
-    std::istringstream text(scratch::read(out / "events.jsonl"));
-    std::vector<std::string> lines;
-    for (std::string line; std::getline(text, line);) {
-        lines.push_back(line);
-    }
+    const std::vector<std::string> lines = scratch::lines_of(out / "events.jsonl");
     BOOST_TEST(contains(scratch::read(out / "summary.json"), "\"undecided\": 0"));
     const Outcome verified = run({"verify", out.string()}); // held coordinates and all
     expect(verified, 0);

@@ -27,8 +27,8 @@ struct WithoutCoq {
         run({"certify", folder.at("state.json"), "-o", folder.at(name)});
         return folder.at(name);
     }
-    [[nodiscard]] Outcome verify(const std::vector<std::string>& files) const {
-        std::vector<std::string> arguments{"verify", "--coq"};
+    [[nodiscard]] Outcome verify(const std::vector<std::string>& files, const std::string& checker = "--coq") const {
+        std::vector<std::string> arguments{"verify", checker};
         arguments.insert(arguments.end(), files.begin(), files.end());
         return run(arguments, path);
     }
@@ -36,10 +36,10 @@ struct WithoutCoq {
 
 /// The line of Coq, undecided for this reason; where no example program was built (sanitizers) there is none to write
 /// for Coq, and that is the reason.
-std::string undecided_because(const std::string& reason) {
+std::string undecided_because(const std::string& reason, const std::string& line = "coq            ") {
     const std::filesystem::path writer = "examples/example_equilibrium_certificate";
     const bool built = std::filesystem::exists(std::filesystem::path(ISOSTAT_PROGRAM).parent_path() / writer);
-    return "coq            undecided " + (built ? reason : "not asked: ");
+    return line + "undecided " + (built ? reason : "not asked: ");
 }
 
 } // namespace
@@ -56,8 +56,13 @@ BOOST_AUTO_TEST_CASE(without_coq_nothing_is_said_to_be_proved_by_it) {
     }
     says(run({"verify", file}), 0, {"equilibrium    proved"});
     says(run({"verify", "--coq", file}, "PATH=/nowhere "), 2, {undecided_because("no answer from ")});
+    const std::string extracted = undecided_because("Coq is not installed (Debian packages coq, ", "coq-extracted  ");
+    says(here.verify({file}, "--coq-extracted"), 2, {"stable         proved", extracted, "equilibrium    undecided"});
+    says(here.verify({file, "--coq-extracted"}), 2, {missing, extracted});
     expect(run({"verify", file, "--coq-limit", "3"}), 64, {"--coq"});
-    expect(run({"verify", here.folder.at("bin"), "--coq"}), 64, {"--coq"});
+    for (const char* const checker : {"--coq", "--coq-extracted"}) {
+        expect(run({"verify", here.folder.at("bin"), checker}), 64, {checker});
+    }
 }
 
 BOOST_AUTO_TEST_CASE(packings_that_the_checker_in_coq_does_not_cover_are_named) {

@@ -12,30 +12,13 @@ namespace series {
 using Lines = std::vector<std::string>;
 
 inline Lines lines_of(const std::string& name) {
-    Lines lines;
-    std::istringstream text(scratch::read(scratch::data("series/" + name)));
-    for (std::string line; std::getline(text, line);) {
-        lines.push_back(line);
-    }
-    return lines;
+    return scratch::lines_of(scratch::data("series/" + name));
 }
 
 inline Lines words_of(const std::string& line, char at = ' ') {
-    Lines words;
-    std::istringstream text(line);
-    for (std::string word; std::getline(text, word, at);) {
-        words.push_back(word);
-    }
-    return words;
+    return scratch::split(line, at);
 }
-
-inline std::string joined(const Lines& parts, char with) {
-    std::string text;
-    for (std::size_t k = 0; k < parts.size(); ++k) {
-        text += (k > 0 ? std::string(1, with) : "") + parts[k];
-    }
-    return text;
-}
+using scratch::joined;
 
 /// The first `frames` frames, to be damaged, in a folder of their own.
 class Copy {

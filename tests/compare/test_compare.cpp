@@ -251,11 +251,10 @@ BOOST_AUTO_TEST_CASE(rattlers_rest_where_the_member_says) {
         for (std::size_t i = 0; i < g.size(); ++i) {
             g[i] = -up * generic[i];
         }
-        const auto rested = compare::with_resting_rattlers(snap, g);
-        BOOST_TEST_REQUIRE(rested.ok());
+        const auto rested = required(compare::with_resting_rattlers(snap, g));
         double sum = 0;
         for (const int i : snap.rattlers) {
-            sum += rested.value().packing.q[2 * static_cast<std::size_t>(i) + 1];
+            sum += rested.packing.q[2 * static_cast<std::size_t>(i) + 1];
         }
         return sum;
     };

@@ -1,34 +1,30 @@
 #include "../../src/contact/near_pairs.hpp"
 #include "../../src/contact/pair_list.hpp"
 #include "contact/candidates.hpp"
-#include "oracle/gaps.hpp"
+#include "oracle/geometry.hpp"
 #include "oracle/packings.hpp"
+#include "oracle/pairs.hpp"
 #include "support/scale.hpp"
+
+#include <gmpxx.h>
 
 using namespace isostat;
 using namespace isostat::oracle;
 
 namespace {
 
-/// Every pair and wall of the packing.
-std::vector<Contact> every_contact(const Packing& packing) {
-    std::vector<Contact> all;
-    for (int i = 0; i < packing.disk_count(); ++i) {
-        for (int j = i + 1; j < packing.disk_count(); ++j) {
-            all.push_back({ContactKind::disk_disk, i, j});
+/// Over the rationals.
+struct ExactGaps : Geometry<mpq_class> {
+    using Geometry<mpq_class>::Geometry;
+    /// Sign of gap - bound (bound >= -(R_i + R_j) for disk pairs).
+    [[nodiscard]] int sign_beyond(const Contact& contact, double bound) const {
+        if (!is_pair(contact)) {
+            return cmp(linear_gap(contact), mpq_class(bound));
         }
-        for (int a = 0; a < 2; ++a) {
-            if (packing.walls.lower[static_cast<std::size_t>(a)] != WallKind::absent) {
-                all.push_back({ContactKind::lower_wall, i, a});
-            }
-            if (packing.walls.upper[static_cast<std::size_t>(a)] != WallKind::absent) {
-                all.push_back({ContactKind::upper_wall, i, a});
-            }
-        }
+        const mpq_class d = target(contact) + mpq_class(bound);
+        return sgn(d) < 0 ? 1 : cmp(square(between(contact)), mpq_class(d * d));
     }
-    std::sort(all.begin(), all.end());
-    return all;
-}
+};
 
 /// Two-sided: nothing below the reach is missing, nothing above it (beyond rounding) is listed.
 void check_against_every_pair(const Packing& packing, double fraction) {
@@ -39,12 +35,12 @@ void check_against_every_pair(const Packing& packing, double fraction) {
     BOOST_TEST(listed.size() == list.contacts.size());
     int missing = 0;
     int superfluous = 0;
-    for (const Contact& contact : every_contact(packing)) {
+    const ExactGaps exact(packing);
+    for (const Contact& contact : all_pairs(packing)) {
         if (listed.contains(contact)) {
-            superfluous +=
-                gap_minus_bound_sign(packing, contact, list.reach + 1e-12 * packing.max_radius()) > 0 ? 1 : 0;
+            superfluous += exact.sign_beyond(contact, list.reach + 1e-12 * packing.max_radius()) > 0 ? 1 : 0;
         } else {
-            missing += gap_minus_bound_sign(packing, contact, list.reach) < 0 ? 1 : 0;
+            missing += exact.sign_beyond(contact, list.reach) < 0 ? 1 : 0;
         }
     }
     BOOST_TEST(missing == 0);
@@ -53,19 +49,18 @@ void check_against_every_pair(const Packing& packing, double fraction) {
 
 /// The verdict of every pair by rationals.
 Verdict exact_verdict(const Packing& packing, double allowance) {
-    for (const Contact& contact : every_contact(packing)) {
-        if (gap_minus_bound_sign(packing, contact, -allowance) < 0) {
-            return Verdict::refuted;
-        }
-    }
-    return Verdict::proved;
+    const ExactGaps exact(packing);
+    const auto pairs = all_pairs(packing);
+    const bool overlaps =
+        std::any_of(pairs.begin(), pairs.end(), [&](const Contact& c) { return exact.sign_beyond(c, -allowance) < 0; });
+    return overlaps ? Verdict::refuted : Verdict::proved;
 }
 
 void check_verdict(const Packing& packing, double allowance) {
     const Admissibility result = certify_admissible(packing, allowance);
     BOOST_TEST((result.verdict == exact_verdict(packing, allowance)));
     if (result.verdict == Verdict::refuted) {
-        BOOST_TEST(gap_minus_bound_sign(packing, result.worst, -allowance) < 0);
+        BOOST_TEST(ExactGaps(packing).sign_beyond(result.worst, -allowance) < 0);
     }
 }
 

@@ -202,9 +202,7 @@ inline const std::vector<State>& prepared_spheres(isostat::PreparedCell kind) {
     std::vector<State>& all = made[kind];
     for (std::uint64_t seed = 1; all.size() < 40; ++seed) {
         Random random(seed);
-        isostat::PreparationOptions options;
-        options.dimension = 3;
-        options.radii = cell_radii(2 + random.integer(5), random);
+        isostat::PreparationOptions options{.dimension = 3, .radii = cell_radii(2 + random.integer(5), random)};
         options.cell = kind;
         options.seed = seed;
         isostat::PreparationReport report;

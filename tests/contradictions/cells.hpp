@@ -197,8 +197,7 @@ inline std::optional<State> make_cell(const CellOptions& options, Random& random
     }
     auto state = detail::hard(soft, options);
     if (!state && options.kind != CellKind::channel && options.shear_force == 0 && options.fixed_length == 0) {
-        isostat::PreparationOptions preparation;
-        preparation.stress = options.force[0];
+        isostat::PreparationOptions preparation{.stress = options.force[0]};
         preparation.ratio = options.force[1] / options.force[0];
         isostat::PreparationReport report;
         Packing apart = soft.packing; // no disk may overlap its own image

@@ -88,8 +88,7 @@ inline std::optional<State> start_in_cell(Random& random) {
     if (random.integer(4) != 0) {
         return in_small_cell(static_cast<CellKind>(random.integer(3)), random);
     }
-    PreparationOptions options;
-    options.disks = 20 + random.integer(21);
+    PreparationOptions options{.disks = 20 + random.integer(21)};
     options.radii = random_radii(options.disks, random);
     options.seed = random.bits() >> 12;
     options.cell = random.integer(2) == 0 ? PreparedCell::rectangular : PreparedCell::tilted;

@@ -49,8 +49,7 @@ inline std::optional<State> pile(const PileOptions& options, Random& random) {
 }
 
 inline PileOptions small(Random& random, double same = 0, int dimension = 2) {
-    PileOptions options{.disks = 1 + random.integer(dimension == 2 ? 5 : 4), .dimension = dimension, .same = same};
-    return options;
+    return {.disks = 1 + random.integer(dimension == 2 ? 5 : 4), .dimension = dimension, .same = same};
 }
 
 /// Loads for forces from 0.1 to 2; `weak` of them hardly different from 0.

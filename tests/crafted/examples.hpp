@@ -3,6 +3,26 @@
 
 #include "support/test.hpp"
 
+#include <isostat/crafted/exact_packing.hpp>
+
+namespace examples {
+
+using isostat::crafted::ExactPacking;
+using isostat::crafted::Inspection;
+using isostat::exact::Number;
+
+inline Number n(const std::string& text) {
+    return Number::parse(text);
+}
+
+inline ExactPacking example(const std::string& name) {
+    return isostat::crafted::read_packing(std::string(ISOSTAT_EXAMPLES) + "/packings/" + name).packing;
+}
+
+inline Inspection inspected(const ExactPacking& packing) {
+    return required(isostat::crafted::inspect(packing));
+}
+
 /// Paths of those of disks, of spheres, or of clumps of either, sorted.
 inline std::vector<std::string> packing_files(bool spheres = false, bool clumps = false) {
     std::vector<std::string> paths;
@@ -16,3 +36,5 @@ inline std::vector<std::string> packing_files(bool spheres = false, bool clumps 
     std::sort(paths.begin(), paths.end());
     return paths;
 }
+
+} // namespace examples

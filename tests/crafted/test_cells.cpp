@@ -17,24 +17,11 @@ BOOST_AUTO_TEST_SUITE(crafted_cells)
 
 namespace {
 
+using namespace examples;
 using namespace isostat::crafted;
 using isostat::Contact;
 using isostat::StrainCounts;
 using isostat::Verdict;
-
-Number n(const std::string& text) {
-    return Number::parse(text);
-}
-
-ExactPacking example(const std::string& name) {
-    return read_packing(std::string(ISOSTAT_EXAMPLES) + "/packings/" + name).packing;
-}
-
-Inspection inspected(const ExactPacking& packing) {
-    const auto result = inspect(packing);
-    BOOST_REQUIRE_MESSAGE(result.ok(), (result.ok() ? "" : result.failure().message()));
-    return result.value();
-}
 
 /// x_j - x_i + A m for every m of a few periods, compared with the sum of the radii.
 std::vector<Contact> by_force(const ExactPacking& packing, int most) {

@@ -14,12 +14,7 @@ namespace {
 
 using namespace isostat;
 using namespace isostat::crafted;
-
-crafted::Inspection inspected(const PackingFile& file) {
-    auto result = inspect(file.packing);
-    BOOST_REQUIRE(result.ok());
-    return result.value();
-}
+using namespace examples;
 
 PackingFile dimer(const std::string& name, const std::string& wall) {
     const std::string path = std::string(ISOSTAT_EXAMPLES) + "/packings/clump_dimer_" + name + ".toml";
@@ -44,7 +39,7 @@ BOOST_AUTO_TEST_CASE(clumps_in_exact_numbers_count_as_their_doubles_do) {
     for (const std::string& path : paths) {
         BOOST_TEST_INFO_SCOPE(path);
         const PackingFile file = read_packing(path);
-        const crafted::Inspection found = inspected(file);
+        const crafted::Inspection found = inspected(file.packing);
         const Counting doubles = count_contacts(approximate(file.packing), found.contacts);
         BOOST_TEST(found.dof_count == doubles.dof_count);
         BOOST_TEST(found.contact_count() == doubles.contact_count);
@@ -59,7 +54,7 @@ BOOST_AUTO_TEST_CASE(clumps_in_exact_numbers_count_as_their_doubles_do) {
 
 BOOST_AUTO_TEST_CASE(one_choice_of_forces_on_clumps_is_in_balance) {
     const PackingFile file = dimer("flat", "[1, 2]");
-    const crafted::Inspection found = inspected(file);
+    const crafted::Inspection found = inspected(file.packing);
     const DofMap dofs(approximate(file.packing));
     const exact::NumberMatrix matrix = exact_contact_matrix(file.packing, dofs, found.contacts);
     std::vector<Number> force = external_force(file.packing, dofs);
@@ -77,17 +72,17 @@ BOOST_AUTO_TEST_CASE(one_choice_of_forces_on_clumps_is_in_balance) {
 }
 
 BOOST_AUTO_TEST_CASE(clumps_that_bear_no_load_are_refuted_where_nothing_is_hyperstatic) {
-    const crafted::Inspection lies = inspected(dimer("lies", "[12, 4]"));
+    const crafted::Inspection lies = inspected(dimer("lies", "[12, 4]").packing);
     BOOST_TEST((lies.support == Support::none));
     BOOST_TEST((lies.stable == Verdict::refuted));
-    const crafted::Inspection flat = inspected(dimer("flat", "[-1, 1]"));
+    const crafted::Inspection flat = inspected(dimer("flat", "[-1, 1]").packing);
     BOOST_TEST((flat.support == Support::none));
     BOOST_TEST((flat.stable == Verdict::undecided));
     // A pull in the bar is no contact under tension.
     const PackingFile pulled = parse_packing("format = \"isostat-packing 1\"\ndisks = [[1, 1, 1], [4, 5, 1]]\nbodies = "
                                              "[[0, 1]]\n[load]\ndisk = [[0, -3, -4], [1, 3, 4]]\n",
                                              "FILE");
-    const crafted::Inspection free = inspected(pulled);
+    const crafted::Inspection free = inspected(pulled.packing);
     BOOST_TEST((free.forces == std::vector<Number>{Number(-1)}));
     BOOST_TEST(free.dof_count == 3);
     BOOST_TEST(free.mechanisms == 3);

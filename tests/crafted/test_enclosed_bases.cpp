@@ -60,18 +60,17 @@ BOOST_AUTO_TEST_SUITE(crafted_enclosed_bases)
 
 BOOST_AUTO_TEST_CASE(enclosures_contain_the_exact_vectors_of_the_examples) {
     int stresses = 0, motions = 0;
-    for (const auto& path : packing_files()) {
+    for (const auto& path : examples::packing_files()) {
         const PackingFile file = read_packing(path);
-        const auto inspection = inspect(file.packing);
-        BOOST_REQUIRE(inspection.ok());
-        const EnclosedBases bases = enclose_bases(file.packing, inspection.value(), 1000);
-        if (bases.verdict != Verdict::proved || inspection.value().bases_exact != Verdict::proved) {
+        const auto inspection = required(inspect(file.packing));
+        const EnclosedBases bases = enclose_bases(file.packing, inspection, 1000);
+        if (bases.verdict != Verdict::proved || inspection.bases_exact != Verdict::proved) {
             BOOST_TEST_MESSAGE(path << ": no enclosure");
             continue;
         }
         BOOST_TEST_INFO_SCOPE(path);
-        stresses += check(bases.self_stresses, inspection.value().self_stresses, bases.free_contacts);
-        motions += check(bases.motions, inspection.value().motions, bases.free_dofs);
+        stresses += check(bases.self_stresses, inspection.self_stresses, bases.free_contacts);
+        motions += check(bases.motions, inspection.motions, bases.free_dofs);
     }
     BOOST_TEST(stresses > 50);
     BOOST_TEST(motions > 20);
@@ -79,13 +78,12 @@ BOOST_AUTO_TEST_CASE(enclosures_contain_the_exact_vectors_of_the_examples) {
 
 BOOST_AUTO_TEST_CASE(a_lattice_without_exact_bases_gets_enclosures) {
     const ExactPacking packing = families::triangular_lattice(15, 15);
-    const auto inspection = inspect(packing);
-    BOOST_REQUIRE(inspection.ok());
-    BOOST_TEST((inspection.value().bases_exact == Verdict::undecided));
-    BOOST_TEST((inspection.value().rank_exact == Verdict::proved));
-    const EnclosedBases bases = enclose_bases(packing, inspection.value(), 5);
+    const auto inspection = required(inspect(packing));
+    BOOST_TEST((inspection.bases_exact == Verdict::undecided));
+    BOOST_TEST((inspection.rank_exact == Verdict::proved));
+    const EnclosedBases bases = enclose_bases(packing, inspection, 5);
     BOOST_REQUIRE((bases.verdict == Verdict::proved));
-    BOOST_TEST(static_cast<int>(bases.free_contacts.size()) == inspection.value().hyperstaticity);
+    BOOST_TEST(static_cast<int>(bases.free_contacts.size()) == inspection.hyperstaticity);
     BOOST_REQUIRE_EQUAL(bases.self_stresses.size(), 5U);
     for (const EnclosedVector& vector : bases.self_stresses) {
         BOOST_TEST(vector.radius < 1e-6);

@@ -1,31 +1,17 @@
 // Exact packings of spheres: closed forms, lattices, clusters, files.
-#include "support/test.hpp"
+#include "examples.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/crafted/exact_packing.hpp>
 
 namespace exact_spheres {
 
+using examples::ExactPacking, examples::inspected, examples::Inspection, examples::n, examples::Number;
 using isostat::Contact;
 using isostat::ContactKind;
 using isostat::Verdict;
-using isostat::crafted::ExactPacking;
-using isostat::crafted::Inspection;
-using isostat::exact::Number;
-
-Number n(const std::string& text) {
-    return Number::parse(text);
-}
-
-Inspection inspected(const ExactPacking& packing) {
-    auto result = isostat::crafted::inspect(packing);
-    BOOST_REQUIRE_MESSAGE(result.ok(), (result.ok() ? "" : result.failure().message()));
-    return std::move(result.value());
-}
 
 ExactPacking example(const std::string& name) {
-    return isostat::crafted::read_packing(std::string(ISOSTAT_EXAMPLES) + "/packings/spheres_" + name + ".toml")
-        .packing;
+    return examples::example("spheres_" + name + ".toml");
 }
 
 /// Spheres of radius 1 in copies of a cell, which repeats and does not move.

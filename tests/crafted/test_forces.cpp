@@ -1,14 +1,15 @@
 // Forces, rattlers and degenerate scenes against answers found by other means.
 
+#include "examples.hpp"
 #include "rigidity/isostatic.hpp"
 #include "support/scale.hpp"
 
-#include <isostat/crafted/exact_packing.hpp>
 #include <isostat/preparation/preparation.hpp>
 
 namespace {
 
 using namespace isostat::crafted;
+using examples::inspected;
 using isostat::Contact;
 using isostat::ContactKind;
 using isostat::Verdict;
@@ -26,12 +27,6 @@ Vector direction(std::mt19937_64& random) {
     case 2: return {-c, -d};
     default: return {d, -c};
     }
-}
-
-Inspection inspected(const ExactPacking& packing) {
-    auto result = inspect(packing);
-    BOOST_REQUIRE(result.ok());
-    return result.value();
 }
 
 void add(ExactPacking& packing, const Vector& centre, const Number& radius, bool fixed) {
@@ -187,17 +182,14 @@ BOOST_AUTO_TEST_CASE(a_disk_between_fixed_ones_is_held_exactly_when_its_normals_
 }
 
 BOOST_AUTO_TEST_CASE(a_stored_vertex_is_isostatic_and_its_exact_forces_solve_the_double_system) {
-    isostat::PreparationOptions options;
-    options.disks = 12;
-    options.seed = 3;
+    isostat::PreparationOptions options{.disks = 12, .seed = 3};
     isostat::PreparationReport report;
-    const auto state = isostat::prepare(options, report);
-    BOOST_REQUIRE(state.ok());
-    const auto& packing = state.value().packing;
+    const auto state = required(isostat::prepare(options, report));
+    const auto& packing = state.packing;
     ExactPacking exact = exact_copy(packing);
-    const auto force = state.value().load.external_force(packing);
+    const auto force = state.load.external_force(packing);
     exact.load = ExactLoad{{Number::from_double(-force[24]), Number::from_double(-force[25])}, {}};
-    const Inspection inspection = inspect_contacts(exact, state.value().contacts);
+    const Inspection inspection = inspect_contacts(exact, state.contacts);
     BOOST_TEST(inspection.verdict() == "isostatic");
     BOOST_TEST((inspection.special_position == Verdict::refuted));
     BOOST_REQUIRE(inspection.forces_unique);

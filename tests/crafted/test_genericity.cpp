@@ -1,24 +1,19 @@
 // Perturbed radii: crystals become isostatic, isostatic packings keep their contacts.
 
 #include "crafted/genericity.hpp"
-#include "support/test.hpp"
+#include "examples.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/crafted/exact_packing.hpp>
 
 namespace {
 
 using namespace isostat::crafted;
-
-ExactPacking example(const std::string& name) {
-    return read_packing(std::string(ISOSTAT_EXAMPLES) + "/packings/" + name).packing;
-}
+using examples::example;
 
 Genericity perturbed(const ExactPacking& exact, int samples, double size, bool tilt = false) {
-    const auto contacts = exact_contacts(exact);
-    BOOST_REQUIRE(contacts.ok());
+    const auto contacts = required(exact_contacts(exact));
     GenericityOptions options{.samples = samples, .size = size, .tilt = tilt};
-    return genericity(approximate(exact), contacts.value(), options);
+    return genericity(approximate(exact), contacts, options);
 }
 
 Genericity perturbed(const std::string& name, int samples, double size) {

@@ -8,7 +8,7 @@
 #include <isostat/preparation/preparation.hpp>
 #include <isostat/rigidity/counting.hpp>
 
-#include <crafted/hold.hpp>
+#include <crafted/inspection_parts.hpp>
 
 namespace {
 
@@ -141,24 +141,20 @@ BOOST_AUTO_TEST_CASE(counts_agree_with_the_exact_inspection_of_the_examples) {
     for (const char* name : {"two_disks.toml", "three_disks.toml", "square_lattice_4.toml", "apollonian.toml",
                              "triangular_patch_2x3.toml"}) {
         const ExactPacking exact = read_packing(std::string(ISOSTAT_EXAMPLES) + "/packings/" + name).packing;
-        const auto inspection = inspect(exact);
-        BOOST_REQUIRE(inspection.ok());
+        const auto inspection = required(inspect(exact));
         const Plateau answer = plateau(approximate(exact), {1e-12});
         BOOST_TEST_INFO_SCOPE(name);
-        BOOST_TEST(answer.steps[0].backbone.rank == inspection.value().rank);
-        BOOST_TEST(answer.steps[0].backbone.hyperstaticity == inspection.value().hyperstaticity);
-        BOOST_TEST(answer.steps[0].backbone.mechanisms == inspection.value().mechanisms);
+        BOOST_TEST(answer.steps[0].backbone.rank == inspection.rank);
+        BOOST_TEST(answer.steps[0].backbone.hyperstaticity == inspection.hyperstaticity);
+        BOOST_TEST(answer.steps[0].backbone.mechanisms == inspection.mechanisms);
     }
 }
 
 BOOST_AUTO_TEST_CASE(a_prepared_packing_with_noise_is_isostatic_over_decades) {
-    isostat::PreparationOptions options;
-    options.disks = 100;
-    options.seed = 4;
+    isostat::PreparationOptions options{.disks = 100, .seed = 4};
     isostat::PreparationReport report;
-    const auto state = isostat::prepare(options, report);
-    BOOST_REQUIRE(state.ok());
-    Packing packing = state.value().packing;
+    const auto state = required(isostat::prepare(options, report));
+    Packing packing = state.packing;
     shake(packing, 1e-9, 9);
     const Plateau answer = plateau(packing, decades(-11, -1));
     BOOST_REQUIRE(!answer.ranges.empty());

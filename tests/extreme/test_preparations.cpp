@@ -6,10 +6,7 @@ using namespace isostat;
 namespace {
 
 PreparationOptions disks(int count, double smallest = 1, double largest = 2) {
-    PreparationOptions options;
-    options.disks = count;
-    options.diameters = {smallest, largest};
-    return options;
+    return {.disks = count, .diameters = {smallest, largest}};
 }
 
 } // namespace
@@ -51,8 +48,7 @@ BOOST_AUTO_TEST_CASE(boxes_that_are_a_thousand_times_longer_than_wide) {
 
 BOOST_AUTO_TEST_CASE(one_huge_disk_among_small_ones) {
     for (const double huge : {10.0, 100.0, 1e3, 1e4}) {
-        PreparationOptions options;
-        options.radii = {huge};
+        PreparationOptions options{.radii = {huge}};
         for (int i = 0; i < 40; ++i) {
             options.radii.push_back(0.5 + 0.5 * std::fmod(i * 0.618033988749895, 1.0));
         }

@@ -10,17 +10,14 @@ using namespace isostat;
 
 namespace {
 
-std::optional<State> prepared(const PreparationOptions& options) {
+std::optional<State> prepared_or_none(const PreparationOptions& options) {
     PreparationReport report;
     auto made = prepare(options, report);
     return made.ok() ? std::optional(made.value()) : std::nullopt;
 }
 
 PreparationOptions disks_of(int count, double smallest = 1, double largest = 2) {
-    PreparationOptions options;
-    options.disks = count;
-    options.diameters = {smallest, largest};
-    return options;
+    return {.disks = count, .diameters = {smallest, largest}};
 }
 
 /// One row for a run; the state where it ends is a row of its own, checked to 200 digits. W never grows.
@@ -91,7 +88,7 @@ BOOST_AUTO_TEST_CASE(runs_from_extreme_packings) {
     cases.push_back(huge);
     int made = 0;
     for (const Case& c : cases) {
-        if (const auto start = prepared(c.options)) {
+        if (const auto start = prepared_or_none(c.options)) {
             ++made;
             follow("run", c.name, *start, towards(4));
         }
@@ -101,7 +98,7 @@ BOOST_AUTO_TEST_CASE(runs_from_extreme_packings) {
 
 BOOST_AUTO_TEST_CASE(runs_towards_every_stress_ratio) {
     for (const int count : {2, 4, 10}) {
-        const auto start = prepared(disks_of(count));
+        const auto start = prepared_or_none(disks_of(count));
         BOOST_REQUIRE(start);
         for (const int power : {-12, -4, 4, 12}) {
             follow("stress ratio", fmt::format("{} disks, run to σ₂/σ₁ = 1e{:+03d}", count, power), *start,
@@ -111,7 +108,7 @@ BOOST_AUTO_TEST_CASE(runs_towards_every_stress_ratio) {
 }
 
 BOOST_AUTO_TEST_CASE(soft_grains_of_any_stiffness_choose_their_step) {
-    const auto start = prepared(disks_of(30));
+    const auto start = prepared_or_none(disks_of(30));
     BOOST_REQUIRE(start);
     const auto rigid = inspect_vertex(*start);
     BOOST_REQUIRE((rigid.ok() && rigid.value().equilibrium));

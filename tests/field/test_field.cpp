@@ -6,10 +6,7 @@
 
 namespace {
 
-using program::contains;
-using program::expect;
-using program::json_of;
-using program::run;
+using namespace program;
 
 /// "FILE words": the file among those of the table.
 program::Outcome in_field(const std::string& command, const std::string& file, std::vector<std::string> more = {}) {
@@ -23,9 +20,7 @@ void expect_base(const std::string& file, std::vector<std::string> more, double 
     more.insert(more.end(), {"--cell", "full", "--json"});
     const auto found = json_of(in_field("plateau", file, more));
     const auto& widest = found["widest"];
-    BOOST_TEST(widest["N"] == 33);
-    BOOST_TEST(widest["counts"]["h"] == 0);
-    BOOST_TEST(widest["counts"]["k"] == 0);
+    has(widest, {{"N", 33}, {"counts/h", 0}, {"counts/k", 0}});
     BOOST_TEST(widest["contacts"].size() == 33U);
     BOOST_TEST(found["smallest_gap_of"] == "9-13");
     BOOST_TEST(std::abs(widest["first"].get<double>() + 8.34698575139887e-5) < digits);
@@ -87,10 +82,7 @@ BOOST_AUTO_TEST_CASE(kind_4_circles_in_a_square) {
     auto more = in_square("fixed", radius_of_13);
     more.emplace_back("--json");
     const auto thirteen = json_of(in_field("plateau", "04_square13.txt", more), 1);
-    BOOST_TEST(thirteen["widest"]["N"] == 25);
-    BOOST_TEST(thirteen["widest"]["rattlers"] == 1);
-    BOOST_TEST(thirteen["widest"]["counts"]["N_f"] == 24);
-    BOOST_TEST(thirteen["widest"]["counts"]["h"] == 1);
+    has(thirteen, {{"widest/N", 25}, {"widest/rattlers", 1}, {"widest/counts/N_f", 24}, {"widest/counts/h", 1}});
     more = in_square("fixed", radius_of_19);
     more.emplace_back("--json");
     const auto nineteen = json_of(in_field("plateau", "04_square19.txt", more), 1);
@@ -105,10 +97,7 @@ BOOST_AUTO_TEST_CASE(kind_4_circles_in_a_square) {
         more.insert(more.end(), {"-o", state});
         says(in_field("import", file, more), 0, {"their size alone moves", "proved"});
         const auto found = json_of(run({"inspect", state, "--json"}));
-        BOOST_TEST(found["box"]["N"] == contacts);
-        BOOST_TEST(found["box"]["h"] == 1);
-        BOOST_TEST(found["box"]["k"] == 0);
-        BOOST_TEST(found["box"]["jammed"]["collective"]["verdict"] == "proved");
+        has(found, {{"box/N", contacts}, {"box/h", 1}, {"box/k", 0}, {"box/jammed/collective/verdict", "proved"}});
     }
 }
 
@@ -121,10 +110,7 @@ BOOST_AUTO_TEST_CASE(kind_4_import_into_walls_that_stay_writes_the_list_and_insp
          {"7 disks, 1 rattlers by coordination, 14 contacts", "written"});
     BOOST_TEST(contains(scratch::read(moved), ",0,1\n")); // the rattler, which has not moved
     const auto seven = json_of(run({"inspect", state, "--json"}), 1)["box"];
-    BOOST_TEST(seven["grains"] == 6);
-    BOOST_TEST(seven["h"] == 2);
-    BOOST_TEST(seven["k"] == 0);
-    BOOST_TEST(seven["jammed"]["collective"]["if_contacts_close"]["verdict"] == "proved");
+    has(seven, {{"grains", 6}, {"h", 2}, {"k", 0}, {"jammed/collective/if_contacts_close/verdict", "proved"}});
     for (const auto& [file, radius, grains, h] : {std::tuple{"04_square10.txt", radius_of_10, 10, 1},
                                                   {"04_square13.txt", radius_of_13, 12, 1},
                                                   {"04_square19.txt", radius_of_19, 17, 3}}) {
@@ -153,10 +139,7 @@ BOOST_AUTO_TEST_CASE(kind_4_import_into_walls_that_stay_writes_the_list_and_insp
 BOOST_AUTO_TEST_CASE(kind_4_a_fixed_square_counts_no_rattlers_and_exact_numbers_prove_it_jammed) {
     const auto found = json_of(in_field("inspect", "04_square7_fixed.json", {"--json"}), 1);
     BOOST_TEST(found["k"] == 2); // of all disks
-    BOOST_TEST(found["box"]["grains"] == 6);
-    BOOST_TEST(found["box"]["h"] == 2);
-    BOOST_TEST(found["box"]["k"] == 0);
-    BOOST_TEST(found["box"]["jammed"]["collective"]["verdict"] == "undecided");
+    has(found, {{"box/grains", 6}, {"box/h", 2}, {"box/k", 0}, {"box/jammed/collective/verdict", "undecided"}});
     BOOST_TEST(contains(found["box"]["jammed"]["collective"]["reason"], "exact numbers"));
     const auto& closed = found["box"]["jammed"]["collective"]["if_contacts_close"];
     BOOST_TEST(closed["verdict"] == "proved");
@@ -231,9 +214,9 @@ BOOST_AUTO_TEST_CASE(kind_5_a_lattice_in_a_cell_that_stays_is_jammed_if_its_cont
         BOOST_TEST(found["moves"].empty());
         for (const auto& [kind, verdict] : {std::pair{"collective", "proved"}, {"strict", strict}}) {
             const auto& answer = found["jammed"][kind];
-            BOOST_TEST(answer["verdict"] == "undecided");
-            BOOST_TEST(answer["if_contacts_close"]["verdict"] == verdict);
-            BOOST_TEST(answer["if_contacts_close"]["contacts"] == contacts);
+            has(answer, {{"verdict", "undecided"},
+                         {"if_contacts_close/verdict", verdict},
+                         {"if_contacts_close/contacts", contacts}});
         }
     }
 }

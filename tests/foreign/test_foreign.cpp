@@ -35,14 +35,12 @@ ForeignPacking read(const std::string& text, const ForeignOptions& options = {})
 }
 
 ForeignOptions with_walls(ForeignWalls walls) {
-    ForeignOptions out;
-    out.walls = walls;
+    ForeignOptions out{.walls = walls};
     return out;
 }
 
 ForeignOptions stated(SizeMeaning meaning, const std::string& column, double value = 0) {
-    ForeignOptions out;
-    out.size = SizeStatement{meaning, column, value};
+    ForeignOptions out{.size = SizeStatement{meaning, column, value}};
     return out;
 }
 
@@ -85,14 +83,12 @@ BOOST_AUTO_TEST_CASE(the_same_two_disks_in_every_format) {
           "# made by hand\n# x y d\n+0 1.25 5e-1\n2 1.5 1.5"}) {
         expect_disks(read(text), "table");
     }
-    ForeignOptions columns;
-    columns.columns = {"-", "x", "y", "d"};
+    ForeignOptions columns{.columns = {"-", "x", "y", "d"}};
     expect_disks(read("9 0 1.25 0.5\n9 2 1.5 1.5\n", columns), "table");
 }
 
 BOOST_AUTO_TEST_CASE(a_frame_is_the_last_one_or_the_one_asked_for) {
-    ForeignOptions options;
-    options.frame = 0;
+    ForeignOptions options{.frame = 0};
     BOOST_TEST(read(dump, options).packing.disk_count() == 1);
     options.frame = 1;
     expect_disks(read(dump, options), "lammps-dump");
@@ -109,8 +105,7 @@ BOOST_AUTO_TEST_CASE(a_frame_is_the_last_one_or_the_one_asked_for) {
 }
 
 BOOST_AUTO_TEST_CASE(an_earlier_frame_is_read_from_a_file_cut_in_a_later_one) {
-    ForeignOptions options;
-    options.frame = 0;
+    ForeignOptions options{.frame = 0};
     const std::string cut = dump.substr(0, dump.size() - 20);
     BOOST_TEST(read(cut, options).packing.disk_count() == 1);
     expect_bad_input([&] { read(cut); }, {"FILE:"});
@@ -163,8 +158,7 @@ BOOST_AUTO_TEST_CASE(whether_a_size_is_radius_or_diameter_is_never_guessed) {
 }
 
 BOOST_AUTO_TEST_CASE(periodic_boundaries_are_refused_unless_the_user_takes_them_for_open) {
-    ForeignOptions open;
-    open.not_periodic = true;
+    ForeignOptions open{.not_periodic = true};
     const std::string periodic_dump =
         scratch::replaced(dump, "-0.5 0.5\nITEM: ATOMS id x", "-0.5 0.5\nITEM: ATOMS id x");
     std::string p = dump;
@@ -232,8 +226,7 @@ BOOST_AUTO_TEST_CASE(what_does_not_fit_is_refused_with_line_value_and_what_was_e
         expect_bad_input([&] { read(text); }, words);
     };
     using scratch::replaced;
-    ForeignOptions disks;
-    disks.dimension = 2;
+    ForeignOptions disks{.dimension = 2};
     expect_bad_input([&] { read(replaced(dump, "1 1 0 1.25 0 0.25", "1 1 0 1.25 1 0.25"), disks); },
                      {"FILE:21", "z of disk 1", "in a plane"});
     refused(replaced(dump, "1 1 0 1.25 0 0.25", "2 1 0 1.25 0 0.25"), {"FILE:21", "id 2", "line 20"});
@@ -280,16 +273,14 @@ BOOST_AUTO_TEST_CASE(columns_that_are_needed_and_header_lines_come_once_or_agree
             "once");
     refused(replaced(data_file, "-0.5 0.5 zlo zhi", "-0.5 0.5 zlo zhi\n-0.5 0.5 zlo zhi"), "FILE:9", "once");
     refused(replaced(data_file, "1 atom types", "1 atom types\n1 atom types"), "FILE:5", "once");
-    ForeignOptions options;
-    options.columns = {"x", "y", "r", "-", "-"};
+    ForeignOptions options{.columns = {"x", "y", "r", "-", "-"}};
     BOOST_TEST(read("1 1 1 0 0\n", options).packing.disk_count() == 1);
     options.columns = {"x", "y", "r", "z", "z"};
     expect_bad_input([&] { read("1 1 1 0 1\n", options); }, {"FILE:1", "'z' is given twice"});
 }
 
 BOOST_AUTO_TEST_CASE(rows_that_are_counted_have_their_number_in_the_file) {
-    ForeignOptions options;
-    options.first_id = 1;
+    ForeignOptions options{.first_id = 1};
     const std::string rows = "id,type,x,y,r\n7,1,1,1,1\n8,2,3,1,1\n9,3,5,1,1\n";
     BOOST_TEST(read(rows, options).ids == (std::vector<long>{1, 2, 3}));
     options.select = RowsWith{"type", {"1", "3"}};
@@ -305,8 +296,7 @@ BOOST_AUTO_TEST_CASE(rows_that_are_counted_have_their_number_in_the_file) {
 BOOST_AUTO_TEST_CASE(scaled_coordinates_of_a_turned_cell) {
     const std::string head = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS abc origin pp pp pp\n"
                              "0 2 0 1\n-3 0 0 1\n0 0 1 0\nITEM: ATOMS id ";
-    ForeignOptions cells;
-    cells.cells = true;
+    ForeignOptions cells{.cells = true};
     const Packing scaled = read(head + "xs ys zs radius\n1 0.25 0.5 0 0.5\n", cells).packing;
     const Packing placed = read(head + "x y z radius\n1 -0.5 1.5 0 0.5\n", cells).packing; // (1, 1) + a/4 + b/2
     for (std::size_t k = 0; k < placed.q.size(); ++k) {
@@ -342,8 +332,7 @@ BOOST_AUTO_TEST_CASE(a_byte_order_mark_is_no_part_of_a_file) {
     for (const auto& [format, text] : {std::pair{"lammps-dump", dump}, {"lammps-data", data_file}, {"xyz", xyz}}) {
         expect_disks(read(mark + text), format);
     }
-    ForeignOptions columns;
-    columns.columns = {"x", "y", "r"};
+    ForeignOptions columns{.columns = {"x", "y", "r"}};
     const ForeignPacking three = read(mark + "0.5 0.5 0.5\n1.5 0.5 0.5\n2.5 0.5 0.5\n", columns);
     BOOST_TEST(three.packing.radius.size() == 3U);
     BOOST_TEST(read(mark + "x y r\n0.5 0.5 0.5\n").packing.radius.size() == 1U);
@@ -352,8 +341,7 @@ BOOST_AUTO_TEST_CASE(a_byte_order_mark_is_no_part_of_a_file) {
 }
 
 BOOST_AUTO_TEST_CASE(a_first_row_that_is_no_row_of_names_is_a_disk) {
-    ForeignOptions columns;
-    columns.columns = {"x", "y", "r"};
+    ForeignOptions columns{.columns = {"x", "y", "r"}};
     const std::string rest = "\n0.5 0.5 0.5\n1.5 0.5 0.5\n";
     for (const std::string bad : {"nan", "NaN", "-inf", "0.5D", "1e400", "NA", "--1", "0x1p-1", "1D2D3", "d5"}) {
         expect_bad_input([&] { (void)read(bad + " 0.5 0.5" + rest, columns); }, {"FILE:1:", "x of disk 0", "finite"});
@@ -370,8 +358,7 @@ BOOST_AUTO_TEST_CASE(a_first_row_that_is_no_row_of_names_is_a_disk) {
 
 BOOST_AUTO_TEST_CASE(what_is_written_for_other_programs_is_read_bit_for_bit) {
     const State state = read_state(scratch::data("vertex100.txt")).state;
-    ForeignOptions options;
-    options.walls = ForeignWalls::box;
+    ForeignOptions options{.walls = ForeignWalls::box};
     const auto same = [&](const std::string& text, const char* format) {
         const ForeignPacking back = parse_foreign(text, "written", options);
         BOOST_TEST(back.format == format);

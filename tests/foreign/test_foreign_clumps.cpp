@@ -16,9 +16,7 @@ namespace {
 using namespace isostat;
 
 ForeignPacking read(const std::string& text, const std::string& bodies = "") {
-    ForeignOptions options;
-    options.bodies = bodies;
-    options.cells = true;
+    ForeignOptions options{.bodies = bodies, .cells = true};
     return parse_foreign(text, "FILE", options);
 }
 

@@ -2,6 +2,7 @@
 
 #include "io/bad_input.hpp"
 #include "io/digits.hpp"
+#include "oracle/pairs.hpp"
 #include "support/scratch.hpp"
 
 #include <isostat/contact/state.hpp>
@@ -23,15 +24,12 @@ ForeignPacking read(const std::string& text, ForeignOptions options = {}) {
 }
 
 ForeignOptions of_dimension(int dimension) {
-    ForeignOptions out;
-    out.dimension = dimension;
+    ForeignOptions out{.dimension = dimension};
     return out;
 }
 
 ForeignOptions in_box(std::vector<double> box, ForeignWalls walls = ForeignWalls::box) {
-    ForeignOptions out;
-    out.walls = walls;
-    out.box = std::move(box);
+    ForeignOptions out{.walls = walls, .box = std::move(box)};
     return out;
 }
 
@@ -62,30 +60,10 @@ struct Touching {
 /// Every pair with every image up to one period away, and every wall.
 Touching touching(const Packing& p, double threshold) {
     Touching out;
-    const auto see = [&](const Contact& c) {
+    for (const Contact& c : oracle::all_pairs(p, 1)) {
         const double g = gap(p, c);
         out.contacts += g <= threshold ? 1 : 0;
         out.other = g <= threshold ? out.other : std::min(out.other, g);
-    };
-    const auto each = [&](std::size_t axis) { return p.cell.periodic[axis] ? 1 : 0; };
-    for (int i = 0; i < p.disk_count(); ++i) {
-        for (int j = i + 1; j < p.disk_count(); ++j) {
-            for (int x = -each(0); x <= each(0); ++x) {
-                for (int y = -each(1); y <= each(1); ++y) {
-                    for (int z = -each(2); z <= each(2); ++z) {
-                        see({ContactKind::disk_disk, i, j,
-                             Image{{static_cast<std::int8_t>(x), static_cast<std::int8_t>(y),
-                                    static_cast<std::int8_t>(z)}}});
-                    }
-                }
-            }
-        }
-        for (int a = 0; a < p.dimension; ++a) {
-            if (p.walls.lower[static_cast<std::size_t>(a)] != WallKind::absent) {
-                see({ContactKind::lower_wall, i, a});
-                see({ContactKind::upper_wall, i, a});
-            }
-        }
     }
     return out;
 }
@@ -275,8 +253,7 @@ BOOST_AUTO_TEST_CASE(what_is_written_of_spheres_is_read_bit_for_bit) {
         const ForeignPacking xyz_back = read(xyz_text(cell, {}));
         BOOST_TEST(xyz_back.packing.q == cell.q, boost::test_tools::per_element());
         BOOST_TEST((xyz_back.packing.cell.periodic == cell.cell.periodic));
-        ForeignOptions periodic;
-        periodic.periodic = true;
+        ForeignOptions periodic{.periodic = true};
         const ForeignPacking data_back = read(lammps_data_text(cell, name), periodic);
         BOOST_TEST(data_back.packing.q == cell.q, boost::test_tools::per_element());
         BOOST_TEST(data_back.packing.radius == cell.radius, boost::test_tools::per_element());

@@ -117,13 +117,7 @@ inline std::vector<std::string> lines_of(std::string text) {
     if (text.starts_with("\xEF\xBB\xBF")) {
         text.erase(0, 3);
     }
-    std::vector<std::string> lines;
-    for (std::size_t begin = 0; begin < text.size();) {
-        const std::size_t end = std::min(text.find('\n', begin), text.size());
-        lines.push_back(text.substr(begin, end - begin));
-        begin = end + 1;
-    }
-    return lines;
+    return scratch::split(text, '\n');
 }
 
 /// Neither blank nor a comment.

@@ -179,9 +179,7 @@ BOOST_AUTO_TEST_CASE(mutated_packings_of_other_programs_are_refused_by_name_or_l
                                        {"centres", spheres},
                                        {"xyz", sphere_xyz}}) {
         for (const char* stated : {format, ""}) {
-            ForeignOptions options;
-            options.format = stated;
-            options.cells = text == spheres || text == sphere_xyz;
+            ForeignOptions options{.format = stated, .cells = text == spheres || text == sphere_xyz};
             const Count tally = fuzz::fuzz(std::string(format) + " " + stated, text, 1500,
                                            [&](const std::string& changed) { return check(changed, options); });
             BOOST_TEST(tally.refused > 100);
@@ -191,9 +189,7 @@ BOOST_AUTO_TEST_CASE(mutated_packings_of_other_programs_are_refused_by_name_or_l
 }
 
 BOOST_AUTO_TEST_CASE(mutated_tables_with_stated_columns_lose_no_row) {
-    ForeignOptions options;
-    options.format = "table";
-    options.columns = {"x", "y", "r"};
+    ForeignOptions options{.format = "table", .columns = {"x", "y", "r"}};
     const auto read = [&](const std::string& changed) { return check(changed, options); };
     BOOST_TEST(fuzz::fuzz("bare table", bare, 3000, read).refused > 100);
     BOOST_TEST(fuzz::fuzz("table with its own names", "x y radius\n" + bare, 1500, read).refused > 100);
@@ -228,8 +224,7 @@ BOOST_AUTO_TEST_CASE(mutated_series_of_frames_are_refused_by_name_or_have_sound_
 
 BOOST_AUTO_TEST_CASE(files_with_announced_rows_are_refused_wherever_they_are_cut) {
     const auto cut = [](const std::string& text, const std::string& format, std::size_t complete) {
-        ForeignOptions options;
-        options.format = format;
+        ForeignOptions options{.format = format};
         for (std::size_t size = 0; size + 1 < text.size(); ++size) {
             const std::string part = text.substr(0, size);
             if (size == complete || size + 1 == complete) {

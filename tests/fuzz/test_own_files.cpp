@@ -3,7 +3,7 @@
 #include "fuzz/harness.hpp"
 #include "io/certificate_json.hpp"
 #include "io/vertex_text.hpp"
-#include "scene/radii_file.hpp"
+#include "scene/radii.hpp"
 #include "scene/seed.hpp"
 #include "support/cells.hpp"
 #include "support/crafted.hpp"

@@ -171,8 +171,7 @@ BOOST_AUTO_TEST_CASE(the_replay_of_mutated_records_ends_with_an_answer, *boost::
 
 BOOST_AUTO_TEST_CASE(reports_of_mutated_records_are_refused_by_name_or_are_text) {
     Damaged run;
-    ReportOptions options;
-    options.charts = false;
+    ReportOptions options{.charts = false};
     options.vtk = options.html = true;
     const auto draw = [&](const std::string&) {
         const ReportResult report = report_run(run.run, run.folder / "figures", options);

@@ -4,10 +4,7 @@
 
 #include <isostat/core/error.hpp>
 
-using isostat::ContactKind;
-using isostat::Dimensions;
-using isostat::Error;
-using isostat::State;
+using namespace isostat;
 
 namespace {
 

@@ -137,8 +137,7 @@ BOOST_AUTO_TEST_CASE(lammps_data_is_periodic_when_stated) {
     const std::string data = "a comment\n\n1 atoms\n\n0 2 xlo xhi\n0 1.75 ylo yhi\n-0.5 0.5 zlo zhi\n1 0 0 xy xz yz\n\n"
                              "Atoms # sphere\n\n1 1 2 1 0.75 0.5 0\n";
     expect_bad_input([&] { (void)read_foreign(data); }, {"tilted by 1", "--periodic"});
-    ForeignOptions stated;
-    stated.periodic = true;
+    ForeignOptions stated{.periodic = true};
     const Packing p = read_foreign(data, stated).packing;
     BOOST_TEST(p.q == (std::vector<double>{0.75, 0.5, 2, 1.75, 1}));
 }
@@ -227,8 +226,7 @@ BOOST_AUTO_TEST_CASE(foreign_cells_that_are_none_are_named) {
         expect_bad_input([&] { (void)read_foreign(lattice(out)); }, {"file:2", "in the plane of the disks"});
     }
     expect_bad_input([&] { (void)read_foreign(lattice("2 0 0 4 0 0 0 0 1")); }, {"period 0 along y"});
-    ForeignOptions walls;
-    walls.walls = ForeignWalls::box;
+    ForeignOptions walls{.walls = ForeignWalls::box};
     expect_bad_input([&] { (void)read_foreign(lattice("2 0 0 0 2 0 0 0 1"), walls); }, {"walls or a box were stated"});
     walls.walls_unless_periodic = true;
     BOOST_TEST(read_foreign(lattice("2 0 0 0 2 0 0 0 1"), walls).packing.cell.all());

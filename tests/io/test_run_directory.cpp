@@ -156,17 +156,14 @@ BOOST_AUTO_TEST_CASE(columns_of_spheres_go_by_axis) {
 BOOST_AUTO_TEST_CASE(every_row_of_equilibria_has_a_number_for_every_column) {
     const scratch::Folder folder;
     play(folder / "run", RunDirectory::Mode::fresh, -1, true);
-    std::istringstream csv(scratch::read(folder / "run/equilibria.csv"));
-    std::string line;
-    std::getline(csv, line);
-    BOOST_TEST(line.starts_with("# number,previous,"));
-    const auto columns = std::count(line.begin(), line.end(), ',');
-    BOOST_TEST(static_cast<std::size_t>(columns + 1) == equilibria_columns().size());
-    while (std::getline(csv, line)) {
-        BOOST_TEST(std::count(line.begin(), line.end(), ',') == columns);
-        std::istringstream fields(line);
-        std::string field;
-        while (std::getline(fields, field, ',')) {
+    std::vector<std::string> lines = scratch::lines_of(folder / "run/equilibria.csv");
+    BOOST_TEST(lines[0].starts_with("# number,previous,"));
+    BOOST_TEST(scratch::split(lines[0], ',').size() == equilibria_columns().size());
+    lines.erase(lines.begin());
+    for (const std::string& line : lines) {
+        const std::vector<std::string> fields = scratch::split(line, ',');
+        BOOST_TEST(fields.size() == equilibria_columns().size());
+        for (const std::string& field : fields) {
             std::size_t used = 0;
             BOOST_CHECK_NO_THROW((void)std::stod(field, &used));
             BOOST_TEST(used == field.size(), field);

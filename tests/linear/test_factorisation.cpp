@@ -142,11 +142,10 @@ BOOST_AUTO_TEST_CASE(factors_taken_over_from_another_structure_solve_as_well_as_
         for (std::size_t i = 0; i < packing.q.size(); ++i) {
             packing.q[i] += 1e-5 * std::sin(static_cast<double>(i + k));
         }
-        const auto now = IsostaticStructure::prove(packing, contacts);
-        BOOST_TEST_REQUIRE(now.ok());
-        inverse = inverse.exchanged(static_cast<int>(places[k]), now.value().matrix());
-        const Factorisation taken_over(now.value(), inverse);
-        const Factorisation fresh(now.value());
+        const auto now = required(IsostaticStructure::prove(packing, contacts));
+        inverse = inverse.exchanged(static_cast<int>(places[k]), now.matrix());
+        const Factorisation taken_over(now, inverse);
+        const Factorisation fresh(now);
         BOOST_TEST(!taken_over.is_fresh());
         for (const bool forces : {true, false}) {
             std::vector<double> a(n);

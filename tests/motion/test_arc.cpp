@@ -49,14 +49,13 @@ struct Rolling {
     }
     Result<Arc> roll(double step_fraction, bool precisely = false) {
         snap_to_grid(state.packing);
-        const auto structure = IsostaticStructure::prove(state.packing, state.contacts);
-        BOOST_TEST_REQUIRE(structure.ok());
-        const Factorisation factorisation(structure.value());
+        const auto structure = required(IsostaticStructure::prove(state.packing, state.contacts));
+        const Factorisation factorisation(structure);
         CandidateList candidates = find_candidates(state.packing, candidate_fraction);
         ArcOptions options;
         options.step_fraction = step_fraction;
         options.precisely = precisely;
-        return follow_arc(ArcOrigin{state.packing, structure.value(), factorisation, ContactId(1)},
+        return follow_arc(ArcOrigin{state.packing, structure, factorisation, ContactId(1)},
                           PowerLoad{&state.load, false, false}, candidates, options);
     }
     static double angle(const Arc& arc) { return std::atan2(arc.end.q[5], arc.end.q[4]); }
@@ -107,14 +106,13 @@ struct Grazing : Rolling {
     /// From a rough end on top of the fixed disk, rolling up to it (+1) or back (-1).
     [[nodiscard]] std::optional<Packing> end(double direction) {
         snap_to_grid(state.packing);
-        const auto structure = IsostaticStructure::prove(state.packing, state.contacts);
-        BOOST_TEST_REQUIRE(structure.ok());
+        const auto structure = required(IsostaticStructure::prove(state.packing, state.contacts));
         Packing top = state.packing;
         top.q[4] = 0;
         top.q[5] = 2;
         std::vector<double> tangent(top.q.size(), 0.0);
         tangent[4] = -direction;
-        return precise_end(RoughEnd{structure.value(), ContactId(1), pair(2, 3), top, tangent, 0.1});
+        return precise_end(RoughEnd{structure, ContactId(1), pair(2, 3), top, tangent, 0.1});
     }
 };
 
@@ -279,12 +277,10 @@ BOOST_AUTO_TEST_CASE(the_power_of_the_load_turns_before_the_next_contact) {
     Rolling rolling;
     rolling.stop(2.0);
     rolling.push(0, 1); // power cos(angle): vanishes at pi / 2
-    const auto arc = rolling.roll(0.1);
-    BOOST_TEST_REQUIRE(arc.ok());
-    BOOST_TEST((arc.value().kind == ArcEnd::power_turn));
-    BOOST_TEST((arc.value().closed == Contact{ContactKind::held, 4, 0}),
-               "the fastest coordinate at the top is x of disk 2");
-    BOOST_TEST(Rolling::angle(arc.value()) == std::numbers::pi / 2, boost::test_tools::tolerance(1e-9));
+    const auto arc = required(rolling.roll(0.1));
+    BOOST_TEST((arc.kind == ArcEnd::power_turn));
+    BOOST_TEST((arc.closed == Contact{ContactKind::held, 4, 0}), "the fastest coordinate at the top is x of disk 2");
+    BOOST_TEST(Rolling::angle(arc) == std::numbers::pi / 2, boost::test_tools::tolerance(1e-9));
 }
 
 BOOST_AUTO_TEST_CASE(the_opened_contact_may_close_again_from_the_other_side) {
@@ -305,13 +301,12 @@ BOOST_AUTO_TEST_CASE(a_motion_without_end_is_reported) {
     rolling.state.packing.q[2] = 50; // the opened contact is far away and nothing else is there: rolls for ever
     rolling.state.contacts = {pair(0, 2), {ContactKind::held, 5, 0}};
     snap_to_grid(rolling.state.packing);
-    const auto structure = IsostaticStructure::prove(rolling.state.packing, rolling.state.contacts);
-    BOOST_TEST_REQUIRE(structure.ok());
-    const Factorisation factorisation(structure.value());
+    const auto structure = required(IsostaticStructure::prove(rolling.state.packing, rolling.state.contacts));
+    const Factorisation factorisation(structure);
     CandidateList candidates = find_candidates(rolling.state.packing, candidate_fraction);
     ArcOptions options;
     options.max_steps = 500;
-    const auto arc = follow_arc(ArcOrigin{rolling.state.packing, structure.value(), factorisation, ContactId(1)},
+    const auto arc = follow_arc(ArcOrigin{rolling.state.packing, structure, factorisation, ContactId(1)},
                                 PowerLoad{&rolling.state.load, false, false}, candidates, options);
     BOOST_TEST_REQUIRE(!arc.ok());
     BOOST_TEST((arc.failure().kind == FailureKind::unbounded));

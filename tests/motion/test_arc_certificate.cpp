@@ -24,9 +24,8 @@ struct Known {
     }
     static Known of(Packing packing, const std::vector<Contact>& contacts) {
         snap_to_grid(packing);
-        auto proved = IsostaticStructure::prove(packing, contacts);
-        BOOST_REQUIRE_MESSAGE(proved.ok(), (proved.ok() ? std::string() : proved.failure().message()));
-        return {std::move(packing), std::move(proved.value())};
+        auto proved = required(IsostaticStructure::prove(packing, contacts));
+        return {std::move(packing), std::move(proved)};
     }
     [[nodiscard]] ArcVertex vertex() const { return {packing, structure, factorisation, inverse, enclosure}; }
 };

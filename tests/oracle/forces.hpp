@@ -1,17 +1,11 @@
 #pragma once
 // Forces, ranks and inverses of contact matrices over the rationals, by FLINT: shares nothing with the library.
 
-#include "oracle/random.hpp"
-
-#include <isostat/contact/state.hpp>
+#include "oracle/geometry.hpp"
 
 #include <flint/fmpz_mat.h>
 #include <gmpxx.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <initializer_list>
 #include <vector>
 
 namespace isostat::oracle {
@@ -25,35 +19,23 @@ class IntegerSystem {
         rows_ = static_cast<std::size_t>(dofs.dof_count());
         cols_ = contacts.size();
         fmpz_mat_init(a_, static_cast<slong>(rows_), static_cast<slong>(cols_));
+        const Geometry<mpq_class> geometry(packing);
         for (std::size_t l = 0; l < cols_; ++l) {
             const Contact& c = contacts[l];
-            std::vector<std::pair<int, mpq_class>> column;
-            mpq_class square = 1;
-            if (c.kind == ContactKind::disk_disk) {
-                const mpq_class dx = mpq_class(packing.q[at(2 * c.j)]) - mpq_class(packing.q[at(2 * c.i)]);
-                const mpq_class dy = mpq_class(packing.q[at(2 * c.j + 1)]) - mpq_class(packing.q[at(2 * c.i + 1)]);
-                square = dx * dx + dy * dy;
-                column = {{2 * c.i, dx}, {2 * c.i + 1, dy}, {2 * c.j, -dx}, {2 * c.j + 1, -dy}};
-            } else if (c.kind == ContactKind::lower_wall) {
-                column = {{2 * c.i + c.j, mpq_class(-1)}};
-            } else if (c.kind == ContactKind::upper_wall) {
-                column = {{2 * c.i + c.j, mpq_class(1)}, {2 * packing.disk_count() + c.j, mpq_class(-1)}};
-            } else {
-                column = {{c.i, mpq_class(-1)}};
-            }
+            const bool pair = Geometry<mpq_class>::is_pair(c);
             mpz_class common = 1;
-            for (const auto& entry : column) {
-                common = lcm(common, mpz_class(entry.second.get_den()));
-            }
-            for (const auto& [coordinate, value] : column) {
-                const int dof = dofs.dof_of(at(coordinate));
+            geometry.gradient(c, mpq_class(1), [&](std::size_t, const mpq_class& value) {
+                common = lcm(common, mpz_class(value.get_den()));
+            });
+            geometry.gradient(c, mpq_class(1), [&](std::size_t coordinate, const mpq_class& value) {
+                const int dof = dofs.dof_of(coordinate);
                 if (dof >= 0) {
-                    const mpq_class integer = value * common;
+                    const mpq_class integer = -value * common;
                     fmpz_set_mpz(fmpz_mat_entry(a_, dof, static_cast<slong>(l)), integer.get_num_mpz_t());
                 }
-            }
+            });
             scale_.emplace_back(common);
-            square_.push_back(square);
+            square_.push_back(pair ? Geometry<mpq_class>::square(geometry.between(c)) : mpq_class(1));
         }
     }
     IntegerSystem(const IntegerSystem&) = delete;
@@ -113,50 +95,11 @@ class IntegerSystem {
     }
 
   private:
-    static std::size_t at(int k) { return static_cast<std::size_t>(k); }
     std::size_t rows_ = 0;
     std::size_t cols_ = 0;
     fmpz_mat_t a_;
     std::vector<mpz_class> scale_;
     std::vector<mpq_class> square_;
 };
-
-/// Forces of a structure in which every free disk rests on two earlier ones (contacts 2k and 2k + 1 belong to the k-th
-/// free disk), from the last disk to the first, two equations at a time. Relative error about cond 2^-bits.
-inline std::vector<mpf_class> resting_forces(const Packing& packing, const std::vector<Contact>& contacts,
-                                             const std::vector<double>& force, unsigned bits) {
-    const DofMap dofs(packing);
-    std::vector<mpf_class> load(packing.q.size(), mpf_class(0, bits)); // still to be carried, by coordinate
-    for (std::size_t mu = 0; mu < force.size(); ++mu) {
-        load[static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(mu)))] = force[mu];
-    }
-    std::vector<mpf_class> f(contacts.size(), mpf_class(0, bits));
-    for (std::size_t k = contacts.size() / 2; k-- > 0;) {
-        // Both contacts are (support, disk): H has -d/|d| in the rows of the disk, d from support to disk.
-        std::array<std::array<mpf_class, 2>, 2> normal;
-        for (std::size_t c = 0; c < 2; ++c) {
-            const Contact& contact = contacts[2 * k + c];
-            const auto i = static_cast<std::size_t>(2 * contact.i);
-            const auto j = static_cast<std::size_t>(2 * contact.j);
-            mpf_class x(packing.q[j], bits);
-            mpf_class y(packing.q[j + 1], bits);
-            x -= packing.q[i];
-            y -= packing.q[i + 1];
-            const mpf_class square = x * x + y * y;
-            const mpf_class length = sqrt(square);
-            normal[c] = {mpf_class(x / length), mpf_class(y / length)};
-        }
-        const auto j = static_cast<std::size_t>(2 * contacts[2 * k].j);
-        const mpf_class determinant = normal[0][0] * normal[1][1] - normal[1][0] * normal[0][1];
-        f[2 * k] = -(load[j] * normal[1][1] - load[j + 1] * normal[1][0]) / determinant;
-        f[2 * k + 1] = -(load[j + 1] * normal[0][0] - load[j] * normal[0][1]) / determinant;
-        for (std::size_t c = 0; c < 2; ++c) {
-            const auto i = static_cast<std::size_t>(2 * contacts[2 * k + c].i);
-            load[i] -= f[2 * k + c] * normal[c][0];
-            load[i + 1] -= f[2 * k + c] * normal[c][1];
-        }
-    }
-    return f;
-}
 
 } // namespace isostat::oracle

@@ -49,14 +49,14 @@ namespace path_parts {
 
 /// Smallest gap of a pair that is no contact at q, in 320 bits where it is small in double.
 inline double lowest_gap(const Packing& near, const std::vector<Reference>& q, const std::vector<Contact>& contacts) {
-    const ContactEquations<Reference> equations(near.radius, contacts);
+    const ContactEquations<Reference> equations(near, contacts, q);
     double lowest = 1;
     const auto candidates = find_candidates(near, 0.5).contacts;
     for (const Contact& c : candidates) {
         if (std::find(contacts.begin(), contacts.end(), c) == contacts.end()) {
             double h = gap(near, c) / near.min_radius();
             if (h < 1e-6) {
-                h = static_cast<double>(equations.value(q, c)) / near.min_radius();
+                h = static_cast<double>(equations.value(c)) / near.min_radius();
             }
             lowest = std::min(lowest, h);
         }
@@ -134,8 +134,8 @@ inline ReferencePath reference_path(const State& start, int equilibria) {
             break;
         }
         here = followed.value().end;
-        auto polished = polish(here.radius, std::vector<Reference>(here.q.begin(), here.q.end()), contacts, 1e-93);
-        const VertexCertificate certificate = certify_vertex(here.radius, polished.q, contacts);
+        auto polished = polish(here, std::vector<Reference>(here.q.begin(), here.q.end()), contacts, 1e-93);
+        const VertexCertificate certificate = certify_vertex(here, polished.q, contacts);
         if (!certificate.proved()) {
             path.stopped = "no certificate at the end of arc " + std::to_string(a + 1);
             break;
@@ -153,7 +153,7 @@ inline ReferencePath reference_path(const State& start, int equilibria) {
             const auto fixed = load.fixed_force(here);
             const auto l = static_cast<std::size_t>(
                 std::find(contacts.begin(), contacts.end(), records.arcs[a + 1].opened) - contacts.begin());
-            const LimitReference limit = certified_limit(here.radius, arc.end, certificate, contacts, fixed, unit, l);
+            const LimitReference limit = certified_limit(here, arc.end, certificate, contacts, fixed, unit, l);
             arc.limit = static_cast<int>(path.limits.size());
             arc.equilibrium = equilibrium + 1;
             arc.limit_contact = ContactId(l);

@@ -1,9 +1,9 @@
 #pragma once
 // What is true of a state, to the digits of a number type: Newton to the vertex, dense elimination, brute force over
-// all pairs, in a periodic cell over all images that can be the nearest. Nothing of the library is used but its data
-// structures. A number below `negligible` of its scale is taken for 0.
+// all pairs, in a periodic cell over all images that can be the nearest. A number below `negligible` of its scale is
+// taken for 0.
 
-#include <isostat/contact/state.hpp>
+#include "oracle/geometry.hpp"
 
 #include <Eigen/Dense>
 #include <boost/multiprecision/mpfr.hpp>
@@ -16,9 +16,6 @@
 #include <vector>
 
 namespace isostat::oracle {
-
-using std::abs;
-using std::sqrt;
 
 template <unsigned Digits>
 using Decimal = boost::multiprecision::number<
@@ -120,20 +117,21 @@ template <class Real> struct NearPair {
 enum class At { vertex, stored };
 
 /// Everything below is of the true vertex, or of the stored coordinates; \pre `known`, but for `gap`.
-template <class Real> class TruthIn {
+template <class Real> class TruthIn : public Geometry<Real> {
   public:
+    using Geometry<Real>::axes, Geometry<Real>::gap, Geometry<Real>::of_disk, Geometry<Real>::q, Geometry<Real>::tilt,
+        Geometry<Real>::wall;
     using Vector = std::vector<Real>;
     using End = LoadEnd<Real>;
     using OtherPair = NearPair<Real>;
 
     explicit TruthIn(const State& state, At where = At::vertex);
 
-    bool known = false; ///< Newton converged nearby, and the matrix is regular there
-    std::string why;    ///< when not
-    Vector q;
+    bool known = false;  ///< Newton converged nearby, and the matrix is regular there
+    std::string why;     ///< when not
     Real moved = 0;      ///< largest difference of a coordinate from the stored one
     Real stored_gap = 0; ///< largest |gap| of a contact at the stored coordinates
-    Vector force, rate;  ///< at the stored load, and per unit of the loaded stress
+    Vector force, rate;  ///< at the stored load, and per unit of the loaded stress of axes
     Vector infinitesimal;
     Real force_scale = 0;
     std::vector<OtherPair> others; ///< by increasing gap
@@ -154,27 +152,10 @@ template <class Real> class TruthIn {
     [[nodiscard]] int dof_count() const { return static_cast<int>(coordinate_.size()); }
     /// Smallest singular value of the contact matrix, to 10 digits or so.
     [[nodiscard]] double singular_value() const;
-    [[nodiscard]] Real gap(const Contact& c) const;
     /// H, one column per contact.
     [[nodiscard]] SquareMatrix<Real> contact_matrix() const;
-    /// From disk i to disk j, or to the image of it that the contact names; 0 along axes that are not there.
-    [[nodiscard]] std::array<Real, most_axes> between(const Contact& c) const;
 
   private:
-    [[nodiscard]] const Real& at(int coordinate) const { return q[static_cast<std::size_t>(coordinate)]; }
-    [[nodiscard]] Real radius(int i) const { return Real(state_->packing.radius[static_cast<std::size_t>(i)]); }
-    [[nodiscard]] std::size_t axes() const { return static_cast<std::size_t>(state_->packing.dimension); }
-    [[nodiscard]] std::size_t of_disk(int i) const { return axes() * static_cast<std::size_t>(i); }
-    /// The lengths, then the tilts xy, xz, yz.
-    [[nodiscard]] std::size_t wall(int axis) const {
-        return axes() * state_->packing.radius.size() + static_cast<std::size_t>(axis);
-    }
-    [[nodiscard]] std::size_t tilt(std::size_t a, std::size_t b) const {
-        return wall(static_cast<int>(axes())) + a + b * (b - 1) / 2;
-    }
-    [[nodiscard]] static Real norm(const std::array<Real, most_axes>& r) {
-        return sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
-    }
     [[nodiscard]] bool moves(std::size_t coordinate) const;
     [[nodiscard]] bool can_move(const Contact& pair) const;
     /// Images of all pairs that can be the nearest, those that overlap among them.
@@ -184,80 +165,19 @@ template <class Real> class TruthIn {
     void find_forces();
     void find_other_pairs();
     void find_interval();
-    /// Contact gradient entries: visit(dof, value).
-    template <class Visit> void gradient(const Contact& c, Visit visit) const;
+    /// Of the degrees of freedom alone: visit(dof, value).
+    template <class Visit> void gradient(const Contact& c, Visit visit) const {
+        Geometry<Real>::gradient(c, [&](std::size_t coordinate, const Real& value) {
+            if (dof_[coordinate] >= 0) {
+                visit(static_cast<std::size_t>(dof_[coordinate]), value);
+            }
+        });
+    }
 
     const State* state_;
     std::vector<int> dof_;        ///< per coordinate, or -1
     std::vector<int> coordinate_; ///< per degree of freedom
 };
-
-template <class Real> template <class Visit> void TruthIn<Real>::gradient(const Contact& c, Visit visit) const {
-    const auto put = [&](std::size_t coordinate, const Real& value) {
-        if (dof_[coordinate] >= 0) {
-            visit(static_cast<std::size_t>(dof_[coordinate]), value);
-        }
-    };
-    const auto i = static_cast<std::size_t>(c.i);
-    const auto j = static_cast<std::size_t>(c.j);
-    switch (c.kind) {
-    case ContactKind::disk_disk:
-    case ContactKind::bar: {
-        const auto r = between(c);
-        const Real d = norm(r);
-        for (std::size_t a = 0; a < axes(); ++a) {
-            const Real n = r[a] / d;
-            if (c.i != c.j) {
-                put(of_disk(c.i) + a, -n);
-                put(of_disk(c.j) + a, n);
-            }
-            if (c.image.m[a] != 0) {
-                put(wall(static_cast<int>(a)), c.image.m[a] * n);
-            }
-            for (std::size_t b = a + 1; b < axes(); ++b) {
-                if (c.image.m[b] != 0) {
-                    put(tilt(a, b), c.image.m[b] * n);
-                }
-            }
-        }
-        break;
-    }
-    case ContactKind::lower_wall: put(of_disk(c.i) + j, Real(1)); break;
-    case ContactKind::upper_wall:
-        put(of_disk(c.i) + j, Real(-1));
-        put(wall(c.j), Real(1));
-        break;
-    case ContactKind::held: put(i, Real(1)); break;
-    }
-}
-
-template <class Real> Real TruthIn<Real>::gap(const Contact& c) const {
-    const auto i = static_cast<std::size_t>(c.i);
-    switch (c.kind) {
-    case ContactKind::disk_disk: return norm(between(c)) - (radius(c.i) + radius(c.j));
-    case ContactKind::bar: return norm(between(c)) - Real(state_->packing.bar_length(c.i, c.j));
-    case ContactKind::lower_wall: return q[of_disk(c.i) + static_cast<std::size_t>(c.j)] - radius(c.i);
-    case ContactKind::upper_wall: return q[wall(c.j)] - q[of_disk(c.i) + static_cast<std::size_t>(c.j)] - radius(c.i);
-    case ContactKind::held: break;
-    }
-    return q[i] - Real(state_->packing.q[i]);
-}
-
-template <class Real> std::array<Real, most_axes> TruthIn<Real>::between(const Contact& c) const {
-    std::array<Real, most_axes> r{0, 0, 0};
-    for (std::size_t a = 0; a < axes(); ++a) {
-        r[a] = q[of_disk(c.j) + a] - q[of_disk(c.i) + a];
-        if (c.image.m[a] != 0) {
-            r[a] += c.image.m[a] * q[wall(static_cast<int>(a))];
-        }
-        for (std::size_t b = a + 1; b < axes(); ++b) {
-            if (c.image.m[b] != 0) {
-                r[a] += c.image.m[b] * q[tilt(a, b)];
-            }
-        }
-    }
-    return r;
-}
 
 template <class Real> bool TruthIn<Real>::moves(std::size_t coordinate) const {
     const auto& p = state_->packing;
@@ -375,9 +295,7 @@ template <class Real> void TruthIn<Real>::find_forces() {
         const auto axis = static_cast<std::size_t>(a);
         const Real length = without(axis, load.kind != LoadKind::nominal);
         add(finite, wall(a), -Real(load.stress[axis]) * length);
-        if (a == load.loaded_axis) {
-            add(unit, wall(a), -length);
-        }
+        add(unit, wall(a), -Real(load.rate_of(axis)) * length);
     }
     force = h.solve(finite);
     rate = h.solve(unit);
@@ -432,10 +350,10 @@ template <class Real> std::vector<Contact> TruthIn<Real>::near_images() const {
         if (i == j && !(pair.image > Image{})) {
             return;
         }
-        const double gap = r.norm() - p.radius[static_cast<std::size_t>(i)] - p.radius[static_cast<std::size_t>(j)];
+        const double rounded = r.norm() - p.radius[static_cast<std::size_t>(i)] - p.radius[static_cast<std::size_t>(j)];
         const bool listed = std::find(state_->contacts.begin(), state_->contacts.end(), pair) != state_->contacts.end();
-        smallest = !listed && can_move(pair) ? std::min(smallest, gap) : smallest;
-        found.emplace_back(gap, pair);
+        smallest = !listed && can_move(pair) ? std::min(smallest, rounded) : smallest;
+        found.emplace_back(rounded, pair);
     };
     for (int i = 0; i < p.disk_count(); ++i) {
         for (int j = i; j < p.disk_count(); ++j) {
@@ -454,8 +372,8 @@ template <class Real> std::vector<Contact> TruthIn<Real>::near_images() const {
         }
     }
     std::vector<Contact> near;
-    for (const auto& [gap, pair] : found) {
-        if (gap <= std::max(smallest, 0.0) + 1e-6 * p.min_radius()) {
+    for (const auto& [rounded, pair] : found) {
+        if (rounded <= std::max(smallest, 0.0) + 1e-6 * p.min_radius()) {
             near.push_back(pair);
         }
     }
@@ -607,11 +525,9 @@ template <class Real> void TruthIn<Real>::find_interval() {
     }
 }
 
-template <class Real> TruthIn<Real>::TruthIn(const State& state, At where) : state_(&state) {
+template <class Real>
+TruthIn<Real>::TruthIn(const State& state, At where) : Geometry<Real>(state.packing), state_(&state) {
     find_dofs();
-    for (const double x : state.packing.q) {
-        q.emplace_back(x);
-    }
     if (coordinate_.size() != state.contacts.size() || coordinate_.empty()) {
         why = "N is not N_f";
         return;

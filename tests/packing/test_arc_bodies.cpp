@@ -10,12 +10,7 @@
 #include <numbers>
 #include <random>
 
-using isostat::ArcBodies;
-using isostat::Contact;
-using isostat::ContactKind;
-using isostat::Error;
-using isostat::Packing;
-using isostat::pair_of;
+using namespace isostat;
 
 namespace {
 

@@ -54,9 +54,8 @@ inline void is_proved_vertex(const State& state, double stress) {
     BOOST_TEST(smallest_other > rounding);
     BOOST_TEST((certify_admissible(packing, rounding).verdict == Verdict::proved));
 
-    const Result<Inspection> inspection = inspect_vertex(state);
-    BOOST_REQUIRE_MESSAGE(inspection.ok(), (inspection.ok() ? "" : inspection.failure().message()));
-    BOOST_TEST(inspection.value().equilibrium, inspection.value().remark);
+    const Inspection inspection = required(inspect_vertex(state));
+    BOOST_TEST(inspection.equilibrium, inspection.remark);
     if (packing.disk_count() <= 20) {
         forces_are_compressive(state);
     }

@@ -2,30 +2,18 @@
 
 #include "preparation/neighbours.hpp"
 #include "preparation/soft.hpp"
-#include "support/test.hpp"
+#include "support/prepared.hpp"
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/core/error.hpp>
 #include <isostat/io/state_file.hpp>
-#include <isostat/preparation/preparation.hpp>
 
 namespace {
 
 using namespace isostat;
 
 PreparationOptions periodic(int disks, std::uint64_t seed) {
-    PreparationOptions options;
-    options.disks = disks;
-    options.seed = seed;
-    options.cell = PreparedCell::rectangular;
-    return options;
-}
-
-State prepared(const PreparationOptions& options) {
-    PreparationReport report;
-    const Result<State> result = prepare(options, report);
-    BOOST_REQUIRE_MESSAGE(result.ok(), (result.ok() ? "" : result.failure().message()));
-    return result.value();
+    return {.disks = disks, .seed = seed, .cell = PreparedCell::rectangular};
 }
 
 } // namespace
@@ -71,11 +59,9 @@ BOOST_AUTO_TEST_CASE(a_tilt_that_moves_bears_no_shear_and_has_its_contact) {
     BOOST_TEST((inspect_cell(state, proof).strict.verdict == Verdict::proved));
     // Downhill under a larger stress along y: at an isotropic pressure a force would be negative.
     options.ratio = 1.3;
-    PreparationReport report;
-    const Result<State> pressed = find_vertex(state.packing, options, report);
-    BOOST_REQUIRE(pressed.ok());
-    BOOST_TEST(pressed.value().packing.length(1) < state.packing.length(1));
-    BOOST_TEST((inspect_cell(pressed.value(), certify(pressed.value())).strict.verdict == Verdict::refuted));
+    const State pressed = vertex_near(state.packing, options);
+    BOOST_TEST(pressed.packing.length(1) < state.packing.length(1));
+    BOOST_TEST((inspect_cell(pressed, certify(pressed)).strict.verdict == Verdict::refuted));
 }
 
 // The vertex of the cell that is stored, found again with overlaps everywhere: all pairs across the sides count.
@@ -87,10 +73,9 @@ BOOST_AUTO_TEST_CASE(a_vertex_is_found_again_in_its_cell) {
     }
     PreparationOptions options = periodic(30, 3);
     PreparationReport report;
-    const Result<State> again = find_vertex(soft, options, report);
-    BOOST_REQUIRE(again.ok());
-    BOOST_TEST(std::abs(again.value().packing.length(0) - state.packing.length(0)) < 1e-11);
-    BOOST_TEST(std::abs(again.value().packing.length(1) - state.packing.length(1)) < 1e-11);
+    const State again = vertex_near(soft, options);
+    BOOST_TEST(std::abs(again.packing.length(0) - state.packing.length(0)) < 1e-11);
+    BOOST_TEST(std::abs(again.packing.length(1) - state.packing.length(1)) < 1e-11);
     soft.cell.period_moves = {true, false};
     BOOST_CHECK_THROW((void)find_vertex(soft, options, report), Error);
 }
@@ -102,9 +87,7 @@ BOOST_AUTO_TEST_CASE(a_vertex_is_found_in_a_channel) {
     }
     PreparationOptions options = periodic(16, 1);
     PreparationReport report;
-    const Result<State> found = find_vertex(soft, options, report);
-    BOOST_REQUIRE_MESSAGE(found.ok(), (found.ok() ? "" : found.failure().message()));
-    const State& state = found.value();
+    const State state = vertex_near(soft, options);
     BOOST_TEST(state.contacts.size() == 2 * state.packing.radius.size() + 1);
     BOOST_TEST((certify(state).verdict == Verdict::proved));
     const auto some = [&](auto holds) { return std::any_of(state.contacts.begin(), state.contacts.end(), holds); };
@@ -174,9 +157,7 @@ BOOST_AUTO_TEST_CASE(a_way_down_that_flattens_the_cell_ends_with_words) {
                8.9283998854660425, 1.3884984014368156, -0.24170659535067671, 4.5402521862358807,
                12.149213315945422, 6.0596347498486081, -2.7414239873924848};
     start.cell = {{true, true}, {true, true}, {true}, 2};
-    PreparationOptions options;
-    options.stress = 0.50053308055745815;
-    options.ratio = 3.7831519571624725;
+    PreparationOptions options{.stress = 0.50053308055745815, .ratio = 3.7831519571624725};
     PreparationReport report;
     const Result<State> found = find_vertex(start, options, report);
     BOOST_REQUIRE(!found.ok());

@@ -146,12 +146,8 @@ BOOST_AUTO_TEST_CASE(an_infeasible_programme_has_no_interior_point) {
 
 BOOST_AUTO_TEST_CASE(a_vertex_found_with_interior_points_is_proved_like_any_other) {
     for (unsigned long long seed = 1; seed <= 4; ++seed) {
-        PreparationOptions options;
-        options.large_above = 0;
-        PreparationReport report;
-        const auto found = find_vertex(loose_lattice(6, seed), options, report);
-        BOOST_REQUIRE_MESSAGE(found.ok(), (found.ok() ? "" : found.failure().message()));
-        check::is_proved_vertex(found.value(), 1);
+        const auto found = vertex_near(loose_lattice(6, seed), {.large_above = 0});
+        check::is_proved_vertex(found, 1);
     }
 }
 
@@ -167,28 +163,23 @@ BOOST_AUTO_TEST_CASE(a_shaken_vertex_is_found_again) {
         }
         PreparationOptions options;
         options.seed = 2; // the same infinitesimal loads
-        PreparationReport report;
-        const auto found = find_vertex(shaken, options, report);
-        BOOST_REQUIRE_MESSAGE(found.ok(), (found.ok() ? "" : found.failure().message()));
-        check::is_proved_vertex(found.value(), 1);
-        const auto after = inspect_vertex(found.value());
+        const auto found = vertex_near(shaken, options);
+        check::is_proved_vertex(found, 1);
+        const auto after = inspect_vertex(found);
         for (std::size_t l = 0; l < vertex.contacts.size(); ++l) {
             if (before.value().structural_zero[l] == 0) { // a rattler may have another place to rest
-                BOOST_TEST(std::binary_search(found.value().contacts.begin(), found.value().contacts.end(),
-                                              vertex.contacts[l]));
+                BOOST_TEST(std::binary_search(found.contacts.begin(), found.contacts.end(), vertex.contacts[l]));
             }
         }
-        BOOST_TEST(found.value().packing.length(0) == vertex.packing.length(0), boost::test_tools::tolerance(1e-14));
-        BOOST_TEST(found.value().packing.length(1) == vertex.packing.length(1), boost::test_tools::tolerance(1e-14));
+        BOOST_TEST(found.packing.length(0) == vertex.packing.length(0), boost::test_tools::tolerance(1e-14));
+        BOOST_TEST(found.packing.length(1) == vertex.packing.length(1), boost::test_tools::tolerance(1e-14));
     }
 }
 
 BOOST_AUTO_TEST_CASE(a_loose_start_without_dynamics_ends_at_a_vertex_too) {
     for (unsigned long long seed = 1; seed <= 4; ++seed) {
-        PreparationReport report;
-        const auto found = find_vertex(loose_lattice(5, seed), PreparationOptions{}, report);
-        BOOST_REQUIRE_MESSAGE(found.ok(), (found.ok() ? "" : found.failure().message()));
-        check::is_proved_vertex(found.value(), 1);
+        const auto found = vertex_near(loose_lattice(5, seed));
+        check::is_proved_vertex(found, 1);
     }
 }
 
@@ -198,10 +189,8 @@ BOOST_AUTO_TEST_CASE(large_overlaps_of_the_start_are_parted) {
         x *= 0.6;
     }
     BOOST_REQUIRE(smallest_gap(start) < -0.3);
-    PreparationReport report;
-    const auto found = find_vertex(start, PreparationOptions{}, report);
-    BOOST_REQUIRE_MESSAGE(found.ok(), (found.ok() ? "" : found.failure().message()));
-    check::is_proved_vertex(found.value(), 1);
+    const auto found = vertex_near(start);
+    check::is_proved_vertex(found, 1);
 }
 
 // One contact exchanged for a near miss: Newton closes it, and the proofs must see that something else is wrong then.
@@ -236,8 +225,7 @@ BOOST_AUTO_TEST_CASE(a_wrong_contact_list_is_refused) {
 }
 
 BOOST_AUTO_TEST_CASE(a_cap_on_programmes_is_a_failure_that_keeps_the_configuration) {
-    PreparationOptions options;
-    options.max_programmes = 1;
+    PreparationOptions options{.max_programmes = 1};
     PreparationReport report;
     const auto found = find_vertex(loose_lattice(4, 1), options, report);
     BOOST_REQUIRE(!found.ok());

@@ -1,7 +1,7 @@
 // From random disks to a proved vertex: the contract, its invariances, its failures.
 
 #include "check.hpp"
-#include "support/test.hpp"
+#include "support/prepared.hpp"
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/core/error.hpp>
@@ -25,10 +25,7 @@ Outcome run(const PreparationOptions& options) {
 }
 
 Outcome run(int disks, std::uint64_t seed) {
-    PreparationOptions options;
-    options.disks = disks;
-    options.seed = seed;
-    return run(options);
+    return run({.disks = disks, .seed = seed});
 }
 
 void must_be_vertex(const Outcome& outcome, double stress = 1) {
@@ -91,11 +88,7 @@ BOOST_AUTO_TEST_CASE(the_way_of_large_packings_ends_at_proved_vertices_of_the_sa
     double rattlers = 0;
     constexpr int samples = 3;
     for (int seed = 1; seed <= samples; ++seed) {
-        PreparationOptions options;
-        options.disks = 1000;
-        options.seed = static_cast<std::uint64_t>(seed);
-        options.large_above = 100;
-        const Outcome outcome = run(options);
+        const Outcome outcome = run({.disks = 1000, .seed = static_cast<std::uint64_t>(seed), .large_above = 100});
         must_be_vertex(outcome);
         BOOST_TEST(outcome.report.stages[2].name == "relaxation at 1e-02");
         // The proofs at the end hold whatever the stages before were worth: these say themselves that they did their
@@ -126,10 +119,7 @@ BOOST_AUTO_TEST_CASE(the_way_of_large_packings_ends_at_proved_vertices_of_the_sa
 // That of very large ones: Newton steps, and no simplex method.
 BOOST_AUTO_TEST_CASE(the_way_of_very_large_packings_ends_at_proved_vertices_too) {
     for (int seed = 1; seed <= 3; ++seed) {
-        PreparationOptions options;
-        options.disks = 300;
-        options.seed = static_cast<std::uint64_t>(seed);
-        options.large_above = 100;
+        PreparationOptions options{.disks = 300, .seed = static_cast<std::uint64_t>(seed), .large_above = 100};
         options.newton_above = 200;
         const Outcome outcome = run(options);
         must_be_vertex(outcome);
@@ -160,10 +150,7 @@ BOOST_AUTO_TEST_CASE(the_same_seed_gives_the_same_bits_and_another_seed_another_
 
 // Sums are taken in blocks of 8192 disks: three of them here, a few steps of the dynamics, disks renumbered.
 BOOST_AUTO_TEST_CASE(the_number_of_threads_does_not_change_the_bits, *boost::unit_test::label("threads")) {
-    PreparationOptions options;
-    options.disks = 17000;
-    options.max_steps = 60;
-    options.max_programmes = 0;
+    PreparationOptions options{.disks = 17000, .max_steps = 60, .max_programmes = 0};
     std::vector<std::vector<double>> positions;
     for (const int count : {1, 2, 3}) {
         set_threads(count);
@@ -177,9 +164,7 @@ BOOST_AUTO_TEST_CASE(the_number_of_threads_does_not_change_the_bits, *boost::uni
 }
 
 BOOST_AUTO_TEST_CASE(watching_does_not_change_the_bits) {
-    PreparationOptions options;
-    options.disks = 40;
-    options.seed = 4;
+    PreparationOptions options{.disks = 40, .seed = 4};
     const Outcome alone = run(options);
     std::set<std::string> stages;
     std::atomic<bool> stop{false};
@@ -198,8 +183,7 @@ BOOST_AUTO_TEST_CASE(watching_does_not_change_the_bits) {
 
 BOOST_AUTO_TEST_CASE(lengths_scaled_by_a_power_of_two_scale_every_bit) {
     for (const double scale : {0x1p-40, 0x1p30}) {
-        PreparationOptions options;
-        options.disks = 30;
+        PreparationOptions options{.disks = 30};
         const Outcome one = run(options);
         options.diameters = {scale, 2 * scale};
         const Outcome scaled = run(options);
@@ -214,18 +198,13 @@ BOOST_AUTO_TEST_CASE(lengths_scaled_by_a_power_of_two_scale_every_bit) {
 BOOST_AUTO_TEST_CASE(any_unit_of_length_or_stress_will_do) {
     for (const double length : {1e-6, 1e6}) {
         for (const double stress : {1e-5, 2e7}) {
-            PreparationOptions options;
-            options.disks = 25;
-            options.diameters = {length, 2 * length};
-            options.stress = stress;
-            must_be_vertex(run(options), stress);
+            must_be_vertex(run({.disks = 25, .diameters = {length, 2 * length}, .stress = stress}), stress);
         }
     }
 }
 
 BOOST_AUTO_TEST_CASE(a_given_list_of_radii_is_kept_as_it_is) {
-    PreparationOptions options;
-    options.radii = {0.5, 0.83, 0.61, 0.97, 0.55, 0.72, 0.66, 0.9, 0.58, 0.79};
+    PreparationOptions options{.radii = {0.5, 0.83, 0.61, 0.97, 0.55, 0.72, 0.66, 0.9, 0.58, 0.79}};
     options.load = LoadKind::true_stress;
     const Outcome outcome = run(options);
     must_be_vertex(outcome);
@@ -236,19 +215,14 @@ BOOST_AUTO_TEST_CASE(a_given_list_of_radii_is_kept_as_it_is) {
 BOOST_AUTO_TEST_CASE(size_ratio_twenty) {
     for (int seed = 1; seed <= 5; ++seed) {
         BOOST_TEST_INFO_SCOPE("seed " << seed);
-        PreparationOptions options;
-        options.disks = 80;
-        options.seed = static_cast<std::uint64_t>(seed);
+        PreparationOptions options{.disks = 80, .seed = static_cast<std::uint64_t>(seed)};
         options.diameters = {0.1, 2};
         must_be_vertex(run(options));
     }
 }
 
 BOOST_AUTO_TEST_CASE(a_long_box_stays_long) {
-    PreparationOptions options;
-    options.disks = 100;
-    options.aspect = 4;
-    const Outcome outcome = run(options);
+    const Outcome outcome = run({.disks = 100, .aspect = 4});
     must_be_vertex(outcome);
     const Packing& packing = outcome.result.value().packing;
     BOOST_TEST(packing.length(1) > 2.5 * packing.length(0));
@@ -259,9 +233,7 @@ BOOST_AUTO_TEST_CASE(a_long_box_stays_long) {
 BOOST_AUTO_TEST_CASE(equal_disks_are_never_a_wrong_vertex) {
     int failures = 0;
     for (int seed = 1; seed <= 12; ++seed) {
-        PreparationOptions options;
-        options.disks = 20;
-        options.seed = static_cast<std::uint64_t>(seed);
+        PreparationOptions options{.disks = 20, .seed = static_cast<std::uint64_t>(seed)};
         options.diameters = {1, 1};
         const Outcome outcome = run(options);
         if (outcome.result.ok()) {
@@ -281,9 +253,7 @@ BOOST_AUTO_TEST_CASE(a_stop_in_any_stage_keeps_the_last_configuration) {
     for (const std::string name : stages) {
         BOOST_TEST_INFO_SCOPE(name);
         std::atomic<bool> stop{false};
-        PreparationOptions options;
-        options.disks = 50;
-        options.stop = &stop;
+        PreparationOptions options{.disks = 50, .stop = &stop};
         options.progress = [&](const PreparationProgress& p) { stop = stop || p.stage == name; };
         const Outcome outcome = run(options);
         BOOST_REQUIRE(!outcome.result.ok());
@@ -300,8 +270,7 @@ BOOST_AUTO_TEST_CASE(a_stop_in_any_stage_keeps_the_last_configuration) {
 
 BOOST_AUTO_TEST_CASE(options_without_sense_are_named) {
     const auto message = [](const auto& change) {
-        PreparationOptions options;
-        options.disks = 5;
+        PreparationOptions options{.disks = 5};
         change(options);
         try {
             run(options);

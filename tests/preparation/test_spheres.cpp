@@ -2,30 +2,17 @@
 
 #include "oracle/pairs.hpp"
 #include "preparation/soft.hpp"
-#include "support/test.hpp"
+#include "support/prepared.hpp"
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/core/error.hpp>
-#include <isostat/preparation/preparation.hpp>
 
 namespace {
 
 using namespace isostat;
 
 PreparationOptions spheres(int count, std::uint64_t seed, PreparedCell cell = PreparedCell::none) {
-    PreparationOptions options;
-    options.dimension = 3;
-    options.disks = count;
-    options.seed = seed;
-    options.cell = cell;
-    return options;
-}
-
-State jammed_spheres(const PreparationOptions& options) {
-    PreparationReport report;
-    const Result<State> result = prepare(options, report);
-    BOOST_REQUIRE_MESSAGE(result.ok(), (result.ok() ? "" : result.failure().message()));
-    return result.value();
+    return {.dimension = 3, .disks = count, .seed = seed, .cell = cell};
 }
 
 /// Contacts closed, all other pairs open, everything proved.
@@ -51,7 +38,7 @@ BOOST_AUTO_TEST_SUITE(preparation)
 
 BOOST_AUTO_TEST_CASE(spheres_in_a_box_are_a_proved_equilibrium) {
     for (const std::uint64_t seed : {1, 2, 3}) {
-        const State state = jammed_spheres(spheres(20, seed));
+        const State state = prepared(spheres(20, seed));
         is_proved_vertex_of_spheres(state, 3 * 20 + 3);
         BOOST_TEST((state.packing.walls == Walls::box(3)));
         BOOST_TEST((state.load.stress == PerAxis<double>{1, 1, 1}));
@@ -62,7 +49,7 @@ BOOST_AUTO_TEST_CASE(spheres_in_a_box_are_a_proved_equilibrium) {
 BOOST_AUTO_TEST_CASE(spheres_in_cells_are_proved_equilibria) {
     using enum PreparedCell;
     for (const auto& [cell, more] : {std::pair{rectangular, 0}, {tilted, 3}, {isotropic, -2}}) {
-        const State state = jammed_spheres(spheres(16, 1, cell));
+        const State state = prepared(spheres(16, 1, cell));
         is_proved_vertex_of_spheres(state, static_cast<std::size_t>(3 * 16 + more));
         BOOST_TEST(state.packing.cell.all());
         for (std::size_t b = 1; b < 3; ++b) {
@@ -80,18 +67,18 @@ BOOST_AUTO_TEST_CASE(equal_spheres_at_a_wall_are_prepared) {
         PreparationOptions options = spheres(30, 2);
         options.diameters.kind = law;
         options.jitter = law == RadiiLaw::equal ? 1e-3 : 0;
-        is_proved_vertex_of_spheres(jammed_spheres(options), 3 * 30 + 3);
+        is_proved_vertex_of_spheres(prepared(options), 3 * 30 + 3);
     }
 }
 
 BOOST_AUTO_TEST_CASE(the_unit_of_spheres_does_not_matter) {
     PreparationOptions options = spheres(12, 5, PreparedCell::tilted);
-    const State one = jammed_spheres(options);
+    const State one = prepared(options);
     options.radii = one.packing.radius;
     for (double& r : options.radii) {
         r *= 1024;
     }
-    const State scaled = jammed_spheres(options);
+    const State scaled = prepared(options);
     BOOST_TEST((scaled.contacts == one.contacts));
     for (std::size_t k = 0; k < one.packing.q.size(); ++k) {
         BOOST_TEST(scaled.packing.q[k] == 1024 * one.packing.q[k]);
@@ -99,22 +86,19 @@ BOOST_AUTO_TEST_CASE(the_unit_of_spheres_does_not_matter) {
 }
 
 BOOST_AUTO_TEST_CASE(a_vertex_of_spheres_is_found_again_and_another_under_another_stress) {
-    const State state = jammed_spheres(spheres(20, 4));
+    const State state = prepared(spheres(20, 4));
     Packing soft = state.packing;
     for (double& x : soft.q) {
         x *= 1 - 1e-6;
     }
     PreparationOptions options = spheres(20, 4);
-    PreparationReport report;
-    const Result<State> again = find_vertex(soft, options, report);
-    BOOST_REQUIRE(again.ok());
-    BOOST_TEST(std::abs(again.value().packing.length(2) - state.packing.length(2)) < 1e-11);
+    const State again = vertex_near(soft, options);
+    BOOST_TEST(std::abs(again.packing.length(2) - state.packing.length(2)) < 1e-11);
     options.ratio = 4;
-    const Result<State> pressed = find_vertex(soft, options, report);
-    BOOST_REQUIRE(pressed.ok());
-    BOOST_TEST((pressed.value().load.stress == PerAxis<double>{1, 1, 4}));
-    BOOST_TEST(pressed.value().packing.length(2) < state.packing.length(2));
-    BOOST_TEST((certify(pressed.value()).verdict == Verdict::proved));
+    const State pressed = vertex_near(soft, options);
+    BOOST_TEST((pressed.load.stress == PerAxis<double>{1, 1, 4}));
+    BOOST_TEST(pressed.packing.length(2) < state.packing.length(2));
+    BOOST_TEST((certify(pressed).verdict == Verdict::proved));
 }
 
 // A simple cubic lattice under the pressure of its overlaps: every sphere is balanced, every contact there, through

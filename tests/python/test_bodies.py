@@ -113,6 +113,9 @@ class Bodies(Folder):
         rates = isostat.inspect(state).length_rates
         self.assertEqual(len(rates), 2)
         self.assertLess(abs(rates[1][0]), 1e-9)  # upright it does not yield
+        ((value, bound),) = isostat.inspect(state).second_variation
+        self.assertLessEqual(abs(value - 2), bound)  # per radian squared: nothing but the angle moves
+        self.assertEqual(isostat.inspect(lying()).second_variation, [])
         made = isostat.certify(state)
         self.assertEqual(isostat.verify(made).verdict, isostat.Verdict.PROVED)
         with self.assertRaisesRegex(isostat.Error, "arcs"):

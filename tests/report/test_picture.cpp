@@ -1,6 +1,7 @@
 #include "report/picture.hpp"
 #include "support/cells.hpp"
 #include "support/crafted.hpp"
+#include "support/scratch.hpp"
 
 using namespace isostat;
 
@@ -17,9 +18,7 @@ int count(const std::string& text, const std::string& what) {
 /// Widths of the lines of a class, in order.
 std::vector<double> widths(const std::string& svg, const std::string& style) {
     std::vector<double> list;
-    std::istringstream lines(svg);
-    std::string line;
-    while (std::getline(lines, line)) {
+    for (const std::string& line : scratch::split(svg, '\n')) {
         if (line.starts_with("<line") && line.find("class=\"" + style + "\"") != std::string::npos) {
             list.push_back(std::stod(line.substr(line.find("stroke-width=\"") + 14)));
         }

@@ -2,11 +2,7 @@
 
 #include <isostat/rigidity/counting.hpp>
 
-using isostat::Contact;
-using isostat::Counting;
-using isostat::State;
-using isostat::Strain;
-using isostat::Verdict;
+using namespace isostat;
 
 namespace {
 

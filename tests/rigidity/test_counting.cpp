@@ -204,14 +204,12 @@ BOOST_AUTO_TEST_CASE(a_proof_under_way_has_no_evidence_until_it_is_concluded, *b
     for (const int count : {1, 2}) {
         const Threads threads(count);
         const State state = two_disks(1, 2, 1, 1);
-        auto regular = RankProof::begin(state.packing, state.contacts);
-        BOOST_TEST_REQUIRE(regular.ok());
-        BOOST_TEST((regular.value().unproved().evidence() == RegularityEvidence::none));
-        BOOST_TEST(regular.value().is_regular());
-        const auto proved = regular.value().conclude();
-        BOOST_TEST_REQUIRE(proved.ok());
-        BOOST_TEST((proved.value().evidence() == RegularityEvidence::elimination));
-        BOOST_TEST(&proved.value().matrix() == &regular.value().unproved().matrix());
+        auto regular = required(RankProof::begin(state.packing, state.contacts));
+        BOOST_TEST((regular.unproved().evidence() == RegularityEvidence::none));
+        BOOST_TEST(regular.is_regular());
+        const auto proved = required(regular.conclude());
+        BOOST_TEST((proved.evidence() == RegularityEvidence::elimination));
+        BOOST_TEST(&proved.matrix() == &regular.unproved().matrix());
         // Disk 2 between two fixed ones in one line, tilted: singular, but not by its pattern.
         State strut;
         strut.packing.walls = Walls::none();
@@ -219,11 +217,10 @@ BOOST_AUTO_TEST_CASE(a_proof_under_way_has_no_evidence_until_it_is_concluded, *b
         strut.packing.q = {-2, -1, 2, 1, 0, 0, 0, 0};
         strut.packing.fixed = {1, 1, 0};
         strut.contacts = {pair(0, 2), pair(1, 2)};
-        auto singular = RankProof::begin(strut.packing, strut.contacts);
-        BOOST_TEST_REQUIRE(singular.ok());
-        BOOST_TEST(!singular.value().is_regular());
-        BOOST_TEST_REQUIRE(!singular.value().conclude().ok());
-        BOOST_TEST((singular.value().conclude().failure().kind == FailureKind::not_isostatic));
+        auto singular = required(RankProof::begin(strut.packing, strut.contacts));
+        BOOST_TEST(!singular.is_regular());
+        BOOST_TEST_REQUIRE(!singular.conclude().ok());
+        BOOST_TEST((singular.conclude().failure().kind == FailureKind::not_isostatic));
     }
 }
 
@@ -308,13 +305,12 @@ BOOST_AUTO_TEST_CASE(bead_by_bead_piles_are_isostatic_and_balance_by_back_substi
         for (std::size_t b = 0; b + 1 < blocks.size(); ++b) {
             BOOST_TEST(blocks[b + 1] - blocks[b] <= 2);
         }
-        const auto inspection = inspect_vertex(state);
-        BOOST_TEST_REQUIRE(inspection.ok());
+        const auto inspection = required(inspect_vertex(state));
         double bottom_force = 0;
         double weight = 0;
         for (std::size_t l = 0; l < state.contacts.size(); ++l) {
             if (state.contacts[l].kind == ContactKind::lower_wall && state.contacts[l].j == 1) {
-                bottom_force += inspection.value().forces[l];
+                bottom_force += inspection.forces[l];
             }
         }
         for (int i = 0; i < disks; ++i) {

@@ -66,8 +66,7 @@ BOOST_AUTO_TEST_CASE(a_body_that_hangs_where_its_power_turned_stays_there) {
     State state = isostat::start_from_file(scene);
     crafted::Recorder run;
     isostat::RunCounters counters;
-    isostat::RunOptions options;
-    options.max_strain = 100;
+    isostat::RunOptions options{.max_strain = 100};
     const auto outcome = isostat::run_segment(state, towards(-2), 0, options, counters, run);
     BOOST_TEST(outcome.completed, (outcome.failure ? outcome.failure->message() : ""));
     BOOST_TEST_REQUIRE(run.equilibria.size() == 3U);

@@ -1,7 +1,6 @@
 // Samples of equal disks that ended elsewhere once, numerically: they go on to where their packings end.
-#include "support/test.hpp"
+#include "support/prepared.hpp"
 
-#include <isostat/preparation/preparation.hpp>
 #include <isostat/scene/scene.hpp>
 #include <isostat/trajectory/trajectory.hpp>
 
@@ -14,13 +13,11 @@ Failure end_of(const std::string& packing, const std::string& ties) {
     const Scene scene = parse_scene("[packing]\nlaw = \"equal\"\n" + packing + "[run]\nties = \"" + ties +
                                         "\"\n[[programme]]\ndo = \"up\"\nequilibria = 30\n",
                                     "s.toml", "");
-    PreparationReport report;
-    auto state = prepare(scene.preparation, report);
-    BOOST_TEST_REQUIRE(state.ok());
+    auto state = prepared(scene.preparation);
     RunCounters counters;
     RunObserver nobody;
-    const auto outcome = run_segment(state.value(), segment_of(scene.programme[0], state.value().load, "s.toml"), 0,
-                                     scene.run, counters, nobody);
+    const auto outcome =
+        run_segment(state, segment_of(scene.programme[0], state.load, "s.toml"), 0, scene.run, counters, nobody);
     return outcome.failure.value_or(Failure{FailureKind::interrupted, "completed"});
 }
 

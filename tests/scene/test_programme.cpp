@@ -6,7 +6,7 @@ using namespace isostat;
 
 namespace {
 
-const std::string prepared = "[packing]\ndisks = 10\n";
+const std::string prepared_scene = "[packing]\ndisks = 10\n";
 const std::string given = "[packing]\nfile = \"v.txt\"\n";
 
 std::string step(const std::string& keys) {
@@ -31,44 +31,44 @@ void refuses(const std::string& text, const std::vector<std::string>& words) {
 BOOST_AUTO_TEST_SUITE(scene)
 
 BOOST_AUTO_TEST_CASE(a_segment_needs_an_end) {
-    refuses(prepared + step("do = \"up\""), {"s.toml:3:", "\"up\"", "no end", "equilibria", "to"});
-    refuses(prepared + step("do = \"to\""), {"s.toml:3:", "without a ratio"});
-    refuses(prepared + step("do = \"to\"\nto = 1.1\nequilibria = 3"), {"s.toml:3:", "no 'equilibria'"});
-    refuses(prepared + step("equilibria = 3"), {"s.toml:3:", "'do'"});
-    refuses(prepared + step("do = \"sideways\"\nequilibria = 3"), {"s.toml:4:", "sideways", "up"});
-    refuses(prepared + step("do = \"up\"\nequilibria = 0"), {"s.toml:5:", "equilibria", "0"});
-    refuses(prepared + step("do = \"down\"\nto = -0.5"), {"s.toml:5:", "-0.5", "not negative"});
+    refuses(prepared_scene + step("do = \"up\""), {"s.toml:3:", "\"up\"", "no end", "equilibria", "to"});
+    refuses(prepared_scene + step("do = \"to\""), {"s.toml:3:", "without a ratio"});
+    refuses(prepared_scene + step("do = \"to\"\nto = 1.1\nequilibria = 3"), {"s.toml:3:", "no 'equilibria'"});
+    refuses(prepared_scene + step("equilibria = 3"), {"s.toml:3:", "'do'"});
+    refuses(prepared_scene + step("do = \"sideways\"\nequilibria = 3"), {"s.toml:4:", "sideways", "up"});
+    refuses(prepared_scene + step("do = \"up\"\nequilibria = 0"), {"s.toml:5:", "equilibria", "0"});
+    refuses(prepared_scene + step("do = \"down\"\nto = -0.5"), {"s.toml:5:", "-0.5", "not negative"});
 }
 
 BOOST_AUTO_TEST_CASE(ratios_behind_the_start_are_refused) {
-    refuses(prepared + step("do = \"up\"\nto = 0.9"), {"s.toml:3:", "0.9", "ratio at its start is 1", "larger"});
-    refuses(prepared + step("do = \"up\"\nto = 1.0"), {"s.toml:3:", "larger"});
-    refuses(prepared + step("do = \"down\"\nto = 1.1"), {"s.toml:3:", "1.1", "smaller"});
-    refuses(prepared + step("do = \"to\"\nto = 1.0"), {"s.toml:3:", "nothing to do"});
-    refuses(prepared + step("do = \"up\"\nto = 1.2") + step("do = \"up\"\nto = 1.1"),
+    refuses(prepared_scene + step("do = \"up\"\nto = 0.9"), {"s.toml:3:", "0.9", "ratio at its start is 1", "larger"});
+    refuses(prepared_scene + step("do = \"up\"\nto = 1.0"), {"s.toml:3:", "larger"});
+    refuses(prepared_scene + step("do = \"down\"\nto = 1.1"), {"s.toml:3:", "1.1", "smaller"});
+    refuses(prepared_scene + step("do = \"to\"\nto = 1.0"), {"s.toml:3:", "nothing to do"});
+    refuses(prepared_scene + step("do = \"up\"\nto = 1.2") + step("do = \"up\"\nto = 1.1"),
             {"s.toml:6:", "1.1", "is 1.2", "larger"});
     // After some equilibria upwards the ratio is at least that of the start.
-    refuses(prepared + step("do = \"up\"\nequilibria = 5") + step("do = \"up\"\nto = 0.9"),
+    refuses(prepared_scene + step("do = \"up\"\nequilibria = 5") + step("do = \"up\"\nto = 0.9"),
             {"s.toml:6:", "at least 1", "larger"});
-    refuses(prepared + step("do = \"up\"\nto = 1.2\nequilibria = 5") + step("do = \"down\"\nto = 1.3"),
+    refuses(prepared_scene + step("do = \"up\"\nto = 1.2\nequilibria = 5") + step("do = \"down\"\nto = 1.3"),
             {"from 1 to 1.2", "smaller"});
-    accepts(prepared + step("do = \"up\"\nequilibria = 5") +
+    accepts(prepared_scene + step("do = \"up\"\nequilibria = 5") +
             step("do = \"down\"\nto = 1.3")); // may be above: only the run knows
-    accepts(prepared + step("do = \"up\"\nequilibria = 5") + step("do = \"to\"\nto = 1.0"));
-    accepts(prepared + step("do = \"up\"\nto = 1.2") + step("do = \"down\"\nto = 1.1"));
+    accepts(prepared_scene + step("do = \"up\"\nequilibria = 5") + step("do = \"to\"\nto = 1.0"));
+    accepts(prepared_scene + step("do = \"up\"\nto = 1.2") + step("do = \"down\"\nto = 1.1"));
 }
 
 BOOST_AUTO_TEST_CASE(starting_from_an_equilibrium_that_will_not_exist_is_refused) {
-    refuses(prepared + step("do = \"up\"\nequilibria = 5") + step("do = \"down\"\nfrom = 6\nto = 1.0"),
+    refuses(prepared_scene + step("do = \"up\"\nequilibria = 5") + step("do = \"down\"\nfrom = 6\nto = 1.0"),
             {"s.toml:6:", "equilibrium 6", "number 5"});
-    refuses(prepared + step("do = \"up\"\nfrom = 1\nequilibria = 5"), {"s.toml:3:", "equilibrium 1", "number 0"});
-    accepts(prepared + step("do = \"up\"\nequilibria = 5") + step("do = \"down\"\nfrom = 5\nto = 1.0"));
-    accepts(prepared + step("do = \"up\"\nequilibria = 5") + step("do = \"up\"\nequilibria = 5") +
+    refuses(prepared_scene + step("do = \"up\"\nfrom = 1\nequilibria = 5"), {"s.toml:3:", "equilibrium 1", "number 0"});
+    accepts(prepared_scene + step("do = \"up\"\nequilibria = 5") + step("do = \"down\"\nfrom = 5\nto = 1.0"));
+    accepts(prepared_scene + step("do = \"up\"\nequilibria = 5") + step("do = \"up\"\nequilibria = 5") +
             step("do = \"down\"\nfrom = 10\nto = 1.0"));
     // A segment that ends at a ratio makes a number of equilibria that is not known in advance.
-    accepts(prepared + step("do = \"up\"\nto = 1.1") + step("do = \"down\"\nfrom = 1000\nto = 1.0"));
+    accepts(prepared_scene + step("do = \"up\"\nto = 1.1") + step("do = \"down\"\nfrom = 1000\nto = 1.0"));
     // Known numbers stay known after it: equilibrium 0 is the start, at ratio 1.
-    refuses(prepared + step("do = \"up\"\nto = 1.1") + step("do = \"up\"\nfrom = 0\nto = 1.0"),
+    refuses(prepared_scene + step("do = \"up\"\nto = 1.1") + step("do = \"up\"\nfrom = 0\nto = 1.0"),
             {"s.toml:6:", "start is 1"});
 }
 
@@ -118,11 +118,11 @@ BOOST_AUTO_TEST_CASE(the_plan_follows_the_scene) {
         BOOST_ERROR("not in the plan: " + name);
         return false;
     };
-    const Scene a = parse(prepared + step("do = \"up\"\nequilibria = 5"));
+    const Scene a = parse(prepared_scene + step("do = \"up\"\nequilibria = 5"));
     const Scene b =
         parse(given + "[load]\nkind = \"true\"\n[run]\nrule = \"random\"\n[output]\npictures = false\nvtk = true\n" +
               step("do = \"up\"\nequilibria = 5"));
-    const Scene c = parse(prepared);
+    const Scene c = parse(prepared_scene);
     for (const auto& [name, in_a, in_b, in_c] : {std::tuple{"damped dynamics", true, false, true},
                                                  {"Clp", true, false, true},
                                                  {"read the start", false, true, false},

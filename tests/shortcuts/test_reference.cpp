@@ -21,9 +21,9 @@ BOOST_AUTO_TEST_SUITE(shortcuts)
 
 BOOST_AUTO_TEST_CASE(the_reference_of_two_disks_is_their_closed_form) {
     const State state = two_disks(1, 2, 1, 1);
-    const auto polished = oracle::polish(state.packing.radius, lifted(state.packing.q), state.contacts, 1e-93);
+    const auto polished = oracle::polish(state.packing, lifted(state.packing.q), state.contacts, 1e-93);
     BOOST_TEST(polished.converged);
-    const auto certificate = oracle::certify_vertex(state.packing.radius, polished.q, state.contacts);
+    const auto certificate = oracle::certify_vertex(state.packing, polished.q, state.contacts);
     BOOST_REQUIRE(certificate.proved());
     BOOST_TEST(certificate.radius < 1e-88);
     const Reference x = 1 + 2 * sqrt(Reference(2));
@@ -32,30 +32,29 @@ BOOST_AUTO_TEST_CASE(the_reference_of_two_disks_is_their_closed_form) {
     // The force at the bottom of disk 1 is F2 - F1 / (2 sqrt 2): zero at F2 = 1 / (2 sqrt 2).
     const auto fixed = state.load.fixed_force(state.packing);
     const auto unit = state.load.unit_force(state.packing);
-    const auto limit =
-        oracle::certified_limit(state.packing.radius, polished.q, certificate, state.contacts, fixed, unit, 5);
+    const auto limit = oracle::certified_limit(state.packing, polished.q, certificate, state.contacts, fixed, unit, 5);
     BOOST_TEST(limit.bound < 1e-80);
     BOOST_TEST(static_cast<double>(abs(limit.stress - 1 / (2 * sqrt(Reference(2))))) <= limit.bound);
     BOOST_TEST(limit.lowest > -1e-80);
     // The force below disk 0 does not depend on F2: no limit there.
     BOOST_TEST(!std::isfinite(
-        oracle::certified_limit(state.packing.radius, polished.q, certificate, state.contacts, fixed, unit, 1).bound));
+        oracle::certified_limit(state.packing, polished.q, certificate, state.contacts, fixed, unit, 1).bound));
 }
 
 BOOST_AUTO_TEST_CASE(the_certificate_contains_the_truth_when_the_point_is_off) {
     const State state = two_disks(1, 2, 1, 1);
-    const auto polished = oracle::polish(state.packing.radius, lifted(state.packing.q), state.contacts, 1e-93);
+    const auto polished = oracle::polish(state.packing, lifted(state.packing.q), state.contacts, 1e-93);
     for (const double off : {1e-60, 1e-20, 1e-8, 1e-4}) {
         auto moved = polished.q;
         moved[2] += off;
-        const auto certificate = oracle::certify_vertex(state.packing.radius, moved, state.contacts);
+        const auto certificate = oracle::certify_vertex(state.packing, moved, state.contacts);
         BOOST_REQUIRE(certificate.proved());
         BOOST_TEST(certificate.radius >= off);
         BOOST_TEST(certificate.radius <= 100 * off);
     }
     auto moved = polished.q;
     moved[2] += 0.5; // too far: nothing is proved
-    BOOST_TEST(!oracle::certify_vertex(state.packing.radius, moved, state.contacts).proved());
+    BOOST_TEST(!oracle::certify_vertex(state.packing, moved, state.contacts).proved());
 }
 
 BOOST_AUTO_TEST_CASE(no_certificate_where_the_contact_matrix_is_singular) {
@@ -63,7 +62,7 @@ BOOST_AUTO_TEST_CASE(no_certificate_where_the_contact_matrix_is_singular) {
     // wall of disk 0 are horizontal; 0-1 twice the vertical support of disk 1 is missing.
     State state =
         in_box({{1, 1, 1}, {1, 3, 1}}, 4, 2, 1, 1, {left(0), bottom(0), top(0), pair(0, 1), right(1), left(0)});
-    BOOST_TEST(!oracle::certify_vertex(state.packing.radius, lifted(state.packing.q), state.contacts).proved());
+    BOOST_TEST(!oracle::certify_vertex(state.packing, lifted(state.packing.q), state.contacts).proved());
 }
 
 BOOST_AUTO_TEST_CASE(every_event_of_a_short_trajectory_is_certified) {

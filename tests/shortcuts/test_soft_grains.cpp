@@ -14,8 +14,7 @@ using namespace crafted;
 namespace {
 
 SoftGrainOptions at_ratio(double kappa) {
-    SoftGrainOptions options{.stiffness_ratio = kappa};
-    return options;
+    return {.stiffness_ratio = kappa};
 }
 
 /// Largest |soft force - rigid force| / largest rigid force over the rigid contacts.
@@ -138,12 +137,11 @@ BOOST_AUTO_TEST_CASE(the_time_step_is_below_the_true_highest_frequency) {
 
 BOOST_AUTO_TEST_CASE(forces_of_a_packing_converge_as_the_inverse_of_the_stiffness) {
     const State state = prepared(30, 1);
-    const auto rigid = inspect_vertex(state);
-    BOOST_REQUIRE(rigid.ok());
-    BOOST_REQUIRE(rigid.value().equilibrium);
+    const auto rigid = required(inspect_vertex(state));
+    BOOST_REQUIRE(rigid.equilibrium);
     std::vector<double> error;
     for (const double kappa : {1e4, 1e5, 1e6}) {
-        error.push_back(force_error(state, rigid.value().forces, kappa));
+        error.push_back(force_error(state, rigid.forces, kappa));
         BOOST_TEST_MESSAGE("kappa " << kappa << ": " << error.back());
     }
     BOOST_TEST(error[0] > 1e-4);

@@ -11,9 +11,7 @@ using namespace families;
 namespace {
 
 std::vector<Contact> contacts_of(const ExactPacking& packing) {
-    auto contacts = crafted::exact_contacts(packing);
-    BOOST_REQUIRE_MESSAGE(contacts.ok(), (contacts.ok() ? "" : contacts.failure().message()));
-    return contacts.value();
+    return required(crafted::exact_contacts(packing));
 }
 
 void check_statement(const ExactPacking& packing, const std::string& name) {

@@ -98,9 +98,7 @@ double shortest_found(const std::string& name, double amplitude) {
 }
 
 crafted::Inspection inspected(const std::string& name) {
-    auto inspection = crafted::inspect(families::counterexample(name));
-    BOOST_REQUIRE(inspection.ok());
-    return inspection.value();
+    return required(crafted::inspect(families::counterexample(name)));
 }
 
 } // namespace
@@ -144,9 +142,8 @@ BOOST_AUTO_TEST_CASE(counting_and_orthogonality_hold_for_random_matrices) {
 BOOST_AUTO_TEST_CASE(the_power_of_every_opening_is_minus_the_force) {
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
         const State state = prepared(15, seed);
-        const auto structure = IsostaticStructure::prove(state.packing, state.contacts);
-        BOOST_REQUIRE(structure.ok());
-        const Factorisation factorisation(structure.value());
+        const auto structure = required(IsostaticStructure::prove(state.packing, state.contacts));
+        const Factorisation factorisation(structure);
         const auto load = state.load.external_force(state.packing);
         auto force = load;
         factorisation.solve_forces(force);
@@ -233,10 +230,9 @@ BOOST_AUTO_TEST_CASE(contacts_without_force_may_block_the_mechanism) {
     auto packing = families::counterexample("t8_grains_without_force_block");
     BOOST_TEST(shortest_found("t8_grains_without_force_block", 0.1) == 4.0);
     packing.walls.lower[1] = packing.walls.upper[1] = WallKind::absent;
-    const auto alone = crafted::inspect(packing);
-    BOOST_REQUIRE(alone.ok());
-    BOOST_TEST(alone.value().hyperstaticity == 0);
-    BOOST_TEST((alone.value().stable == Verdict::refuted));
+    const auto alone = required(crafted::inspect(packing));
+    BOOST_TEST(alone.hyperstaticity == 0);
+    BOOST_TEST((alone.stable == Verdict::refuted));
     BOOST_TEST(least_length(crafted::approximate(packing), {1, 1.1}) < 4);
 }
 
@@ -368,9 +364,8 @@ BOOST_AUTO_TEST_CASE(a_force_may_vanish_by_geometry_without_being_structural) {
     // Turned by a hair, the force is there.
     auto packing = families::counterexample("t11_zero_by_geometry");
     packing.load->disk[0] += Number::parse("1e-30");
-    const auto turned = crafted::inspect(packing);
-    BOOST_REQUIRE(turned.ok());
-    BOOST_TEST(!turned.value().forces[0].is_zero());
+    const auto turned = required(crafted::inspect(packing));
+    BOOST_TEST(!turned.forces[0].is_zero());
 }
 
 BOOST_AUTO_TEST_SUITE_END()

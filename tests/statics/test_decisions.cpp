@@ -20,21 +20,20 @@ BOOST_AUTO_TEST_SUITE(statics)
 
 BOOST_AUTO_TEST_CASE(forces_that_share_one_support_vanish_as_a_structural_class) {
     Loaded loaded(three_disks(1, 1, 1.5, 1, 1));
-    const auto limit = find_limit(loaded.statics, loaded.sigma(), -1);
-    BOOST_TEST_REQUIRE(limit.ok());
+    const auto limit = required(find_limit(loaded.statics, loaded.sigma(), -1));
     // Without F2 the top disk carries nothing: its three contacts and the two bottoms reach zero together.
     std::set<Contact> members;
-    for (const ContactId l : limit.value().tie_class) {
+    for (const ContactId l : limit.tie_class) {
         members.insert(loaded.contact(l));
     }
     BOOST_TEST((members == std::set<Contact>{top(2), pair(0, 2), pair(1, 2), bottom(0), bottom(1)}));
-    BOOST_TEST(std::abs(limit.value().stress) <= limit.value().stress_error + 1e-15);
+    BOOST_TEST(std::abs(limit.stress) <= limit.stress_error + 1e-15);
     // The member with the smallest f1 / |slope|.
-    for (const ContactId l : limit.value().tie_class) {
+    for (const ContactId l : limit.tie_class) {
         const auto key = [&](ContactId c) {
             return loaded.statics.infinitesimal(c).value / std::abs(loaded.statics.slope(c).value);
         };
-        BOOST_TEST(key(limit.value().opens) <= key(l));
+        BOOST_TEST(key(limit.opens) <= key(l));
     }
 }
 
@@ -44,9 +43,8 @@ BOOST_AUTO_TEST_CASE(forces_at_a_limit_are_known_no_better_than_the_limit) {
     for (std::uint64_t seed = 1; seed <= 8; ++seed) {
         Loaded loaded(prepared(50, seed));
         for (const int direction : {+1, -1}) {
-            const auto found = find_limit(loaded.statics, loaded.sigma(), direction);
-            BOOST_TEST_REQUIRE(found.ok());
-            const LoadLimit& limit = found.value();
+            const auto found = required(find_limit(loaded.statics, loaded.sigma(), direction));
+            const LoadLimit& limit = found;
             double with = std::numeric_limits<double>::infinity();
             double without = with;
             for (int l = 0; l < loaded.structure.size() && !limit.unbounded; ++l) {
@@ -74,10 +72,9 @@ BOOST_AUTO_TEST_CASE(classes_of_prepared_packings_vanish_together_and_nothing_el
     for (std::uint64_t seed = 1; seed <= 12; ++seed) {
         Loaded loaded(prepared(50, seed));
         for (const int direction : {+1, -1}) {
-            const auto limit = find_limit(loaded.statics, loaded.sigma(), direction);
-            BOOST_TEST_REQUIRE(limit.ok());
+            const auto limit = required(find_limit(loaded.statics, loaded.sigma(), direction));
             std::set<int> members;
-            for (const ContactId l : limit.value().tie_class) {
+            for (const ContactId l : limit.tie_class) {
                 members.insert(l.value());
             }
             classes += members.size() > 1 ? 1 : 0;
@@ -86,11 +83,11 @@ BOOST_AUTO_TEST_CASE(classes_of_prepared_packings_vanish_together_and_nothing_el
                 if (loaded.statics.is_structural_zero(id)) {
                     continue;
                 }
-                const Enclosure f = loaded.statics.force(id, limit.value().stress);
+                const Enclosure f = loaded.statics.force(id, limit.stress);
                 if (members.count(id.value()) != 0) {
-                    BOOST_TEST(std::abs(f.value) <= f.radius + limit.value().stress_error *
-                                                                   (std::abs(loaded.statics.slope(id).value) * 1.001 +
-                                                                    loaded.statics.slope(id).radius));
+                    BOOST_TEST(std::abs(f.value) <=
+                               f.radius + limit.stress_error * (std::abs(loaded.statics.slope(id).value) * 1.001 +
+                                                                loaded.statics.slope(id).radius));
                 } else {
                     BOOST_TEST(f.positive());
                 }
@@ -138,10 +135,9 @@ BOOST_AUTO_TEST_CASE(the_rules_choose_what_their_names_say) {
     state.load.stress = {1, 4};
     Loaded loaded(state);
     const auto choose = [&](OpeningRule rule, std::uint64_t bits) {
-        const auto decision = decide_opening(loaded.statics, 4, rule, ContactId(), bits);
-        BOOST_TEST_REQUIRE(decision.ok());
-        BOOST_TEST_REQUIRE(decision.value().opening.has_value());
-        return decision.value().opening->contact;
+        const auto decision = required(decide_opening(loaded.statics, 4, rule, ContactId(), bits));
+        BOOST_TEST_REQUIRE(decision.opening.has_value());
+        return decision.opening->contact;
     };
     std::vector<ContactId> negative;
     for (std::size_t l = 0; l < state.contacts.size(); ++l) {
@@ -179,9 +175,8 @@ BOOST_AUTO_TEST_CASE(without_infinitesimal_loads_a_rattler_leaves_its_sign_undec
     Loaded resting(state);
     BOOST_TEST(resting.statics.is_structural_zero(ContactId(4)));
     BOOST_TEST(resting.statics.is_structural_zero(ContactId(5)));
-    const auto rests = decide_opening(resting.statics, 1, OpeningRule::most_negative, ContactId(), 0);
-    BOOST_TEST_REQUIRE(rests.ok());
-    BOOST_TEST(!rests.value().opening.has_value());
+    const auto rests = required(decide_opening(resting.statics, 1, OpeningRule::most_negative, ContactId(), 0));
+    BOOST_TEST(!rests.opening.has_value());
     state.load.infinitesimal[2] = -0.1; // away from the right wall
     Loaded leaving(state);
     const auto leaves = decide_opening(leaving.statics, 1, OpeningRule::most_negative, ContactId(), 0);
@@ -197,14 +192,12 @@ BOOST_AUTO_TEST_CASE(without_infinitesimal_loads_a_rattler_leaves_its_sign_undec
 
 BOOST_AUTO_TEST_CASE(a_load_that_no_force_limits_is_unbounded_and_says_so) {
     Loaded loaded(one_disk(1, 1));
-    const auto up = find_limit(loaded.statics, 1, +1);
-    BOOST_TEST_REQUIRE(up.ok());
-    BOOST_TEST(up.value().unbounded);
-    const auto down = find_limit(loaded.statics, 1, -1);
-    BOOST_TEST_REQUIRE(down.ok());
-    BOOST_TEST(!down.value().unbounded);
-    BOOST_TEST(down.value().stress == 0.0);
-    BOOST_TEST(down.value().tie_class.size() == 2U);
+    const auto up = required(find_limit(loaded.statics, 1, +1));
+    BOOST_TEST(up.unbounded);
+    const auto down = required(find_limit(loaded.statics, 1, -1));
+    BOOST_TEST(!down.unbounded);
+    BOOST_TEST(down.stress == 0.0);
+    BOOST_TEST(down.tie_class.size() == 2U);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -33,9 +33,7 @@ class Numbers final : public Contest {
 };
 
 Minimum minimum_of(Numbers& numbers, std::size_t first) {
-    const auto found = proved_minimum(numbers, first, contradiction);
-    BOOST_TEST_REQUIRE(found.ok());
-    return found.value();
+    return required(proved_minimum(numbers, first, contradiction));
 }
 
 } // namespace

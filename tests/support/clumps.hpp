@@ -10,6 +10,7 @@
 #include <cmath>
 #include <fstream>
 #include <string>
+#include <vector>
 
 namespace isostat::test {
 
@@ -20,6 +21,16 @@ inline State clumps(const std::string& name) {
 
 inline State clumps_of(const std::string& text) {
     return parse_any_state(text, "clumps", Dimensions::any_bodies).state;
+}
+
+/// Places that are equilibria but for torques on bodies whose angles were held.
+inline std::vector<State> held_angles() {
+    std::vector<State> states;
+    std::ifstream file(std::string(ISOSTAT_TEST_DATA) + "/clumps/held_angles.json");
+    for (const auto& state : nlohmann::json::parse(file)) {
+        states.push_back(clumps_of(state.dump()));
+    }
+    return states;
 }
 
 /// Several forces vanish together where a body rises: the infinitesimal loads say which contact opens.

@@ -157,4 +157,14 @@ inline Played play(State state, int direction, std::optional<int> equilibria, st
     return played;
 }
 
+/// One arc alone, at this stress.
+inline void check_arc(const Played& played, const Contact& opened, const Contact& closed, double stress) {
+    BOOST_TEST_REQUIRE(played.outcome.completed, played.why());
+    BOOST_TEST_REQUIRE(played.records.arcs.size() == 1U);
+    const isostat::ArcRecord& arc = played.records.arcs.front();
+    BOOST_TEST((arc.opened == opened), to_string(arc.opened) << " opened");
+    BOOST_TEST((arc.closed == closed), to_string(arc.closed) << " closed");
+    BOOST_TEST(arc.stress == stress, boost::test_tools::tolerance(1e-12));
+}
+
 } // namespace crafted

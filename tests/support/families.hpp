@@ -145,7 +145,7 @@ inline Answer grazing(double delta) {
     if (closer.decided()) {
         return {closer.positive() ? 1 : -1, Rung::double_double, 106, closer.margin()};
     }
-    const Order order = gap_sign_at_vertex(state.packing, s.structure, s.factorisation, s.inverse, pair(2, 3));
+    const Order order = gap_signs_at_vertex(state.packing, s.structure, s.factorisation, s.inverse, {pair(2, 3)})[0];
     return {order.decided ? order.sign : 0, order.rung, order.bits, order.margin};
 }
 

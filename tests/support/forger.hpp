@@ -40,37 +40,46 @@ inline void seal(const std::filesystem::path& folder) {
     scratch::write(path, text + isostat::before_digest + '"' + isostat::sha256(text) + "\"}\n");
 }
 
-/// What `verify` says of a run with one text in a file in the place of another; the folder is then as before.
+/// One text in a file of a run in the place of another, with the digests of that; in the end the folder is as before.
+class Alteration {
+  public:
+    Alteration(std::filesystem::path folder, const std::string& file, const std::string& from, const std::string& to)
+        : folder_(std::move(folder)), file_(folder_ / file), original_(scratch::read(file_)) {
+        const std::string changed = scratch::replaced(original_, from, to);
+        BOOST_REQUIRE(changed != original_);
+        write(changed);
+    }
+    ~Alteration() { write(original_); }
+    Alteration(const Alteration&) = delete;
+    Alteration& operator=(const Alteration&) = delete;
+
+  private:
+    void write(const std::string& text) const {
+        scratch::write(file_, text);
+        seal(folder_);
+    }
+    std::filesystem::path folder_, file_;
+    std::string original_;
+};
+
+/// What `verify` says of a run that is altered so.
 inline isostat::RunVerification altered(const std::filesystem::path& folder, const std::string& file,
                                         const std::string& from, const std::string& to) {
-    const std::string original = scratch::read(folder / file);
-    const std::string changed = scratch::replaced(original, from, to);
-    BOOST_REQUIRE(changed != original);
-    scratch::write(folder / file, changed);
-    seal(folder);
-    isostat::RunVerification run = isostat::verify_run(folder);
-    scratch::write(folder / file, original);
-    seal(folder);
-    return run;
+    const Alteration there(folder, file, from, to);
+    return isostat::verify_run(folder);
 }
 
 /// One text in a file in the place of another is no record: the message names the file, and what is wrong in it.
 inline void unreadable(const std::filesystem::path& folder, const std::string& file, const std::string& from,
                        const std::string& to, const std::string& said) {
     BOOST_TEST_INFO_SCOPE(file << ": " << from << " -> " << to);
-    const std::string original = scratch::read(folder / file);
-    const std::string changed = scratch::replaced(original, from, to);
-    BOOST_REQUIRE(changed != original);
-    scratch::write(folder / file, changed);
-    seal(folder);
+    const Alteration there(folder, file, from, to);
     BOOST_CHECK_EXCEPTION((void)isostat::verify_run(folder), isostat::Error, [&](const isostat::Error& error) {
         const std::string message = error.what();
         BOOST_TEST_MESSAGE(message);
         return error.kind() == isostat::ErrorKind::bad_input && message.find(file) != std::string::npos &&
                message.find(said) != std::string::npos;
     });
-    scratch::write(folder / file, original);
-    seal(folder);
 }
 
 } // namespace forger

@@ -1,17 +1,21 @@
 #pragma once
-// A packing to start from.
+// Packings to start from.
 
 #include "support/test.hpp"
 
 #include <isostat/preparation/preparation.hpp>
 
+inline isostat::State prepared(const isostat::PreparationOptions& options) {
+    isostat::PreparationReport report;
+    return required(isostat::prepare(options, report));
+}
+
 /// The first equilibrium of random disks, diameters 1 to 2.
 inline isostat::State prepared(int disks, std::uint64_t seed) {
-    isostat::PreparationOptions options;
-    options.disks = disks;
-    options.seed = seed;
+    return prepared({.disks = disks, .seed = seed});
+}
+
+inline isostat::State vertex_near(const isostat::Packing& start, const isostat::PreparationOptions& options = {}) {
     isostat::PreparationReport report;
-    auto result = isostat::prepare(options, report);
-    BOOST_REQUIRE_MESSAGE(result.ok(), (result.ok() ? std::string() : result.failure().message()));
-    return result.value();
+    return required(isostat::find_vertex(start, options, report));
 }

@@ -12,9 +12,7 @@ inline std::vector<Contact> starting_contacts(const State& state, const std::vec
     if (static_cast<int>(state.contacts.size()) == isostat::DofMap(state.packing).dof_count()) {
         return state.contacts;
     }
-    const auto kept = isostat::first_order_backbone(state.packing, state.load, state.contacts, rho);
-    BOOST_TEST_REQUIRE(kept.ok());
-    return kept.value();
+    return required(isostat::first_order_backbone(state.packing, state.load, state.contacts, rho));
 }
 
 /// The packing with radii R + eps rho and the same contacts closed, by Newton's method.
@@ -24,17 +22,15 @@ inline State really_perturbed(State state, const std::vector<double>& rho, doubl
         state.packing.radius[i] += eps * rho[i];
     }
     for (int step = 0; step < 12; ++step) {
-        auto structure = isostat::IsostaticStructure::prove(state.packing, state.contacts);
-        BOOST_TEST_REQUIRE(structure.ok());
-        const isostat::Factorisation factorisation(structure.value());
+        auto structure = required(isostat::IsostaticStructure::prove(state.packing, state.contacts));
+        const isostat::Factorisation factorisation(structure);
         std::vector<double> v;
         for (const Contact& c : state.contacts) {
             v.push_back(isostat::gap(state.packing, c));
         }
         factorisation.solve_velocities(v);
         for (std::size_t mu = 0; mu < v.size(); ++mu) {
-            state.packing.q[static_cast<std::size_t>(structure.value().dofs().coordinate_of(static_cast<int>(mu)))] +=
-                v[mu];
+            state.packing.q[static_cast<std::size_t>(structure.dofs().coordinate_of(static_cast<int>(mu)))] += v[mu];
         }
         isostat::snap_to_grid(state.packing);
     }

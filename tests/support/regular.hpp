@@ -32,9 +32,7 @@ struct Regular {
     Regular& operator=(const Regular&) = delete;
 
     static isostat::IsostaticStructure proved(const isostat::State& s) {
-        auto result = isostat::IsostaticStructure::prove(s.packing, s.contacts);
-        BOOST_REQUIRE_MESSAGE(result.ok(), (result.ok() ? std::string() : result.failure().message()));
-        return std::move(result.value());
+        return required(isostat::IsostaticStructure::prove(s.packing, s.contacts));
     }
 };
 

@@ -57,6 +57,40 @@ inline std::vector<std::string> split(const std::string& text) {
     return {std::istream_iterator<std::string>(in), {}};
 }
 
+/// Parts between separators; one at the end of the text makes no part.
+inline std::vector<std::string> split(const std::string& text, char separator) {
+    std::vector<std::string> parts;
+    std::istringstream in(text);
+    for (std::string part; std::getline(in, part, separator);) {
+        parts.push_back(part);
+    }
+    return parts;
+}
+
+inline std::string joined(const std::vector<std::string>& parts, char separator) {
+    std::string text;
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+        text += (k > 0 ? std::string(1, separator) : "") + parts[k];
+    }
+    return text;
+}
+
+inline std::vector<std::string> lines_of(const std::filesystem::path& file) {
+    return split(read(file), '\n');
+}
+
+/// A row of a table, from 0, by the names of its columns, which its first line has behind "# ".
+inline std::map<std::string, std::string> row_of(const std::filesystem::path& table, std::size_t number) {
+    const std::vector<std::string> lines = lines_of(table);
+    const std::vector<std::string> names = split(lines.at(0).substr(2), ',');
+    const std::vector<std::string> fields = split(lines.at(number + 1), ',');
+    std::map<std::string, std::string> row;
+    for (std::size_t k = 0; k < std::min(names.size(), fields.size()); ++k) {
+        row[names[k]] = fields[k];
+    }
+    return row;
+}
+
 /// Writes a scene. The packing that it names by its whole name is copied beside it: scenes name files of their folder.
 inline void write_scene(const std::filesystem::path& path, const std::string& text) {
     const std::string key = "\nfile = \"/";
@@ -73,10 +107,8 @@ inline void write_scene(const std::filesystem::path& path, const std::string& te
 
 /// equilibria.csv without its last column, the time.
 inline std::string without_times(const std::string& csv) {
-    std::istringstream in(csv);
-    std::string line;
     std::string kept;
-    while (std::getline(in, line)) {
+    for (const std::string& line : split(csv, '\n')) {
         kept += line.substr(0, line.rfind(',')) + "\n";
     }
     return kept;

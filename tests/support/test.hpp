@@ -1,6 +1,8 @@
 #pragma once
 // What most tests begin with, precompiled.
 
+#include <isostat/core/result.hpp>
+
 #include <boost/test/unit_test.hpp>
 #include <fmt/format.h>
 
@@ -24,3 +26,9 @@
 #include <string>
 #include <utility>
 #include <vector>
+
+/// The value of a result; the test ends with the message of a failure.
+template <class T> T required(isostat::Result<T> result) {
+    BOOST_REQUIRE_MESSAGE(result.ok(), (result.ok() ? std::string() : result.failure().message()));
+    return std::move(result.value());
+}

@@ -21,15 +21,6 @@ State between_images(double large, double small) {
     return state;
 }
 
-void check_arc(const Played& played, const Contact& opened, const Contact& closed, double ratio) {
-    BOOST_TEST_REQUIRE(played.outcome.completed, played.why());
-    BOOST_TEST_REQUIRE(played.records.arcs.size() == 1U);
-    const ArcRecord& arc = played.records.arcs.front();
-    BOOST_TEST((arc.opened == opened), to_string(arc.opened) << " opened");
-    BOOST_TEST((arc.closed == closed), to_string(arc.closed) << " closed");
-    BOOST_TEST(arc.stress == ratio, boost::test_tools::tolerance(1e-12));
-}
-
 } // namespace
 
 BOOST_AUTO_TEST_SUITE(trajectory_cells)
@@ -41,12 +32,12 @@ BOOST_AUTO_TEST_CASE(two_disks_in_a_channel_go_round_a_loop) {
         const Contact own = cells::across(0, 0, 1, 0);
         const State start = between_images(large, small);
         const Played down = crafted::play(start, -1, 1);
-        check_arc(down, crafted::bottom(0), own, (large - small) / std::sqrt(large * small));
+        crafted::check_arc(down, crafted::bottom(0), own, (large - small) / std::sqrt(large * small));
         BOOST_TEST(down.state.packing.length(0) == 2 * large, boost::test_tools::tolerance(1e-12));
         BOOST_TEST(down.state.packing.length(1) == large + rise + small, boost::test_tools::tolerance(1e-12));
 
         const Played up = crafted::play(down.state, +1, 1);
-        check_arc(up, own, crafted::bottom(0), 2 * rise / large);
+        crafted::check_arc(up, own, crafted::bottom(0), 2 * rise / large);
         for (std::size_t k = 0; k < start.packing.q.size(); ++k) {
             BOOST_TEST(std::abs(up.state.packing.q[k] - start.packing.q[k]) < 1e-12);
         }

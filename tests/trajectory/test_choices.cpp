@@ -52,8 +52,7 @@ std::vector<TieDecision> choices(const Course& course) {
 }
 
 State prepared_equal_disks(int disks, std::uint64_t seed) {
-    PreparationOptions options;
-    options.disks = disks;
+    PreparationOptions options{.disks = disks};
     options.diameters.kind = RadiiLaw::equal;
     options.seed = seed;
     PreparationReport report;

@@ -24,13 +24,12 @@ BOOST_AUTO_TEST_SUITE(trajectory)
 
 BOOST_AUTO_TEST_CASE(one_disk_carries_the_wall_forces_and_supports_every_load) {
     const State state = one_disk(1.5, 0.25);
-    const auto inspection = inspect_vertex(state);
-    BOOST_REQUIRE(inspection.ok());
-    BOOST_TEST(inspection.value().equilibrium, inspection.value().remark);
-    BOOST_TEST(force_of(inspection.value(), state, left(0)) == 1.5);
-    BOOST_TEST(force_of(inspection.value(), state, right(0)) == 1.5);
-    BOOST_TEST(force_of(inspection.value(), state, bottom(0)) == 0.25);
-    BOOST_TEST(force_of(inspection.value(), state, top(0)) == 0.25);
+    const auto inspection = required(inspect_vertex(state));
+    BOOST_TEST(inspection.equilibrium, inspection.remark);
+    BOOST_TEST(force_of(inspection, state, left(0)) == 1.5);
+    BOOST_TEST(force_of(inspection, state, right(0)) == 1.5);
+    BOOST_TEST(force_of(inspection, state, bottom(0)) == 0.25);
+    BOOST_TEST(force_of(inspection, state, top(0)) == 0.25);
     const Played up = play(state, +1, 1);
     BOOST_REQUIRE(up.outcome.failure);
     BOOST_TEST((up.outcome.failure->kind == FailureKind::no_limit));
@@ -42,17 +41,16 @@ BOOST_AUTO_TEST_CASE(one_disk_carries_the_wall_forces_and_supports_every_load) {
 BOOST_AUTO_TEST_CASE(two_disks_have_the_forces_and_the_limits_of_the_closed_form) {
     for (const double r1 : {1.1, 2.0, 5.0}) {
         const State state = two_disks(1, r1, 1, 1.5);
-        const auto inspection = inspect_vertex(state);
-        BOOST_REQUIRE(inspection.ok());
+        const auto inspection = required(inspect_vertex(state));
         const double t = (r1 - 1) / (2 * std::sqrt(r1));
         const double cosine = 1 / std::sqrt(1 + t * t);
-        BOOST_TEST(force_of(inspection.value(), state, left(0)) == 1.0, boost::test_tools::tolerance(1e-14));
-        BOOST_TEST(force_of(inspection.value(), state, bottom(0)) == t, boost::test_tools::tolerance(1e-13));
-        BOOST_TEST(force_of(inspection.value(), state, pair(0, 1)) == 1 / cosine, boost::test_tools::tolerance(1e-14));
-        BOOST_TEST(force_of(inspection.value(), state, bottom(1)) == 1.5 - t, boost::test_tools::tolerance(1e-13));
-        BOOST_TEST(inspection.value().record.stress_low == t, boost::test_tools::tolerance(1e-13));
-        BOOST_TEST((inspection.value().record.opens_low == bottom(1)));
-        BOOST_TEST(std::isinf(inspection.value().record.stress_high));
+        BOOST_TEST(force_of(inspection, state, left(0)) == 1.0, boost::test_tools::tolerance(1e-14));
+        BOOST_TEST(force_of(inspection, state, bottom(0)) == t, boost::test_tools::tolerance(1e-13));
+        BOOST_TEST(force_of(inspection, state, pair(0, 1)) == 1 / cosine, boost::test_tools::tolerance(1e-14));
+        BOOST_TEST(force_of(inspection, state, bottom(1)) == 1.5 - t, boost::test_tools::tolerance(1e-13));
+        BOOST_TEST(inspection.record.stress_low == t, boost::test_tools::tolerance(1e-13));
+        BOOST_TEST((inspection.record.opens_low == bottom(1)));
+        BOOST_TEST(std::isinf(inspection.record.stress_high));
     }
 }
 
@@ -73,11 +71,9 @@ BOOST_AUTO_TEST_CASE(two_disks_run_through_the_complete_hysteresis_loop) {
     BOOST_TEST(down.records.arcs.front().power > 0);
     BOOST_TEST(down.records.arcs.front().work > 0);
     // The mirrored forces.
-    const auto inspection = inspect_vertex(down.state);
-    BOOST_REQUIRE(inspection.ok());
-    BOOST_TEST(force_of(inspection.value(), down.state, bottom(0)) == turned.stress,
-               boost::test_tools::tolerance(1e-12));
-    BOOST_TEST(force_of(inspection.value(), down.state, left(0)) == turned.stress / (2 * root2),
+    const auto inspection = required(inspect_vertex(down.state));
+    BOOST_TEST(force_of(inspection, down.state, bottom(0)) == turned.stress, boost::test_tools::tolerance(1e-12));
+    BOOST_TEST(force_of(inspection, down.state, left(0)) == turned.stress / (2 * root2),
                boost::test_tools::tolerance(1e-12));
 
     Played up = play(down.state, +1, 1);
@@ -96,21 +92,19 @@ BOOST_AUTO_TEST_CASE(the_five_contact_state_of_two_disks_is_an_equilibrium_that_
         const double y = 1 + 3 * std::sin(angle);
         const State state = in_box({{1, 1, 1}, {2, x, y}}, x + 2, y + 2, 1, std::tan(angle),
                                    {left(0), bottom(0), pair(0, 1), right(1), top(1)});
-        const auto inspection = inspect_vertex(state);
-        BOOST_REQUIRE(inspection.ok());
-        BOOST_TEST(inspection.value().counting.mechanisms == 1);
-        BOOST_TEST(inspection.value().record.held == 1);
-        BOOST_TEST(!inspection.value().equilibrium);
-        BOOST_TEST((inspection.value().stable == Verdict::refuted), inspection.value().remark);
-        BOOST_TEST(inspection.value().second_order.negative());
-        BOOST_TEST(inspection.value().remark.find("not stable") != std::string::npos, inspection.value().remark);
+        const auto inspection = required(inspect_vertex(state));
+        BOOST_TEST(inspection.counting.mechanisms == 1);
+        BOOST_TEST(inspection.record.held == 1);
+        BOOST_TEST(!inspection.equilibrium);
+        BOOST_TEST((inspection.stable == Verdict::refuted), inspection.remark);
+        BOOST_TEST(inspection.second_order.negative());
+        BOOST_TEST(inspection.remark.find("not stable") != std::string::npos, inspection.remark);
         // Off the balance of the two forces the mechanism moves, and that is what is said.
         State off = state;
         off.load.stress[1] *= 1.01;
-        const auto moved = inspect_vertex(off);
-        BOOST_REQUIRE(moved.ok());
-        BOOST_TEST(moved.value().remark.find("mechanism moves") != std::string::npos, moved.value().remark);
-        BOOST_TEST((moved.value().stable == Verdict::undecided));
+        const auto moved = required(inspect_vertex(off));
+        BOOST_TEST(moved.remark.find("mechanism moves") != std::string::npos, moved.remark);
+        BOOST_TEST((moved.stable == Verdict::undecided));
     }
 }
 
@@ -123,19 +117,15 @@ BOOST_AUTO_TEST_CASE(unloading_inside_the_hysteresis_loop_changes_nothing) {
 
 BOOST_AUTO_TEST_CASE(three_disks_have_the_forces_of_the_closed_form) {
     const State state = three_disks(1, 1, 1.5, 3, 1);
-    const auto inspection = inspect_vertex(state);
-    BOOST_REQUIRE(inspection.ok());
+    const auto inspection = required(inspect_vertex(state));
     const double sine = 1 / 2.5;
     const double cosine = std::sqrt(1 - sine * sine);
-    BOOST_TEST(force_of(inspection.value(), state, bottom(0)) == 0.5, boost::test_tools::tolerance(1e-13));
-    BOOST_TEST(force_of(inspection.value(), state, bottom(1)) == 0.5, boost::test_tools::tolerance(1e-13));
-    BOOST_TEST(force_of(inspection.value(), state, pair(0, 2)) == 1 / (2 * cosine),
-               boost::test_tools::tolerance(1e-13));
-    BOOST_TEST(force_of(inspection.value(), state, pair(0, 1)) == 3 - 0.5 * sine / cosine,
-               boost::test_tools::tolerance(1e-13));
-    BOOST_TEST(inspection.value().record.stress_high == 3 * 2 * std::sqrt(1.5 * 3.5),
-               boost::test_tools::tolerance(1e-13));
-    BOOST_TEST((inspection.value().record.opens_high == pair(0, 1)));
+    BOOST_TEST(force_of(inspection, state, bottom(0)) == 0.5, boost::test_tools::tolerance(1e-13));
+    BOOST_TEST(force_of(inspection, state, bottom(1)) == 0.5, boost::test_tools::tolerance(1e-13));
+    BOOST_TEST(force_of(inspection, state, pair(0, 2)) == 1 / (2 * cosine), boost::test_tools::tolerance(1e-13));
+    BOOST_TEST(force_of(inspection, state, pair(0, 1)) == 3 - 0.5 * sine / cosine, boost::test_tools::tolerance(1e-13));
+    BOOST_TEST(inspection.record.stress_high == 3 * 2 * std::sqrt(1.5 * 3.5), boost::test_tools::tolerance(1e-13));
+    BOOST_TEST((inspection.record.opens_high == pair(0, 1)));
 }
 
 BOOST_AUTO_TEST_CASE(three_disks_with_a_large_top_disk_end_on_the_bottom) {

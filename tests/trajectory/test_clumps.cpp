@@ -7,21 +7,16 @@
 #include <isostat/certificate/certify.hpp>
 #include <isostat/core/error.hpp>
 
+#include <algorithm>
 #include <cmath>
 
-using isostat::Contact;
-using isostat::ContactKind;
-using isostat::RunCounters;
-using isostat::RunOptions;
-using isostat::State;
+using namespace isostat;
 using isostat::test::with_infinitesimal;
 
 namespace {
 
 RunOptions whatever_the_strain() {
-    RunOptions options;
-    options.max_strain = HUGE_VAL;
-    return options;
+    return {.max_strain = HUGE_VAL};
 }
 
 } // namespace
@@ -83,6 +78,26 @@ BOOST_AUTO_TEST_CASE(trimers_run_through_ten_equilibria_that_certify_as_states) 
                 BOOST_TEST((isostat::certify(equilibrium).verdict == isostat::Verdict::proved));
             }
         }
+    }
+}
+
+/// What is held competes with the tractions: a run that begins where it bears a torque lets it go, and ends elsewhere.
+BOOST_AUTO_TEST_CASE(a_held_angle_that_bears_a_torque_is_released) {
+    for (const State& place : isostat::test::held_angles()) {
+        State state = with_infinitesimal(isostat::with_free_motions_held(place));
+        state.load.refer_to(state.packing);
+        (void)isostat::snap_to_grid(state.packing);
+        RunCounters counters;
+        crafted::Recorder run;
+        isostat::Segment rest = towards(1);
+        rest.equilibria = 0;
+        const auto outcome = isostat::run_segment(state, rest, 0, whatever_the_strain(), counters, run);
+        BOOST_TEST_REQUIRE(!outcome.failure, (outcome.failure ? outcome.failure->message() : ""));
+        BOOST_TEST_REQUIRE(!run.arcs.empty());
+        BOOST_TEST(std::any_of(run.arcs.begin(), run.arcs.end(), [](const isostat::ArcRecord& arc) {
+            return arc.kind == isostat::ArcKind::release && arc.work > 0;
+        }));
+        BOOST_TEST((isostat::certify(run.states.back()).verdict == isostat::Verdict::proved));
     }
 }
 

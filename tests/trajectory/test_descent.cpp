@@ -16,9 +16,7 @@ using Wide = boost::multiprecision::number<boost::multiprecision::mpfr_float_bac
 
 std::unique_ptr<Vertex> vertex_of(const State& state) {
     static InverseBoundCache cache;
-    auto made = Vertex::make(state.packing, state.contacts, state.load, cache);
-    BOOST_REQUIRE(made.ok());
-    return std::move(made.value());
+    return required(Vertex::make(state.packing, state.contacts, state.load, cache));
 }
 
 /// A disk in its corner under two walls, at rest: its true place is stored. The second one has other lengths.

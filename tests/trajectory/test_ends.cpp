@@ -27,13 +27,12 @@ BOOST_AUTO_TEST_CASE(an_end_that_was_steered_badly_is_put_at_its_true_vertex_whe
     Prover prover(options, side);
     prover.start_at(state.packing);
     const LimitLoad at{state.load};
-    const auto vertex = prover.vertex(state.packing, state.contacts, at);
-    BOOST_TEST_REQUIRE(vertex.ok());
+    const auto vertex = required(prover.vertex(state.packing, state.contacts, at));
     int arcs = 0;
     for (std::size_t l = 0; l < state.contacts.size(); ++l) {
         Opening opening;
         opening.contact = ContactId(l);
-        BoundedSteering steering(vertex.value(), {opening, ArcKind::limit, 1, &at.load, {}}, Departure{}, 0.1,
+        BoundedSteering steering(vertex, {opening, ArcKind::limit, 1, &at.load, {}}, Departure{}, 0.1,
                                  prover.candidates());
         auto arc = steering.propose();
         if (!arc.ok() || arc.value().record.power_turn) {
@@ -43,9 +42,9 @@ BOOST_AUTO_TEST_CASE(an_end_that_was_steered_badly_is_put_at_its_true_vertex_whe
         const Packing end = proposal.end;
         proposal.end.q[0] += badly;
         snap_to_grid(proposal.end);
-        proposal.contacts = IsostaticStructure::exchange(vertex.value()->structure, proposal.end, opening.contact,
-                                                         proposal.record.closed);
-        const ArcProof proof = prover.prove(*vertex.value(), std::move(proposal), opening, at);
+        proposal.contacts =
+            IsostaticStructure::exchange(vertex->structure, proposal.end, opening.contact, proposal.record.closed);
+        const ArcProof proof = prover.prove(*vertex, std::move(proposal), opening, at);
         BOOST_TEST_REQUIRE((proof.vertex != nullptr));
         for (std::size_t k = 0; k < end.q.size(); ++k) {
             BOOST_TEST(std::abs(proof.vertex->packing.q[k] - end.q[k]) < 0.01 * badly);

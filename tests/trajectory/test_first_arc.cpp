@@ -11,9 +11,8 @@ BOOST_AUTO_TEST_SUITE(trajectory)
 
 BOOST_AUTO_TEST_CASE(the_mechanism_of_two_disks_keeps_all_contacts_but_one_closed) {
     const State state = two_disks(1, 2, 1, 1);
-    const auto found = mechanism(state, bottom(1));
-    BOOST_REQUIRE(found.ok());
-    const std::vector<double>& velocity = found.value();
+    const auto found = required(mechanism(state, bottom(1)));
+    const std::vector<double>& velocity = found;
     const double slope = -1 / (2 * std::sqrt(2.0)); // of the way of disk 1 around disk 0
     const std::vector<double> expected{0, 0, slope, 1, slope, 1};
     BOOST_TEST(velocity == expected, boost::test_tools::tolerance(1e-14) << boost::test_tools::per_element());
@@ -38,9 +37,8 @@ BOOST_AUTO_TEST_CASE(what_has_no_single_mechanism_is_refused) {
 }
 
 BOOST_AUTO_TEST_CASE(one_arc_of_two_disks_ends_at_the_wall) {
-    const auto found = first_arc(two_disks(1, 2, 1, 1), -1);
-    BOOST_REQUIRE(found.ok());
-    const ArcRecord& arc = found.value();
+    const auto found = required(first_arc(two_disks(1, 2, 1, 1), -1));
+    const ArcRecord& arc = found;
     BOOST_TEST((arc.opened == bottom(1)));
     BOOST_TEST((arc.closed == left(1)));
     BOOST_TEST(arc.stress == 1 / (2 * std::sqrt(2.0)), boost::test_tools::tolerance(1e-13));

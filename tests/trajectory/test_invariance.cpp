@@ -202,19 +202,16 @@ BOOST_AUTO_TEST_CASE(true_stresses_have_a_strict_minimum_of_a_potential_of_their
 }
 
 BOOST_AUTO_TEST_CASE(a_cap_on_arcs_ends_the_run_with_the_last_equilibrium) {
-    RunOptions options{.max_arcs = 1};
-    const Played run = play(prepared(60, 5), +1, 12, {}, options);
+    const Played run = play(prepared(60, 5), +1, 12, {}, {.max_arcs = 1});
     BOOST_REQUIRE(run.outcome.failure);
     BOOST_TEST((run.outcome.failure->kind == FailureKind::cap_reached));
-    const auto inspection = inspect_vertex(run.state);
-    BOOST_REQUIRE(inspection.ok());
-    BOOST_TEST(inspection.value().equilibrium, inspection.value().remark);
+    const auto inspection = required(inspect_vertex(run.state));
+    BOOST_TEST(inspection.equilibrium, inspection.remark);
 }
 
 BOOST_AUTO_TEST_CASE(a_stop_request_ends_the_run_with_the_last_equilibrium) {
     const std::atomic<bool> stop{true};
-    RunOptions options{.stop = &stop};
-    const Played run = play(prepared(20, 1), +1, 12, {}, options);
+    const Played run = play(prepared(20, 1), +1, 12, {}, {.stop = &stop});
     BOOST_REQUIRE(run.outcome.failure);
     BOOST_TEST((run.outcome.failure->kind == FailureKind::interrupted));
     BOOST_TEST(run.records.equilibria.size() == 1U);

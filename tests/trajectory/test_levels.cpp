@@ -10,10 +10,7 @@ using namespace ::crafted;
 
 namespace {
 
-RunOptions with_arcs() {
-    RunOptions options{.certify = CertifyLevel::arcs};
-    return options;
-}
+const RunOptions with_arcs{.certify = CertifyLevel::arcs};
 
 } // namespace
 
@@ -21,7 +18,7 @@ BOOST_AUTO_TEST_SUITE(trajectory)
 
 BOOST_AUTO_TEST_CASE(every_arc_of_a_run_is_certified_with_its_power) {
     for (const std::uint64_t seed : {2U, 5U, 7U}) {
-        const Played run = play(prepared(60, seed), +1, 8, {}, with_arcs());
+        const Played run = play(prepared(60, seed), +1, 8, {}, with_arcs);
         BOOST_TEST(run.records.arcs.size() > 8U);
         long pieces = 0;
         for (const auto& arc : run.records.arcs) {
@@ -45,7 +42,7 @@ BOOST_AUTO_TEST_CASE(every_arc_of_a_run_is_certified_with_its_power) {
 BOOST_AUTO_TEST_CASE(the_level_changes_no_bit_of_the_run) {
     const State start = prepared(50, 3);
     const Played plain = play(start, +1, 6);
-    const Played proved = play(start, +1, 6, {}, with_arcs());
+    const Played proved = play(start, +1, 6, {}, with_arcs);
     BOOST_TEST((plain.state.packing.q == proved.state.packing.q));
     BOOST_TEST_REQUIRE(plain.records.arcs.size() == proved.records.arcs.size());
     for (std::size_t k = 0; k < plain.records.arcs.size(); ++k) {
@@ -118,7 +115,7 @@ BOOST_AUTO_TEST_CASE(a_run_that_is_stopped_shows_no_arc_that_was_steered_ahead, 
 BOOST_AUTO_TEST_CASE(rattlers_are_certified_in_their_own_degrees_of_freedom) {
     int rattlers = 0;
     for (const std::uint64_t seed : {1U, 4U, 6U}) {
-        const Played run = play(prepared(60, seed), +1, 12, {}, with_arcs());
+        const Played run = play(prepared(60, seed), +1, 12, {}, with_arcs);
         for (const auto& arc : run.records.arcs) {
             if (arc.kind == ArcKind::rattler) {
                 ++rattlers;
@@ -134,7 +131,7 @@ BOOST_AUTO_TEST_CASE(rattlers_are_certified_in_their_own_degrees_of_freedom) {
 BOOST_AUTO_TEST_CASE(two_disks_are_certified_around_the_hysteresis_loop) {
     const State start = two_disks(1, 1.5, 1, 1);
     for (const int direction : {+1, -1}) {
-        const Played run = play(start, direction, 1, {}, with_arcs());
+        const Played run = play(start, direction, 1, {}, with_arcs);
         for (const auto& arc : run.records.arcs) {
             BOOST_TEST((arc.certificate->verdict == Verdict::proved), arc.certificate->reason);
         }
@@ -144,7 +141,7 @@ BOOST_AUTO_TEST_CASE(two_disks_are_certified_around_the_hysteresis_loop) {
 BOOST_AUTO_TEST_CASE(true_stresses_leave_the_power_undecided_and_the_contacts_proved) {
     State start = prepared(40, 9);
     start.load.kind = LoadKind::true_stress;
-    const Played run = play(start, +1, 3, {}, with_arcs());
+    const Played run = play(start, +1, 3, {}, with_arcs);
     BOOST_TEST(!run.records.arcs.empty());
     for (const auto& arc : run.records.arcs) {
         BOOST_TEST((arc.certificate->verdict == Verdict::proved), arc.certificate->reason);

@@ -2,6 +2,7 @@
 // What opens and closes, arc by arc, is what it was before the linear algebra was made faster: a change of the last
 // bits is allowed, another event is not.
 #include "support/crafted.hpp"
+#include "support/scratch.hpp"
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/io/state_file.hpp>
@@ -13,13 +14,8 @@ namespace {
 
 /// Lines of a file that are no comments.
 std::vector<std::string> recorded(const std::string& name) {
-    std::ifstream file(std::string(ISOSTAT_TEST_DATA) + "/" + name);
-    std::vector<std::string> lines;
-    for (std::string line; std::getline(file, line);) {
-        if (!line.starts_with("#")) {
-            lines.push_back(line);
-        }
-    }
+    std::vector<std::string> lines = scratch::lines_of(scratch::data(name));
+    std::erase_if(lines, [](const std::string& line) { return line.starts_with("#"); });
     return lines;
 }
 
@@ -90,10 +86,9 @@ BOOST_AUTO_TEST_CASE(the_sample_of_400_disks_reaches_the_same_20_equilibria_and_
 
 BOOST_AUTO_TEST_CASE(the_sample_of_1936_disks_is_an_equilibrium_and_makes_ten_more) {
     const State start = sample("1936");
-    const auto inspection = inspect_vertex(start);
-    BOOST_REQUIRE(inspection.ok());
-    BOOST_TEST(inspection.value().equilibrium, inspection.value().remark);
-    BOOST_TEST(inspection.value().record.dof_count == 2 * 1936 + 2);
+    const auto inspection = required(inspect_vertex(start));
+    BOOST_TEST(inspection.equilibrium, inspection.remark);
+    BOOST_TEST(inspection.record.dof_count == 2 * 1936 + 2);
     const Played run = play(start, +1, 10);
     BOOST_REQUIRE_MESSAGE(run.outcome.completed, run.why());
     for (const auto& e : run.records.equilibria) {

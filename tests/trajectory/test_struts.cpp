@@ -76,8 +76,7 @@ BOOST_AUTO_TEST_CASE(grains_that_hang_on_a_strut_without_force_do_not_hide_it) {
 BOOST_AUTO_TEST_CASE(the_weakest_traction_is_never_that_of_a_grain_that_carries_nothing_at_the_turn) {
     int after_turns = 0;
     for (const std::uint64_t seed : {1U, 3U, 5U, 10U}) {
-        RunOptions options{.rule = OpeningRule::least_negative};
-        const Played run = play(prepared(36, seed), +1, 4, {}, options);
+        const Played run = play(prepared(36, seed), +1, 4, {}, {.rule = OpeningRule::least_negative});
         const auto& arcs = run.records.arcs;
         for (std::size_t k = 1; k < arcs.size(); ++k) {
             if (arcs[k - 1].power_turn && arcs[k].kind == ArcKind::tension) {

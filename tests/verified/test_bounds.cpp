@@ -102,9 +102,7 @@ BOOST_AUTO_TEST_SUITE(verified)
 BOOST_AUTO_TEST_CASE(bounds_hold_on_prepared_packings) {
     for (const int n : {1, 2, 5, 12}) {
         for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-            PreparationOptions options;
-            options.disks = n;
-            options.seed = seed;
+            PreparationOptions options{.disks = n, .seed = seed};
             PreparationReport report;
             auto state = prepare(options, report);
             if (!state.ok()) {

@@ -7,9 +7,7 @@
 
 #include <isostat/certificate/certify.hpp>
 
-using isostat::State;
-using isostat::Verdict;
-using isostat::VertexEnclosure;
+using namespace isostat;
 using isostat::oracle::Real;
 
 BOOST_AUTO_TEST_SUITE(verified)

@@ -79,9 +79,8 @@ BOOST_AUTO_TEST_CASE(bounds_after_an_exchange_lie_below_the_smallest_singular_va
         BOOST_TEST_REQUIRE(next.has_value());
         const ApproximateInverse approximate = from.factorisation.approximate().exchanged(next->slot(), next->matrix());
         const auto by_cholesky = bound_exchanged(*next, approximate, from.cache);
-        auto proved = IsostaticStructure::prove(arc.value().end, next->contacts());
-        BOOST_TEST_REQUIRE(proved.ok());
-        const double sigma = smallest_singular_value(proved.value());
+        auto proved = required(IsostaticStructure::prove(arc.value().end, next->contacts()));
+        const double sigma = smallest_singular_value(proved);
         if (by_cholesky) {
             BOOST_TEST(by_cholesky->bound.sigma_min < sigma * 1.001);
             BOOST_TEST(by_cholesky->bound.sigma_min > 0.1 * sigma);
@@ -114,9 +113,8 @@ BOOST_AUTO_TEST_CASE(without_motion_a_bound_is_carried_with_little_loss_and_a_wr
     const ApproximateInverse approximate = from.factorisation.approximate().exchanged(5, next->matrix());
     const auto bound = carry_bound(from.structure, from.inverse, *next, approximate, v);
     BOOST_TEST_REQUIRE(bound.has_value());
-    const auto proved = IsostaticStructure::prove(from.state.packing, next->contacts());
-    BOOST_TEST_REQUIRE(proved.ok());
-    const double sigma = smallest_singular_value(proved.value());
+    const auto proved = required(IsostaticStructure::prove(from.state.packing, next->contacts()));
+    const double sigma = smallest_singular_value(proved);
     BOOST_TEST(bound->bound.sigma_min < sigma * 1.001);
     BOOST_TEST(bound->bound.sigma_min > 0.5 * std::min(sigma, from.inverse.sigma_min));
     // A guess that is no mechanism at all is refined or refused; what comes out is still a bound.

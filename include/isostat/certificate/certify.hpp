@@ -87,6 +87,10 @@ State with_free_motions_held(State state);
 /// U10): it moves continuously towards the load.
 struct Yielding {
     PerAxis<Enclosure> length_rate{}; ///< dL_a per unit of the loaded stress
+    /// Eigenvalues of d2W at the minimum on the mechanisms that the load reaches (it is 0 on all others), ascending:
+    /// bodies in (X, Y, angle), X and Y of the mean of the centres of their members, and lengths. Empty above 256
+    /// mechanisms, and where no bound was proved.
+    std::vector<Enclosure> second_variation;
     /// Where the stress rises, and where it falls: what happens first if forces and gaps went on changing at the rates
     /// that they have, in double. Not proved, and not where it will happen. Contact i = -1: nothing.
     struct Event {

@@ -41,30 +41,30 @@ enum class ForeignWalls { none, box, square, fixed };
 
 /// What the file does not say, stated by the user. The reader guesses none of these.
 struct ForeignOptions {
-    std::string format; ///< a name of `foreign_formats()`, or empty: recognised from the content
-    std::optional<SizeStatement> size;
+    std::string format{}; ///< a name of `foreign_formats()`, or empty: recognised from the content
+    std::optional<SizeStatement> size{};
     ForeignWalls walls = ForeignWalls::none;
     bool walls_unless_periodic = false; ///< `walls` apply only to packings without a periodic axis
     /// Disks or spheres; absent: disks when all z are the same (to 2^-27 of the smallest radius, below which no gap
     /// changes as a double) or the file has no z, else spheres.
-    std::optional<int> dimension;
+    std::optional<int> dimension{};
     /// Empty, or xlo, xhi, ylo, yhi (for spheres also zlo, zhi) instead of the bounds in the file; with `periodic`, the
     /// periods of a file without bounds.
-    std::vector<double> box;
+    std::vector<double> box{};
     /// Empty, or the cell of a file that has none: its lengths, then its tilts if any; or its period vectors one after
     /// another, 4 numbers for disks, 9 for spheres.
-    std::vector<double> lattice;
-    std::optional<long> frame;        ///< frame of a file with several, from 0; absent: the last frame
-    std::vector<std::string> columns; ///< names that replace those in the file; "-" leaves a column out
-    long skip = 0;                    ///< number of lines skipped before the rows of a table
-    std::string style;                ///< atom style of a LAMMPS data file, instead of the style that the file names
-    std::string plane = "xy";         ///< plane of disks: also "xz", "yz"
-    std::optional<long> first_id;     ///< the rows get ids from this one on, whatever the file says
-    std::optional<RowsWith> select;   ///< only these rows are disks
-    std::optional<RowsWith> fixed;    ///< these disks cannot move
+    std::vector<double> lattice{};
+    std::optional<long> frame{};        ///< frame of a file with several, from 0; absent: the last frame
+    std::vector<std::string> columns{}; ///< names that replace those in the file; "-" leaves a column out
+    long skip = 0;                      ///< number of lines skipped before the rows of a table
+    std::string style{};                ///< atom style of a LAMMPS data file, instead of the style that the file names
+    std::string plane = "xy";           ///< plane of disks: also "xz", "yz"
+    std::optional<long> first_id{};     ///< the rows get ids from this one on, whatever the file says
+    std::optional<RowsWith> select{};   ///< only these rows are disks
+    std::optional<RowsWith> fixed{};    ///< these disks cannot move
     /// The column that says which rows are members of one rigid body; "none": no column. Empty: body, clump or clumpId
     /// (YADE) where the file has one.
-    std::string bodies;
+    std::string bodies{};
     bool cells = false;        ///< periodic boundaries make a cell; else they are refused
     bool periodic = false;     ///< boundaries that the file leaves open are periodic
     bool not_periodic = false; ///< boundaries that the file calls periodic (or does not deny to be) are open

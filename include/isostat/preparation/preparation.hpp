@@ -68,15 +68,15 @@ enum class PreparedCell { none, rectangular, tilted, isotropic };
 /// What to prepare. The defaults of the last group suit sizes 1 ...
 /// 10^5; they change the way and the cost, never what is proved.
 struct PreparationOptions {
-    int dimension = 2;         ///< 3: spheres
-    int disks = 0;             ///< n >= 1, disks or spheres; ignored when `radii` is given
-    DiameterLaw diameters;     ///< ignored when `radii` is given
-    std::vector<double> radii; ///< a given list, in the order of the disks
-    double jitter = 0;         ///< `with_jitter`, of drawn radii and of a list
-    std::uint64_t seed = 1;    ///< of radii, jitter, positions and infinitesimal loads (derived streams)
-    double stress = 1;         ///< sigma_1 > 0
-    double ratio = 1;          ///< sigma_2 / sigma_1 > 0 of `find_vertex`; `prepare` takes 1 only
-    double aspect = 1;         ///< Ly / Lx, in space Lz / Lx = Lz / Ly, of the loose box; the final box is free
+    int dimension = 2;           ///< 3: spheres
+    int disks = 0;               ///< n >= 1, disks or spheres; ignored when `radii` is given
+    DiameterLaw diameters{};     ///< ignored when `radii` is given
+    std::vector<double> radii{}; ///< a given list, in the order of the disks
+    double jitter = 0;           ///< `with_jitter`, of drawn radii and of a list
+    std::uint64_t seed = 1;      ///< of radii, jitter, positions and infinitesimal loads (derived streams)
+    double stress = 1;           ///< sigma_1 > 0
+    double ratio = 1;            ///< sigma_2 / sigma_1 > 0 of `find_vertex`; `prepare` takes 1 only
+    double aspect = 1;           ///< Ly / Lx, in space Lz / Lx = Lz / Ly, of the loose box; the final box is free
     LoadKind load = LoadKind::nominal;
     /// A cell instead of walls: at most `large_above` disks, periods of at least four diameters (in space one).
     PreparedCell cell = PreparedCell::none;

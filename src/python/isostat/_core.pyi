@@ -144,6 +144,7 @@ class Inspection:
     stable: Final[Verdict]
     second_order: Final[tuple[float, float]]
     length_rates: Final[list[tuple[float, float]]]
+    second_variation: Final[list[tuple[float, float]]]
     remark: Final[str]
     sigma2: Final[float]
     sigma2_low: Final[float]

@@ -2,6 +2,7 @@
 
 #include "contact/words.hpp"
 #include "core/roundoff.hpp"
+#include "core/splitmix.hpp"
 #include "verified/precise_first_order.hpp"
 
 #include <isostat/trajectory/trajectory.hpp>
@@ -38,14 +39,8 @@ std::vector<double> tie_direction(const std::vector<double>& radius, std::uint64
     std::frexp(smallest, &exponent); // smallest = x 2^exponent, x in [1/2, 1)
     std::vector<double> rho;
     rho.reserve(radius.size());
-    std::uint64_t state = seed;
     for (std::size_t i = 0; i < radius.size(); ++i) {
-        state += 0x9e3779b97f4a7c15ULL;
-        std::uint64_t z = state;
-        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
-        z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
-        z ^= z >> 31;
-        rho.push_back(std::ldexp(static_cast<double>(z >> 48) - 32768, exponent - 1 - 16));
+        rho.push_back(std::ldexp(static_cast<double>(splitmix(seed, i + 1) >> 48) - 32768, exponent - 1 - 16));
     }
     return rho;
 }

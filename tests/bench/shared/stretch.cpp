@@ -22,9 +22,7 @@ std::optional<State> start(const std::string& source, int dimension) {
     if (source.find_first_not_of("0123456789:") != std::string::npos) {
         return dimension == plane ? read_state(source).state : read_any_state(source, Dimensions::any).state;
     }
-    PreparationOptions options;
-    options.dimension = dimension;
-    options.disks = std::atoi(source.c_str());
+    PreparationOptions options{.dimension = dimension, .disks = std::atoi(source.c_str())};
     if (const std::size_t colon = source.find(':'); colon != std::string::npos) {
         options.seed = std::strtoull(source.c_str() + colon + 1, nullptr, 10);
     }

@@ -22,11 +22,6 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-template <int Digits>
-using Mpfr = boost::multiprecision::number<
-    boost::multiprecision::mpfr_float_backend<Digits, boost::multiprecision::allocate_stack>,
-    boost::multiprecision::et_off>;
-
 template <class T> Reference raised(const T& x) {
     if constexpr (requires { x.x[0]; }) { // libqd
         return Reference(x.x[0]) + Reference(x.x[1]);
@@ -47,15 +42,17 @@ template <class T> double distance(const std::vector<T>& q, const ReferenceArc& 
 /// Velocity at the start of an arc that opens its contact, the fastest coordinate at 1; empty when the factors are
 /// unusable.
 std::vector<double> velocity(const ReferenceArc& arc, const std::vector<double>& q) {
-    const oracle::ContactEquations<double> equations(arc.start.radius, arc.contacts);
-    const oracle::DoubleJacobian jacobian(equations, q);
-    if (!jacobian.usable) {
+    using Equations = oracle::ContactEquations<double>;
+    const Equations::Matrix derivative = Equations(arc.start, arc.contacts, q).derivative();
+    if (!derivative.usable) {
         return {};
     }
-    const auto n = static_cast<Eigen::Index>(q.size());
-    Eigen::VectorXd v = jacobian.lu->solve(Eigen::VectorXd::Unit(n, static_cast<Eigen::Index>(arc.opened.index())));
-    v /= v.cwiseAbs().maxCoeff();
-    return {v.data(), v.data() + n};
+    std::vector<double> opening(q.size(), 0.0);
+    opening[arc.opened.index()] = 1;
+    std::vector<double> v = derivative.solve(opening, Equations::Matrix::Of::matrix, 1).x;
+    const double fastest = oracle::largest_of(v);
+    std::for_each(v.begin(), v.end(), [fastest](double& c) { c /= fastest; });
+    return v;
 }
 
 double gap_rate(const Packing& packing, const Contact& contact, const std::vector<double>& v) {
@@ -99,7 +96,7 @@ bool at_tolerance(const std::string& arithmetic, int refinements, double toleran
             start.push_back(T(c));
         }
         double begin = cpu_seconds();
-        const auto polished = oracle::polish(arc.start.radius, std::move(start), arc.end_contacts, tolerance, 40);
+        const auto polished = oracle::polish(arc.start, std::move(start), arc.end_contacts, tolerance, 40);
         event_time += cpu_seconds() - begin;
         if (!polished.converged) {
             ++open;
@@ -118,8 +115,7 @@ bool at_tolerance(const std::string& arithmetic, int refinements, double toleran
             const auto unit = arc.load.unit_force(arc.start);
             const std::size_t opened = arc.limit_contact.index();
             begin = cpu_seconds();
-            const auto f =
-                oracle::affine_forces(arc.start.radius, polished.q, arc.end_contacts, fixed, unit, refinements);
+            const auto f = oracle::affine_forces(arc.start, polished.q, arc.end_contacts, fixed, unit, refinements);
             limit_time += cpu_seconds() - begin;
             const T sigma = -f.fixed[opened] / f.unit[opened];
             stress.push_back(static_cast<double>(Reference(abs(raised(sigma) - limit.stress) / limit.stress)));
@@ -141,8 +137,8 @@ void newton_tolerances(const ReferencePath& path, int n, Table& table) {
     for (const double tolerance : {1e-16, 1e-20, 1e-26}) {
         at_tolerance<dd_real>("double-double", 3, tolerance, path, n, table);
     }
-    at_tolerance<Mpfr<39>>("MPFR 128", 4, 1e-34, path, n, table);
-    at_tolerance<Mpfr<77>>("MPFR 256", 8, 1e-70, path, n, table);
+    at_tolerance<oracle::Decimal<39>>("MPFR 128", 4, 1e-34, path, n, table);
+    at_tolerance<oracle::Decimal<77>>("MPFR 256", 8, 1e-70, path, n, table);
 }
 
 /// The program's path follower: cost and answers against the longest predictor step.
@@ -323,16 +319,6 @@ void integration(const ReferencePath& path, int n, bool quick, Table& table) {
     }
 }
 
-Reference read(const std::string& hexadecimal) {
-    mpfr_t x;
-    mpfr_init2(x, 1100);
-    mpfr_set_str(x, hexadecimal.c_str(), 16, MPFR_RNDN);
-    Reference result;
-    mpfr_set(result.backend().data(), x, MPFR_RNDN);
-    mpfr_clear(x);
-    return result;
-}
-
 /// Stress at the end of an equilibrium: the affine law on every rung, of the stored coordinates and of the true vertex,
 /// and loads raised and halved until the limit is bracketed.
 bool stresses(const ReferencePath& path, int n, Table& table) {
@@ -382,8 +368,8 @@ bool stresses(const ReferencePath& path, int n, Table& table) {
                 (void)ladder.solution(f0);
                 (void)ladder.solution(f1);
                 spent += cpu_seconds() - start;
-                const Reference a = read(ladder.digits(f0, opened, 1024));
-                const Reference b = read(ladder.digits(f1, opened, 1024));
+                const Reference a = oracle::from_hexadecimal<Reference>(ladder.digits(f0, opened, 1024));
+                const Reference b = oracle::from_hexadecimal<Reference>(ladder.digits(f1, opened, 1024));
                 Sum& sum =
                     row(fmt::format("{}, {}", truth ? "true vertex" : "stored coordinates",
                                     ladder.rung() == Rung::multiprecision ? fmt::format("MPFR {}", ladder.bits())

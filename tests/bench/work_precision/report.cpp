@@ -102,9 +102,7 @@ std::string plain(double x) {
 }
 
 isostat::State prepared(int disks, std::uint64_t seed) {
-    isostat::PreparationOptions options;
-    options.disks = disks;
-    options.seed = seed;
+    isostat::PreparationOptions options{.disks = disks, .seed = seed};
     isostat::PreparationReport report;
     auto state = isostat::prepare(options, report);
     if (!state.ok()) {

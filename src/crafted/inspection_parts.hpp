@@ -1,9 +1,22 @@
 #pragma once
-// Second-order quantities of mechanisms.
+/// \file
+/// The parts of an inspection in exact numbers: what is held, what is jammed, what a load may change by, second order.
 
 #include <isostat/crafted/exact_packing.hpp>
 
 namespace isostat::crafted {
+
+/// Fills `hold` and `carrying` of an inspection whose contacts are set.
+void judge_holds(Inspection& inspection, const ExactPacking& packing);
+
+/// \pre every axis is periodic, nothing overlaps; `hold` of `judge_holds` for this packing
+Jamming judge_jamming(const ExactPacking& packing, const std::vector<DiskHold>& hold, const InspectionLimits& limits);
+
+/// Ends of {t : f + t change + sum of c_s stresses_s >= 0 for some c}, exact; nothing
+/// when this set is empty. Each end is proved by an optimum of the linear programme
+/// and of its dual. Contacts of `LoadRange` are set where there are no self-stresses.
+std::optional<LoadRange> load_range(const std::vector<Number>& forces, const std::vector<Number>& change,
+                                    const std::vector<std::vector<Number>>& stresses);
 
 /// Numbers of positive, negative and zero squares of a quadratic form.
 struct Inertia {

@@ -148,7 +148,7 @@ def main(certificate_path, log_path, data_path, first=CLOSED):
     same("claim of stability", claims["stable"], True)
     if gap * two**fine < Fraction(claims["gaps"]["smallest"]):
         differ("a larger gap is claimed than Coq proved")
-    print(f"{n} {'disks' if d == 2 else 'spheres'}: Coq's packing is that of the certificate; counting, vertex, forces, gaps, load interval and stability follow")
+    print(f"{n} {'disk' if d == 2 else 'sphere'}{'s' if n > 1 else ''}: Coq's packing is that of the certificate; counting, vertex, forces, gaps, load interval and stability follow")
 
 
 if __name__ == "__main__":

@@ -52,7 +52,7 @@ Evidence::Evidence(const State& checked, CheckerArithmetic arithmetic, bool held
         solver = std::move(near);
         bound(CheckerArithmetic::singular_value);
     }
-    if (!vertex.found) {
+    if (!well_known()) {
         solver = std::make_shared<Solver>(problem);
         bound(arithmetic);
     }

@@ -43,6 +43,10 @@ struct Evidence {
     /// How many rows are of one kind; and whether some row is no contact.
     [[nodiscard]] int count(ContactKind kind) const;
     [[nodiscard]] bool has_other_rows() const { return count(ContactKind::bar) + count(ContactKind::held) > 0; }
+    /// The true vertex is known to half of the digits or better: the factors were good.
+    [[nodiscard]] bool well_known() const {
+        return vertex.found && vertex.radius < power_of_two(problem.fine + problem.digits / 2);
+    }
     [[nodiscard]] std::string why_no_inverse() const;
     [[nodiscard]] std::string why_no_vertex() const;
 

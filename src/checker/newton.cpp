@@ -8,6 +8,8 @@ namespace {
 
 /// Factors that reduce a residual by a smaller factor are made anew.
 constexpr double slow = 0.25;
+/// The same where the contacts may be nearly singular: proofs go on with the last factors.
+constexpr double quick = 0x1p-10;
 
 #ifdef __SIZEOF_FLOAT128__
 // __extension__ has no form with `using`: NOLINTNEXTLINE(modernize-use-using)
@@ -182,7 +184,7 @@ bool System::newton_in_quadruple(std::vector<double>& q, const std::optional<Way
         }
         const Eigen::VectorXd x = step_at(at, way);
         const double size = x.lpNorm<Eigen::Infinity>();
-        if (stale && !(size < slow * last)) {
+        if (stale && !(size < quick * last)) {
             stale = false;
             continue;
         }

@@ -66,7 +66,7 @@ struct Row {
 };
 
 /// `Problem::digits` of the vertices of a run, most of which are passed on the way.
-inline constexpr int few_digits = 40;
+inline constexpr int few_digits = 56;
 /// The same when more are not asked for.
 inline constexpr int usual_digits = 80;
 /// Asked next where those do not tell, and from the beginning where radii are R_i + eps rho_i: records of such runs

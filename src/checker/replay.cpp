@@ -147,8 +147,8 @@ Objections place_with(int digits, State state, Place& place, const ExactLoad& lo
 Objections make_place(State state, Place& place, const ExactLoad& load, int fresh,
                       const std::shared_ptr<const Solver>& near, int digits) {
     Objections open = place_with(digits, std::move(state), place, load, fresh, near);
-    return open && digits < usual_digits ? place_with(usual_digits, State(*place.state), place, load, fresh, near)
-                                         : open;
+    const bool few = digits < usual_digits && (open || !place.evidence->well_known());
+    return few ? place_with(usual_digits, State(*place.state), place, load, fresh, near) : open;
 }
 
 ExactLoad meant_load(const State& state) {

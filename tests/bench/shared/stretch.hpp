@@ -24,7 +24,7 @@ struct StretchOptions {
     int threads = 1;          ///< one: CPU time of the thread; more: time on the wall
     int reference_every = 10; ///< equilibria from one measurement of the units to the next
     /// Called at every equilibrium; its time is not the run's.
-    std::function<void(const isostat::State&)> visit;
+    std::function<void(const isostat::State&)> visit{};
 };
 
 struct Stretch {

@@ -99,6 +99,7 @@ changes = {
     "rank": scale("claims", "counting", "rank", by=2),
     "a force from below": lambda c: c["claims"]["forces"]["finite"][-1].__setitem__(0, c["claims"]["forces"]["finite"][-1][1]),
     "a force from above": lambda c: c["claims"]["forces"]["finite"][-1].__setitem__(1, c["claims"]["forces"]["finite"][-1][0]),
+    "an interval too many": lambda c: c["claims"]["forces"]["infinitesimal"].append([0, 1]),
     "a coordinate": scale("state", "disks", 0, 0, by=1 + 2**-52),
     "a radius": scale("state", "disks", 0, genuine["state"]["dimension"], by=1 + 2**-52),
     "the dimension": lambda c: c["state"].__setitem__("dimension", 5 - c["state"]["dimension"]),

@@ -124,6 +124,7 @@ def main(certificate_path, log_path, data_path, first=CLOSED):
     same("structural zeros", [l for l, zero in enumerate(zeros) if zero], claim["structural_zeros"])
 
     def intervals(proved_low, proved_high, exponent, where, claimed, what="force {}"):
+        same(f"number of intervals, {what.format('l')}", len(claimed), len(where))
         for l, (lower, upper) in zip(where, claimed):
             if not Fraction(lower) <= proved_low[l] * two**exponent or not proved_high[l] * two**exponent <= Fraction(upper):
                 differ(f"{what.format(l)}: the interval that is claimed is smaller than what Coq proved")
@@ -148,7 +149,7 @@ def main(certificate_path, log_path, data_path, first=CLOSED):
     same("claim of stability", claims["stable"], True)
     if gap * two**fine < Fraction(claims["gaps"]["smallest"]):
         differ("a larger gap is claimed than Coq proved")
-    print(f"{n} {'disk' if d == 2 else 'sphere'}{'s' if n > 1 else ''}: Coq's packing is that of the certificate; counting, vertex, forces, gaps, load interval and stability follow")
+    print(f"{n} {'disk' if d == 2 else 'sphere'}{'s' if n > 1 else ''}: Coq's packing is that of the certificate; counting, vertex, forces, smallest gap, load interval and stability follow")
 
 
 if __name__ == "__main__":

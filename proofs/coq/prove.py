@@ -28,6 +28,10 @@ QUESTIONS = ("integers_in_zarith", "extract")
 SOURCES = ("zarith.ml", "checker.mli", "checker.ml", "reader.ml", "program.ml") # Coq writes the second and the third
 
 
+for variable in set(os.environ) - {"PATH", "HOME", "LANG", "LC_ALL", "TMPDIR", "XDG_CACHE_HOME"}: # others name libraries of Coq and OCaml
+    del os.environ[variable]
+
+
 def undecided(detail):
     print("undecided", " ".join(detail.split())[:1000])
     sys.exit(2)
@@ -39,14 +43,13 @@ class Runner:
     def __init__(self, limit):
         self.end = time.monotonic() + limit if limit else None
         self.caller = os.getppid()
-        self.environment = {k: v for k, v in os.environ.items() if not k.startswith("COQ") and k != "OCAMLRUNPARAM"}
 
     def __call__(self, words, command, folder, output):
         """Exit status; standard output and error go into `output`."""
         begin = time.monotonic()
         with open(output, "wb") as log:
             process = subprocess.Popen(command, cwd=folder, stdin=subprocess.DEVNULL, stdout=log, stderr=subprocess.STDOUT,
-                                       env=self.environment, start_new_session=True)
+                                       start_new_session=True)
             try:
                 while True:
                     try:

@@ -141,13 +141,11 @@ void print_yielding(std::string& out, const Inspection& inspection, const Load& 
                              with_bound(rate.value - rate.radius, rate.value + rate.radius));
     }
     std::string values;
-    double bound = 0;
     for (const Enclosure& value : y.second_variation) {
-        values += fmt::format("{:.6g} ", value.value);
-        bound = std::max(bound, value.radius);
+        values += (values.empty() ? "" : ", ") + with_bound(value.value - value.radius, value.value + value.radius);
     }
     if (!values.empty()) {
-        say(out, "W'' in (X, Y, angle)     {}within {}\n", values, rounded_up(bound, 2));
+        say(out, "W'' in (X, Y, angle)     {}\n", values);
     }
     say(out, "yields                   {} per unit of {}\n", rates, load.stress_name());
     for (const auto& [where, event] : {std::pair{"rising", &y.up}, {"falling", &y.down}}) {

@@ -65,6 +65,9 @@ constexpr std::size_t most_mechanisms = 256; // of which eigenvalues are said
 std::vector<Enclosure> eigenvalues(const Eigen::MatrixXd& form, const Eigen::MatrixXd& error,
                                    const Eigen::MatrixXd& columns, double off) {
     const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(form, columns.transpose() * columns);
+    if (solver.info() != Eigen::Success) {
+        return std::vector<Enclosure>(static_cast<std::size_t>(form.rows()), Enclosure{0, roundoff::infinity});
+    }
     const Eigen::MatrixXd& q = solver.eigenvectors();
     const Eigen::VectorXd& values = solver.eigenvalues();
     const auto norm = [](const Eigen::MatrixXd& m) { return m.cwiseAbs().rowwise().sum().maxCoeff(); };
@@ -139,10 +142,16 @@ class HeldForm {
                 std::abs(share) * (m.residual + 16 * static_cast<double>(motions_.size()) * u * m.size) * up;
         }
         const double fastest = Eigen::Map<const Eigen::ArrayXd>(sum.v.data(), std::ssize(sum.v)).abs().maxCoeff();
-        const double bound = look_at(0) ? 1.001 / (fastest * fastest) : roundoff::infinity;
         motions_ = {std::move(sum)};
+        const bool regular = look_at(0);
+        const double slowest = fastest - velocity_error(motions_[0]); // of that coordinate
+        if (!regular || !(slowest > 0)) {
+            return {0, roundoff::infinity};
+        }
         find_form();
-        return {form_(0, 0) / (fastest * fastest), (error_(0, 0) + 8 * u * std::abs(form_(0, 0))) * bound};
+        const double slower = slowest / fastest;
+        const double off = error_(0, 0) + std::abs(form_(0, 0)) * (1 - slower * slower + 8 * u);
+        return {form_(0, 0) / (fastest * fastest), off * (1.001 / (slowest * slowest))};
     }
 
   private:

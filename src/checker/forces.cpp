@@ -209,7 +209,7 @@ std::vector<Range> contact_forces(const Problem& problem, const Solver& solver, 
         return forces;
     }
     // Entries of A are below 2^(scale + fine), so forces per length are above the largest load / that. 40 bits more
-    // than the vertex has, at least 120, are kept below.
+    // than the vertex has are kept below.
     const long shift = problem.digits + 40 + solver.scale(problem) + problem.fine - *size;
     Balance balance(problem, vertex, load, shift);
     if (solver.usable()) {

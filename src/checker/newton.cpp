@@ -175,7 +175,7 @@ bool System::newton_in_quadruple(std::vector<double>& q, const std::optional<Way
     std::vector<Quadruple> at(q.begin(), q.end());
     double last = std::numeric_limits<double>::infinity();
     bool stale = solver_ != nullptr; // the factors are those of another place
-    for (int k = 0; k < most; ++k) {
+    for (int k = 0; k < most;) {
         if (!stale) {
             renew(q);
         }
@@ -184,7 +184,7 @@ bool System::newton_in_quadruple(std::vector<double>& q, const std::optional<Way
         }
         const Eigen::VectorXd x = step_at(at, way);
         const double size = x.lpNorm<Eigen::Infinity>();
-        if (stale && !(size < quick * last)) {
+        if (stale && !(size < std::min(quick * last, scale))) {
             stale = false;
             continue;
         }
@@ -200,6 +200,7 @@ bool System::newton_in_quadruple(std::vector<double>& q, const std::optional<Way
         }
         stale = true;
         last = size;
+        ++k;
     }
     return false;
 }

@@ -126,9 +126,6 @@ Objections place_with(int digits, State state, Place& place, const ExactLoad& lo
     }
     place.zeros = having_zero(e.forces);
     std::erase(place.zeros, fresh);
-    if (fresh >= 0) {
-        place.silent = without_force(place);
-    }
     if (place.state->perturbation) {
         add_first_order(place);
     }
@@ -139,6 +136,9 @@ Objections place_with(int digits, State state, Place& place, const ExactLoad& lo
         }
         std::erase_if(place.zeros, [&](int l) { return !contains(*structural, static_cast<std::size_t>(l)); });
     }
+    if (fresh >= 0) {
+        place.silent = without_force(place);
+    }
     return {};
 }
 
@@ -147,8 +147,14 @@ Objections place_with(int digits, State state, Place& place, const ExactLoad& lo
 Objections make_place(State state, Place& place, const ExactLoad& load, int fresh,
                       const std::shared_ptr<const Solver>& near, int digits) {
     Objections open = place_with(digits, std::move(state), place, load, fresh, near);
-    const bool few = digits < usual_digits && (open || !place.evidence->well_known());
-    return few ? place_with(usual_digits, State(*place.state), place, load, fresh, near) : open;
+    if (place.evidence->problem.digits >= usual_digits || (!open && place.evidence->well_known())) {
+        return open;
+    }
+    Place again;
+    again.chooses = place.chooses;
+    open = place_with(usual_digits, State(*place.state), again, load, fresh, near);
+    place = std::move(again);
+    return open;
 }
 
 ExactLoad meant_load(const State& state) {

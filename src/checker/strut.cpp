@@ -223,7 +223,10 @@ std::vector<int> that_may_rest(const Place& place) {
 } // namespace
 
 std::vector<bool> without_force(const Place& place) {
-    return without_force(place, place.zeros); // a hold without a finite force has no effect on the finite loads
+    std::vector<int> loose = place.zeros; // a hold without a finite force has no effect on the finite loads
+    loose.insert(loose.end(), place.ties.begin(), place.ties.end());
+    std::sort(loose.begin(), loose.end());
+    return without_force(place, loose);
 }
 
 bool holds_may_explain(const Place& place, std::size_t a, std::size_t b) {

@@ -287,7 +287,7 @@ class Replay {
         }
         go_to_stored(std::move(start), line.where);
         if (here_.state) {
-            judged(check_start(here_, *records_.start), line.where);
+            judged(asked([&] { return check_start(here_, *records_.start); }), line.where);
         }
     }
 

@@ -65,6 +65,21 @@ BOOST_AUTO_TEST_CASE(without_coq_nothing_is_said_to_be_proved_by_it) {
     }
 }
 
+/// Coq and OCaml would read other libraries there.
+BOOST_AUTO_TEST_CASE(coq_sees_no_variables_that_name_libraries) {
+    const WithoutCoq here;
+    const std::string file = here.certificate(crafted::two_disks(1, 2, 1, 1), "two.json");
+    scratch::write(here.folder.at("bin/coqc"), "#!/bin/sh\n/usr/bin/env >'" + here.folder.at("seen") + "'\n");
+    std::filesystem::permissions(here.folder.at("bin/coqc"), std::filesystem::perms::owner_all);
+    const std::string others = "OCAMLPATH=/other XDG_DATA_HOME=/other XDG_DATA_DIRS=/other COQLIB=/other ";
+    says(run({"verify", "--coq", file}, others + here.path), 2, {undecided_because("MathComp is not installed for ")});
+    if (std::filesystem::exists(here.folder.at("seen"))) { // asked
+        const std::string seen = scratch::read(here.folder.at("seen"));
+        BOOST_TEST(contains(seen, "PATH="));
+        BOOST_TEST(!contains(seen, "/other"), seen);
+    }
+}
+
 BOOST_AUTO_TEST_CASE(packings_that_the_checker_in_coq_does_not_cover_are_named) {
     const WithoutCoq here;
     isostat::State true_stress = crafted::two_disks(1, 2, 1, 1);

@@ -18,7 +18,7 @@ constexpr std::size_t most_exchanges = 1000; ///< exchanges of lists at one conf
 } // namespace
 
 ZeroHolds Standing::zero_holds() const {
-    return {fresh_hold.valid() ? std::optional(fresh_hold) : std::nullopt, resting};
+    return {fresh_hold.valid() ? std::optional(fresh_hold) : std::nullopt, idle};
 }
 
 void Standing::move_to(std::shared_ptr<Vertex> to, const Opening& opens) {
@@ -58,7 +58,7 @@ Result<Reached> Rearrangement::run() {
 /// The other rules choose by differences that floating steering does not resolve.
 bool Rearrangement::floats() const {
     return !options().at_first_order() && options().rule == OpeningRule::most_negative && !here_.by_steps &&
-           here_.resting.empty();
+           here_.idle.empty();
 }
 
 /// Propose, prove, record, decide, until no force is negative.
@@ -307,7 +307,7 @@ std::optional<Failure> Rearrangement::act(Answer answer, ArcProof* refused, cons
 /// A released hold that was held again at once, or whose arc goes up, has a multiplier of 0 up to rounding, and no
 /// descent. Releasing it again would repeat this without end.
 std::optional<Failure> Rearrangement::set_aside(const ArcRecord& record) {
-    here_.resting.push_back(here_.opening.contact);
+    here_.idle.push_back(here_.opening.contact);
     auto again = prover_.decide(*here_.vertex, at_.stress(), here_.zero_holds(), recorder_.counters.steps);
     if (!again.ok()) {
         return located(again.failure(), where(arcs_ + 1));

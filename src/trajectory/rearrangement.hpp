@@ -26,10 +26,10 @@ struct Standing {
     ArcKind kind = ArcKind::limit;  ///< kind of the arc that this opening begins
     /// Why this contact opens, and lists that were exchanged. Recorded with the arc.
     std::vector<TieDecision> settled{};
-    ContactId fresh_hold{};           ///< held since the power turn that ended at `vertex`
-    std::vector<ContactId> resting{}; ///< holds with multiplier 0, up to the uncertainty of the place of their turns
-    std::vector<ContactId> zeros{};   ///< forces of an equilibrium that vanish in the base
-    bool by_steps = false;            ///< the next arc must be proved before another one is proposed
+    ContactId fresh_hold{};         ///< held since the power turn that ended at `vertex`
+    std::vector<ContactId> idle{};  ///< holds with multiplier 0, up to the uncertainty of the place of their turns
+    std::vector<ContactId> zeros{}; ///< forces of an equilibrium that vanish in the base
+    bool by_steps = false;          ///< the next arc must be proved before another one is proposed
 
     [[nodiscard]] ZeroHolds zero_holds() const;
     /// Moves to `to`, where `opens` opens, and forgets what was known of the previous vertex.

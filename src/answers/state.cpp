@@ -222,6 +222,25 @@ Json counting_json(const std::string& file, const State& state, const Counting& 
     return object;
 }
 
+void add_yielding(Json& object, const Yielding& y, int dimension) {
+    const auto event = [dimension](const Yielding::Event& e) {
+        return e.contact.i < 0 ? Json()
+                               : Json{{"contact", to_string(e.contact, dimension)},
+                                      {"what", e.opens ? "opens" : "closes"},
+                                      {"stress", or_null(e.stress)}};
+    };
+    const auto pairs = [](std::span<const Enclosure> values) {
+        Json out = Json::array();
+        for (const Enclosure& value : values) {
+            out.push_back({or_null(value.value), or_null(value.radius)});
+        }
+        return out;
+    };
+    const Json rates = pairs(std::span(y.length_rate).first(static_cast<std::size_t>(dimension)));
+    object["second_variation"] = pairs(y.second_variation);
+    object["yielding"] = {{"length_rates", rates}, {"up", event(y.up)}, {"down", event(y.down)}};
+}
+
 void add_inspection(Json& object, const State& state, const Inspection& inspection) {
     const EquilibriumRecord& r = inspection.record;
     object["rattlers"] = inspection.rattlers;
@@ -266,23 +285,7 @@ void add_inspection(Json& object, const State& state, const Inspection& inspecti
     object["stable"] = to_string(inspection.stable);
     object["remark"] = inspection.remark;
     if (inspection.yielding) {
-        const Yielding& y = *inspection.yielding;
-        const auto event = [&](const Yielding::Event& e) {
-            return e.contact.i < 0 ? Json()
-                                   : Json{{"contact", to_string(e.contact, inspection.truth.dimension)},
-                                          {"what", e.opens ? "opens" : "closes"},
-                                          {"stress", or_null(e.stress)}};
-        };
-        const auto pairs = [](std::span<const Enclosure> values) {
-            Json out = Json::array();
-            for (const Enclosure& value : values) {
-                out.push_back({or_null(value.value), or_null(value.radius)});
-            }
-            return out;
-        };
-        const Json rates = pairs(std::span(y.length_rate).first(static_cast<std::size_t>(inspection.truth.dimension)));
-        object["second_variation"] = pairs(y.second_variation);
-        object["yielding"] = {{"length_rates", rates}, {"up", event(y.up)}, {"down", event(y.down)}};
+        add_yielding(object, *inspection.yielding, inspection.truth.dimension);
     }
 }
 

@@ -103,7 +103,7 @@ struct Normal {
                 most_periods = std::max(most_periods, std::abs(contact.sign[k]));
             }
         }
-        const int factors = std::bit_width(static_cast<unsigned>(most_periods - 1));
+        const long factors = std::bit_width(static_cast<unsigned>(most_periods - 1));
         scale += factors;
         Integer entry;
         for (const Row& contact : problem.rows) {

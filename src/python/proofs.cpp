@@ -172,14 +172,44 @@ py::list length_rates(const Inspection& inspection) {
     return rates;
 }
 
+using BoundInspection = py::class_<Inspection, std::shared_ptr<Inspection>>;
+
+/// A member of its record.
+template <class Member> auto of_record(Member member) {
+    return [member](const Inspection& self) { return self.record.*member; };
+}
+
+void bind_record(BoundInspection& inspection) {
+    using Record = EquilibriumRecord;
+    inspection.def_property_readonly("sigma2", of_record(&Record::stress), "Loaded stress.")
+        .def_property_readonly(
+            "sigma2_low", of_record(&Record::stress_low),
+            "Lower end of the supported interval of the loaded stress; -inf: unbounded; nan: not decided.")
+        .def_property_readonly("sigma2_high", of_record(&Record::stress_high),
+                               "Upper end; inf: unbounded; nan: not decided.")
+        .def_property_readonly("opens_low", of_record(&Record::opens_low),
+                               "Contact whose force vanishes at `sigma2_low`; None.")
+        .def_property_readonly("opens_high", of_record(&Record::opens_high),
+                               "Contact whose force vanishes at `sigma2_high`; None.")
+        .def_property_readonly("force_bound", of_record(&Record::force_bound),
+                               "Proved bound of the error of every force.")
+        .def_property_readonly("min_gap", of_record(&Record::min_gap),
+                               "Lower bound of the gaps of all other pairs; length.")
+        .def_property_readonly("sigma_min_bound", of_record(&Record::sigma_min_bound),
+                               "Proved lower bound of the smallest singular value of the contact matrix.")
+        .def_property_readonly("strain", of_record(&Record::strain), "[eps_1, eps_2], positive in compression.")
+        .def_property_readonly("potential", of_record(&Record::potential), "W = -sum F q.")
+        .def_property_readonly("decided_by", of_record(&Record::decided_by),
+                               "The arithmetic that settled it: \"double\", \"double-double\", \"mpfr\", \"exact\".");
+}
+
 void bind_inspection(py::module_& module) {
     using Seen = Inspection;
-    const auto record = [](auto member) { return [member](const Seen& self) { return self.record.*member; }; };
     using Record = EquilibriumRecord;
-    py::class_<Seen, std::shared_ptr<Seen>>(
+    BoundInspection inspection(
         module, "Inspection",
-        "What is known of a state without moving it; forces and ends of intervals are middles of proved intervals.")
-        .def_readonly("counting", &Seen::counting, "Counting: N_f, N, rank, h, k.")
+        "What is known of a state without moving it; forces and ends of intervals are middles of proved intervals.");
+    inspection.def_readonly("counting", &Seen::counting, "Counting: N_f, N, rank, h, k.")
         .def_property_readonly(
             "contacts", [](const Seen& self) { return contact_array(self.contacts); },
             "(N, 2) contacts of the state, then coordinates that had to be held.")
@@ -194,7 +224,7 @@ void bind_inspection(py::module_& module) {
                                "Numbers of the disks without a force-carrying contact; of clumps of all their members.")
         .def_property_readonly("rotational_rattlers", vector_of(&Seen::rotational_rattlers),
                                "First members of clumps that turn about the one member with contacts.")
-        .def_property_readonly("verdict", record(&Record::verdict),
+        .def_property_readonly("verdict", of_record(&Record::verdict),
                                "Verdict on: an isostatic equilibrium without overlap.")
         .def_property_readonly(
             "stable", [](const Seen& self) { return self.stable; },
@@ -213,26 +243,8 @@ void bind_inspection(py::module_& module) {
             "reaches, in (X, Y, angle) and lengths; X, Y: mean of the centres of the members.")
         .def_property_readonly(
             "remark", [](const Seen& self) { return self.remark; },
-            "Where it is no equilibrium: which contact, and by how much.")
-        .def_property_readonly("sigma2", record(&Record::stress), "Loaded stress.")
-        .def_property_readonly(
-            "sigma2_low", record(&Record::stress_low),
-            "Lower end of the supported interval of the loaded stress; -inf: unbounded; nan: not decided.")
-        .def_property_readonly("sigma2_high", record(&Record::stress_high),
-                               "Upper end; inf: unbounded; nan: not decided.")
-        .def_property_readonly("opens_low", record(&Record::opens_low),
-                               "Contact whose force vanishes at `sigma2_low`; None.")
-        .def_property_readonly("opens_high", record(&Record::opens_high),
-                               "Contact whose force vanishes at `sigma2_high`; None.")
-        .def_property_readonly("force_bound", record(&Record::force_bound), "Proved bound of the error of every force.")
-        .def_property_readonly("min_gap", record(&Record::min_gap),
-                               "Lower bound of the gaps of all other pairs; length.")
-        .def_property_readonly("sigma_min_bound", record(&Record::sigma_min_bound),
-                               "Proved lower bound of the smallest singular value of the contact matrix.")
-        .def_property_readonly("strain", record(&Record::strain), "[eps_1, eps_2], positive in compression.")
-        .def_property_readonly("potential", record(&Record::potential), "W = -sum F q.")
-        .def_property_readonly("decided_by", record(&Record::decided_by),
-                               "The arithmetic that settled it: \"double\", \"double-double\", \"mpfr\", \"exact\".");
+            "Where it is no equilibrium: which contact, and by how much.");
+    bind_record(inspection);
     bind_inspect(module);
 }
 

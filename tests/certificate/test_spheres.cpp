@@ -12,7 +12,6 @@
 
 using namespace isostat;
 using isostat::test::exactly;
-using isostat::test::Json;
 
 namespace {
 
@@ -24,8 +23,8 @@ bool holds(const Interval& interval, const mpq_class& value, double scale) {
            interval.upper - interval.lower < 1e-6 * scale;
 }
 
-void check_forces(const State& state, const Certification& truth, const Json& file) {
-    const Json& forces = file["forces"];
+void check_forces(const State& state, const Certification& truth, const nlohmann::json& file) {
+    const nlohmann::json& forces = file["forces"];
     BOOST_TEST_REQUIRE(truth.finite.size() == forces.size());
     for (std::size_t l = 0; l < forces.size(); ++l) {
         const mpq_class value = exactly(forces[l].get<std::string>());
@@ -43,7 +42,7 @@ void check_forces(const State& state, const Certification& truth, const Json& fi
     BOOST_TEST(zero == file["structural_or_exact_zero"].get<std::vector<int>>(), boost::test_tools::per_element());
 }
 
-void check_end(const State& state, const isostat::LoadEndClaim& end, const Json& expected) {
+void check_end(const State& state, const isostat::LoadEndClaim& end, const nlohmann::json& expected) {
     const mpq_class stress = exactly(expected["ratio"].get<std::string>()) * mpq_class(state.load.stress[2]);
     BOOST_TEST(!end.unbounded);
     BOOST_TEST(holds(end.stress, stress, state.load.stress[2]), expected["ratio"] << " times " << state.load.stress[2]
@@ -92,8 +91,8 @@ BOOST_AUTO_TEST_SUITE(certificate_of_spheres)
 BOOST_AUTO_TEST_CASE(the_digits_of_another_program_lie_in_every_interval) {
     for (const std::string& name : packings) {
         BOOST_TEST_CONTEXT(name) {
-            const Json file = isostat::test::read_spheres(name);
-            const Json& expected = file["expected"];
+            const nlohmann::json file = isostat::test::read_spheres(name);
+            const nlohmann::json& expected = file["expected"];
             const State state = isostat::test::state_of_spheres(file);
             isostat::validate(state.packing, name);
             const Certification truth = certify(state);
@@ -167,7 +166,7 @@ BOOST_AUTO_TEST_CASE(a_tetrahedron_has_the_forces_and_limits_of_its_closed_form)
 }
 
 BOOST_AUTO_TEST_CASE(true_stresses_press_on_areas_of_the_true_lengths) {
-    const Json file = isostat::test::read_spheres("box_uniform_30_1");
+    const nlohmann::json file = isostat::test::read_spheres("box_uniform_30_1");
     State state = isostat::test::state_of_spheres(file);
     const Certification dead = certify(state);
     state.load.kind = isostat::LoadKind::true_stress;

@@ -14,8 +14,6 @@
 
 namespace isostat::test {
 
-using Json = nlohmann::json;
-
 /// "1.25", "2e-31" or "27/40", exactly.
 inline mpq_class exactly(std::string text) {
     long exponent = 0;
@@ -34,7 +32,7 @@ inline mpq_class exactly(std::string text) {
     return exponent < 0 ? mpq_class(value / power) : mpq_class(value * power);
 }
 
-inline Contact contact_of(const Json& c) {
+inline Contact contact_of(const nlohmann::json& c) {
     if (c[0] == "pair") {
         Image image;
         for (std::size_t a = 0; a < 3; ++a) {
@@ -45,22 +43,22 @@ inline Contact contact_of(const Json& c) {
     return {c[3] == "lower" ? ContactKind::lower_wall : ContactKind::upper_wall, c[1], c[2]};
 }
 
-inline Json read_spheres(const std::string& name) {
+inline nlohmann::json read_spheres(const std::string& name) {
     std::ifstream file(std::string(ISOSTAT_TEST_DATA) + "/spheres/" + name + ".json");
-    return Json::parse(file);
+    return nlohmann::json::parse(file);
 }
 
 /// Dead loads on reference lengths of 1: the stresses are the forces, exactly.
-inline State state_of_spheres(const Json& file) {
-    const auto number = [](const Json& text) { return std::stod(text.get<std::string>()); };
+inline State state_of_spheres(const nlohmann::json& file) {
+    const auto number = [](const nlohmann::json& text) { return std::stod(text.get<std::string>()); };
     State state;
     Packing& p = state.packing;
     p.dimension = p.cell.dimension = 3;
     p.walls = Walls::none();
-    for (const Json& r : file["radius"]) {
+    for (const nlohmann::json& r : file["radius"]) {
         p.radius.push_back(number(r));
     }
-    for (const Json& x : file["position"]) {
+    for (const nlohmann::json& x : file["position"]) {
         std::transform(x.begin(), x.end(), std::back_inserter(p.q), number);
     }
     std::transform(file["cell"].begin(), file["cell"].end(), std::back_inserter(p.q), number);
@@ -81,7 +79,7 @@ inline State state_of_spheres(const Json& file) {
         state.load.stress[a] = number(file["dead_load_on_cell"][a]);
     }
     if (file.contains("infinitesimal_load")) {
-        for (const Json& g : file["infinitesimal_load"]) {
+        for (const nlohmann::json& g : file["infinitesimal_load"]) {
             std::transform(g.begin(), g.end(), std::back_inserter(state.load.infinitesimal), number);
         }
     }

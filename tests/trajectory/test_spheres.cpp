@@ -7,7 +7,6 @@
 
 using namespace isostat;
 using ::crafted::Played;
-using test::Json;
 
 namespace {
 
@@ -41,7 +40,7 @@ void check_sphere_lengths(const Packing& packing, const PerAxis<double>& lengths
 }
 
 /// `["held", coordinate]` besides what contacts of states are.
-Contact contact_or_held(const Json& c) {
+Contact contact_or_held(const nlohmann::json& c) {
     return c[0] == "held" ? Contact{ContactKind::held, c[1], 0} : test::contact_of(c);
 }
 
@@ -65,8 +64,8 @@ BOOST_AUTO_TEST_CASE(two_spheres_go_round_a_loop) {
 
 /// The small ones in opposite corners of the floor: the large one leaves it for a wall, and comes back.
 BOOST_AUTO_TEST_CASE(three_spheres_go_round_a_loop) {
-    const Json file = test::read_spheres("closed_three");
-    const Json& expected = file["expected"];
+    const nlohmann::json file = test::read_spheres("closed_three");
+    const nlohmann::json& expected = file["expected"];
     const State start = start_of_spheres("closed_three", {1, 1.3, 2.5});
     const Played down = one_proved_arc(start, -1);
     ::crafted::check_arc(down, floor_of(2), ::crafted::left(2),
@@ -127,7 +126,7 @@ BOOST_AUTO_TEST_CASE(a_sphere_of_a_tetrahedron_leaves_with_its_four_contacts) {
 }
 
 BOOST_AUTO_TEST_CASE(sequences_of_an_independent_program_are_followed) {
-    for (const Json& sequence : test::read_spheres("sequences")) {
+    for (const nlohmann::json& sequence : test::read_spheres("sequences")) {
         const std::string name = sequence["start"];
         BOOST_TEST_INFO_SCOPE(name << ", " << sequence["load"]);
         State state = test::state_of_spheres(test::read_spheres(name));
@@ -147,9 +146,9 @@ BOOST_AUTO_TEST_CASE(sequences_of_an_independent_program_are_followed) {
         const Played played = ::crafted::play(state, sequence["load"] == "down" ? -1 : +1, count);
         BOOST_TEST_REQUIRE(played.outcome.completed, played.why());
         std::size_t next = 0;
-        for (const Json& equilibrium : sequence["equilibria"]) {
+        for (const nlohmann::json& equilibrium : sequence["equilibria"]) {
             const double ratio = std::stod(equilibrium["ratio"].get<std::string>());
-            for (const Json& arc : equilibrium["arcs"]) {
+            for (const nlohmann::json& arc : equilibrium["arcs"]) {
                 BOOST_TEST_REQUIRE(next < played.records.arcs.size());
                 const ArcRecord& found = played.records.arcs[next++];
                 BOOST_TEST((found.opened == contact_or_held(arc[0])), arc << ": " << to_string(found.opened));

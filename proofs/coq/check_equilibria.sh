@@ -49,7 +49,7 @@ if kernel != extracted:
 END
   echo "  the extracted program: the same values ($(grep -o '[0-9.]* s of processor time' <<<"$answer"))"
 done
-python3 -B "$theory/check_extraction.py" "$folder/arithmetic"
+python3 -B "$theory/check_extraction.py"
 
 first=${forged[0]}
 # The same by `isostat verify --coq`, of a file and of one with a larger gap (its digest is the one that the program asks for).

@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
-"""The numbers of an extracted program are those of Coq:  python3 check_extraction.py FOLDER [--mutants]
+"""The numbers of an extracted program are those of Coq:  python3 check_extraction.py [--mutants]
 
 Coq and the program that it extracts (integers_in_zarith.v, arithmetic.v in questions/) compute the same list. With --mutants one
-line of the mapping is made wrong at a time: the lists have to differ, or the program to fail. FOLDER is made anew. Exit status 1 otherwise."""
+line of the mapping is made wrong at a time: the lists have to differ, or the program to fail. Exit status 1 otherwise."""
 import pathlib
 import re
 import shutil
 import subprocess
 import sys
+import tempfile
 
 here = pathlib.Path(__file__).resolve().parent
 MAPPING = "integers_in_zarith.v"
@@ -59,9 +60,6 @@ def results(folder):
 
 
 def main(folder, *mutants):
-    folder = pathlib.Path(folder)
-    shutil.rmtree(folder, ignore_errors=True)
-    folder.mkdir(parents=True)
     for file in [*(here / "questions" / name for name in (MAPPING, "arithmetic.v")), *(here / "extracted").glob("*.ml")]:
         shutil.copy(file, folder)
     coq, program = results(folder)
@@ -80,4 +78,5 @@ def main(folder, *mutants):
     sys.exit(survivors > 0)
 
 
-main(*sys.argv[1:])
+with tempfile.TemporaryDirectory() as made:
+    main(pathlib.Path(made), *sys.argv[1:])

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Weakens the checker that Coq proves, one place at a time: none of the weaker ones may still have a proof.
 
-  python3 proofs/coq/mutants.py FOLDER [NAME ...]     all mutants, or those whose names contain NAME
+  python3 proofs/coq/mutants.py [NAME ...]     all mutants, or those whose names contain NAME
 
-By night: four minutes of processor time. The sources are compiled in FOLDER, so that those of the project stay as they are. Of each
+By night: four minutes of processor time. The sources are compiled in a folder that is removed afterwards; those of the project stay as they are. Of each
 mutant the changed file is compiled again, with those that need it, until one of them fails. That has to be *after* the changed definition:
 a mutant that is no definition at all says nothing. Exit status 1: a mutant still has a proof, or does not fit the sources."""
 import pathlib
@@ -11,6 +11,7 @@ import re
 import shutil
 import subprocess
 import sys
+import tempfile
 
 here = pathlib.Path(__file__).parent
 
@@ -105,9 +106,6 @@ def coqc(folder, file):
 
 
 def main(folder, *names):
-    folder = pathlib.Path(folder)
-    shutil.rmtree(folder, ignore_errors=True)
-    folder.mkdir(parents=True)
     files = [line for line in (here / "_CoqProject").read_text().split() if line.endswith(".v")]
     order = needing(files)
     chosen = [m for m in MUTANTS if any(n in m[0] for n in names or ("",))]
@@ -143,4 +141,5 @@ def main(folder, *names):
     sys.exit(survivors > 0)
 
 
-main(*sys.argv[1:])
+with tempfile.TemporaryDirectory() as made:
+    main(pathlib.Path(made), *sys.argv[1:])

@@ -28,10 +28,6 @@ QUESTIONS = ("integers_in_zarith", "extract")
 SOURCES = ("zarith.ml", "checker.mli", "checker.ml", "reader.ml", "program.ml") # Coq writes the second and the third
 
 
-for variable in set(os.environ) - {"PATH", "HOME", "LANG", "LC_ALL", "TMPDIR", "XDG_CACHE_HOME"}: # others name libraries of Coq and OCaml
-    del os.environ[variable]
-
-
 def undecided(detail):
     print("undecided", " ".join(detail.split())[:1000])
     sys.exit(2)
@@ -220,6 +216,8 @@ def main():
     parser.add_argument("--cache", action="store_true")
     arguments = parser.parse_args()
     os.umask(0o077)
+    for variable in set(os.environ) - {"PATH", "HOME", "LANG", "LC_ALL", "TMPDIR", "XDG_CACHE_HOME"}: # others name libraries of Coq and OCaml
+        del os.environ[variable]
     if arguments.cache:
         print(cache(arguments.extracted))
     elif arguments.certificate is None:

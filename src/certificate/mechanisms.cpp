@@ -95,7 +95,7 @@ void judge_minimum(MechanismInspection& inspection, const Vertex& vertex, const 
                         without(candidates, vertex.structure.contacts(), vertex.packing.disk_count()));
         inspection.remark =
             fmt::format("equilibrium with {} mechanism(s), a strict local minimum within {} of the "
-                        "stored place: W'' >= {} along every one",
+                        "stored place: W'' >= {} in the coordinates that are held",
                         acting.size(), rounded_up(minimum->away, 2), rounded_down(minimum->curvature, 6));
     }
 }

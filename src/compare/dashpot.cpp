@@ -1,5 +1,8 @@
 #include "compare/dashpot.hpp"
 
+#include "contact/gap_entries.hpp"
+#include "core/dot.hpp"
+
 #include <Eigen/QR>
 #include <fmt/format.h>
 
@@ -37,17 +40,15 @@ Eigen::MatrixXd equations(const Frame& frame, const std::map<Contact, double>& b
         Eigen::MatrixXd::Zero(static_cast<int>(beyond.size()), 1 + static_cast<int>(packing.q.size() - disks));
     int row = 0;
     for (const auto& [contact, force] : beyond) {
-        const GapGradient g = gap_gradient(packing, contact);
         const double w = weight(packing, contact, power, hertz);
-        for (int e = 0; e < g.count; ++e) {
-            const auto k = static_cast<std::size_t>(g.coordinate[static_cast<std::size_t>(e)]);
-            const double value = -w * g.value[static_cast<std::size_t>(e)];
+        for_each_entry(gap_gradient(packing, contact), [&](std::size_t k, double g) {
+            const double value = -w * g;
             if (k < disks) {
                 a(row, 0) += value * frame.velocity[k];
             } else {
                 a(row, 1 + static_cast<int>(k - disks)) += value;
             }
-        }
+        });
         ++row;
     }
     return a;
@@ -67,10 +68,7 @@ std::optional<Dashpot> find_dashpot(const Frame& frame, const std::map<Contact, 
     }
     Eigen::VectorXd b(static_cast<int>(beyond.size()));
     std::transform(beyond.begin(), beyond.end(), b.begin(), [](const auto& entry) { return entry.second; });
-    double fastest = 0;
-    for (const double v : frame.velocity) {
-        fastest = std::max(fastest, std::abs(v));
-    }
+    const double fastest = largest(frame.velocity);
     double least = allowance + left_over * b.cwiseAbs().maxCoeff();
     std::optional<Dashpot> out;
     for (const bool hertz : {false, true}) {

@@ -1,6 +1,7 @@
 #include "compare/reading.hpp"
 
 #include "compare/dashpot.hpp"
+#include "contact/gap_entries.hpp"
 #include "packing/words.hpp"
 #include "snap/backbone.hpp"
 #include "snap/force_split.hpp"
@@ -228,11 +229,8 @@ class Reader {
     [[nodiscard]] Left left_by(const std::map<Contact, double>& forces) const {
         std::vector<double> left = frame_.load.external_force(frame_.packing);
         for (const auto& [c, force] : forces) {
-            const GapGradient g = gap_gradient(frame_.packing, c);
-            for (int k = 0; k < g.count; ++k) {
-                const auto e = static_cast<std::size_t>(k);
-                left[static_cast<std::size_t>(g.coordinate[e])] += force * g.value[e];
-            }
+            for_each_entry(gap_gradient(frame_.packing, c),
+                           [&left, f = force](std::size_t k, double push) { left[k] += f * push; });
         }
         const Packing& packing = frame_.packing;
         const std::size_t d = packing.axes();

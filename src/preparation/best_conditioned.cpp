@@ -1,6 +1,7 @@
 #include "preparation/best_conditioned.hpp"
 
 #include "contact/candidates.hpp"
+#include "contact/gap_entries.hpp"
 #include "preparation/polish.hpp"
 
 #include <Eigen/QR>
@@ -26,13 +27,8 @@ std::optional<std::vector<Contact>> best_conditioned(const Packing& packing) {
     }
     Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(n, count);
     for (Eigen::Index l = 0; l < count; ++l) {
-        const GapGradient g = gap_gradient(packing, pairs[static_cast<std::size_t>(l)]);
-        for (std::size_t k = 0; k < static_cast<std::size_t>(g.count); ++k) {
-            const int dof = dofs.dof_of(static_cast<std::size_t>(g.coordinate[k]));
-            if (dof >= 0) {
-                columns(dof, l) += g.value[k];
-            }
-        }
+        for_each_entry(gap_gradient(packing, pairs[static_cast<std::size_t>(l)]), dofs,
+                       [&](std::size_t dof, double value) { columns(static_cast<Eigen::Index>(dof), l) += value; });
     }
     const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors(columns);
     const auto diagonal = [&](Eigen::Index k) { return std::abs(factors.matrixQR()(k, k)); };

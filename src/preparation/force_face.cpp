@@ -1,6 +1,7 @@
 #include "preparation/force_face.hpp"
 
-#include "contact/separation.hpp"
+#include "contact/gap_entries.hpp"
+#include "core/dot.hpp"
 #include "core/work.hpp"
 #include "linear/factorisation.hpp"
 
@@ -14,16 +15,6 @@ namespace isostat {
 
 namespace {
 
-/// Calls `entry` with each degree of freedom that a contact acts on, and its force there per unit of contact force.
-template <class Entry> void for_each_push(const Packing& packing, const DofMap& dofs, const Contact& c, Entry entry) {
-    const GapGradient g = gap_gradient(packing, c);
-    for (std::size_t k = 0; k < static_cast<std::size_t>(g.count); ++k) {
-        if (const int dof = dofs.dof_of(static_cast<std::size_t>(g.coordinate[k])); dof >= 0) {
-            entry(dof, g.value[k]);
-        }
-    }
-}
-
 /// Balance: the forces of the pairs on every degree of freedom equal minus the load, in units of the largest load.
 void load_balance(ClpSimplex& simplex, const Packing& packing, const std::vector<Contact>& pairs,
                   const std::vector<double>& force, double size) {
@@ -32,8 +23,8 @@ void load_balance(ClpSimplex& simplex, const Packing& packing, const std::vector
     std::vector<int> column;
     std::vector<double> value;
     for (std::size_t l = 0; l < pairs.size(); ++l) {
-        for_each_push(packing, dofs, pairs[l], [&](int dof, double push) {
-            row.push_back(dof);
+        for_each_entry(gap_gradient(packing, pairs[l]), dofs, [&](std::size_t dof, double push) {
+            row.push_back(static_cast<int>(dof));
             column.push_back(static_cast<int>(l));
             value.push_back(push);
         });
@@ -89,8 +80,8 @@ Result<ForceFace> force_face(const Packing& packing, const Load& load, const std
     std::vector<unsigned char> varies(face.pairs.size(), 0);
     for (std::size_t m = 0; m < touching.size(); ++m) {
         std::vector<double> change(contacts.size(), 0.0); // column of H: minus the gradient of the gap
-        for_each_push(packing, structure.value().dofs(), touching[m],
-                      [&](int dof, double push) { change[static_cast<std::size_t>(dof)] += push; });
+        for_each_entry(gap_gradient(packing, touching[m]), structure.value().dofs(),
+                       [&](std::size_t dof, double push) { change[dof] += push; });
         factorisation.solve_forces(change);
         change.resize(face.pairs.size(), 0.0);
         change[contacts.size() + m] = 1;
@@ -102,11 +93,7 @@ Result<ForceFace> force_face(const Packing& packing, const Load& load, const std
         face.self_stresses.push_back(std::move(change));
     }
     const std::vector<double> force = load.external_force(packing);
-    double size = 0;
-    for (const double f : force) {
-        size = std::max(size, std::abs(f));
-    }
-    size = size > 0 ? size : 1;
+    const double size = largest(force) > 0 ? largest(force) : 1;
     ClpSimplex simplex;
     load_balance(simplex, packing, face.pairs, force, size);
     simplex.primal();

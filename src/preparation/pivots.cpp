@@ -1,6 +1,8 @@
 #include "preparation/pivots.hpp"
 
 #include "contact/candidates.hpp"
+#include "contact/gap_entries.hpp"
+#include "contact/other_pairs.hpp"
 #include "contact/words.hpp"
 #include "core/dot.hpp"
 #include "preparation/best_conditioned.hpp"
@@ -11,8 +13,6 @@
 #include "verified/to_vertex.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <optional>
 #include <set>
 #include <utility>
@@ -24,6 +24,7 @@ namespace {
 /// Entries of an exchange below this share of the largest entry are not pivots, because the next matrix would be so
 /// badly conditioned that Newton leaves the neighbourhood (seen at 1e-9, for lattices perturbed by 1e-9).
 constexpr double smallest_pivot = 1e-6;
+constexpr int most_pivots = 1000;
 
 /// Force of a contact for comparisons: the finite part, then the infinitesimal part.
 using Force = std::pair<double, double>;
@@ -47,11 +48,9 @@ class Basis {
           vertex_(enclose_vertex_double_double(at.packing, at.structure, at.factorisation, at.inverse)),
           statics_(at.packing, load_, at.structure, at.factorisation, at.inverse) {
         statics_.climb();
-        for (const Contact& candidate : find_candidates(at.packing, pivot_reach).contacts) {
-            if (!std::binary_search(contacts().begin(), contacts().end(), candidate)) {
-                others_.push_back(candidate);
-                gaps_.push_back(value_of(gap_at_vertex(at.packing, vertex_, candidate), signs));
-            }
+        others_ = without(find_candidates(at.packing, pivot_reach).contacts, contacts(), at.packing.disk_count());
+        for (const Contact& other : others_) {
+            gaps_.push_back(value_of(gap_at_vertex(at.packing, vertex_, other), signs));
         }
         const double sigma = load_.loaded_stress();
         for (std::size_t l = 0; l < contacts().size(); ++l) {
@@ -84,13 +83,8 @@ class Basis {
     /// Row m = sum of a_l rows l: as the force of m grows, f_l - a_l f_m reaches 0 first for the returned contact l.
     [[nodiscard]] std::optional<std::size_t> leaving(std::size_t other) const {
         std::vector<double> a(contacts().size(), 0.0);
-        const GapGradient g = gap_gradient(at_.packing, others_[other]);
-        for (std::size_t k = 0; k < static_cast<std::size_t>(g.count); ++k) {
-            const int dof = at_.structure.dofs().dof_of(static_cast<std::size_t>(g.coordinate[k]));
-            if (dof >= 0) {
-                a[static_cast<std::size_t>(dof)] = -g.value[k];
-            }
-        }
+        for_each_entry(gap_gradient(at_.packing, others_[other]), at_.structure.dofs(),
+                       [&](std::size_t dof, double value) { a[dof] = -value; });
         at_.factorisation.solve_forces(a);
         const double least = smallest_pivot * largest(a);
         std::optional<std::size_t> first;
@@ -120,12 +114,9 @@ class Basis {
         at_.factorisation.solve_velocities(out.velocity);
         const double least = smallest_pivot * largest(out.velocity);
         const auto rate = [&](std::size_t m) {
-            const GapGradient g = gap_gradient(at_.packing, others_[m]);
             double sum = 0;
-            for (std::size_t k = 0; k < static_cast<std::size_t>(g.count); ++k) {
-                const int dof = at_.structure.dofs().dof_of(static_cast<std::size_t>(g.coordinate[k]));
-                sum += dof >= 0 ? g.value[k] * out.velocity[static_cast<std::size_t>(dof)] : 0.0;
-            }
+            for_each_entry(gap_gradient(at_.packing, others_[m]), at_.structure.dofs(),
+                           [&](std::size_t dof, double value) { sum += value * out.velocity[dof]; });
             return sum < -least ? sum : 0.0;
         };
         out.entering = first_to_vanish(
@@ -171,7 +162,7 @@ Result<Polished> pivot(Packing packing, std::vector<Contact> contacts, const Loa
                        Signs signs, long& iterations, std::optional<State>& candidate) {
     bool may_replace = signs == Signs::told;
     std::set<std::vector<Contact>> seen;
-    for (int pivot = 0; pivot < limits.pivots; ++pivot) {
+    for (int pivot = 0; pivot < most_pivots; ++pivot) {
         if (limits.stop != nullptr && limits.stop->load(std::memory_order_relaxed)) {
             return failed(FailureKind::interrupted, "stopped after {} pivots", pivot);
         }
@@ -223,7 +214,7 @@ Result<Polished> pivot(Packing packing, std::vector<Contact> contacts, const Loa
         }
         contacts[*pulling] = basis.other(motion.entering->index);
     }
-    return failed(FailureKind::not_converged, "no vertex after {} pivots", limits.pivots);
+    return failed(FailureKind::not_converged, "no vertex after {} pivots", most_pivots);
 }
 
 } // namespace

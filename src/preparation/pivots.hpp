@@ -10,7 +10,6 @@ namespace isostat::preparation {
 
 struct PivotLimits {
     double step = 0; ///< longest displacement of one exchange, beyond which linear gaps are too inaccurate
-    int pivots = 1000;
     const std::atomic<bool>* stop = nullptr;
 };
 

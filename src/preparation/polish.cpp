@@ -2,6 +2,7 @@
 
 #include "contact/candidates.hpp"
 #include "contact/contact_set.hpp"
+#include "contact/other_pairs.hpp"
 #include "contact/words.hpp"
 #include "statics/decisions.hpp"
 #include "verified/centre.hpp"
@@ -22,13 +23,9 @@ namespace {
 /// The smallest gap of the other candidates at the true vertex when all are proved positive, else a failure naming one.
 Result<double> check_other_gaps(const Centre& at, VertexEnclosure vertex) {
     const Packing& packing = at.packing;
-    const std::vector<Contact>& contacts = at.structure.contacts(); // sorted by the caller
-    std::vector<Contact> others;
-    for (const Contact& candidate : find_candidates(packing, pivot_reach).contacts) {
-        if (!std::binary_search(contacts.begin(), contacts.end(), candidate)) {
-            others.push_back(candidate);
-        }
-    }
+    const std::vector<Contact>& contacts = at.structure.contacts();
+    std::vector<Contact> others =
+        without(find_candidates(packing, pivot_reach).contacts, contacts, packing.disk_count());
     double smallest = std::numeric_limits<double>::infinity();
     for (const bool extended : {false, true}) {
         if (extended) {

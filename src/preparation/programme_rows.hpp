@@ -2,6 +2,7 @@
 /// \file
 /// Rows of a contact programme: linearised gaps of a list of contacts.
 
+#include "contact/gap_entries.hpp"
 #include "contact/separation.hpp"
 #include "preparation/programme.hpp"
 
@@ -46,24 +47,20 @@ struct ContactProgramme::Rows {
 
     /// Whether the linear gap can reach 0 within the trust bounds; no real gap is smaller than the linear one.
     bool can_close(const Packing& packing, const Contact& c, double trust) {
-        const GapGradient g = gradient(packing, c);
         double closing = 0;
-        for (std::size_t k = 0; k < static_cast<std::size_t>(g.count); ++k) {
-            const bool of_grain = static_cast<std::size_t>(g.coordinate[k]) < packing.length_at(0);
-            closing += std::abs(g.value[k]) * (of_grain ? trust : wall_trust(packing) * trust);
-        }
+        for_each_entry(gradient(packing, c), [&](std::size_t coordinate, double value) {
+            const bool of_grain = coordinate < packing.length_at(0);
+            closing += std::abs(value) * (of_grain ? trust : wall_trust(packing) * trust);
+        });
         return isostat::gap(packing, c) < closing * (1 + 1e-9);
     }
 
     void add(const Packing& packing, const Contact& c) {
-        const GapGradient g = gradient(packing, c);
-        for (std::size_t k = 0; k < static_cast<std::size_t>(g.count); ++k) {
-            if (const int dof = dofs.dof_of(static_cast<std::size_t>(g.coordinate[k])); dof >= 0) {
-                row.push_back(static_cast<int>(contact.size()));
-                column.push_back(dof);
-                value.push_back(g.value[k]);
-            }
-        }
+        for_each_entry(gradient(packing, c), dofs, [&](std::size_t dof, double entry) {
+            row.push_back(static_cast<int>(contact.size()));
+            column.push_back(static_cast<int>(dof));
+            value.push_back(entry);
+        });
         contact.push_back(c);
         gap.push_back(isostat::gap(packing, c));
     }
@@ -93,11 +90,10 @@ struct ContactProgramme::Rows {
         }
         int disks = 0;
         double along = 0;
-        for (std::size_t k = 0; k < static_cast<std::size_t>(g.count); ++k) {
-            const auto coordinate = static_cast<std::size_t>(g.coordinate[k]);
+        for_each_entry(g, [&](std::size_t coordinate, double entry) {
             disks += coordinate < first ? 1 : 0;
-            along += coordinate < first ? 0 : g.value[k] * follows[coordinate - first];
-        }
+            along += coordinate < first ? 0 : entry * follows[coordinate - first];
+        });
         if (disks < g.count) { // entries of the cell come last
             g.coordinate[static_cast<std::size_t>(disks)] = static_cast<int>(leads);
             g.value[static_cast<std::size_t>(disks)] = along;

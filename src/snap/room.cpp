@@ -1,6 +1,7 @@
 #include "snap/room.hpp"
 
 #include "contact/candidates.hpp"
+#include "contact/gap_entries.hpp"
 #include "contact/separation.hpp"
 #include "core/roundoff.hpp"
 
@@ -52,21 +53,14 @@ void part(Packing& packing, const std::vector<Contact>& pairs, const std::vector
             continue;
         }
         const GapGradient gradient = gap_gradient(packing, pair);
-        const auto moves = [&](int k) {
-            const auto at = static_cast<std::size_t>(gradient.coordinate[static_cast<std::size_t>(k)]);
-            return at < disks && rattles[at / packing.axes()] != 0;
-        };
+        const auto moves = [&](std::size_t at) { return at < disks && rattles[at / packing.axes()] != 0; };
         double square = 0;
-        for (int k = 0; k < gradient.count; ++k) {
-            const double g = gradient.value[static_cast<std::size_t>(k)];
-            square += moves(k) ? g * g : 0;
-        }
-        for (int k = 0; k < gradient.count; ++k) {
-            if (moves(k)) {
-                packing.q[static_cast<std::size_t>(gradient.coordinate[static_cast<std::size_t>(k)])] +=
-                    missing / square * gradient.value[static_cast<std::size_t>(k)];
+        for_each_entry(gradient, [&](std::size_t at, double g) { square += moves(at) ? g * g : 0; });
+        for_each_entry(gradient, [&](std::size_t at, double g) {
+            if (moves(at)) {
+                packing.q[at] += missing / square * g;
             }
-        }
+        });
     }
 }
 

@@ -1,5 +1,6 @@
 #include "certificate/subject.hpp"
 #include "contact/contact_set.hpp"
+#include "contact/gap_entries.hpp"
 #include "core/words.hpp"
 #include "crafted/peeling.hpp"
 #include "rigidity/isostatic.hpp"
@@ -184,12 +185,11 @@ std::vector<double> resting_loads(const Packing& packing, const std::vector<Cont
     const double unit = packing.min_radius() * packing.min_radius();
     for (const Contact& contact : contacts) {
         const double force = unit * (1 + static_cast<double>(random() >> 11U) * 0x1p-53);
-        const GapGradient gradient = gap_gradient(packing, contact);
-        for (std::size_t k = 0; k < static_cast<std::size_t>(gradient.count); ++k) {
-            if (const auto at = static_cast<std::size_t>(gradient.coordinate[k]); at < out.size()) {
-                out[at] -= force * gradient.value[k];
+        for_each_entry(gap_gradient(packing, contact), [&](std::size_t at, double push) {
+            if (at < out.size()) {
+                out[at] -= force * push;
             }
-        }
+        });
     }
     balance(out, packing.cell);
     return out;

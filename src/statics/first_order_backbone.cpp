@@ -1,5 +1,6 @@
 #include "statics/first_order_backbone.hpp"
 
+#include "contact/gap_entries.hpp"
 #include "contact/separation.hpp"
 #include "contact/words.hpp"
 #include "core/dot.hpp"
@@ -7,9 +8,6 @@
 
 #include <ClpSimplex.hpp>
 #include <CoinPackedMatrix.hpp>
-
-#include <algorithm>
-#include <cmath>
 
 namespace isostat {
 
@@ -44,15 +42,11 @@ void load_programme(ClpSimplex& simplex, const Packing& packing, const DofMap& d
     std::vector<double> lower; // gradient . v >= rho_i + rho_j
     for (std::size_t l = 0; l < contacts.size(); ++l) {
         const Contact& c = contacts[l];
-        const GapGradient g = gap_gradient(packing, c);
-        for (std::size_t k = 0; k < static_cast<std::size_t>(g.count); ++k) {
-            const int dof = dofs.dof_of(static_cast<std::size_t>(g.coordinate[k]));
-            if (dof >= 0) {
-                row.push_back(static_cast<int>(l));
-                column.push_back(dof);
-                value.push_back(g.value[k]);
-            }
-        }
+        for_each_entry(gap_gradient(packing, c), dofs, [&](std::size_t dof, double entry) {
+            row.push_back(static_cast<int>(l));
+            column.push_back(static_cast<int>(dof));
+            value.push_back(entry);
+        });
         lower.push_back(touching_distance(rho, c) / rho_size);
     }
     const std::vector<double> free_low(columns, -COIN_DBL_MAX);

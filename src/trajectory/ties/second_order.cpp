@@ -1,6 +1,6 @@
 #include "trajectory/ties/second_order.hpp"
 
-#include "contact/separation.hpp"
+#include "contact/gap_entries.hpp"
 #include "contact/words.hpp"
 #include "statics/quotient.hpp"
 
@@ -73,13 +73,9 @@ ListExchange exchange_for(const Vertex& from, const std::vector<Sharer>& all, Ti
 Eigen::MatrixXd rates_of(const Packing& at, const DofMap& dofs, const std::vector<Contact>& contacts) {
     Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(contacts.size()), dofs.dof_count());
     for (std::size_t l = 0; l < contacts.size(); ++l) {
-        const GapGradient g = gap_gradient(at, contacts[l]);
-        for (std::size_t k = 0; k < static_cast<std::size_t>(g.count); ++k) {
-            const int dof = dofs.dof_of(static_cast<std::size_t>(g.coordinate[k]));
-            if (dof >= 0) {
-                rows(static_cast<Eigen::Index>(l), dof) = g.value[k];
-            }
-        }
+        for_each_entry(gap_gradient(at, contacts[l]), dofs, [&](std::size_t dof, double rate) {
+            rows(static_cast<Eigen::Index>(l), static_cast<Eigen::Index>(dof)) = rate;
+        });
     }
     return rows;
 }

@@ -1,7 +1,6 @@
 #include "preparation/polish.hpp"
 
 #include "contact/candidates.hpp"
-#include "contact/contact_set.hpp"
 #include "contact/other_pairs.hpp"
 #include "contact/words.hpp"
 #include "statics/decisions.hpp"
@@ -55,14 +54,6 @@ Result<double> check_other_gaps(const Centre& at, VertexEnclosure vertex) {
                   others.size(), contacts.size(), named(others.front()), h.value, h.radius);
 }
 
-int count_rattlers(const Packing& packing, const Statics& statics) {
-    std::vector<unsigned char> zero;
-    for (int l = 0; l < statics.structure().size(); ++l) {
-        zero.push_back(statics.is_structural_zero(ContactId(l)) ? 1 : 0);
-    }
-    return static_cast<int>(untouched(packing.disk_count(), unmarked(statics.structure().contacts(), zero)).size());
-}
-
 /// The true vertex near a packing, with as many digits as the proof requires.
 Result<VertexEnclosure> enclosed(const Centre& at) {
     if (at.inverse.verdict != Verdict::proved) {
@@ -99,7 +90,7 @@ std::optional<Failure> overlaps(const Packing& packing, const VertexEnclosure& v
 /// The smallest force that is not a structural zero; a failure when a force is not compressive.
 Result<double> smallest_force(Statics& statics, double sigma) {
     const std::vector<Contact>& contacts = statics.structure().contacts();
-    const Result<OpeningDecision> decision = decide_opening(statics, sigma, OpeningRule::most_negative, ContactId(), 0);
+    const Result<OpeningDecision> decision = decide_opening(statics, sigma, OpeningRule::most_negative, {}, 0);
     if (!decision.ok()) {
         return decision.failure();
     }
@@ -154,7 +145,7 @@ Result<Polished> polish(Packing packing, std::vector<Contact> contacts, Load loa
     result.min_gap = others.value();
     result.sigma_min_bound = at.inverse.sigma_min;
     result.min_force = force.value();
-    result.rattlers = count_rattlers(packing, statics);
+    result.rattlers = static_cast<int>(untouched(packing.disk_count(), statics.carrying()).size());
     result.state.packing = std::move(packing);
     result.state.load = std::move(load);
     result.state.contacts = std::move(contacts);

@@ -61,7 +61,7 @@ struct OpeningDecision {
 
 /// Held coordinates that carry no finite force and therefore do not compete.
 struct ZeroHolds {
-    std::optional<ContactId> fresh; ///< held since the last power turn: 0 by construction, as is its infinitesimal part
+    ContactId fresh; ///< held since the last power turn: 0 by construction, as is its infinitesimal part; or invalid
     /// Held earlier: the force of the finite loads is 0, up to the uncertainty of their turns; that of the
     /// infinitesimal loads may be different from 0.
     std::vector<ContactId> others;
@@ -85,13 +85,6 @@ struct ZeroHolds {
 /// loads, then by the names of the contacts.
 Result<OpeningDecision> decide_opening(Statics& statics, double sigma, OpeningRule rule, const ZeroHolds& zero,
                                        std::uint64_t random_bits, PerturbedStatics* perturbed = nullptr);
-
-/// `decide_opening` with at most one hold: `fresh_hold`, if it is valid.
-inline Result<OpeningDecision> decide_opening(Statics& statics, double sigma, OpeningRule rule, ContactId fresh_hold,
-                                              std::uint64_t random_bits, PerturbedStatics* perturbed = nullptr) {
-    return decide_opening(statics, sigma, rule, fresh_hold.valid() ? ZeroHolds{fresh_hold, {}} : ZeroHolds{},
-                          random_bits, perturbed);
-}
 
 /// End of the supported interval in one direction of sigma.
 struct LoadLimit {

@@ -23,7 +23,7 @@ class Stage {
         if (finite_) { // the infinitesimal stage has no ties of struts
             find_zero_holds();
         }
-        if (zero_.fresh) {
+        if (zero_.fresh.valid()) {
             ask_struts();
         }
     }
@@ -209,11 +209,11 @@ Result<OpeningDecision> Stage::nothing_opens() {
                        "every force is positive but those of contacts that carry nothing at the power turn: what the "
                        "infinitesimal loads make of them there is not followed"};
     }
-    if (finite_ && idle_.fresh && !statics_.is_structural_zero(*idle_.fresh)) {
+    if (finite_ && idle_.fresh.valid() && !statics_.is_structural_zero(idle_.fresh)) {
         return failed(FailureKind::undecided,
                       "every force is positive where the power turned and {} is held: the mechanism would stand at a "
                       "minimum of the potential, which disks do not have (S3), or the turn is not known well enough",
-                      name_of(*idle_.fresh));
+                      name_of(idle_.fresh));
     }
     decision_.margin = margin_;
     decision_.rung = statics_.rung();

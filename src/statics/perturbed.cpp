@@ -84,10 +84,7 @@ Enclosure PerturbedStatics::limit_rate(ContactId contact, double sigma, double s
 
 double PerturbedStatics::size() {
     if (size_ == 0) {
-        const double sigma = load_.loaded_stress();
-        for (int l = 0; l < statics_->structure().size(); ++l) {
-            size_ = std::max(size_, std::abs(statics_->force(ContactId(l), sigma).value));
-        }
+        size_ = statics_->largest_force(load_.loaded_stress());
     }
     return size_;
 }

@@ -159,8 +159,14 @@ Enclosure Statics::infinitesimal(ContactId contact) const {
     return {g.value[l], g.bound + (g.low.empty() ? 0.0 : std::abs(g.low[l]) * (1 + 2 * u))};
 }
 
-int Statics::backbone_count() const {
-    return static_cast<int>(std::count_if(backbone_.begin(), backbone_.end(), [](unsigned char c) { return c != 0; }));
+std::vector<Contact> Statics::carrying() const {
+    std::vector<Contact> out;
+    for (std::size_t l = 0; l < backbone_.size(); ++l) {
+        if (backbone_[l] != 0) {
+            out.push_back(structure_->contacts()[l]);
+        }
+    }
+    return out;
 }
 
 ForceExpression Statics::force_expression(ContactId contact, double sigma) const {
@@ -209,6 +215,14 @@ Order Statics::compare(const ForceExpression& a, const ForceExpression& b) {
         order = ladder_.compare(a, b);
     }
     return order;
+}
+
+double Statics::largest_force(double sigma) const {
+    double largest = 0;
+    for (std::size_t l = 0; l < backbone_.size(); ++l) {
+        largest = std::max(largest, std::abs(force(ContactId(l), sigma).value));
+    }
+    return largest;
 }
 
 double Statics::bound(double sigma) const {

@@ -36,7 +36,6 @@ struct StaticsHints {
 class Statics {
 
   public:
-    /// Solves for the present load; the slopes and the infinitesimal parts are solved when they are first asked for
     /// Solves for the present load; slopes and infinitesimal parts are solved on first use, because most vertices of a
     /// rearrangement need neither. The arguments must outlive the object. Cost: 2 solves, and 2 for each part used.
     Statics(const Packing& packing, const Load& load, const IsostaticStructure& structure,
@@ -53,8 +52,8 @@ class Statics {
     [[nodiscard]] bool is_structural_zero(ContactId contact) const { return backbone_[contact.index()] == 0; }
     /// The slope vanishes exactly, so this force does not depend on sigma.
     [[nodiscard]] bool slope_is_zero(ContactId contact) const;
-    /// Number of contacts whose finite force is not a structural zero.
-    [[nodiscard]] int backbone_count() const;
+    /// The contacts whose finite forces are no structural zeros.
+    [[nodiscard]] std::vector<Contact> carrying() const;
 
     /// From now on structural zeros are those with radii R_i + eps rho_i. To be called before any other function.
     void perturb_radii();
@@ -87,7 +86,8 @@ class Statics {
     Order sign(const ForceExpression& a);
     Order compare(const ForceExpression& a, const ForceExpression& b);
 
-    /// Largest bound of the error of a force at sigma.
+    /// Largest magnitude of a force at sigma, and largest bound of the error of one.
+    [[nodiscard]] double largest_force(double sigma) const;
     [[nodiscard]] double bound(double sigma) const;
     /// max |H f - F| as computed for the finite part at sigma.
     [[nodiscard]] double residual(double sigma) const;

@@ -126,7 +126,7 @@ struct Disks {
         held.assign(count, 0);
         for (const ContactId l : zero.others) {
             const auto disk = static_cast<std::size_t>(contacts[l.index()].i) / plane;
-            if (zero.fresh && disk < count && !statics.is_structural_zero(l)) {
+            if (zero.fresh.valid() && disk < count && !statics.is_structural_zero(l)) {
                 held[disk] = 1;
             }
         }
@@ -375,7 +375,7 @@ std::vector<EqualForce> Turn::mates(ContactId of) const {
         const Disks& disks = parts_->disks;
         inside.resize(disks.count);
         Enclosure excess;
-        if (!zero_.fresh) {
+        if (!zero_.fresh.valid()) {
             excess = statics_.infinitesimal(ContactId(l)) - statics_.infinitesimal(of);
         } else {
             excess = excess_over(statics_, of.index(), l, inside, parts_->bare);

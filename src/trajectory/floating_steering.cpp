@@ -188,8 +188,7 @@ void FloatingSteering::choose(ArcProposal& arc) {
     const auto chosen = arc.record.power_turn ? std::optional<Opening>() : here_->choose();
     if (!chosen) {
         const ContactId hold = arc.record.power_turn ? start_.opening.contact : ContactId();
-        const auto fresh = hold.valid() ? std::optional(hold) : std::nullopt;
-        arc.last = SteeredEnd{here_->packing, structure_->contacts(), {fresh, {}}, candidates_.triangulation};
+        arc.last = SteeredEnd{here_->packing, structure_->contacts(), {hold, {}}, candidates_.triangulation};
         return;
     }
     start_.opening = *chosen;

@@ -455,7 +455,7 @@ EndProof Prover::prove_end(Vertex::Beginning beginning, const LimitLoad& limit, 
 }
 
 Result<OpeningDecision> Prover::ask_again(Vertex& vertex, double stress) const {
-    auto decision = decide_opening(vertex.statics, stress, options_->rule, ContactId(), 0, vertex.first_order());
+    auto decision = decide_opening(vertex.statics, stress, options_->rule, {}, 0, vertex.first_order());
     if (vertex.perturbed) {
         vertex.perturbed->statics.log.clear();
         if (decision.ok()) {

@@ -17,10 +17,6 @@ constexpr std::size_t most_exchanges = 1000; ///< exchanges of lists at one conf
 
 } // namespace
 
-ZeroHolds Standing::zero_holds() const {
-    return {fresh_hold.valid() ? std::optional(fresh_hold) : std::nullopt, idle};
-}
-
 void Standing::move_to(std::shared_ptr<Vertex> to, const Opening& opens) {
     const ArcKind begins = kind_of(to->structure.contacts()[opens.contact.index()], opens.infinitesimal);
     *this = {std::move(to), opens, begins};
@@ -86,7 +82,7 @@ std::optional<Failure> Rearrangement::follow_arcs() {
         }
         Prover other = prover_.another();
         std::optional<EndProof> end;
-        if (ahead_ && steered_to_ && !steered_to_->zero.fresh && !proofs.ended()) {
+        if (ahead_ && steered_to_ && !steered_to_->zero.fresh.valid() && !proofs.ended()) {
             end = prove_end(other, std::move(*steered_to_)); // earlier proofs may still refuse this end
         }
         proofs.finish();

@@ -31,7 +31,7 @@ struct Standing {
     std::vector<ContactId> zeros{}; ///< forces of an equilibrium that vanish in the base
     bool by_steps = false;          ///< the next arc must be proved before another one is proposed
 
-    [[nodiscard]] ZeroHolds zero_holds() const;
+    [[nodiscard]] ZeroHolds zero_holds() const { return {fresh_hold, idle}; }
     /// Moves to `to`, where `opens` opens, and forgets what was known of the previous vertex.
     void move_to(std::shared_ptr<Vertex> to, const Opening& opens);
 };

@@ -145,34 +145,19 @@ std::vector<int> rattling_bodies(const Packing& packing, const std::vector<Conta
 } // namespace
 
 bool holds_what_bears(const Vertex& vertex) {
-    const auto& contacts = vertex.structure.contacts();
-    for (std::size_t l = 0; l < contacts.size(); ++l) {
-        if (contacts[l].kind == ContactKind::held && !vertex.statics.is_structural_zero(ContactId(l))) {
-            return true;
-        }
-    }
-    return false;
+    const std::vector<Contact> carrying = vertex.statics.carrying();
+    return std::any_of(carrying.begin(), carrying.end(), [](const Contact& c) { return c.kind == ContactKind::held; });
 }
 
 int carrying_contacts(const Vertex& vertex) {
-    int carrying = vertex.statics.backbone_count();
-    const auto& contacts = vertex.structure.contacts();
-    for (std::size_t l = 0; l < contacts.size() && !vertex.packing.bars.empty(); ++l) {
-        carrying -= contacts[l].kind == ContactKind::bar && !vertex.statics.is_structural_zero(ContactId(l)) ? 1 : 0;
-    }
-    return carrying;
+    const std::vector<Contact> carrying = vertex.statics.carrying();
+    return static_cast<int>(carrying.size()) - bar_count(carrying);
 }
 
 std::vector<int> rattlers(const Vertex& vertex) {
-    std::vector<unsigned char> zero;
-    for (int l = 0; l < vertex.structure.size(); ++l) {
-        zero.push_back(vertex.statics.is_structural_zero(ContactId(l)) ? 1 : 0);
-    }
-    std::vector<Contact> carrying = unmarked(vertex.structure.contacts(), zero);
-    if (!vertex.packing.bars.empty()) {
-        return rattling_bodies(vertex.packing, carrying);
-    }
-    return untouched(vertex.packing.disk_count(), carrying);
+    const std::vector<Contact> carrying = vertex.statics.carrying();
+    return vertex.packing.bars.empty() ? untouched(vertex.packing.disk_count(), carrying)
+                                       : rattling_bodies(vertex.packing, carrying);
 }
 
 std::vector<double> finite_forces(const Vertex& vertex, const Load& load) {
@@ -297,11 +282,7 @@ Result<Description> describe(Vertex& vertex, const Load& load) {
     }
     // After the limits, which may have climbed, so that the bounds are those of the better solution.
     // But no finer than double-double, in which a checker can confirm the record.
-    double largest = 0;
-    for (std::size_t l = 0; l < contacts.size(); ++l) {
-        largest = std::max(largest, std::abs(vertex.statics.force(ContactId(l), sigma).value));
-    }
-    record.force_bound = std::max(vertex.statics.bound(sigma), 0x1p-98 * largest);
+    record.force_bound = std::max(vertex.statics.bound(sigma), 0x1p-98 * vertex.statics.largest_force(sigma));
     record.balance = vertex.statics.residual(sigma);
     record.virtual_power = virtual_power_error(vertex, sigma);
     record.min_force = std::numeric_limits<double>::infinity();

@@ -27,7 +27,7 @@ Result<OpeningDecision> decided(const State& state, std::optional<LoadLimit>* lo
     const VertexEnclosure vertex = enclose_vertex(state.packing, at.structure, at.factorisation, at.inverse);
     Statics statics(state.packing, state.load, at.structure, at.factorisation, at.inverse, {{}, &vertex});
     const double sigma = state.load.loaded_stress();
-    auto decision = decide_opening(statics, sigma, OpeningRule::most_negative, ContactId(), 0);
+    auto decision = decide_opening(statics, sigma, OpeningRule::most_negative, {}, 0);
     if (low != nullptr) {
         auto limit = find_limit(statics, sigma, -1);
         if (limit.ok()) {

@@ -177,7 +177,7 @@ BOOST_AUTO_TEST_CASE(the_end_of_a_straight_strut_that_its_own_load_pulls_at_open
         state.load.infinitesimal[0] = g; // x of the strut
         AtVertex v(state);
         const ContactId fresh = find(state, held(1));
-        const auto decision = decide_opening(v.statics, v.sigma(), OpeningRule::most_negative, fresh, 0);
+        const auto decision = decide_opening(v.statics, v.sigma(), OpeningRule::most_negative, {fresh, {}}, 0);
         BOOST_TEST_REQUIRE(decision.ok(), why(decision));
         BOOST_TEST_REQUIRE(decision.value().opening.has_value());
         // Pressed to the right it stays at the right wall.
@@ -186,7 +186,7 @@ BOOST_AUTO_TEST_CASE(the_end_of_a_straight_strut_that_its_own_load_pulls_at_open
         BOOST_TEST(decision.value().opening->margin > 1);
         BOOST_TEST((v.statics.rung() == Rung::double_bound));
         // The rule that opens the weakest traction has the opposite order.
-        const auto least = decide_opening(v.statics, v.sigma(), OpeningRule::least_negative, fresh, 0);
+        const auto least = decide_opening(v.statics, v.sigma(), OpeningRule::least_negative, {fresh, {}}, 0);
         BOOST_TEST_REQUIRE(least.ok(), why(least));
         BOOST_TEST((v.contact(least.value().opening->contact) == (g > 0 ? right(0) : left(0))), "g = " << g);
     }
@@ -199,11 +199,11 @@ BOOST_AUTO_TEST_CASE(a_turn_at_which_every_force_is_positive_is_no_equilibrium) 
     };
     State state = on_top(1 + 1e-9);
     AtVertex v(state);
-    const auto fresh = decide_opening(v.statics, v.sigma(), OpeningRule::most_negative, find(state, held(2)), 0);
+    const auto fresh = decide_opening(v.statics, v.sigma(), OpeningRule::most_negative, {find(state, held(2)), {}}, 0);
     BOOST_TEST_REQUIRE(!fresh.ok());
     BOOST_TEST((fresh.failure().kind == FailureKind::undecided), fresh.failure().message());
     // Held earlier it has a force, and is let go.
-    const auto later = decide_opening(v.statics, v.sigma(), OpeningRule::most_negative, ContactId(), 0);
+    const auto later = decide_opening(v.statics, v.sigma(), OpeningRule::most_negative, {}, 0);
     BOOST_TEST_REQUIRE(later.ok(), why(later));
     BOOST_TEST_REQUIRE(later.value().opening.has_value());
     BOOST_TEST((v.contact(later.value().opening->contact) == held(2)));
@@ -213,7 +213,8 @@ BOOST_AUTO_TEST_CASE(a_straight_strut_without_a_load_of_its_own_is_a_tie) {
     State state = row_under_traction(1);
     state.load.infinitesimal[0] = 0;
     AtVertex v(state);
-    const auto decision = decide_opening(v.statics, v.sigma(), OpeningRule::most_negative, find(state, held(1)), 0);
+    const auto decision =
+        decide_opening(v.statics, v.sigma(), OpeningRule::most_negative, {find(state, held(1)), {}}, 0);
     BOOST_TEST_REQUIRE(!decision.ok());
     BOOST_TEST((decision.failure().kind == FailureKind::tie));
     BOOST_TEST(decision.failure().message().find("straight strut") != std::string::npos, why(decision));
@@ -224,7 +225,7 @@ BOOST_AUTO_TEST_CASE(a_disk_whose_hold_carries_a_load_is_no_strut) {
     state.load.disk_force.assign(4, 0.0);
     state.load.disk_force[1] = 0.5; // y of the disk, taken by the hold
     AtVertex v(state);
-    const auto decision = decide_opening(v.statics, v.sigma(), OpeningRule::most_negative, ContactId(), 0);
+    const auto decision = decide_opening(v.statics, v.sigma(), OpeningRule::most_negative, {}, 0);
     BOOST_TEST_REQUIRE(!decision.ok());
     BOOST_TEST((decision.failure().kind == FailureKind::tie));
     BOOST_TEST(decision.failure().message().find("exactly equal") != std::string::npos, why(decision));
@@ -242,7 +243,7 @@ BOOST_AUTO_TEST_CASE(a_grain_without_force_that_joins_a_strut_to_the_rest_only_p
                 BOOST_TEST_REQUIRE(mates.size() == 1U);
                 BOOST_TEST((v.contact(mates[0].contact) == right(0)));
                 BOOST_TEST(std::abs(mates[0].excess.value - pushed) <= 1e-12);
-                const auto decision = decide_opening(v.statics, v.sigma(), OpeningRule::most_negative, fresh, 0);
+                const auto decision = decide_opening(v.statics, v.sigma(), OpeningRule::most_negative, {fresh, {}}, 0);
                 BOOST_TEST_REQUIRE(decision.ok(), why(decision));
                 BOOST_TEST((v.contact(decision.value().opening->contact) == (load.to_the_right ? left(0) : right(0))));
                 BOOST_TEST(decision.value().opening->equal_forces);
@@ -253,7 +254,7 @@ BOOST_AUTO_TEST_CASE(a_grain_without_force_that_joins_a_strut_to_the_rest_only_p
             const auto later = Turn(v.statics, {ContactId(6), {fresh}}).mates(find(state, left(0)));
             BOOST_TEST_REQUIRE(later.size() == 1U);
             BOOST_TEST(std::abs(later[0].excess.value - pushed) <= 1e-12);
-            const auto no_fresh = Turn(v.statics, {std::nullopt, {fresh}}).mates(find(state, left(0)));
+            const auto no_fresh = Turn(v.statics, {ContactId(), {fresh}}).mates(find(state, left(0)));
             BOOST_TEST_REQUIRE(no_fresh.size() == 1U);
             BOOST_TEST(std::abs(no_fresh[0].excess.value - pushed) <= 1e-12);
         }

@@ -36,7 +36,7 @@ BOOST_AUTO_TEST_CASE(two_tractions_within_delta_are_ordered_down_to_1e_300_and_t
         for (int decade = 1; decade <= 300; decade += decade < 30 ? 1 : 30) {
             const double delta = std::pow(10.0, -decade);
             AtVertex loaded(stack(2, 1, sign * delta));
-            const auto decision = decide_opening(loaded.statics, 1, OpeningRule::most_negative, ContactId(), 0);
+            const auto decision = decide_opening(loaded.statics, 1, OpeningRule::most_negative, {}, 0);
             BOOST_TEST_REQUIRE(decision.ok(), "delta = 1e-" << decade << ": " << reason(decision));
             BOOST_TEST_REQUIRE(decision.value().opening.has_value());
             const Opening& opening = *decision.value().opening;
@@ -50,7 +50,7 @@ BOOST_AUTO_TEST_CASE(two_tractions_within_delta_are_ordered_down_to_1e_300_and_t
         }
     }
     AtVertex tie(stack(2, 1, 0));
-    const auto decision = decide_opening(tie.statics, 1, OpeningRule::most_negative, ContactId(), 0);
+    const auto decision = decide_opening(tie.statics, 1, OpeningRule::most_negative, {}, 0);
     BOOST_TEST_REQUIRE(!decision.ok());
     BOOST_TEST((decision.failure().kind == FailureKind::tie));
     BOOST_TEST(decision.failure().message().find("exactly equal") != std::string::npos, reason(decision));
@@ -86,13 +86,13 @@ BOOST_AUTO_TEST_CASE(a_force_within_delta_of_zero_has_its_sign_and_an_exact_zero
             if (rounded == 0.5) { // delta is lost in the load itself: it is added to another disk instead
                 continue;
             }
-            const auto decision = decide_opening(loaded.statics, 1, OpeningRule::most_negative, ContactId(), 0);
+            const auto decision = decide_opening(loaded.statics, 1, OpeningRule::most_negative, {}, 0);
             BOOST_TEST_REQUIRE(decision.ok(), reason(decision));
             BOOST_TEST(decision.value().opening.has_value() == (sign < 0));
         }
     }
     AtVertex zero(stack(0.5, -1, 0.5));
-    const auto decision = decide_opening(zero.statics, 1, OpeningRule::most_negative, ContactId(), 0);
+    const auto decision = decide_opening(zero.statics, 1, OpeningRule::most_negative, {}, 0);
     BOOST_TEST_REQUIRE(!decision.ok());
     BOOST_TEST((decision.failure().kind == FailureKind::tie));
     BOOST_TEST(decision.failure().message().find("exactly 0") != std::string::npos, reason(decision));
@@ -108,9 +108,9 @@ BOOST_AUTO_TEST_CASE(equal_by_symmetry_is_a_tie_however_the_coordinates_were_rou
         const State state = three_disks(r, r, 0.1 * r, 1, -1);
         LadderOptions options{.max_bits = 1024};
         AtVertex stored(state, false, options);
-        misled += decide_opening(stored.statics, -1, OpeningRule::most_negative, ContactId(), 0).ok() ? 1 : 0;
+        misled += decide_opening(stored.statics, -1, OpeningRule::most_negative, {}, 0).ok() ? 1 : 0;
         AtVertex truth(state, true, options);
-        const auto decision = decide_opening(truth.statics, -1, OpeningRule::most_negative, ContactId(), 0);
+        const auto decision = decide_opening(truth.statics, -1, OpeningRule::most_negative, {}, 0);
         BOOST_TEST_REQUIRE(!decision.ok(), "radius " << r);
         BOOST_TEST((decision.failure().kind == FailureKind::tie), reason(decision));
         BOOST_TEST(decision.failure().message().find("0-2") != std::string::npos, reason(decision));
@@ -124,8 +124,8 @@ BOOST_AUTO_TEST_CASE(unequal_radii_are_ordered_as_long_as_they_differ_at_all) {
         const double larger = 1 + std::ldexp(1.0, -bits);
         AtVertex right(three_disks(1, larger, 0.1, 1, -1));
         AtVertex left(three_disks(larger, 1, 0.1, 1, -1));
-        const auto a = decide_opening(right.statics, -1, OpeningRule::most_negative, ContactId(), 0);
-        const auto b = decide_opening(left.statics, -1, OpeningRule::most_negative, ContactId(), 0);
+        const auto a = decide_opening(right.statics, -1, OpeningRule::most_negative, {}, 0);
+        const auto b = decide_opening(left.statics, -1, OpeningRule::most_negative, {}, 0);
         BOOST_TEST_REQUIRE(a.ok(), "2^-" << bits << ": " << reason(a));
         BOOST_TEST_REQUIRE(b.ok(), "2^-" << bits << ": " << reason(b));
         const Contact opened = right.contact(a.value().opening->contact);
@@ -135,7 +135,7 @@ BOOST_AUTO_TEST_CASE(unequal_radii_are_ordered_as_long_as_they_differ_at_all) {
             "2^-" << bits);
         // One side for all: the sign of delta decides, not its rounding.
         AtVertex first(three_disks(1, 1.5, 0.1, 1, -1));
-        const auto c = decide_opening(first.statics, -1, OpeningRule::most_negative, ContactId(), 0);
+        const auto c = decide_opening(first.statics, -1, OpeningRule::most_negative, {}, 0);
         BOOST_TEST((first.contact(c.value().opening->contact) == opened), "2^-" << bits);
     }
 }

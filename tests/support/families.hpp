@@ -67,7 +67,7 @@ inline State stack(double up0, double up1, double up2) {
 inline Answer which_opens(const State& state, const Contact& plus, const Contact& minus) {
     Statement s(state, true);
     const double sigma = state.load.stress[1];
-    const auto decision = decide_opening(s.statics, sigma, OpeningRule::most_negative, ContactId(), 0);
+    const auto decision = decide_opening(s.statics, sigma, OpeningRule::most_negative, {}, 0);
     Answer answer{0, s.statics.rung(), s.statics.bits(), 0};
     if (decision.ok() && decision.value().opening) {
         const Contact opened = state.contacts[decision.value().opening->contact.index()];

@@ -150,8 +150,7 @@ class LinearLoading {
         const InverseBound inverse = bound_inverse(structure, factorisation, cache_);
         const ProcessorTime time(run_.seconds);
         Statics statics(at_.geometry, load_, structure, factorisation, inverse);
-        const auto decision =
-            decide_opening(statics, stress(), OpeningRule::most_negative, ContactId(), std::uint64_t{0});
+        const auto decision = decide_opening(statics, stress(), OpeningRule::most_negative, {}, std::uint64_t{0});
         if (!decision.ok()) {
             run_.stopped = decision.failure().message();
             return {};

@@ -3,7 +3,6 @@
 #include "contact/candidates.hpp"
 #include "contact/images.hpp"
 #include "contact/pair_list.hpp"
-#include "contact/regular_edges_in_space.hpp"
 #include "contact/separation.hpp"
 #include "packing/arc_bodies.hpp"
 #include "packing/bodies.hpp"

@@ -27,4 +27,8 @@ std::vector<Contact> without(std::vector<Contact> pairs, const std::vector<Conta
 /// count.
 OtherPairs other_pairs(const Packing& packing, const std::vector<Contact>& contacts);
 
+/// A disk and an own image at gap 0, exactly, between which no part of the cell moves (`can_move`). Such a pair is no
+/// contact of a list and bears no load, but the other strains of the cell can close it.
+std::vector<Contact> touching_own_images(const Packing& packing);
+
 } // namespace isostat

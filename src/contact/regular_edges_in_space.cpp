@@ -1,4 +1,4 @@
-#include "contact/regular_edges_in_space.hpp"
+#include "contact/regular_triangulation.hpp"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Regular_triangulation_3.h>

@@ -1,11 +1,12 @@
 #pragma once
 // The regular triangulation of the disks of a packing, made by CGAL and carried along with disks that move.
 
-#include <isostat/contact/state.hpp>
+#include <isostat/packing/packing.hpp>
 
 #include <array>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace isostat {
@@ -55,5 +56,11 @@ class RegularTriangulation {
     int disks_ = 0; ///< vertices from here on are the four outer disks
     std::vector<Face> faces_;
 };
+
+/// The edges (i, j), i < j, of a regular triangulation of the centres with weights fl(R^2), by exact predicates:
+/// statements T5 and T6 say which pairs are edges. Empty where a sphere is hidden or equal to another. Centres in one
+/// plane, or on one line, are triangulated in it. Cost: O(n log n) for packings. \pre `packing.dimension` is 3; squares
+/// of lengths neither over- nor underflow
+std::optional<std::vector<std::pair<int, int>>> regular_edges_in_space(const Packing& packing);
 
 } // namespace isostat

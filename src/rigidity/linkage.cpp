@@ -1,7 +1,5 @@
-#include "rigidity/linkage.hpp"
-
 #include "exact/rank.hpp"
-#include "rigidity/unwound.hpp"
+#include "rigidity/rigid_group.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,5 @@
 #include "rigidity/rigid_group.hpp"
 
-#include "rigidity/unwound.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cassert>

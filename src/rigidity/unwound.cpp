@@ -1,4 +1,4 @@
-#include "rigidity/unwound.hpp"
+#include "rigidity/rigid_group.hpp"
 
 #include <algorithm>
 #include <array>

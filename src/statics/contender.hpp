@@ -2,13 +2,11 @@
 // Contacts that may open, and the quantities by which they are ordered: private to the room.
 
 #include "contact/words.hpp"
-#include "statics/decisions.hpp"
+#include "statics/equal_forces.hpp"
 #include "statics/proved_minimum.hpp"
 #include "statics/quotient.hpp"
-#include "statics/straight_strut.hpp"
 
 #include <functional>
-#include <string>
 #include <vector>
 
 namespace isostat {

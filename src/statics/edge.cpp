@@ -1,4 +1,4 @@
-#include "statics/edge.hpp"
+#include "statics/equal_forces.hpp"
 
 #include <algorithm>
 

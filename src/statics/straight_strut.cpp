@@ -1,6 +1,5 @@
-#include "statics/straight_strut.hpp"
-
 #include "core/roundoff.hpp"
+#include "statics/equal_forces.hpp"
 
 #include <algorithm>
 #include <array>

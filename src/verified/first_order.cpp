@@ -2,7 +2,6 @@
 
 #include "contact/separation.hpp"
 #include "core/roundoff.hpp"
-#include "rigidity/linkage.hpp"
 #include "rigidity/rigid_group.hpp"
 #include "verified/norm.hpp"
 #include "verified/vertex_bounds.hpp"

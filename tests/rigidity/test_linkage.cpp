@@ -1,6 +1,6 @@
 // Pairs that keep touching while the grains between them move: the count of the motions that keep all bars, against
 // motions that are really made, and against lists in which something is missing or of another length.
-#include "rigidity/linkage.hpp"
+#include "rigidity/rigid_group.hpp"
 #include "support/crafted.hpp"
 
 #include <isostat/contact/state.hpp>

@@ -1,7 +1,7 @@
 // Straight struts at a power turn (statement S4): their two ends carry one force, and the infinitesimal loads order
 // them.
 #include "statics/decisions.hpp"
-#include "statics/straight_strut.hpp"
+#include "statics/equal_forces.hpp"
 #include "support/crafted.hpp"
 #include "support/loaded.hpp"
 #include "support/prepared.hpp"

@@ -1,14 +1,25 @@
 #pragma once
-// Contacts that carry the same force at a power turn because the disks between them are in a straight line (statement
-// S4, proofs/stability.md).
+// Contacts that carry the same force: two walls in an edge of a box (statement S6, proofs/stability.md), and the
+// contacts of a strut whose disks are in a straight line at a power turn (S4).
 
 #include "statics/decisions.hpp"
-#include "statics/edge.hpp"
+#include "statics/statics.hpp"
 
 #include <memory>
 #include <vector>
 
 namespace isostat {
+
+/// A contact whose force equals that of another one by counting, whatever the other forces are.
+struct EqualForce {
+    ContactId contact;
+    Enclosure excess; ///< its force minus the other one, per unit of the infinitesimal loads
+};
+
+/// The wall of another axis whose force on the same sphere is that of `of` at the true vertex, for every load and all
+/// radii (S6); at most two. Empty in the plane, and when the force of `of` is a structural zero. Cost: O(N), O(1)
+/// when `of` is no wall.
+[[nodiscard]] std::vector<EqualForce> equal_in_edge(const Statics& statics, ContactId of);
 
 /// A vertex where coordinates are held without a finite force. Uses the graph of the contacts and their normals; the
 /// only forces used are the infinitesimal ones of `zero.others`. Cost: two depth-first searches, O(N), and as much

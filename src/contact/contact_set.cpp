@@ -25,6 +25,24 @@ ContactSet::ContactSet(const std::vector<Contact>& contacts, int disk_count) {
     start_.pop_back();
 }
 
+std::vector<int> contacts_per_disk(int disks, const std::vector<Contact>& contacts) {
+    std::vector<int> count(static_cast<std::size_t>(disks), 0);
+    for (const Contact& contact : contacts) {
+        if (contact.kind != ContactKind::held) { // the number of a held coordinate is not that of a disk
+            ++count[static_cast<std::size_t>(contact.i)];
+            if (contact.of_disks()) {
+                ++count[static_cast<std::size_t>(contact.j)];
+            }
+        }
+    }
+    return count;
+}
+
+int most_held(int disks, const std::vector<Contact>& contacts) {
+    const std::vector<int> count = contacts_per_disk(disks, contacts);
+    return static_cast<int>(std::max_element(count.begin(), count.end()) - count.begin());
+}
+
 std::vector<Contact> unmarked(const std::vector<Contact>& contacts, const std::vector<unsigned char>& marks) {
     std::vector<Contact> out;
     for (std::size_t l = 0; l < contacts.size(); ++l) {

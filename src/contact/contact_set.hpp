@@ -28,6 +28,11 @@ class ContactSet {
     std::vector<Contact> members_;
 };
 
+/// The number of contacts of each disk; held coordinates do not count, and a disk and its own image count twice.
+std::vector<int> contacts_per_disk(int disks, const std::vector<Contact>& contacts);
+/// The disk with the most contacts, the first of several.
+int most_held(int disks, const std::vector<Contact>& contacts);
+
 /// The contacts without a mark: if structural zeros are marked, those that carry a force.
 std::vector<Contact> unmarked(const std::vector<Contact>& contacts, const std::vector<unsigned char>& marks);
 

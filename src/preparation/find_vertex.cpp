@@ -1,3 +1,4 @@
+#include "contact/contact_set.hpp"
 #include "contact/images.hpp"
 #include "contact/separation.hpp"
 #include "contact/words.hpp"
@@ -55,18 +56,6 @@ double dilation_needed(const Packing& packing, const std::vector<Contact>& conta
     return needed;
 }
 
-/// The disk with the most overlaps, which is hardly ever a rattler.
-int best_held(const Packing& packing) {
-    std::vector<int> touching(packing.radius.size(), 0);
-    for (const Contact& c : near_contacts(packing, near_enough * packing.min_radius(), 0)) {
-        ++touching[static_cast<std::size_t>(c.i)];
-        if (c.of_disks()) {
-            ++touching[static_cast<std::size_t>(c.j)];
-        }
-    }
-    return static_cast<int>(std::max_element(touching.begin(), touching.end()) - touching.begin());
-}
-
 void require_sensible(const Packing& start, const PreparationOptions& options) {
     Packing checked = start; // a soft packing may overlap its box a little
     for (int a = 0;
@@ -115,7 +104,9 @@ class VertexSearch {
         std::fill_n(load_.stress.begin(), packing_.dimension, options.stress);
         load_.stress[start.axes() - 1] *= options.ratio;
         if (packing_.cell.any()) {
-            packing_.cell.pin = best_held(packing_);
+            // The disk with the most overlaps, which is hardly ever a rattler.
+            packing_.cell.pin =
+                most_held(packing_.disk_count(), near_contacts(packing_, near_enough * packing_.min_radius(), 0));
         }
         load_.infinitesimal = infinitesimal_loads(radius_);
     }

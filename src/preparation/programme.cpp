@@ -1,5 +1,6 @@
 #include "preparation/programme.hpp"
 
+#include "contact/contact_set.hpp"
 #include "core/work.hpp"
 #include "preparation/neighbours.hpp"
 #include "preparation/programme_rows.hpp"
@@ -180,17 +181,14 @@ bool ContactProgramme::start_from_overlaps(ClpSimplex& simplex, const Packing& p
     const auto columns = static_cast<int>(rows.columns());
     const auto count = static_cast<int>(rows.contact.size());
     const int disks = packing.dimension * packing.disk_count();
-    std::vector<int> degree(static_cast<std::size_t>(packing.disk_count()), 0);
-    int nonbasic = 0;
+    std::vector<Contact> closed;
     for (std::size_t k = 0; k < rows.gap.size(); ++k) {
         if (rows.gap[k] <= 0) {
-            ++nonbasic;
-            ++degree[static_cast<std::size_t>(rows.contact[k].i)];
-            if (rows.contact[k].of_disks()) {
-                ++degree[static_cast<std::size_t>(rows.contact[k].j)];
-            }
+            closed.push_back(rows.contact[k]);
         }
     }
+    const std::vector<int> degree = contacts_per_disk(packing.disk_count(), closed);
+    const auto nonbasic = static_cast<int>(closed.size());
     const auto hanging = static_cast<int>(
         std::count_if(degree.begin(), degree.end(), [&packing](int d) { return d < packing.dimension; }));
     if (nonbasic + packing.dimension * hanging < mostly_closed * columns) {

@@ -1,3 +1,4 @@
+#include "contact/contact_set.hpp"
 #include "contact/separation.hpp"
 #include "core/words.hpp"
 #include "exact/rank.hpp"
@@ -174,16 +175,10 @@ StrainCounts count_strains(const Packing& packing, const std::vector<Contact>& c
 }
 
 std::vector<int> untouched(int disks, const std::vector<Contact>& pairs) {
-    std::vector<unsigned char> touched(static_cast<std::size_t>(disks), 0);
-    for (const Contact& pair : pairs) {
-        if (pair.kind != ContactKind::held) { // the number of a held coordinate is not that of a disk
-            const int other = pair.of_disks() ? pair.j : pair.i;
-            touched[static_cast<std::size_t>(pair.i)] = touched[static_cast<std::size_t>(other)] = 1;
-        }
-    }
+    const std::vector<int> contacts = contacts_per_disk(disks, pairs);
     std::vector<int> out;
     for (int i = 0; i < disks; ++i) {
-        if (touched[static_cast<std::size_t>(i)] == 0) {
+        if (contacts[static_cast<std::size_t>(i)] == 0) {
             out.push_back(i);
         }
     }
@@ -193,15 +188,11 @@ std::vector<int> untouched(int disks, const std::vector<Contact>& pairs) {
 std::vector<int> rattlers_by_coordination(const Packing& packing, std::vector<Contact> contacts) {
     std::vector<unsigned char> gone(packing.radius.size(), 0);
     for (bool changes = true; changes;) {
-        std::vector<int> count(gone.size(), 0);
         std::erase_if(contacts, [&](const Contact& c) {
             return c.kind == ContactKind::held || gone[static_cast<std::size_t>(c.i)] != 0 ||
                    (c.of_disks() && gone[static_cast<std::size_t>(c.j)] != 0);
         });
-        for (const Contact& c : contacts) {
-            ++count[static_cast<std::size_t>(c.i)];
-            count[static_cast<std::size_t>(c.j)] += c.of_disks() ? 1 : 0;
-        }
+        const std::vector<int> count = contacts_per_disk(packing.disk_count(), contacts);
         changes = false;
         for (std::size_t i = 0; i < gone.size(); ++i) {
             const bool few = gone[i] == 0 && !packing.is_fixed(DiskId(i)) && count[i] <= packing.dimension;

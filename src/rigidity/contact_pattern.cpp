@@ -1,9 +1,9 @@
 #include "rigidity/contact_pattern.hpp"
 
+#include "contact/contact_set.hpp"
 #include "contact/separation.hpp"
 
 #include <algorithm>
-#include <array>
 #include <tuple>
 
 namespace isostat {
@@ -60,21 +60,6 @@ std::vector<int> shared_levels(const Packing& packing, const std::vector<Contact
 /// Whether the image of the second disk may be displaced along an axis, by a period or by a tilt of a later period.
 bool is_displaced(const Contact& contact, int axis) {
     return std::any_of(contact.image.m.begin() + axis, contact.image.m.end(), [](std::int8_t m) { return m != 0; });
-}
-
-/// The disk with the most contacts, the first of several.
-int most_held(int disks, const std::vector<Contact>& contacts) {
-    std::vector<int> count(static_cast<std::size_t>(disks), 0);
-    for (const Contact& c : contacts) {
-        if (c.kind == ContactKind::held) {
-            continue;
-        }
-        ++count[static_cast<std::size_t>(c.i)];
-        if (c.of_disks()) {
-            ++count[static_cast<std::size_t>(c.j)];
-        }
-    }
-    return static_cast<int>(std::max_element(count.begin(), count.end()) - count.begin());
 }
 
 /// The row of a coordinate when another disk is pinned than in `dofs`: the forces of finite loads are the same

@@ -3,6 +3,7 @@
 #include "contact/words.hpp"
 #include "core/roundoff.hpp"
 #include "core/splitmix.hpp"
+#include "statics/proved_minimum.hpp"
 #include "verified/precise_first_order.hpp"
 
 #include <isostat/trajectory/trajectory.hpp>
@@ -19,10 +20,6 @@ namespace {
 
 using roundoff::u;
 constexpr Contact nobody{ContactKind::disk_disk, -1, -1};
-
-std::string shown(const Enclosure& e) {
-    return fmt::format("{:.6g} +- {:.3g}", e.value, e.radius);
-}
 
 /// Step length c / |rate| of a pair that closes.
 Enclosure length_of_way(const Enclosure& gap, const Enclosure& rate) {

@@ -1,7 +1,7 @@
 #include "contact/words.hpp"
 #include "core/roundoff.hpp"
 #include "packing/arc_bodies.hpp"
-#include "trajectory/limit_attempts.hpp"
+#include "trajectory/rearrangement.hpp"
 #include "trajectory/segment_start.hpp"
 #include "trajectory/steering.hpp"
 
@@ -15,7 +15,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <limits>
+#include <optional>
 #include <utility>
 
 namespace isostat {
@@ -50,7 +50,8 @@ class Run {
     Result<bool> next_equilibrium();
     Result<LoadLimit> find_limit();
     Result<bool> reach_stress(const LoadLimit& limit);
-    Result<Reached> follow(Attempt& attempt);
+    Result<Reached> follow(const Opening& opening, ArcKind kind, const LimitLoad& at, bool& begun);
+    std::optional<double> beyond_limit();
     std::optional<Failure> rearrange(const Opening& opening, ArcKind kind, LimitLoad at);
     std::optional<Failure> report(int arcs, std::optional<Result<Description>> known = std::nullopt);
 
@@ -244,26 +245,54 @@ Result<bool> Run::reach_stress(const LoadLimit& limit) {
     return true;
 }
 
-Result<Reached> Run::follow(Attempt& attempt) {
+/// `begun`: an arc was recorded.
+Result<Reached> Run::follow(const Opening& opening, ArcKind kind, const LimitLoad& at, bool& begun) {
     prover_.start_at(vertex_->packing);
-    Rearrangement rearrangement({vertex_, attempt.opening, attempt.kind, attempt.at}, prover_, recorder_);
+    Rearrangement rearrangement({vertex_, opening, kind, at}, prover_, recorder_);
     auto reached = rearrangement.run();
-    attempt.begun = rearrangement.arcs() > 0;
+    begun = rearrangement.arcs() > 0;
     return reached;
 }
 
+/// The first double beyond the limit; nothing: the limit is not known to within one double. The double nearest to the
+/// limit may lie before the limit, where the force that opens is still positive by a rounding: the potential then grows
+/// along the first part of the arc, which is as short as that rounding.
+std::optional<double> Run::beyond_limit() {
+    const int direction = segment_.direction;
+    auto found = isostat::find_limit(vertex_->statics, sigma(), direction, nullptr);
+    const auto known = [&] {
+        const double size = std::abs(found.value().stress);
+        return found.value().stress_error <= std::nextafter(size, infinity) - size;
+    };
+    while (found.ok() && !known() && vertex_->statics.climb()) {
+        found = isostat::find_limit(vertex_->statics, sigma(), direction, nullptr);
+    }
+    if (!found.ok() || !known()) {
+        return std::nullopt;
+    }
+    return std::nextafter(found.value().stress + direction * found.value().stress_error, direction * infinity);
+}
+
+/// Where the first arc from a limit is undecided, and without first-order terms, the rearrangement begins again with
+/// the load rounded away from the equilibrium; only the attempt that is returned counts.
 std::optional<Failure> Run::rearrange(const Opening& opening, ArcKind kind, LimitLoad at) {
-    Attempt attempt{opening, kind, std::move(at)};
-    LimitAttempts attempts(vertex_->statics, sigma(), segment_.direction, recorder_,
-                           [this](Attempt& a) { return follow(a); });
-    auto reached = kind == ArcKind::limit ? attempts.begin(attempt) : follow(attempt);
+    const RunCounters before = counters_;
+    bool begun = false;
+    auto reached = follow(opening, kind, at, begun);
+    const bool in_vain = !reached.ok() && reached.failure().kind == FailureKind::undecided && !begun;
+    if (in_vain && kind == ArcKind::limit && !recorder_.options.at_first_order()) {
+        if (const auto stress = beyond_limit()) {
+            counters_ = before;
+            at.set_stress(*stress);
+            reached = follow(opening, kind, at, begun);
+        }
+    }
     if (!reached.ok()) {
         return reached.failure();
     }
-    const Load load = attempt.at.load;
     Reached& there = reached.value();
     vertex_ = std::move(there.proof.vertex);
-    state_.load = load;
+    state_.load = std::move(at.load);
     state_.packing = vertex_->packing;
     state_.contacts = vertex_->structure.contacts();
     return report(there.arcs, std::move(there.proof.description));

@@ -1,3 +1,4 @@
+#include "core/dot.hpp"
 #include "preparation/clique_matrix.hpp"
 #include "preparation/programme_rows.hpp"
 
@@ -18,16 +19,6 @@ constexpr int inverse_iterations = 6;
 /// Approach of a pair, per displacement, below which it counts as zero, being rounding of the mechanism.
 constexpr double no_approach = 1e-9;
 
-void normalise(std::vector<double>& x) {
-    double largest = 0;
-    for (const double c : x) {
-        largest = std::max(largest, std::abs(c));
-    }
-    for (double& c : x) {
-        c /= largest;
-    }
-}
-
 /// A velocity that keeps all gaps of the rows constant, as far as inverse iteration tells.
 std::optional<std::vector<double>> mechanism(std::size_t columns, const std::vector<int>& start,
                                              const std::vector<int>& column, const std::vector<double>& value) {
@@ -42,7 +33,9 @@ std::optional<std::vector<double>> mechanism(std::size_t columns, const std::vec
     }
     for (int i = 0; i < inverse_iterations; ++i) {
         matrix.solve(x);
-        normalise(x);
+        for (const double size = largest(x); double& c : x) {
+            c /= size;
+        }
     }
     return x;
 }

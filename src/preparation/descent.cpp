@@ -1,4 +1,3 @@
-#include "core/work.hpp"
 #include "preparation/programme_rows.hpp"
 
 #include <ClpSimplex.hpp>
@@ -34,22 +33,6 @@ constexpr int most_below = 25;
 /// Slack of pairs that enter the list.
 constexpr double least_slack = 1e-9;
 constexpr double feasible = 1e-9;
-
-/// Walks through a sorted list `old` and finds the place of each requested contact, which must come in order.
-class Matching {
-  public:
-    explicit Matching(const std::vector<Contact>& old) : old_(old) {}
-    std::optional<std::size_t> find(const Contact& contact) {
-        while (next_ < old_.size() && old_[next_] < contact) {
-            ++next_;
-        }
-        return next_ < old_.size() && old_[next_] == contact ? std::optional(next_) : std::nullopt;
-    }
-
-  private:
-    const std::vector<Contact>& old_;
-    std::size_t next_ = 0;
-};
 
 /// The interior point for a renewed list: pairs that stay keep their slack and force, and the others begin with the
 /// mean product. `active` is renumbered in the same way.

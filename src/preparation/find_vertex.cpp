@@ -207,23 +207,23 @@ class VertexSearch {
     }
 
     Result<Polished> attempt(const std::vector<Contact>& contacts) {
-        const Stopwatch watch;
-        auto polished = polish(scale_.to_user(packing_, radius_), contacts, load_, newton_.iterations);
-        newton_.seconds += watch.seconds();
-        newton_.cpu_seconds += watch.cpu_seconds();
-        return polished;
+        return timed([&] { return polish(scale_.to_user(packing_, radius_), contacts, load_, newton_.iterations); });
     }
 
     Result<Polished> finish(const std::vector<Contact>& contacts) {
+        const PivotLimits limits{attempt_below * scale_.mean_radius() * scale_.unit(), options_.stop};
+        return timed([&] {
+            return pivot_to_vertex(scale_.to_user(packing_, radius_), contacts, load_, limits, newton_.iterations,
+                                   report_.candidate);
+        });
+    }
+
+    template <class Work> Result<Polished> timed(const Work& work) {
         const Stopwatch watch;
-        PivotLimits limits;
-        limits.step = attempt_below * scale_.mean_radius() * scale_.unit();
-        limits.stop = options_.stop;
-        auto pivoted = pivot_to_vertex(scale_.to_user(packing_, radius_), contacts, load_, limits, newton_.iterations,
-                                       report_.candidate);
+        auto result = work();
         newton_.seconds += watch.seconds();
         newton_.cpu_seconds += watch.cpu_seconds();
-        return pivoted;
+        return result;
     }
 
     /// A failure when the cell has become so flat that the next programme could not list its pairs.

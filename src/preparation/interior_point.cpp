@@ -1,11 +1,12 @@
 #include "preparation/interior_point.hpp"
 
+#include "core/dot.hpp"
 #include "preparation/clique_matrix.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 
 namespace isostat::preparation {
 
@@ -34,16 +35,8 @@ class Iteration {
           s_(rows_ + 2 * columns_), z_(s_.size()), ds_(s_.size()), dz_(s_.size()), target_(s_.size()),
           infeasible_(s_.size(), 0.0), dual_(columns_) {
         // The multipliers begin at order 1 in the scale of the cost, the slacks inside the bounds.
-        double force = 0;
-        for (const double c : p_.cost) {
-            force = std::max(force, std::abs(c));
-        }
-        double length = 0;
-        for (const double b : p_.bound) {
-            length = std::max(length, b);
-        }
-        const double start_slack = 0.02 * length;
-        const double start_force = force / std::sqrt(static_cast<double>(columns_));
+        const double start_slack = 0.02 * largest(p_.bound);
+        const double start_force = largest(p_.cost) / std::sqrt(static_cast<double>(columns_));
         for (std::size_t l = 0; l < rows_; ++l) {
             s_[l] = std::max(-p_.lower[l], start_slack);
             z_[l] = start_force * start_slack / s_[l];
@@ -68,21 +61,8 @@ class Iteration {
         std::copy_n(z_.begin(), rows_, point.force.begin());
     }
     [[nodiscard]] const std::vector<double>& x() const { return x_; }
-    [[nodiscard]] double mean_row_product() const {
-        double sum = 0;
-        for (std::size_t l = 0; l < rows_; ++l) {
-            sum += s_[l] * z_[l];
-        }
-        return sum / static_cast<double>(rows_);
-    }
-
-    [[nodiscard]] double mean_product() const {
-        double sum = 0;
-        for (std::size_t l = 0; l < s_.size(); ++l) {
-            sum += s_[l] * z_[l];
-        }
-        return sum / static_cast<double>(s_.size());
-    }
+    [[nodiscard]] double mean_row_product() const { return mean_product(rows_); }
+    [[nodiscard]] double mean_product() const { return mean_product(s_.size()); }
 
     /// Computes the residuals of the constraints and of the balance; returns the largest residual of the constraints.
     double residuals() {
@@ -102,13 +82,6 @@ class Iteration {
             dual_[k] += z_[rows_ + columns_ + k] - z_[rows_ + k];
             infeasible_[rows_ + k] = p_.bound[k] + x_[k] - s_[rows_ + k];
             infeasible_[rows_ + columns_ + k] = p_.bound[k] - x_[k] - s_[rows_ + columns_ + k];
-        }
-        return worst;
-    }
-    [[nodiscard]] double balance() const {
-        double worst = 0;
-        for (const double d : dual_) {
-            worst = std::max(worst, std::abs(d));
         }
         return worst;
     }
@@ -259,6 +232,12 @@ class Iteration {
     }
 
   private:
+    /// Of the first constraints.
+    [[nodiscard]] double mean_product(std::size_t count) const {
+        const auto end = s_.begin() + static_cast<std::ptrdiff_t>(count);
+        return std::inner_product(s_.begin(), end, z_.begin(), 0.0) / static_cast<double>(count);
+    }
+
     const BoxedProgramme& p_;
     std::size_t rows_, columns_;
     std::vector<double> x_, s_, z_, dx_, ds_, dz_, target_, infeasible_, dual_;

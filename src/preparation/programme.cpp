@@ -1,6 +1,7 @@
 #include "preparation/programme.hpp"
 
 #include "contact/contact_set.hpp"
+#include "core/dot.hpp"
 #include "core/work.hpp"
 #include "preparation/neighbours.hpp"
 #include "preparation/programme_rows.hpp"
@@ -11,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace isostat::preparation {
 
@@ -210,15 +212,11 @@ bool ContactProgramme::start_from_overlaps(ClpSimplex& simplex, const Packing& p
 
 /// Starts from the basis of the previous programme, row by contact.
 void ContactProgramme::start_from_last(ClpSimplex& simplex, const Rows& rows) const {
-    std::size_t old = 0;
+    Matching old(row_contact_);
     for (std::size_t k = 0; k < rows.contact.size(); ++k) {
-        const Contact& contact = rows.contact[k];
-        while (old < row_contact_.size() && row_contact_[old] < contact) {
-            ++old;
-        }
-        const bool known = old < row_contact_.size() && row_contact_[old] == contact;
+        const auto known = old.find(rows.contact[k]);
         simplex.setRowStatus(static_cast<int>(k),
-                             known ? static_cast<ClpSimplex::Status>(row_status_[old]) : ClpSimplex::basic);
+                             known ? static_cast<ClpSimplex::Status>(row_status_[*known]) : ClpSimplex::basic);
     }
     for (std::size_t k = 0; k < column_status_.size(); ++k) {
         simplex.setColumnStatus(static_cast<int>(k), static_cast<ClpSimplex::Status>(column_status_[k]));
@@ -230,9 +228,7 @@ void ContactProgramme::take_solution(const ClpSimplex& simplex, Rows& rows, Prog
     const auto columns = static_cast<std::size_t>(simplex.numberColumns());
     const double* const solution = simplex.primalColumnSolution();
     step.displacement = rows.on_coordinates(solution);
-    for (std::size_t k = 0; k < infinitesimal_->size(); ++k) {
-        step.largest = std::max(step.largest, std::abs(step.displacement[k]));
-    }
+    step.largest = largest(std::span(step.displacement).first(infinitesimal_->size()));
     row_contact_ = std::move(rows.contact);
     row_status_.resize(row_contact_.size());
     column_status_.resize(columns);
@@ -260,21 +256,16 @@ bool ContactProgramme::solve_inside(Rows& rows, const BoxedProgramme& programme,
     }
     step.outcome = ProgrammeStep::Outcome::optimal;
     step.displacement = rows.on_coordinates(active.x.data());
-    for (std::size_t k = 0; k < infinitesimal_->size(); ++k) {
-        step.largest = std::max(step.largest, std::abs(step.displacement[k]));
-    }
+    step.largest = largest(std::span(step.displacement).first(infinitesimal_->size()));
     std::vector<int> row_status(rows.contact.size());
-    std::size_t old = 0;
+    Matching old(row_contact_);
     for (std::size_t k = 0; k < rows.contact.size(); ++k) {
         row_status[k] = active.row[k] != 0 ? ClpSimplex::atLowerBound : ClpSimplex::basic;
         if (active.row[k] != 0) {
             step.contacts.push_back(rows.contact[k]);
         }
-        while (old < row_contact_.size() && row_contact_[old] < rows.contact[k]) {
-            ++old;
-        }
-        const bool before =
-            old < row_contact_.size() && row_contact_[old] == rows.contact[k] && row_status_[old] != ClpSimplex::basic;
+        const auto known = old.find(rows.contact[k]);
+        const bool before = known && row_status_[*known] != ClpSimplex::basic;
         step.changes += before != (active.row[k] != 0) ? 1 : 0;
     }
     column_status_.assign(active.column.size(), ClpSimplex::basic);

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numeric>
+#include <optional>
 #include <vector>
 
 namespace isostat::preparation {
@@ -26,6 +27,22 @@ inline constexpr long few_changes = 200;
 inline double wall_trust(const Packing& packing) {
     return packing.dimension == plane ? 10 : 3;
 }
+
+/// Walks through a sorted list `old` and finds the place of each requested contact, which must come in order.
+class Matching {
+  public:
+    explicit Matching(const std::vector<Contact>& old) : old_(old) {}
+    std::optional<std::size_t> find(const Contact& contact) {
+        while (next_ < old_.size() && old_[next_] < contact) {
+            ++next_;
+        }
+        return next_ < old_.size() && old_[next_] == contact ? std::optional(next_) : std::nullopt;
+    }
+
+  private:
+    const std::vector<Contact>& old_;
+    std::size_t next_ = 0;
+};
 
 struct ContactProgramme::Rows {
     explicit Rows(const Packing& packing) : dofs(packing) {}

@@ -208,7 +208,10 @@ void SoftDynamics::publish_lengths() {
     }
 }
 
-SoftMeasures SoftDynamics::finish(SoftMeasures result) {
+SoftMeasures SoftDynamics::finish(SoftMeasures result, long steps, bool converged) {
+    std::fill(velocity_.begin(), velocity_.end(), 0.0);
+    result.steps = steps;
+    result.converged = converged;
     publish_lengths();
     for (std::size_t k = 0; k < n_; ++k) {
         const auto i = static_cast<std::size_t>(order_[k]);
@@ -506,11 +509,7 @@ SoftMeasures SoftDynamics::separate(double overlap, long max_steps) {
             progress_(static_cast<double>(step) / static_cast<double>(max_steps));
         }
     }
-    std::fill(velocity_.begin(), velocity_.end(), 0.0);
-    SoftMeasures result = measure(0);
-    result.converged = overlap_ <= limit;
-    result.steps = step;
-    return finish(result);
+    return finish(measure(0), step, overlap_ <= limit);
 }
 
 SoftMeasures SoftDynamics::compress(double pressure, double rate, long max_steps) {
@@ -544,11 +543,7 @@ SoftMeasures SoftDynamics::compress(double pressure, double rate, long max_steps
             progress_(std::clamp(1 - error, 0.0, 1.0));
         }
     }
-    std::fill(velocity_.begin(), velocity_.end(), 0.0);
-    SoftMeasures result = measure(pressure);
-    result.converged = reached;
-    result.steps = step;
-    return finish(result);
+    return finish(measure(pressure), step, reached);
 }
 
 SoftDynamics::Sums SoftDynamics::sums_of(const Patch& patch) const {
@@ -593,6 +588,7 @@ SoftMeasures SoftDynamics::relax(double pressure, double tolerance, long max_ste
         patch.downhill = 0;
     }
     SoftMeasures result;
+    bool converged = false;
     double first_residual = 0;
     for (;; ++step) {
         compute_forces(pressure);
@@ -601,7 +597,7 @@ SoftMeasures SoftDynamics::relax(double pressure, double tolerance, long max_ste
             const double worst =
                 std::max(result.residual, (patches_.empty() ? 1.0 : pressure_share) * result.pressure_error);
             if (worst < tolerance || step >= max_steps || stopped()) {
-                result.converged = worst < tolerance;
+                converged = worst < tolerance;
                 break;
             }
             first_residual = std::max(first_residual, worst);
@@ -635,8 +631,7 @@ SoftMeasures SoftDynamics::relax(double pressure, double tolerance, long max_ste
         }
         advance(dt, true);
     }
-    result.steps = step;
-    return finish(result);
+    return finish(result, step, converged);
 }
 
 } // namespace isostat::preparation

@@ -98,7 +98,7 @@ class SoftDynamics {
     /// Force on a wall or period over that of the pressure, minus 1; in a cell that keeps its shape: on its size.
     [[nodiscard]] double out_of_balance(std::size_t axis, double pressure) const;
     void publish_lengths();
-    SoftMeasures finish(SoftMeasures result);
+    SoftMeasures finish(SoftMeasures result, long steps, bool converged);
     [[nodiscard]] SoftMeasures measure(double pressure);
     [[nodiscard]] bool stopped() const { return stop_ != nullptr && stop_->load(std::memory_order_relaxed); }
 

@@ -1,11 +1,13 @@
 #include "preparation/soft_newton.hpp"
 
+#include "core/dot.hpp"
 #include "core/parallel.hpp"
 #include "preparation/neighbours.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <span>
 
 namespace isostat::preparation {
 
@@ -32,6 +34,14 @@ constexpr double wall_damping = 0.3;
 
 double dot(const std::vector<double>& a, const std::vector<double>& b) {
     return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+}
+
+double force_on_wall(const Packing& packing, int axis, double pressure) {
+    double face = pressure;
+    for (int b = 0; b < packing.dimension; ++b) {
+        face *= b == axis ? 1.0 : packing.length(b);
+    }
+    return face;
 }
 
 } // namespace
@@ -88,26 +98,17 @@ void SoftNewton::gradient(double pressure, std::vector<double>& slope) const {
         }
     }
     for (int a = 0; a < packing_.dimension; ++a) {
-        double face = pressure;
-        for (int b = 0; b < packing_.dimension; ++b) {
-            face *= b == a ? 1.0 : packing_.length(b);
-        }
-        slope[packing_.axes() * packing_.radius.size() + static_cast<std::size_t>(a)] += face;
+        slope[packing_.length_at(static_cast<std::size_t>(a))] += force_on_wall(packing_, a, pressure);
     }
 }
 
 SoftMeasures SoftNewton::measure(double pressure, const std::vector<double>& slope) const {
     SoftMeasures now;
-    const std::size_t disks = packing_.axes() * packing_.radius.size();
-    for (std::size_t k = 0; k < disks; ++k) {
-        now.residual = std::max(now.residual, std::abs(slope[k]) / (pressure * mean_diameter_));
-    }
+    now.residual = largest(std::span(slope).first(packing_.length_at(0))) / (pressure * mean_diameter_);
     for (int a = 0; a < packing_.dimension; ++a) {
-        double face = pressure;
-        for (int b = 0; b < packing_.dimension; ++b) {
-            face *= b == a ? 1.0 : packing_.length(b);
-        }
-        now.pressure_error = std::max(now.pressure_error, std::abs(slope[disks + static_cast<std::size_t>(a)]) / face);
+        now.pressure_error =
+            std::max(now.pressure_error, std::abs(slope[packing_.length_at(static_cast<std::size_t>(a))]) /
+                                             force_on_wall(packing_, a, pressure));
     }
     for (const double h : gap_) {
         now.overlap = std::max(now.overlap, -h / mean_diameter_);
@@ -136,12 +137,8 @@ bool SoftNewton::direction(const std::vector<double>& slope, std::vector<double>
 
 /// Moves the packing; returns the taken share of the step.
 double SoftNewton::search(double pressure, const std::vector<double>& slope, const std::vector<double>& step) {
-    double largest = 0;
-    for (std::size_t k = 0; k < packing_.axes() * packing_.radius.size(); ++k) {
-        largest = std::max(largest, std::abs(step[k]));
-    }
     const double first = dot(slope, step); // negative
-    double share = std::min(1.0, longest_step * mean_diameter_ / largest);
+    double share = std::min(1.0, longest_step * mean_diameter_ / largest(std::span(step).first(packing_.length_at(0))));
     double low = 0;
     double low_slope = first;
     double high = 0; // not yet known

@@ -5,7 +5,6 @@
 
 #include <isostat/snap/snap.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 

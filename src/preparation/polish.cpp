@@ -11,7 +11,6 @@
 #include <isostat/rigidity/counting.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <optional>
 

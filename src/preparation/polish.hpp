@@ -5,8 +5,6 @@
 #include <isostat/contact/state.hpp>
 #include <isostat/core/result.hpp>
 
-#include <optional>
-#include <string>
 #include <vector>
 
 namespace isostat::preparation {

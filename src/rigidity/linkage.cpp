@@ -2,7 +2,6 @@
 #include "rigidity/rigid_group.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cstdint>
 #include <map>

@@ -1,7 +1,6 @@
 #include "rigidity/rigid_group.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 
 namespace isostat {

@@ -2,8 +2,6 @@
 #include "statics/contender.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 namespace isostat {
 

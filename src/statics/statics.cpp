@@ -5,7 +5,6 @@
 #include <qd/dd_real.h>
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
 namespace isostat {

@@ -5,8 +5,6 @@
 #include "trajectory/descent.hpp"
 #include "trajectory/record.hpp"
 
-#include <cmath>
-
 namespace isostat {
 
 namespace {

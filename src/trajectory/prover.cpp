@@ -2,7 +2,6 @@
 
 #include "contact/words.hpp"
 #include "core/dot.hpp"
-#include "motion/arc.hpp"
 #include "motion/certify_arc.hpp"
 #include "trajectory/descent.hpp"
 #include "trajectory/floating_steering.hpp"

@@ -2,12 +2,10 @@
 
 #include "contact/images.hpp"
 #include "contact/words.hpp"
-#include "motion/arc.hpp"
 #include "trajectory/steering.hpp"
 #include "verified/inverse_bound_multiprecision.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace isostat {

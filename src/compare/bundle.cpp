@@ -1,5 +1,4 @@
-#include "compare/bundle.hpp"
-
+#include "compare/path.hpp"
 #include "core/parallel.hpp"
 
 #include <isostat/snap/snap.hpp>

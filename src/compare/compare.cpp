@@ -1,7 +1,3 @@
-#include "compare/bundle.hpp"
-#include "compare/departure.hpp"
-#include "compare/frame.hpp"
-#include "compare/local.hpp"
 #include "compare/path.hpp"
 #include "core/parallel.hpp"
 #include "core/words.hpp"
@@ -130,6 +126,28 @@ std::vector<Frame> read_some(SeriesReader& reader, std::size_t most, const Compa
         out.push_back(std::move(*frame));
     }
     return out;
+}
+
+/// Whether the exact run from the frame before ends at the list of the frame; empty: it is not asked.
+std::string outcome(const JudgedFrame& before, const JudgedFrame& after, const RunOptions& options) {
+    const FrameResult& r = after.result;
+    if (!before.state || r.status == FrameStatus::file || r.status == FrameStatus::moving) {
+        return {};
+    }
+    const auto list = list_after(*before.state, r.stress, false, options);
+    return !list.ok()                   ? "undecided: " + list.failure().message(before.state->packing.dimension)
+           : list.value() == after.list ? "same"
+                                        : "other";
+}
+
+/// Each frame against the exact run from the previous frame, a score on which an earlier departure has no effect: sets
+/// `local` of every frame at rest, from number `first` on, whose previous frame has a state.
+void compare_with_frame_before(std::vector<JudgedFrame>& frames, std::size_t first, const RunOptions& options) {
+    parallel_pieces(frames.size() - first, [&](std::size_t k) {
+        if (const std::size_t at = first + k; at > 0) {
+            frames[at].result.local = outcome(frames[at - 1], frames[at], options);
+        }
+    });
 }
 
 /// Judges as many frames in parallel as there are threads: only their coordinates and states are in memory. `start`: if

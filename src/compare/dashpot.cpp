@@ -1,5 +1,4 @@
-#include "compare/dashpot.hpp"
-
+#include "compare/reading.hpp"
 #include "contact/gap_entries.hpp"
 #include "core/dot.hpp"
 

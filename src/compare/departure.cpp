@@ -1,5 +1,4 @@
-#include "compare/departure.hpp"
-
+#include "compare/path.hpp"
 #include "snap/backbone.hpp"
 
 #include <isostat/snap/snap.hpp>

@@ -1,5 +1,6 @@
 #include "compare/frame.hpp"
 
+#include "compare/reading.hpp"
 #include "snap/force_split.hpp"
 #include "snap/surplus_split.hpp"
 

@@ -2,8 +2,6 @@
 /// \file
 /// The verdict on one frame without the exact run.
 
-#include "compare/reading.hpp"
-
 #include <isostat/compare/compare.hpp>
 
 namespace isostat::compare {

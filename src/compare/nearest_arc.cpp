@@ -1,4 +1,4 @@
-#include "compare/nearest_arc.hpp"
+#include "compare/path.hpp"
 
 #include <fmt/format.h>
 

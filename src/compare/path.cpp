@@ -15,11 +15,6 @@ namespace {
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr int further = 3; ///< equilibria after the last load, because frames may be early
 
-/// The loaded stress; for frames that of the last axis.
-double loaded(const State& state) {
-    return state.load.loaded_stress();
-}
-
 /// Keeps the equilibria with their lists; an equilibrium without arcs is the previous one at another load.
 class Collector final : public RunObserver {
   public:
@@ -88,8 +83,8 @@ class Follower {
             path.end = failure->message(state_.packing.dimension);
         }
         for (const double load : loads) {
-            if (path.end.empty() && load != loaded(state_)) {
-                direction_ = load > loaded(state_) ? 1 : -1;
+            if (path.end.empty() && load != state_.load.loaded_stress()) {
+                direction_ = load > state_.load.loaded_stress() ? 1 : -1;
                 if (!directions_.empty()) {
                     directions_.back() = direction_;
                 }
@@ -158,9 +153,9 @@ Result<std::vector<Contact>> list_after(State state, double sigma, bool jump, co
     segment.equilibria = 0;
     if (jump) {
         state.load.set_loaded_stress(sigma);
-    } else if (sigma != loaded(state)) {
+    } else if (sigma != state.load.loaded_stress()) {
         segment.equilibria.reset();
-        segment.direction = sigma > loaded(state) ? 1 : -1;
+        segment.direction = sigma > state.load.loaded_stress() ? 1 : -1;
         segment.to_stress = sigma;
     }
     const SegmentOutcome outcome = run_segment(state, segment, 0, options, counters, nobody);

@@ -1,6 +1,5 @@
 #include "compare/reading.hpp"
 
-#include "compare/dashpot.hpp"
 #include "contact/gap_entries.hpp"
 #include "packing/words.hpp"
 #include "snap/backbone.hpp"
@@ -13,7 +12,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 
 namespace isostat::compare {
 

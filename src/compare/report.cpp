@@ -142,16 +142,12 @@ std::string cell(const Json& value) {
     return text::csv(value.get_ref<const std::string&>());
 }
 
-template <class Row> std::vector<std::string> names_of_columns(const std::vector<Column<Row>>& columns) {
-    std::vector<std::string> out;
-    for (const auto& column : columns) {
-        out.emplace_back(column.name);
-    }
-    return out;
-}
-
 template <class Row> std::string csv(const std::vector<Column<Row>>& columns, const std::vector<Row>& rows) {
-    std::string text = fmt::format("{}\n", fmt::join(names_of_columns(columns), ","));
+    std::string text;
+    for (const auto& column : columns) {
+        text += (text.empty() ? "" : ",") + column.name;
+    }
+    text += "\n";
     for (const Row& row : rows) {
         std::vector<std::string> cells;
         for (const auto& column : columns) {
@@ -311,22 +307,6 @@ Chart figure(const Comparison& comparison) {
 }
 
 } // namespace
-
-std::vector<std::string> frame_columns(int dimension) {
-    return names_of_columns(of_frames(dimension));
-}
-
-std::vector<std::string> path_columns(int dimension) {
-    return names_of_columns(of_path(dimension));
-}
-
-std::vector<std::string> node_columns(int dimension) {
-    return names_of_columns(of_nodes(dimension));
-}
-
-std::vector<std::string> member_columns() {
-    return names_of_columns(of_members());
-}
 
 std::string frames_csv(const Comparison& comparison) {
     return csv(of_frames(comparison.dimension), comparison.frames);

@@ -6,20 +6,13 @@
 
 #include <filesystem>
 #include <string>
-#include <vector>
 
 namespace isostat::compare {
 
-/// Columns of comparison.csv (one row per frame), path.csv (one per equilibrium of the exact run), bundle/nodes.csv and
+/// The tables comparison.csv (one row per frame), path.csv (one per equilibrium of the exact run), bundle/nodes.csv and
 /// bundle/members.csv. Of spheres the loaded stress is sigma3.
-std::vector<std::string> frame_columns(int dimension = 2);
-std::vector<std::string> path_columns(int dimension = 2);
-std::vector<std::string> node_columns(int dimension = 2);
-std::vector<std::string> member_columns();
-
 std::string frames_csv(const Comparison& comparison);
 std::string path_csv(const Comparison& comparison);
-/// Tables of the nodes of the bundle and of its members.
 std::string bundle_csv(const Comparison& comparison);
 std::string members_csv(const Comparison& comparison);
 /// One object: frames, path, counts, departure, status. null where a number was not found.

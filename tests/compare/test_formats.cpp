@@ -1,5 +1,5 @@
 // Frames in other formats than dumps: extended XYZ, tables; walls in the list of contacts; bad input in each.
-#include "compare/nearest_arc.hpp"
+#include "compare/path.hpp"
 #include "compare/report.hpp"
 #include "compare/series_copy.hpp"
 #include "io/bad_input.hpp"

@@ -2,7 +2,6 @@
 
 #include "compare/reading.hpp"
 #include "snap/force_split.hpp"
-#include "snap/surplus_split.hpp"
 
 #include <fmt/format.h>
 

@@ -1,15 +1,23 @@
 #pragma once
 /// \file
-/// States and lists without rattlers.
+/// States and lists without rattlers, and places for rattlers without overlap beside a vertex.
 
-#include <isostat/contact/state.hpp>
+#include <isostat/snap/snap.hpp>
 
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace isostat::compare {
+
+/// A contact with disk i named `number[i]`.
+inline Contact renumbered(Contact contact, const std::vector<int>& number) {
+    contact.i = number[static_cast<std::size_t>(contact.i)];
+    contact.j = contact.of_disks() ? number[static_cast<std::size_t>(contact.j)] : contact.j;
+    return contact;
+}
 
 /// These disks alone, with walls or cell. The pinned disk stays pinned if it is among them, else the first one is.
 Packing of_disks(const Packing& packing, const std::vector<int>& disks);
@@ -34,5 +42,14 @@ template <class Along> double distance_above(std::size_t axes, const Along& alon
     const double in_plane = std::hypot(along(0), along(1)) * up;
     return axes == 2 ? in_plane : std::hypot(in_plane, along(2)) * up;
 }
+
+/// Moves the rattlers of `snap.packing` until no pair with one of them overlaps at
+/// the true vertex, and sets `snap.cage`. Empty, or the pair that still overlaps:
+/// this does not prove that no place exists. \pre the vertex is claimed.
+std::string make_room(Snap& snap);
+
+/// A rattler proved to have no place: anywhere within a quarter of the smallest radius of `snap.packing` it overlaps a
+/// grain of the list at the true vertex. Empty: not proved of any. \pre the vertex is claimed.
+std::string without_room(const Snap& snap);
 
 } // namespace isostat::compare

@@ -7,7 +7,6 @@
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/crafted/plateau.hpp>
-#include <isostat/preparation/preparation.hpp>
 #include <isostat/rigidity/counting.hpp>
 
 #include <fmt/format.h>
@@ -71,19 +70,24 @@ Result<WantedList> list_below(const Packing& packing, std::optional<double> thre
         fmt::format("isostatic backbone at every threshold from {:.6g} to {:.6g}, proved", range.first, range.last)};
 }
 
+Result<State> state_downhill(const Packing& packing, const PreparationOptions& options) {
+    PreparationReport report;
+    auto vertex = find_vertex(packing, options, report);
+    return !vertex.ok() && report.candidate ? std::move(*report.candidate) : std::move(vertex);
+}
+
 Result<NearestVertex> vertex_downhill(const SoftState& soft, std::uint64_t seed) {
     PreparationOptions options;
     options.seed = seed;
     options.stress = soft.load.stress[0];
     options.ratio = soft.load.stress[1] / soft.load.stress[0];
     options.load = soft.load.kind;
-    PreparationReport report;
-    auto vertex = find_vertex(soft.packing, options, report);
-    if (!vertex.ok() && !report.candidate) {
+    auto vertex = state_downhill(soft.packing, options);
+    if (!vertex.ok()) {
         return vertex.failure();
     }
     NearestVertex out;
-    out.state = vertex.ok() ? std::move(vertex.value()) : *report.candidate;
+    out.state = std::move(vertex.value());
     out.truth = certify(out.state);
     out.contacts =
         fmt::format("{} carry a force, as the nearest vertex has them", carrying(out.state, out.truth).size());

@@ -2,6 +2,7 @@
 /// \file
 /// The equilibrium of rigid grains next to a packing of another program: what `import` writes.
 
+#include <isostat/preparation/preparation.hpp>
 #include <isostat/snap/snap.hpp>
 
 #include <cstdint>
@@ -30,6 +31,9 @@ struct NearestVertex {
     Certification truth;
     std::string contacts;
 };
+
+/// The state that `find_vertex` ends at, also where only another proof may succeed.
+Result<State> state_downhill(const Packing& packing, const PreparationOptions& options);
 
 /// The vertex downhill, for any contacts.
 Result<NearestVertex> vertex_downhill(const SoftState& soft, std::uint64_t seed);

@@ -1,9 +1,8 @@
 // Complete states: rattlers brought to rest, and vertices at the end of a descent.
 #include "snap/backbone.hpp"
+#include "snap/nearest_vertex.hpp"
 
 #include <isostat/certificate/certify.hpp>
-#include <isostat/preparation/preparation.hpp>
-#include <isostat/snap/snap.hpp>
 #include <isostat/trajectory/trajectory.hpp>
 
 #include <fmt/format.h>
@@ -16,20 +15,13 @@ namespace isostat::compare {
 
 namespace {
 
-/// The contact in the numbers of the whole packing.
-Contact in_packing(const Snap& snap, Contact c) {
-    c.i = snap.disks[static_cast<std::size_t>(c.i)];
-    c.j = c.of_disks() ? snap.disks[static_cast<std::size_t>(c.j)] : c.j;
-    return c;
-}
-
 /// Presses the grains of the list that have a contact without force to all of their contacts.
 void press(const Snap& snap, State& state) {
     const std::vector<unsigned char>& zero = snap.truth.structural_zero;
     const std::size_t d = state.packing.axes();
     const std::vector<double> resting = resting_loads(state.packing, state.contacts, 1);
     for (std::size_t l = 0; l < zero.size(); ++l) {
-        const Contact c = in_packing(snap, snap.backbone.contacts[l]);
+        const Contact c = renumbered(snap.backbone.contacts[l], snap.disks);
         for (const int i : {c.i, c.of_disks() ? c.j : c.i}) {
             const std::size_t at = d * static_cast<std::size_t>(i);
             if (zero[l] != 0) {
@@ -73,7 +65,7 @@ std::vector<Contact> carrying(const Snap& snap) {
     std::vector<Contact> out;
     for (std::size_t l = 0; l < snap.backbone.contacts.size(); ++l) {
         if (l >= zero.size() || zero[l] == 0) {
-            out.push_back(in_packing(snap, snap.backbone.contacts[l]));
+            out.push_back(renumbered(snap.backbone.contacts[l], snap.disks));
         }
     }
     std::sort(out.begin(), out.end());
@@ -94,7 +86,7 @@ Result<State> with_resting_rattlers(const Snap& snap, std::vector<double> infini
     state.load.infinitesimal = std::move(infinitesimal);
     std::vector<Contact> list;
     for (const Contact& c : snap.backbone.contacts) {
-        list.push_back(in_packing(snap, c));
+        list.push_back(renumbered(c, snap.disks));
     }
     std::sort(list.begin(), list.end());
     state.contacts = list;
@@ -134,34 +126,18 @@ Result<Exchanged> exchange(const SoftState& soft, std::uint64_t seed) {
     options.seed = seed;
     options.load = soft.load.kind;
     set_stresses(soft, options);
-    PreparationReport report;
-    auto vertex = find_vertex(soft.packing, options, report);
-    if (!vertex.ok() && !report.candidate) {
+    auto vertex = state_downhill(soft.packing, options);
+    if (!vertex.ok()) {
         return vertex.failure();
     }
     Exchanged out;
-    out.state = vertex.ok() ? std::move(vertex.value()) : *report.candidate;
+    out.state = std::move(vertex.value());
     const std::vector<double> infinitesimal = out.state.load.infinitesimal;
     out.state.load = soft.load;
     out.state.load.infinitesimal = infinitesimal;
     out.truth = certify(out.state);
     out.contacts = carrying(out.state, out.truth);
-    const double radius = out.truth.claims.vertex ? out.truth.claims.vertex->radius : HUGE_VAL;
-    constexpr double up = 1 + 0x1p-49;
-    const auto way = [&](std::size_t k) {
-        return (std::abs(out.state.packing.q[k] - soft.packing.q[k]) + radius) * up;
-    };
-    const std::size_t d = soft.packing.axes();
-    const auto measure = [&](int disk) {
-        const std::size_t i = d * static_cast<std::size_t>(disk);
-        out.distance = std::max(out.distance, distance_above(d, [&](std::size_t a) { return way(i + a); }));
-    };
-    for (const Contact& c : out.contacts) {
-        measure(c.i);
-        if (c.of_disks()) {
-            measure(c.j);
-        }
-    }
+    out.distance = moves_to(out.state, out.truth, soft.packing.q).backbone;
     return out;
 }
 

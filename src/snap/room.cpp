@@ -1,9 +1,8 @@
-#include "snap/room.hpp"
-
 #include "contact/candidates.hpp"
 #include "contact/gap_entries.hpp"
 #include "contact/separation.hpp"
 #include "core/roundoff.hpp"
+#include "snap/backbone.hpp"
 
 #include <fmt/format.h>
 

@@ -5,7 +5,6 @@
 #include "crafted/peeling.hpp"
 #include "rigidity/isostatic.hpp"
 #include "snap/backbone.hpp"
-#include "snap/room.hpp"
 #include "verified/to_vertex.hpp"
 
 #include <isostat/snap/snap.hpp>
@@ -38,10 +37,8 @@ void take_backbone(const SoftState& soft, Snap& out) {
     }
     out.backbone.packing = of_disks(soft.packing, out.disks);
     const Packing& packing = out.backbone.packing;
-    for (Contact c : soft.contacts) {
-        c.i = number[static_cast<std::size_t>(c.i)];
-        c.j = c.of_disks() ? number[static_cast<std::size_t>(c.j)] : c.j;
-        out.backbone.contacts.push_back(c);
+    for (const Contact& c : soft.contacts) {
+        out.backbone.contacts.push_back(renumbered(c, number));
     }
     out.backbone.load = soft.load;
     out.backbone.load.disk_force.clear();
@@ -55,8 +52,7 @@ void take_backbone(const SoftState& soft, Snap& out) {
 
 /// The contact in the names of the whole packing.
 std::string renamed(const Snap& snap, const Contact& c) {
-    const auto disk = [&](int i) { return snap.disks[static_cast<std::size_t>(i)]; };
-    return to_string(Contact{c.kind, disk(c.i), c.of_disks() ? disk(c.j) : c.j, c.image}, snap.packing.dimension);
+    return to_string(renumbered(c, snap.disks), snap.packing.dimension);
 }
 
 /// Describes the first force that is proved negative, or empty.

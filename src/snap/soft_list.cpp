@@ -33,16 +33,8 @@ std::pair<int, double> nearest_to(const Packing& packing, ContactKind wall, int 
 
 /// The contacts of walls with disks that overlap them.
 std::vector<Contact> walls_of(const Packing& packing) {
-    std::vector<Contact> out;
-    for (const ContactKind kind : {ContactKind::lower_wall, ContactKind::upper_wall}) {
-        for (int i = 0; i < packing.disk_count(); ++i) {
-            for (int axis = 0; axis < packing.dimension; ++axis) {
-                if (!packing.cell.periodic[static_cast<std::size_t>(axis)] && gap(packing, {kind, i, axis}) <= 0) {
-                    out.emplace_back(kind, i, axis);
-                }
-            }
-        }
-    }
+    std::vector<Contact> out = near_contacts(packing);
+    std::erase_if(out, [&](const Contact& c) { return c.of_disks() || !(gap(packing, c) <= 0); });
     return out;
 }
 

@@ -1,8 +1,7 @@
-#include "snap/surplus_split.hpp"
-
 #include "core/roundoff.hpp"
 #include "rigidity/isostatic.hpp"
 #include "snap/backbone.hpp"
+#include "snap/force_split.hpp"
 #include "verified/centre.hpp"
 #include "verified/force_solution.hpp"
 #include "verified/norm.hpp"

@@ -2,6 +2,7 @@
 
 #include "contact/candidates.hpp"
 #include "core/decimal.hpp"
+#include "core/dot.hpp"
 #include "io/json.hpp"
 #include "linear/factorisation.hpp"
 #include "rigidity/isostatic.hpp"
@@ -175,17 +176,10 @@ Untold untold_by(double rounding, const State& state, const Certification& truth
         }
     };
     for (std::size_t l = 0; l < copies.pairs.size(); ++l) {
-        Contact name = copies.pairs[l];
-        name.i = disks[static_cast<std::size_t>(name.i)];
-        name.j = name.of_disks() ? disks[static_cast<std::size_t>(name.j)] : name.j;
-        sort_out(copies.gaps[l], copies.of_gaps[l], name, out.gaps);
-    }
-    double change = rounding;
-    for (const double of_gap : copies.of_gaps) {
-        change = std::max(change, of_gap);
+        sort_out(copies.gaps[l], copies.of_gaps[l], renumbered(copies.pairs[l], disks), out.gaps);
     }
     if (!clumps) {
-        add_rattlers(state, disks, change, out);
+        add_rattlers(state, disks, std::max(rounding, largest(copies.of_gaps)), out);
     }
     for (std::size_t l = 0; l < copies.forces.size(); ++l) {
         if (bears(l)) {

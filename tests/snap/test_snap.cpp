@@ -2,8 +2,6 @@
 #include "rigidity/isostatic.hpp"
 #include "snap/backbone.hpp"
 #include "snap/force_split.hpp"
-#include "snap/room.hpp"
-#include "snap/surplus_split.hpp"
 #include "support/scratch.hpp"
 #include "support/spheres.hpp"
 

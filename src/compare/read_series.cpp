@@ -78,18 +78,18 @@ class FrameTable {
         }
         for (std::size_t axis = 0; manifest.series.several && axis < last(); ++axis) {
             if (find(stress_column(axis)) < 0) {
-                throw Error(ErrorKind::bad_input, fmt::format("{}: no column '{}': expected it, or {} in [load] of the "
-                                                              "manifest",
-                                                              where_, stress_column(axis), stress_column(axis)));
+                refuse(where_, fmt::format("no column '{}': expected it, or {} in [load] of the "
+                                           "manifest",
+                                           stress_column(axis), stress_column(axis)));
             }
         }
         if (find(stress_column(last())) < 0 &&
             (manifest.load == LoadKind::true_stress || find(force_column(last())) < 0)) {
-            throw Error(ErrorKind::bad_input,
-                        fmt::format("{}: no column '{}'{}: expected it (series under stated stresses are compared, not "
-                                    "those under stated strains)",
-                                    where_, stress_column(last()),
-                                    manifest.load == LoadKind::nominal ? " nor '" + force_column(last()) + "'" : ""));
+            refuse(where_,
+                   fmt::format("no column '{}'{}: expected it (series under stated stresses are compared, not "
+                               "those under stated strains)",
+                               stress_column(last()),
+                               manifest.load == LoadKind::nominal ? " nor '" + force_column(last()) + "'" : ""));
         }
     }
 
@@ -132,11 +132,10 @@ class FrameTable {
     [[nodiscard]] std::size_t required(const std::string& name) const {
         const int at = find(name);
         if (at < 0) {
-            throw Error(ErrorKind::bad_input,
-                        fmt::format("{}: no column '{}': expected timestep, the positions of the walls {} (the bounds "
-                                    "of a dump are not taken for them), and {} or {}",
-                                    where_, name, fmt::join(manifest_.wall_names(), ", "), stress_column(last()),
-                                    force_column(last())));
+            refuse(where_, fmt::format("no column '{}': expected timestep, the positions of the walls {} (the bounds "
+                                       "of a dump are not taken for them), and {} or {}",
+                                       name, fmt::join(manifest_.wall_names(), ", "), stress_column(last()),
+                                       force_column(last())));
         }
         return static_cast<std::size_t>(at);
     }
@@ -350,8 +349,7 @@ class Disks {
             }
         }
         if (by_id.empty()) {
-            throw Error(ErrorKind::bad_input, fmt::format("{}: no {}s are selected: expected at least one",
-                                                          dump_.where(rows.header.line), grain()));
+            refuse(dump_.where(rows.header.line), fmt::format("no {}s are selected: expected at least one", grain()));
         }
         return by_id;
     }
@@ -429,29 +427,27 @@ class Disks {
     void check_boundaries(const FileFrame& rows, const Sides& sides) const {
         const FrameHeader& header = rows.header;
         if (header.leaves_the_plane() && manifest_.series.dimension == plane) {
-            throw Error(ErrorKind::bad_input, header.place + ": expected a cell in the plane of the disks");
+            refuse(header.place, "expected a cell in the plane of the disks");
         }
         if (header.vectors && !foreign::are_upper(*header.vectors, manifest_.axes())) {
-            throw Error(ErrorKind::bad_input,
-                        fmt::format("{}: Lattice: expected the first vector along x and the second in the plane of x "
-                                    "and y, in a series",
-                                    dump_.where(header.line)));
+            refuse(dump_.where(header.line),
+                   "Lattice: expected the first vector along x and the second in the plane of x and y, in a series");
         }
         const std::string walls = fmt::format("{}", fmt::join(manifest_.wall_names(), ", "));
         if (manifest_.periodic && sides.stated && header.box) {
-            throw Error(ErrorKind::bad_input,
-                        fmt::format("{}: bounds of the cell here, and columns {} in {}: expected one of them",
-                                    dump_.where(header.line), walls, manifest_.frames));
+            refuse(dump_.where(header.line),
+                   fmt::format("bounds of the cell here, and columns {} in {}: expected one of them", walls,
+                               manifest_.frames));
         }
         for (std::size_t axis = 0; axis < manifest_.axes(); ++axis) {
             const Boundary boundary = header.boundary[axis];
             const bool periodic = boundary == Boundary::periodic || (sides.stated && boundary == Boundary::unknown);
             if (manifest_.periodic ? !periodic || !(sides.stated || header.box) : boundary == Boundary::periodic) {
-                throw Error(
-                    ErrorKind::bad_input,
+                refuse(
+                    dump_.where(header.line),
                     fmt::format(
-                        "{}: the box is {}periodic along {}: expected {}", dump_.where(header.line),
-                        manifest_.periodic ? "not " : "", axis_names[axis],
+                        "the box is {}periodic along {}: expected {}", manifest_.periodic ? "not " : "",
+                        axis_names[axis],
                         manifest_.periodic
                             ? fmt::format("periodic boundaries with bounds (a dump with pp, XYZ with Lattice, columns "
                                           "{} of the frames), the manifest has a [cell]",
@@ -632,7 +628,7 @@ std::optional<Frame> SeriesReader::next() {
     auto frame = files_->table.next(sides);
     if (!frame) {
         if (!files_->any) {
-            throw Error(ErrorKind::bad_input, files_->manifest.frames + ": no frames: expected at least one row");
+            refuse(files_->manifest.frames, "no frames: expected at least one row");
         }
         return std::nullopt;
     }

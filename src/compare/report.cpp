@@ -1,5 +1,6 @@
 #include "compare/report.hpp"
 
+#include "contact/names.hpp"
 #include "io/files.hpp"
 #include "io/folders.hpp"
 #include "io/json.hpp"
@@ -30,11 +31,7 @@ template <class Row> struct Column {
 };
 
 Json names(const std::vector<Contact>& contacts, int dimension) {
-    std::string text;
-    for (const Contact& c : contacts) {
-        text += (text.empty() ? "" : " ") + to_string(c, dimension);
-    }
-    return text;
+    return fmt::format("{}", fmt::join(contact_names(contacts, dimension), " "));
 }
 
 /// sigma2, eps2; for spheres sigma3, eps3.

@@ -1,4 +1,5 @@
 #include "contact/separation.hpp"
+#include "core/dot.hpp"
 
 #include <isostat/contact/state.hpp>
 
@@ -41,12 +42,8 @@ bool in_range(double norm) {
 /// Multiplies d by a power of two, exactly, so that its largest
 /// component is in [1/2, 1); returns the exponent that undoes this.
 int normalise(PerAxis<double>& d) {
-    double largest = 0;
-    for (const double c : d) {
-        largest = std::max(largest, std::abs(c));
-    }
     int exponent = 0;
-    std::frexp(largest, &exponent);
+    std::frexp(largest(d), &exponent);
     for (double& c : d) {
         c = std::ldexp(c, -exponent);
     }

@@ -1,5 +1,6 @@
 #include "contact/images.hpp"
 
+#include "core/dot.hpp"
 #include "packing/words.hpp"
 
 #include <isostat/core/error.hpp>
@@ -74,17 +75,6 @@ PerAxis<double> margin_of(const Packing& packing, double reach) {
         margin[a] = packing.cell.periodic[a] ? near / height[a] + 1e-9 : 0;
     }
     return margin;
-}
-
-/// Largest size of a coordinate of the images, and of the cell.
-double largest_length(const Packing& packing, const Images& images) {
-    double largest = 0;
-    for (const auto* q : {&packing.q, &images.packing.q}) {
-        for (const double x : *q) {
-            largest = std::max(largest, std::abs(x));
-        }
-    }
-    return largest;
 }
 
 } // namespace
@@ -162,7 +152,7 @@ Images images_near_cell(const Packing& packing, double reach) {
             }
         }
     }
-    images.rounding = 0x1p-40 * largest_length(packing, images); // C3
+    images.rounding = 0x1p-40 * std::max(largest(packing.q), largest(images.packing.q)); // C3
     images.packing.q.insert(images.packing.q.end(), packing.axes(), 0);
     return images;
 }

@@ -1,6 +1,7 @@
 #include "contact/near_pairs.hpp"
 
 #include "contact/candidates.hpp"
+#include "contact/contact_set.hpp"
 #include "contact/images.hpp"
 #include "contact/pair_list.hpp"
 #include "contact/separation.hpp"
@@ -47,25 +48,6 @@ class Gaps {
     bool plain_;
 };
 
-// Buckets by the first disk, each a few pairs long.
-void sort_pairs(std::vector<Contact>& pairs, std::size_t disk_count) {
-    std::vector<std::size_t> end(disk_count + 1, 0);
-    for (const Contact& pair : pairs) {
-        ++end[static_cast<std::size_t>(pair.i) + 1];
-    }
-    std::partial_sum(end.begin(), end.end(), end.begin());
-    std::vector<Contact> sorted(pairs.size());
-    std::vector<std::size_t> next(end.begin(), end.end() - 1);
-    for (const Contact& pair : pairs) {
-        sorted[next[static_cast<std::size_t>(pair.i)]++] = pair;
-    }
-    for (std::size_t i = 0; i < disk_count; ++i) {
-        std::sort(sorted.begin() + static_cast<std::ptrdiff_t>(end[i]),
-                  sorted.begin() + static_cast<std::ptrdiff_t>(end[i + 1]));
-    }
-    pairs = std::move(sorted);
-}
-
 /// `for_each_edge(visit)`: visit(i, j), i < j, of a regular triangulation.
 template <class Edges>
 std::optional<std::vector<Contact>> near_among(const Packing& packing, double reach, Edges for_each_edge) {
@@ -88,8 +70,7 @@ std::optional<std::vector<Contact>> near_among(const Packing& packing, double re
     if (!applies) {
         return std::nullopt;
     }
-    sort_pairs(pairs, packing.radius.size());
-    return pairs;
+    return ContactSet(pairs, packing.disk_count()).take_sorted();
 }
 
 } // namespace

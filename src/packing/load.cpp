@@ -1,3 +1,4 @@
+#include "core/dot.hpp"
 #include "packing/words.hpp"
 
 #include <isostat/packing/load.hpp>
@@ -276,14 +277,11 @@ std::vector<double> generic_infinitesimal(const std::vector<double>& radius, uns
 
 void balance(std::vector<double>& infinitesimal, const Cell& cell) {
     constexpr int bits = 30;
-    double largest = 0;
-    for (const double g : infinitesimal) {
-        largest = std::max(largest, std::abs(g));
-    }
+    const double size = largest(infinitesimal);
     int exponent = 0;
-    std::frexp(largest, &exponent);
+    std::frexp(size, &exponent);
     const auto axes = static_cast<std::size_t>(cell.dimension);
-    for (std::size_t a = 0; a < axes && largest > 0; ++a) {
+    for (std::size_t a = 0; a < axes && size > 0; ++a) {
         if (!cell.periodic[a]) {
             continue;
         }

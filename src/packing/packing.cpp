@@ -16,7 +16,6 @@ namespace isostat {
 namespace {
 
 constexpr std::array<const char*, 3> upper_name{"right wall", "top wall", "front wall"};
-constexpr std::array<const char*, 3> tilt_name{"xy", "xz", "yz"};
 
 /// -1: nothing has to be pinned.
 int pinned_grain(const Packing& packing) {
@@ -101,7 +100,7 @@ std::string DofMap::name(int dof) const {
         return fmt::format("{} of {} {}", axis_names[coordinate % d], grain_word(layout_.dimension), coordinate / d);
     }
     const std::size_t axis = coordinate - layout_.of_length(0);
-    return axis >= d         ? fmt::format("tilt {}", tilt_name[axis - d])
+    return axis >= d         ? fmt::format("tilt {}", tilt_names[axis - d])
            : periodic_[axis] ? fmt::format("period along {}", axis_names[axis])
                              : std::string(upper_name[axis]);
 }
@@ -134,7 +133,7 @@ void validate_cell(const Packing& packing, const std::string& source) {
             const double tilt = packing.lattice(a, b);
             const bool both = cell.periodic[a] && cell.periodic[b];
             if (!(std::abs(tilt) <= longest_length) || (!both && (tilt != 0 || cell.tilt_moves[cell.tilt(a, b)]))) {
-                bad(fmt::format("the tilt {} is {}: expected {}", tilt_name[cell.tilt(a, b)], tilt,
+                bad(fmt::format("the tilt {} is {}: expected {}", tilt_names[cell.tilt(a, b)], tilt,
                                 both ? "a finite number" : "0, fixed, as one of its axes has walls"));
             }
         }

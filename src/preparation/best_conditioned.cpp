@@ -1,5 +1,3 @@
-#include "preparation/best_conditioned.hpp"
-
 #include "contact/candidates.hpp"
 #include "contact/gap_entries.hpp"
 #include "preparation/polish.hpp"

@@ -176,7 +176,7 @@ ProgrammeStep ContactProgramme::descend(Packing& packing, double eps,
             break;
         }
         ++step.iterations;
-        step.largest = displace(packing, rows.dofs, made.x, disks);
+        step.largest = displace(packing, rows.dofs, made.active.x, disks);
         count_changes(active, made.active, rows.columns(), step);
         active = std::move(made.active);
         const bool low = made.product < settled_product && made.violation < feasible;

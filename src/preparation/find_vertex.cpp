@@ -3,7 +3,6 @@
 #include "contact/separation.hpp"
 #include "contact/words.hpp"
 #include "preparation/neighbours.hpp"
-#include "preparation/pivots.hpp"
 #include "preparation/polish.hpp"
 #include "preparation/programme.hpp"
 #include "preparation/random.hpp"
@@ -75,8 +74,8 @@ void require_sensible(const Packing& start, const PreparationOptions& options) {
         throw Error(ErrorKind::bad_input, "start of the linear programmes: expected along each axis a fixed and a "
                                           "movable wall, or a period that moves, and no fixed disk");
     }
-    const bool shears = std::find(cell.tilt_moves.begin(), cell.tilt_moves.end(), true) != cell.tilt_moves.end();
-    if (cell.any() && (start.disk_count() > options.large_above || (shears && options.load != LoadKind::nominal))) {
+    if (cell.any() &&
+        (start.disk_count() > options.large_above || (cell.shears() && options.load != LoadKind::nominal))) {
         throw Error(ErrorKind::bad_input, fmt::format("start of the linear programmes: expected at most {} disks in a "
                                                       "periodic cell, and nominal stresses where its tilt moves",
                                                       options.large_above));
@@ -185,14 +184,11 @@ class VertexSearch {
                            fmt::format("step {}: {} changes, {:.1e} radii", step.iterations, step.changes,
                                        step.largest / scale_.mean_radius()));
         });
-        PreparationStage entry = stage.finish();
-        entry.completed = end.outcome == ProgrammeStep::Outcome::optimal;
-        entry.iterations = end.iterations;
-        entry.contacts = static_cast<int>(end.contacts.size());
-        entry.solid_fraction = packing_.solid_fraction();
-        report_.stages.push_back(entry);
         std::vector<Contact> contacts = end.contacts;
-        if (!entry.completed || (end.bounds != 0 && !complete(programme, weight, contacts))) {
+        const bool completed = end.outcome == ProgrammeStep::Outcome::optimal;
+        report_.stages.push_back(
+            stage.finish(completed, end.iterations, static_cast<int>(contacts.size()), packing_.solid_fraction()));
+        if (!completed || (end.bounds != 0 && !complete(programme, weight, contacts))) {
             return std::nullopt;
         }
         contacts_ = static_cast<int>(contacts.size());
@@ -279,13 +275,9 @@ class VertexSearch {
     }
 
     void record(bool completed) {
-        PreparationStage entry = stage_.finish();
+        PreparationStage entry = stage_.finish(completed, pivots_, contacts_, packing_.solid_fraction());
         entry.seconds -= newton_.seconds;
         entry.cpu_seconds -= newton_.cpu_seconds;
-        entry.completed = completed;
-        entry.iterations = pivots_;
-        entry.contacts = contacts_;
-        entry.solid_fraction = packing_.solid_fraction();
         newton_.name = "newton and proofs";
         newton_.completed = completed;
         newton_.contacts = contacts_;

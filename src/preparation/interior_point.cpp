@@ -60,7 +60,6 @@ class Iteration {
         std::copy_n(s_.begin(), rows_, point.slack.begin());
         std::copy_n(z_.begin(), rows_, point.force.begin());
     }
-    [[nodiscard]] const std::vector<double>& x() const { return x_; }
     [[nodiscard]] double mean_row_product() const { return mean_product(rows_); }
     [[nodiscard]] double mean_product() const { return mean_product(s_.size()); }
 
@@ -300,7 +299,6 @@ InteriorStep InteriorDescent::step(const BoxedProgramme& programme, InteriorPoin
     }
     iteration.read(point);
     iteration.read(result.active);
-    result.x = iteration.x();
     result.done = true;
     return result;
 }

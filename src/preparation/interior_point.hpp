@@ -45,11 +45,10 @@ struct InteriorPoint {
 
 /// What one step of a descent did.
 struct InteriorStep {
-    bool done = false;     ///< otherwise nothing was changed and the other fields have no meaning
-    double product = 0;    ///< mean slack x force of the rows before the step
-    double violation = 0;  ///< largest |A x - lower - slack| before the step
-    std::vector<double> x; ///< the displacement
-    ActiveSet active;      ///< as after the step; without x
+    bool done = false;    ///< otherwise nothing was changed and the other fields have no meaning
+    double product = 0;   ///< mean slack x force of the rows before the step
+    double violation = 0; ///< largest |A x - lower - slack| before the step
+    ActiveSet active;     ///< as after the step; x is the displacement
 };
 
 /// Steps of the same method for a programme that changes at every

@@ -1,19 +1,14 @@
-#include "preparation/pivots.hpp"
-
 #include "contact/candidates.hpp"
 #include "contact/gap_entries.hpp"
 #include "contact/other_pairs.hpp"
 #include "contact/words.hpp"
 #include "core/dot.hpp"
-#include "preparation/best_conditioned.hpp"
+#include "preparation/polish.hpp"
 #include "statics/first_to_vanish.hpp"
 #include "statics/statics.hpp"
-#include "verified/centre.hpp"
 #include "verified/configuration.hpp"
-#include "verified/to_vertex.hpp"
 
 #include <algorithm>
-#include <optional>
 #include <set>
 #include <utility>
 
@@ -170,11 +165,7 @@ Result<Polished> pivot(Packing packing, std::vector<Contact> contacts, const Loa
         if (signs == Signs::as_computed && !seen.insert(contacts).second) {
             return failed(FailureKind::not_converged, "after {} pivots the contacts are those of before", pivot);
         }
-        if (auto failure = to_vertex(packing, contacts, iterations)) {
-            return *failure;
-        }
-        snap_to_grid(packing);
-        const auto at = Centre::make(packing, contacts);
+        const auto at = centre_at_vertex(packing, contacts, iterations);
         if (!at.ok()) {
             return at.failure();
         }

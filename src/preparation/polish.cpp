@@ -4,7 +4,6 @@
 #include "contact/other_pairs.hpp"
 #include "contact/words.hpp"
 #include "statics/decisions.hpp"
-#include "verified/centre.hpp"
 #include "verified/configuration.hpp"
 #include "verified/to_vertex.hpp"
 
@@ -110,13 +109,18 @@ Result<double> smallest_force(Statics& statics, double sigma) {
 
 } // namespace
 
-Result<Polished> polish(Packing packing, std::vector<Contact> contacts, Load load, long& iterations) {
-    std::sort(contacts.begin(), contacts.end());
+Result<std::unique_ptr<Centre>> centre_at_vertex(Packing& packing, const std::vector<Contact>& contacts,
+                                                 long& iterations) {
     if (auto failure = to_vertex(packing, contacts, iterations)) {
         return *failure;
     }
     snap_to_grid(packing);
-    const auto made = Centre::make(packing, contacts);
+    return Centre::make(packing, contacts);
+}
+
+Result<Polished> polish(Packing packing, std::vector<Contact> contacts, Load load, long& iterations) {
+    std::sort(contacts.begin(), contacts.end());
+    const auto made = centre_at_vertex(packing, contacts, iterations);
     if (!made.ok()) {
         return made.failure();
     }

@@ -212,11 +212,8 @@ class SoftStages {
         const SoftMeasures measures = work([&](double fraction) {
             stage.progress(fraction, fmt::format("solid fraction {:.4f}", packing_.solid_fraction()));
         });
-        PreparationStage entry = stage.finish();
-        entry.completed = measures.converged;
-        entry.iterations = measures.steps;
-        entry.solid_fraction = packing_.solid_fraction();
-        entry.contacts = measures.contacts;
+        PreparationStage entry =
+            stage.finish(measures.converged, measures.steps, measures.contacts, packing_.solid_fraction());
         entry.residual = measures.residual;
         entry.pressure_error = measures.pressure_error;
         entry.overlap = measures.overlap;

@@ -9,16 +9,14 @@
 
 namespace isostat::preparation {
 
+inline double mean(const std::vector<double>& x) {
+    return std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size());
+}
+
 /// Chosen so that the mean radius is in [0.5, 1).
 class Scale {
   public:
-    explicit Scale(const std::vector<double>& radius) {
-        double sum = 0;
-        for (const double r : radius) {
-            sum += r;
-        }
-        mean_ = std::frexp(sum / static_cast<double>(radius.size()), &exponent_);
-    }
+    explicit Scale(const std::vector<double>& radius) { mean_ = std::frexp(mean(radius), &exponent_); }
 
     [[nodiscard]] double mean_radius() const { return mean_; }               ///< internal unit
     [[nodiscard]] double unit() const { return std::ldexp(1.0, exponent_); } ///< in the user's unit

@@ -3,6 +3,7 @@
 #include "core/parallel.hpp"
 #include "core/work.hpp"
 #include "preparation/pair_forces.hpp"
+#include "preparation/scale.hpp"
 
 #include <isostat/core/error.hpp>
 
@@ -80,11 +81,7 @@ SoftDynamics::SoftDynamics(Packing& packing, bool in_patches, const std::atomic<
                            std::function<void(double)> progress)
     : packing_(packing), axes_(packing.axes()), n_(packing.radius.size()), velocity_(axes_ * (n_ + 1), 0.0),
       force_(axes_ * (n_ + 1), 0.0), stop_(stop), progress_(std::move(progress)) {
-    double sum = 0;
-    for (const double r : packing.radius) {
-        sum += 2 * r;
-    }
-    mean_diameter_ = sum / static_cast<double>(n_);
+    mean_diameter_ = 2 * mean(packing.radius);
     max_radius_ = packing.max_radius();
     wall_mass_ = std::max(1.0, static_cast<double>(n_) / 3);
     skin_ = 0.1 * mean_diameter_;

@@ -3,6 +3,7 @@
 #include "core/dot.hpp"
 #include "core/parallel.hpp"
 #include "preparation/neighbours.hpp"
+#include "preparation/scale.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -48,8 +49,7 @@ double force_on_wall(const Packing& packing, int axis, double pressure) {
 
 SoftNewton::SoftNewton(Packing& packing, const std::atomic<bool>* stop)
     : packing_(packing), damping_(first_damping), stop_(stop) {
-    mean_diameter_ = 2 * std::accumulate(packing.radius.begin(), packing.radius.end(), 0.0) /
-                     static_cast<double>(packing.radius.size());
+    mean_diameter_ = 2 * mean(packing.radius);
 }
 
 void SoftNewton::collect() {

@@ -37,9 +37,13 @@ class Stage {
         }
     }
 
-    /// The entry, with times and name filled in; the caller adds the figures.
-    [[nodiscard]] PreparationStage finish() const {
+    /// The entry with name and times; the caller adds further figures.
+    [[nodiscard]] PreparationStage finish(bool completed, long iterations, int contacts, double solid_fraction) const {
         PreparationStage stage;
+        stage.completed = completed;
+        stage.iterations = iterations;
+        stage.contacts = contacts;
+        stage.solid_fraction = solid_fraction;
         stage.name = name_;
         stage.seconds = watch_.seconds();
         stage.cpu_seconds = watch_.cpu_seconds();

@@ -4,7 +4,7 @@
 #include "cli/ranges.hpp"
 #include "cli/read_packing.hpp"
 #include "cli/terminal.hpp"
-#include "compare/begin_series.hpp"
+#include "compare/manifest.hpp"
 #include "compare/report.hpp"
 #include "io/files.hpp"
 #include "io/folders.hpp"

@@ -7,7 +7,7 @@
 #include "io/files.hpp"
 #include "io/json.hpp"
 #include "packing/bodies.hpp"
-#include "packing/unbalanced.hpp"
+#include "packing/load_faults.hpp"
 #include "packing/words.hpp"
 #include "snap/nearest_vertex.hpp"
 

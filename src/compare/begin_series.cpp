@@ -1,5 +1,4 @@
-#include "compare/begin_series.hpp"
-
+#include "compare/manifest.hpp"
 #include "io/text.hpp"
 #include "scene/section.hpp"
 #include "snap/frame_file.hpp"

@@ -1,9 +1,10 @@
 #pragma once
 /// \file
-/// The manifest of a series as read.
+/// The manifest of a series as read, and a first one for a series without.
 
 #include <isostat/compare/compare.hpp>
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -35,5 +36,14 @@ struct Manifest {
 };
 
 Manifest read_manifest(const std::filesystem::path& path);
+
+/// The texts of a manifest for a file of frames, and of its table of frames. Loads and walls, which the file does not
+/// have (the bounds of a dump are no walls), are left for the user to fill in.
+struct BegunSeries {
+    std::string manifest, frames;
+};
+
+/// \p disks: file of the frames. \p frames: name of the table in the manifest. Throws `Error(bad_input)` for the file.
+BegunSeries begin_series(const std::filesystem::path& disks, const std::string& name, const std::string& frames);
 
 } // namespace isostat::compare

@@ -3,7 +3,6 @@
 #include "contact/candidates.hpp"
 #include "contact/contact_set.hpp"
 #include "contact/images.hpp"
-#include "contact/pair_list.hpp"
 #include "contact/separation.hpp"
 #include "packing/arc_bodies.hpp"
 #include "packing/bodies.hpp"
@@ -11,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 namespace isostat {

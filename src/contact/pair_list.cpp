@@ -1,5 +1,4 @@
-#include "contact/pair_list.hpp"
-
+#include "contact/near_pairs.hpp"
 #include "contact/separation.hpp"
 
 #include <isostat/core/error.hpp>

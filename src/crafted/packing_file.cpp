@@ -2,7 +2,7 @@
 #include "io/files.hpp"
 #include "io/toml.hpp"
 #include "packing/bodies.hpp"
-#include "packing/unbalanced.hpp"
+#include "packing/load_faults.hpp"
 #include "packing/words.hpp"
 
 #include <isostat/core/error.hpp>

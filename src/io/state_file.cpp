@@ -4,8 +4,7 @@
 #include "io/text.hpp"
 #include "io/vertex_text.hpp"
 #include "packing/arc_bodies.hpp"
-#include "packing/pressed_sides.hpp"
-#include "packing/unbalanced.hpp"
+#include "packing/load_faults.hpp"
 #include "packing/words.hpp"
 
 #include <isostat/core/error.hpp>

@@ -5,6 +5,7 @@
 #include <isostat/packing/packing.hpp>
 
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 namespace isostat::preparation {

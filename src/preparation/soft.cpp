@@ -1,5 +1,6 @@
 #include "preparation/soft.hpp"
 
+#include "core/dot.hpp"
 #include "core/parallel.hpp"
 #include "core/work.hpp"
 #include "preparation/pair_forces.hpp"
@@ -13,6 +14,7 @@
 #include <cmath>
 #include <cstring>
 #include <numeric>
+#include <span>
 #include <type_traits>
 #include <utility>
 
@@ -475,13 +477,8 @@ void SoftDynamics::advance(double dt, bool walls) {
 SoftMeasures SoftDynamics::measure(double pressure) {
     count_contacts();
     SoftMeasures result;
-    double largest = 0;
-    for (std::size_t k = 0; k < axes_ * n_; ++k) {
-        const double f = std::abs(force_[k]);
-        largest = largest < f ? f : largest;
-    }
     const double unit = pressure > 0 ? pressure * mean_diameter_ : mean_diameter_;
-    result.residual = largest / unit;
+    result.residual = largest(std::span(force_).first(axes_ * n_)) / unit;
     for (std::size_t a = 0; a < axes_ && pressure > 0; ++a) {
         result.pressure_error = std::max(result.pressure_error, std::abs(out_of_balance(a, pressure)));
     }

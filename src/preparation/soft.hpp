@@ -9,7 +9,7 @@
 /// derivative of the energy with respect to its position at fixed relative coordinates (the virial). Equilibrium is the
 /// same as with walls that push only the disks that they touch.
 
-#include "contact/pair_list.hpp"
+#include "contact/near_pairs.hpp"
 
 #include <isostat/packing/packing.hpp>
 

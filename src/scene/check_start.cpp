@@ -1,7 +1,7 @@
 #include "contact/candidates.hpp"
 #include "exact/independent_columns.hpp"
 #include "linear/factorisation.hpp"
-#include "packing/pressed_sides.hpp"
+#include "packing/load_faults.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/rigidity/counting.hpp>

@@ -1,7 +1,7 @@
 /// \file
 /// Which states a run can follow.
 
-#include "packing/unbalanced.hpp"
+#include "packing/load_faults.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/trajectory/trajectory.hpp>

@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// Forces on disks along periodic axes sum to zero, exactly: else the pinned disk bears the rest, whichever it is.
+/// Loads that mean nothing on a packing.
 
-#include <isostat/packing/packing.hpp>
+#include <isostat/packing/load.hpp>
 
 #include <optional>
 #include <utility>
@@ -10,6 +10,7 @@
 
 namespace isostat {
 
+/// Forces on disks along periodic axes sum to zero, exactly: else the pinned disk bears the rest, whichever it is.
 /// The first periodic axis along which the forces, d per disk, do not sum to zero, and their sum. `Exact` rounds no
 /// sum.
 template <class Exact, class Force>
@@ -26,5 +27,10 @@ std::optional<std::pair<std::size_t, Exact>> unbalanced(const std::vector<Force>
     }
     return std::nullopt;
 }
+
+/// Throws `Error(bad_input)` where a wall, or a period, is pressed over the length of a side that has no length: one of
+/// its walls is absent, whose place means nothing. That is so of true stresses, and of nominal ones where the reference
+/// lengths are not stated (`stated`): then they would be the present ones.
+void require_pressed_sides(const Packing& packing, const Load& load, bool stated, const std::string& source);
 
 } // namespace isostat

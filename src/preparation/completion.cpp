@@ -3,7 +3,6 @@
 #include "preparation/programme_rows.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <optional>
 

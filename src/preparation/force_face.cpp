@@ -8,7 +8,6 @@
 #include <ClpSimplex.hpp>
 #include <CoinPackedMatrix.hpp>
 
-#include <algorithm>
 #include <cmath>
 
 namespace isostat {

@@ -2,7 +2,6 @@
 
 #include "core/roundoff.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>

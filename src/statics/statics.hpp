@@ -10,8 +10,6 @@
 #include <isostat/packing/load.hpp>
 
 #include <memory>
-#include <optional>
-#include <span>
 #include <vector>
 
 namespace isostat {

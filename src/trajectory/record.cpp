@@ -1,6 +1,5 @@
 #include "trajectory/record.hpp"
 
-#include "contact/contact_set.hpp"
 #include "contact/other_pairs.hpp"
 #include "contact/words.hpp"
 #include "core/roundoff.hpp"

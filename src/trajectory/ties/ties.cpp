@@ -8,8 +8,6 @@
 
 #include <isostat/trajectory/trajectory.hpp>
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "compare/reading.hpp"
+#include "compare/frame.hpp"
 #include "contact/gap_entries.hpp"
 #include "core/dot.hpp"
 

@@ -1,6 +1,5 @@
 #include "compare/frame.hpp"
 
-#include "compare/reading.hpp"
 #include "snap/force_split.hpp"
 
 #include <fmt/format.h>

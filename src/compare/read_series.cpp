@@ -5,7 +5,6 @@
 #include "io/numbers.hpp"
 #include "packing/words.hpp"
 #include "snap/frame_file.hpp"
-#include "snap/pair_images.hpp"
 #include "snap/soft_list.hpp"
 
 #include <isostat/core/error.hpp>

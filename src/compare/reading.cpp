@@ -1,5 +1,4 @@
-#include "compare/reading.hpp"
-
+#include "compare/frame.hpp"
 #include "contact/gap_entries.hpp"
 #include "packing/words.hpp"
 #include "snap/backbone.hpp"

@@ -60,4 +60,9 @@ void find_pairs(int dimension, const std::vector<double>& x, const std::vector<d
 /// Whether no square of a relevant length under- or overflows.
 bool lengths_are_plain(const std::vector<double>& x, const std::vector<double>& radius);
 
+/// The disks and walls near each other, of soft packings too: pairs of disks and lower walls with gap < `reach`, upper
+/// walls with gap < `upper_reach`, sorted. In a cell also pairs with images of another disk, those with gap < `reach` +
+/// `upper_reach`, because a period moves as far as an upper wall.
+std::vector<Contact> near_contacts(const Packing& packing, double reach, double upper_reach);
+
 } // namespace isostat

@@ -1,9 +1,9 @@
 #include "preparation/programme.hpp"
 
 #include "contact/contact_set.hpp"
+#include "contact/near_pairs.hpp"
 #include "core/dot.hpp"
 #include "core/work.hpp"
-#include "preparation/neighbours.hpp"
 #include "preparation/programme_rows.hpp"
 
 #include <ClpEventHandler.hpp>

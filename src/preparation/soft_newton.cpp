@@ -1,8 +1,8 @@
 #include "preparation/soft_newton.hpp"
 
+#include "contact/near_pairs.hpp"
 #include "core/dot.hpp"
 #include "core/parallel.hpp"
-#include "preparation/neighbours.hpp"
 #include "preparation/scale.hpp"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "snap/nearest_vertex.hpp"
 
-#include "preparation/neighbours.hpp"
+#include "contact/near_pairs.hpp"
 #include "snap/backbone.hpp"
 #include "snap/soft_list.hpp"
 #include "verified/to_vertex.hpp"
@@ -119,7 +119,7 @@ Result<NearestVertex> vertex_of_list(SoftState soft, const std::string& words, s
 
 WantedList list_up_to(const Packing& packing, double threshold) {
     const double reach = std::nextafter(std::max(threshold, 0.0), HUGE_VAL);
-    WantedList out{preparation::near_contacts(packing, reach, reach), fmt::format("gaps up to {:.6g}", threshold)};
+    WantedList out{isostat::near_contacts(packing, reach, reach), fmt::format("gaps up to {:.6g}", threshold)};
     std::erase_if(out.contacts, [&](const Contact& c) { return !(gap(packing, c) <= threshold); });
     std::sort(out.contacts.begin(), out.contacts.end());
     return out;

@@ -1,10 +1,9 @@
 #include "snap/soft_list.hpp"
 
+#include "contact/near_pairs.hpp"
 #include "contact/separation.hpp"
 #include "packing/words.hpp"
-#include "preparation/neighbours.hpp"
 #include "snap/backbone.hpp"
-#include "snap/pair_images.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/snap/snap.hpp>
@@ -91,7 +90,7 @@ std::string far_disks(const Packing& packing, double largest, const crafted::Pla
     constexpr double farthest = 8; // radii
     for (double reach = nearly_touching; plateau.candidates == 0 && reach < farthest && !std::isfinite(nearest);
          reach *= 2) {
-        for (const Contact& c : preparation::near_contacts(packing, reach * radius, 0)) {
+        for (const Contact& c : isostat::near_contacts(packing, reach * radius, 0)) {
             nearest = std::min(nearest, gap(packing, c));
         }
     }
@@ -112,7 +111,7 @@ void check_nearness(const std::string& file, const Packing& packing) {
     if (packing.dimension == plane && packing.bars.empty()) {
         deepest = crafted::plateau(packing, {near}).deepest_overlap;
     } else {
-        for (const Contact& c : preparation::near_contacts(packing, near, near)) {
+        for (const Contact& c : isostat::near_contacts(packing, near, near)) {
             deepest = std::min(deepest, gap(packing, c));
         }
     }
@@ -217,7 +216,7 @@ SoftList list_by_forces(const std::string& file, const Packing& packing, const s
 
 std::vector<Contact> near_contacts(const Packing& packing) {
     const double reach = 0.5 * packing.min_radius();
-    return preparation::near_contacts(packing, reach, reach);
+    return isostat::near_contacts(packing, reach, reach);
 }
 
 std::vector<Contact> overlaps_of(const Packing& packing) {
@@ -232,6 +231,31 @@ SoftList list_by_overlaps(const Packing& packing) {
     out.words = fmt::format("{} overlaps, without rattlers{}", out.contacts.size(), walls_apart(packing));
     out.contacts = able_to_carry(packing, out.contacts);
     return out;
+}
+
+PairImages::PairImages(const Packing& packing) {
+    if (!packing.cell.any()) {
+        return;
+    }
+    for (const Contact& c : near_contacts(packing)) {
+        if (c.of_disks()) {
+            images_[{c.i, c.j}].by_gap.emplace_back(gap(packing, c), c);
+        }
+    }
+    for (auto& [pair, images] : images_) {
+        std::sort(images.by_gap.begin(), images.by_gap.end());
+    }
+}
+
+Contact PairImages::next(int i, int j) {
+    const auto found = images_.find({std::min(i, j), std::max(i, j)});
+    if (found == images_.end()) {
+        return pair_of(i, j);
+    }
+    Images& images = found->second;
+    const std::size_t row = images.rows++;
+    const bool overlaps = row < images.by_gap.size() && images.by_gap[row].first < 0;
+    return images.by_gap[overlaps ? row : 0].second;
 }
 
 } // namespace isostat::compare

@@ -7,8 +7,10 @@
 #include <isostat/contact/state.hpp>
 #include <isostat/crafted/plateau.hpp>
 
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace isostat::compare {
@@ -58,5 +60,22 @@ std::vector<Contact> overlaps_of(const Packing& packing);
 
 /// The overlaps as a list.
 SoftList list_by_overlaps(const Packing& packing);
+
+/// Pairs of grains by number, as other programs list them, and the images that these pairs stand for.
+class PairImages {
+  public:
+    /// Finds all images that overlap or are near. \pre the packing outlives the object
+    explicit PairImages(const Packing& packing);
+    /// The contact of the next row with these two grains: the deepest overlap of their images that no earlier row used;
+    /// the nearest images when all are used, so that a surplus row repeats a contact. In a box the pair.
+    Contact next(int i, int j);
+
+  private:
+    struct Images {
+        std::vector<std::pair<double, Contact>> by_gap;
+        std::size_t rows = 0;
+    };
+    std::map<std::pair<int, int>, Images> images_;
+};
 
 } // namespace isostat::compare

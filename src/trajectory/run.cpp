@@ -2,7 +2,6 @@
 #include "core/roundoff.hpp"
 #include "packing/arc_bodies.hpp"
 #include "trajectory/rearrangement.hpp"
-#include "trajectory/segment_start.hpp"
 #include "trajectory/steering.hpp"
 
 #include <isostat/core/error.hpp>
@@ -23,6 +22,81 @@ namespace isostat {
 namespace {
 
 using roundoff::infinity;
+
+/// The vertex that a segment starts from.
+struct SegmentStart {
+    std::shared_ptr<Vertex> vertex;
+    Vertex::Gaps gaps;   ///< none is negative
+    bool chosen = false; ///< first-order terms chose contacts among the touching pairs
+};
+
+Result<SegmentStart> prove_start(const State& state, Prover& prover) {
+    auto vertex = prover.vertex(state.packing, state.contacts, {state.load});
+    if (!vertex.ok()) {
+        return vertex.failure();
+    }
+    auto gaps = prover.gaps(*vertex.value());
+    if (!gaps.ok()) {
+        return gaps.failure();
+    }
+    return SegmentStart{std::move(vertex.value()), std::move(gaps.value())};
+}
+
+/// True: a choice was made.
+Result<bool> choose_contacts(State& state, Prover& prover, const TieSettling& ties) {
+    const auto dofs = static_cast<std::size_t>(DofMap(state.packing).dof_count());
+    const bool hyperstatic = state.contacts.size() > dofs;
+    if (hyperstatic) {
+        if (auto failure = ties.choose_contacts()) {
+            return *failure;
+        }
+    }
+    const auto listed = prove_start(state, prover);
+    if (!listed.ok()) {
+        return listed.failure();
+    }
+    const ZeroGaps& zero = listed.value().gaps.zero;
+    const auto overlap = settle_touching(*listed.value().vertex, zero);
+    if (hyperstatic || !overlap || overlap->kind != FailureKind::overlap) {
+        return hyperstatic;
+    }
+    for (const auto& [contact, order] : zero) {
+        state.contacts.push_back(contact);
+    }
+    if (auto failure = ties.choose_contacts()) {
+        return *failure;
+    }
+    return true;
+}
+
+/// Proves what a state says: a vertex at which no pair overlaps. Where ties are settled, and unless the run is
+/// `resumed`, a hyperstatic start keeps (in `state.contacts`) those contacts that carry the load for small eps > 0,
+/// chosen from its list and from the touching pairs outside the list. Failures: `overlap`, those of `Prover::vertex`
+/// and `Prover::gaps`, and of the choice.
+Result<SegmentStart> start_segment(State& state, Prover& prover, const TieSettling& ties, bool resumed) {
+    prover.start_at(state.packing);
+    bool chosen = false;
+    if (ties.settles() && !resumed) {
+        const auto choice = choose_contacts(state, prover, ties);
+        if (!choice.ok()) {
+            return choice.failure();
+        }
+        chosen = choice.value();
+    }
+    auto start = prove_start(state, prover);
+    if (!start.ok()) {
+        return start;
+    }
+    SegmentStart& begun = start.value();
+    if (begun.gaps.negative) {
+        return failed(FailureKind::overlap, "{} overlap", named(*begun.gaps.negative));
+    }
+    if (auto failure = ties.resume(*begun.vertex, begun.gaps.zero)) {
+        return *failure;
+    }
+    begun.chosen = chosen || !begun.gaps.zero.empty();
+    return start;
+}
 
 /// One segment: from equilibrium to limit load, and by a rearrangement to the next equilibrium.
 class Run {

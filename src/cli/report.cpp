@@ -1,9 +1,10 @@
+#include "compare/report.hpp"
+
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/progress.hpp"
 #include "cli/terminal.hpp"
-#include "compare/soft_limits.hpp"
 #include "ensemble/members.hpp"
 #include "report/run_report.hpp"
 

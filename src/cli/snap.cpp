@@ -7,7 +7,7 @@
 #include "io/json.hpp"
 #include "packing/words.hpp"
 #include "snap/force_split.hpp"
-#include "snap/soft_state.hpp"
+#include "snap/soft_list.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/foreign/foreign.hpp>

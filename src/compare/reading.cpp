@@ -4,7 +4,6 @@
 #include "snap/backbone.hpp"
 #include "snap/force_split.hpp"
 #include "snap/soft_list.hpp"
-#include "snap/soft_state.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,4 @@
-#include "compare/soft_limits.hpp"
-
+#include "compare/report.hpp"
 #include "io/files.hpp"
 #include "snap/backbone.hpp"
 

@@ -65,9 +65,9 @@ struct ContactProgramme::Rows {
     /// Whether the linear gap can reach 0 within the trust bounds; no real gap is smaller than the linear one.
     bool can_close(const Packing& packing, const Contact& c, double trust) {
         double closing = 0;
-        for_each_entry(gradient(packing, c), [&](std::size_t coordinate, double value) {
+        for_each_entry(gradient(packing, c), [&](std::size_t coordinate, double entry) {
             const bool of_grain = coordinate < packing.length_at(0);
-            closing += std::abs(value) * (of_grain ? trust : wall_trust(packing) * trust);
+            closing += std::abs(entry) * (of_grain ? trust : wall_trust(packing) * trust);
         });
         return isostat::gap(packing, c) < closing * (1 + 1e-9);
     }

@@ -2,7 +2,7 @@
 #include "compare/report.hpp"
 #include "convert.hpp"
 #include "snap/force_split.hpp"
-#include "snap/soft_state.hpp"
+#include "snap/soft_list.hpp"
 
 #include <isostat/compare/compare.hpp>
 #include <isostat/core/error.hpp>

@@ -14,13 +14,15 @@ struct Group {
     PerAxis<bool> lower{};
     PerAxis<bool> upper{};
 
-    explicit Group(int disks) : disk(static_cast<std::size_t>(disks), 0) {}
-    void add(const Contact& contact) {
-        disk[static_cast<std::size_t>(contact.i)] = 1;
-        if (contact.of_disks()) {
-            disk[static_cast<std::size_t>(contact.j)] = 1;
-        } else {
-            (contact.kind == ContactKind::lower_wall ? lower : upper)[static_cast<std::size_t>(contact.j)] = true;
+    Group(int disks, const std::vector<Contact>& contacts) : disk(static_cast<std::size_t>(disks), 0) {
+        for (const Contact& contact : contacts) {
+            const auto j = static_cast<std::size_t>(contact.j);
+            disk[static_cast<std::size_t>(contact.i)] = 1;
+            if (contact.of_disks()) {
+                disk[j] = 1;
+            } else {
+                (contact.kind == ContactKind::lower_wall ? lower : upper)[j] = true;
+            }
         }
     }
 };
@@ -73,17 +75,14 @@ bool moves_as_one(const DofMap& dofs, int disks, const std::vector<Contact>& amo
     if (!unwound(disks, all)) {
         return false;
     }
-    Group group(disks);
-    std::for_each(all.begin(), all.end(), [&](const Contact& c) { group.add(c); });
-    return static_cast<int>(among.size()) == motions_to_hold(dofs, group);
+    return static_cast<int>(among.size()) == motions_to_hold(dofs, Group(disks, all));
 }
 
 bool carries_alone(const DofMap& dofs, const std::vector<Contact>& carrying, int axis) {
     if (axis < 0 || axis >= plane || !unwound(dofs.disk_count(), carrying)) {
         return false;
     }
-    Group group(dofs.disk_count());
-    std::for_each(carrying.begin(), carrying.end(), [&](const Contact& c) { group.add(c); });
+    const Group group(dofs.disk_count(), carrying);
     const auto a = static_cast<std::size_t>(axis);
     return group.lower[a] && group.upper[a] && // excludes a translation along the load, and a rotation
            static_cast<int>(carrying.size()) == motions_to_hold(dofs, group);

@@ -1,7 +1,6 @@
-#include "snap/soft_state.hpp"
-
 #include "packing/words.hpp"
 #include "snap/backbone.hpp"
+#include "snap/soft_list.hpp"
 
 #include <isostat/core/error.hpp>
 

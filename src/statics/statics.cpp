@@ -139,10 +139,6 @@ Enclosure Statics::force(ContactId contact, double sigma) const {
             (a.bound + std::abs(distance.x[0]) * b.bound) * (1 + 4 * u) + 0x1p-96 * size + 2 * u * std::abs(value)};
 }
 
-bool Statics::slope_is_zero(ContactId contact) const {
-    return sloped_[contact.index()] == 0;
-}
-
 Enclosure Statics::slope(ContactId contact) const {
     const std::size_t l = contact.index();
     if (slope_is_zero(contact)) {

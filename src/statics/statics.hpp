@@ -49,7 +49,7 @@ class Statics {
     /// degrees of freedom (statement T11): the contacts of rattlers.
     [[nodiscard]] bool is_structural_zero(ContactId contact) const { return backbone_[contact.index()] == 0; }
     /// The slope vanishes exactly, so this force does not depend on sigma.
-    [[nodiscard]] bool slope_is_zero(ContactId contact) const;
+    [[nodiscard]] bool slope_is_zero(ContactId contact) const { return sloped_[contact.index()] == 0; }
     /// The contacts whose finite forces are no structural zeros.
     [[nodiscard]] std::vector<Contact> carrying() const;
 

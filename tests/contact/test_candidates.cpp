@@ -1,5 +1,4 @@
 #include "../../src/contact/near_pairs.hpp"
-#include "../../src/contact/pair_list.hpp"
 #include "contact/candidates.hpp"
 #include "oracle/geometry.hpp"
 #include "oracle/packings.hpp"

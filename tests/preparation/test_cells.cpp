@@ -1,6 +1,5 @@
 // Periodic packings from random disks: proved vertices, and what may not change them.
 
-#include "contact/near_pairs.hpp"
 #include "preparation/soft.hpp"
 #include "support/prepared.hpp"
 

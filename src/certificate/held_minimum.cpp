@@ -35,22 +35,14 @@ HeldMotion motion_of(const Vertex& vertex, std::size_t slot) {
     HeldMotion motion{std::vector<double>(vertex.packing.q.size(), 0.0)};
     double square = 0;
     for (std::size_t mu = 0; mu < on_dofs.size(); ++mu) {
-        motion.v[static_cast<std::size_t>(vertex.structure.dofs().coordinate_of(static_cast<int>(mu)))] = -on_dofs[mu];
+        motion.v[vertex.structure.dofs().coordinate_of(mu)] = -on_dofs[mu];
         square += on_dofs[mu] * on_dofs[mu];
     }
     motion.size = std::sqrt(square) * up;
     double residual = 0;
     for (std::size_t l = 0; l < contacts.size(); ++l) {
-        const GapGradient g = gap_gradient(vertex.packing, contacts[l]);
-        double rate = l == slot ? -1.0 : 0.0;
-        double terms = std::abs(rate);
-        for (int k = 0; k < g.count; ++k) {
-            const auto e = static_cast<std::size_t>(k);
-            const double term = g.value[e] * motion.v[static_cast<std::size_t>(g.coordinate[e])];
-            rate += term;
-            terms += std::abs(term);
-        }
-        const double bound = std::abs(rate) + 16 * u * terms;
+        const auto rate = gap_gradient(vertex.packing, contacts[l]).rate(motion.v, l == slot ? -1.0 : 0.0);
+        const double bound = std::abs(rate.value) + 16 * u * rate.terms;
         residual += bound * bound;
     }
     motion.residual = std::sqrt(residual) * up;
@@ -414,15 +406,8 @@ Yielding yielding_at(const Vertex& vertex, double sigma, const std::vector<std::
             }
         }
         for (const Contact& pair : candidates) {
-            const GapGradient g = gap_gradient(vertex.packing, pair);
-            double rate = 0;
-            double terms = 0;
-            for (std::size_t k = 0; k < static_cast<std::size_t>(g.count); ++k) {
-                const double term = g.value[k] * velocity[static_cast<std::size_t>(g.coordinate[k])];
-                rate += term;
-                terms += std::abs(term);
-            }
-            look(pair, false, gap(vertex.packing, pair), rate, terms);
+            const auto rate = gap_gradient(vertex.packing, pair).rate(velocity);
+            look(pair, false, gap(vertex.packing, pair), rate.value, rate.terms);
         }
     }
     return yielding;

@@ -1,5 +1,4 @@
 #include "compare/frame.hpp"
-#include "contact/gap_entries.hpp"
 #include "core/dot.hpp"
 
 #include <Eigen/QR>
@@ -40,7 +39,7 @@ Eigen::MatrixXd equations(const Frame& frame, const std::map<Contact, double>& b
     int row = 0;
     for (const auto& [contact, force] : beyond) {
         const double w = weight(packing, contact, power, hertz);
-        for_each_entry(gap_gradient(packing, contact), [&](std::size_t k, double g) {
+        gap_gradient(packing, contact).for_each([&](std::size_t k, double g) {
             const double value = -w * g;
             if (k < disks) {
                 a(row, 0) += value * frame.velocity[k];

@@ -1,5 +1,4 @@
 #include "compare/frame.hpp"
-#include "contact/gap_entries.hpp"
 #include "packing/words.hpp"
 #include "snap/backbone.hpp"
 #include "snap/force_split.hpp"
@@ -225,8 +224,9 @@ class Reader {
     [[nodiscard]] Left left_by(const std::map<Contact, double>& forces) const {
         std::vector<double> left = frame_.load.external_force(frame_.packing);
         for (const auto& [c, force] : forces) {
-            for_each_entry(gap_gradient(frame_.packing, c),
-                           [&left, f = force](std::size_t k, double push) { left[k] += f * push; });
+            gap_gradient(frame_.packing, c).for_each([&left, f = force](std::size_t k, double push) {
+                left[k] += f * push;
+            });
         }
         const Packing& packing = frame_.packing;
         const std::size_t d = packing.axes();

@@ -1,5 +1,6 @@
 #include "contact/separation.hpp"
 #include "core/dot.hpp"
+#include "packing/words.hpp"
 
 #include <isostat/contact/state.hpp>
 
@@ -14,7 +15,6 @@ namespace {
 
 constexpr std::array<const char*, 3> lower_name{"left", "bottom", "back"};
 constexpr std::array<const char*, 3> upper_name{"right", "top", "front"};
-constexpr std::array<const char*, 3> axis_name{"x", "y", "z"};
 
 double plain_norm(const PerAxis<double>& d) {
     double square = 0;
@@ -81,7 +81,7 @@ std::string to_string(const Contact& contact, int dimension) {
     case ContactKind::lower_wall: return fmt::format("{}-{}", contact.i, lower_name[axis]);
     case ContactKind::upper_wall: return fmt::format("{}-{}", contact.i, upper_name[axis]);
     case ContactKind::held:
-        return fmt::format("held {} of grain {}", axis_name[static_cast<std::size_t>(contact.i % dimension)],
+        return fmt::format("held {} of grain {}", axis_names[static_cast<std::size_t>(contact.i % dimension)],
                            contact.i / dimension);
     }
     return {};
@@ -98,6 +98,16 @@ double gap(const Packing& packing, const Contact& contact) {
     case ContactKind::held: return 0;
     }
     return 0;
+}
+
+GapGradient::Rate GapGradient::rate(const std::vector<double>& velocity, double from) const {
+    Rate sum{from, std::abs(from)};
+    for_each([&](std::size_t k, double component) {
+        const double term = component * velocity[k];
+        sum.value += term;
+        sum.terms += std::abs(term);
+    });
+    return sum;
 }
 
 GapGradient gap_gradient(const Packing& packing, const Contact& contact) {

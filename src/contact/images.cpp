@@ -1,6 +1,7 @@
 #include "contact/images.hpp"
 
 #include "core/dot.hpp"
+#include "packing/cell_wrap.hpp"
 #include "packing/words.hpp"
 
 #include <isostat/core/error.hpp>
@@ -99,12 +100,10 @@ void Images::add(const Packing& of, int i, const std::array<int, most_axes>& m) 
     packing.radius.push_back(of.radius[static_cast<std::size_t>(i)]);
     disk.push_back(i);
     Image& here = offset.emplace_back();
+    PerAxis<double> shift{};
+    add_periods(shift, of, m);
     for (std::size_t a = 0; a < of.axes(); ++a) {
-        double shift = 0;
-        for (std::size_t b = a; b < of.axes(); ++b) {
-            shift += m[b] == 0 ? 0 : m[b] * of.lattice(a, b);
-        }
-        packing.q.push_back(of.coordinate(DiskId(i), static_cast<int>(a)) + shift);
+        packing.q.push_back(of.coordinate(DiskId(i), static_cast<int>(a)) + shift[a]);
         here.m[a] = static_cast<std::int8_t>(m[a]);
     }
 }

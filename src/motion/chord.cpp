@@ -52,7 +52,7 @@ void Chord::make_mechanism() {
 void Chord::to_coordinates(const Vector& on_dofs, Vector& on_coordinates) const {
     const DofMap& dofs = structure().dofs();
     for (std::size_t mu = 0; mu < size_; ++mu) {
-        on_coordinates[static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(mu)))] = on_dofs[mu];
+        on_coordinates[dofs.coordinate_of(mu)] = on_dofs[mu];
     }
 }
 
@@ -149,15 +149,11 @@ void Chord::rates_at(const Packing& at, const Vector& v) {
 /// The rates are minus the approach velocities G v, and the matrix has G.
 void Chord::rates_from_matrix(const Vector& v) {
     const sparse::Matrix<double>& h = structure().matrix();
-    const DofMap& dofs = structure().dofs();
-    Vector on_dofs(size_);
-    for (std::size_t mu = 0; mu < size_; ++mu) {
-        on_dofs[mu] = v[static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(mu)))];
-    }
+    const Vector velocity = on_dofs(v, structure().dofs());
     for (std::size_t l = 0; l < size_; ++l) {
         double rate = 0;
         for (auto e = static_cast<std::size_t>(h.start[l]); e < static_cast<std::size_t>(h.start[l + 1]); ++e) {
-            rate -= h.value[e] * on_dofs[static_cast<std::size_t>(h.row[e])];
+            rate -= h.value[e] * velocity[static_cast<std::size_t>(h.row[e])];
         }
         approach_[l] = rate;
     }

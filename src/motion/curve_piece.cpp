@@ -261,7 +261,7 @@ std::optional<CurvePiece::Place> CurvePiece::locate(const std::vector<double>& x
     double square = 0;
     double coordinate = proved_;
     for (std::size_t mu = 0; mu < static_cast<std::size_t>(structure().size()); ++mu) {
-        const auto k = static_cast<std::size_t>(structure().dofs().coordinate_of(static_cast<int>(mu)));
+        const std::size_t k = structure().dofs().coordinate_of(mu);
         square += off[k] * off[k];
         coordinate = std::max({coordinate, std::abs(x[k]), std::abs(centre().q[k])});
     }

@@ -61,12 +61,7 @@ CurvePolynomial::CurvePolynomial(const KeptCurve& curve, const ArcCentre& centre
 
 std::vector<double> CurvePolynomial::solved(std::vector<double> rhs) const {
     factorisation().solve_velocities(rhs);
-    std::vector<double> y(centre().q.size(), 0.0);
-    const DofMap& dofs = structure().dofs();
-    for (std::size_t mu = 0; mu < rhs.size(); ++mu) {
-        y[static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(mu)))] = rhs[mu];
-    }
-    return y;
+    return structure().dofs().on_coordinates(rhs);
 }
 
 /// Tangent at the centre, 1 in its fastest coordinate. False: the tangent is not finite.
@@ -164,7 +159,7 @@ void CurvePolynomial::expand() {
 std::vector<double> CurvePolynomial::point(double s) const {
     std::vector<double> x = centre().q;
     for (std::size_t mu = 0; mu < static_cast<std::size_t>(structure().size()); ++mu) {
-        const auto k = static_cast<std::size_t>(structure().dofs().coordinate_of(static_cast<int>(mu)));
+        const std::size_t k = structure().dofs().coordinate_of(mu);
         double sum = 0;
         for (std::size_t order = a_.size(); order > 0; --order) {
             sum = (sum + a_[order - 1][k]) * s;
@@ -177,7 +172,7 @@ std::vector<double> CurvePolynomial::point(double s) const {
 std::vector<double> CurvePolynomial::slope(double s) const {
     std::vector<double> v(centre().q.size(), 0.0);
     for (std::size_t mu = 0; mu < static_cast<std::size_t>(structure().size()); ++mu) {
-        const auto k = static_cast<std::size_t>(structure().dofs().coordinate_of(static_cast<int>(mu)));
+        const std::size_t k = structure().dofs().coordinate_of(mu);
         for (std::size_t order = a_.size(); order > 0; --order) {
             v[k] = v[k] * s + static_cast<double>(order) * a_[order - 1][k];
         }
@@ -239,10 +234,7 @@ double CurvePolynomial::row_terms() const {
 
 RoundedSum CurvePolynomial::along_row(const std::vector<double>& v) const {
     RoundedSum sum;
-    for (int g = 0; g < row_.count; ++g) {
-        const auto e = static_cast<std::size_t>(g);
-        sum.add(row_.value[e] * v[static_cast<std::size_t>(row_.coordinate[e])]);
-    }
+    row_.for_each([&](std::size_t k, double value) { sum.add(value * v[k]); });
     return sum;
 }
 

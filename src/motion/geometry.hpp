@@ -61,13 +61,7 @@ inline double gap_rate(const Packing& at, const Contact& contact, const std::vec
     if (const auto line = centre_line(at, contact)) {
         return rate_of(at.layout(), *line, contact, v);
     }
-    const GapGradient g = gap_gradient(at, contact);
-    double sum = 0;
-    for (int k = 0; k < g.count; ++k) {
-        const auto e = static_cast<std::size_t>(k);
-        sum += g.value[e] * v[static_cast<std::size_t>(g.coordinate[e])];
-    }
-    return sum;
+    return gap_gradient(at, contact).rate(v).value;
 }
 
 /// Second derivative of the gap along a velocity.

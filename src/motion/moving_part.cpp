@@ -100,14 +100,13 @@ bool MovingPart::restrict_to(const std::vector<double>& mechanism) {
     wall_moves_.assign(start_packing_.coordinate_count() - walls, 0);
     for (std::size_t mu = 0; mu < mechanism.size(); ++mu) {
         if (mechanism[mu] != 0) {
-            const auto k = static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(mu)));
+            const std::size_t k = dofs.coordinate_of(mu);
             (k < walls ? disk_moves_[k / start_packing_.axes()] : wall_moves_[k - walls]) = 1;
         }
     }
     std::size_t degrees = 0;
     for (std::size_t mu = 0; mu < mechanism.size(); ++mu) {
-        const auto k = static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(mu)));
-        degrees += coordinate_moves(k) ? 1 : 0;
+        degrees += coordinate_moves(dofs.coordinate_of(mu)) ? 1 : 0;
     }
     whole_ = false;
     const Contact& row = start_.structure.contacts()[slot_];

@@ -84,11 +84,7 @@ PowerWatch::Balance PowerWatch::balance(const CurvePiece& piece) const {
     const auto n = static_cast<std::size_t>(structure.size());
     const std::vector<double> load =
         power_.infinitesimal ? power_.load->infinitesimal : power_.load->external_force(*piece.curve().start);
-    std::vector<double> force(n, 0.0);
-    for (std::size_t mu = 0; mu < n; ++mu) {
-        const auto k = static_cast<std::size_t>(structure.dofs().coordinate_of(static_cast<int>(mu)));
-        force[mu] = k < load.size() ? load[k] : 0;
-    }
+    const std::vector<double> force = on_dofs(load, structure.dofs());
     Balance balance{force, 0};
     piece.factorisation().solve_forces(balance.f);
     std::vector<double> residual = force;

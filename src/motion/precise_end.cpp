@@ -51,16 +51,13 @@ std::optional<Packing> precise_end(const RoughEnd& rough) {
     constexpr double converged = 1e-22; // of a radius: coordinates are rounded to doubles afterwards
     Packing at = a_little_before(rough);
     std::vector<dd_real> correction(at.q.size(), dd_real(0.0));
-    const DofMap& dofs = rough.structure.dofs();
     for (int k = 0; k < max_steps; ++k) {
         const std::vector<double> step = newton_step(rough, at, correction);
         const double size = step.empty() ? roundoff::infinity : largest(step);
         if (!(size <= 0.01 * at.min_radius())) {
             return std::nullopt;
         }
-        for (std::size_t mu = 0; mu < step.size(); ++mu) {
-            correction[static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(mu)))] += step[mu];
-        }
+        rough.structure.dofs().move(correction, step);
         if (size <= converged * at.min_radius()) {
             for (std::size_t c = 0; c < correction.size(); ++c) {
                 at.q[c] = (dd_real(at.q[c]) + correction[c]).x[0];

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Grains of a periodic packing put into the cell.
+/// Grains of a periodic packing moved by periods, and put into the cell.
 
 #include <isostat/packing/packing.hpp>
 
@@ -18,5 +18,14 @@ struct Wrapped {
 /// walls nothing moves. Exact where the coordinates are on the grid of `snap_to_grid`.
 /// \pre there are periodic axes
 Wrapped wrap_into_cell(Packing& packing);
+
+/// at += A m, m_a periods along each axis. \pre m is 0 along axes without a period
+template <class Numbers> void add_periods(PerAxis<double>& at, const Packing& packing, const Numbers& m) {
+    for (std::size_t a = 0; a < packing.axes(); ++a) {
+        for (std::size_t b = a; b < packing.axes(); ++b) {
+            at[a] += m[b] == 0 ? 0 : m[b] * packing.lattice(a, b);
+        }
+    }
+}
 
 } // namespace isostat

@@ -1,5 +1,6 @@
 #include "packing/arc_bodies.hpp"
 #include "packing/bodies.hpp"
+#include "packing/cell_wrap.hpp"
 #include "packing/words.hpp"
 
 #include <isostat/core/error.hpp>
@@ -93,6 +94,14 @@ DofMap::DofMap(const Packing& packing)
     }
 }
 
+std::vector<double> DofMap::on_coordinates(const std::vector<double>& on_dofs) const {
+    std::vector<double> all(dof_of_.size(), 0.0);
+    for (std::size_t mu = 0; mu < on_dofs.size(); ++mu) {
+        all[coordinate_of(mu)] = on_dofs[mu];
+    }
+    return all;
+}
+
 std::string DofMap::name(int dof) const {
     const auto coordinate = static_cast<std::size_t>(coordinate_of(dof));
     const std::size_t d = layout_.axes();
@@ -156,11 +165,7 @@ void validate_cell(const Packing& packing, const std::string& source) {
 /// The length of the period A m.
 double period_length(const Packing& packing, const std::array<int, most_axes>& m) {
     PerAxis<double> period{};
-    for (std::size_t a = 0; a < packing.axes(); ++a) {
-        for (std::size_t b = a; b < packing.axes(); ++b) {
-            period[a] += m[b] == 0 ? 0 : m[b] * packing.lattice(a, b);
-        }
-    }
+    add_periods(period, packing, m);
     return packing.dimension == plane ? std::hypot(period[0], period[1]) : std::hypot(period[0], period[1], period[2]);
 }
 

@@ -1,5 +1,4 @@
 #include "contact/candidates.hpp"
-#include "contact/gap_entries.hpp"
 #include "preparation/polish.hpp"
 
 #include <Eigen/QR>
@@ -25,8 +24,9 @@ std::optional<std::vector<Contact>> best_conditioned(const Packing& packing) {
     }
     Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(n, count);
     for (Eigen::Index l = 0; l < count; ++l) {
-        for_each_entry(gap_gradient(packing, pairs[static_cast<std::size_t>(l)]), dofs,
-                       [&](std::size_t dof, double value) { columns(static_cast<Eigen::Index>(dof), l) += value; });
+        gap_gradient(packing, pairs[static_cast<std::size_t>(l)])
+            .for_each_dof(dofs,
+                          [&](std::size_t dof, double value) { columns(static_cast<Eigen::Index>(dof), l) += value; });
     }
     const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors(columns);
     const auto diagonal = [&](Eigen::Index k) { return std::abs(factors.matrixQR()(k, k)); };

@@ -80,7 +80,7 @@ bool ContactProgramme::complete(Packing& packing, double eps, std::vector<Contac
             return false;
         }
         for (std::size_t k = 0; k < wanted; ++k) {
-            const auto at = static_cast<std::size_t>(none.dofs.coordinate_of(static_cast<int>(k)));
+            const std::size_t at = none.dofs.coordinate_of(k);
             packing.q[at] += (rise > 0 ? -time : time) * (*velocity)[k];
         }
         contacts.insert(std::upper_bound(contacts.begin(), contacts.end(), open.contact[first]), open.contact[first]);

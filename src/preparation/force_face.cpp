@@ -1,6 +1,5 @@
 #include "preparation/force_face.hpp"
 
-#include "contact/gap_entries.hpp"
 #include "core/dot.hpp"
 #include "core/work.hpp"
 #include "linear/factorisation.hpp"
@@ -22,7 +21,7 @@ void load_balance(ClpSimplex& simplex, const Packing& packing, const std::vector
     std::vector<int> column;
     std::vector<double> value;
     for (std::size_t l = 0; l < pairs.size(); ++l) {
-        for_each_entry(gap_gradient(packing, pairs[l]), dofs, [&](std::size_t dof, double push) {
+        gap_gradient(packing, pairs[l]).for_each_dof(dofs, [&](std::size_t dof, double push) {
             row.push_back(static_cast<int>(dof));
             column.push_back(static_cast<int>(l));
             value.push_back(push);
@@ -30,7 +29,7 @@ void load_balance(ClpSimplex& simplex, const Packing& packing, const std::vector
     }
     std::vector<double> balance(static_cast<std::size_t>(dofs.dof_count()));
     for (std::size_t mu = 0; mu < balance.size(); ++mu) {
-        balance[mu] = -force[static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(mu)))] / size;
+        balance[mu] = -force[dofs.coordinate_of(mu)] / size;
     }
     CoinPackedMatrix matrix(true, row.data(), column.data(), value.data(), static_cast<CoinBigIndex>(row.size()));
     matrix.setDimensions(dofs.dof_count(), static_cast<int>(pairs.size()));
@@ -79,8 +78,9 @@ Result<ForceFace> force_face(const Packing& packing, const Load& load, const std
     std::vector<unsigned char> varies(face.pairs.size(), 0);
     for (std::size_t m = 0; m < touching.size(); ++m) {
         std::vector<double> change(contacts.size(), 0.0); // column of H: minus the gradient of the gap
-        for_each_entry(gap_gradient(packing, touching[m]), structure.value().dofs(),
-                       [&](std::size_t dof, double push) { change[dof] += push; });
+        gap_gradient(packing, touching[m]).for_each_dof(structure.value().dofs(), [&](std::size_t dof, double push) {
+            change[dof] += push;
+        });
         factorisation.solve_forces(change);
         change.resize(face.pairs.size(), 0.0);
         change[contacts.size() + m] = 1;

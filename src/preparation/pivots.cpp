@@ -1,5 +1,4 @@
 #include "contact/candidates.hpp"
-#include "contact/gap_entries.hpp"
 #include "contact/other_pairs.hpp"
 #include "contact/words.hpp"
 #include "core/dot.hpp"
@@ -78,8 +77,8 @@ class Basis {
     /// Row m = sum of a_l rows l: as the force of m grows, f_l - a_l f_m reaches 0 first for the returned contact l.
     [[nodiscard]] std::optional<std::size_t> leaving(std::size_t other) const {
         std::vector<double> a(contacts().size(), 0.0);
-        for_each_entry(gap_gradient(at_.packing, others_[other]), at_.structure.dofs(),
-                       [&](std::size_t dof, double value) { a[dof] = -value; });
+        gap_gradient(at_.packing, others_[other])
+            .for_each_dof(at_.structure.dofs(), [&](std::size_t dof, double value) { a[dof] = -value; });
         at_.factorisation.solve_forces(a);
         const double least = smallest_pivot * largest(a);
         std::optional<std::size_t> first;
@@ -110,8 +109,9 @@ class Basis {
         const double least = smallest_pivot * largest(out.velocity);
         const auto rate = [&](std::size_t m) {
             double sum = 0;
-            for_each_entry(gap_gradient(at_.packing, others_[m]), at_.structure.dofs(),
-                           [&](std::size_t dof, double value) { sum += value * out.velocity[dof]; });
+            gap_gradient(at_.packing, others_[m])
+                .for_each_dof(at_.structure.dofs(),
+                              [&](std::size_t dof, double value) { sum += value * out.velocity[dof]; });
             return sum < -least ? sum : 0.0;
         };
         out.entering = first_to_vanish(
@@ -200,8 +200,7 @@ Result<Polished> pivot(Packing packing, std::vector<Contact> contacts, const Loa
                           named(contacts[*pulling]), time * largest(motion.velocity));
         }
         for (std::size_t mu = 0; mu < motion.velocity.size(); ++mu) {
-            packing.q[static_cast<std::size_t>(at.value()->structure.dofs().coordinate_of(static_cast<int>(mu)))] +=
-                time * motion.velocity[mu];
+            packing.q[at.value()->structure.dofs().coordinate_of(mu)] += time * motion.velocity[mu];
         }
         contacts[*pulling] = basis.other(motion.entering->index);
     }

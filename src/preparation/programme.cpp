@@ -82,7 +82,7 @@ BoxedProgramme ContactProgramme::boxed(const Packing& packing, const Rows& rows,
     programme.bound.assign(rows.columns(), trust_);
     programme.cost.assign(rows.columns(), 0.0);
     for (std::size_t c = 0; c < rows.columns(); ++c) {
-        const auto k = static_cast<std::size_t>(rows.dofs.coordinate_of(static_cast<int>(c)));
+        const std::size_t k = rows.dofs.coordinate_of(c);
         if (k < disks) {
             programme.cost[c] = -objective_scale * eps * (*infinitesimal_)[k];
             continue;

@@ -2,7 +2,6 @@
 /// \file
 /// Rows of a contact programme: linearised gaps of a list of contacts.
 
-#include "contact/gap_entries.hpp"
 #include "contact/separation.hpp"
 #include "preparation/programme.hpp"
 
@@ -65,18 +64,18 @@ struct ContactProgramme::Rows {
     /// Whether the linear gap can reach 0 within the trust bounds; no real gap is smaller than the linear one.
     bool can_close(const Packing& packing, const Contact& c, double trust) {
         double closing = 0;
-        for_each_entry(gradient(packing, c), [&](std::size_t coordinate, double entry) {
-            const bool of_grain = coordinate < packing.length_at(0);
-            closing += std::abs(entry) * (of_grain ? trust : wall_trust(packing) * trust);
+        gradient(packing, c).for_each([&](std::size_t k, double value) {
+            const bool of_grain = k < packing.length_at(0);
+            closing += std::abs(value) * (of_grain ? trust : wall_trust(packing) * trust);
         });
         return isostat::gap(packing, c) < closing * (1 + 1e-9);
     }
 
     void add(const Packing& packing, const Contact& c) {
-        for_each_entry(gradient(packing, c), dofs, [&](std::size_t dof, double entry) {
+        gradient(packing, c).for_each_dof(dofs, [&](std::size_t dof, double component) {
             row.push_back(static_cast<int>(contact.size()));
             column.push_back(static_cast<int>(dof));
-            value.push_back(entry);
+            value.push_back(component);
         });
         contact.push_back(c);
         gap.push_back(isostat::gap(packing, c));
@@ -87,7 +86,7 @@ struct ContactProgramme::Rows {
     [[nodiscard]] std::vector<double> on_coordinates(const double* x) const {
         std::vector<double> all(static_cast<std::size_t>(dofs.coordinate_count()), 0.0);
         for (std::size_t c = 0; c < columns(); ++c) {
-            all[static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(c)))] = x[c];
+            all[dofs.coordinate_of(c)] = x[c];
         }
         for (std::size_t k = 0; k < follows.size(); ++k) {
             const std::size_t first = all.size() - follows.size();
@@ -107,9 +106,9 @@ struct ContactProgramme::Rows {
         }
         int disks = 0;
         double along = 0;
-        for_each_entry(g, [&](std::size_t coordinate, double entry) {
-            disks += coordinate < first ? 1 : 0;
-            along += coordinate < first ? 0 : entry * follows[coordinate - first];
+        g.for_each([&](std::size_t k, double component) {
+            disks += k < first ? 1 : 0;
+            along += k < first ? 0 : component * follows[k - first];
         });
         if (disks < g.count) { // entries of the cell come last
             g.coordinate[static_cast<std::size_t>(disks)] = static_cast<int>(leads);

@@ -1,5 +1,4 @@
 #include "contact/candidates.hpp"
-#include "contact/gap_entries.hpp"
 #include "contact/separation.hpp"
 #include "core/roundoff.hpp"
 #include "snap/backbone.hpp"
@@ -52,12 +51,12 @@ void part(Packing& packing, const std::vector<Contact>& pairs, const std::vector
             continue;
         }
         const GapGradient gradient = gap_gradient(packing, pair);
-        const auto moves = [&](std::size_t at) { return at < disks && rattles[at / packing.axes()] != 0; };
+        const auto moves = [&](std::size_t k) { return k < disks && rattles[k / packing.axes()] != 0; };
         double square = 0;
-        for_each_entry(gradient, [&](std::size_t at, double g) { square += moves(at) ? g * g : 0; });
-        for_each_entry(gradient, [&](std::size_t at, double g) {
-            if (moves(at)) {
-                packing.q[at] += missing / square * g;
+        gradient.for_each([&](std::size_t k, double g) { square += moves(k) ? g * g : 0; });
+        gradient.for_each([&](std::size_t k, double g) {
+            if (moves(k)) {
+                packing.q[k] += missing / square * g;
             }
         });
     }

@@ -1,6 +1,5 @@
 #include "certificate/subject.hpp"
 #include "contact/contact_set.hpp"
-#include "contact/gap_entries.hpp"
 #include "core/words.hpp"
 #include "crafted/peeling.hpp"
 #include "rigidity/isostatic.hpp"
@@ -181,9 +180,9 @@ std::vector<double> resting_loads(const Packing& packing, const std::vector<Cont
     const double unit = packing.min_radius() * packing.min_radius();
     for (const Contact& contact : contacts) {
         const double force = unit * (1 + static_cast<double>(random() >> 11U) * 0x1p-53);
-        for_each_entry(gap_gradient(packing, contact), [&](std::size_t at, double push) {
-            if (at < out.size()) {
-                out[at] -= force * push;
+        gap_gradient(packing, contact).for_each([&](std::size_t k, double value) {
+            if (k < out.size()) {
+                out[k] -= force * value;
             }
         });
     }

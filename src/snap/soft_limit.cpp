@@ -1,3 +1,4 @@
+#include "core/dot.hpp"
 #include "linear/factorisation.hpp"
 #include "rigidity/isostatic.hpp"
 #include "statics/first_to_vanish.hpp"
@@ -47,12 +48,8 @@ class SoftGrains {
             step[l] = gap(packing, contacts_[l]) + forces[l] / stiffness_; // the approach that the step must make
         }
         factors_->solve_velocities(step);
-        double largest = 0;
-        for (std::size_t mu = 0; mu < step.size(); ++mu) {
-            packing.q[static_cast<std::size_t>(dofs_.coordinate_of(static_cast<int>(mu)))] += step[mu];
-            largest = std::max(largest, std::abs(step[mu]));
-        }
-        return largest <= settled * packing.min_radius();
+        dofs_.move(packing.q, step);
+        return largest(step) <= settled * packing.min_radius();
     }
 
   private:

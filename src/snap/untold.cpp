@@ -56,9 +56,7 @@ class Copies {
         }
         factors_->solve_velocities(moves);
         Packing packing = backbone_.packing;
-        for (std::size_t mu = 0; mu < moves.size(); ++mu) {
-            packing.q[static_cast<std::size_t>(dofs_.coordinate_of(static_cast<int>(mu)))] += moves[mu];
-        }
+        dofs_.move(packing.q, moves);
         const double scale = rounding / step;
         for (std::size_t l = 0; l < pairs.size(); ++l) {
             const double change = std::abs(gap(packing, pairs[l]) - gaps[l]);

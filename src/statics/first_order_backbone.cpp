@@ -1,6 +1,5 @@
 #include "statics/first_order_backbone.hpp"
 
-#include "contact/gap_entries.hpp"
 #include "contact/separation.hpp"
 #include "contact/words.hpp"
 #include "core/dot.hpp"
@@ -33,7 +32,7 @@ void load_programme(ClpSimplex& simplex, const Packing& packing, const DofMap& d
     const auto columns = static_cast<std::size_t>(dofs.dof_count());
     std::vector<double> cost(columns, 0.0);
     for (std::size_t mu = 0; mu < columns; ++mu) {
-        const auto k = static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(mu)));
+        const std::size_t k = dofs.coordinate_of(mu);
         cost[mu] = -(force[k] / force_size + (k < load.infinitesimal.size() ? load.infinitesimal[k] / small_size : 0));
     }
     std::vector<int> row;
@@ -42,10 +41,10 @@ void load_programme(ClpSimplex& simplex, const Packing& packing, const DofMap& d
     std::vector<double> lower; // gradient . v >= rho_i + rho_j
     for (std::size_t l = 0; l < contacts.size(); ++l) {
         const Contact& c = contacts[l];
-        for_each_entry(gap_gradient(packing, c), dofs, [&](std::size_t dof, double entry) {
+        gap_gradient(packing, c).for_each_dof(dofs, [&](std::size_t dof, double component) {
             row.push_back(static_cast<int>(l));
             column.push_back(static_cast<int>(dof));
-            value.push_back(entry);
+            value.push_back(component);
         });
         lower.push_back(touching_distance(rho, c) / rho_size);
     }

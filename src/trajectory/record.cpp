@@ -54,11 +54,7 @@ constexpr double rounded_up = 1 + 0x1p-40; ///< covers the rounding of a bound
 VertexEnclosure at_true_vertex(const Vertex& vertex) {
     VertexEnclosure at = vertex.enclosure;
     if (at.correction.empty() && !at.step.empty() && at.step_radius < at.radius) {
-        at.correction.assign(vertex.packing.q.size(), 0.0);
-        for (std::size_t mu = 0; mu < at.step.size(); ++mu) {
-            const int coordinate = vertex.structure.dofs().coordinate_of(static_cast<int>(mu));
-            at.correction[static_cast<std::size_t>(coordinate)] = at.step[mu];
-        }
+        at.correction = vertex.structure.dofs().on_coordinates(at.step);
         at.radius = at.step_radius;
     }
     return at;

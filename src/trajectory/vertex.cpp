@@ -127,8 +127,7 @@ Result<std::unique_ptr<Vertex>> Vertex::prove(const Vertex& from, ArcProposal& a
                                               InverseBoundCache& cache, LadderOptions options) {
     std::vector<double> mechanism(static_cast<std::size_t>(from.structure.size()), 0.0);
     for (std::size_t mu = 0; mu < mechanism.size() && !arc.tangent.empty(); ++mu) {
-        mechanism[mu] =
-            arc.tangent[static_cast<std::size_t>(from.structure.dofs().coordinate_of(static_cast<int>(mu)))];
+        mechanism[mu] = arc.tangent[from.structure.dofs().coordinate_of(mu)];
     }
     auto bound = carry_bound(from.structure, from.inverse, *arc.contacts, *arc.approximate, std::move(mechanism));
     if (!bound) {

@@ -66,15 +66,8 @@ constexpr double carries_or_moves = 1e-8;
 /// The coefficients a with row of the pair = sum a_l (row of l), in double.
 std::vector<double> shares_of(const Packing& packing, const IsostaticStructure& structure,
                               const Factorisation& factorisation, const Contact& pair) {
-    const GapGradient g = gap_gradient(packing, pair);
     std::vector<double> a(static_cast<std::size_t>(structure.size()), 0.0);
-    for (int k = 0; k < g.count; ++k) {
-        const auto e = static_cast<std::size_t>(k);
-        const int dof = structure.dofs().dof_of(static_cast<std::size_t>(g.coordinate[e]));
-        if (dof >= 0) {
-            a[static_cast<std::size_t>(dof)] = -g.value[e];
-        }
-    }
+    gap_gradient(packing, pair).for_each_dof(structure.dofs(), [&](std::size_t dof, double value) { a[dof] = -value; });
     factorisation.solve_forces(a);
     return a;
 }
@@ -254,10 +247,7 @@ FirstOrder::Velocity FirstOrder::velocity(const std::vector<double>& approach, d
         residual[l] = std::abs(dot) + rounding(packing_->dimension, structure_->contacts()[l]) * terms;
     }
     Velocity result;
-    result.v.assign(packing_->q.size(), 0.0);
-    for (std::size_t mu = 0; mu < v.size(); ++mu) {
-        result.v[static_cast<std::size_t>(structure_->dofs().coordinate_of(static_cast<int>(mu)))] = v[mu];
-    }
+    result.v = structure_->dofs().on_coordinates(v);
     const double open = norm_above(residual) + approach_error + uncertainty_ * length_of(v);
     result.error = sigma_ > 0 ? open / sigma_ * raise : std::numeric_limits<double>::infinity();
     return result;
@@ -267,15 +257,7 @@ Enclosure FirstOrder::gap_rate(const Contact& contact, const Velocity& velocity)
     if (contact.kind == ContactKind::held) {
         return {velocity.v[static_cast<std::size_t>(contact.i)], velocity.error};
     }
-    const GapGradient g = gap_gradient(*packing_, contact);
-    double sum = 0;
-    double terms = 0;
-    for (int k = 0; k < g.count; ++k) {
-        const auto e = static_cast<std::size_t>(k);
-        const double term = g.value[e] * velocity.v[static_cast<std::size_t>(g.coordinate[e])];
-        sum += term;
-        terms += std::abs(term);
-    }
+    const auto rate = gap_gradient(*packing_, contact).rate(velocity.v);
     const double weight = separation_weight(contact);
     double turned = 0; // the normal of the true vertex differs
     if (contact.of_disks()) {
@@ -287,7 +269,8 @@ Enclosure FirstOrder::gap_rate(const Contact& contact, const Velocity& velocity)
         turned = (std::sqrt(square) + lost_to_periods(packing_->layout(), velocity.v, contact)) * 2 * weight * away_ /
                  (0.99 * target(*packing_, contact));
     }
-    return {sum, (weight * velocity.error + turned + rounding(packing_->dimension, contact) * terms) * raise};
+    return {rate.value,
+            (weight * velocity.error + turned + rounding(packing_->dimension, contact) * rate.terms) * raise};
 }
 
 Enclosure FirstOrder::gap(const Contact& contact) const {
@@ -406,7 +389,7 @@ std::vector<Enclosure> FirstOrder::forces(const std::vector<Enclosure>& f0,
     std::vector<double> b(n);
     std::vector<double> open(n);
     for (std::size_t mu = 0; mu < n; ++mu) {
-        const auto k = static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(mu)));
+        const std::size_t k = dofs.coordinate_of(mu);
         b[mu] = on.value[k];
         open[mu] = on.error[k];
     }

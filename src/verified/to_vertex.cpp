@@ -28,11 +28,9 @@ void keep_shape(Packing& packing, const std::vector<Contact>& contacts, const Fa
     const std::size_t leads = packing.length_at(packing.axes() - 1);
     std::vector<double> answer(contacts.size(), 0.0);
     for (std::size_t l = 0; l < contacts.size(); ++l) {
-        const GapGradient g = gap_gradient(packing, contacts[l]);
-        for (std::size_t k = 0; k < static_cast<std::size_t>(g.count); ++k) {
-            const auto coordinate = static_cast<std::size_t>(g.coordinate[k]);
-            answer[l] += coordinate >= first && coordinate != leads ? g.value[k] * packing.q[coordinate] : 0;
-        }
+        gap_gradient(packing, contacts[l]).for_each([&](std::size_t k, double value) {
+            answer[l] += k >= first && k != leads ? value * packing.q[k] : 0;
+        });
     }
     factorisation.solve_velocities(answer);
     const double beta = step.back() / (packing.q[leads] - answer.back()); // the cell has no other degree of freedom
@@ -59,10 +57,7 @@ std::optional<Failure> newton_step(Packing& packing, const std::vector<Contact>&
     if (packing.cell.keeps_shape) {
         keep_shape(packing, contacts, factorisation, step);
     }
-    const DofMap& dofs = structure.value().dofs();
-    for (std::size_t mu = 0; mu < step.size(); ++mu) {
-        packing.q[static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(mu)))] += step[mu];
-    }
+    structure.value().dofs().move(packing.q, step);
     return std::nullopt;
 }
 

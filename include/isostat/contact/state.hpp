@@ -8,6 +8,7 @@
 #include <isostat/packing/load.hpp>
 
 #include <array>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <utility>
@@ -28,6 +29,27 @@ struct GapGradient {
     int count = 0;
     std::array<int, most> coordinate{};
     std::array<double, most> value{};
+
+    /// visit(coordinate index, component) for every entry.
+    template <class Visit> void for_each(Visit visit) const {
+        for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
+            visit(static_cast<std::size_t>(coordinate[k]), value[k]);
+        }
+    }
+    /// visit(degree of freedom, component) for the coordinates that can move.
+    template <class Visit> void for_each_dof(const DofMap& dofs, Visit visit) const {
+        for_each([&](std::size_t k, double component) {
+            if (const int dof = dofs.dof_of(k); dof >= 0) {
+                visit(static_cast<std::size_t>(dof), component);
+            }
+        });
+    }
+    /// The rate of the gap along a velocity (on coordinates), added to `from`, and the sum of the magnitudes of what
+    /// was added, which bounds its rounding.
+    struct Rate {
+        double value = 0, terms = 0;
+    };
+    [[nodiscard]] Rate rate(const std::vector<double>& velocity, double from = 0) const;
 };
 
 /// Gap h: distance of the surfaces, >= 0 in an admissible packing. For a bar the distance of the centres minus its

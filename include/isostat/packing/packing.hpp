@@ -164,6 +164,17 @@ class DofMap {
     [[nodiscard]] int dof_of(std::size_t coordinate) const { return dof_of_[coordinate]; }
     /// Coordinate index of a degree of freedom.
     [[nodiscard]] int coordinate_of(int dof) const { return coordinate_of_[static_cast<std::size_t>(dof)]; }
+    [[nodiscard]] std::size_t coordinate_of(std::size_t dof) const {
+        return static_cast<std::size_t>(coordinate_of_[dof]);
+    }
+    /// A velocity on the degrees of freedom, written for all coordinates: 0 where nothing moves.
+    [[nodiscard]] std::vector<double> on_coordinates(const std::vector<double>& on_dofs) const;
+    /// Moves coordinates by a step on the degrees of freedom.
+    template <class Number> void move(std::vector<Number>& coordinates, const std::vector<double>& step) const {
+        for (std::size_t mu = 0; mu < step.size(); ++mu) {
+            coordinates[coordinate_of(mu)] += step[mu];
+        }
+    }
     /// "x of disk 12", "right wall", "period along x", "tilt xy": for messages.
     [[nodiscard]] std::string name(int dof) const;
     [[nodiscard]] const Layout& layout() const { return layout_; }

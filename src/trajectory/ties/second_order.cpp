@@ -1,6 +1,5 @@
 #include "trajectory/ties/second_order.hpp"
 
-#include "contact/gap_entries.hpp"
 #include "contact/words.hpp"
 #include "statics/quotient.hpp"
 
@@ -73,8 +72,8 @@ ListExchange exchange_for(const Vertex& from, const std::vector<Sharer>& all, Ti
 Eigen::MatrixXd rates_of(const Packing& at, const DofMap& dofs, const std::vector<Contact>& contacts) {
     Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(contacts.size()), dofs.dof_count());
     for (std::size_t l = 0; l < contacts.size(); ++l) {
-        for_each_entry(gap_gradient(at, contacts[l]), dofs, [&](std::size_t dof, double rate) {
-            rows(static_cast<Eigen::Index>(l), static_cast<Eigen::Index>(dof)) = rate;
+        gap_gradient(at, contacts[l]).for_each_dof(dofs, [&](std::size_t dof, double value) {
+            rows(static_cast<Eigen::Index>(l), static_cast<Eigen::Index>(dof)) = value;
         });
     }
     return rows;

@@ -31,15 +31,6 @@ class ProcessorTime {
     std::clock_t begin_;
 };
 
-double rate(const GapGradient& gradient, const std::vector<double>& v) {
-    double sum = 0;
-    for (int e = 0; e < gradient.count; ++e) {
-        const auto k = static_cast<std::size_t>(e);
-        sum += gradient.value[k] * v[static_cast<std::size_t>(gradient.coordinate[k])];
-    }
-    return sum;
-}
-
 } // namespace
 
 Result<LinearEvent> find_linear_event(const Packing& packing, const IsostaticStructure& structure,
@@ -64,7 +55,7 @@ Result<LinearEvent> find_linear_event(const Packing& packing, const IsostaticStr
         if (kept.contains(pairs[k])) {
             continue;
         }
-        const double falls = -rate(gap_gradient(packing, pairs[k]), event.velocity);
+        const double falls = -gap_gradient(packing, pairs[k]).rate(event.velocity).value;
         if (falls > 0) {
             // A gap that is negative already (a drifted configuration) closes at once.
             const double s = std::max(0.0, gaps.empty() ? gap(packing, pairs[k]) : gaps[k]) / falls;
@@ -201,7 +192,7 @@ class LinearLoading {
         changes = event.value().closed;
         if (frozen_) {
             for (std::size_t k = 0; k < at_.pairs.size(); ++k) {
-                at_.linear[k] += rate(gap_gradient(at_.geometry, at_.pairs[k]), event.value().displacement);
+                at_.linear[k] += gap_gradient(at_.geometry, at_.pairs[k]).rate(event.value().displacement).value;
             }
         } else {
             snap_to_grid(at_.grains);

@@ -1,4 +1,5 @@
 #include "core/roundoff.hpp"
+#include "core/words.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/scene/scene.hpp>
@@ -14,15 +15,6 @@ namespace isostat {
 namespace {
 
 using roundoff::infinity;
-
-const char* word(Action action) {
-    switch (action) {
-    case Action::up: return "up";
-    case Action::down: return "down";
-    case Action::to: return "to";
-    }
-    return "to";
-}
 
 /// Lowest value of a stress ratio: 0; a shear, and the path parameter, may have either sign.
 double lowest(const ProgrammeStep& step) {
@@ -85,7 +77,8 @@ Range after(const Scene& scene, const ProgrammeStep& step, const Range& start) {
         if (behind) {
             refuse(scene, step,
                    fmt::format("{} to a ratio {} of {}, but the ratio at its start is {}: expected a {} one",
-                               word(step.action), step.ratio, *step.to, range_text(start), up ? "larger" : "smaller"));
+                               word_of(step.action, action_words), step.ratio, *step.to, range_text(start),
+                               up ? "larger" : "smaller"));
         }
         if (!step.equilibria) {
             return {*step.to, *step.to};
@@ -97,7 +90,7 @@ Range after(const Scene& scene, const ProgrammeStep& step, const Range& start) {
 } // namespace
 
 std::string describe(const ProgrammeStep& step) {
-    std::string text = word(step.action);
+    std::string text = word_of(step.action, action_words);
     if (step.from) {
         text += fmt::format(" from {}", *step.from);
     }

@@ -5,7 +5,9 @@
 
 #include <isostat/core/machine.hpp>
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
 
@@ -18,14 +20,10 @@ namespace isostat {
 /// There is no conversion to bool: compare with the verdict you mean.
 enum class Verdict : std::uint8_t { proved, refuted, undecided };
 
-/// The word used in records and messages.
+/// The words used in records and messages.
+inline constexpr std::array verdict_words{"proved", "refuted", "undecided"};
 constexpr std::string_view to_string(Verdict verdict) {
-    switch (verdict) {
-    case Verdict::proved: return "proved";
-    case Verdict::refuted: return "refuted";
-    case Verdict::undecided: return "undecided";
-    }
-    return "undecided";
+    return verdict_words[static_cast<std::size_t>(verdict)];
 }
 
 /// The arithmetic that settled a decision, in the order in which it is tried.
@@ -35,17 +33,10 @@ constexpr std::string_view to_string(Verdict verdict) {
 /// - `multiprecision`: MPFR; `exact`: integers or rationals; `none`: undecided.
 enum class Rung : std::uint8_t { combinatorial, double_bound, double_double, multiprecision, exact, none };
 
-/// The word used in records and messages.
+/// The words used in records and messages.
+inline constexpr std::array rung_words{"combinatorial", "double", "double-double", "mpfr", "exact", "none"};
 constexpr std::string_view to_string(Rung rung) {
-    switch (rung) {
-    case Rung::combinatorial: return "combinatorial";
-    case Rung::double_bound: return "double";
-    case Rung::double_double: return "double-double";
-    case Rung::multiprecision: return "mpfr";
-    case Rung::exact: return "exact";
-    case Rung::none: return "none";
-    }
-    return "none";
+    return rung_words[static_cast<std::size_t>(rung)];
 }
 
 /// The exact value lies in [value - radius, value + radius]. With a NaN nothing is known.

@@ -7,6 +7,7 @@
 #include <isostat/core/verdict.hpp>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 
@@ -30,15 +31,9 @@ enum class TieChoice : unsigned char {
     zero,   ///< what vanishes in the base counts as 0: such a force opens nothing, such a gap stays watched
     watched ///< a gap of 0 stays watched though radii R + eps rho would have closed it on the way
 };
+inline constexpr std::array tie_choice_words{"none", "infinitesimal loads", "names", "zero", "watched"};
 constexpr const char* to_string(TieChoice choice) {
-    switch (choice) {
-    case TieChoice::none: return "none";
-    case TieChoice::loads: return "infinitesimal loads";
-    case TieChoice::names: return "names";
-    case TieChoice::zero: return "zero";
-    case TieChoice::watched: break;
-    }
-    return "watched";
+    return tie_choice_words[static_cast<std::size_t>(choice)];
 }
 
 /// One decision that a first-order comparison settled: the quantities cannot be told apart in the base, but their

@@ -9,6 +9,7 @@
 #include <isostat/statics/rules.hpp>
 
 #include <array>
+#include <cstddef>
 #include <limits>
 #include <optional>
 #include <string>
@@ -20,15 +21,9 @@ namespace isostat {
 /// How an arc begins: the first arc of a rearrangement, at the limit load; a contact with a negative force opens; one
 /// with a negative force under the infinitesimal loads alone (only rattlers move); a held coordinate is released.
 enum class ArcKind { limit, tension, rattler, release };
-inline constexpr std::array all_arc_kinds{ArcKind::limit, ArcKind::tension, ArcKind::rattler, ArcKind::release};
+inline constexpr std::array arc_kind_words{"limit", "tension", "rattler", "release"};
 constexpr std::string_view to_string(ArcKind kind) {
-    switch (kind) {
-    case ArcKind::limit: return "limit";
-    case ArcKind::tension: return "tension";
-    case ArcKind::rattler: return "rattler";
-    case ArcKind::release: break;
-    }
-    return "release";
+    return arc_kind_words[static_cast<std::size_t>(kind)];
 }
 
 /// One arc: a contact opens, the grains follow the mechanism until a contact closes or the power of the load vanishes.
@@ -116,15 +111,10 @@ enum class DecisionKind : unsigned char {
     opening,    ///< which contact opens: an arc was started with this contact
     equilibrium ///< whether every force is positive, both ends of the supported interval, what opens there
 };
-inline constexpr int decision_kinds = 4;
+inline constexpr std::array decision_kind_words{"gaps", "power", "opening", "equilibrium"};
+inline constexpr int decision_kinds = decision_kind_words.size();
 constexpr std::string_view to_string(DecisionKind kind) {
-    switch (kind) {
-    case DecisionKind::gaps: return "gaps";
-    case DecisionKind::power: return "power";
-    case DecisionKind::opening: return "opening";
-    case DecisionKind::equilibrium: return "equilibrium";
-    }
-    return "equilibrium";
+    return decision_kind_words[static_cast<std::size_t>(kind)];
 }
 
 /// How much of a run is proved.
@@ -134,15 +124,9 @@ constexpr std::string_view to_string(DecisionKind kind) {
 /// - arcs: in addition each arc is enclosed between its events (`certify_arc`). An arc that is not certified does not
 ///   stop the run: it is counted and its record says why.
 enum class CertifyLevel : unsigned char { decisions, states, arcs };
-
-/// "decisions", "states", "arcs".
+inline constexpr std::array certify_level_words{"decisions", "states", "arcs"};
 constexpr const char* to_string(CertifyLevel level) {
-    switch (level) {
-    case CertifyLevel::decisions: return "decisions";
-    case CertifyLevel::states: return "states";
-    case CertifyLevel::arcs: break;
-    }
-    return "arcs";
+    return certify_level_words[static_cast<std::size_t>(level)];
 }
 
 /// Equilibria counted by the verdict of their certificates (from level `states` on).

@@ -111,6 +111,7 @@ Result<std::vector<double>> mechanism(const State& state, const Contact& opened)
 /// What a segment of the programme does to the stress ratio sigma_2 / sigma_1 (shear / sigma_2 where the tilt is
 /// loaded, t / p_0 on a path).
 enum class Action { up, down, to };
+inline constexpr std::array action_words{"up", "down", "to"};
 
 /// One segment as a scene names it ([[programme]] entry): its goal is a ratio instead of a stress.
 struct ProgrammeStep {

@@ -3,7 +3,7 @@
 #include "io/text.hpp"
 #include "packing/arc_bodies.hpp"
 #include "packing/bodies.hpp"
-#include "packing/cell_wrap.hpp"
+#include "report/places.hpp"
 
 #include <fmt/format.h>
 
@@ -29,40 +29,10 @@ Point centre(const State& state, int disk) {
     return {state.packing.coordinate(DiskId(disk), 0), state.packing.coordinate(DiskId(disk), 1)};
 }
 
-/// Foot of the normal on the wall of a contact; empty for two disks.
-std::optional<Point> foot(const State& state, const Contact& contact) {
-    if (contact.kind != ContactKind::lower_wall && contact.kind != ContactKind::upper_wall) {
-        return std::nullopt;
-    }
-    Point at = centre(state, contact.i);
-    (contact.j == 0 ? at.x : at.y) = contact.kind == ContactKind::lower_wall ? 0 : state.packing.length(contact.j);
-    return at;
-}
-
-double mean_force(std::span<const double> forces) {
-    double sum = 0;
-    int count = 0;
-    for (const double f : forces) {
-        sum += std::abs(f);
-        count += f != 0 ? 1 : 0;
-    }
-    return count > 0 ? sum / count : 1;
-}
-
-/// The same packing with its disks in the cell, and with the images that its contacts then have.
-State in_cell(State state) {
-    if (!state.packing.cell.any()) {
-        return state;
-    }
-    const Wrapped wrapped = wrap_into_cell(state.packing);
-    for (Contact& contact : state.contacts) {
-        for (std::size_t a = 0; a < 2 && contact.of_disks(); ++a) {
-            const double m = contact.image.m[a] + wrapped.periods[static_cast<std::size_t>(contact.j)][a] -
-                             wrapped.periods[static_cast<std::size_t>(contact.i)][a];
-            contact.image.m[a] = static_cast<std::int8_t>(std::clamp(m, -100.0, 100.0)); // a contact has fewer
-        }
-    }
-    return state;
+/// Foot of the normal on the wall. \pre the contact is with a wall
+Point foot(const State& state, const Contact& contact) {
+    const PerAxis<double> at = end_of(state.packing, contact);
+    return {at[0], at[1]};
 }
 
 /// The vector of m_x and m_y periods of a cell. \pre there are periodic axes
@@ -296,7 +266,7 @@ void draw_contacts(Canvas& canvas, const State& state, std::span<const double> f
         if (contact.kind == ContactKind::bar && arcs.angles(contact.i)) {
             continue;
         }
-        Point end = pair ? second_centre(state, contact) : foot(state, contact).value_or(Point{});
+        Point end = pair ? second_centre(state, contact) : foot(state, contact);
         Point start = centre(state, contact.i);
         if (const double shift = arc_depth(state.packing, arcs, contact.i); shift > 0) {
             start = towards(start, end, shift);

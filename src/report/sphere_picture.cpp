@@ -2,6 +2,7 @@
 #include "io/text.hpp"
 #include "packing/cell_wrap.hpp"
 #include "report/picture.hpp"
+#include "report/places.hpp"
 
 #include <fmt/format.h>
 
@@ -28,31 +29,15 @@ struct Ball {
     bool rattler;
 };
 
-Place shifted(const Packing& packing, Place at, const PerAxis<double>& periods) {
-    for (std::size_t a = 0; a < packing.axes(); ++a) {
-        for (std::size_t b = a; b < packing.axes(); ++b) {
-            at[a] += periods[b] == 0 ? 0 : periods[b] * packing.lattice(a, b);
-        }
-    }
-    return at;
-}
-
 /// Spheres in their cell, seen along y or cut at a height, in arbitrary units.
 class Drawing {
   public:
-    Drawing(State state, std::span<const double> forces) : state_(std::move(state)), forces_(forces) {
-        Packing& packing = state_.packing;
-        if (packing.cell.any()) {
-            wrapped_ = wrap_into_cell(packing).periods;
-        }
+    Drawing(State state, std::span<const double> forces) : state_(in_cell(std::move(state))), forces_(forces) {
+        const Packing& packing = state_.packing;
         const std::vector<unsigned char> rattler =
             forces.empty() ? std::vector<unsigned char>(packing.radius.size(), 0) : rattler_flags(state_, forces);
         for (std::size_t i = 0; i < packing.radius.size(); ++i) {
-            const auto disk = static_cast<int>(i);
-            balls_.push_back({{packing.coordinate(DiskId(disk), 0), packing.coordinate(DiskId(disk), 1),
-                               packing.coordinate(DiskId(disk), 2)},
-                              packing.radius[i],
-                              rattler[i] != 0});
+            balls_.push_back({centre_of(packing, static_cast<int>(i)), packing.radius[i], rattler[i] != 0});
         }
         find_extent();
     }
@@ -80,7 +65,7 @@ class Drawing {
 
     /// Lines from centre to centre, or to the wall, with widths proportional to the forces; rattlers in blue.
     [[nodiscard]] std::string forces(double width) const {
-        const double mean = mean_force();
+        const double mean = mean_force(forces_);
         double radius = 0;
         std::string text;
         for (const Ball& ball : balls_) {
@@ -93,7 +78,7 @@ class Drawing {
                 continue;
             }
             const double force = forces_.empty() ? 0 : forces_[l];
-            const Place from = balls_[static_cast<std::size_t>(contact.i)].at, to = end_of(contact);
+            const Place from = balls_[static_cast<std::size_t>(contact.i)].at, to = end_of(state_.packing, contact);
             const double thickness = 0.1 * radius * scale(width) * std::abs(force) / mean;
             text += fmt::format("<line class=\"{}\" x1=\"{:.2f}\" y1=\"{:.2f}\" x2=\"{:.2f}\" y2=\"{:.2f}\" "
                                 "stroke-width=\"{:.2f}\"/>\n",
@@ -125,7 +110,7 @@ class Drawing {
         for (const Ball& ball : balls_) {
             for_each_image([&](const PerAxis<double>& m) {
                 Ball image = ball;
-                image.at = shifted(packing, ball.at, m);
+                add_periods(image.at, packing, m);
                 const double off = image.at[2] - height;
                 if (std::abs(off) < ball.radius) {
                     text += circle(image, 1, width, std::sqrt((ball.radius - off) * (ball.radius + off)),
@@ -163,13 +148,13 @@ class Drawing {
         }
         all["reach"] = reach;
         all["radius"] = radius;
-        const double mean = mean_force();
+        const double mean = mean_force(forces_);
         for (std::size_t l = 0; l < state_.contacts.size(); ++l) {
             const Contact& contact = state_.contacts[l];
             if (contact.kind != ContactKind::held) {
                 Json& row = all["lines"].emplace_back(Json::array());
                 put(row, balls_[static_cast<std::size_t>(contact.i)].at);
-                put(row, end_of(contact));
+                put(row, end_of(state_.packing, contact));
                 row.push_back(forces_.empty() ? 0 : rounded(forces_[l] / mean, 3));
             }
         }
@@ -196,37 +181,16 @@ class Drawing {
     [[nodiscard]] static double rounded(double value, int digits) {
         return std::strtod(fmt::format("{:.{}g}", value, digits).c_str(), nullptr); // throws no exception at 1e-310
     }
-    /// The mean force of the contacts with a force; 1 without such contacts.
-    [[nodiscard]] double mean_force() const {
-        double sum = 0;
-        int count = 0;
-        for (const double f : forces_) {
-            sum += std::abs(f);
-            count += f != 0 ? 1 : 0;
-        }
-        return count > 0 ? sum / count : 1;
-    }
     template <class Visit> void for_each_edge(Visit visit) const {
         for (unsigned bits = 0; bits < 8; ++bits) {
             for (unsigned a = 0; a < 3; ++a) {
                 if ((bits >> a & 1U) == 0) {
-                    visit(corner(bits), corner(bits | 1U << a));
+                    visit(corner(state_.packing, bits), corner(state_.packing, bits | 1U << a));
                 }
             }
         }
     }
     [[nodiscard]] double entry(std::size_t a, std::size_t b) const { return state_.packing.lattice(a, b); }
-    [[nodiscard]] Place corner(unsigned bits) const {
-        PerAxis<double> periods{};
-        for (std::size_t a = 0; a < periods.size(); ++a) {
-            periods[a] = (bits >> a & 1U) != 0 ? 1 : 0;
-        }
-        if (state_.packing.cell.any()) {
-            return shifted(state_.packing, Place{}, periods);
-        }
-        return {periods[0] * state_.packing.length(0), periods[1] * state_.packing.length(1),
-                periods[2] * state_.packing.length(2)};
-    }
     template <class Visit> void for_each_image(Visit visit) const {
         const auto& periodic = state_.packing.cell.periodic;
         for (int m = 0; m < 27; ++m) {
@@ -252,27 +216,11 @@ class Drawing {
             }
         };
         for (unsigned bits = 0; bits < 8; ++bits) {
-            show(corner(bits), 0);
+            show(corner(state_.packing, bits), 0);
         }
         for (const Ball& ball : balls_) {
             show(ball.at, ball.radius);
         }
-    }
-    [[nodiscard]] Place end_of(const Contact& contact) const {
-        const Place at = balls_[static_cast<std::size_t>(contact.i)].at;
-        if (!contact.of_disks()) {
-            Place foot = at;
-            foot[static_cast<std::size_t>(contact.j)] =
-                contact.kind == ContactKind::lower_wall ? 0 : state_.packing.length(contact.j);
-            return foot;
-        }
-        const Place other = balls_[static_cast<std::size_t>(contact.j)].at;
-        PerAxis<double> periods{};
-        for (std::size_t a = 0; a < periods.size() && !wrapped_.empty(); ++a) {
-            periods[a] = contact.image.m[a] + wrapped_[static_cast<std::size_t>(contact.j)][a] -
-                         wrapped_[static_cast<std::size_t>(contact.i)][a];
-        }
-        return wrapped_.empty() ? other : shifted(state_.packing, other, periods);
     }
     [[nodiscard]] double scale(double width) const { return width / (high_[0] - low_[0]); }
     [[nodiscard]] double x(const Place& at, double width) const { return (at[0] - low_[0]) * scale(width); }
@@ -287,7 +235,6 @@ class Drawing {
 
     State state_;
     std::span<const double> forces_;
-    std::vector<PerAxis<double>> wrapped_; ///< periods by which each sphere was moved; empty in a box
     std::vector<Ball> balls_;
     Place low_{}, high_{};
 };

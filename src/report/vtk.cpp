@@ -2,6 +2,7 @@
 #include "contact/separation.hpp"
 #include "io/text.hpp"
 #include "report/picture.hpp"
+#include "report/places.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -16,43 +17,6 @@ namespace isostat {
 namespace {
 
 using Place = PerAxis<double>; // with z = 0 in the plane
-
-Place place_of(const Packing& packing, int grain) {
-    Place at{};
-    for (std::size_t a = 0; a < packing.axes(); ++a) {
-        at[a] = packing.coordinate(DiskId(grain), static_cast<int>(a));
-    }
-    return at;
-}
-
-/// End of the line of a contact: on the wall, or at the centre of the second grain or of its image.
-Place end_of(const Packing& packing, const Contact& contact) {
-    Place at = place_of(packing, contact.i);
-    if (!contact.of_disks()) {
-        at[static_cast<std::size_t>(contact.j)] =
-            contact.kind == ContactKind::lower_wall ? 0 : packing.length(contact.j);
-        return at;
-    }
-    at = place_of(packing, contact.j);
-    for (std::size_t a = 0; a < packing.axes(); ++a) {
-        for (std::size_t b = a; b < packing.axes(); ++b) {
-            at[a] += contact.image.m[b] == 0 ? 0 : contact.image.m[b] * packing.lattice(a, b);
-        }
-    }
-    return at;
-}
-
-/// A corner of the cell, with 0 or A_a along each axis by the bits of a number. Along an axis with walls the cell
-/// extends from wall to wall.
-Place corner(const Packing& packing, unsigned bits) {
-    Place at{};
-    for (std::size_t a = 0; a < packing.axes(); ++a) {
-        for (std::size_t b = a; b < packing.axes(); ++b) {
-            at[a] += (bits >> b & 1U) != 0 ? packing.lattice(a, b) : 0;
-        }
-    }
-    return at;
-}
 
 /// Lines of a VTK file, with the points that they add and a force per line.
 struct VtkLines {
@@ -96,7 +60,7 @@ std::vector<std::size_t> ends_of(const Packing& packing, const Contact& contact,
     std::vector<std::size_t> ends{static_cast<std::size_t>(contact.i), static_cast<std::size_t>(contact.j)};
     if (new_begin) {
         ends[0] = points.size();
-        points.push_back(place_of(packing, contact.i));
+        points.push_back(centre_of(packing, contact.i));
     }
     if (new_end) {
         ends[1] = points.size();
@@ -154,7 +118,7 @@ std::string vtk_text(const State& state, std::span<const double> forces, const s
     const std::size_t grains = state.packing.radius.size();
     std::vector<Place> points;
     for (std::size_t i = 0; i < grains; ++i) {
-        points.push_back(place_of(state.packing, static_cast<int>(i)));
+        points.push_back(centre_of(state.packing, static_cast<int>(i)));
     }
     const VtkLines contacts = vtk_lines(state, forces, points);
     std::vector<unsigned char> rattler(grains, 0);

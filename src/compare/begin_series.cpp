@@ -1,6 +1,6 @@
 #include "compare/manifest.hpp"
 #include "io/text.hpp"
-#include "scene/section.hpp"
+#include "io/toml.hpp"
 #include "snap/frame_file.hpp"
 
 #include <fmt/format.h>

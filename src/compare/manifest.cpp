@@ -1,8 +1,9 @@
 #include "compare/manifest.hpp"
 
 #include "io/files.hpp"
+#include "io/section.hpp"
 #include "io/toml.hpp"
-#include "scene/section.hpp"
+#include "packing/words.hpp"
 
 #include <isostat/core/error.hpp>
 
@@ -53,7 +54,6 @@ void read_files(Section& section, const std::filesystem::path& folder, Manifest&
 }
 
 void read_columns(Section& section, const std::string& source, Manifest& out) {
-    std::vector<Setting> settings;
     out.series.listed = !out.contacts.empty();
     if (out.series.listed) {
         out.contact_i = required(section, "contact_i", "the column of the first id in the file of contacts");
@@ -76,7 +76,7 @@ void read_columns(Section& section, const std::string& source, Manifest& out) {
     out.size = radius.value_or(diameter.value_or("radius"));
     out.diameters = diameter.has_value();
     if (const toml::table* walls = section.table("wall_force")) {
-        Section columns(walls, "columns.wall_force", source, settings);
+        Section columns(walls, "columns.wall_force", source);
         for (const std::string& name : out.wall_names()) {
             out.wall_force.push_back(required(columns, name, "the column of the force of this wall on a grain"));
         }
@@ -87,7 +87,7 @@ void read_columns(Section& section, const std::string& source, Manifest& out) {
 }
 
 void read_law(Section& section, Manifest& out) {
-    out.series.law = static_cast<ForceLaw>(section.word("kind", 2, {"linear", "hertz", "none"}));
+    out.series.law = section.word("kind", ForceLaw::none, force_law_words);
     if (out.series.law != ForceLaw::none) {
         out.series.stiffness = positive(section, "stiffness", std::nullopt);
     }
@@ -96,7 +96,7 @@ void read_law(Section& section, Manifest& out) {
 }
 
 void read_load(Section& section, Manifest& out) {
-    out.load = section.word("kind", 0, {"nominal", "true"}) == 0 ? LoadKind::nominal : LoadKind::true_stress;
+    out.load = section.word("kind", LoadKind::nominal, load_kind_words);
     const auto lengths = section.numbers("reference_length");
     if (!lengths) {
         section.refuse("reference_length", "no reference_length: expected [L1, L2], of spheres [L1, L2, L3]");
@@ -145,16 +145,15 @@ Manifest read_manifest(const std::filesystem::path& path) {
     const std::string source = path.string();
     const std::string text = read_text(path);
     const toml::table document = parse_toml(without_byte_order_mark(text), source);
-    std::vector<Setting> settings;
     Manifest out;
-    Section top(&document, "manifest", source, settings);
+    Section top(&document, "manifest", source);
     if (required(top, "format", fmt::format("\"{}\"", format_name)) != format_name) {
         top.fail("format", fmt::format("\"{}\"", format_name));
     }
     out.series.title = top.string("title").value_or("");
     out.series.program = top.string("program").value_or("");
     out.periodic = top.table("cell") != nullptr;
-    const auto section = [&](const char* name) { return Section(top.table(name), name, source, settings); };
+    const auto section = [&](const char* name) { return Section(top.table(name), name, source); };
     Section files = section("files");
     read_files(files, path.parent_path(), out);
     Section load = section("load");
@@ -162,7 +161,7 @@ Manifest read_manifest(const std::filesystem::path& path) {
     Section columns = section("columns");
     read_columns(columns, source, out);
     Section cell = section("cell");
-    out.tilted = cell.word("kind", 0, {"rectangular", "tilted"}) == 1;
+    out.tilted = cell.word("kind", false, std::array{"rectangular", "tilted"});
     cell.finish();
     if (out.periodic && out.series.wall_forces) {
         columns.refuse("wall_force", "wall_force and a [cell]: expected no walls");

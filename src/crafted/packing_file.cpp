@@ -1,5 +1,6 @@
 #include "contact/images.hpp"
 #include "io/files.hpp"
+#include "io/section.hpp"
 #include "io/toml.hpp"
 #include "packing/bodies.hpp"
 #include "packing/load_faults.hpp"
@@ -9,10 +10,8 @@
 #include <isostat/crafted/exact_packing.hpp>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <sstream>
 #include <string_view>
 #include <utility>
 
@@ -20,160 +19,65 @@ namespace isostat::crafted {
 
 namespace {
 
-/// The lines of a document, numbered as in toml++: line and column from 1, columns in code points.
-class Source {
-  public:
-    explicit Source(const std::string& text) {
-        std::istringstream stream(text);
-        for (std::string line; std::getline(stream, line);) {
-            lines_.push_back(line);
-        }
-    }
-    /// The text of a region within one line.
-    [[nodiscard]] std::string slice(const toml::source_region& region) const {
-        if (region.begin.line == 0 || region.begin.line > lines_.size() || region.end.line != region.begin.line) {
-            return {};
-        }
-        const std::string& line = lines_[region.begin.line - 1];
-        const std::size_t begin = offset(line, region.begin.column);
-        return line.substr(begin, offset(line, region.end.column) - begin);
-    }
-
-  private:
-    static std::size_t offset(const std::string& line, std::size_t column) {
-        std::size_t at = 0;
-        for (std::size_t k = 1; k < column && at < line.size(); ++k) {
-            do {
-                ++at;
-            } while (at < line.size() && (static_cast<unsigned char>(line[at]) & 0xC0u) == 0x80u);
-        }
-        return at;
-    }
-    std::vector<std::string> lines_;
-};
-
 class Reader {
   public:
     Reader(const std::string& text, const std::string& name)
-        : source_(text), name_(name), root_(parse_toml(text, name)) {}
+        : lines_(text), name_(name), document_(parse_toml(text, name)), root_(&document_, "", name) {}
 
     PackingFile read() {
-        const bool space = root_.contains("spheres") || root_.contains("sphere");
-        out_.packing.cell.dimension = space ? 3 : 2;
-        allow(root_, "",
-              {"format", "title", "source", "note", space ? "spheres" : "disks", grain_word(space ? 3 : 2), "bodies",
-               "box", "cell", "load", "expected"});
-        const std::string format = string(required(root_, "format"), "format");
-        if (format != "isostat-packing 1") {
-            fail(*root_.get("format"), "format", "\"" + format + "\"", "\"isostat-packing 1\"");
+        constexpr const char* format = "isostat-packing 1";
+        (void)root_.required("format", quoted(format));
+        if (root_.string("format") != format) {
+            root_.fail("format", quoted(format));
         }
-        for (const char* key : {"title", "source", "note"}) {
-            if (const toml::node* node = root_.get(key)) {
-                const std::string value = string(*node, key);
-                out_.title = std::string_view(key) == "title" ? value : out_.title;
-            }
-        }
+        out_.packing.cell.dimension = root_.has("spheres") || root_.has("sphere") ? 3 : 2;
+        out_.title = root_.string("title").value_or("");
+        (void)root_.string("source");
+        (void)root_.string("note");
         grains();
         cell();
         box();
         bodies();
         load();
         expected();
+        root_.finish();
         return std::move(out_);
     }
 
   private:
-    [[noreturn]] void fail(const toml::node& node, const std::string& key, const std::string& found,
-                           const std::string& wanted) const {
-        throw Error(ErrorKind::bad_input, name_ + ":" + std::to_string(node.source().begin.line) + ": " + key + " = " +
-                                              found + ", expected " + wanted);
-    }
+    static std::string quoted(const char* word) { return fmt::format("\"{}\"", word); }
+    [[nodiscard]] Section section(const std::string& key) { return {root_.table(key), key, name_}; }
 
-    static std::string type_name(const toml::node& node) {
-        std::ostringstream out;
-        out << "a value of type " << node.type();
-        return out.str();
-    }
-
-    void allow(const toml::table& table, const std::string& where, const std::vector<std::string_view>& keys) const {
-        for (const auto& [key, node] : table) {
-            if (std::find(keys.begin(), keys.end(), key.str()) == keys.end()) {
-                throw Error(ErrorKind::bad_input,
-                            fmt::format("{}:{}: unknown key \"{}{}\", expected one of {}", name_,
-                                        key.source().begin.line, where, key.str(), fmt::join(keys, ", ")));
-            }
-        }
-    }
-
-    [[nodiscard]] const toml::node& required(const toml::table& table, const std::string& key,
-                                             const std::string& where = "") const {
-        const toml::node* node = table.get(key);
-        if (node == nullptr) {
-            throw Error(ErrorKind::bad_input, name_ + ":" + std::to_string(std::max(table.source().begin.line, 1u)) +
-                                                  ": key \"" + where + key + "\" is missing");
-        }
-        return *node;
-    }
-
-    /// The value of a node as one type; `wanted` describes this type.
-    template <class Value>
-    [[nodiscard]] const auto& typed(const toml::node& node, const std::string& key, const char* wanted) const {
-        const auto* value = node.as<Value>();
-        if (value == nullptr) {
-            fail(node, key, type_name(node), wanted);
-        }
-        return *value;
-    }
-    [[nodiscard]] const toml::table& table(const toml::node& node, const std::string& key) const {
-        return typed<toml::table>(node, key, "a table");
-    }
-    [[nodiscard]] std::string string(const toml::node& node, const std::string& key) const {
-        return typed<std::string>(node, key, "a string").get();
-    }
-    [[nodiscard]] bool boolean(const toml::node& node, const std::string& key) const {
-        return typed<bool>(node, key, "true or false").get();
-    }
-
-    [[nodiscard]] const toml::array& array(const toml::node& node, const std::string& key, std::size_t size = 0) const {
-        const toml::array& out = typed<toml::array>(node, key, "an array");
-        if (size != 0 && out.size() != size) {
-            fail(node, key, "an array of " + std::to_string(out.size()), "an array of " + std::to_string(size));
-        }
-        return out;
-    }
-
-    [[nodiscard]] Number number(const toml::node& node, const std::string& key) const {
+    [[nodiscard]] Number number(const Section& in, const toml::node& node, const std::string& key) const {
         if (node.is_integer()) {
             return Number(static_cast<long long>(node.as_integer()->get()));
         }
         if (node.is_floating_point() || node.is_string()) {
-            std::string text = node.is_string() ? node.as_string()->get() : source_.slice(node.source());
+            std::string text = node.is_string() ? node.as_string()->get() : lines_.slice(node.source());
             if (node.is_floating_point()) {
                 std::erase(text, '_');
             }
             try {
                 return Number::parse(text);
             } catch (const Error& error) {
-                fail(node, key, "\"" + text.substr(0, 80) + "\"",
-                     std::string("an exact number (") + error.what() + ")");
+                in.fail(node, key, fmt::format("an exact number ({})", error.what()));
             }
         }
-        fail(node, key, type_name(node), "a number, or a string with an exact number");
+        in.fail(node, key, "a number, or a string with an exact number");
     }
 
-    [[nodiscard]] Number positive(const toml::node& node, const std::string& key) const {
-        Number value = number(node, key);
+    [[nodiscard]] Number positive(const Section& in, const toml::node& node, const std::string& key) const {
+        Number value = number(in, node, key);
         if (value.sign() <= 0) {
-            fail(node, key, value.text(), "a number above 0");
+            in.fail(node, key, "a number above 0");
         }
         return value;
     }
 
-    [[nodiscard]] int index(const toml::node& node, const std::string& key) const {
+    [[nodiscard]] int index(const Section& in, const toml::node& node, const std::string& key) const {
         const auto n = static_cast<std::int64_t>(out_.packing.radius.size());
         if (!node.is_integer() || node.as_integer()->get() < 0 || node.as_integer()->get() >= n) {
-            fail(node, key, node.is_integer() ? std::to_string(node.as_integer()->get()) : type_name(node),
-                 fmt::format("the number of a {}, 0 to {}", grain(), n - 1));
+            in.fail(node, key, fmt::format("the number of a {}, 0 to {}", grain(), n - 1));
         }
         return static_cast<int>(node.as_integer()->get());
     }
@@ -196,29 +100,26 @@ class Reader {
     void grains() {
         const std::string one = grain(), all = one + "s";
         const std::size_t d = out_.packing.axes();
-        if (const toml::node* node = root_.get(all)) {
-            for (const toml::node& entry : array(*node, all)) {
-                const toml::array& row = array(entry, all, d + 1);
+        if (const toml::array* rows = root_.array(all)) {
+            for (const toml::node& entry : *rows) {
+                const toml::array& row = root_.array(entry, all, d + 1);
                 PerAxis<Number> centre;
                 for (std::size_t a = 0; a < d; ++a) {
-                    centre[a] = number(row[a], fmt::format("{}: {}", all, axis_names[a]));
+                    centre[a] = number(root_, row[a], fmt::format("{}: {}", all, axis_names[a]));
                 }
-                add(std::move(centre), positive(row[d], all + ": r"), false);
+                add(std::move(centre), positive(root_, row[d], all + ": r"), false);
             }
         }
-        if (const toml::node* node = root_.get(one)) {
-            for (const toml::node& entry : array(*node, one)) {
-                const toml::table& row = table(entry, one);
-                std::vector<std::string_view> keys(axis_names.begin(), axis_names.begin() + static_cast<long>(d));
-                keys.insert(keys.end(), {"r", "fixed"});
-                allow(row, one + ".", keys);
+        if (const toml::array* rows = root_.array(one)) {
+            for (const toml::node& entry : *rows) {
+                Section row(&root_.table(entry, one), one, name_);
                 PerAxis<Number> centre;
                 for (std::size_t a = 0; a < d; ++a) {
-                    centre[a] = number(required(row, axis_names[a], one + "."), one + "." + axis_names[a]);
+                    centre[a] = number(row, row.required(axis_names[a], "a coordinate of the centre"), axis_names[a]);
                 }
-                const toml::node* fixed = row.get("fixed");
-                add(std::move(centre), positive(required(row, "r", one + "."), one + ".r"),
-                    fixed != nullptr && boolean(*fixed, one + ".fixed"));
+                Number r = positive(row, row.required("r", "a radius"), "r");
+                add(std::move(centre), std::move(r), row.boolean("fixed").value_or(false));
+                row.finish();
             }
         }
         if (out_.packing.radius.empty()) {
@@ -231,15 +132,15 @@ class Reader {
     /// Reads the tilts: one number in the plane, in space the numbers of xy, xz, yz. Where `may` is false the tilt is
     /// no coordinate, and 0 is `expected`.
     template <class May>
-    [[nodiscard]] PerTilt<Number> tilts(const toml::node& node, const std::string& key, May may,
+    [[nodiscard]] PerTilt<Number> tilts(const Section& in, const toml::node& node, May may,
                                         const char* expected) const {
         const std::size_t count = out_.packing.layout().tilts();
         PerTilt<Number> out;
         for (std::size_t t = 0; t < count; ++t) {
-            const toml::node& entry = count == 1 ? node : array(node, key, count)[t];
-            out[t] = number(entry, key);
+            const toml::node& entry = count == 1 ? node : in.array(node, "tilt", count)[t];
+            out[t] = number(in, entry, "tilt");
             if (!out[t].is_zero() && !may(t)) {
-                fail(entry, key, out[t].text(), expected);
+                in.fail(entry, "tilt", expected);
             }
         }
         return out;
@@ -250,74 +151,74 @@ class Reader {
         return periodic[tilt == 2 ? 1 : 0] && periodic[tilt == 0 ? 1 : 2];
     }
 
-    [[nodiscard]] WallKind wall(const toml::node& node, const std::string& key, std::size_t axis, bool may_move) const {
-        const std::string kind = string(node, key);
-        if (kind != "absent" && out_.packing.cell.periodic[axis]) {
-            fail(node, key, "\"" + kind + "\"", fmt::format("\"absent\": {} repeats (cell.period)", axis_names[axis]));
+    [[nodiscard]] WallKind wall(const Section& in, const toml::node& node, const std::string& key, std::size_t axis,
+                                bool may_move) const {
+        const auto kind = value_of<WallKind>(node.value_or(std::string_view()), wall_kind_words);
+        if (out_.packing.cell.periodic[axis] && kind != WallKind::absent) {
+            in.fail(node, key, fmt::format("\"absent\": {} repeats (period in [cell])", axis_names[axis]));
         }
-        if (const auto known = value_of<WallKind>(kind, wall_kind_words);
-            known && (may_move || *known != WallKind::movable)) {
-            return *known;
+        if (!kind || (!may_move && *kind == WallKind::movable)) {
+            in.fail(node, key, may_move ? "\"absent\", \"fixed\" or \"movable\"" : "\"absent\" or \"fixed\"");
         }
-        fail(node, key, "\"" + kind + "\"",
-             may_move ? "\"absent\", \"fixed\" or \"movable\"" : "\"absent\" or \"fixed\"");
+        return *kind;
     }
 
     /// Reads which axes are periodic, and which coordinates of the cell move.
     void cell() {
-        const toml::node* node = root_.get("cell");
-        if (node == nullptr) {
+        if (!root_.has("cell")) {
             return;
         }
-        const toml::table& cell = table(*node, "cell");
-        allow(cell, "cell.", {"period", "tilt", "moves", "pin"});
+        Section cell = section("cell");
         ExactPacking& packing = out_.packing;
-        const toml::array& period = array(required(cell, "period", "cell."), "cell.period", packing.axes());
+        const toml::array& period =
+            cell.array(cell.required("period", "a number or \"none\" for each axis"), "period", packing.axes());
         for (std::size_t a = 0; a < packing.axes(); ++a) {
-            packing.cell.periodic[a] = !(period[a].is_string() && period[a].as_string()->get() == "none");
+            packing.cell.periodic[a] = !is_none(period[a]);
             if (packing.cell.periodic[a]) {
-                packing.length[a] = positive(period[a], "cell.period");
+                packing.length[a] = positive(cell, period[a], "period");
             }
         }
         if (!packing.cell.any()) {
-            fail(period, "cell.period", "\"none\" along every axis", "one period at least: a box has no [cell]");
+            cell.fail("period", "one period at least: a box has no [cell]");
         }
-        if (const toml::node* tilt = cell.get("tilt")) {
+        if (const toml::node* tilt = cell.node("tilt")) {
             packing.tilt = tilts(
-                *tilt, "cell.tilt", [&](std::size_t t) { return leans(t); }, "0, as one axis does not repeat");
+                cell, *tilt, [&](std::size_t t) { return leans(t); }, "0, as one axis does not repeat");
         }
-        for (const toml::node& moved : array(required(cell, "moves", "cell."), "cell.moves")) {
-            moves(moved);
+        for (const toml::node& moved : cell.array(cell.required("moves", "the names of what moves"), "moves")) {
+            moves(cell, moved);
         }
-        if (const toml::node* pin = cell.get("pin")) {
-            packing.cell.pin = index(*pin, "cell.pin");
+        if (const toml::node* pin = cell.node("pin")) {
+            packing.cell.pin = index(cell, *pin, "pin");
         }
         if (std::find(packing.fixed.begin(), packing.fixed.end(), 1) != packing.fixed.end()) {
-            fail(*node, grain() + ".fixed", "true",
-                 fmt::format("no fixed {} where an axis repeats: the pinned one says where the origin is", grain()));
+            cell.refuse("", fmt::format("a fixed {0} and a [cell]: expected no fixed {0} where an axis repeats: the "
+                                        "pinned one says where the origin is",
+                                        grain()));
         }
-        fits(period);
+        fits(cell, period);
+        cell.finish();
     }
 
-    void moves(const toml::node& moved) {
+    void moves(const Section& in, const toml::node& moved) {
         Cell& cell = out_.packing.cell;
-        const std::string word = string(moved, "cell.moves");
+        const std::string_view word = moved.value_or(std::string_view());
         const int axis = place(axis_names, out_.packing.axes(), word);
         const int tilt = place(tilt_names, out_.packing.layout().tilts(), word);
         const auto at = static_cast<std::size_t>(std::max({axis, tilt, 0}));
         bool& flag = axis >= 0 ? cell.period_moves[at] : cell.tilt_moves[at];
         if (axis >= 0 ? !cell.periodic[at] || flag : tilt < 0 || !leans(at) || flag) {
-            fail(moved, "cell.moves", "\"" + word + "\"",
-                 out_.packing.dimension() == plane
-                     ? "\"x\", \"y\" of an axis that repeats, or \"xy\" where both do, each once"
-                     : "\"x\", \"y\", \"z\" of an axis that repeats, or \"xy\", \"xz\", \"yz\" where both do, each "
-                       "once");
+            in.fail(moved, "moves",
+                    out_.packing.dimension() == plane
+                        ? "\"x\", \"y\" of an axis that repeats, or \"xy\" where both do, each once"
+                        : "\"x\", \"y\", \"z\" of an axis that repeats, or \"xy\", \"xz\", \"yz\" where both do, "
+                          "each once");
         }
         flag = true;
     }
 
     /// Checks that no disk is wider than a period vector, or so far away that its images would not be found.
-    void fits(const toml::array& period) const {
+    void fits(const Section& in, const toml::array& period) const {
         const ExactPacking& packing = out_.packing;
         for (std::size_t i = 0; i < packing.radius.size(); ++i) {
             const Number diameter = packing.radius[i] + packing.radius[i];
@@ -329,10 +230,10 @@ class Reader {
                     excess += lean * lean;
                 }
                 if (packing.cell.periodic[a] && excess.sign() < 0) {
-                    fail(period[a], "cell.period", length.text(),
-                         fmt::format("a period vector at least as long as the diameter {} of {} {}, which overlaps "
-                                     "its own image",
-                                     diameter.text(), grain(), i));
+                    in.fail(period[a], "period",
+                            fmt::format("a period vector at least as long as the diameter {} of {} {}, which overlaps "
+                                        "its own image",
+                                        diameter.text(), grain(), i));
                 }
             }
         }
@@ -343,13 +244,13 @@ class Reader {
         }
     }
 
+    static bool is_none(const toml::node& node) { return node.value_or(std::string_view()) == "none"; }
+
     void box() {
-        const toml::node* node = root_.get("box");
-        if (node == nullptr) {
+        if (!root_.has("box")) {
             return;
         }
-        const toml::table& box = table(*node, "box");
-        allow(box, "box.", {"length", "lower", "upper"});
+        Section box = section("box");
         const std::size_t d = out_.packing.axes();
         for (std::size_t a = 0; a < d; ++a) {
             const bool repeats = out_.packing.cell.periodic[a];
@@ -357,52 +258,51 @@ class Reader {
             out_.packing.walls.upper[a] = repeats ? WallKind::absent : WallKind::movable;
         }
         for (const char* side : {"lower", "upper"}) {
-            if (const toml::node* given = box.get(side)) {
+            if (const toml::array* kinds = box.array(side, d)) {
                 const bool up = side == std::string_view("upper");
-                const std::string key = std::string("box.") + side;
-                const toml::array& kinds = array(*given, key, d);
                 for (std::size_t a = 0; a < d; ++a) {
-                    (up ? out_.packing.walls.upper : out_.packing.walls.lower)[a] = wall(kinds[a], key, a, up);
+                    (up ? out_.packing.walls.upper : out_.packing.walls.lower)[a] = wall(box, (*kinds)[a], side, a, up);
                 }
             }
         }
         const auto& upper = out_.packing.walls.upper;
         const bool none = std::all_of(upper.begin(), upper.end(), [](WallKind w) { return w == WallKind::absent; });
-        if (none && box.get("length") == nullptr) {
-            return;
+        const toml::array* length = box.array("length", d);
+        if (length == nullptr && !none) {
+            (void)box.required("length", "the position of each upper wall");
         }
-        const toml::array& length = array(required(box, "length", "box."), "box.length", d);
-        for (std::size_t a = 0; a < d; ++a) {
+        for (std::size_t a = 0; length != nullptr && a < d; ++a) {
             if (upper[a] != WallKind::absent) {
-                out_.packing.length[a] = positive(length[a], "box.length");
-            } else if (!length[a].is_string() || length[a].as_string()->get() != "none") {
-                fail(length[a], "box.length", "a value", "\"none\" for an absent wall");
+                out_.packing.length[a] = positive(box, (*length)[a], "length");
+            } else if (!is_none((*length)[a])) {
+                box.fail((*length)[a], "length", "\"none\" for an absent wall");
             }
         }
+        box.finish();
     }
 
     /// Reads the bars of the rigid bodies.
     void bodies() {
-        const toml::node* node = root_.get("bodies");
-        if (node == nullptr) {
+        const toml::array* bodies = root_.array("bodies");
+        if (bodies == nullptr) {
             return;
         }
         ExactPacking& packing = out_.packing;
         std::vector<std::vector<int>> all;
         std::vector<unsigned char> taken = packing.fixed;
-        for (const toml::node& body : array(*node, "bodies")) {
+        for (const toml::node& body : *bodies) {
             all.emplace_back();
-            for (const toml::node& member : array(body, "bodies")) {
-                const int i = all.back().emplace_back(index(member, "bodies"));
+            for (const toml::node& member : root_.array(body, "bodies")) {
+                const int i = all.back().emplace_back(index(root_, member, "bodies"));
                 if (std::exchange(taken[static_cast<std::size_t>(i)], 1) != 0) {
-                    fail(member, "bodies", std::to_string(i), fmt::format("a {} that is not fixed, once", grain()));
+                    root_.fail(member, "bodies", fmt::format("a {} that is not fixed, once", grain()));
                 }
             }
             if (all.back().size() < 2) {
-                fail(body, "bodies", "one member or none", "two members or more");
+                root_.fail(body, "bodies", "two members or more");
             }
         }
-        const std::string where = fmt::format("{}:{}", name_, node->source().begin.line);
+        const std::string where = fmt::format("{}:{}", name_, root_.line_of("bodies"));
         packing.bars = bars_of_bodies(approximate(packing), all, where);
         std::vector<Contact> list;
         for (const Bar& bar : packing.bars) {
@@ -417,86 +317,84 @@ class Reader {
     }
 
     void load() {
-        const toml::node* node = root_.get("load");
-        if (node == nullptr) {
+        if (!root_.has("load")) {
             return;
         }
-        const toml::table& load = table(*node, "load");
-        allow(load, "load.", {"wall", "tilt", grain_word(out_.packing.dimension())});
+        Section load = section("load");
         const std::size_t d = out_.packing.axes();
         ExactLoad out;
-        if (const toml::node* walls = load.get("wall")) {
-            const toml::array& forces = array(*walls, "load.wall", d);
+        if (const toml::array* forces = load.array("wall", d)) {
             for (std::size_t a = 0; a < d; ++a) {
-                out.wall[a] = number(forces[a], "load.wall");
+                out.wall[a] = number(load, (*forces)[a], "wall");
                 if (!out.wall[a].is_zero() && out_.packing.walls.upper[a] != WallKind::movable &&
                     !out_.packing.cell.period_moves[a]) {
-                    fail(forces[a], "load.wall", out.wall[a].text(),
-                         out_.packing.cell.periodic[a] ? "0: the period along this axis does not move"
-                                                       : "0: the upper wall of this axis is not movable");
+                    load.fail((*forces)[a], "wall",
+                              out_.packing.cell.periodic[a] ? "0: the period along this axis does not move"
+                                                            : "0: the upper wall of this axis is not movable");
                 }
             }
         }
-        if (const toml::node* tilt = load.get("tilt")) {
+        if (const toml::node* tilt = load.node("tilt")) {
             out.tilt = tilts(
-                *tilt, "load.tilt", [&](std::size_t k) { return out_.packing.cell.tilt_moves[k]; },
+                load, *tilt, [&](std::size_t k) { return out_.packing.cell.tilt_moves[k]; },
                 d == 2 ? "0: no tilt of a cell moves" : "0: this tilt of a cell does not move");
         }
-        if (const toml::node* disks = load.get(grain())) {
-            out.disk = grain_forces(*disks);
+        if (const toml::array* grains = load.array(grain())) {
+            out.disk = grain_forces(load, *grains);
         }
+        load.finish();
         out_.packing.load = std::move(out);
     }
 
-    [[nodiscard]] std::vector<Number> grain_forces(const toml::node& node) const {
+    [[nodiscard]] std::vector<Number> grain_forces(const Section& in, const toml::array& rows) const {
         const std::size_t d = out_.packing.axes();
-        const std::string key = "load." + grain();
         std::vector<Number> out(d * out_.packing.radius.size());
-        for (const toml::node& entry : array(node, key)) {
-            const toml::array& row = array(entry, key, d + 1);
-            const int i = index(row[0], key);
+        for (const toml::node& entry : rows) {
+            const toml::array& row = in.array(entry, grain(), d + 1);
+            const int i = index(in, row[0], grain());
             if (out_.packing.is_fixed(i)) {
-                fail(row[0], key, std::to_string(i), fmt::format("a {} that is not fixed", grain()));
+                in.fail(row[0], grain(), fmt::format("a {} that is not fixed", grain()));
             }
             for (std::size_t a = 0; a < d; ++a) {
-                out[out_.packing.layout().of_disk(i) + a] += number(row[a + 1], key);
+                out[out_.packing.layout().of_disk(i) + a] += number(in, row[a + 1], grain());
             }
         }
         if (const auto rest = unbalanced<Number>(out, out_.packing.cell)) {
-            fail(node, key, "forces that sum to " + rest->second.text(),
-                 fmt::format("0 along {}, which repeats: the pinned {} would bear the rest", axis_names[rest->first],
-                             grain()));
+            in.fail(rows, grain(),
+                    fmt::format("0 along {}, which repeats: the pinned {} would bear the rest", axis_names[rest->first],
+                                grain()),
+                    "forces that sum to " + rest->second.text());
         }
         return out;
     }
 
     /// A single value of `[expected]` as text: a string unchanged, a number exactly.
-    [[nodiscard]] std::string word(const toml::node& node, const std::string& key) const {
+    [[nodiscard]] std::string word(const Section& in, const toml::node& node, const std::string& key) const {
         if (node.is_boolean()) {
-            return boolean(node, key) ? "true" : "false";
+            return node.as_boolean()->get() ? "true" : "false";
         }
-        return node.is_string() ? string(node, key) : number(node, key).text();
+        return node.is_string() ? node.as_string()->get() : number(in, node, key).text();
     }
 
     void expected() {
-        const toml::node* node = root_.get("expected");
-        if (node == nullptr) {
+        const toml::table* table = root_.table("expected");
+        if (table == nullptr) {
             return;
         }
-        for (const auto& [key, value] : table(*node, "expected")) {
-            const std::string name = "expected." + std::string(key.str());
+        const Section in = section("expected");
+        for (const auto& [key, value] : *table) {
             ExpectedEntry entry{std::string(key.str()), {}, static_cast<int>(key.source().begin.line)};
             if (!value.is_array()) {
-                entry.values.push_back({word(value, name)});
+                entry.values.push_back({word(in, value, entry.key)});
             } else {
                 for (const toml::node& element : *value.as_array()) {
                     std::vector<std::string> row;
                     if (element.is_array()) {
                         for (const toml::node& part : *element.as_array()) {
-                            row.push_back(word(part, name));
+                            row.push_back(word(in, part, entry.key));
                         }
                     } else {
-                        row.push_back(word(element, name));
+                        row.push_back(word(in, element, entry.key));
                     }
                     entry.values.push_back(std::move(row));
                 }
@@ -505,9 +403,10 @@ class Reader {
         }
     }
 
-    Source source_;
+    TomlLines lines_;
     std::string name_;
-    toml::table root_;
+    toml::table document_;
+    Section root_;
     PackingFile out_;
 };
 

@@ -1,5 +1,7 @@
 #include "io/toml.hpp"
 
+#include "io/text.hpp"
+
 #include <isostat/core/error.hpp>
 #include <isostat/core/machine.hpp>
 
@@ -79,6 +81,51 @@ toml::table parse_toml(std::string_view text, const std::string& source) {
         throw Error(ErrorKind::bad_input,
                     fmt::format("{}:{}: not valid TOML: {}", source, error.source().begin.line, error.description()));
     }
+}
+
+std::string toml_text(double value) {
+    const std::string text = fmt::format("{}", value);
+    return text.find_first_of(".en") == std::string::npos ? text + ".0" : text;
+}
+
+std::string toml_text(const std::string& value) {
+    // A basic string with the escapes that JSON has too, because records of a run contain this string.
+    std::string quoted = "\"";
+    for (const char c : value) {
+        const auto code = static_cast<unsigned char>(c);
+        if (c == '"' || c == '\\') {
+            quoted += '\\';
+            quoted += c;
+        } else if (code < 0x20 || code == 0x7f) {
+            quoted += fmt::format("\\u{:04X}", code);
+        } else {
+            quoted += c;
+        }
+    }
+    return text::json(quoted + "\"");
+}
+
+TomlLines::TomlLines(std::string_view text) : text_(text), begin_{0} {
+    for (std::size_t k = 0; k < text.size(); ++k) {
+        if (text[k] == '\n') {
+            begin_.push_back(k + 1);
+        }
+    }
+}
+
+std::size_t TomlLines::offset(const toml::source_position& position) const {
+    std::size_t at = begin_[position.line - 1];
+    for (std::uint32_t column = 1; column < position.column; ++column) {
+        do {
+            ++at;
+        } while (at < text_.size() && (static_cast<unsigned char>(text_[at]) & 0xC0U) == 0x80U);
+    }
+    return at;
+}
+
+std::string TomlLines::slice(const toml::source_region& region) const {
+    const std::size_t begin = offset(region.begin);
+    return text_.substr(begin, offset(region.end) - begin);
 }
 
 } // namespace isostat

@@ -36,13 +36,9 @@ std::string self_stresses(const State& state) {
             continue;
         }
         std::vector<double> force(kept.size(), 0.0); // a unit force in contact l, which the others balance
-        const GapGradient g = gap_gradient(state.packing, state.contacts[l]);
-        for (std::size_t k = 0; k < static_cast<std::size_t>(g.count); ++k) {
-            const int dof = dofs.dof_of(static_cast<std::size_t>(g.coordinate[k]));
-            if (dof >= 0) {
-                force[static_cast<std::size_t>(dof)] += g.value[k];
-            }
-        }
+        gap_gradient(state.packing, state.contacts[l]).for_each_dof(dofs, [&](std::size_t dof, double value) {
+            force[dof] += value;
+        });
         factorisation.solve_forces(force);
         text += fmt::format("{}{{{}", text.empty() ? "" : ", ", to_string(state.contacts[l], state.packing.dimension));
         for (std::size_t c = 0; c < kept.size(); ++c) {

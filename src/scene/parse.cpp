@@ -1,8 +1,9 @@
 #include "io/files.hpp"
 #include "io/text.hpp"
 #include "io/toml.hpp"
+#include "packing/words.hpp"
 #include "scene/radii.hpp"
-#include "scene/section.hpp"
+#include "scene/settings.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/io/state_file.hpp>
@@ -28,7 +29,7 @@ constexpr double smallest_jitter = 1e-14;
 constexpr double largest_jitter = 0.1;
 
 /// Takes a list of radii from [packing].
-void read_radii_list(Section& section, const std::vector<double>& radii, PreparationOptions& options) {
+void read_radii_list(SceneSection& section, const std::vector<double>& radii, PreparationOptions& options) {
     if (radii.empty()) {
         section.fail("radii", "at least one radius");
     }
@@ -44,7 +45,7 @@ void read_radii_list(Section& section, const std::vector<double>& radii, Prepara
 }
 
 /// Takes a file to start from, which replaces the preparation.
-void read_start(Section& section, const std::string& file, Scene& scene, const std::filesystem::path& folder) {
+void read_start(SceneSection& section, const std::string& file, Scene& scene, const std::filesystem::path& folder) {
     for (const char* key : {"jitter", "seed", "aspect"}) {
         if (section.has(key)) {
             section.refuse(
@@ -56,7 +57,7 @@ void read_start(Section& section, const std::string& file, Scene& scene, const s
 }
 
 /// The dimension of a list of radii or of a file of radii is a key; other sources have their own dimension.
-int read_dimension(Section& section, const std::string& source) {
+int read_dimension(SceneSection& section, const std::string& source) {
     const bool list = source == "radii" || source == "radii_file";
     if (section.integer("dimension")) {
         if (list) {
@@ -70,7 +71,7 @@ int read_dimension(Section& section, const std::string& source) {
 }
 
 /// Reads the one source of the disks or spheres; throws unless it is exactly one.
-void read_packing(Section& section, Scene& scene, const std::filesystem::path& folder) {
+void read_packing(SceneSection& section, Scene& scene, const std::filesystem::path& folder) {
     const auto file = section.string("file");
     const auto disks = section.integer("disks");
     const auto spheres = section.integer("spheres");
@@ -121,7 +122,7 @@ void read_packing(Section& section, Scene& scene, const std::filesystem::path& f
 }
 
 /// Reads [cell], with which the packing has no walls.
-void read_cell(Section& section, Scene& scene) {
+void read_cell(SceneSection& section, Scene& scene) {
     PreparationOptions& options = scene.preparation;
     if (!scene.start.empty()) {
         section.refuse("", "[cell] is of a preparation: a packing read from a file has its own");
@@ -137,7 +138,7 @@ void read_cell(Section& section, Scene& scene) {
     }
 }
 
-void read_preparation(Section& section, Scene& scene) {
+void read_preparation(SceneSection& section, Scene& scene) {
     PreparationOptions& options = scene.preparation;
     options.loose_fraction =
         section.number("loose_fraction", options.start_fraction(), 0.05, 0.8, "a solid fraction from 0.05 to 0.8");
@@ -158,7 +159,7 @@ const std::array protocols{Protocol{"compression", {0, 0, 1}}, Protocol{"extensi
                            Protocol{"constant_mean", {-1, -1, 2}}};
 
 /// Reads [load] direction, or a protocol. A prepared packing moves in all its lengths.
-void read_path(Section& section, Scene& scene) {
+void read_path(SceneSection& section, Scene& scene) {
     PreparationOptions& options = scene.preparation;
     const bool prepares = scene.start.empty();
     std::string key = "loaded";
@@ -192,7 +193,7 @@ void read_path(Section& section, Scene& scene) {
 }
 
 /// Reads which stress the programme changes.
-void read_loaded(Section& section, Scene& scene) {
+void read_loaded(SceneSection& section, Scene& scene) {
     if (!section.string("loaded")) { // without this key the state of a file decides
         return;
     }
@@ -249,7 +250,7 @@ Load load_at_start(const Scene& scene) {
     }
 }
 
-void read_load(Section& section, Scene& scene) {
+void read_load(SceneSection& section, Scene& scene) {
     const bool has_file = !scene.start.empty();
     const auto infinitesimal = section.integer("infinitesimal_seed");
     const bool kind_given = section.has("kind");
@@ -264,7 +265,7 @@ void read_load(Section& section, Scene& scene) {
                        "its own infinitesimal loads, made from 'seed' in [packing]");
     }
     if (!has_file || kind_given) {
-        scene.load_kind = section.word("kind", 0, {"nominal", "true"}) == 0 ? LoadKind::nominal : LoadKind::true_stress;
+        scene.load_kind = section.word("kind", LoadKind::nominal, load_kind_words);
         scene.preparation.load = *scene.load_kind;
     } else {
         (void)section.string("kind");
@@ -291,7 +292,7 @@ void read_load(Section& section, Scene& scene) {
     }
 }
 
-ProgrammeStep read_step(Section& section, const Load& load) {
+ProgrammeStep read_step(SceneSection& section, const Load& load) {
     ProgrammeStep step;
     step.from_zero = load.loads_tilt() || load.path;
     step.ratio = load.ratio_name();
@@ -299,7 +300,7 @@ ProgrammeStep read_step(Section& section, const Load& load) {
     if (!section.has("do")) {
         section.refuse("", "a [[programme]] segment has no 'do': expected \"up\", \"down\" or \"to\"");
     }
-    step.action = static_cast<Action>(section.word("do", 0, {"up", "down", "to"}));
+    step.action = section.word("do", Action::up, action_words);
     if (const auto equilibria = section.integer("equilibria")) {
         step.equilibria = static_cast<int>(section.integer("equilibria", 0, 1, 1'000'000'000));
     }
@@ -336,7 +337,7 @@ constexpr std::array retired_words{
     RetiredWord{"ties", "class", "\"stop\", or \"choose\", which settles ties for radii that differ"},
 };
 
-void refuse_retired_words(Section& section) {
+void refuse_retired_words(SceneSection& section) {
     for (const RetiredWord& retired : retired_words) {
         if (section.string(retired.key) == retired.word) {
             section.fail(retired.key, retired.instead);
@@ -344,17 +345,16 @@ void refuse_retired_words(Section& section) {
     }
 }
 
-void read_run(Section& section, Scene& scene) {
+void read_run(SceneSection& section, Scene& scene) {
     RunOptions& run = scene.run;
     refuse_retired_words(section);
-    run.rule =
-        static_cast<OpeningRule>(section.word("rule", 0, {opening_rule_words.begin(), opening_rule_words.end()}));
+    run.rule = section.word("rule", run.rule, opening_rule_words);
     run.rule_seed =
         static_cast<std::uint64_t>(section.integer("rule_seed", static_cast<long>(run.rule_seed), 0, largest_seed));
     run.max_arcs = section.integer("max_arcs", run.max_arcs, 1, 1'000'000'000);
     run.max_strain = section.number("max_strain", run.max_strain, 1e-12, 1e6, "a positive strain");
-    run.certify = static_cast<CertifyLevel>(section.word("certify", 0, {"decisions", "states", "arcs"}));
-    run.ties = static_cast<TiePolicy>(section.word("ties", 0, {tie_policy_words.begin(), tie_policy_words.end()}));
+    run.certify = section.word("certify", run.certify, certify_level_words);
+    run.ties = section.word("ties", run.ties, tie_policy_words);
     for (const char* key : {"ties_seed", "max_choices"}) {
         if (section.integer(key) && !run.at_first_order()) {
             section.refuse(key, fmt::format("'{}' in [run] belongs to ties = \"choose\": with ties = \"stop\" it has "
@@ -371,7 +371,7 @@ void read_run(Section& section, Scene& scene) {
     run.step_fraction = section.number("step_fraction", run.step_fraction, 1e-6, 10, "a number from 1e-6 to 10");
 }
 
-void read_output(Section& section, Scene& scene) {
+void read_output(SceneSection& section, Scene& scene) {
     scene.states_every = static_cast<int>(section.integer("states_every", scene.states_every, 0, 1'000'000'000));
     scene.checkpoint_seconds = section.number("checkpoint_seconds", scene.checkpoint_seconds, 0, 1e9,
                                               "a time in seconds that is not negative");
@@ -414,7 +414,7 @@ void read_programme(const toml::table& document, Scene& scene) {
                                         [](const toml::node& step) { return step.as_table()->contains("to"); });
         const Load load = ratios ? load_at_start(scene) : Load();
         for (const toml::node& step : *steps) {
-            Section one(step.as_table(), "[programme]", source, scene.settings);
+            SceneSection one(step.as_table(), "[programme]", source, scene.settings);
             scene.programme.push_back(read_step(one, load));
         }
     }
@@ -436,22 +436,22 @@ Scene parse_scene(const std::string& text, const std::string& source, const std:
     scene.file = source;
     scene.text = text;
     const auto section = [&](const char* name) {
-        return Section(table_of(document, name, source), name, source, scene.settings);
+        return SceneSection(table_of(document, name, source), name, source, scene.settings);
     };
     if (table_of(document, "packing", source) == nullptr) {
         throw Error(ErrorKind::bad_input,
                     fmt::format("{}: has no [packing]: expected one with file, disks, radii or radii_file, or spheres",
                                 source));
     }
-    Section packing = section("packing");
+    SceneSection packing = section("packing");
     read_packing(packing, scene, folder);
     packing.finish();
     if (table_of(document, "cell", source) != nullptr) {
-        Section cell = section("cell");
+        SceneSection cell = section("cell");
         read_cell(cell, scene);
         cell.finish();
     }
-    Section preparation = section("preparation");
+    SceneSection preparation = section("preparation");
     if (scene.start.empty()) {
         read_preparation(preparation, scene);
         preparation.finish();
@@ -460,11 +460,11 @@ Scene parse_scene(const std::string& text, const std::string& source, const std:
                     fmt::format("{}:{}: [preparation] has no meaning: the packing is read from a file", source,
                                 node->source().begin.line));
     }
-    Section load = section("load");
+    SceneSection load = section("load");
     read_load(load, scene);
     load.finish();
     read_programme(document, scene);
-    Section run = section("run");
+    SceneSection run = section("run");
     read_run(run, scene);
     run.finish();
     if (scene.run.certify == CertifyLevel::arcs && load_at_start(scene).path) {
@@ -473,7 +473,7 @@ Scene parse_scene(const std::string& text, const std::string& source, const std:
                                 "\"decisions\" or \"states\", arcs are enclosed under loads with one",
                                 source));
     }
-    Section output = section("output");
+    SceneSection output = section("output");
     read_output(output, scene);
     output.finish();
     std::optional<double> ratio;

@@ -2,7 +2,7 @@
 /// \file
 /// Radii of a scene: from a text file, or drawn as the keys of [packing] say.
 
-#include "scene/section.hpp"
+#include "scene/settings.hpp"
 
 #include <isostat/preparation/preparation.hpp>
 
@@ -20,10 +20,10 @@ std::vector<double> read_radii(const std::filesystem::path& path);
 
 /// The law, with its defaults recorded. Throws `Error(bad_input)`
 /// for keys of another law and for a law with a fault.
-DiameterLaw read_law(Section& section);
+DiameterLaw read_law(SceneSection& section);
 
 /// Reads every key of a law, so that all are known, and refuses
 /// those that are present: "has no meaning with `source`".
-void refuse_law(Section& section, const std::string& source);
+void refuse_law(SceneSection& section, const std::string& source);
 
 } // namespace isostat

@@ -2,7 +2,7 @@
 
 #include "io/files.hpp"
 #include "io/toml.hpp"
-#include "scene/section.hpp"
+#include "scene/settings.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/scene/scene.hpp>
@@ -15,26 +15,10 @@ namespace isostat {
 
 namespace {
 
-/// Byte offset of a TOML position, which is line and column from 1 with columns counted in code points.
-std::size_t offset_of(const std::string& text, const toml::source_position& position) {
-    std::size_t at = 0;
-    for (std::uint32_t line = 1; line < position.line; ++line) {
-        at = text.find('\n', at) + 1;
-    }
-    const auto continues = [&](std::size_t k) { return k < text.size() && (text[k] & 0xC0) == 0x80; };
-    for (std::uint32_t column = 1; column < position.column; ++column) {
-        ++at;
-        while (continues(at)) {
-            ++at;
-        }
-    }
-    return at;
-}
-
 void replace(std::string& text, const toml::source_region& where, const std::string& by) {
-    const std::size_t begin = offset_of(text, where.begin);
-    const std::size_t end = offset_of(text, where.end);
-    text.replace(begin, end - begin, by);
+    const TomlLines lines(text);
+    const std::size_t begin = lines.offset(where.begin);
+    text.replace(begin, lines.offset(where.end) - begin, by);
 }
 
 /// Writes `radii = [...]` in the place of `radii_file = "..."`.
@@ -71,7 +55,7 @@ std::string with_seed(const std::string& marked, std::uint64_t seed, const std::
     if (const toml::node* old = value_of(document, "seed")) {
         replace(result, old->source(), fmt::format("{}", seed));
     } else {
-        const std::size_t header = offset_of(result, document["packing"].node()->source().begin);
+        const std::size_t header = TomlLines(result).offset(document["packing"].node()->source().begin);
         if (result[header] != '[') {
             throw Error(ErrorKind::bad_input,
                         fmt::format("{}: [packing] has no seed that could be replaced: expected seed = 1", source));

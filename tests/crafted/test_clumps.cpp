@@ -90,7 +90,7 @@ BOOST_AUTO_TEST_CASE(clumps_that_bear_no_load_are_refuted_where_nothing_is_hyper
 
 BOOST_AUTO_TEST_CASE(bodies_that_are_none_are_refused) {
     const std::string disks = "disks = [[0, 0, 1], [3, 0, 1], [6, 0, 1], [3, 0, 1]]\n";
-    refused(disks + "bodies = [[0, 1], [1, 2]]\n", {"FILE:3", "bodies = 1", "once"});
+    refused(disks + "bodies = [[0, 1], [1, 2]]\n", {"FILE:3", "bodies is 1", "once"});
     refused(disks + "bodies = [[0, 4]]\n", {"FILE:3", "0 to 3"});
     refused(disks + "bodies = [[0]]\n", {"FILE:3", "two members"});
     refused(disks + "bodies = [[1, 3]]\n", {"FILE:3", "one place"});
@@ -98,7 +98,7 @@ BOOST_AUTO_TEST_CASE(bodies_that_are_none_are_refused) {
     const std::string third = "disks = [[0, 0, 1], [0.1, 0.3, 1], [0.3, 0.9, 1], [5, 5, 1]]\n";
     refused(third + "bodies = [[0, 1, 2]]\n", {"FILE:3", "one line"}); // not so in doubles
     refused("bodies = [[0, 1]]\ndisks = [[3, 0, 1]]\n[[disk]]\nx = 0\ny = 0\nr = 1\nfixed = true\n",
-            {"FILE:2", "bodies = 1", "not fixed"});
+            {"FILE:2", "bodies is 1", "not fixed"});
 }
 
 BOOST_AUTO_TEST_SUITE_END()

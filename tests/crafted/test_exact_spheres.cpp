@@ -287,17 +287,17 @@ BOOST_AUTO_TEST_CASE(files_of_spheres_take_three_of_everything) {
     BOOST_TEST(refusal(one + "[cell]\nperiod = [3, 3, 3]\ntilt = [1, 0, \"1/2\"]\nmoves = [\"z\", \"yz\"]\n"
                              "[load]\nwall = [0, 0, 2]\ntilt = [0, 0, 1]\n") == "accepted");
     for (const auto& [text, part] : std::vector<std::pair<std::string, std::string>>{
-             {"disks = [[0, 0, 1]]\n" + one, "unknown key \"disks\""},
-             {"spheres = [[0, 0, 1]]\n", "an array of 3, expected an array of 4"},
-             {"[[sphere]]\nx = 0\ny = 0\nr = 1\n", "\"sphere.z\" is missing"},
-             {"[[disk]]\nx = 0\ny = 0\nz = 0\nr = 1\n", "unknown key \"disk.z\""},
-             {one + "[box]\nlength = [1, 1]\n", "an array of 2, expected an array of 3"},
-             {cell + "moves = [\"z\"]\n", "cell.moves = \"z\""},
-             {cell + "moves = [\"xz\"]\n", "cell.moves = \"xz\""},
+             {"disks = [[0, 0, 1]]\n" + one, "unknown key 'disks'"},
+             {"spheres = [[0, 0, 1]]\n", "spheres is [ 0, 0, 1 ]: expected an array of 4"},
+             {"[[sphere]]\nx = 0\ny = 0\nr = 1\n", "no z in [sphere]"},
+             {"[[disk]]\nx = 0\ny = 0\nz = 0\nr = 1\n", "unknown key 'z' in [disk]"},
+             {one + "[box]\nlength = [1, 1]\n", "length in [box] is [ 1, 1 ]: expected an array of 3"},
+             {cell + "moves = [\"z\"]\n", "moves in [cell] is 'z'"},
+             {cell + "moves = [\"xz\"]\n", "moves in [cell] is 'xz'"},
              {cell + "tilt = [0, 1, 0]\nmoves = []\n", "0, as one axis does not repeat"},
-             {cell + "tilt = 1\nmoves = []\n", "cell.tilt"},
+             {cell + "tilt = 1\nmoves = []\n", "tilt in [cell] is 1: expected an array of 3"},
              {cell + "moves = [\"x\"]\n[load]\nsphere = [[0, 0, 1, 0]]\n", "the pinned sphere would bear the rest"},
-             {cell + "moves = [\"x\"]\n[load]\ndisk = [[0, 0, 1, 0]]\n", "unknown key \"load.disk\""},
+             {cell + "moves = [\"x\"]\n[load]\ndisk = [[0, 0, 1, 0]]\n", "unknown key 'disk' in [load]"},
              {cell + "moves = [\"x\"]\n[load]\ntilt = [1, 0, 0]\n", "this tilt of a cell does not move"},
              {one + "[cell]\nperiod = [3, \"none\", 1]\nmoves = []\n",
               "at least as long as the diameter 2 of sphere 0"}}) {

@@ -53,7 +53,7 @@ const std::string head = "format = \"isostat-packing 1\"\n";
 BOOST_AUTO_TEST_SUITE(crafted_inspection)
 
 BOOST_AUTO_TEST_CASE(bad_files_are_refused_with_line_and_what_was_expected) {
-    BOOST_TEST(refused("disks = [[0, 0, 1]]\n", 1, "\"format\" is missing"));
+    BOOST_TEST(refused("disks = [[0, 0, 1]]\n", 1, "no format: expected \"isostat-packing 1\""));
     BOOST_TEST(refused("format = \"isostat-packing 2\"\n", 1, "expected \"isostat-packing 1\""));
     BOOST_TEST(refused(head, 1, "no disk"));
     BOOST_TEST(refused(head + "disks = [[0, 0]]\n", 2, "array of 3"));
@@ -61,12 +61,13 @@ BOOST_AUTO_TEST_CASE(bad_files_are_refused_with_line_and_what_was_expected) {
     BOOST_TEST(refused(head + "disks = [[0, 0, 0]]\n", 2, "above 0"));
     BOOST_TEST(refused(head + "disks = [[nan, 0, 1]]\n", 2, "exact number"));
     BOOST_TEST(refused(head + "disks = [[0, inf, 1]]\n", 2, "exact number"));
-    BOOST_TEST(refused(head + "disks = [[0, 0, 1],\n[true, 0, 1]]\n", 3, "boolean"));
+    BOOST_TEST(refused(head + "disks = [[0, 0, 1],\n[true, 0, 1]]\n", 3, "is true: expected a number"));
     BOOST_TEST(refused(head + "disks = [[0, 0, \"sin(1)\"]]\n", 2, "position 1"));
     BOOST_TEST(refused(head + "disks = [[0, 0, 1]\n", 2, "end-of-file"));
-    BOOST_TEST(refused(head + "disks = [[0, 0, 1]]\n[boxes]\n", 3, "unknown key \"boxes\""));
-    BOOST_TEST(refused(head + "[[disk]]\nx = 0\ny = 0\nr = 1\nz = 1\n", 6, "unknown key \"disk.z\""));
-    BOOST_TEST(refused(head + "[[disk]]\nx = 0\nr = 1\n", 2, "\"disk.y\" is missing"));
+    BOOST_TEST(refused(head + "disks = [[0, 0, 1]]\n[boxes]\n", 3, "unknown key 'boxes': expected one of format, "));
+    BOOST_TEST(refused(head + "[[disk]]\nx = 0\ny = 0\nr = 1\nz = 1\n", 6,
+                       "unknown key 'z' in [disk]: expected one of x, y, r, fixed"));
+    BOOST_TEST(refused(head + "[[disk]]\nx = 0\nr = 1\n", 2, "no y in [disk]"));
     BOOST_TEST(refused(head + "disks = [[0, 0, 1]]\n[box]\nlength = [1, -1]\n", 4, "above 0"));
     BOOST_TEST(refused(head + "disks = [[0, 0, 1]]\n[box]\nlength = [2, 2]\nlower = [\"movable\", \"fixed\"]\n", 5,
                        "\"absent\" or \"fixed\""));
@@ -77,8 +78,8 @@ BOOST_AUTO_TEST_CASE(bad_files_are_refused_with_line_and_what_was_expected) {
 BOOST_AUTO_TEST_CASE(bad_cells_are_refused_with_line_and_what_was_expected) {
     const std::string disk = head + "disks = [[0, 0, 1]]\n";
     const std::string cell = disk + "[cell]\nmoves = [\"x\", \"y\"]\n";
-    BOOST_TEST(refused(disk + "[cell]\nperiod = [3, 3]\n", 3, "\"cell.moves\" is missing"));
-    BOOST_TEST(refused(cell, 3, "\"cell.period\" is missing"));
+    BOOST_TEST(refused(disk + "[cell]\nperiod = [3, 3]\n", 3, "no moves in [cell]"));
+    BOOST_TEST(refused(cell, 3, "no period in [cell]"));
     BOOST_TEST(refused(cell + "period = [3, 0]\n", 5, "above 0"));
     BOOST_TEST(refused(cell + "period = [3, \"-sqrt(3)\"]\n", 5, "above 0"));
     BOOST_TEST(refused(cell + "period = [3]\n", 5, "an array of 2"));

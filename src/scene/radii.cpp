@@ -1,5 +1,9 @@
 #include "scene/radii.hpp"
 
+#include "io/files.hpp"
+#include "io/lines.hpp"
+#include "io/toml.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -12,7 +16,7 @@ namespace {
 
 using enum RadiiLaw;
 
-const std::vector<std::string> words{"uniform", "equal", "bidisperse", "lognormal", "normal", "power"}; // RadiiLaw
+constexpr std::array law_words{"uniform", "equal", "bidisperse", "lognormal", "normal", "power"};
 
 struct LawKey {
     const char* name;
@@ -27,7 +31,7 @@ const std::array<LawKey, 6> law_keys{{{"diameters", {uniform, lognormal, normal,
                                       {"exponent", {power}}}};
 
 std::string word(RadiiLaw law) {
-    return toml_text(words[static_cast<std::size_t>(law)]);
+    return toml_text(word_of(law, law_words));
 }
 
 bool belongs(const LawKey& key, RadiiLaw law) {
@@ -35,12 +39,12 @@ bool belongs(const LawKey& key, RadiiLaw law) {
 }
 
 /// Whether a key is given; reading it marks it as known.
-bool given(Section& section, std::string_view key) {
+bool given(SceneSection& section, std::string_view key) {
     return key == "diameters" ? section.numbers("diameters").has_value() : section.number(std::string(key)).has_value();
 }
 
 /// Refuses the keys of other laws.
-void check_keys(Section& section, RadiiLaw law) {
+void check_keys(SceneSection& section, RadiiLaw law) {
     for (const LawKey& key : law_keys) {
         if (given(section, key.name) && !belongs(key, law)) {
             std::vector<std::string> laws;
@@ -54,7 +58,7 @@ void check_keys(Section& section, RadiiLaw law) {
 }
 
 /// Reads [smallest, largest]; `law` holds the defaults.
-void read_ends(Section& section, DiameterLaw& law) {
+void read_ends(SceneSection& section, DiameterLaw& law) {
     if (const auto ends = section.numbers("diameters")) {
         if (ends->size() != 2 || !((*ends)[0] >= smallest_size) || !((*ends)[1] >= (*ends)[0]) ||
             !((*ends)[1] <= largest_size)) {
@@ -69,9 +73,9 @@ void read_ends(Section& section, DiameterLaw& law) {
 
 } // namespace
 
-DiameterLaw read_law(Section& section) {
+DiameterLaw read_law(SceneSection& section) {
     DiameterLaw law;
-    law.kind = static_cast<RadiiLaw>(section.word("law", 0, words));
+    law.kind = section.word("law", law.kind, law_words);
     check_keys(section, law.kind);
     const auto has = [&](const char* name) {
         return belongs(*std::find_if(law_keys.begin(), law_keys.end(),
@@ -105,7 +109,7 @@ DiameterLaw read_law(Section& section) {
     return law;
 }
 
-void refuse_law(Section& section, const std::string& source) {
+void refuse_law(SceneSection& section, const std::string& source) {
     std::vector<std::string> found;
     if (section.string("law")) {
         found.emplace_back("law");
@@ -121,6 +125,23 @@ void refuse_law(Section& section, const std::string& source) {
                                    "'{}'",
                                    found.front(), source));
     }
+}
+
+std::vector<double> read_radii(const std::filesystem::path& path) {
+    const std::string source = path.string();
+    const std::string text = read_text(path);
+    TextLines rows(text, source);
+    std::vector<double> radii;
+    do {
+        const std::string name = fmt::format("radius of disk {}", radii.size());
+        const TextLine row = rows.next_row(name, 1);
+        const double radius = row.number(0, name);
+        if (!(radius >= smallest_size && radius <= largest_size)) {
+            row.fail(row.field(0), name, fmt::format("a positive number from {} to {}", smallest_size, largest_size));
+        }
+        radii.push_back(radius);
+    } while (rows.find_row(blanks_or_commas));
+    return radii;
 }
 
 } // namespace isostat

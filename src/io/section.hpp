@@ -1,0 +1,80 @@
+#pragma once
+/// \file
+/// One table of a TOML file, and files that are named in other files. A key becomes known when it is read; a key of the
+/// file that was never read is an error. So the list of known keys cannot disagree with what is read.
+
+#include "core/words.hpp"
+
+#include <toml++/toml.h>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace isostat {
+
+class Section {
+  public:
+    /// `table` may be null: no key is there. An empty `name`: the table is the whole file.
+    Section(const toml::table* table, std::string name, std::string source)
+        : table_(table), name_(std::move(name)), source_(std::move(source)) {}
+
+    /// Throws `Error(bad_input)`: "FILE:LINE: KEY in [NAME] is VALUE: expected WHAT".
+    [[noreturn]] void fail(const std::string& key, const std::string& expected) const;
+    /// The same of a node in the value of the key, at its line; `found`: what to say in the place of its text.
+    [[noreturn]] void fail(const toml::node& node, const std::string& key, const std::string& expected,
+                           const std::string& found = "") const;
+    /// The same without a value: "FILE:LINE: WHAT", at the line of the key (or of the table when the key is absent).
+    [[noreturn]] void refuse(const std::string& key, const std::string& what) const;
+
+    [[nodiscard]] bool has(const std::string& key) const { return table_ != nullptr && table_->contains(key); }
+    [[nodiscard]] int line_of(const std::string& key) const;
+
+    /// Each of these returns the value, or nothing when the key is absent, and throws for another type or a number that
+    /// is not finite.
+    std::optional<double> number(const std::string& key);
+    std::optional<long> integer(const std::string& key);
+    std::optional<bool> boolean(const std::string& key);
+    std::optional<std::string> string(const std::string& key);
+    /// A file in `folder` or below: see `named_input`.
+    std::optional<std::filesystem::path> file(const std::string& key, const std::filesystem::path& folder);
+    std::optional<std::vector<double>> numbers(const std::string& key);
+    /// The value of a word, `fallback` when the key is absent.
+    template <class Enum, std::size_t N> Enum word(const std::string& key, Enum fallback, const EnumWords<N>& words) {
+        return static_cast<Enum>(place(key, static_cast<std::size_t>(fallback), {words.begin(), words.end()}));
+    }
+    /// A table in this one, an array, a value of any type; null when it is absent.
+    const toml::table* table(const std::string& key);
+    const toml::array* array(const std::string& key, std::size_t size = 0);
+    const toml::node* node(const std::string& key);
+    /// The value of a key that must be there. Throws: "FILE:LINE: no KEY in [NAME]: expected WHAT".
+    const toml::node& required(const std::string& key, const std::string& expected);
+
+    /// A node as a table or an array, of `size` values unless `size` is 0.
+    [[nodiscard]] const toml::table& table(const toml::node& node, const std::string& key) const;
+    [[nodiscard]] const toml::array& array(const toml::node& node, const std::string& key, std::size_t size = 0) const;
+
+    /// Throws for the first key that was never read.
+    void finish() const;
+
+  protected:
+    /// Index of the word in `words`; `fallback` when the key is absent.
+    std::size_t place(const std::string& key, std::size_t fallback, const std::vector<std::string>& words);
+    [[nodiscard]] const std::string& name() const { return name_; }
+
+  private:
+    [[nodiscard]] std::string within() const { return name_.empty() ? "" : " in [" + name_ + "]"; }
+    template <class Value> std::optional<Value> value(const std::string& key, const char* expected);
+    const toml::table* table_;
+    std::string name_, source_;
+    std::vector<std::string> known_;
+};
+
+/// The file that a file in `folder` names, beside or below it. Throws `Error(bad_input)`, beginning with `where`, for a
+/// name that leads elsewhere (absolute, with "..", through a link) and for a file that is not regular, because a device
+/// or a pipe may never end. The reader reports a missing file. An empty `folder` is the current one.
+std::filesystem::path named_input(const std::filesystem::path& folder, const std::string& name,
+                                  const std::string& where);
+
+} // namespace isostat

@@ -1,5 +1,4 @@
-#include "answers/cell.hpp"
-
+#include "answers/state.hpp"
 #include "core/decimal.hpp"
 #include "io/text.hpp"
 #include "packing/words.hpp"

@@ -1,5 +1,4 @@
-#include "answers/face.hpp"
-
+#include "answers/state.hpp"
 #include "io/text.hpp"
 #include "preparation/force_face.hpp"
 

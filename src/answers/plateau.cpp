@@ -1,6 +1,6 @@
 #include "answers/plateau.hpp"
 
-#include "answers/cell.hpp"
+#include "answers/state.hpp"
 #include "contact/names.hpp"
 #include "core/decimal.hpp"
 #include "core/words.hpp"

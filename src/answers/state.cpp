@@ -1,7 +1,5 @@
 #include "answers/state.hpp"
 
-#include "answers/cell.hpp"
-#include "answers/face.hpp"
 #include "answers/true_vertex.hpp"
 #include "certificate/averages.hpp"
 #include "certificate/smallest_singular_values.hpp"

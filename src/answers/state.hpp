@@ -1,12 +1,14 @@
 #pragma once
 /// \file
-/// The output of `inspect` for a state.
+/// The output of `inspect` for a state, of a periodic cell, of a box, and of a vertex where more pairs touch than its
+/// contacts.
 
 #include "certificate/jammed_box.hpp"
 #include "io/json.hpp"
 #include "snap/untold.hpp"
 
 #include <isostat/certificate/certify.hpp>
+#include <isostat/contact/state.hpp>
 #include <isostat/io/state_file.hpp>
 
 #include <optional>
@@ -14,6 +16,26 @@
 #include <vector>
 
 namespace isostat::answers {
+
+/// "15.4 x 14.8, tilt 0; x, y move, disk 0 is pinned".
+std::string cell_words(const Packing& packing);
+
+/// Counts of the stored coordinates, one row for each way to strain the cell.
+void print_counts(std::string& out, const std::string& title, const StrainCounts& counts);
+json::Json strains_json(const StrainCounts& counts);
+
+void print_box(std::string& out, const Packing& packing, const BoxInspection& box);
+json::Json box_json(const BoxInspection& box);
+
+/// Prints the counts side by side, the words of jamming, and the count of contacts that elastic moduli need.
+void print_cell(std::string& out, const CellInspection& cell);
+json::Json cell_json(const Packing& packing, const CellInspection& cell);
+
+/// For a state that a run left with touching pairs besides its contacts: their names, and the ranges of forces that are
+/// not unique. For contacts that the run left at force 0: their names. Nothing when the state names no such pair.
+void print_face(std::string& out, const State& state);
+/// `face`: `h`, `touching`, `self_stresses`, `forces_between`, or `undecided` with the reason; `left_at_zero`.
+void add_face(json::Json& object, const State& state);
 
 /// What is proved of a state. Verdicts that the rounding of its file leaves open are withheld.
 struct StateAnswer {

@@ -1,6 +1,5 @@
-#include "cli/ask_coq.hpp"
-
 #include "cli/progress.hpp"
+#include "cli/verify.hpp"
 #include "io/text.hpp"
 
 #include <isostat/core/error.hpp>

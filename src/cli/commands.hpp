@@ -53,9 +53,6 @@ struct InspectArguments {
     std::optional<int> singular_values; ///< how many; absent: ten for spheres, none for disks
 };
 int inspect(const InspectArguments& arguments);
-/// `inspect` of a crafted packing with exact numbers (TOML, examples/packings): prints the exact results and compares
-/// them with the file's [expected]; an entry that does not hold is named and gives 1, a rank that is not proved 2.
-int inspect_packing(const InspectArguments& arguments);
 
 struct CertifyArguments {
     Common common;

@@ -2,8 +2,8 @@
 
 #include "cli/ranges.hpp"
 #include "core/words.hpp"
-#include "io/digits.hpp"
 #include "io/files.hpp"
+#include "io/numbers.hpp"
 #include "io/vertex_text.hpp"
 #include "snap/untold.hpp"
 
@@ -91,8 +91,7 @@ ForeignOptions options_of(const ForeignArguments& a) {
         out.size = size_of(a.radius.empty() ? "--diameter" : "--radius", a.radius.empty() ? a.diameter : a.radius,
                            a.radius.empty() ? SizeMeaning::diameter : SizeMeaning::radius);
     }
-    out.walls =
-        value_of<ForeignWalls>(a.walls, std::array{"none", "box", "square", "fixed"}).value_or(ForeignWalls::none);
+    out.walls = value_of<ForeignWalls>(a.walls, foreign_walls_words).value_or(ForeignWalls::none);
     if (!a.box.empty()) {
         const auto axes = parse_list(a.box);
         if (axes.size() != 2 && axes.size() != most_axes) {

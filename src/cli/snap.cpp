@@ -1,7 +1,7 @@
 #include "answers/true_vertex.hpp"
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
-#include "cli/soft_options.hpp"
+#include "cli/read_packing.hpp"
 #include "cli/terminal.hpp"
 #include "io/files.hpp"
 #include "io/json.hpp"

@@ -1,6 +1,5 @@
-#include "cli/soft_options.hpp"
-
 #include "cli/ranges.hpp"
+#include "cli/read_packing.hpp"
 
 #include <isostat/core/error.hpp>
 

@@ -1,9 +1,9 @@
-#include "cli/ask_coq.hpp"
+#include "cli/verify.hpp"
+
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/terminal.hpp"
-#include "cli/verify_run.hpp"
 #include "ensemble/members.hpp"
 #include "io/files.hpp"
 #include "packing/words.hpp"

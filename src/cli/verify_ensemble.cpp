@@ -1,7 +1,7 @@
 #include "cli/common.hpp"
 #include "cli/progress.hpp"
 #include "cli/terminal.hpp"
-#include "cli/verify_run.hpp"
+#include "cli/verify.hpp"
 #include "ensemble/members.hpp"
 #include "io/files.hpp"
 

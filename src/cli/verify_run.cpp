@@ -1,7 +1,6 @@
-#include "cli/verify_run.hpp"
-
 #include "cli/progress.hpp"
 #include "cli/terminal.hpp"
+#include "cli/verify.hpp"
 
 #include <fmt/format.h>
 

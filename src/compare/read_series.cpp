@@ -1,6 +1,5 @@
 // Reads the frames of a series, matched by time step.
 #include "compare/manifest.hpp"
-#include "io/digits.hpp"
 #include "io/files.hpp"
 #include "io/numbers.hpp"
 #include "packing/words.hpp"

@@ -1,6 +1,5 @@
 // Walls and cells in packings of other programs.
-#include "foreign/box.hpp"
-
+#include "foreign/source.hpp"
 #include "packing/cell_wrap.hpp"
 #include "packing/words.hpp"
 

@@ -1,4 +1,4 @@
-#include "foreign/box.hpp"
+#include "foreign/source.hpp"
 #include "io/files.hpp"
 #include "io/numbers.hpp"
 #include "packing/words.hpp"

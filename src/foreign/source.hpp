@@ -1,8 +1,9 @@
 #pragma once
-// Shared by the readers of foreign formats: named columns, the raw packing.
+/// \file
+/// Shared by the readers of foreign formats: named columns, the raw packing, walls and cells around its grains.
 
-#include "io/digits.hpp"
 #include "io/lines.hpp"
+#include "io/numbers.hpp"
 
 #include <isostat/foreign/foreign.hpp>
 
@@ -170,5 +171,12 @@ Raw read_xyz(const std::string& text, const std::string& source, const ForeignOp
 Raw read_table(const std::string& text, const std::string& source, const ForeignOptions& options);
 Raw read_braces(const std::string& text, const std::string& source, const ForeignOptions& options);
 Raw read_centres(const std::string& text, const std::string& source, const ForeignOptions& options);
+
+/// Combines in `raw` the statements of file and user on bounds and periodic axes. A stated box that is the cell is
+/// removed from `options`. Throws where the statements contradict each other, and for unsupported boundaries.
+void settle_bounds(Raw& raw, std::size_t axes, const std::string& source, ForeignOptions& options);
+
+/// Adds the walls, or the cell with the grains in it. Returns the largest rounding of a coordinate. \pre settled
+double add_box(ForeignPacking& out, const Raw& raw, const std::string& source, const ForeignOptions& options);
 
 } // namespace isostat::foreign

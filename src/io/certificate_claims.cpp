@@ -1,5 +1,4 @@
 // The claims of a certificate as text, both ways.
-#include "io/certificate_json.hpp"
 #include "io/state_json.hpp"
 
 #include <isostat/core/error.hpp>

@@ -1,4 +1,3 @@
-#include "io/certificate_json.hpp"
 #include "io/files.hpp"
 #include "io/state_json.hpp"
 

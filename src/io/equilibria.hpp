@@ -2,7 +2,7 @@
 /// \file
 /// equilibria.csv as text, both ways.
 
-#include "io/record_columns.hpp"
+#include "io/record_text.hpp"
 
 #include <isostat/io/run_directory.hpp>
 

@@ -1,12 +1,14 @@
 #pragma once
 /// \file
-/// Parts of state files. A contact is [i, j] for two disks, [i, j, [mx, my]] for the image of the second, [i, "left"]
-/// for a wall, ["bar", i, j] for a bar, ["held", coordinate] for a held coordinate. Whatever reads throws
-/// `Error(bad_input)`.
+/// Parts of state files and of certificates. A contact is [i, j] for two disks, [i, j, [mx, my]] for the image of the
+/// second, [i, "left"] for a wall, ["bar", i, j] for a bar, ["held", coordinate] for a held coordinate. Whatever reads
+/// throws `Error(bad_input)`.
 
 #include "io/json.hpp"
 
 #include <isostat/io/state_file.hpp>
+
+#include <string>
 
 namespace isostat::json {
 
@@ -25,5 +27,19 @@ void refuse_duplicates(const std::vector<Contact>& contacts, int dimension, cons
 /// "open": [[contact, value, bound], ...], "zero": the same}; the last four only when they say something.
 Json perturbation_to_json(const RadiusPerturbation& perturbation, int dimension);
 RadiusPerturbation perturbation_from_json(const Field& field, const Packing& packing);
+
+/// A member of a document in one line.
+inline std::string member_line(const char* name, const Json& value) {
+    return "\"" + std::string(name) + "\": " + dumped(value);
+}
+
+/// The member "claims", each claim in one line. Throws `Error(bad_input)` as `certificate_text` does.
+std::string claims_text(const CertificateClaims& claims, int dimension);
+
+/// What `claims_text` wrote. Throws as `parse_certificate` does.
+CertificateClaims claims_of(const Field& field, const State& state);
+
+/// SHA-256 of a document without its field "digest", dumped without white space and with sorted keys.
+std::string digest_of(const Json& document);
 
 } // namespace isostat::json

@@ -1,4 +1,4 @@
-#include "report/gnuplot.hpp"
+#include "report/charts.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -6,7 +6,6 @@
 #include "linear/factorisation.hpp"
 #include "packing/bodies.hpp"
 #include "packing/words.hpp"
-#include "report/page_bytes.hpp"
 #include "report/run_walk.hpp"
 #include "report/words.hpp"
 #include "rigidity/isostatic.hpp"

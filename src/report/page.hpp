@@ -1,7 +1,8 @@
 #pragma once
 /// \file
-/// A run as one HTML file that opens without network.
+/// A run as one HTML file that opens without network, and numbers as text that such a page can hold.
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -24,5 +25,11 @@ Page run_page(const std::filesystem::path& directory, const std::function<void(s
 
 /// Source of the page, with a placeholder for its data.
 extern const char* const page_template;
+
+/// Integers of few bytes each when they are small: seven bits per byte, lowest first, the sign in the lowest bit.
+void append_varint(std::string& bytes, std::int64_t value);
+
+/// Base64 of the bytes in zlib's format, which browsers undo (`DecompressionStream("deflate")`).
+std::string packed(const std::string& bytes);
 
 } // namespace isostat

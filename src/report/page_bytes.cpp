@@ -1,4 +1,4 @@
-#include "report/page_bytes.hpp"
+#include "report/page.hpp"
 
 #include <isostat/core/error.hpp>
 

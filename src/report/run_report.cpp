@@ -8,12 +8,10 @@
 #include "io/record_digests.hpp"
 #include "packing/arc_bodies.hpp"
 #include "report/charts.hpp"
-#include "report/gnuplot.hpp"
 #include "report/page.hpp"
 #include "report/picture.hpp"
 #include "report/sphere_page.hpp"
 #include "report/statistics.hpp"
-#include "report/tables.hpp"
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/core/error.hpp>
@@ -162,7 +160,7 @@ class Writer {
 
 /// Counts of decisions by kind and by the rung that decided.
 std::string decision_table(const json::Field& decisions) {
-    constexpr std::array<const char*, 5> rungs{"combinatorial", "double", "double-double", "mpfr", "exact"};
+    constexpr auto rungs = rung_words;
     std::string text = fmt::format("\n{:<20} {:>13} {:>9} {:>13} {:>7} {:>7} {:>15}\n", "decisions", rungs[0], rungs[1],
                                    rungs[2], rungs[3], rungs[4], "smallest margin");
     const auto row = [&](const std::string& name, const json::Field& counts) {
@@ -170,7 +168,7 @@ std::string decision_table(const json::Field& decisions) {
                             counts.at(rungs[1]).integer(), counts.at(rungs[2]).integer(), counts.at(rungs[3]).integer(),
                             counts.at(rungs[4]).integer(), counts.at("smallest_margin").number());
     };
-    for (const char* kind : {"gaps", "power", "opening", "equilibrium"}) {
+    for (const char* kind : decision_kind_words) {
         row(kind, decisions.at("kinds").at(kind));
     }
     row("all", decisions);
@@ -180,7 +178,7 @@ std::string decision_table(const json::Field& decisions) {
     const json::Field ties = decisions.at("ties"), perturbed = ties.at("perturbed");
     std::string kinds;
     long all = 0;
-    for (const char* kind : {"gaps", "power", "opening", "equilibrium"}) {
+    for (const char* kind : decision_kind_words) {
         const long count = perturbed.at(kind).integer();
         all += count;
         kinds += fmt::format("{}{} {}", kinds.empty() ? "" : ", ", kind, count);

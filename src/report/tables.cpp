@@ -1,6 +1,5 @@
-#include "report/tables.hpp"
-
 #include "io/text.hpp"
+#include "report/charts.hpp"
 #include "report/statistics.hpp"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 // Packings of spheres by other programs: every format, cells, walls, and what is refused.
 
 #include "io/bad_input.hpp"
-#include "io/digits.hpp"
+#include "io/numbers.hpp"
 #include "oracle/pairs.hpp"
 #include "support/scratch.hpp"
 

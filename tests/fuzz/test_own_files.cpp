@@ -1,7 +1,7 @@
 // Our own files: states, vertex texts, certificates, scenes, crafted packings, radii.
 
 #include "fuzz/harness.hpp"
-#include "io/certificate_json.hpp"
+#include "io/state_json.hpp"
 #include "io/vertex_text.hpp"
 #include "scene/radii.hpp"
 #include "scene/seed.hpp"

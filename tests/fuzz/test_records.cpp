@@ -2,11 +2,11 @@
 
 #include "checker/run_records.hpp"
 #include "fuzz/harness.hpp"
-#include "io/certificate_json.hpp"
 #include "io/files.hpp"
+#include "io/state_json.hpp"
 #include "io/text.hpp"
+#include "report/charts.hpp"
 #include "report/run_report.hpp"
-#include "report/tables.hpp"
 #include "support/crafted.hpp"
 #include "support/forger.hpp"
 #include "support/scratch.hpp"

@@ -2,7 +2,7 @@
 #include "io/bad_input.hpp"
 #include "io/files.hpp"
 #include "io/folders.hpp"
-#include "scene/named_input.hpp"
+#include "io/section.hpp"
 #include "support/scratch.hpp"
 
 #include <isostat/io/run_directory.hpp>

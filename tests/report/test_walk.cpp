@@ -1,7 +1,6 @@
 // Vertices found again from the records of a run, and the page made of them.
 #include "cli/program.hpp"
 #include "report/page.hpp"
-#include "report/page_bytes.hpp"
 #include "report/run_walk.hpp"
 #include "support/clumps.hpp"
 

@@ -1,10 +1,128 @@
-#include "contact/separation.hpp"
-#include "crafted/able.hpp"
 #include "crafted/inspection_parts.hpp"
 
+#include "contact/separation.hpp"
+#include "crafted/able.hpp"
+
+#include <algorithm>
 #include <functional>
 
 namespace isostat::crafted {
+
+namespace {
+
+ExactPacking without_rattlers(const ExactPacking& packing, const std::vector<DiskHold>& hold) {
+    ExactPacking out = packing;
+    out.load.reset();
+    out.radius.clear();
+    out.centre.clear();
+    out.fixed.clear();
+    out.cell.pin = 0;
+    for (std::size_t i = 0; i < hold.size(); ++i) {
+        if (hold[i] != DiskHold::rattler) {
+            out.radius.push_back(packing.radius[i]);
+            out.centre.push_back(packing.centre[i]);
+        }
+    }
+    return out;
+}
+
+/// Refuted when a motion keeps every gap (`mechanisms`) or opens some and closes none (no `positive` forces).
+Verdict jammed(const Inspection& seen, bool decided, bool positive) {
+    if (seen.rank_exact == Verdict::proved && seen.mechanisms > 0) {
+        return Verdict::refuted;
+    }
+    return seen.rank_exact != Verdict::proved || !decided ? Verdict::undecided
+           : positive                                     ? Verdict::proved
+                                                          : Verdict::refuted;
+}
+
+} // namespace
+
+Jamming judge_jamming(const ExactPacking& packing, const std::vector<DiskHold>& hold, const InspectionLimits& limits) {
+    ExactPacking rest = without_rattlers(packing, hold);
+    Jamming out;
+    out.disks = rest.disk_count();
+    if (out.disks == 0) {
+        out.collective = Verdict::refuted;
+        out.strict = packing.cell.any() ? std::optional(Verdict::refuted) : std::nullopt;
+        return out;
+    }
+    const auto inspected = [&](bool moves) {
+        rest.cell.move(moves, moves);
+        return inspect_contacts(rest, exact_contacts(rest).value(), limits);
+    };
+    const Inspection fixed = inspected(false);
+    out.collective = fixed.dof_count == 0
+                         ? Verdict::proved
+                         : jammed(fixed, fixed.one_sign_decided, fixed.one_sign.kind == exact::OneSign::strict);
+    if (!packing.cell.any()) {
+        return out;
+    }
+    rest.load.emplace(); // a pressure of 1, so that the load is minus the derivative of the volume
+    for (std::size_t a = 0; a < rest.axes(); ++a) {
+        rest.load->wall[a] = 1;
+        for (std::size_t b = 0; b < rest.axes(); ++b) {
+            rest.load->wall[a] *= b == a ? Number(1) : rest.length[b];
+        }
+    }
+    const Inspection strained = inspected(true);
+    out.strict = jammed(strained, strained.support != Support::undecided, strained.support == Support::positive);
+    return out;
+}
+
+namespace {
+
+using Vectors = std::vector<std::vector<Number>>;
+
+/// The largest t, by the dual: least f y with y >= 0, change y = -1, stresses y = 0. Empty: t is not bounded.
+std::optional<Number> largest(const std::vector<Number>& forces, const Vectors& rows) {
+    std::vector<Number> b(rows.size());
+    b[0] = -1;
+    return exact::least(rows, b, forces);
+}
+
+/// The contacts whose force vanishes at f + t change.
+std::vector<int> zeros(const std::vector<Number>& forces, const std::vector<Number>& change, const Number& t) {
+    std::vector<int> out;
+    for (std::size_t l = 0; l < forces.size(); ++l) {
+        if (!change[l].is_zero() && (forces[l] + t * change[l]).is_zero()) {
+            out.push_back(static_cast<int>(l));
+        }
+    }
+    return out;
+}
+
+} // namespace
+
+std::optional<LoadRange> load_range(const std::vector<Number>& forces, const std::vector<Number>& change,
+                                    const Vectors& stresses) {
+    // Farkas: no t is supported exactly when some y >= 0 has f y = -1, change y = 0 and stresses y = 0.
+    Vectors rows{change};
+    rows.insert(rows.end(), stresses.begin(), stresses.end());
+    for (std::vector<Number>& row : rows) { // the forces after these may have any sign
+        row.resize(forces.size());
+    }
+    Vectors all = rows;
+    all.push_back(forces);
+    std::vector<Number> b(all.size());
+    b.back() = -1;
+    if (exact::feasible_point(all, b, static_cast<int>(forces.size())).feasible) {
+        return std::nullopt;
+    }
+    LoadRange out;
+    out.most = largest(forces, rows);
+    for (Number& x : rows[0]) {
+        x = -x;
+    }
+    if (const auto back = largest(forces, rows)) {
+        out.least = -*back;
+    }
+    if (stresses.empty()) {
+        out.zero_at_least = out.least ? zeros(forces, change, *out.least) : std::vector<int>{};
+        out.zero_at_most = out.most ? zeros(forces, change, *out.most) : std::vector<int>{};
+    }
+    return out;
+}
 
 Inertia inertia(std::vector<std::vector<Number>> a) {
     Inertia out;

@@ -1,6 +1,7 @@
 // Binds snap and compare, for soft grains of other programs.
 #include "compare/report.hpp"
 #include "convert.hpp"
+#include "core/words.hpp"
 #include "snap/force_split.hpp"
 #include "snap/soft_list.hpp"
 
@@ -22,14 +23,15 @@ struct Snapped {
 };
 
 Snapped snapped(const PyState& file, double stiffness, const std::string& law) {
-    if (law != "linear" && law != "hertz") {
+    const auto known = value_of<compare::ForceLaw>(law, compare::force_law_words);
+    if (!known || *known == compare::ForceLaw::none) {
         throw Error(ErrorKind::bad_input, "law is '" + law + "': expected \"linear\" or \"hertz\"");
     }
     require_single_grains(file.state.packing, "state", "snap");
     Snapped out;
     compare::SoftForces grains = compare::soft_grains(file, "state");
     if (finite(stiffness, "stiffness") > 0) {
-        compare::add_law(grains, {law == "hertz" ? compare::ForceLaw::hertz : compare::ForceLaw::linear, stiffness});
+        compare::add_law(grains, {*known, stiffness});
     }
     out.snap = compare::snap(grains.soft);
     out.reason = out.snap.reason;
@@ -70,7 +72,9 @@ void bind_snap(py::module_& module) {
         .def_property_readonly(
             "stiffness", [](const Snapped& self) { return self.forces.stiffness; },
             "Largest |those - forces at the vertex|, likewise.")
-        .def_readonly("state", &Snapped::state, "State: the vertex, rattlers at rest. None.");
+        .def_property_readonly(
+            "state", [](const Snapped& self) -> As<"Optional[State]"> { return py::cast(self.state); },
+            "State: the vertex, rattlers at rest. None.");
     module.def(
         "snap",
         [](const PyState& state, double stiffness, const std::string& law) {

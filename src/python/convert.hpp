@@ -13,6 +13,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <algorithm>
 #include <chrono>
 #include <functional>
 #include <future>
@@ -30,13 +31,25 @@ namespace py = pybind11;
 /// A state in Python: the state and the forces that its file may have.
 using PyState = StateFile;
 
+/// A type as Python writes it.
+template <std::size_t N> struct TypeName {
+    char text[N]{}; // NOLINT(*-avoid-c-arrays): pybind11 takes one
+    constexpr TypeName(const char (&name)[N]) { std::copy_n(name, N, text); } // NOLINT(*-c-arrays,*-explicit-*)
+};
+/// An object of Python whose type is in the signature, and so in the stub (stub.py).
+template <TypeName type, class Object = py::object> struct As : Object {
+    As(Object object) : Object(std::move(object)) {} // NOLINT(google-explicit-constructor)
+    using Object::Object;
+    static bool check_(py::handle) { return true; } // NOLINT(readability-identifier-naming): a name of pybind11
+};
+
 /// Read-only array that views `data`; `owner` lives as long as the array.
-template <class T> py::array view(const T* data, std::vector<py::ssize_t> shape, py::handle owner) {
-    py::array array(py::dtype::of<T>(), std::move(shape), {}, data, owner);
+template <class T> py::array_t<T> view(const T* data, std::vector<py::ssize_t> shape, py::handle owner) {
+    py::array_t<T> array(std::move(shape), data, owner);
     array.attr("flags").attr("writeable") = false;
     return array;
 }
-template <class T> py::array view(const std::vector<T>& data, py::handle owner) {
+template <class T> py::array_t<T> view(const std::vector<T>& data, py::handle owner) {
     return view(data.data(), {static_cast<py::ssize_t>(data.size())}, owner);
 }
 
@@ -116,6 +129,9 @@ void bind_compare(py::module_& module);
 } // namespace isostat::python
 
 namespace pybind11::detail {
+template <isostat::python::TypeName type, class Object> struct handle_type_name<isostat::python::As<type, Object>> {
+    static constexpr auto name = const_name(type.text);
+};
 /// Verdicts become members of isostat.Verdict, which do not convert to bool.
 template <> struct type_caster<isostat::Verdict> {
     PYBIND11_TYPE_CASTER(isostat::Verdict, const_name("isostat.Verdict"));

@@ -2,6 +2,7 @@
 #include "ensemble/ensemble.hpp"
 
 #include "convert.hpp"
+#include "core/words.hpp"
 #include "ensemble/members.hpp"
 
 #include <isostat/core/error.hpp>
@@ -28,11 +29,8 @@ std::unique_ptr<EnsembleDirectory> ensemble_folder(const std::string& text, cons
     header.scene_text = text;
     header.first_seed = seed;
     header.samples = samples;
-    using Mode = EnsembleDirectory::Mode;
-    return std::make_unique<EnsembleDirectory>(output, header,
-                                               mode == "resume"  ? Mode::resume
-                                               : mode == "force" ? Mode::force
-                                                                 : Mode::fresh);
+    return std::make_unique<EnsembleDirectory>(
+        output, header, value_of<FolderMode>(mode, folder_mode_words).value_or(FolderMode::fresh));
 }
 
 } // namespace
@@ -50,25 +48,27 @@ void bind_ensemble(py::module_& module) {
              [](const Directory& self, std::size_t number, bool stopped, const std::string& reason) {
                  self.samples().note(number, stopped ? SampleStatus::interrupted : SampleStatus::crashed, reason);
              })
-        .def("merge", [](const Directory& self) {
+        .def(
+            "merge", [](const Directory& self) -> As<"list[tuple[int, str, str]]"> {
+                py::list rows;
+                for (const Sample& sample : self.merge()) {
+                    rows.append(py::make_tuple(sample.seed, to_string(sample.status), sample.reason));
+                }
+                return rows;
+            });
+    module.def(
+        "_members", [](const std::filesystem::path& folder) -> As<"list[tuple[int, os.PathLike[str]]]"> {
+            if (!is_ensemble(folder)) {
+                throw Error(ErrorKind::bad_input, folder.string() + ": holds no ensemble: expected ensemble.json");
+            }
             py::list rows;
-            for (const Sample& sample : self.merge()) {
-                rows.append(py::make_tuple(sample.seed, to_string(sample.status), sample.reason));
+            for (const Member& member : members_of(folder)) {
+                if (member.begun) {
+                    rows.append(py::make_tuple(member.seed, member.folder));
+                }
             }
             return rows;
         });
-    module.def("_members", [](const std::filesystem::path& folder) {
-        if (!is_ensemble(folder)) {
-            throw Error(ErrorKind::bad_input, folder.string() + ": holds no ensemble: expected ensemble.json");
-        }
-        py::list rows;
-        for (const Member& member : members_of(folder)) {
-            if (member.begun) {
-                rows.append(py::make_tuple(member.seed, member.folder));
-            }
-        }
-        return rows;
-    });
 }
 
 } // namespace isostat::python

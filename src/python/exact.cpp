@@ -11,6 +11,7 @@
 #include <pybind11/operators.h>
 
 #include <cmath>
+#include <map>
 
 namespace isostat::python {
 
@@ -18,13 +19,17 @@ namespace {
 
 using exact::Number;
 
+using Exact = As<"Exact">;
+using Exacts = As<"list[Exact]">;
+using Rational = As<"Rational">;
+
 /// A fractions.Fraction when the number is rational, otherwise an isostat.Number.
-py::object to_python(const Number& number) {
-    return number.is_rational() ? py::module_::import("isostat._exact").attr("fraction")(number.text())
+Exact to_python(const Number& number) {
+    return number.is_rational() ? py::object(py::module_::import("isostat._exact").attr("fraction")(number.text()))
                                 : py::cast(number);
 }
 
-py::list to_python(const std::vector<Number>& vector) {
+Exacts to_python(const std::vector<Number>& vector) {
     py::list list;
     for (const Number& number : vector) {
         list.append(to_python(number));
@@ -32,7 +37,7 @@ py::list to_python(const std::vector<Number>& vector) {
     return list;
 }
 
-py::list to_python(const std::vector<std::vector<Number>>& vectors) {
+As<"list[list[Exact]]"> to_python(const std::vector<std::vector<Number>>& vectors) {
     py::list list;
     for (const auto& vector : vectors) {
         list.append(to_python(vector));
@@ -52,13 +57,13 @@ Number to_number(const py::handle& object) {
 }
 
 template <class Operation> auto binary(Operation operation) {
-    return [operation](const Number& a, const py::object& b) { return to_python(operation(a, to_number(b))); };
+    return [operation](const Number& a, const Rational& b) { return to_python(operation(a, to_number(b))); };
 }
 template <class Operation> auto reversed(Operation operation) {
-    return [operation](const Number& a, const py::object& b) { return to_python(operation(to_number(b), a)); };
+    return [operation](const Number& a, const Rational& b) { return to_python(operation(to_number(b), a)); };
 }
 template <class Relation> auto relation(Relation relation) {
-    return [relation](const Number& a, const py::object& b) { return relation((a - to_number(b)).sign()); };
+    return [relation](const Number& a, const Rational& b) { return relation((a - to_number(b)).sign()); };
 }
 
 Number quotient(const Number& a, const Number& b) {
@@ -74,7 +79,7 @@ void bind_number(py::module_& module) {
                        "A sum of rationals times square roots of integers, exact. Results that are rational are "
                        "fractions.Fraction.\n\nNumber(value): int, Fraction, Number, text such as \"1 + 1/2*sqrt(3)\", "
                        "or float, taken as the dyadic number that it stores.")
-        .def(py::init([](const py::object& value) { return to_number(value); }), py::arg("value"))
+        .def(py::init([](const Rational& value) { return to_number(value); }), py::arg("value"))
         .def("__add__", binary(std::plus<>()))
         .def("__radd__", reversed(std::plus<>()))
         .def("__sub__", binary(std::minus<>()))
@@ -106,7 +111,7 @@ void bind_number(py::module_& module) {
              [](const py::object& a) { return py::make_tuple(py::type::of(a), py::make_tuple(py::str(a))); })
         .def("enclosure", &Number::enclosure, "(value, radius) in doubles; the number lies within.");
     module.def(
-        "sqrt", [](const py::object& value) { return to_python(exact::sqrt(to_number(value))); }, py::arg("rational"),
+        "sqrt", [](const Rational& value) { return to_python(exact::sqrt(to_number(value))); }, py::arg("rational"),
         "The exact root of a rational: Number or Fraction.");
 }
 
@@ -152,7 +157,7 @@ CraftedInspection inspected(const Crafted& crafted) {
     return {crafted.packing, value_or_raise(interruptible([crafted] { return crafted::inspect(crafted.packing); }))};
 }
 
-py::list exact_columns(const Crafted& crafted) {
+As<"list[dict[int, Exact]]"> exact_columns(const Crafted& crafted) {
     const auto contacts = contacts_of(crafted);
     const DofMap dofs(approximate(crafted.packing));
     const exact::NumberMatrix matrix = crafted::exact_contact_matrix(crafted.packing, dofs, contacts);
@@ -167,7 +172,7 @@ py::list exact_columns(const Crafted& crafted) {
     return columns;
 }
 
-py::tuple per_axis(const ExactPacking& packing, const PerAxis<Number>& numbers) {
+As<"tuple[Exact, Exact]"> per_axis(const ExactPacking& packing, const PerAxis<Number>& numbers) {
     return py::tuple(to_python(std::vector<Number>(numbers.begin(), numbers.begin() + packing.dimension())));
 }
 
@@ -190,8 +195,7 @@ void bind_crafted(py::module_& module) {
         .def("__len__", [](const Crafted& self) { return self.packing.disk_count(); })
         .def_readonly("title", &Crafted::title, "Title of the file.")
         .def_property_readonly(
-            "centres",
-            [](const Crafted& self) {
+            "centres", [](const Crafted& self) -> As<"list[tuple[Exact, Exact]]"> {
                 py::list rows;
                 for (const auto& centre : self.packing.centre) {
                     rows.append(per_axis(self.packing, centre));
@@ -225,7 +229,8 @@ py::list enclosed(const std::vector<crafted::EnclosedVector>& vectors) {
     return list;
 }
 
-py::tuple enclosed_bases(const CraftedInspection& self, int count) {
+As<"tuple[Verdict, list[tuple[Floats, float]], list[tuple[Floats, float]]]">
+enclosed_bases(const CraftedInspection& self, int count) {
     const auto bases = unlocked([&] { return crafted::enclose_bases(self.packing, self.seen, count); });
     return py::make_tuple(bases.verdict, enclosed(bases.self_stresses), enclosed(bases.motions));
 }
@@ -262,8 +267,7 @@ void bind_counts(InspectionClass& inspection) {
             "verdict", [](const Self& self) { return self.seen.verdict(); },
             "\"isostatic\", \"hyperstatic\", \"hypostatic\", \"hyperstatic and hypostatic\" or \"undecided\".")
         .def_property_readonly(
-            "strains",
-            [](const Self& self) {
+            "strains", [](const Self& self) -> As<"dict[str, Counting]"> {
                 py::dict out;
                 for (std::size_t s = 0; self.seen.strains && s < strains.size(); ++s) {
                     out[to_string(strains[s])] = (*self.seen.strains)[s];
@@ -317,7 +321,7 @@ void bind_equilibrium(InspectionClass& inspection) {
         .def_property_readonly(
             "jammed",
             [](const Self& self) {
-                py::dict out;
+                std::map<std::string, Verdict> out;
                 if (self.seen.jamming) {
                     out["collectively"] = self.seen.jamming->collective;
                     if (self.seen.jamming->strict) {
@@ -377,8 +381,7 @@ template <class What, class Parts> void bind_genericity_of(py::module_& module, 
 void bind_genericity(py::module_& module) {
     py::class_<Genericity>(module, "Genericity", "What became of perturbed copies: see `genericity`.")
         .def_property_readonly(
-            "samples",
-            [](const Genericity& self) {
+            "samples", [](const Genericity& self) -> As<"list[dict[str, object]]"> {
                 py::list rows;
                 for (const GenericitySample& s : self.samples) {
                     using namespace py::literals;
@@ -414,8 +417,8 @@ void bind_genericity(py::module_& module) {
 
 void bind_exact(py::module_& module) {
     bind_number(module);
-    bind_crafted(module);
     bind_crafted_inspection(module);
+    bind_crafted(module);
     bind_genericity(module);
 }
 

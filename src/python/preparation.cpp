@@ -1,5 +1,6 @@
 // Binds packings to begin with: prepared ones, and those of other programs.
 #include "convert.hpp"
+#include "core/words.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/crafted/plateau.hpp>
@@ -70,14 +71,15 @@ Packing read_any(const std::filesystem::path& path, const std::string& walls,
                  std::optional<int> dimension, const std::string& bodies) {
     ForeignOptions options;
     options.bodies = bodies;
-    if (walls != "none" && walls != "fixed" && walls != "box") {
+    const auto known = value_of<ForeignWalls>(walls, foreign_walls_words);
+    if (!known || *known == ForeignWalls::square) {
         throw Error(ErrorKind::bad_input, "walls is '" + walls + "': expected \"box\", \"fixed\" or \"none\"");
     }
     options.box = box.value_or(std::vector<double>());
     for (const double side : options.box) {
         finite(side, "box");
     }
-    options.walls = walls == "none" ? ForeignWalls::none : walls == "fixed" ? ForeignWalls::fixed : ForeignWalls::box;
+    options.walls = *known;
     if (!radius.empty()) {
         options.size = SizeStatement{SizeMeaning::radius, radius, 0};
     } else if (!diameter.empty()) {
@@ -95,9 +97,7 @@ void bind_plateau(py::module_& module) {
         .def_readonly("rank", &PlateauCounts::rank, "Of the stored coordinates.")
         .def_readonly("h", &PlateauCounts::hyperstaticity, "N - rank.")
         .def_readonly("k", &PlateauCounts::mechanisms, "N_f - rank.")
-        .def_property_readonly(
-            "isostatic", [](const PlateauCounts& self) { return self.isostatic; },
-            "Verdict on: h = 0 and no internal mechanism.");
+        .def_readonly("isostatic", &PlateauCounts::isostatic, "Verdict on: h = 0 and no internal mechanism.");
     py::class_<PlateauStep>(module, "PlateauStep", "Counts at one threshold.")
         .def_readonly("threshold", &PlateauStep::threshold, "Pairs of at most this gap are contacts; length.")
         .def_readonly("rattlers", &PlateauStep::rattlers, "Disks that are not in the backbone.")

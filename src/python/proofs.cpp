@@ -46,14 +46,22 @@ Certified certify_state(const PyState& state) {
 
 /// One property of the claims: `get` of the claim if it exists, else None.
 template <class Claim, class Get> auto claim(std::optional<Claim> CertificateClaims::*member, Get get) {
-    return [member, get](const Certified& self) -> py::object {
+    return [member, get](const Certified& self) {
         const auto& there = self.certificate.claims.*member;
-        return there ? py::object(get(*there)) : py::object(py::none());
+        return there ? std::optional(get(*there)) : std::nullopt;
     };
 }
 
-py::object load_end(const LoadEndClaim& end) {
-    return end.unbounded ? py::object(py::none()) : py::make_tuple(end.stress, end.opens);
+using LoadEnd = As<"Optional[tuple[tuple[float, float], Pair]]">;
+
+/// An end of the supported interval; None where it is unbounded or not proved.
+auto load_end(LoadEndClaim LoadIntervalClaim::*member) {
+    return [member](const Certified& self) -> LoadEnd {
+        const auto& there = self.certificate.claims.load_interval;
+        return there && !((*there).*member).unbounded
+                   ? py::object(py::make_tuple(((*there).*member).stress, ((*there).*member).opens))
+                   : py::object(py::none());
+    };
 }
 
 using CertificateClass = py::class_<Certified>;
@@ -70,39 +78,34 @@ void bind_claims(CertificateClass& certificate) {
                                          dict["rank"] = c.rank;
                                          dict["h"] = c.hyperstaticity;
                                          dict["k"] = c.hypostaticity;
-                                         return dict;
+                                         return As<"dict[str, int]">(dict);
                                      }),
                                "{\"dofs\", \"contacts\", \"rank\", \"h\", \"k\"}, exact; None.")
         .def_property_readonly(
-            "vertex",
-            claim(&Claims::vertex, [](const VertexClaim& c) { return py::make_tuple(c.radius, c.unique_radius); }),
+            "vertex", claim(&Claims::vertex, [](const VertexClaim& c) { return std::pair(c.radius, c.unique_radius); }),
             "(radius, unique_radius): a true vertex lies within `radius` of the stored coordinates, no other one "
             "within `unique_radius`; length. None.")
         .def_property_readonly(
             "forces", claim(&Claims::forces, [](const ForcesClaim& c) { return interval_array(c.finite); }),
             "(N, 2) ends of the intervals that hold the forces at the true vertex; stress x length. None.")
-        .def_property_readonly(
-            "structural_zeros",
-            claim(&Claims::forces, [](const ForcesClaim& c) { return py::cast(c.structural_zeros); }),
-            "Places of contacts whose force is exactly 0 for combinatorial reasons; None.")
+        .def_property_readonly("structural_zeros",
+                               claim(&Claims::forces, [](const ForcesClaim& c) { return c.structural_zeros; }),
+                               "Places of contacts whose force is exactly 0 for combinatorial reasons; None.")
         .def_property_readonly(
             "infinitesimal_forces",
             claim(&Claims::forces, [](const ForcesClaim& c) { return interval_array(c.infinitesimal); }),
             "(z, 2) ends of intervals of the infinitesimal forces in the structural zeros; None.")
+        .def_property_readonly("smallest_gap",
+                               claim(&Claims::gaps, [](const GapsClaim& c) { return std::pair(c.smallest, c.where); }),
+                               "(gap, contact): every other pair has at least this gap; where. None.")
         .def_property_readonly(
-            "smallest_gap",
-            claim(&Claims::gaps, [](const GapsClaim& c) { return py::make_tuple(c.smallest, c.where); }),
-            "(gap, contact): every other pair has at least this gap; where. None.")
-        .def_property_readonly(
-            "low", claim(&Claims::load_interval, [](const LoadIntervalClaim& c) { return load_end(c.low); }),
+            "low", load_end(&LoadIntervalClaim::low),
             "((lower, upper), contact): lower end of the supported interval of the loaded stress, enclosed, and what "
             "opens there. None: unbounded or not proved.")
+        .def_property_readonly("high", load_end(&LoadIntervalClaim::high),
+                               "((lower, upper), contact): upper end. None: unbounded or not proved.")
         .def_property_readonly(
-            "high", claim(&Claims::load_interval, [](const LoadIntervalClaim& c) { return load_end(c.high); }),
-            "((lower, upper), contact): upper end. None: unbounded or not proved.")
-        .def_property_readonly(
-            "minimum",
-            claim(&Claims::minimum, [](const MinimumClaim& c) { return py::make_tuple(c.away, c.curvature); }),
+            "minimum", claim(&Claims::minimum, [](const MinimumClaim& c) { return std::pair(c.away, c.curvature); }),
             "(away, curvature), of clumps with mechanisms that the load reaches, in the place of the other claims: no "
             "coordinate is farther than `away` from an equilibrium that is a strict local minimum, where the second "
             "variation on the held coordinates is at least `curvature`. None.");
@@ -113,8 +116,8 @@ void bind_certificate(py::module_& module) {
         module, "Certificate",
         "What is proved of a state, for `verify`. A claim that was not proved is None; `undecided` says why.");
     certificate
-        .def_property_readonly(
-            "verdict", [](const Certified& self) { return self.verdict; },
+        .def_readonly(
+            "verdict", &Certified::verdict,
             "Verdict on: the true vertex is an isostatic, stable equilibrium without overlap; with `minimum`, that the "
             "equilibrium which it names is one.")
         .def_readonly("refuted", &Certified::refuted, "Sentences: claims that are proved to be wrong.")
@@ -164,12 +167,10 @@ void bind_inspect(py::module_& module) {
         "the rank is not proved, Undecided when no bound was proved.");
 }
 
-py::list length_rates(const Inspection& inspection) {
-    py::list rates;
-    for (std::size_t a = 0; inspection.yielding && a < static_cast<std::size_t>(inspection.truth.dimension); ++a) {
-        rates.append(inspection.yielding->length_rate[a]);
-    }
-    return rates;
+std::vector<Enclosure> length_rates(const Inspection& inspection) {
+    const auto axes = inspection.yielding ? inspection.truth.dimension : 0;
+    const PerAxis<Enclosure> all = inspection.yielding ? inspection.yielding->length_rate : PerAxis<Enclosure>{};
+    return {all.begin(), all.begin() + axes};
 }
 
 using BoundInspection = py::class_<Inspection, std::shared_ptr<Inspection>>;
@@ -226,12 +227,10 @@ void bind_inspection(py::module_& module) {
                                "First members of clumps that turn about the one member with contacts.")
         .def_property_readonly("verdict", of_record(&Record::verdict),
                                "Verdict on: an isostatic equilibrium without overlap.")
-        .def_property_readonly(
-            "stable", [](const Seen& self) { return self.stable; },
-            "Verdict on: a strict local minimum of the potential. Refuted: a maximum along the mechanism.")
-        .def_property_readonly(
-            "second_order", [](const Seen& self) { return self.second_order; },
-            "(value, bound): second derivative of the potential along the mechanism (k = 1).")
+        .def_readonly("stable", &Seen::stable,
+                      "Verdict on: a strict local minimum of the potential. Refuted: a maximum along the mechanism.")
+        .def_readonly("second_order", &Seen::second_order,
+                      "(value, bound): second derivative of the potential along the mechanism (k = 1).")
         .def_property_readonly(
             "length_rates", &length_rates,
             "(value, bound) per axis: change of the length per unit of the loaded stress, where the potential has a "
@@ -241,9 +240,7 @@ void bind_inspection(py::module_& module) {
             [](const Seen& self) { return self.yielding ? self.yielding->second_variation : std::vector<Enclosure>(); },
             "(value, bound) of the eigenvalues of the second variation at that minimum on the mechanisms that the load "
             "reaches, in (X, Y, angle) and lengths; X, Y: mean of the centres of the members.")
-        .def_property_readonly(
-            "remark", [](const Seen& self) { return self.remark; },
-            "Where it is no equilibrium: which contact, and by how much.");
+        .def_readonly("remark", &Seen::remark, "Where it is no equilibrium: which contact, and by how much.");
     bind_record(inspection);
     bind_inspect(module);
 }
@@ -341,7 +338,8 @@ void bind_forces(py::module_& module) {
         "has them. Raises NotIsostatic or Undecided.");
 }
 
-RunVerification verify_folder(const std::filesystem::path& folder, const py::object& progress) {
+RunVerification verify_folder(const std::filesystem::path& folder,
+                              const As<"Optional[Callable[[int, int], None]]">& progress) {
     const py::gil_scoped_release release;
     return verify_run(folder, [&progress](const VerificationProgress& at) {
         check_signals();
@@ -356,12 +354,10 @@ void bind_verification(py::module_& module) {
     py::class_<ClaimCheck>(module, "ClaimCheck", "The answer of the checker to one claim.")
         .def_readonly("claim", &ClaimCheck::claim, "Its name.")
         .def_readonly("claimed", &ClaimCheck::claimed, "False: the certificate does not claim it.")
-        .def_property_readonly(
-            "verdict", [](const ClaimCheck& self) { return self.verdict; }, "Verdict on the claim.")
+        .def_readonly("verdict", &ClaimCheck::verdict, "Verdict on the claim.")
         .def_readonly("detail", &ClaimCheck::detail, "One line: what was proved, or why not.")
         .def_property_readonly(
-            "numbers",
-            [](const ClaimCheck& self) {
+            "numbers", [](const ClaimCheck& self) -> As<"dict[str, float]"> {
                 py::dict dict;
                 for (const auto& [name, value] : self.numbers) {
                     dict[py::str(name)] = value;
@@ -370,14 +366,13 @@ void bind_verification(py::module_& module) {
             },
             "The numbers behind it, rounded outwards.");
     py::class_<Verification>(module, "Verification", "The answers of the checker to a certificate.")
-        .def_property_readonly(
-            "verdict", [](const Verification& self) { return self.verdict; },
-            "Refuted: a claim is; undecided: one is undecided or absent; else proved.")
+        .def_readonly("verdict", &Verification::verdict,
+                      "Refuted: a claim is; undecided: one is undecided or absent; else proved.")
         .def_readonly("checks", &Verification::checks, "ClaimCheck of each claim.");
     using Run = RunVerification;
     py::class_<Run>(module, "RunVerification", "What became of the records of a run.")
-        .def_property_readonly(
-            "verdict", [](const Run& self) { return self.verdict; },
+        .def_readonly(
+            "verdict", &Run::verdict,
             "Proved: every equilibrium and both ends of every arc; the ways between them only at level `arcs`: see "
             "`words`.")
         .def_property_readonly(

@@ -1,5 +1,6 @@
 // Runs a scene from Python, with functions that are called for each arc and each equilibrium.
 #include "convert.hpp"
+#include "core/words.hpp"
 #include "report/run_walk.hpp"
 
 #include <isostat/core/error.hpp>
@@ -82,17 +83,18 @@ class Watcher final : public RunObserver {
 class Run {
   public:
     Run(const std::string& text, const std::string& name, const std::filesystem::path& folder,
-        std::filesystem::path output, const PyState* start)
+        std::filesystem::path output, const std::optional<PyState>& start)
         : scene_(parse_scene(text, name, folder)), output_(std::move(output)) {
         if (scene_.programme.empty()) {
             throw Error(ErrorKind::bad_input, name + ": has no [[programme]]: expected at least one segment to run");
         }
-        if (start != nullptr) {
+        if (start) {
             start_ = start_of_scene(start->state, scene_, name);
         }
     }
 
-    void play(const std::string& mode, const py::object& on_arc, const py::object& on_equilibrium) {
+    void play(const std::string& mode, const As<"Optional[Callable[[Arc], object]]">& on_arc,
+              const As<"Optional[Callable[[Equilibrium], object]]">& on_equilibrium) {
         stop_ = false;
         Watcher watcher(on_arc, on_equilibrium, stop_);
         const SceneEnding ending = unlocked([&] { return carry_out(mode, watcher); });
@@ -114,16 +116,12 @@ class Run {
 
   private:
     SceneEnding carry_out(const std::string& mode, Watcher& watcher) {
-        using Mode = RunDirectory::Mode;
         if (!start_ && !scene_.start.empty() && mode != "resume") {
             start_ = start_from_file(scene_); // before the folder is made, because the input may be bad
         }
         RunCounters counters;
         RunDirectory directory(output_, header_of(scene_, program, command),
-                               mode == "resume"  ? Mode::resume
-                               : mode == "force" ? Mode::force
-                                                 : Mode::fresh,
-                               counters);
+                               value_of<FolderMode>(mode, folder_mode_words).value_or(FolderMode::fresh), counters);
         SceneEnding ending;
         if (const Result<State> start = start_in(directory, watcher); start.ok()) {
             ending = play_scene(scene_, start.value(), directory, program, counters, stop_, watcher);
@@ -163,11 +161,15 @@ class Run {
 
 void bind_arc(py::module_& module) {
     using Arc = ArcRecord;
-    const auto contact = [](auto member) { return [member](const Arc& self) { return contact_pair(self.*member); }; };
+    const auto contact = [](auto member) {
+        return [member](const Arc& self) -> As<"Pair"> {
+            return contact_pair(self.*member);
+        };
+    };
     const auto image = [](auto member) {
         return [member](const Arc& self) {
             const auto& periods = (self.*member).image.m;
-            return py::make_tuple(int{periods[0]}, int{periods[1]});
+            return std::pair(int{periods[0]}, int{periods[1]});
         };
     };
     py::class_<Arc>(module, "Arc", "One arc: a contact opened, the mechanism followed, a contact met.")
@@ -190,8 +192,7 @@ void bind_arc(py::module_& module) {
         .def_readonly("work", &Arc::work, "Decrease of the potential W along the arc.")
         .def_readonly("displacement", &Arc::displacement, "Largest displacement of a coordinate; length.")
         .def_readonly("margin", &Arc::margin, "Smallest |quantity| / bound of its decisions.")
-        .def_property_readonly(
-            "decided_by", [](const Arc& self) { return self.decided_by; }, "The arithmetic that it took.");
+        .def_readonly("decided_by", &Arc::decided_by, "The arithmetic that it took.");
 }
 
 void bind_equilibrium(py::module_& module) {
@@ -252,7 +253,7 @@ void bind_run(py::module_& module) {
     bind_equilibrium(module);
     py::class_<Run>(module, "_Run")
         .def(py::init<const std::string&, const std::string&, const std::filesystem::path&, std::filesystem::path,
-                      const PyState*>(),
+                      const std::optional<PyState>&>(),
              py::arg("text"), py::arg("name"), py::arg("folder"), py::arg("output"), py::arg("start"))
         .def("play", &Run::play, py::arg("mode"), py::arg("on_arc"), py::arg("on_equilibrium"))
         .def("stop", &Run::stop)

@@ -39,12 +39,13 @@ class BuildWithCMake(build_ext):
         target.parent.mkdir(parents=True, exist_ok=True)
         (built,) = (build / "python" / "isostat").glob("_core.*.so")
         shutil.copy(built, target)
+        shutil.copy(built.with_name("_core.pyi"), target.parent)
 
 
 setup(
     version=version,
     packages=["isostat"],
-    package_data={"isostat": ["*.pyi", "py.typed"]},
+    package_data={"isostat": ["py.typed"]},
     ext_modules=[Extension("isostat._core", [])],
     cmdclass={"build_ext": BuildWithCMake},
     options={"build": {"build_base": str(scratch)}, "egg_info": {"egg_base": str(scratch)}},

@@ -25,20 +25,16 @@ WallKind wall_kind(const std::string& name) {
 }
 
 /// The first `dimension` entries.
-template <class T> py::list per_axis(const PerAxis<T>& values, int dimension) {
-    py::list list;
-    for (std::size_t a = 0; a < static_cast<std::size_t>(dimension); ++a) {
-        list.append(values[a]);
-    }
-    return list;
+template <class T> std::vector<T> per_axis(const PerAxis<T>& values, int dimension) {
+    return std::vector<T>(values.begin(), values.begin() + dimension); // NOLINT(modernize-return-braced-init-list): bool
 }
 
-py::dict walls_dict(const Walls& walls, int dimension) {
+As<"dict[str, tuple[str, str]]"> walls_dict(const Walls& walls, int dimension) {
     const auto words = [dimension](const PerAxis<WallKind>& kinds) {
         PerAxis<std::string> names;
         std::transform(kinds.begin(), kinds.end(), names.begin(),
                        [](WallKind kind) { return word_of(kind, wall_kind_words); });
-        return py::tuple(per_axis(names, dimension));
+        return py::tuple(py::cast(per_axis(names, dimension)));
     };
     py::dict dict;
     dict["lower"] = words(walls.lower);
@@ -46,7 +42,7 @@ py::dict walls_dict(const Walls& walls, int dimension) {
     return dict;
 }
 
-py::list bar_rows(const Packing& packing) {
+As<"list[tuple[int, int, float]]"> bar_rows(const Packing& packing) {
     py::list rows;
     for (const Bar& bar : packing.bars) {
         rows.append(py::make_tuple(bar.i, bar.j, bar.length));
@@ -54,7 +50,7 @@ py::list bar_rows(const Packing& packing) {
     return rows;
 }
 
-py::list arc_rows(const Packing& packing) {
+As<"list[tuple[int, ...]]"> arc_rows(const Packing& packing) {
     py::list rows;
     for (const std::vector<int>& ring : packing.arcs) {
         rows.append(py::tuple(py::cast(ring)));
@@ -97,7 +93,7 @@ template <class Bound, class Of> void bind_grains(Bound& bound, const Of& of) {
             "front), each \"absent\", \"fixed\" or \"movable\".")
         .def_property_readonly(
             "tilt",
-            [of](const py::object& self) {
+            [of](const py::object& self) -> As<"Optional[float]"> {
                 const Packing& packing = of(self);
                 if (packing.cell.any() && packing.dimension != plane) {
                     return py::object(
@@ -108,7 +104,9 @@ template <class Bound, class Of> void bind_grains(Bound& bound, const Of& of) {
             "Of a periodic cell: x of the second period, of spheres (xy, xz, yz); None in a box.")
         .def_property_readonly(
             "periodic",
-            [of](const py::object& self) { return py::tuple(per_axis(of(self).cell.periodic, of(self).dimension)); },
+            [of](const py::object& self) -> As<"tuple[bool, bool]"> {
+                return py::tuple(py::cast(per_axis(of(self).cell.periodic, of(self).dimension)));
+            },
             "Along x, y (and z): whether the packing repeats.")
         .def_property_readonly(
             "solid_fraction", [of](const py::object& self) { return of(self).solid_fraction(); },
@@ -126,14 +124,14 @@ template <class T> py::array taken(std::vector<T>&& vector) {
 }
 
 /// (data, indices, indptr) and shape, which are the arguments of scipy.sparse.csc_matrix.
-py::tuple matrix_parts(const State& state) {
+As<"tuple[tuple[Floats, Integers, Integers], Pair]"> matrix_parts(const State& state) {
     SparseColumns h = contact_matrix(state);
     return py::make_tuple(py::make_tuple(taken(std::move(h.value)), taken(std::move(h.row)), taken(std::move(h.start))),
                           py::make_tuple(h.rows, h.columns));
 }
 
 /// (contact, row, column, value): second derivatives of the gaps with respect to two degrees of freedom.
-py::tuple curvature_parts(const State& state) {
+As<"tuple[Integers, Integers, Integers, Floats]"> curvature_parts(const State& state) {
     const Packing& packing = state.packing;
     if (packing.cell.keeps_shape) {
         throw Error(ErrorKind::bad_input, "an isotropic cell is written as one of which a period moves, which has the "
@@ -446,8 +444,7 @@ void bind_state(py::module_& module) {
                       "N - rank: self-stresses. An upper bound unless `rank_exact` is proved.")
         .def_readonly("k", &Counting::mechanisms,
                       "N_f - rank: mechanisms, rigid motions included. An upper bound unless `rank_exact` is proved.")
-        .def_property_readonly(
-            "rank_exact", [](const Counting& self) { return self.rank_exact; }, "Verdict on: `rank` is the rank.")
+        .def_readonly("rank_exact", &Counting::rank_exact, "Verdict on: `rank` is the rank.")
         .def("__repr__", [](const Counting& self) {
             return "Counting(dofs=" + std::to_string(self.dof_count) +
                    ", contacts=" + std::to_string(self.contact_count) + ", rank=" + std::to_string(self.rank) +

@@ -4,6 +4,7 @@
 #include "io/files.hpp"
 #include "io/text.hpp"
 #include "io/vertex_text.hpp"
+#include "packing/bodies.hpp"
 #include "packing/words.hpp"
 
 #include <isostat/core/error.hpp>
@@ -71,10 +72,11 @@ Json sample_json(const GenericitySample& sample) {
         return out;
     }
     out["h"] = 0;
-    out["k"] = 0;
+    out["k"] = sample.mechanisms;
     out["N"] = sample.contacts.size();
     out["carrying"] = sample.carrying.size();
     out["rattlers"] = sample.rattlers;
+    out["turns"] = sample.turns;
     out["min_force"] = or_null(sample.min_force);
     out["min_gap"] = or_null(sample.min_gap);
     out["sigma_min"] = or_null(sample.sigma_min);
@@ -121,23 +123,22 @@ GenericityOriginal read_original(const std::string& file) {
             throw Error(ErrorKind::bad_input, fmt::format("{}: {}", file, inspection.failure().message()));
         }
         out.packing = crafted::approximate(crafted.packing);
-        require_single_grains(out.packing, file, "genericity");
-        out.contacts = inspection.value().contacts;
+        out.contacts = unilateral(inspection.value().contacts);
         out.hyperstaticity = inspection.value().hyperstaticity;
         out.mechanisms = inspection.value().mechanisms;
-        out.with_radii = inspection.value().with_radii;
         out.exact = inspection.value().rank_exact;
+        out.with_radii = crafted::count_with_radii(crafted.packing, out.contacts);
         out.title = "exact contacts of the crafted packing";
     } else if (format == "state" || format == "vertex") {
-        State state =
-            format == "state" ? parse_any_state(text, file, Dimensions::any).state : parse_vertex_text(text, file);
+        State state = format == "state" ? parse_any_state(text, file, Dimensions::any_clumps).state
+                                        : parse_vertex_text(text, file);
         const Counting counting = count_contacts(state.packing, state.contacts);
         out.hyperstaticity = counting.hyperstaticity;
         out.mechanisms = counting.mechanisms;
-        out.with_radii = crafted::count_with_radii(crafted::exact_copy(state.packing), state.contacts);
         out.exact = counting.rank_exact;
         out.packing = std::move(state.packing);
-        out.contacts = std::move(state.contacts);
+        out.contacts = unilateral(std::move(state.contacts));
+        out.with_radii = crafted::count_with_radii(crafted::exact_copy(out.packing), out.contacts);
         out.title = "contacts of the state, stored coordinates";
     } else {
         throw Error(
@@ -146,20 +147,25 @@ GenericityOriginal read_original(const std::string& file) {
                         "text; isostat import makes a state of a packing of another program",
                         file));
     }
+    std::sort(out.contacts.begin(), out.contacts.end());
     return out;
 }
 
 std::string head_text(const GenericityAnswer& a) {
     std::string out;
     const char* bound = a.original.exact == Verdict::proved ? "=" : "<=";
-    say(out, "{}: {} {}s, N = {} ({}), h {} {}, k {} {}, rank with radii {} {}\n", a.file,
+    say(out, "{}: {} {}s, N = {} ({}), h {} {}, k {} {}, rank with radii{} {} {}\n", a.file,
         a.original.packing.disk_count(), grain_word(a.original.packing.dimension), a.original.contacts.size(),
         a.original.title, bound, a.original.hyperstaticity, bound, a.original.mechanisms,
+        a.original.packing.bars.empty() ? "" : " and places of members",
         a.original.with_radii.rank_exact == Verdict::proved ? "=" : ">=", a.original.with_radii.rank);
-    say(out, "radius times 1 + size u, u uniform in [-1, 1){}{}; {} samples, seeds {} to {}\n\n",
+    say(out, "radius times 1 + size u, u uniform in [-1, 1){}{}; {} samples, seeds {} to {}{}\n\n",
         a.options.keep_equal ? ", the same u for equal radii" : "",
         a.options.tilt ? "; tilt plus size u times the first period" : "", a.options.samples, a.options.seed,
-        a.options.seed + static_cast<std::uint64_t>(a.options.samples) - 1);
+        a.options.seed + static_cast<std::uint64_t>(a.options.samples) - 1,
+        a.original.packing.bars.empty() || a.options.keep_equal
+            ? ""
+            : "; each member moves in its body by its radius times size u");
     say(out, "{:>8} {:>7} {:>5} {:>9} {:>6} | {:>6} {:>7} {:>9} {:>8} | {:>9} {:>9} {:>9} {:>9} {:>9} | {}\n", "size",
         "h=k=0", "tie", "undecided", "failed", "lists", "largest", "within", "rattlers", "min force", "median",
         "min gap", "median", "min sigma", "arithmetic");
@@ -171,6 +177,7 @@ std::string row_text(const Genericity& result, double size) {
     const auto gap = spread(result, [](const GenericitySample& s) { return s.min_gap; });
     const auto sigma = spread(result, [](const GenericitySample& s) { return s.sigma_min; });
     const auto rattlers = spread(result, [](const GenericitySample& s) { return s.rattlers; });
+    const auto turns = spread(result, [](const GenericitySample& s) { return s.turns; });
     std::string used;
     for (const auto& [rung, count] : result.rungs()) {
         used += fmt::format("{}{} {}", used.empty() ? "" : ", ", rung, count);
@@ -184,7 +191,8 @@ std::string row_text(const Genericity& result, double size) {
         "{:>9.2e} | {}\n",
         size, result.proved, result.ties, result.undecided, result.failed, result.lists.size(),
         result.lists.front().samples, result.within(), fmt::format("{}..{}", rattlers[0], rattlers[2]), force[0],
-        force[1], gap[0], gap[1], sigma[0], used);
+        force[1], gap[0], gap[1], sigma[0],
+        used + (turns[2] > 0 ? fmt::format("; rotational rattlers turn: {}..{}", turns[0], turns[2]) : ""));
 }
 
 std::string closing_text(const GenericityAnswer& a, const std::vector<Genericity>& results,
@@ -247,11 +255,12 @@ std::string csv_rows(const Genericity& result, double size) {
     std::string out;
     for (const GenericitySample& s : result.samples) {
         const bool ok = !s.failure;
-        out += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", size, s.seed,
-                           ok ? "proved" : to_string(s.failure->kind), ok ? "0" : "", ok ? "0" : "",
-                           ok ? std::to_string(s.carrying.size()) : "", ok ? std::to_string(s.rattlers) : "",
-                           ok ? fmt::format("{}", s.min_force) : "", ok ? fmt::format("{}", s.min_gap) : "",
-                           ok ? fmt::format("{}", s.sigma_min) : "", ok ? (s.within_original ? "1" : "0") : "");
+        out +=
+            fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", size, s.seed, ok ? "proved" : to_string(s.failure->kind),
+                        ok ? "0" : "", ok ? std::to_string(s.mechanisms) : "",
+                        ok ? std::to_string(s.carrying.size()) : "", ok ? std::to_string(s.rattlers) : "",
+                        ok ? fmt::format("{}", s.min_force) : "", ok ? fmt::format("{}", s.min_gap) : "",
+                        ok ? fmt::format("{}", s.sigma_min) : "", ok ? (s.within_original ? "1" : "0") : "");
     }
     return out;
 }

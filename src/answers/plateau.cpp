@@ -5,6 +5,7 @@
 #include "core/decimal.hpp"
 #include "core/words.hpp"
 #include "io/text.hpp"
+#include "packing/bodies.hpp"
 #include "packing/words.hpp"
 #include "snap/soft_list.hpp"
 
@@ -119,8 +120,9 @@ void print_headline(std::string& out, const crafted::Plateau& plateau, const cra
     if (plateau.widest) {
         const auto& [range, counts] = *plateau.widest;
         say(out, "{:<28}{}\n", "widest range (in log)", range_text(range));
-        say(out, "{:<28}  from N = {} with {} rattlers; h = {}, k = {} {}{}\n", "", range.contacts, range.rattlers,
+        say(out, "{:<28}  from N = {} with {} rattlers; h = {}, k = {}{} {}{}\n", "", range.contacts, range.rattlers,
             bound(counts.hyperstaticity, counts), bound(counts.mechanisms, counts),
+            counts.turns == 0 ? "" : fmt::format(" ({} turns)", counts.turns),
             range.open ? "at its end" : "up to its end", range.told ? "" : "; below the rounding of gaps");
     }
     print_ranges(out, "backbone isostatic, proved", told.backbone, none);
@@ -140,6 +142,7 @@ Json counts_json(const PlateauCounts& c) {
             {"h", c.hyperstaticity},
             {"k", c.mechanisms},
             {"rigid_motions", c.rigid_motions},
+            {"turns", c.turns},
             {"rank_exact", word(c.rank_exact)},
             {"isostatic", word(c.isostatic)}};
 }
@@ -167,8 +170,10 @@ std::string to_text(const PlateauAnswer& answer) {
     for (const std::string& note : file.notes) {
         say(out, "                            {}\n", note);
     }
-    say(out, "{:<28}{}, radii {:.6g} to {:.6g}\n", fmt::format("{}s", grain_word(file.packing.dimension)),
-        file.packing.disk_count(), file.packing.min_radius(), file.packing.max_radius());
+    const bool clumps = !file.packing.bars.empty();
+    say(out, "{:<28}{}{}, radii {:.6g} to {:.6g}\n", fmt::format("{}s", grain_word(file.packing.dimension)),
+        file.packing.disk_count(), clumps ? fmt::format(" in {} bodies", Bodies(file.packing).count()) : "",
+        file.packing.min_radius(), file.packing.max_radius());
     say(out, "thresholds                  {:.6g} to {:.6g} (unit of the file)\n", thresholds[0], thresholds[1]);
     const std::string deepest = plateau.candidates > 0 ? deepest_of(file.packing) : "";
     say(out, "candidates                  {}, smallest gap {:.6g}{}; the contact list changes at {} thresholds\n",
@@ -176,20 +181,27 @@ std::string to_text(const PlateauAnswer& answer) {
     say(out, "gaps known to               {}: digits of the file, doubles, shifts\n", rounded_up(plateau.rounding, 2));
     say(out, "rows                        {} of these, {} ranks computed, the rest follows from monotony\n\n",
         plateau.steps.size(), plateau.ranks_computed);
-    say(out, "{:>14} {:>10} | {:>8} {:>8} {:>8} {:>8} {:>7} {:>7} {:<10}| {:>8} {:>7} {:>7}\n", "threshold",
-        "candidates", "rattlers", "N_f", "N", "rank", "h", "k", " isostatic", "all N_f", "h", "k");
+    say(out, "{:>14} {:>10} | {:>8} {:>8} {:>8} {:>8} {:>7} {:>7} {:<10}| {:>8} {:>7} {:>7}{}\n", "threshold",
+        "candidates", "rattlers", "N_f", "N", "rank", "h", "k", " isostatic", "all N_f", "h", "k",
+        clumps ? " |  turns" : "");
     for (const PlateauStep& s : plateau.steps) {
-        say(out, "{:>14.6g} {:>10} | {:>8} {:>8} {:>8} {:>8} {:>7} {:>7}  {:<9} | {:>8} {:>7} {:>7}\n", s.threshold,
+        say(out, "{:>14.6g} {:>10} | {:>8} {:>8} {:>8} {:>8} {:>7} {:>7}  {:<9} | {:>8} {:>7} {:>7}{}\n", s.threshold,
             s.candidate_count, s.rattlers, s.backbone.dof_count, s.backbone.contact_count, s.backbone.rank,
             bound(s.backbone.hyperstaticity, s.backbone), bound(s.backbone.mechanisms, s.backbone),
             word(s.backbone.isostatic), s.all.dof_count, bound(s.all.hyperstaticity, s.all),
-            bound(s.all.mechanisms, s.all));
+            bound(s.all.mechanisms, s.all), clumps ? fmt::format(" | {:>6}", s.backbone.turns) : "");
     }
     const int rigid = plateau.steps.empty() ? 0 : plateau.steps.back().all.rigid_motions;
     say(out,
         "\nN_f, N, rank, h, k: backbone, that is without disks and contacts that can carry no force by the "
-        "position of the normals;\nall: every {}. k includes {} common rigid motions. <=: proved bound.\n\n",
+        "position of the normals;\nall: every {}. k includes {} common rigid motions. <=: proved bound.\n",
         grain_word(file.packing.dimension), rigid);
+    if (clumps) {
+        say(out,
+            "turns, among k: of rotational rattlers, bodies that turn about the one member (in space also two) that "
+            "has all of their\ncontacts, and are isostatic all the same.\n");
+    }
+    say(out, "\n");
     print_headline(out, plateau, told, thresholds);
     if (told.special) {
         print_ranges(out, "N = N_f but rank deficient", plateau.special, "");
@@ -197,6 +209,8 @@ std::string to_text(const PlateauAnswer& answer) {
     say(out, "no self-stress (h = 0)      {}\n", self_stress_text(plateau));
     if (file.packing.cell.all()) {
         say(out, "cell                        {}, as --cell says: its strains are among the N_f above\n", strain);
+    }
+    if (file.packing.cell.all() && !clumps) {
         print_strains(out, file.packing, plateau, thresholds[1]);
     }
     return out;
@@ -208,6 +222,7 @@ void add_plateau(Json& out, const PlateauAnswer& answer) {
     out["file_format"] = file.format;
     out["notes"] = file.notes;
     out["disks"] = file.packing.disk_count();
+    out["bodies"] = Bodies(file.packing).count();
     out["thresholds"] = {thresholds[0], thresholds[1]};
     out["smallest_gap"] = or_null(plateau.deepest_overlap);
     out["smallest_gap_of"] = plateau.candidates > 0 ? deepest_of(file.packing) : "";
@@ -238,7 +253,7 @@ void add_plateau(Json& out, const PlateauAnswer& answer) {
                          {"all", counts_json(s.all)}});
     }
     out["steps"] = std::move(steps);
-    if (file.packing.cell.all()) {
+    if (file.packing.cell.all() && file.packing.bars.empty()) {
         double threshold = thresholds[1];
         const std::vector<Contact> backbone = shown_backbone(file.packing, plateau, threshold);
         out["cell"] = {{"strain", strain},
@@ -254,8 +269,8 @@ std::string to_csv(const crafted::Plateau& plateau) {
                            c.rank_exact == Verdict::proved ? 1 : 0, word(c.isostatic));
     };
     for (const PlateauStep& s : plateau.steps) {
-        out += fmt::format("{},{},{},{},{}\n", s.threshold, s.candidate_count, s.rattlers, counts(s.backbone),
-                           counts(s.all));
+        out += fmt::format("{},{},{},{},{},{},{}\n", s.threshold, s.candidate_count, s.rattlers, counts(s.backbone),
+                           counts(s.all), s.backbone.turns, s.all.turns);
     }
     return out;
 }

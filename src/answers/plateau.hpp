@@ -27,7 +27,7 @@ void add_plateau(json::Json& object, const PlateauAnswer& answer);
 
 inline constexpr const char* plateau_head =
     "threshold,candidates,rattlers,N_f,N,rank,h,k,rank_exact,isostatic,all_N_f,all_N,"
-    "all_rank,all_h,all_k,all_rank_exact,all_isostatic\n";
+    "all_rank,all_h,all_k,all_rank_exact,all_isostatic,turns,all_turns\n";
 /// One row per threshold.
 std::string to_csv(const crafted::Plateau& plateau);
 

@@ -71,42 +71,25 @@ void describe_interval(EquilibriumRecord& record, const CertificateClaims& claim
 
 /// By body: without a force, or with all of them, loads among them, at one member, about whose centre the body turns.
 void find_rattlers(const State& state, Inspection& inspection) {
-    const Bodies bodies(state.packing);
-    constexpr int several = -2;
-    std::vector<int> holder(state.packing.radius.size(), -1); // of a body, at its first member: which one is held
-    const auto bears = [&](int disk) {
-        int& at = holder[static_cast<std::size_t>(bodies.of(disk))];
-        at = at == -1 || at == disk ? disk : several;
-    };
-    for (const Contact& contact : unmarked(state.contacts, inspection.structural_zero)) {
-        if (contact.is_unilateral()) {
-            bears(contact.i);
-            bears(contact.of_disks() ? contact.j : contact.i);
-        }
-    }
-    for (std::size_t k = 0; k < state.load.disk_force.size(); ++k) {
-        if (state.load.disk_force[k] != 0) {
-            bears(static_cast<int>(k / state.packing.axes()));
-        }
-    }
-    const std::vector<std::vector<int>> members = bodies.members();
-    for (const std::vector<int>& body : members) { // a fixed member holds its body
-        for (const int member : body) {
-            if (state.packing.is_fixed(DiskId(static_cast<std::size_t>(member)))) {
-                bears(member);
-            }
-        }
-    }
-    for (int i = 0; i < state.packing.disk_count(); ++i) {
-        if (holder[static_cast<std::size_t>(bodies.of(i))] == -1) {
-            inspection.rattlers.push_back(i);
-        }
-    }
-    for (const std::vector<int>& body : members) {
-        if (holder[static_cast<std::size_t>(body.front())] >= 0) {
+    const Packing& packing = state.packing;
+    const std::vector<Contact> bearing = unmarked(state.contacts, inspection.structural_zero);
+    const std::vector<int> idle = untouched(packing.disk_count(), unilateral(bearing));
+    for (const std::vector<int>& body : Bodies(packing).members(1)) {
+        const auto held = std::count_if(body.begin(), body.end(), [&](int member) {
+            const auto k = packing.axes() * static_cast<std::size_t>(member);
+            const std::vector<double>& force = state.load.disk_force;
+            const bool loaded = !force.empty() && std::any_of(&force[k], &force[k] + packing.axes(),
+                                                              [](double component) { return component != 0; });
+            return loaded || !std::binary_search(idle.begin(), idle.end(), member) ||
+                   (body.size() > 1 && packing.is_fixed(DiskId(member))); // a fixed member holds its body
+        });
+        if (held == 0) {
+            inspection.rattlers.insert(inspection.rattlers.end(), body.begin(), body.end());
+        } else if (held == 1 && body.size() > 1) {
             inspection.rotational_rattlers.push_back(body.front());
         }
     }
+    std::sort(inspection.rattlers.begin(), inspection.rattlers.end());
 }
 
 /// Of a state whose true vertex was found.

@@ -168,7 +168,8 @@ ForeignPacking read_imported(ImportArguments& a, bool crafted, bool own) {
         a.foreign.walls_unless_periodic = true;
     }
     a.foreign.cells = !crafted;
-    a.foreign.spheres = a.foreign.clumps = true;
+    a.foreign.spheres = true;
+    a.foreign.clumps = !own;
     ForeignPacking file = read_any_packing(a.file, a.foreign);
     const bool spheres = file.packing.dimension != plane;
     if (a.foreign.walls == "none" && !crafted && !own && !spheres) {

@@ -510,6 +510,7 @@ Examples: isostat export start.json -o start.data
         CLI::App& command = add(
             "genericity", "perturbs the radii of a packing and proves what its equilibria are",
             R"(Each sample: radii times 1 + size u (seeded), downhill to the vertex under isotropic stress, certificate of the true vertex.
+Of clumps the places of the members move too, by their radii times size u, and rotational rattlers may turn.
 Exit status 0: every sample is proved isostatic; 2: some are not (ties, signs beyond 100 digits, no vertex found).
 Examples: isostat genericity examples/packings/square_lattice_3.toml --samples 20 --size 1e-2,1e-6,1e-10
           isostat genericity examples/packings/square_lattice_3.toml --size 1e-3 --keep-equal
@@ -527,7 +528,7 @@ Examples: isostat genericity examples/packings/square_lattice_3.toml --samples 2
                ranges::number(ranges::smallest, ranges::largest));
         option(command, "--lists", a.lists, "frequent contact lists to show (default 10)",
                ranges::integer(0, 1'000'000'000));
-        command.add_flag("--keep-equal", a.keep_equal, "disks of equal radius stay equal");
+        command.add_flag("--keep-equal", a.keep_equal, "disks of equal radius stay equal, and members in their places");
         command.add_flag("--tilt", a.tilt, "perturb the tilt of the cell too, by size u times its first period");
         option(command, "--csv", a.csv, "write one row per sample to this file", "FILE.csv");
         add_threads(command, a.common);
@@ -541,7 +542,8 @@ Examples: isostat genericity examples/packings/square_lattice_3.toml --samples 2
             R"(Reads LAMMPS data files (atom style sphere), LAMMPS dumps, extended XYZ, tables of x y r, CSV, and our own files. Whether a
 size is a radius or a diameter is said by the name of its column or by you; it is never guessed. Gaps are compared exactly,
 for the doubles that the file gives. Ranges of thresholds in which the backbone (no rattlers) is isostatic are proved at
-every threshold, not only at those of the table. The answer is that of the widest range on a logarithmic scale; thresholds
+every threshold, not only at those of the table. Clumps (states, files with a column of bodies) count as rigid bodies, and a
+body that turns about the one member that holds it (a rotational rattler) is isostatic too. The answer is that of the widest range on a logarithmic scale; thresholds
 between gaps that the digits of the file do not tell apart do not count.
 Exit status 0: the widest range is isostatic, proved; 1: it is not; 2: undecided, or no range is wider than the digits tell.
 Examples: isostat plateau dump.lammpstrj --thresholds=-1e-3:1e-2 --walls box

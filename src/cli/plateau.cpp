@@ -57,7 +57,7 @@ int plateau(const PlateauArguments& a) {
         thresholds = parse_range(a.thresholds, "--thresholds");
     }
     ForeignArguments foreign = a.foreign;
-    foreign.cells = foreign.spheres = foreign.fixes = true;
+    foreign.cells = foreign.spheres = foreign.fixes = foreign.clumps = true;
     ForeignPacking file = read_any_packing(a.file, foreign);
     const Strain strain = value_of<Strain>(a.strain, std::array{"fixed", "isotropic", "diagonal", "full"}).value();
     if (a.thresholds.empty()) {

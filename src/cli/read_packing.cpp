@@ -204,8 +204,9 @@ ForeignPacking read_any_packing(const std::string& file, const ForeignArguments&
         out.notes.emplace_back("exact numbers rounded to the nearest doubles: inspect decides contacts exactly");
         return out;
     }
+    const Dimensions dimensions = arguments.clumps ? Dimensions::any_clumps : Dimensions::any;
     const State state = format != "state" ? parse_vertex_text(text, file)
-                        : arguments.cells ? parse_any_state(text, file, Dimensions::any).state
+                        : arguments.cells ? parse_any_state(text, file, dimensions).state
                                           : parse_state(text, file).state;
     ForeignPacking out{
         state.packing, format, {}, std::max(rounding_of(state.packing), compare::imported_rounding(state)), {}};

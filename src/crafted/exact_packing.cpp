@@ -1,6 +1,7 @@
 #include "contact/near_pairs.hpp"
 #include "contact/separation.hpp"
 #include "contact/words.hpp"
+#include "packing/bodies.hpp"
 #include "packing/words.hpp"
 #include "rigidity/strained_matrix.hpp"
 
@@ -184,10 +185,7 @@ Result<std::vector<Contact>> exact_contacts(const ExactPacking& packing) {
         }
     }
     std::sort(touching.contacts.begin(), touching.contacts.end());
-    for (const Bar& bar : packing.bars) {
-        touching.contacts.emplace_back(ContactKind::bar, bar.i, bar.j);
-    }
-    return std::move(touching.contacts);
+    return with_bars(std::move(touching.contacts), rounded);
 }
 
 Number scale_of_row(const ExactPacking& packing, const Contact& pair) {

@@ -1,6 +1,8 @@
 #include "crafted/genericity.hpp"
 
 #include "core/parallel.hpp"
+#include "packing/arc_bodies.hpp"
+#include "packing/bodies.hpp"
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/core/error.hpp>
@@ -68,7 +70,7 @@ void check(const Packing& packing, const GenericityOptions& options) {
             "a positive number");
 }
 
-/// Perturbs the radii, and the tilt if that is requested.
+/// Perturbs the radii, the places of members unless equal radii stay equal, and the tilt if that is requested.
 void perturb(Packing& packing, const GenericityOptions& options, std::uint64_t seed) {
     std::mt19937_64 random(seed);
     const auto change = [&] { return options.size * (static_cast<double>(random() >> 11) * 0x1p-52 - 1); };
@@ -82,6 +84,19 @@ void perturb(Packing& packing, const GenericityOptions& options, std::uint64_t s
         }
         r *= factor;
     }
+    const std::vector<std::vector<int>> bodies =
+        Bodies(packing).members(options.keep_equal ? packing.radius.size() + 1 : 2);
+    for (const std::vector<int>& body : bodies) {
+        for (const int member : body) {
+            const auto i = static_cast<std::size_t>(member);
+            for (std::size_t a = 0; a < packing.axes(); ++a) {
+                packing.q[packing.axes() * i + a] += change() * packing.radius[i];
+            }
+        }
+    }
+    if (!bodies.empty()) {
+        packing.bars = bars_of_bodies(packing, bodies, "genericity");
+    }
     if (options.tilt) {
         for (std::size_t b = 1; b < packing.axes(); ++b) {
             for (std::size_t a = 0; a < b; ++a) {
@@ -90,7 +105,7 @@ void perturb(Packing& packing, const GenericityOptions& options, std::uint64_t s
         }
     }
     if (packing.cell.any()) {
-        // All disks move apart, so that no disk overlaps its own image.
+        // All grains move apart, so that no disk overlaps its own image.
         const double shorter = options.tilt ? options.size * shear(packing) : 0;
         for (double& x : packing.q) {
             x *= (1 + options.size) / (1 - shorter);
@@ -98,11 +113,26 @@ void perturb(Packing& packing, const GenericityOptions& options, std::uint64_t s
     }
 }
 
+/// Counts the bodies of which no member bears a force, and the turns of those of which one does (in space, or two do).
+void count_bodies(GenericitySample& sample, const Packing& packing) {
+    const std::vector<int> idle = untouched(packing.disk_count(), sample.carrying);
+    for (const std::vector<int>& body : Bodies(packing).members(1)) {
+        const auto all = static_cast<int>(body.size());
+        const auto bear = static_cast<int>(std::count_if(body.begin(), body.end(), [&](int member) {
+            return !std::binary_search(idle.begin(), idle.end(), member);
+        }));
+        sample.rattlers += bear == 0 ? 1 : 0;
+        sample.turns += bear == 0 ? 0 : body_freedoms(all, packing.dimension) - body_freedoms(bear, packing.dimension);
+    }
+}
+
 /// Fills in the claims of the certificate, or the reason when a claim of an isostatic equilibrium is missing.
 void fill(GenericitySample& sample, const State& state, const Certification& certified) {
     const CertificateClaims& claims = certified.claims;
+    const auto held = std::count_if(state.contacts.begin(), state.contacts.end(),
+                                    [](const Contact& c) { return c.kind == ContactKind::held; });
     if (!claims.counting || !claims.vertex || !claims.forces || !claims.gaps || !claims.stable ||
-        claims.counting->hyperstaticity != 0 || claims.counting->hypostaticity != 0) {
+        claims.counting->hyperstaticity != 0 || claims.counting->hypostaticity != held) {
         std::string why = "no certificate";
         for (const std::string& reason : claims.undecided) {
             why += (why == "no certificate" ? ": " : "; ") + reason;
@@ -112,31 +142,32 @@ void fill(GenericitySample& sample, const State& state, const Certification& cer
             Failure{certified.verdict == Verdict::refuted ? FailureKind::not_converged : FailureKind::undecided, why};
         return;
     }
-    sample.contacts = state.contacts;
+    sample.contacts = unilateral(state.contacts);
     sample.min_force = std::numeric_limits<double>::infinity();
     const std::vector<int>& zeros = claims.forces->structural_zeros;
     for (std::size_t l = 0; l < state.contacts.size(); ++l) {
-        if (std::binary_search(zeros.begin(), zeros.end(), static_cast<int>(l))) {
+        if (std::binary_search(zeros.begin(), zeros.end(), static_cast<int>(l)) || !state.contacts[l].is_unilateral()) {
             continue;
         }
         sample.carrying.push_back(state.contacts[l]);
         sample.min_force = std::min(sample.min_force, claims.forces->finite[l].lower);
     }
-    sample.rattlers = static_cast<int>(untouched(state.packing.disk_count(), sample.carrying).size());
+    sample.mechanisms = claims.counting->hypostaticity;
+    count_bodies(sample, state.packing);
     sample.min_gap = claims.gaps->smallest;
     sample.sigma_min = certified.smallest_sigma;
     sample.rung = std::max({claims.vertex->rung, claims.forces->rung, claims.gaps->rung});
 }
 
-/// One sample, from the sorted contacts of the unperturbed packing.
+/// One sample, from the sorted contacts of the unperturbed packing. \p attempt: which infinitesimal loads.
 GenericitySample sampled(const Packing& packing, const std::vector<Contact>& original, const GenericityOptions& options,
-                         std::uint64_t seed) {
+                         std::uint64_t seed, std::uint64_t attempt) {
     GenericitySample sample;
     sample.seed = seed;
     Packing start = packing;
     perturb(start, options, seed);
     PreparationOptions preparation;
-    preparation.seed = seed;
+    preparation.seed = seed + (attempt << 32U);
     preparation.stress = options.stress;
     PreparationReport report;
     const auto found = find_vertex(start, preparation, report);
@@ -180,12 +211,17 @@ Genericity genericity(const Packing& given, const std::vector<Contact>& original
         packing.cell.keep_shape(); // other radii require another size of the cell
     }
     check(packing, options);
+    require_no_arcs(packing, "genericity", "a perturbed copy");
     Genericity out;
     std::vector<Contact> sorted = original;
     std::sort(sorted.begin(), sorted.end());
     out.samples.resize(static_cast<std::size_t>(options.samples));
-    parallel_pieces(out.samples.size(),
-                    [&](std::size_t s) { out.samples[s] = sampled(packing, sorted, options, options.seed + s); });
+    parallel_pieces(out.samples.size(), [&](std::size_t s) {
+        const std::uint64_t attempts = packing.bars.empty() ? 1 : 4; // a body that hangs under some loads may rest
+        for (std::uint64_t a = 0; a < attempts && (a == 0 || out.samples[s].failure); ++a) {
+            out.samples[s] = sampled(packing, sorted, options, options.seed + s, a);
+        }
+    });
     for (const GenericitySample& sample : out.samples) {
         if (sample.failure) {
             ++(sample.failure->kind == FailureKind::tie         ? out.ties

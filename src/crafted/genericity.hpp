@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// The vertices of a crafted packing after its radii, or its radii and the tilt of its cell, are perturbed. A cell of
-/// which nothing moves keeps its shape: its size is free.
+/// The vertices of a crafted packing after its radii, the places of the members of clumps, and, on request, the tilt
+/// of its cell are perturbed. A cell of which nothing moves keeps its shape: its size is free.
 
 #include <isostat/contact/state.hpp>
 #include <isostat/core/result.hpp>
@@ -19,12 +19,13 @@ namespace isostat::crafted {
 struct GenericityOptions {
     int samples = 100;
     /// Each radius is multiplied by 1 + size * u, u uniform in [-1, 1), and rounded to double: a dyadic number, which
-    /// is then exact.
+    /// is then exact. Each coordinate of a member of a clump moves by its radius times size * u.
     double size = 1e-6;
     std::uint64_t seed =
         1; ///< sample s draws its u from a 64-bit Mersenne twister seeded with seed + s: it can be repeated alone
     double stress = 1; ///< isotropic
     /// Disks of equal radius get the same u and stay equal: the theorem on generic radii (T7) then does not apply.
+    /// Members of clumps keep their places.
     bool keep_equal = false;
     /// The tilt of a cell is perturbed too: the first period times size * u is added to the tilt, with another u of the
     /// same stream. A tilt that does not move is a datum of the packing, as the radii are (T7p).
@@ -39,13 +40,15 @@ struct GenericitySample {
     /// told from 0 in double-double arithmetic, so that h > 0 is likely, and not proved. `undecided`: some sign is
     /// beyond 100 digits or has no bound. Others: no vertex was found.
     std::optional<Failure> failure;
-    std::vector<Contact> contacts; ///< N = N_f of them, rank proved, every other gap proved positive: h = k = 0
+    std::vector<Contact> contacts; ///< N = N_f - k of them, rank proved, every other gap proved positive: h = 0
+    int mechanisms = 0; ///< k: 0 but for clumps that still move under the infinitesimal loads, without any force
     std::vector<Contact> carrying; ///< contacts that carry a force of the applied stress: N_f - d rattlers
     int rattlers = 0;
-    double min_force = 0;         ///< proved lower bound of the smallest backbone force
-    double min_gap = 0;           ///< proved lower bound of the smallest gap of a pair that is not a contact
-    double sigma_min = 0;         ///< proved lower bound of the smallest singular value at the true vertex
-    Rung rung = Rung::none;       ///< the highest arithmetic that a sign needed
+    int turns = 0;          ///< of rotational rattlers: carrying = N_f - turns - 3 rattlers of clumps in the plane
+    double min_force = 0;   ///< proved lower bound of the smallest backbone force
+    double min_gap = 0;     ///< proved lower bound of the smallest gap of a pair that is not a contact
+    double sigma_min = 0;   ///< proved lower bound of the smallest singular value at the true vertex
+    Rung rung = Rung::none; ///< the highest arithmetic that a sign needed
     bool within_original = false; ///< every contact that carries force is an exact contact of the unperturbed packing
 };
 
@@ -59,7 +62,7 @@ struct ContactListCount {
 struct Genericity {
     std::vector<GenericitySample> samples;
     std::vector<ContactListCount> lists;
-    int proved = 0;    ///< samples with a proved isostatic vertex: h = k = 0
+    int proved = 0;    ///< samples with a proved isostatic vertex: h = k = 0, or free motions of clumps alone
     int ties = 0;      ///< failures `tie`
     int undecided = 0; ///< failures `undecided`
     int failed = 0;    ///< other failures

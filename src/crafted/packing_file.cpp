@@ -304,10 +304,7 @@ class Reader {
         }
         const std::string where = fmt::format("{}:{}", name_, root_.line_of("bodies"));
         packing.bars = bars_of_bodies(approximate(packing), all, where);
-        std::vector<Contact> list;
-        for (const Bar& bar : packing.bars) {
-            list.emplace_back(ContactKind::bar, bar.i, bar.j);
-        }
+        const std::vector<Contact> list = with_bars({}, approximate(packing));
         if (exact::rank_bound(exact_contact_matrix(packing, DofMap(approximate(packing)), list)).rank <
             static_cast<int>(list.size())) {
             throw Error(ErrorKind::bad_input, where +

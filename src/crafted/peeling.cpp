@@ -340,7 +340,8 @@ class Peeler {
 } // namespace
 
 Peeling peel(const Packing& packing, const std::vector<Contact>& contacts) {
-    return packing.dimension == plane ? Peeler(packing, contacts).run() : peel_in_space(packing, contacts);
+    return packing.dimension == plane && packing.bars.empty() ? Peeler(packing, contacts).run()
+                                                              : peel_in_space(packing, contacts);
 }
 
 } // namespace isostat::crafted

@@ -17,11 +17,12 @@ struct Peeling {
 
 /// Removes the contacts from the last to the first; each removal compares only the two neighbours in angle. Every sign
 /// is decided. Throws `Error(bad_input)` when two disks of a contact have the same centre. Cost O(N log N) without
-/// near-parallel normals, which are decided in rationals. For spheres: `peel_in_space`.
+/// near-parallel normals, which are decided in rationals. For spheres and clumps: `peel_in_space`.
 Peeling peel(const Packing& packing, const std::vector<Contact>& contacts);
 
 /// Peels spheres by planes through a centre that leave every contact of the sphere on one side, each sign decided by
-/// intervals or in rationals. Cost: for a sphere with z contacts O(z^3) signs for every contact that it loses.
+/// intervals or in rationals. Bodies are peeled as wholes: in the plane forces and torques are to balance, in space
+/// the forces. Cost: for a grain with z contacts O(z^3) signs for every contact that it loses.
 Peeling peel_in_space(const Packing& packing, const std::vector<Contact>& contacts);
 
 } // namespace isostat::crafted

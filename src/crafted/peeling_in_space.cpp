@@ -1,6 +1,8 @@
 #include "contact/separation.hpp"
 #include "crafted/able.hpp"
 #include "crafted/peeling.hpp"
+#include "packing/bodies.hpp"
+#include "packing/words.hpp"
 
 #include <isostat/core/error.hpp>
 
@@ -16,10 +18,12 @@ namespace isostat::crafted {
 
 namespace {
 
-/// A direction from a sphere, not normalised, to the other centre or to a wall.
+/// A direction from a sphere, not normalised, to the other centre or to a wall. Of bodies in the plane the third
+/// component is the torque of a force along it.
 struct Direction {
     int contact;
     bool reversed; ///< from the second sphere of the pair
+    int about;     ///< the torque is about its centre: the first member of the body
 
     template <class Number>
     [[nodiscard]] PerAxis<Number> in(const Packing& packing, const std::vector<Contact>& all) const {
@@ -27,12 +31,19 @@ struct Direction {
         PerAxis<Number> d{Number(0), Number(0), Number(0)};
         if (!c.of_disks()) {
             d[static_cast<std::size_t>(c.j)] = Number(c.kind == ContactKind::lower_wall ? -1 : 1);
-            return d;
+        } else {
+            const auto minus = [](const Number& a, const Number& b) -> Number { return a - b; };
+            d = Separation(c, packing.layout()).of_disks([&](std::size_t k) { return Number(packing.q[k]); }, minus);
+            for (Number& component : d) {
+                component = reversed ? Number(-component) : component;
+            }
         }
-        const auto minus = [](const Number& a, const Number& b) -> Number { return a - b; };
-        d = Separation(c, packing.layout()).of_disks([&](std::size_t k) { return Number(packing.q[k]); }, minus);
-        for (Number& component : d) {
-            component = reversed ? Number(-component) : component;
+        if (const int at = reversed ? c.j : c.i; packing.dimension == plane) {
+            const auto arm = [&](int axis) -> Number {
+                return Number(packing.coordinate(DiskId(static_cast<std::size_t>(at)), axis)) -
+                       Number(packing.coordinate(DiskId(static_cast<std::size_t>(about)), axis));
+            };
+            d[2] = Number(arm(0) * d[1]) - Number(arm(1) * d[0]);
         }
         return d;
     }
@@ -72,17 +83,19 @@ class Signs {
 class SpacePeeler {
   public:
     SpacePeeler(const Packing& packing, const std::vector<Contact>& contacts)
-        : packing_(packing), contacts_(contacts), signs_(packing, contacts), around_(packing.radius.size()),
-          waiting_(packing.radius.size()), now_(static_cast<int>(contacts.size())) {
+        : packing_(packing), contacts_(contacts), bodies_(packing), signs_(packing, contacts),
+          around_(packing.radius.size()), waiting_(packing.radius.size()), now_(static_cast<int>(contacts.size())) {
         for (std::size_t l = 0; l < contacts.size(); ++l) {
-            const Direction direction{static_cast<int>(l), false};
+            const Direction direction{static_cast<int>(l), false, bodies_.of(contacts[l].i)};
             if (signs_.of<1>({direction}, [](const auto& x) { return dot(x[0], x[0]); }) == 0) {
                 throw Error(ErrorKind::bad_input,
-                            fmt::format("{}: the two spheres have the same centre", to_string(contacts[l], 3)));
+                            fmt::format("{}: the two {}s have the same centre",
+                                        to_string(contacts[l], packing.dimension), grain_word(packing.dimension)));
             }
-            around_[static_cast<std::size_t>(contacts[l].i)].push_back(direction);
+            around_[static_cast<std::size_t>(direction.about)].push_back(direction);
             if (contacts[l].of_disks()) {
-                around_[static_cast<std::size_t>(contacts[l].j)].push_back({static_cast<int>(l), true});
+                const int other = bodies_.of(contacts[l].j);
+                around_[static_cast<std::size_t>(other)].push_back({static_cast<int>(l), true, other});
             }
         }
         out_.contact_from.assign(contacts.size(), 0);
@@ -97,12 +110,15 @@ class SpacePeeler {
             drop(l);
             settle();
         }
+        for (std::size_t i = 0; i < around_.size(); ++i) {
+            out_.disk_from[i] = out_.disk_from[static_cast<std::size_t>(bodies_.of(static_cast<int>(i)))];
+        }
         return std::move(out_);
     }
 
   private:
     void take(int sphere, int contact) {
-        const auto place = static_cast<std::size_t>(sphere);
+        const auto place = static_cast<std::size_t>(bodies_.of(sphere));
         std::erase_if(around_[place], [contact](const Direction& d) { return d.contact == contact; });
         waiting_.push_back(place);
     }
@@ -142,8 +158,9 @@ class SpacePeeler {
 
     const Packing& packing_;
     const std::vector<Contact>& contacts_;
+    Bodies bodies_;
     Signs signs_;
-    std::vector<std::vector<Direction>> around_; ///< the directions of each sphere
+    std::vector<std::vector<Direction>> around_; ///< the directions of each sphere, of a body at its first member
     std::vector<std::size_t> waiting_;
     int now_; ///< number of contacts: what fails from here on needs more
     Peeling out_;

@@ -4,6 +4,8 @@
 #include "crafted/peeling.hpp"
 #include "crafted/rigid_motions.hpp"
 #include "exact/rank.hpp"
+#include "packing/arc_bodies.hpp"
+#include "packing/bodies.hpp"
 #include "rigidity/isostatic.hpp"
 #include "rigidity/strained_matrix.hpp"
 
@@ -32,7 +34,8 @@ constexpr double smallest_length = 1e-100; // the squares do not underflow
 class Sequence {
   public:
     Sequence(const Packing& packing, double largest, Strain strain)
-        : packing_(at_rest(packing)), strain_(strain), order_(packing_), largest_(largest) {
+        : packing_(at_rest(packing)), bodies_(Bodies(packing_).members(1)), strain_(strain), order_(packing_),
+          largest_(largest) {
         check();
         find_candidates();
         std::sort(items_.begin(), items_.end(), [this](const GapOrder::Item& a, const GapOrder::Item& b) {
@@ -51,11 +54,12 @@ class Sequence {
         count_backbones();
         count_all();
         const auto matrix_rank = [strain](const Packing& rest, const std::vector<Contact>& list) {
-            if (rest.cell.all()) {
-                return list.empty() ? 0 : exact::rank(exact_strained_matrix(rest, list, strain));
-            }
+            const std::vector<Contact> all = with_bars(list, rest);
+            const int bars = bar_count(all);
             const DofMap dofs(rest);
-            return list.empty() || dofs.dof_count() == 0 ? 0 : exact::rank(exact_contact_matrix(rest, dofs, list));
+            return list.empty() || (dofs.dof_count() == 0 && !rest.cell.all()) ? 0
+                   : rest.cell.all() ? exact::rank(exact_strained_matrix(rest, all, strain)) - bars
+                                     : exact::rank(exact_contact_matrix(rest, dofs, all)) - bars;
         };
         backbone_stress_ =
             std::make_unique<Hyperstaticity>(carrying_, std::numeric_limits<int>::max(), [this, matrix_rank](int m) {
@@ -145,12 +149,8 @@ class Sequence {
         };
         add_ranges(out.ranges, [&](int m) { return m <= unstressed && balanced(m); });
         add_ranges(out.special, [&](int m) { return m > unstressed && balanced(m); });
-        // For all disks N is the number of candidates, so that only one list can be isostatic.
-        const PlateauCounts whole = all_counts(0);
-        const int wanted = whole.dof_count - whole.rigid_motions;
-        if (std::binary_search(ends_.begin(), ends_.end(), wanted) && wanted > 0 && all_stress_->at(wanted) == 0) {
-            add_ranges(out.ranges_all, [&](int m) { return m == wanted; });
-        }
+        // For all grains N is the number of candidates: of single ones only one list can be isostatic.
+        add_ranges(out.ranges_all, [&](int m) { return excess(all_counts(m)) == 0 && all_stress_->at(m) == 0; });
     }
 
     [[nodiscard]] int ranks_computed() const { return backbone_stress_->computed() + all_stress_->computed(); }
@@ -165,7 +165,14 @@ class Sequence {
         return packing;
     }
     void check() const {
-        require_single_grains(packing_, "plateau", "a count against the gap threshold");
+        require_no_arcs(packing_, "plateau", "a count against the gap threshold");
+        for (const Bar& bar : packing_.bars) {
+            if (packing_.is_fixed(DiskId(bar.i)) || packing_.is_fixed(DiskId(bar.j))) {
+                throw Error(ErrorKind::bad_input,
+                            fmt::format("plateau: bar {}-{}: expected members that are not fixed", bar.i, bar.j));
+            }
+        }
+        count_contacts(packing_, with_bars({}, packing_)); // refuses dependent bars
         const auto sensible = [](double x) { return std::abs(x) <= largest_length; };
         for (const double x : packing_.q) {
             if (!sensible(x)) {
@@ -227,19 +234,58 @@ class Sequence {
                 ++carrying_[static_cast<std::size_t>(from)];
             }
         }
-        int fixed = 0;
-        for (std::size_t i = 0; i < peeling_.disk_from.size(); ++i) {
-            if (packing_.is_fixed(DiskId(i))) {
-                ++fixed;
-            } else if (peeling_.disk_from[i] <= size()) {
-                ++free_[static_cast<std::size_t>(peeling_.disk_from[i])];
+        freedoms_ = free_;
+        int free = 0; // bodies that are not fixed
+        for (const std::vector<int>& body : bodies_) {
+            const auto from = static_cast<std::size_t>(peeling_.disk_from[static_cast<std::size_t>(body.front())]);
+            const bool fixed = packing_.is_fixed(DiskId(static_cast<std::size_t>(body.front())));
+            free += fixed ? 0 : 1;
+            if (!fixed && from < count) {
+                ++free_[from];
+                freedoms_[from] += freedoms_of(body.size());
             }
         }
-        std::partial_sum(carrying_.begin(), carrying_.end(), carrying_.begin());
-        std::partial_sum(free_.begin(), free_.end(), free_.begin());
-        for (std::size_t m = 0; m < count; ++m) {
-            rattlers_[m] = packing_.disk_count() - fixed - free_[m];
+        for (std::vector<int>* sums : {&carrying_, &free_, &freedoms_}) {
+            std::partial_sum(sums->begin(), sums->end(), sums->begin());
         }
+        for (std::size_t m = 0; m < count; ++m) {
+            rattlers_[m] = free - free_[m];
+        }
+        turns_ = turns(peeling_.contact_from);
+        std::vector<int> as_listed(contacts_.size());
+        std::iota(as_listed.begin(), as_listed.end(), 1);
+        all_turns_ = turns(as_listed);
+    }
+
+    /// Degrees of freedom of a body of some members.
+    [[nodiscard]] int freedoms_of(std::size_t members) const {
+        return body_freedoms(static_cast<int>(members), packing_.dimension);
+    }
+
+    /// For every m: the motions of touched bodies that move no member with a contact. \p from: as `contact_from`.
+    [[nodiscard]] std::vector<int> turns(const std::vector<int>& from) const {
+        std::vector<int> first(packing_.radius.size(),
+                               size() + 1); // of a member: with how many contacts one is its own
+        for (std::size_t l = 0; l < from.size(); ++l) {
+            for (const int member : {contacts_[l].i, contacts_[l].of_disks() ? contacts_[l].j : contacts_[l].i}) {
+                int& at = first[static_cast<std::size_t>(member)];
+                at = std::min(at, from[l]);
+            }
+        }
+        std::vector<int> out(static_cast<std::size_t>(size()) + 2, 0);
+        for (std::vector<int> body : bodies_) {
+            for (int& member : body) {
+                member = first[static_cast<std::size_t>(member)];
+            }
+            std::sort(body.begin(), body.end());
+            for (std::size_t s = 1; freedoms_of(s) < freedoms_of(body.size()); ++s) {
+                const int left = freedoms_of(body.size()) - freedoms_of(s);
+                out[static_cast<std::size_t>(body[s - 1])] += left;
+                out[static_cast<std::size_t>(body[s])] -= left;
+            }
+        }
+        std::partial_sum(out.begin(), out.end(), out.begin());
+        return out;
     }
 
     void count_all() {
@@ -249,7 +295,7 @@ class Sequence {
         for (const bool moves : packing_.cell.period_moves) {
             moving_ += moves ? 1 : 0;
         }
-        all_dofs_ = DofMap(packing_).dof_count() + cell_coordinates();
+        all_dofs_ = DofMap(packing_).dof_count() + cell_coordinates() - static_cast<int>(packing_.bars.size());
     }
     /// Number of degrees of freedom that the strains of the cell add to those of the disks.
     [[nodiscard]] int cell_coordinates() const {
@@ -260,8 +306,9 @@ class Sequence {
         const auto k = static_cast<std::size_t>(m);
         PlateauCounts out;
         const auto pinned = static_cast<int>(packing_.cell.periodic_axes());
-        out.dof_count = packing_.dimension * free_[k] + moving_ + cell_coordinates() - (free_[k] > 0 ? pinned : 0);
+        out.dof_count = freedoms_[k] + moving_ + cell_coordinates() - (free_[k] > 0 ? pinned : 0);
         out.contact_count = carrying_[k];
+        out.turns = turns_[k];
         out.rigid_motions =
             std::min(out.dof_count,
                      turning_or_sliding([&](int i) { return peeling_.disk_from[static_cast<std::size_t>(i)] <= m; }));
@@ -272,6 +319,7 @@ class Sequence {
         PlateauCounts out;
         out.dof_count = all_dofs_;
         out.contact_count = m;
+        out.turns = all_turns_[static_cast<std::size_t>(m)];
         out.rigid_motions = std::min(out.dof_count, turning_or_sliding([](int) { return true; }));
         return out;
     }
@@ -281,8 +329,8 @@ class Sequence {
                              [this](std::size_t k) { return exact::Number::from_double(packing_.q[k]); });
     }
 
-    /// N - (N_f - rigid motions).
-    static int excess(const PlateauCounts& c) { return c.contact_count - (c.dof_count - c.rigid_motions); }
+    /// N - (N_f - rigid motions - turns).
+    static int excess(const PlateauCounts& c) { return c.contact_count - (c.dof_count - c.rigid_motions - c.turns); }
 
     void find_widest(Plateau& out) {
         double widest = -1;
@@ -311,9 +359,9 @@ class Sequence {
         counts.hyperstaticity = h;
         counts.rank = counts.contact_count - h;
         counts.mechanisms = counts.dof_count - counts.rank;
-        const int most = std::min(counts.contact_count, counts.dof_count - counts.rigid_motions);
+        const int most = std::min(counts.contact_count, counts.dof_count - counts.rigid_motions - counts.turns);
         counts.rank_exact = counts.rank == most ? Verdict::proved : Verdict::undecided;
-        if (counts.contact_count != counts.dof_count - counts.rigid_motions || counts.contact_count == 0) {
+        if (excess(counts) != 0 || counts.contact_count == 0) {
             counts.isostatic = Verdict::refuted; // N_f + h = N + k: h and the internal mechanisms cannot both be 0
         } else if (counts.rank_exact == Verdict::proved) {
             counts.isostatic = Verdict::proved;
@@ -362,6 +410,7 @@ class Sequence {
     }
 
     Packing packing_;
+    std::vector<std::vector<int>> bodies_; ///< single grains too
     Strain strain_;
     GapOrder order_;
     double largest_;
@@ -369,8 +418,9 @@ class Sequence {
     std::vector<Contact> contacts_;
     std::vector<int> ends_;
     Peeling peeling_;
-    std::vector<int> carrying_, rattlers_, free_; ///< with the first m candidates
-    int moving_ = 0;                              ///< walls, and the period of a channel
+    std::vector<int> carrying_, rattlers_, free_, freedoms_; ///< with the first m candidates
+    std::vector<int> turns_, all_turns_;                     ///< the same
+    int moving_ = 0;                                         ///< walls, and the period of a channel
     int all_dofs_ = 0;
     double rounding_ = 0;          ///< of gaps
     std::optional<double> lowest_; ///< threshold; empty: ranges begin at a gap

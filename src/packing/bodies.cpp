@@ -42,12 +42,12 @@ int Bodies::count() const {
     return bodies;
 }
 
-std::vector<std::vector<int>> Bodies::members() const {
+std::vector<std::vector<int>> Bodies::members(std::size_t at_least) const {
     std::vector<std::vector<int>> all(first_.size());
     for (std::size_t i = 0; i < first_.size(); ++i) {
         all[static_cast<std::size_t>(first_[i])].push_back(static_cast<int>(i));
     }
-    std::erase_if(all, [](const std::vector<int>& body) { return body.size() < 2; });
+    std::erase_if(all, [at_least](const std::vector<int>& body) { return body.size() < at_least; });
     return all;
 }
 
@@ -222,6 +222,21 @@ double volume_shared(const Packing& packing, const std::vector<int>& body) {
 }
 
 } // namespace
+
+std::vector<Contact> unilateral(std::vector<Contact> contacts) {
+    std::erase_if(contacts, [](const Contact& c) { return !c.is_unilateral(); });
+    return contacts;
+}
+
+std::vector<Contact> with_bars(std::vector<Contact> contacts, const Packing& packing) {
+    for (const Bar& bar : packing.bars) {
+        if (!packing.is_fixed(DiskId(static_cast<std::size_t>(bar.i))) ||
+            !packing.is_fixed(DiskId(static_cast<std::size_t>(bar.j)))) {
+            contacts.emplace_back(ContactKind::bar, bar.i, bar.j);
+        }
+    }
+    return contacts;
+}
 
 std::vector<Bar> bars_of_bodies(const Packing& packing, const std::vector<std::vector<int>>& bodies,
                                 const std::string& source, double known) {

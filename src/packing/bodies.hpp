@@ -2,6 +2,7 @@
 /// \file
 /// Rigid bodies of several disks: what the bars of a packing connect.
 
+#include <isostat/core/contact.hpp>
 #include <isostat/packing/packing.hpp>
 
 #include <span>
@@ -18,8 +19,8 @@ class Bodies {
     [[nodiscard]] int of(int disk) const { return first_[static_cast<std::size_t>(disk)]; }
     /// How many there are, single disks among them.
     [[nodiscard]] int count() const;
-    /// Those of more than one member, each ascending.
-    [[nodiscard]] std::vector<std::vector<int>> members() const;
+    /// Those of more than one member, or of as many as that, each ascending.
+    [[nodiscard]] std::vector<std::vector<int>> members(std::size_t at_least = 2) const;
 
   private:
     std::vector<int> first_;
@@ -27,6 +28,16 @@ class Bodies {
 
 /// How many bars make a body of some members rigid, and no more: d K - d (d + 1) / 2, between two members 1.
 int bars_of_rigid_body(int members, int dimension);
+/// The degrees of freedom that are left: in the plane 3 of two members or more.
+inline int body_freedoms(int members, int dimension) {
+    return dimension * members - bars_of_rigid_body(members, dimension);
+}
+
+/// The list without bars and held coordinates.
+std::vector<Contact> unilateral(std::vector<Contact> contacts);
+
+/// The list and behind it the bars of bodies that can move.
+std::vector<Contact> with_bars(std::vector<Contact> contacts, const Packing& packing);
 
 /// Bars that make each of these bodies of a packing rigid, as many as that takes: between d + 1 members that span the
 /// space well, and from every other member to d of these. Lengths are the distances in doubles. Of two and of three

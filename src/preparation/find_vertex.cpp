@@ -8,6 +8,7 @@
 #include "preparation/random.hpp"
 #include "preparation/scale.hpp"
 #include "preparation/stage.hpp"
+#include "verified/to_vertex.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/core/machine.hpp>
@@ -35,6 +36,9 @@ constexpr double attempt_always_below = 0.001;
 constexpr long settled_pivots = 2;
 /// Distance, in largest radii, within which a programme lists the pairs of a cell; its rows need less.
 constexpr double listed_within = 8;
+/// Bodies turn by less than this allows: by shorter steps, for longer. What still moves then hangs, and swings.
+constexpr double trust_of_bodies = 0.1;
+constexpr int swinging = 100;
 /// After a step below this (mean radii) without pivots the next programme would change nothing.
 constexpr double converged_below = 1e-8;
 /// The finite weight of the infinitesimal loads may open a weak backbone contact; it is then divided by this, once.
@@ -117,7 +121,8 @@ class VertexSearch {
                                        : packing_.disk_count() > options_.newton_above
                                            ? ProgrammeMethod::interior
                                            : ProgrammeMethod::interior_first;
-        ContactProgramme programme(g, trust_in_radii * scale_.mean_radius(), method, options_.stop, options_.ratio);
+        ContactProgramme programme(g, (packing_.bars.empty() ? trust_in_radii : trust_of_bodies) * scale_.mean_radius(),
+                                   method, options_.stop, options_.ratio);
         double weight = options_.infinitesimal_weight;
         bool divided = false;
         if (large && options_.max_programmes > 0) {
@@ -138,6 +143,9 @@ class VertexSearch {
             move(step);
             if (auto failure = too_flat()) {
                 return give_up(*failure);
+            }
+            if (!packing_.bars.empty() && programmes_ > swinging && step.bounds != 0) {
+                return give_up(with_free_motions(step));
             }
             if (!worth_an_attempt(step) || (step.bounds != 0 && !complete(programme, weight, step.contacts))) {
                 continue;
@@ -220,6 +228,24 @@ class VertexSearch {
         newton_.seconds += watch.seconds();
         newton_.cpu_seconds += watch.cpu_seconds();
         return result;
+    }
+
+    /// Leaves the state with what moves freely held, and without infinitesimal loads, to another proof.
+    Failure with_free_motions(const ProgrammeStep& step) {
+        State& state = report_.candidate.emplace();
+        state.packing = scale_.to_user(packing_, radius_);
+        state.contacts = step.contacts;
+        for (const int coordinate : step.at_bounds) {
+            state.contacts.emplace_back(ContactKind::held, coordinate, 0);
+        }
+        std::sort(state.contacts.begin(), state.contacts.end());
+        const auto failure = to_vertex(state.packing, state.contacts, newton_.iterations);
+        snap_to_grid(state.packing);
+        state.load = load_;
+        state.load.infinitesimal.clear();
+        state.load.refer_to(state.packing);
+        return failure.value_or(
+            failed(FailureKind::not_converged, "{} coordinates move freely", step.at_bounds.size()));
     }
 
     /// A failure when the cell has become so flat that the next programme could not list its pairs.

@@ -49,6 +49,10 @@ class Basis {
         const double sigma = load_.loaded_stress();
         for (std::size_t l = 0; l < contacts().size(); ++l) {
             const ContactId id(l);
+            if (!contacts()[l].is_unilateral()) {
+                forces_.emplace_back(std::numeric_limits<double>::infinity(), 0); // a bar never opens
+                continue;
+            }
             forces_.emplace_back(statics_.is_structural_zero(id) ? 0.0 : value_of(statics_.force(id, sigma), signs),
                                  value_of(statics_.infinitesimal(id), signs));
         }

@@ -4,6 +4,7 @@
 #include "contact/near_pairs.hpp"
 #include "core/dot.hpp"
 #include "core/work.hpp"
+#include "packing/bodies.hpp"
 #include "preparation/programme_rows.hpp"
 
 #include <ClpEventHandler.hpp>
@@ -58,10 +59,14 @@ void ContactProgramme::collect(const Packing& packing, Rows& rows) const {
         squares += tilted ? (a + 1) * (a + 1) : 1;
     }
     const double wall_reach = (std::sqrt(squares) * wall_trust(packing) + 1) * trust_ * (1 + 1e-9);
-    for (const Contact& contact : near_contacts(packing, reach, wall_reach)) {
+    std::vector<Contact> near = with_bars(near_contacts(packing, reach, wall_reach), packing);
+    if (!packing.bars.empty()) {
+        std::sort(near.begin(), near.end());
+    }
+    for (const Contact& contact : near) {
         // In space most images within that reach cannot approach so far. In the plane they stay in the list because the
         // path of the simplex method, and with it the bits, depend on the list.
-        if (packing.dimension == plane || rows.can_close(packing, contact, trust_)) {
+        if (packing.dimension == plane || !contact.is_unilateral() || rows.can_close(packing, contact, trust_)) {
             rows.add(packing, contact);
         }
     }
@@ -99,7 +104,7 @@ BoxedProgramme ContactProgramme::boxed(const Packing& packing, const Rows& rows,
     }
     programme.lower.resize(rows.gap.size());
     for (std::size_t k = 0; k < rows.gap.size(); ++k) {
-        programme.lower[k] = first_ ? std::min(0.0, -rows.gap[k]) : -rows.gap[k];
+        programme.lower[k] = first_ && rows.contact[k].is_unilateral() ? std::min(0.0, -rows.gap[k]) : -rows.gap[k];
     }
     return programme;
 }
@@ -173,6 +178,11 @@ void ContactProgramme::load(ClpSimplex& simplex, const Rows& rows, const BoxedPr
     simplex.setLogLevel(0);
     simplex.loadProblem(matrix, lower.data(), programme.bound.data(), programme.cost.data(), programme.lower.data(),
                         nullptr);
+    for (std::size_t k = 0; k < rows.contact.size(); ++k) {
+        if (!rows.contact[k].is_unilateral()) {
+            simplex.setRowUpper(static_cast<int>(k), programme.lower[k]);
+        }
+    }
     simplex.setPrimalTolerance(tolerance);
     simplex.setDualTolerance(tolerance);
     simplex.setPerturbation(100); // no perturbation, because the multipliers are the result
@@ -242,7 +252,10 @@ void ContactProgramme::take_solution(const ClpSimplex& simplex, Rows& rows, Prog
     for (std::size_t k = 0; k < columns; ++k) {
         const ClpSimplex::Status status = simplex.getColumnStatus(static_cast<int>(k));
         column_status_[k] = status;
-        step.bounds += status != ClpSimplex::basic ? 1 : 0;
+        if (status != ClpSimplex::basic) {
+            ++step.bounds;
+            step.at_bounds.push_back(rows.dofs.coordinate_of(static_cast<int>(k)));
+        }
     }
     first_ = false;
     inside_ = method_ == ProgrammeMethod::interior ||

@@ -31,6 +31,7 @@ struct ProgrammeStep {
     long changes = 0;                 ///< pivots, or contacts that the interior-point method dropped or added
     std::vector<double> displacement; ///< one per coordinate of q
     std::vector<Contact> contacts;    ///< rows that are nonbasic: reduced gap 0, sorted
+    std::vector<int> at_bounds;       ///< these coordinates, of the simplex method
     int bounds = 0; ///< coordinates that are nonbasic: held by a trust bound; 0: a vertex of the gaps alone. After the
                     ///< interior-point method also the number of missing (or surplus) contacts of a basis
     long iterations = 0; ///< factorisations of a descent
@@ -76,7 +77,7 @@ class ContactProgramme {
     /// closes or too many are missing. Nothing is proved. Cost: a factorisation per contact.
     bool complete(Packing& packing, double eps, std::vector<Contact>& contacts) const;
 
-    /// The pairs that a programme at `packing` holds apart, sorted.
+    /// The pairs that a programme at `packing` holds apart and the bars, whose lengths it keeps, sorted.
     [[nodiscard]] std::vector<Contact> candidates(const Packing& packing) const;
 
   private:

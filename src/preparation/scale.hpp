@@ -25,6 +25,7 @@ class Scale {
     [[nodiscard]] Packing to_internal(Packing packing) const {
         multiply(packing.radius, -exponent_);
         multiply(packing.q, -exponent_);
+        multiply(packing.bars, -exponent_);
         return packing;
     }
 
@@ -32,6 +33,7 @@ class Scale {
     [[nodiscard]] Packing to_user(Packing packing, const std::vector<double>& radius) const {
         packing.radius = radius;
         multiply(packing.q, exponent_);
+        multiply(packing.bars, exponent_);
         return packing;
     }
 
@@ -41,6 +43,11 @@ class Scale {
     static void multiply(std::vector<double>& x, int exponent) {
         for (double& c : x) {
             c = std::ldexp(c, exponent);
+        }
+    }
+    static void multiply(std::vector<Bar>& bars, int exponent) {
+        for (Bar& bar : bars) {
+            bar.length = std::ldexp(bar.length, exponent);
         }
     }
     int exponent_ = 0;

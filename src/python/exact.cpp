@@ -374,7 +374,8 @@ template <class What, class Parts> void bind_genericity_of(py::module_& module, 
         py::arg("packing"), py::kw_only(), py::arg("size") = 1e-6, py::arg("samples") = 100, py::arg("seed") = 1,
         py::arg("stress") = 1.0, py::arg("keep_equal") = false, py::arg("tilt") = false,
         "Genericity of an ExactPacking or a State: each radius times 1 + size u, u uniform in [-1, 1), `samples` "
-        "times; are the copies isostatic? `keep_equal`: equal radii stay equal; `tilt`: that of a cell changes too. "
+        "times; are the copies isostatic? Members of clumps move too, by their radii times size u. `keep_equal`: equal "
+        "radii stay equal, members in their places; `tilt`: that of a cell changes too. "
         "As `isostat genericity`.");
 }
 
@@ -385,17 +386,18 @@ void bind_genericity(py::module_& module) {
                 py::list rows;
                 for (const GenericitySample& s : self.samples) {
                     using namespace py::literals;
-                    rows.append(
-                        py::dict("seed"_a = s.seed, "failure"_a = s.failure ? to_string(s.failure->kind) : nullptr,
-                                 "contacts"_a = contact_array(s.contacts), "carrying"_a = contact_array(s.carrying),
-                                 "rattlers"_a = s.rattlers, "min_force"_a = s.min_force, "min_gap"_a = s.min_gap,
-                                 "sigma_min"_a = s.sigma_min, "within_original"_a = s.within_original));
+                    rows.append(py::dict(
+                        "seed"_a = s.seed, "failure"_a = s.failure ? to_string(s.failure->kind) : nullptr,
+                        "contacts"_a = contact_array(s.contacts), "carrying"_a = contact_array(s.carrying),
+                        "rattlers"_a = s.rattlers, "turns"_a = s.turns, "min_force"_a = s.min_force,
+                        "min_gap"_a = s.min_gap, "sigma_min"_a = s.sigma_min, "within_original"_a = s.within_original));
                 }
                 return rows;
             },
             "Of each copy a dictionary: `seed`; `failure`, a word, or None where h = k = 0 is proved; `contacts`, "
             "those "
-            "`carrying` force, `rattlers`; proved lower bounds `min_force`, `min_gap`, `sigma_min`; `within_original`.")
+            "`carrying` force, `rattlers`, `turns` of rotational rattlers (clumps); proved lower bounds `min_force`, "
+            "`min_gap`, `sigma_min`; `within_original`.")
         .def_readonly("proved", &Genericity::proved, "Copies with h = k = 0, proved.")
         .def_readonly("ties", &Genericity::ties, "Copies that tie.")
         .def_readonly("undecided", &Genericity::undecided, "Copies of which nothing is proved.")
@@ -403,14 +405,10 @@ void bind_genericity(py::module_& module) {
         .def_property_readonly("within", &Genericity::within, "Copies whose force network is part of the contacts.")
         .def_property_readonly(
             "networks", [](const Genericity& self) { return self.lists.size(); }, "Different force networks.");
-    bind_genericity_of<Crafted>(module, [](const Crafted& what) {
-        require_single_grains(approximate(what.packing), "ExactPacking", "genericity");
-        return std::pair(approximate(what.packing), contacts_of(what));
-    });
-    bind_genericity_of<PyState>(module, [](const PyState& what) {
-        require_single_grains(what.state.packing, "State", "genericity");
-        return std::pair(what.state.packing, what.state.contacts);
-    });
+    bind_genericity_of<Crafted>(
+        module, [](const Crafted& what) { return std::pair(approximate(what.packing), contacts_of(what)); });
+    bind_genericity_of<PyState>(module,
+                                [](const PyState& what) { return std::pair(what.state.packing, what.state.contacts); });
 }
 
 } // namespace

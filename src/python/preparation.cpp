@@ -97,10 +97,12 @@ void bind_plateau(py::module_& module) {
         .def_readonly("rank", &PlateauCounts::rank, "Of the stored coordinates.")
         .def_readonly("h", &PlateauCounts::hyperstaticity, "N - rank.")
         .def_readonly("k", &PlateauCounts::mechanisms, "N_f - rank.")
-        .def_readonly("isostatic", &PlateauCounts::isostatic, "Verdict on: h = 0 and no internal mechanism.");
+        .def_readonly("turns", &PlateauCounts::turns, "Of k: turns of rotational rattlers, held through one member.")
+        .def_readonly("isostatic", &PlateauCounts::isostatic,
+                      "Verdict on: h = 0 and no internal mechanism but `turns`.");
     py::class_<PlateauStep>(module, "PlateauStep", "Counts at one threshold.")
         .def_readonly("threshold", &PlateauStep::threshold, "Pairs of at most this gap are contacts; length.")
-        .def_readonly("rattlers", &PlateauStep::rattlers, "Disks that are not in the backbone.")
+        .def_readonly("rattlers", &PlateauStep::rattlers, "Disks, or bodies, that are not in the backbone.")
         .def_readonly("backbone", &PlateauStep::backbone, "PlateauCounts without rattlers.")
         .def_readonly("all", &PlateauStep::all, "PlateauCounts with all disks.");
     py::class_<PlateauRange>(module, "PlateauRange", "Thresholds t with first <= t < last; both ends are exact.")

@@ -1,6 +1,7 @@
 #include "snap/nearest_vertex.hpp"
 
 #include "contact/near_pairs.hpp"
+#include "packing/bodies.hpp"
 #include "snap/backbone.hpp"
 #include "snap/soft_list.hpp"
 #include "verified/to_vertex.hpp"
@@ -129,10 +130,7 @@ NearestVertex vertex_as_listed(const SoftState& soft, const std::string& words, 
     NearestVertex out;
     State& state = out.state;
     state.packing = soft.packing;
-    state.contacts = soft.contacts;
-    for (const Bar& bar : soft.packing.bars) {
-        state.contacts.emplace_back(ContactKind::bar, bar.i, bar.j);
-    }
+    state.contacts = with_bars(soft.contacts, soft.packing);
     state = with_free_motions_held(std::move(state));
     long steps = 0;
     constexpr double near = 0.1; // in smallest radii

@@ -120,18 +120,11 @@ void record_potential(EquilibriumRecord& record, const TrueCoordinates& q, const
 
 /// First members of bodies without a contact that bears a force.
 std::vector<int> rattling_bodies(const Packing& packing, const std::vector<Contact>& carrying) {
-    const Bodies bodies(packing);
-    std::vector<unsigned char> held(packing.radius.size(), 0);
-    for (const Contact& contact : carrying) {
-        if (contact.is_unilateral()) {
-            held[static_cast<std::size_t>(bodies.of(contact.i))] = 1;
-            held[static_cast<std::size_t>(bodies.of(contact.of_disks() ? contact.j : contact.i))] = 1;
-        }
-    }
+    const std::vector<int> idle = untouched(packing.disk_count(), unilateral(carrying));
     std::vector<int> rattling;
-    for (int i = 0; i < packing.disk_count(); ++i) {
-        if (bodies.of(i) == i && held[static_cast<std::size_t>(i)] == 0) {
-            rattling.push_back(i);
+    for (const std::vector<int>& body : Bodies(packing).members(1)) {
+        if (std::includes(idle.begin(), idle.end(), body.begin(), body.end())) {
+            rattling.push_back(body.front());
         }
     }
     return rattling;
@@ -150,9 +143,7 @@ int carrying_contacts(const Vertex& vertex) {
 }
 
 std::vector<int> rattlers(const Vertex& vertex) {
-    const std::vector<Contact> carrying = vertex.statics.carrying();
-    return vertex.packing.bars.empty() ? untouched(vertex.packing.disk_count(), carrying)
-                                       : rattling_bodies(vertex.packing, carrying);
+    return rattling_bodies(vertex.packing, vertex.statics.carrying());
 }
 
 std::vector<double> finite_forces(const Vertex& vertex, const Load& load) {

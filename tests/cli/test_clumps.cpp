@@ -83,8 +83,31 @@ BOOST_AUTO_TEST_CASE(clumps_of_another_program_are_imported_with_the_counts_that
             BOOST_TEST(std::abs(imported.bars[b].length - packing.bars[b].length) < std::pow(10, 3 - digits));
         }
         expect(run({"import", table, "-o", state, "--box", box, "--bodies", "none"}), 65, {"--bodies COLUMN"});
-        expect(run({"plateau", table}), 65, {"clumps", "--bodies none"});
     }
+}
+
+BOOST_AUTO_TEST_CASE(plateaus_and_genericity_of_clumps_say_what_turns) {
+    const std::string state = std::string(ISOSTAT_TEST_DATA) + "/clumps/dimer2_20_2.json";
+    const scratch::Folder folder;
+    const std::string csv = folder.at("table.csv");
+    says(run({"plateau", state, "--csv", csv}), 0,
+         {"40 in 20 bodies", "from N = 56 with 1 rattlers; h = 0, k = 3 (3 turns)", "turn about the one member"});
+    BOOST_TEST(scratch::read(csv).find(",all_isostatic,turns,all_turns\n") != std::string::npos);
+    const auto json = json_of(run({"plateau", state, "--json"}));
+    BOOST_TEST(json.at("bodies") == 20);
+    BOOST_TEST(json.at("widest").at("counts").at("turns") == 3);
+    BOOST_TEST(json.at("widest").at("counts").at("N_f") == 59);
+    says(run({"genericity", state, "--samples", "3"}), 0,
+         {"N = 56", "rank with radii and places of members = 56", "each member moves",
+          "rotational rattlers turn: 3..3"});
+    const auto copies = json_of(run({"genericity", state, "--samples", "3", "--json"}));
+    for (const auto& sample : copies.at("sizes").at(0).at("samples")) {
+        BOOST_TEST(sample.at("turns") == 3);
+        BOOST_TEST(sample.at("carrying") == 56);
+    }
+    const std::string oval = std::string(ISOSTAT_TEST_DATA) + "/clumps/oval_1.4_16_1.json";
+    expect(run({"plateau", oval}), 65, {"arcs"});
+    expect(run({"genericity", oval}), 65, {"arcs"});
 }
 
 BOOST_AUTO_TEST_CASE(what_takes_single_grains_names_clumps) {
@@ -92,8 +115,6 @@ BOOST_AUTO_TEST_CASE(what_takes_single_grains_names_clumps) {
     const std::string state = std::string(ISOSTAT_TEST_DATA) + "/clumps/dimer_20_3.json";
     for (const std::vector<std::string>& command :
          std::vector<std::vector<std::string>>{{"snap", state, "-o", folder.at("snapped.json")},
-                                               {"plateau", state},
-                                               {"genericity", state},
                                                {"import", state, "-o", folder.at("imported.json")},
                                                {"export", state, "-o", folder.at("grains.csv")},
                                                {"export", state, "-o", folder.at("grains.data")}}) {

@@ -63,12 +63,16 @@ class Bodies(Folder):
             lambda: isostat.jamming(state),
             lambda: isostat.stiffness_matrix(state, 1.0),
             lambda: isostat.unjamming_motion(state),
-            lambda: isostat.genericity(state),
             lambda: state.rattlers,
             lambda: pickle.dumps(state.packing),
         ):
             with self.assertRaisesRegex(isostat.BadInput, "clumps"):
                 call()
+
+    def test_perturbed_copies_of_a_dimer_are_isostatic(self):
+        copies = isostat.genericity(lying(), samples=5, size=1e-3)
+        self.assertEqual(copies.proved, 5)
+        self.assertEqual({(s["turns"], s["rattlers"], len(s["carrying"])) for s in copies.samples}, {(0, 0, 5)})
 
     def test_a_table_with_a_column_of_bodies_is_one_of_clumps(self):
         table = self.folder / "grains.csv"
@@ -76,9 +80,11 @@ class Bodies(Folder):
         box = [0, 2.875, 0, 2]
         clump = isostat.read_packing(table, box=box, bodies="mol")
         self.assertEqual(isostat.plateau(isostat.read_packing(table, box=box), 0, 0.1).steps[0].all.dofs, 6)
-        for call in (lambda: isostat.plateau(clump, 0, 0.1), lambda: isostat.backbone_at(clump, 0.1)):
-            with self.assertRaisesRegex(isostat.BadInput, "clumps"):
-                call()
+        step = isostat.plateau(clump, 0, 0.1).steps[-1]
+        self.assertEqual((step.all.dofs, step.all.contacts, step.backbone.h, step.backbone.k), (5, 5, 0, 0))
+        self.assertEqual((step.rattlers, step.backbone.turns), (0, 0))
+        self.assertEqual(step.backbone.isostatic, isostat.Verdict.PROVED)
+        self.assertEqual(len(isostat.backbone_at(clump, 0.1)), 5)
 
     def test_a_minimum_along_mechanisms_is_one_claim_in_the_place_of_all(self):
         file = self.folder / "pendulum.json"

@@ -22,19 +22,23 @@ struct PlateauCounts {
     int hyperstaticity = 0; ///< h = N - rank
     int mechanisms = 0;     ///< k = N_f - rank, common rigid motions included
     int rigid_motions = 0;  ///< rigid motions of the whole packing: 3 for a free cluster, 0 in a box
+    int turns = 0;          ///< of rotational rattlers: bodies of which one member (in space one or two) has contacts
     Verdict rank_exact = Verdict::undecided;
-    /// h = 0 and no internal mechanism. `proved` or `refuted` (N and N_f alone already differ, or the rank is exact),
-    /// else `undecided`.
+    /// h = 0 and no internal mechanism but `turns`. `proved` or `refuted` (N and N_f alone already differ, or the rank
+    /// is exact), else `undecided`.
     Verdict isostatic = Verdict::undecided;
 };
 
 /// Counts with every pair of gap <= `threshold` as a contact: once with all disks, and once for the backbone, that is
 /// without the disks and the contacts that can carry no force >= 0 by the position of the normals around the disks
-/// (`DiskHold`; contacts are not counted, no forces, no load).
+/// (`DiskHold`; contacts are not counted, no forces, no load). Of clumps the counts are those of rigid bodies: 3
+/// degrees of freedom in the plane, and a body carries where forces >= 0 and their torques balance (in space only the
+/// forces are asked). A rotational rattler turns about what it is held by, which changes no gap: N = N_f - turns is
+/// isostatic.
 struct PlateauStep {
     double threshold = 0;
     int candidate_count = 0; ///< pairs and walls at gap <= threshold
-    int rattlers = 0;        ///< disks that are not in the backbone
+    int rattlers = 0;        ///< disks, or bodies, that are not in the backbone
     PlateauCounts backbone;
     PlateauCounts all;
 };
@@ -86,12 +90,13 @@ inline constexpr int most_pairs_per_disk = 50;
 
 /// \pre finite coordinates. \p thresholds in the unit of length, increasing, any sign (soft packings overlap). Gaps are
 /// compared exactly, with each other and with the thresholds, as the real numbers that the stored doubles define. The
-/// counts are not those of a true configuration nearby. Throws `Error(bad_input)` for lengths beyond 1e+-100, when two
-/// disks have the same centre, and for more pairs than `most_pairs_per_disk`. Cost at n = 10^4 (10^5): sorting and
-/// rattlers of all thresholds together 0.1 s (1.5 s), each rank 0.03 s (0.7 s). Periodic axes: contacts with images,
-/// and pairs with several. Where all axes are periodic the cell may strain as `strain` says: `isotropic` is for a
-/// packing jammed at fixed shape, whose one self-stress a pressure balances (h = 0 here is h = 1 in a fixed cell with
-/// the same contacts). Throws when a disk comes near its own image.
+/// counts are not those of a true configuration nearby. Throws `Error(bad_input)` for lengths beyond 1e+-100, for
+/// bodies that are bounded by arcs, have a fixed member or dependent bars, when two disks have the same centre, and for
+/// more pairs than `most_pairs_per_disk`. Cost at n = 10^4 (10^5): sorting and rattlers of all thresholds together 0.1
+/// s (1.5 s), each rank 0.03 s (0.7 s). Periodic axes: contacts with images, and pairs with several. Where all axes are
+/// periodic the cell may strain as `strain` says: `isotropic` is for a packing jammed at fixed shape, whose one
+/// self-stress a pressure balances (h = 0 here is h = 1 in a fixed cell with the same contacts). Throws when a disk
+/// comes near its own image.
 Plateau plateau(const Packing& packing, const std::vector<double>& thresholds, Strain strain = Strain::isotropic);
 
 /// The same for every gap in [first, last] at which the contact list changes, thinned to about `rows` thresholds (0:

@@ -1,5 +1,7 @@
 // T5 and T6 against CGAL's regular triangulation with exact weights: attempts to find a tangent or nearly tangent pair
 // that is no edge, and what happens when a hypothesis is dropped.
+#include "contact/candidates.hpp"
+#include "contact/near_pairs.hpp"
 #include "families.hpp"
 #include "support/test.hpp"
 
@@ -230,6 +232,41 @@ BOOST_AUTO_TEST_CASE(when_no_edge_overlaps_nothing_does) {
     }
     BOOST_TEST(with_overlap > 20);
     BOOST_TEST(without > 5);
+}
+
+/// T6 for clumps: the other member of a body stands between a pair with a small gap and its radical line.
+BOOST_AUTO_TEST_CASE(a_near_pair_of_members_need_not_be_an_edge) {
+    const std::vector<Disk> disks{{0, 0, 1}, {2.1, 0, 1}, {0.12, 0, 0.9}, {0, 9, 1}};
+    BOOST_TEST(gap(disks[0], disks[1]) < 2 * (std::sqrt(2.0) - 1) * 0.9);
+    BOOST_TEST(edges_of(disks).hidden == 0);
+    BOOST_TEST(!edges_of(disks).has(0, 1));
+    std::vector<Disk> single = disks;
+    single[2] = {0, -9, 0.9};
+    BOOST_TEST(edges_of(single).has(0, 1));
+    isostat::Packing packing;
+    packing.q = {0, 0, 2.1, 0, 0.12, 0, 0, 9, 20, 20};
+    packing.radius = {1, 1, 0.9, 1};
+    packing.bars = {{0, 2, 0.12}};
+    const std::vector<isostat::Contact> found = isostat::near_pairs(packing, 0.2).pairs;
+    BOOST_TEST((found == std::vector{isostat::pair_of(0, 1), isostat::pair_of(1, 2)}));
+}
+
+/// T5 for clumps: a member inside a disk of another body is hidden, and joined by no edge to what it overlaps.
+BOOST_AUTO_TEST_CASE(bodies_may_overlap_where_no_edge_does) {
+    const std::vector<Disk> disks{{4, 0, 1}, {0.1, 0, 0.5}, {0, 0, 2}, {0, 9, 1}};
+    const Edges edges = edges_of(disks);
+    for (const auto& [i, j] : edges.pairs) {
+        BOOST_TEST(gap(disks[static_cast<std::size_t>(i)], disks[static_cast<std::size_t>(j)]) > 0);
+    }
+    BOOST_TEST(edges.hidden == 1);
+    BOOST_TEST(gap(disks[1], disks[2]) < 0);
+    isostat::Packing packing;
+    packing.q = {14, 10, 10.1, 10, 10, 10, 10, 19, 30, 30};
+    packing.radius = {1, 0.5, 2, 1};
+    packing.bars = {{0, 1, 3.9}};
+    BOOST_TEST((isostat::certify_admissible(packing, 0).verdict == isostat::Verdict::refuted));
+    packing.bars = {{1, 2, 0.1}}; // members of one body may overlap
+    BOOST_TEST((isostat::certify_admissible(packing, 0).verdict == isostat::Verdict::proved));
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -163,9 +163,7 @@ std::string head_text(const GenericityAnswer& a) {
         a.options.keep_equal ? ", the same u for equal radii" : "",
         a.options.tilt ? "; tilt plus size u times the first period" : "", a.options.samples, a.options.seed,
         a.options.seed + static_cast<std::uint64_t>(a.options.samples) - 1,
-        a.original.packing.bars.empty() || a.options.keep_equal
-            ? ""
-            : "; each member moves in its body by its radius times size u");
+        a.original.packing.bars.empty() || a.options.keep_equal ? "" : "; members move by their radii times size u");
     say(out, "{:>8} {:>7} {:>5} {:>9} {:>6} | {:>6} {:>7} {:>9} {:>8} | {:>9} {:>9} {:>9} {:>9} {:>9} | {}\n", "size",
         "h=k=0", "tie", "undecided", "failed", "lists", "largest", "within", "rattlers", "min force", "median",
         "min gap", "median", "min sigma", "arithmetic");

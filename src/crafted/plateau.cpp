@@ -257,7 +257,6 @@ class Sequence {
         all_turns_ = turns(as_listed);
     }
 
-    /// Degrees of freedom of a body of some members.
     [[nodiscard]] int freedoms_of(std::size_t members) const {
         return body_freedoms(static_cast<int>(members), packing_.dimension);
     }

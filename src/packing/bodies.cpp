@@ -34,14 +34,6 @@ Bodies::Bodies(const Packing& packing) : first_(packing.radius.size()) {
     }
 }
 
-int Bodies::count() const {
-    int bodies = 0;
-    for (std::size_t i = 0; i < first_.size(); ++i) {
-        bodies += first_[i] == static_cast<int>(i) ? 1 : 0;
-    }
-    return bodies;
-}
-
 std::vector<std::vector<int>> Bodies::members(std::size_t at_least) const {
     std::vector<std::vector<int>> all(first_.size());
     for (std::size_t i = 0; i < first_.size(); ++i) {
@@ -49,10 +41,6 @@ std::vector<std::vector<int>> Bodies::members(std::size_t at_least) const {
     }
     std::erase_if(all, [at_least](const std::vector<int>& body) { return body.size() < at_least; });
     return all;
-}
-
-int bars_of_rigid_body(int members, int dimension) {
-    return members <= dimension ? members * (members - 1) / 2 : dimension * members - dimension * (dimension + 1) / 2;
 }
 
 namespace {

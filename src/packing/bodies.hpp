@@ -18,7 +18,7 @@ class Bodies {
     /// The first member of the body of a disk, which stands for the body.
     [[nodiscard]] int of(int disk) const { return first_[static_cast<std::size_t>(disk)]; }
     /// How many there are, single disks among them.
-    [[nodiscard]] int count() const;
+    [[nodiscard]] int count() const { return static_cast<int>(members(1).size()); }
     /// Those of more than one member, or of as many as that, each ascending.
     [[nodiscard]] std::vector<std::vector<int>> members(std::size_t at_least = 2) const;
 
@@ -27,9 +27,11 @@ class Bodies {
 };
 
 /// How many bars make a body of some members rigid, and no more: d K - d (d + 1) / 2, between two members 1.
-int bars_of_rigid_body(int members, int dimension);
+constexpr int bars_of_rigid_body(int members, int dimension) {
+    return members <= dimension ? members * (members - 1) / 2 : dimension * members - dimension * (dimension + 1) / 2;
+}
 /// The degrees of freedom that are left: in the plane 3 of two members or more.
-inline int body_freedoms(int members, int dimension) {
+constexpr int body_freedoms(int members, int dimension) {
     return dimension * members - bars_of_rigid_body(members, dimension);
 }
 

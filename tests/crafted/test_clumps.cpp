@@ -195,6 +195,12 @@ BOOST_AUTO_TEST_CASE(equal_members_become_isostatic_with_other_radii_and_places)
     const Genericity equal = genericity(packing, contacts, options);
     BOOST_TEST(equal.proved == 0);
     BOOST_TEST(equal.ties == 20);
+    const Packing lies = approximate(dimer("lies", "[1, 1]").packing); // other radii: what is left are the places
+    options.samples = 1;
+    const double fixed = genericity(lies, {}, options).samples.front().min_force;
+    options.keep_equal = false;
+    const double moved = genericity(lies, {}, options).samples.front().min_force;
+    BOOST_TEST((fixed > 0 && std::abs(moved - fixed) > 1e-6 && std::abs(moved - fixed) < 1e-2));
     const auto all = [&](const char* name) { return genericity(approximate(example(name)), {}, {.samples = 10}); };
     BOOST_TEST(all("clump_cell_square.toml").proved == 10); // h = 1 before
     BOOST_TEST(all("clump_trimer_and_disk.toml").proved == 10);

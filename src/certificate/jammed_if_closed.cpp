@@ -1,7 +1,7 @@
 #include "certificate/jammed_box.hpp"
 #include "contact/candidates.hpp"
 #include "rigidity/isostatic.hpp"
-#include "verified/full_rank.hpp"
+#include "verified/inverse_bound.hpp"
 #include "verified/vertex_bounds.hpp"
 
 #include <Eigen/SparseCholesky>

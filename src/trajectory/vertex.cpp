@@ -3,7 +3,7 @@
 #include "contact/images.hpp"
 #include "contact/words.hpp"
 #include "trajectory/steering.hpp"
-#include "verified/inverse_bound_multiprecision.hpp"
+#include "verified/inverse_bound.hpp"
 
 #include <algorithm>
 #include <limits>

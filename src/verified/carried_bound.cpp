@@ -1,6 +1,5 @@
 #include "core/dot.hpp"
 #include "core/roundoff.hpp"
-#include "verified/full_rank.hpp"
 #include "verified/inverse_bound.hpp"
 #include "verified/regularity_prover.hpp"
 

@@ -1,4 +1,4 @@
-#include "verified/extended_cholesky.hpp"
+#include "verified/block_cholesky.hpp"
 
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>

@@ -3,6 +3,7 @@
 #include "contact/separation.hpp"
 #include "core/roundoff.hpp"
 #include "rigidity/rigid_group.hpp"
+#include "verified/inverse_bound.hpp"
 #include "verified/norm.hpp"
 #include "verified/vertex_bounds.hpp"
 
@@ -382,7 +383,6 @@ void FirstOrder::add_stress_change(std::size_t axis, double stress, double stres
 std::vector<Enclosure> FirstOrder::forces(const std::vector<Enclosure>& f0,
                                           const std::vector<unsigned char>& structural_zero, const Load& load,
                                           double stress_error) const {
-    const sparse::Matrix<double>& h = structure_->matrix();
     const DofMap& dofs = structure_->dofs();
     const LoadChange on = load_change(f0, load, stress_error);
     const auto n = static_cast<std::size_t>(structure_->size());
@@ -395,26 +395,11 @@ std::vector<Enclosure> FirstOrder::forces(const std::vector<Enclosure>& f0,
     }
     std::vector<double> f1 = b;
     factorisation_->solve_forces(f1);
-    std::vector<double> sum = b;
-    std::vector<double> terms(n);
-    for (std::size_t mu = 0; mu < n; ++mu) {
-        terms[mu] = std::abs(b[mu]);
-    }
-    std::vector<int> count(n, 2);
-    for (std::size_t l = 0; l < n; ++l) {
-        for (int e = h.start[l]; e < h.start[l + 1]; ++e) {
-            const auto s = static_cast<std::size_t>(e);
-            const auto mu = static_cast<std::size_t>(h.row[s]);
-            const double term = h.value[s] * f1[l];
-            sum[mu] -= term;
-            terms[mu] += std::abs(term);
-            ++count[mu];
-        }
-    }
-    for (std::size_t mu = 0; mu < n; ++mu) {
-        open[mu] += std::abs(sum[mu]) + (count[mu] + 6) * u * terms[mu]; // 5u per entry
-    }
-    const double bound = sigma_ > 0 ? (norm_above(open) + uncertainty_ * length_of(f1)) / sigma_ * raise
+    std::vector<double> rest(n);
+    std::vector<double> size(n);
+    std::vector<int> terms(n);
+    const double residual = residual_of_forces(structure_->matrix(), b, f1, rest, size, terms);
+    const double bound = sigma_ > 0 ? (residual + norm_above(open) + uncertainty_ * length_of(f1)) / sigma_ * raise
                                     : std::numeric_limits<double>::infinity();
     std::vector<Enclosure> result(n);
     for (std::size_t l = 0; l < n; ++l) {

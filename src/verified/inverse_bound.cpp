@@ -2,12 +2,9 @@
 
 #include "core/dot.hpp"
 #include "core/parallel.hpp"
-#include "core/roundoff.hpp"
 #include "core/work.hpp"
 #include "verified/block_cholesky.hpp"
-#include "verified/extended_cholesky.hpp"
 #include "verified/regularity_prover.hpp"
-#include "verified/row_scales.hpp"
 #include "verified/singular_value.hpp"
 
 #include <isostat/core/machine.hpp>
@@ -19,9 +16,6 @@
 namespace isostat {
 
 namespace {
-
-using roundoff::gamma;
-using roundoff::u;
 
 /// Estimates sigma_min^2 from above by inverse iteration; improves the guess x as well.
 double estimate(const ApproximateInverse& inverse, std::vector<double>& x, int iterations) {
@@ -38,61 +32,16 @@ double estimate(const ApproximateInverse& inverse, std::vector<double>& x, int i
     return 1 / lambda;
 }
 
-InverseBound by_rows(const sparse::Matrix<double>& h, int dimension, const Factorisation& factorisation) {
-    const auto n = static_cast<std::size_t>(h.rows);
-    std::vector<double> column_sum_r(n, 0.0);
-    std::vector<double> column_sum_e(n, 0.0);
-    double row_sum_r = 0;
-    double row_sum_e = 0;
-    std::vector<double> r(n);
-    for (std::size_t i = 0; i < n; ++i) {
-        // Row i of R ~ H^-1 solves H^T r = e_i.
-        std::fill(r.begin(), r.end(), 0.0);
-        r[i] = 1;
-        factorisation.solve_velocities(r);
-        double sum_r = 0;
-        double sum_e = 0;
-        for (std::size_t k = 0; k < n; ++k) {
-            sum_r += std::abs(r[k]);
-            column_sum_r[k] += std::abs(r[k]);
-        }
-        for (std::size_t j = 0; j < n; ++j) {
-            double dot = i == j ? -1.0 : 0.0;
-            double size = std::abs(dot);
-            for (int e = h.start[j]; e < h.start[j + 1]; ++e) {
-                const auto s = static_cast<std::size_t>(e);
-                const double term = r[static_cast<std::size_t>(h.row[s])] * h.value[s];
-                dot += term;
-                size += std::abs(term);
-            }
-            const double terms = h.start[j + 1] - h.start[j] + 2;
-            // The last term covers the error of the entries of fl(H).
-            const double error = std::abs(dot) + gamma(terms) * size + roundoff::entry_units(dimension) * u * size;
-            sum_e += error;
-            column_sum_e[j] += error;
-        }
-        row_sum_r = std::max(row_sum_r, sum_r);
-        row_sum_e = std::max(row_sum_e, sum_e);
-        if (!(sum_e < 1)) {
-            return {};
-        }
+/// S H, which is exact: sigma_min(S H) <= sigma_min(H) for S <= 1.
+sparse::Matrix<double> scaled(sparse::Matrix<double> h) {
+    const std::vector<double> scale = row_scales(h);
+    for (std::size_t e = 0; e < h.row.size(); ++e) {
+        h.value[e] *= scale[static_cast<std::size_t>(h.row[e])];
     }
-    const double above = 1 + gamma(4.0 * static_cast<double>(n));
-    const double col_e = *std::max_element(column_sum_e.begin(), column_sum_e.end()) * above;
-    const double col_r = *std::max_element(column_sum_r.begin(), column_sum_r.end()) * above;
-    row_sum_e *= above;
-    row_sum_r *= above;
-    if (!(col_e < 1) || !(row_sum_e < 1)) {
-        return {};
-    }
-    const double bound = std::sqrt(col_r / (1 - col_e) * (row_sum_r / (1 - row_sum_e))) * (1 + 1e-12);
-    if (!std::isfinite(bound)) {
-        return {};
-    }
-    return {Verdict::proved, 1 / bound * (1 - 1e-15), InverseBound::Route::rows};
+    return h;
 }
 
-/// Outcome of the first route, with the numbers that the other routes need.
+/// Outcome of the first route, with the numbers that the second route needs.
 struct CholeskyOutcome {
     InverseBound bound;
     double estimated = 0;   ///< sigma_min^2, from above, not proved
@@ -102,11 +51,7 @@ struct CholeskyOutcome {
 CholeskyOutcome by_cholesky(const sparse::Matrix<double>& unscaled, int dimension, const ApproximateInverse& inverse,
                             InverseBoundCache& cache) {
     const auto n = static_cast<std::size_t>(unscaled.rows);
-    sparse::Matrix<double> h = unscaled;
-    const std::vector<double> scale = row_scales(h);
-    for (std::size_t e = 0; e < h.row.size(); ++e) {
-        h.value[e] *= scale[static_cast<std::size_t>(h.row[e])]; // exact: sigma_min(S H) <= sigma_min(H) for S <= 1
-    }
+    const sparse::Matrix<double> h = scaled(unscaled);
     int iterations = 1; // from a good guess; a shift that is too large only costs a second factorisation
     if (cache.vector.size() != n || !std::isfinite(euclidean_norm(cache.vector)) || euclidean_norm(cache.vector) == 0) {
         cache.vector.resize(n);
@@ -148,7 +93,7 @@ CholeskyOutcome by_cholesky(const sparse::Matrix<double>& unscaled, int dimensio
 } // namespace
 
 InverseBound bound_inverse(const IsostaticStructure& structure, const Factorisation& factorisation,
-                           InverseBoundCache& cache, const std::function<bool()>& worth_more, int row_limit) {
+                           InverseBoundCache& cache, const std::function<bool()>& worth_more) {
     require_floating_point();
     const sparse::Matrix<double>& h = structure.matrix();
     const int dimension = structure.dofs().layout().dimension;
@@ -159,12 +104,10 @@ InverseBound bound_inverse(const IsostaticStructure& structure, const Factorisat
     if (worth_more && !worth_more()) {
         return {};
     }
-    const double estimated = first.estimated;
-    const double entry_error = first.entry_error;
-    double square = 0.5 * estimated;
-    while (square > 1e-24 && std::isfinite(square)) {
+    double square = 0.5 * first.estimated;
+    while (square > 1e-28 && std::isfinite(square)) {
         const double proved = shifted_cholesky_double_double(h, square);
-        const double sigma = smallest_singular_value(proved, entry_error);
+        const double sigma = smallest_singular_value(proved, first.entry_error);
         if (sigma > 0) {
             return {Verdict::proved, sigma, InverseBound::Route::double_double};
         }
@@ -173,7 +116,21 @@ InverseBound bound_inverse(const IsostaticStructure& structure, const Factorisat
         }
         square /= 64;
     }
-    return h.rows <= row_limit ? by_rows(h, dimension, factorisation) : InverseBound{};
+    return {};
+}
+
+double smallest_row_singular_value(const sparse::Matrix<double>& h, int dimension) {
+    BlockCholesky cholesky;
+    FillOrder order;
+    const sparse::Matrix<double> rows = scaled(h);
+    cholesky.set(rows, order);
+    for (double shift = 1; shift > 1e-12; shift /= 4) {
+        if (cholesky.factorise(shift)) {
+            return std::max(
+                0.0, smallest_singular_value(shift - cholesky.error_bound(shift), rounding_of_entries(h, dimension)));
+        }
+    }
+    return 0;
 }
 
 std::optional<ProvedExchange> bound_exchanged(const ExchangedContacts& contacts, const ApproximateInverse& inverse,

@@ -1,8 +1,9 @@
 #pragma once
 /// \file
-/// A proved bound of the inverse of a contact matrix.
+/// Proved bounds of the inverse of a contact matrix, and of matrices with more columns than rows.
 
 #include "linear/factorisation.hpp"
+#include "sparse/pattern.hpp"
 
 #include <isostat/core/verdict.hpp>
 
@@ -20,7 +21,7 @@ struct InverseBound {
     Verdict verdict = Verdict::undecided;
     double sigma_min = 0;
     /// The argument that proved the bound.
-    enum class Route : unsigned char { cholesky, double_double, rows, multiprecision, carried } route = Route::cholesky;
+    enum class Route : unsigned char { cholesky, double_double, multiprecision, carried } route = Route::cholesky;
     /// For a carried bound: sigma_min of the bound at the start of the chain; else 0.
     double carried_from = 0;
 };
@@ -49,13 +50,17 @@ struct InverseBoundCache {
 /// First route: Cholesky factorisation (in doubles, blocks of 2 x 2) of H H^T - s I with s chosen from a few inverse
 /// iterations; when it runs to the end, lambda_min(H H^T) >= s - E with E bounded a priori (statement V1 in proofs/).
 /// Works down to sigma_min ~ 1e-5; 3 to 9 ms at n = 1936 to 4900. Second route, when rounding hides sigma_min: the same
-/// in double-double (Eigen), down to sigma_min ~ 1e-12; about 0.3 s at n = 4900. Third route: R ~ H^-1 row by row from
-/// the LU factors, |H^-1| <= |R| / (1 - |I - R H|) in the 1 and the infinity norm (statement V2); one solve per row,
-/// tried when size <= `row_limit`. The second and third route are slow: for a structure that is not proved yet,
-/// `worth_more` is called before them, and false ends with `undecided`.
+/// in double-double (Eigen), down to sigma_min ~ 1e-12 (1e-13 for some contacts); about 0.3 s at n = 4900. Before it
+/// `worth_more` is called, for a structure that is not proved yet, and false ends with `undecided`.
 InverseBound bound_inverse(const IsostaticStructure& structure, const Factorisation& factorisation,
-                           InverseBoundCache& cache, const std::function<bool()>& worth_more = {},
-                           int row_limit = 20000);
+                           InverseBoundCache& cache, const std::function<bool()>& worth_more = {});
+
+/// As `bound_inverse`, for sigma_min down to the range of double (about 1e-300): R ~ H^-1 row by row from sparse LU
+/// factors in MPFR with 128, 256, ... `max_bits` bits, then |H^-1|_2 <= sqrt(|R|_1 |R|_inf) / (1 - |R H - I|) with the
+/// rounding of the entries and products included (statement V2 with the unit 2^-bits). `undecided` when N_f exceeds
+/// `size_limit`, or at the cap. Cost: N_f solves with `bits` bits; N_f = 200, sigma_min = 1e-40: about 0.1 s.
+InverseBound bound_inverse_multiprecision(const Packing& packing, const IsostaticStructure& structure,
+                                          int size_limit = 400, int max_bits = 4096);
 
 /// A bound of the inverse that is at the same time the proof that the exchanged matrix is regular.
 struct ProvedExchange {
@@ -78,5 +83,14 @@ std::optional<ProvedExchange> bound_exchanged(const ExchangedContacts& contacts,
 std::optional<ProvedExchange> carry_bound(const IsostaticStructure& before, const InverseBound& bound,
                                           const ExchangedContacts& after, const ApproximateInverse& inverse,
                                           std::vector<double> mechanism, double worth = 0.02);
+
+/// A lower bound of the smallest of the `h.rows` singular values of the exact matrix that `h` is rounded from
+/// (statement V1, which needs no square matrix); 0: no bound was found, and nothing is known. Cost: a Cholesky
+/// factorisation for every factor 2 that it is below 1.
+double smallest_row_singular_value(const sparse::Matrix<double>& h, int dimension);
+
+/// r = v - H z. Returns an upper bound of the exact |v - H z|_2, v known to 3u. `size`, `terms`: scratch, as long as v.
+double residual_of_forces(const sparse::Matrix<double>& h, const std::vector<double>& v, const std::vector<double>& z,
+                          std::vector<double>& r, std::vector<double>& size, std::vector<int>& terms);
 
 } // namespace isostat

@@ -1,7 +1,6 @@
-#include "verified/inverse_bound_multiprecision.hpp"
-
 #include "exact/sparse_lu.hpp"
 #include "verified/corrected_configuration.hpp"
+#include "verified/inverse_bound.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -10,7 +10,7 @@
 #include "oracle/structures.hpp"
 #include "oracle/truth.hpp"
 #include "verified/force_ladder.hpp"
-#include "verified/inverse_bound_multiprecision.hpp"
+#include "verified/inverse_bound.hpp"
 
 #include <isostat/preparation/preparation.hpp>
 

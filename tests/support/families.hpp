@@ -9,7 +9,7 @@
 #include "oracle/structures.hpp"
 #include "statics/decisions.hpp"
 #include "support/crafted.hpp"
-#include "verified/inverse_bound_multiprecision.hpp"
+#include "verified/inverse_bound.hpp"
 
 #include <isostat/crafted/exact_packing.hpp>
 

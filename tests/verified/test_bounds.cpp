@@ -120,7 +120,7 @@ BOOST_AUTO_TEST_CASE(bounds_hold_near_singular_matrices) {
         const State state = nearly_collinear(angle);
         proved += check(state, {0.3, -1}) ? 1 : 0;
     }
-    BOOST_TEST(proved >= 7); // by rows where the Cholesky route ends
+    BOOST_TEST(proved >= 7); // in double-double where the route in double ends
 }
 
 BOOST_AUTO_TEST_CASE(an_exactly_collinear_strut_is_never_proved_regular) {

@@ -7,7 +7,7 @@
 #include "support/regular.hpp"
 #include "verified/block_cholesky.hpp"
 #include "verified/inverse_bound.hpp"
-#include "verified/row_scales.hpp"
+#include "verified/singular_value.hpp"
 
 #include <isostat/io/state_file.hpp>
 

@@ -2,7 +2,7 @@
 
 #include "core/roundoff.hpp"
 #include "support/test.hpp"
-#include "verified/full_rank.hpp"
+#include "verified/inverse_bound.hpp"
 
 #include <Eigen/Dense>
 

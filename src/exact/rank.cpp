@@ -10,7 +10,6 @@
 #include <cassert>
 #include <limits>
 #include <new>
-#include <numeric>
 #include <vector>
 
 namespace isostat::exact {

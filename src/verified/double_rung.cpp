@@ -1,5 +1,5 @@
 #include "core/roundoff.hpp"
-#include "verified/interval_rung.hpp"
+#include "verified/force_rung.hpp"
 
 namespace isostat {
 

@@ -1,5 +1,5 @@
 #pragma once
-// One rung of the ladder of forces: private to the room.
+// One rung of the ladder of forces, and the common part of the rungs in floating point: private to the room.
 
 #include "verified/ladder_problem.hpp"
 #include "verified/real.hpp"
@@ -63,5 +63,27 @@ std::unique_ptr<ForceRung> multiprecision_rung(LadderProblem& problem, int bits,
 /// Null when exact numbers would be too expensive or would not be those of the true vertex, or when the matrix is not
 /// regular. `last`: the previous rung, which bounds the distance of the normals from those of the true vertex.
 std::unique_ptr<ForceRung> exact_rung(LadderProblem& problem, ForceRung& last);
+
+constexpr mpfr_prec_t low_bits = 160; ///< for comparisons on the rungs double and double-double, and for exact roots
+
+/// Expressions as intervals, made of the enclosures of single components on the rung.
+class IntervalRung : public ForceRung {
+  public:
+    using ForceRung::ForceRung;
+    Order sign(const ForceExpression& a) final;
+    Order compare(const ForceExpression& a, const ForceExpression& b) final;
+    PreciseInterval zero_of(const ForceExpression& force, int bits) final;
+    [[nodiscard]] Real digits(const RightHandSide& part, ContactId contact, int bits) const override;
+    [[nodiscard]] double bound_exponent(const RightHandSide& part) const override;
+
+  protected:
+    /// Component l of a part that is not zero and is on this rung.
+    [[nodiscard]] virtual PreciseInterval enclosed(const RightHandSide& part, std::size_t l) const;
+
+  private:
+    PreciseInterval component(int part, std::size_t l);
+    PreciseInterval evaluate(const ForceExpression& e);
+    [[nodiscard]] Order order_of(const PreciseInterval& value) const;
+};
 
 } // namespace isostat

@@ -1,6 +1,5 @@
-#include "verified/interval_rung.hpp"
+#include "verified/force_rung.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 

@@ -5,10 +5,8 @@
 #include "verified/vertex_bounds.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <optional>
 #include <span>
 

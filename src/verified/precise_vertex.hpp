@@ -17,10 +17,20 @@ class PreciseVertex {
 
     /// Encloses the vertex, starting from the place found with fewer bits; false: no vertex was proved. Cost: N gaps
     /// and a solve per 30 bits or so.
-    bool enclose(int bits);
+    bool enclose(int bits) {
+        const std::vector<Real> start = vertex_ ? vertex_->at().correction() : std::vector<Real>();
+        vertex_.emplace(Arithmetic<Real>(bits), packing_, structure_, factorisation_, at_q_, start);
+        return vertex_->exists();
+    }
     /// Coordinate k of the true vertex, in the bits of the last `enclose`; the stored value for coordinates that cannot
     /// move. \pre `enclose` succeeded.
-    [[nodiscard]] PreciseInterval operator[](std::size_t k) const;
+    [[nodiscard]] PreciseInterval operator[](std::size_t k) const {
+        const int bits = vertex_->at().arithmetic().bits();
+        const PreciseInterval stored = difference(packing_.q[k], 0, bits);
+        return structure_.dofs().dof_of(k) < 0
+                   ? stored
+                   : stored + PreciseInterval(vertex_->at().correction()[k], vertex_->radius().real(), bits);
+    }
 
   private:
     const Packing& packing_;

@@ -1,7 +1,6 @@
 #include "verified/real.hpp"
 
 #include <algorithm>
-#include <array>
 #include <limits>
 
 namespace isostat {
@@ -62,20 +61,18 @@ PreciseInterval operator*(const PreciseInterval& a, const PreciseInterval& b) {
     PreciseInterval result(std::max(a.bits(), b.bits()));
     Real product(result.bits());
     bool first = true;
+    const auto extend = [&](Real& end, const Real& x, const Real& y, auto outer, mpfr_rnd_t outwards) {
+        mpfr_mul(product.get(), x.get(), y.get(), outwards);
+        if (first || mpfr_nan_p(product.get()) != 0) {
+            mpfr_set(end.get(), product.get(), outwards);
+        } else if (mpfr_nan_p(end.get()) == 0) {
+            outer(end.get(), end.get(), product.get(), outwards);
+        }
+    };
     for (const Real* x : {&a.low, &a.high}) {
         for (const Real* y : {&b.low, &b.high}) {
-            mpfr_mul(product.get(), x->get(), y->get(), MPFR_RNDD);
-            if (first || mpfr_nan_p(product.get()) != 0) {
-                mpfr_set(result.low.get(), product.get(), MPFR_RNDD);
-            } else if (mpfr_nan_p(result.low.get()) == 0) {
-                mpfr_min(result.low.get(), result.low.get(), product.get(), MPFR_RNDD);
-            }
-            mpfr_mul(product.get(), x->get(), y->get(), MPFR_RNDU);
-            if (first || mpfr_nan_p(product.get()) != 0) {
-                mpfr_set(result.high.get(), product.get(), MPFR_RNDU);
-            } else if (mpfr_nan_p(result.high.get()) == 0) {
-                mpfr_max(result.high.get(), result.high.get(), product.get(), MPFR_RNDU);
-            }
+            extend(result.low, *x, *y, mpfr_min, MPFR_RNDD);
+            extend(result.high, *x, *y, mpfr_max, MPFR_RNDU);
             first = false;
         }
     }

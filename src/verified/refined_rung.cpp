@@ -1,11 +1,9 @@
 #include "core/roundoff.hpp"
 #include "core/work.hpp"
-#include "verified/interval_rung.hpp"
+#include "verified/force_rung.hpp"
 #include "verified/norm.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <type_traits>
 
 namespace isostat {

@@ -5,7 +5,6 @@
 #include "packing/bodies.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace isostat {
 

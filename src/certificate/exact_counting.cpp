@@ -4,8 +4,6 @@
 
 #include <isostat/exact/number.hpp>
 
-#include <algorithm>
-#include <array>
 #include <functional>
 
 namespace isostat {

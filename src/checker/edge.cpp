@@ -1,7 +1,6 @@
-#include "checker/edge.hpp"
-
 #include "checker/index.hpp"
 #include "checker/structural_zeros.hpp"
+#include "checker/strut.hpp"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // The claim about the supported interval of the loaded stress.
-#include "checker/edge.hpp"
+#include "checker/strut.hpp"
 
 #include <fmt/format.h>
 

@@ -3,9 +3,9 @@
 
 #include "checker/bounds.hpp"
 #include "checker/choice.hpp"
-#include "checker/edge.hpp"
 #include "checker/index.hpp"
 #include "checker/structural_zeros.hpp"
+#include "checker/strut.hpp"
 
 #include <fmt/format.h>
 

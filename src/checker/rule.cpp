@@ -1,6 +1,5 @@
 // Which contact the rule opens, and which coordinate is held.
 #include "checker/choice.hpp"
-#include "checker/edge.hpp"
 #include "checker/index.hpp"
 #include "checker/replay.hpp"
 #include "checker/strut.hpp"

@@ -1,7 +1,5 @@
 #include "contact/contact_set.hpp"
 
-#include <algorithm>
-
 namespace isostat {
 
 ContactSet::ContactSet(const std::vector<Contact>& contacts, int disk_count) {

@@ -27,4 +27,13 @@ ISOSTAT_WITHIN_WIDE void write(double* to, const Wide& from) {
     std::memcpy(to, &from, sizeof from);
 }
 
+/// Two numbers in one register.
+using Two = double __attribute__((vector_size(16)));
+
+inline Two two_at(const double* v) {
+    Two two;
+    std::memcpy(&two, v, sizeof two);
+    return two;
+}
+
 } // namespace isostat

@@ -1,8 +1,8 @@
 #include "linear/approximate_inverse.hpp"
 
+#include "core/wide.hpp"
 #include "core/work.hpp"
 #include "linear/solve_schedule.hpp"
-#include "linear/two.hpp"
 #include "sparse/fill_order.hpp"
 
 #include <klu.h>

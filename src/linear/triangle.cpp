@@ -2,11 +2,10 @@
 
 #include "core/index.hpp"
 #include "core/roundoff.hpp"
-#include "linear/two.hpp"
+#include "core/wide.hpp"
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <numeric>
 #include <utility>
 

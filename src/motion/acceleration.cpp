@@ -1,6 +1,5 @@
-#include "motion/acceleration.hpp"
-
 #include "core/dot.hpp"
+#include "motion/chord.hpp"
 
 #include <algorithm>
 

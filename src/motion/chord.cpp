@@ -6,8 +6,6 @@
 #include "verified/corrected_configuration.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 namespace isostat {
 

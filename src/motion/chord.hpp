@@ -2,19 +2,39 @@
 // The chord method on the kept gaps of an arc: private to the room.
 
 #include "linear/factorisation.hpp"
-#include "motion/acceleration.hpp"
 #include "motion/factorised_structure.hpp"
 #include "rigidity/isostatic.hpp"
 #include "verified/arithmetic.hpp"
 
 #include <isostat/core/result.hpp>
 
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <optional>
 #include <vector>
 
 namespace isostat {
+
+/// Speeds up an iteration x <- x + y(x) whose y shrinks slowly along a few directions. From the last changes of x and
+/// the resulting changes of y, the next change is chosen so that the part of y along those directions vanishes (to
+/// first order). Costs a few vector operations, and changes the iterates, not the fixed point.
+class Acceleration {
+  public:
+    void clear() { count_ = 0; }
+    /// Replaces y(x) by the better change of x, and remembers both vectors.
+    void improve(std::vector<double>& y);
+
+  private:
+    static constexpr std::size_t depth = 3;
+    struct Change {
+        std::vector<double> x, y; ///< changes of x and y in one iteration
+    };
+    std::array<Change, depth> changes_;
+    std::array<std::array<double, depth>, depth> products_{}; ///< scalar products of the changes of y
+    std::vector<double> x_, y_;                               ///< last change of x, last y
+    std::size_t count_ = 0;                                   ///< calls since the start
+};
 
 /// Newton-like iterations with the factors of one contact matrix, for the equations gap_l = 0 of all its contacts
 /// except the one in the *slot*, whose row is free: the caller chooses its equation. Nothing is proved of the results.

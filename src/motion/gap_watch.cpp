@@ -4,7 +4,6 @@
 #include "verified/vertex_bounds.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace isostat {

@@ -1,4 +1,4 @@
-#include "motion/acceleration.hpp"
+#include "motion/chord.hpp"
 #include "support/test.hpp"
 
 using namespace isostat;

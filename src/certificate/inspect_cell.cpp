@@ -1,7 +1,6 @@
 #include "certificate/finite_forces.hpp"
 #include "certificate/jammed_box.hpp"
 #include "contact/contact_set.hpp"
-#include "contact/gap_sign.hpp"
 #include "contact/other_pairs.hpp"
 
 #include <isostat/certificate/certify.hpp>

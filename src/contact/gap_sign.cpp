@@ -1,7 +1,5 @@
 #include "contact/gap_sign.hpp"
 
-#include "contact/candidates.hpp"
-#include "contact/near_pairs.hpp"
 #include "contact/separation.hpp"
 
 #include <CGAL/Exact_rational.h>
@@ -47,18 +45,6 @@ int gap_sign(const Packing& packing, const Contact& contact, double allowance) {
         }
     }
     return CGAL::sign(with_sign_of_gap<CGAL::Exact_rational>(packing, contact, allowance));
-}
-
-std::vector<Contact> touching_own_images(const Packing& packing) {
-    std::vector<Contact> out;
-    if (packing.cell.any()) {
-        for (const Contact& pair : near_pairs(packing, 0.5 * packing.min_radius()).pairs) { // any positive reach serves
-            if (pair.i == pair.j && !can_move(packing, pair) && gap_sign(packing, pair, 0) == 0) {
-                out.push_back(pair);
-            }
-        }
-    }
-    return out;
 }
 
 } // namespace isostat

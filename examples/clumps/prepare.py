@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Jammed packings of clumps (unions of disks) and of ovals (four arcs) in a box under equal stresses, as state files of Isostat, in double precision.
+"""Jammed packings of clumps (unions of disks), in a box or a periodic cell, and of ovals (four arcs) in a box under equal stresses, as state files of Isostat, in double precision.
 
     prepare.py trimer --seed 3 -o trimer.json           a packing of 20 trimers
+    prepare.py dimer --cell -o cell.json                a packing of dimers in a cell, both periods and the tilt of which move
     prepare.py oval --aspect 1.4 -n 16 -o oval.json     a packing of 16 ovals
     prepare.py trimer --seed 3 --saddle -o saddle.json  an equilibrium of trimers that is a saddle of the potential
     prepare.py dimer --seed 7 --held 0.75 -o held.json  what rests under this force on the top wall while rotational rattlers cannot turn
@@ -11,6 +12,7 @@
 The penalty energy L_x + L_y + (stiffness / 2) sum overlap^2 is minimised for growing stiffness; the overlaps that are left say which
 contacts bear force, and Newton's method closes these. Nothing is proved here: that is what `isostat inspect` is for."""
 import argparse
+import dataclasses
 import itertools
 import json
 import math
@@ -86,11 +88,10 @@ def scattered(clumps: Clumps, rng: np.random.Generator) -> Vector:
     cell = 2 * (np.hypot(*clumps.place.T) + clumps.radius).max()
     wide = math.ceil(math.sqrt(clumps.count))
     slot = rng.permutation(wide * wide)[: clumps.count]
-    q = np.zeros(3 * clumps.count + 2)
-    q[0:-2:3] = (slot % wide + 0.5) * cell
-    q[1:-2:3] = (slot // wide + 0.5) * cell
-    q[2:-2:3] = rng.uniform(0, 2 * np.pi, clumps.count)
-    q[-2:] = wide * cell
+    q = np.zeros(len(clumps.load))
+    clumps.origins(q)[:] = (np.column_stack([slot % wide, slot // wide]) + 0.5) * cell
+    q[2 : 3 * clumps.count : 3] = rng.uniform(0, 2 * np.pi, clumps.count)
+    clumps.lengths(q)[:] = wide * cell
     return q
 
 
@@ -112,7 +113,8 @@ def softly(clumps: Clumps, q: Vector, stiffness: float, held: list[int] | None =
     def energy(at: Vector) -> tuple[float, Vector]:
         nonlocal listed, pairs
         shift = at - listed
-        if max(np.hypot(shift[0:-2:3], shift[1:-2:3]).max(), abs(shift[-2:]).max()) > 0.5:  # pairs that are not listed may touch
+        far = max(np.hypot(*clumps.origins(shift).T).max(), abs(shift[3 * clumps.count :]).max())
+        if far > (0.2 if clumps.cell else 0.5):  # pairs that are not listed may touch
             listed, pairs = at, clumps.near(at, 1)
         gap = clumps.distances(at, pairs)
         return float(clumps.load @ at + stiffness / 2 * (np.minimum(gap, 0) ** 2).sum()), gap
@@ -149,9 +151,9 @@ def borne(clumps: Clumps, q: Vector, held: list[int] | None = None) -> tuple[Pac
     return equilibrium(clumps, q, pairs[bears], force[bears], held)
 
 
-def jammed(kind: str, count: int, rng: np.random.Generator, aspect: float) -> tuple[Packing, Counts]:
+def jammed(kind: str, count: int, rng: np.random.Generator, aspect: float, cell: bool) -> tuple[Packing, Counts]:
     """The equilibrium next to a minimum of the penalty energy."""
-    clumps = bodies(kind, count, aspect, rng)
+    clumps = dataclasses.replace(bodies(kind, count, aspect, rng), cell=cell)
     q = scattered(clumps, rng)
     for stiffness in STIFFNESSES:
         q = softly(clumps, q, stiffness)
@@ -187,11 +189,11 @@ def held_angles(packing: Packing, ratio: float) -> tuple[Packing, Counts]:
     return found, counts
 
 
-def prepared(kind: str, count: int, seed: int, saddle: bool, aspect: float = 1.4, held: float | None = None) -> tuple[Packing, Counts, int]:
+def prepared(kind: str, count: int, seed: int, saddle: bool, aspect: float = 1.4, held: float | None = None, cell: bool = False) -> tuple[Packing, Counts, int]:
     """The first attempt that succeeds, and its number; says why others did not."""
     for attempt in range(1, ATTEMPTS + 1):
         try:
-            packing, counts = jammed(kind, count, np.random.default_rng([seed, attempt]), aspect)
+            packing, counts = jammed(kind, count, np.random.default_rng([seed, attempt]), aspect, cell)
             if saddle:
                 return *next(saddles(packing)), attempt
             if held is not None and counts.rotational:
@@ -209,13 +211,13 @@ def prepared(kind: str, count: int, seed: int, saddle: bool, aspect: float = 1.4
     raise Failed(f"{kind}, seed {seed}: none of {ATTEMPTS} attempts succeeded")
 
 
-def contact(number: dict[tuple[int, int], int], what: str, b: int, k: int, c: int, d: Any) -> tuple[int, int]:
-    """["pair", body, member, body, member] or ["wall", body, member, axis, side] as two indices."""
+def contact(number: dict[tuple[int, int], int], what: str, b: int, k: int, c: int, d: Any) -> tuple[int, int, int, int]:
+    """["pair", body, member, body, member] or ["wall", body, member, axis, side] as a contact."""
     if what == "wall":
-        return number[b, k], -1 - range(2)[c] - 2 * ("lower", "upper").index(d)
+        return number[b, k], -1 - range(2)[c] - 2 * ("lower", "upper").index(d), 0, 0
     if what != "pair" or not b < c:
         raise ValueError(f"contact {[what, b, k, c, d]}")
-    return number[b, k], number[c, d]
+    return number[b, k], number[c, d], 0, 0
 
 
 def bodies_of(content: dict[str, Any]) -> Packing:
@@ -303,15 +305,17 @@ def bars(clumps: Clumps) -> list[list[Any]]:
 def state(packing: Packing, origin: dict[str, Any]) -> str:
     """The text of a state file, a row a line. The bars are no contacts: the reader adds them."""
     clumps = packing.clumps
-    load = "dead forces on the right and the top wall: W = L_x + L_y, so the stresses refer to a box of lengths 1"
+    load = f"dead forces on the {'periods' if clumps.cell else 'right and the top wall'}: W = L_x + L_y, so the stresses refer to a box of lengths 1"
     head: dict[str, Any] = {"format": "isostat-state", "version": 2}
     head["provenance"] = {"program": "examples/clumps/prepare.py", **origin, "load": load}
-    head["load"] = {"kind": "nominal", "stress": clumps.load[-2:].tolist(), "reference_length": [1, 1]}
-    head["length"] = packing.q[-2:].tolist()
+    head["load"] = {"kind": "nominal", "stress": clumps.lengths(clumps.load).tolist(), "reference_length": [1, 1]}
+    head["length"] = clumps.lengths(packing.q).tolist()
+    if clumps.cell:
+        head["cell"] = {"axes": ["periodic", "periodic"], "moves": ["x", "y", "xy"], "tilt": [packing.q[-1]], "pin": 0}
     rows: dict[str, list[Any]] = {"disks": np.column_stack([clumps.centres(packing.q), clumps.radius]).tolist(), "bars": bars(clumps)}
     if clumps.rings:
         rows["arcs"] = clumps.rings
-    rows["contacts"] = [[int(i), int(j) if j >= 0 else WALLS[-1 - j]] for i, j in packing.contacts]
+    rows["contacts"] = [[int(i), int(j) if j >= 0 else WALLS[-1 - j], *([m.tolist()] if m.any() else [])] for i, j, m in ((c[0], c[1], c[2:]) for c in packing.contacts)]
     parts = [f'  "{key}": {json.dumps(value, allow_nan=False)}' for key, value in head.items()]
     parts += [f'  "{key}": [\n    ' + ",\n    ".join(map(json.dumps, value)) + "\n  ]" for key, value in rows.items()]
     return "{\n" + ",\n".join(parts) + "\n}\n"
@@ -327,14 +331,14 @@ def line(kind: str, seed: Any, packing: Packing, counts: Counts, seconds: float)
     return f"| {' | '.join(map(str, cells))} |"
 
 
-def table(kinds: list[str], count: int, aspect: float, seeds: int, saddle: bool) -> None:
+def table(kinds: list[str], count: int, aspect: float, seeds: int, saddle: bool, cell: bool) -> None:
     print(COLUMNS)
     print("|---" * COLUMNS.count(" | ") + "|---|")
     for kind in kinds:
         for seed in range(1, seeds + 1):
             start = time.process_time()
             try:
-                packing, counts, _ = prepared(kind, count, seed, saddle, aspect)
+                packing, counts, _ = prepared(kind, count, seed, saddle, aspect, cell=cell)
             except Failed as failed:
                 print(failed, file=sys.stderr)
                 continue
@@ -346,6 +350,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("kind", nargs="?", choices=list(KINDS), help="dimer: equal members; dimer2: unequal ones; trimer: an equilateral triangle; oval: four arcs; mixed: ovals and dimer2")
     parser.add_argument("-n", type=int, default=20, help="bodies (20)")
     parser.add_argument("--aspect", type=float, default=1.4, help="length over width of the ovals (1.4)")
+    parser.add_argument("--cell", action="store_true", help="a periodic cell in the place of the box, of unions only")
     parser.add_argument("--seed", type=int, default=1, help="of the random numbers (1)")
     parser.add_argument("--saddle", action="store_true", help="an equilibrium with a contact less, where W has no minimum")
     parser.add_argument("--held", type=float, metavar="F", help="what rests under the force F on the top wall while rotational rattlers keep their angles")
@@ -355,6 +360,8 @@ def arguments() -> argparse.Namespace:
     given = parser.parse_args()
     if sum([given.table is not None, given.source is not None, given.kind is not None and given.table is None]) != 1:
         parser.error("expected a kind, --from FILE or --table N")
+    if given.cell and (given.kind in ("oval", "mixed") or given.source is not None):
+        parser.error("expected unions of disks for --cell")
     if given.n < 1 or given.seed < 0 or not 1.01 <= given.aspect <= 5:
         parser.error("expected at least one body, a seed that is not negative, and an aspect from 1.01 to 5")
     return given
@@ -363,13 +370,14 @@ def arguments() -> argparse.Namespace:
 def main() -> None:
     given = arguments()
     if given.table is not None:
-        table([given.kind] if given.kind else list(KINDS), given.n, given.aspect, given.table, given.saddle)
+        kinds = [given.kind] if given.kind else [kind for kind, members in KINDS.items() if 0 < members < 4 or not given.cell]
+        table(kinds, given.n, given.aspect, given.table, given.saddle, given.cell)
         return
     if given.source is not None:
         packing, counts = converted(given.source)
         origin = {"file": os.path.basename(given.source)}
     else:
-        packing, counts, attempt = prepared(given.kind, given.n, given.seed, given.saddle, given.aspect, given.held)
+        packing, counts, attempt = prepared(given.kind, given.n, given.seed, given.saddle, given.aspect, given.held, given.cell)
         origin = {"kind": given.kind, "bodies": given.n, "seed": given.seed, "attempt": attempt, "saddle": given.saddle, "held": given.held}
         print(COLUMNS, line(given.kind, given.seed, packing, counts, time.process_time()), sep="\n", file=sys.stderr)
     text = state(packing, origin)

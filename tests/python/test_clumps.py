@@ -27,33 +27,41 @@ class Written:
     def __init__(self, text):
         state = json.loads(text)
         self.disks, self.length, self.bars = np.array(state["disks"]), np.array(state["length"]), state["bars"]
-        self.contacts = [tuple(row) for row in state["contacts"]]
+        self.contacts = [(*row[:2], *map(tuple, row[2:])) for row in state["contacts"]]
+        self.cell = "cell" in state
+        if self.cell:
+            self.length = np.append(self.length, state["cell"]["tilt"])
         self.body = np.arange(len(self.disks))
         for i, j, _ in self.bars:
             self.body[self.body == self.body[j]] = self.body[i]
         self.bodies = sorted(set(self.body))
 
     def gap(self, disks, length, contact):
-        (x, y, r), other = disks[contact[0]], contact[1]
+        (x, y, r), other, image = disks[contact[0]], contact[1], np.array(contact[2:])
         if isinstance(other, str):
             return {"left": x, "bottom": y, "right": length[0] - x, "top": length[1] - y}[other] - r
-        return math.dist((x, y), disks[other, :2]) - r - disks[other, 2]
+        at = disks[other, :2] + (image[0] @ [[length[0], 0], [length[-1], length[1]]] if len(image) else 0)
+        return math.dist((x, y), at) - r - disks[other, 2]
 
     def gaps(self, motion):
-        """Of the contacts after a motion: two translations and an angle for each body, then L_x, L_y."""
+        """Of the contacts after a motion: two translations and an angle for each body, then L_x, L_y and the tilt of a cell."""
         disks = self.disks.copy()
-        for b, (x, y, turn) in zip(self.bodies, motion[:-2].reshape(-1, 3)):
+        for b, (x, y, turn) in zip(self.bodies, motion[: -len(self.length)].reshape(-1, 3)):
             centre = self.disks[self.body == b, :2].mean(axis=0)
             by = np.array([[math.cos(turn), math.sin(turn)], [-math.sin(turn), math.cos(turn)]])
             disks[self.body == b, :2] = (self.disks[self.body == b, :2] - centre) @ by + centre + (x, y)
-        return np.array([self.gap(disks, self.length + motion[-2:], contact) for contact in self.contacts])
+        return np.array([self.gap(disks, self.length + motion[-len(self.length) :], contact) for contact in self.contacts])
 
     def derivatives(self):
         step = 1e-5
-        return np.array([(self.gaps(step * unit) - self.gaps(-step * unit)) / (2 * step) for unit in np.eye(3 * len(self.bodies) + 2)]).T
+        return np.array([(self.gaps(step * unit) - self.gaps(-step * unit)) / (2 * step) for unit in np.eye(3 * len(self.bodies) + len(self.length))]).T
 
     def others(self):
         pairs = ((i, j) for i, j in itertools.combinations(range(len(self.disks)), 2) if self.body[i] != self.body[j])
+        if self.cell:
+            images = [m for m in itertools.product(range(-3, 4), repeat=2) if m != (0, 0)]
+            through = ((i, j, m) for i, j in itertools.combinations_with_replacement(range(len(self.disks)), 2) for m in images)
+            return [self.gap(self.disks, self.length, c) for c in itertools.chain(pairs, through) if c not in set(self.contacts)]
         walls = itertools.product(range(len(self.disks)), ("left", "bottom", "right", "top"))
         return [self.gap(self.disks, self.length, c) for c in itertools.chain(pairs, walls) if c not in set(self.contacts)]
 
@@ -85,6 +93,24 @@ class Clumps(unittest.TestCase):
                 bear[state.body[disk]].add(disk)
             self.assertEqual(len(state.contacts), rank)
             self.assertEqual(3 * len(bear) + 2 - rank, sum(len(disks) == 1 for disks in bear.values()))
+
+    def test_packings_in_cells_are_isostatic_up_to_rotational_rattlers(self):
+        for kind in ("dimer", "trimer"):
+            state = Written(prepared(kind, "--cell", "-n", "10", "--seed", "5").stdout)
+            self.assertTrue(any(len(contact) == 3 for contact in state.contacts))
+            self.assertLess(abs(state.gaps(np.zeros(33))).max(), 2e-14)
+            self.assertGreater(min(state.others()), 1e-5)
+            rows, load = state.derivatives(), np.eye(33)[30] + np.eye(33)[31]
+            force = np.linalg.lstsq(rows.T, load, rcond=None)[0]
+            self.assertLess(abs(rows.T @ force - load).max(), 1e-8)
+            self.assertGreater(force.min(), 1e-6)
+            self.assertEqual(len(state.contacts), int((np.linalg.svd(rows)[1] > 1e-7).sum()))
+            bear = collections.defaultdict(set)
+            for disk in (i for contact in state.contacts for i in contact[:2]):
+                bear[state.body[disk]].add(disk)
+            turning = sum(len(disks) == 1 for disks in bear.values())
+            self.assertEqual(3 * len(bear) - 2 + 3 - len(state.contacts), turning)  # translations of all are none
+        self.assertIn("expected unions of disks", prepared("oval", "--cell").stderr)
 
     def test_a_saddle_falls_along_its_mechanism(self):
         with contextlib.redirect_stderr(io.StringIO()):

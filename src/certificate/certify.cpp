@@ -200,8 +200,7 @@ bool Prover::claim_regular(int rows) {
 /// Along mechanisms that the load reaches (U8). The claims leave room for a checker with other bounds.
 void Prover::claim_minimum() {
     constexpr double room = 16;
-    const Load& load = state_.load;
-    if (state_.packing.cell.any() || load.kind != LoadKind::nominal || !load.infinitesimal.empty()) {
+    if (!state_.load.infinitesimal.empty()) {
         return;
     }
     const auto found = inspect_mechanism(state_, result_.counting);

@@ -1,5 +1,6 @@
 #include "certificate/held_minimum.hpp"
 
+#include "certificate/reach.hpp"
 #include "contact/separation.hpp"
 #include "core/roundoff.hpp"
 #include "packing/arc_bodies.hpp"
@@ -42,11 +43,15 @@ HeldMotion motion_of(const Vertex& vertex, std::size_t slot) {
     double residual = 0;
     for (std::size_t l = 0; l < contacts.size(); ++l) {
         const auto rate = gap_gradient(vertex.packing, contacts[l]).rate(motion.v, l == slot ? -1.0 : 0.0);
-        const double bound = std::abs(rate.value) + 16 * u * rate.terms;
+        const double bound = std::abs(rate.value) + 24 * u * rate.terms;
         residual += bound * bound;
     }
     motion.residual = std::sqrt(residual) * up;
     return motion;
+}
+
+double norm_of(const std::vector<double>& x) {
+    return std::sqrt(Eigen::Map<const Eigen::VectorXd>(x.data(), std::ssize(x)).squaredNorm()) * up;
 }
 
 constexpr std::size_t most_mechanisms = 256; // of which eigenvalues are said
@@ -83,17 +88,19 @@ std::vector<Enclosure> eigenvalues(const Eigen::MatrixXd& form, const Eigen::Mat
 /// The proof for held coordinates that move by a `reach`, on which the configuration moves by at most `way` (2-norms).
 class HeldForm {
   public:
-    HeldForm(const Vertex& vertex, double sigma, const std::vector<std::size_t>& acting)
-        : vertex_(vertex), contacts_(vertex.structure.contacts()), sigma_(sigma), acting_(acting),
+    HeldForm(const Vertex& vertex, const Load& load, const std::vector<std::size_t>& acting)
+        : vertex_(vertex), contacts_(vertex.structure.contacts()), load_(load), acting_(acting),
           lipschitz_(lipschitz(vertex.packing, contacts_)), arcs_(vertex.packing),
-          force_size_(force_norm(vertex, sigma)) {
+          force_size_(force_norm(vertex, load.loaded_stress())) {
         for (const std::size_t slot : acting_) {
             motions_.push_back(motion_of(vertex, slot));
         }
     }
 
     std::optional<HeldMinimum> prove(double way, double nearest) {
-        if (!(arcs_.below(nearest) > 2 * way) || !stay_in_sectors(way) || !look_at(way) || !forces_stay_positive()) {
+        const double open = std::min(arcs_.below(nearest), vertex_.packing.max_radius());
+        if (!(open > far_weight(vertex_.packing, open) * (way + 2 * vertex_.enclosure.distance()) * up) ||
+            !stay_in_sectors(way) || !look_at(way) || !forces_stay_positive()) {
             return {};
         }
         const double reach = way / fastest();
@@ -147,12 +154,24 @@ class HeldForm {
     }
 
   private:
-    /// What the matrix and the forces change by within a `way`; false: the matrix is not proved regular there.
+    /// What the matrix and the forces change by within a `way`; false: the matrix is not proved regular there, or the
+    /// lengths on which the load depends may change much.
     bool look_at(double way) {
+        way_ = way;
         turned_ = (vertex_.statics.normal_uncertainty() + lipschitz_ * way) * up;
         sigma_min_ = (vertex_.inverse.sigma_min - turned_) / up;
-        force_changes_ = lipschitz_ * way / sigma_min_ * force_size_ * up;
-        return sigma_min_ > 0;
+        strain_ = 0;
+        for (std::size_t a = 0; follows_ && a < vertex_.packing.axes(); ++a) {
+            const double length = std::max(0.0, vertex_.packing.q[vertex_.packing.length_at(a)]);
+            strain_ = std::max(strain_, (way + vertex_.enclosure.distance()) / length * up);
+        }
+        force_changes_ = change_of(force_size_, norm_of(load_.external_force(vertex_.packing)));
+        return sigma_min_ > 0 && strain_ < 1.0 / 64;
+    }
+    /// Of forces of that norm, which balance a load of that norm, within the way: a load under true stresses is one or
+    /// two lengths, and changes by less than 2.5 times their strain.
+    [[nodiscard]] double change_of(double forces, double load) const {
+        return (lipschitz_ * way_ * forces + 2.5 * strain_ * load) / sigma_min_ * up;
     }
     [[nodiscard]] bool stay_in_sectors(double way) const {
         const double distance = vertex_.enclosure.distance();
@@ -161,7 +180,9 @@ class HeldForm {
                                 std::all_of(contacts_.begin(), contacts_.end(),
                                             [&](const Contact& contact) { return arcs_.faces(contact, moved); }));
     }
-    [[nodiscard]] Enclosure force(std::size_t l) const { return vertex_.statics.force(ContactId(l), sigma_); }
+    [[nodiscard]] Enclosure force(std::size_t l) const {
+        return vertex_.statics.force(ContactId(l), load_.loaded_stress());
+    }
 
     [[nodiscard]] bool forces_stay_positive() const {
         for (std::size_t l = 0; l < contacts_.size(); ++l) {
@@ -173,14 +194,15 @@ class HeldForm {
         return true;
     }
 
-    /// Of all held coordinates that are no free motions.
+    /// Of all held coordinates that are no free motions; under true stresses over the area, which changes by less than
+    /// a tenth.
     [[nodiscard]] double multiplier_size() const {
         double square = 0;
         for (const std::size_t slot : acting_) {
             const double most = std::abs(force(slot).value) + force(slot).radius;
             square += most * most;
         }
-        return std::sqrt(square) * up;
+        return std::sqrt(square) * (follows_ ? 1.1 : 1) * up;
     }
 
     /// The most that the configuration moves (2-norm) where the held coordinates move by 1, anywhere within reach.
@@ -198,31 +220,50 @@ class HeldForm {
         return (m.residual + turned_ * m.size) / sigma_min_ * up;
     }
 
-    /// d2W = - sum f_l D_l v_i . D_l v_j / D_l, as the kept gaps do not change: and by how much it may be off, anywhere
+    /// d2W = - sum f_l D_l v_i . D_l v_j / D_l, as the kept gaps do not change, and under true stresses the second
+    /// derivative of the area times their potential, F_a / L_a on the lengths: and by how much it may be off, anywhere
     /// within reach.
     void find_form() {
         const auto k = static_cast<Eigen::Index>(motions_.size());
         form_ = error_ = Eigen::MatrixXd::Zero(k, k);
         Eigen::MatrixXd at(k, static_cast<Eigen::Index>(most_axes)); // D_l v
-        Eigen::VectorXd off(k);
         for (std::size_t l = 0; l < contacts_.size(); ++l) {
             if (!contacts_[l].of_disks()) {
                 continue;
             }
             for (Eigen::Index i = 0; i < k; ++i) {
-                const HeldMotion& m = motions_[static_cast<std::size_t>(i)];
-                const auto rate = separation(vertex_.packing.layout(), m.v, contacts_[l]);
+                const auto rate =
+                    separation(vertex_.packing.layout(), motions_[static_cast<std::size_t>(i)].v, contacts_[l]);
                 at.row(i) = Eigen::Map<const Eigen::RowVectorXd>(rate.data(), at.cols());
-                off(i) = std::sqrt(2.0) * velocity_error(m) * up;
             }
             const double d = zero_distance(vertex_.packing, contacts_[l]);
             const Enclosure f = force(l);
-            const Eigen::VectorXd size = at.rowwise().norm() * up;
-            const Eigen::MatrixXd moved = (size + off) * (size + off).transpose();
-            const Eigen::MatrixXd open = size * off.transpose() + off * (size + off).transpose() + roundings_ * moved;
-            form_ -= f.value / d * (at * at.transpose());
-            error_ += (std::abs(f.value) * open + (f.radius + force_changes_) * moved) * (up * up / d);
+            add_term(at, separation_weight(contacts_[l]), -f.value / d, (f.radius + force_changes_) / d);
         }
+        for (const WallForce& wall : follows_ ? load_.wall_forces(vertex_.packing) : std::vector<WallForce>()) {
+            const auto c = static_cast<std::size_t>(wall.coordinate);
+            for (Eigen::Index i = 0; i < k; ++i) {
+                at.row(i).setZero();
+                at(i, 0) = motions_[static_cast<std::size_t>(i)].v[c];
+            }
+            const double part = -wall.stress * wall.length * wall.other / vertex_.packing.q[c];
+            add_term(at, 1, part, 4 * strain_ * std::abs(part));
+        }
+    }
+
+    /// Adds `factor` times the products of these rows, of motions as they are known: each row changes by `weight` times
+    /// what its motion does, and the factor by `open`.
+    void add_term(const Eigen::MatrixXd& at, double weight, double factor, double open) {
+        Eigen::VectorXd off(at.rows());
+        for (Eigen::Index i = 0; i < at.rows(); ++i) {
+            const HeldMotion& m = motions_[static_cast<std::size_t>(i)];
+            off(i) = weight * (velocity_error(m) + 16 * u * m.size) * up; // a row is a sum of ten terms at most
+        }
+        const Eigen::VectorXd size = at.rowwise().norm() * up;
+        const Eigen::MatrixXd moved = (size + off) * (size + off).transpose();
+        const Eigen::MatrixXd changed = size * off.transpose() + off * (size + off).transpose() + roundings_ * moved;
+        form_ += factor * (at * at.transpose());
+        error_ += (std::abs(factor) * changed + open * moved) * (up * up);
     }
 
     /// dc = - M^-1 dmu: what that leaves over the smallest eigenvalue (U10). At the minimum, which is within reach.
@@ -232,7 +273,7 @@ class HeldForm {
             const Enclosure f = vertex_.statics.slope(ContactId(l));
             slopes += (std::abs(f.value) + f.radius) * (std::abs(f.value) + f.radius);
         }
-        const double changes = force_changes_ / force_size_ * std::sqrt(slopes) * up;
+        const double changes = change_of(std::sqrt(slopes) * up, norm_of(load_.unit_force(vertex_.packing)));
         Eigen::VectorXd multiplier(form_.rows());
         Eigen::VectorXd open(form_.rows());
         for (std::size_t i = 0; i < acting_.size(); ++i) {
@@ -261,14 +302,16 @@ class HeldForm {
         }
     }
 
-    /// Columns: velocities of the bodies in (X, Y, angle), X and Y of the mean of the centres of their members, and of
-    /// the walls; and the error of all columns together (Frobenius norm) where the configuration is within `moved` of
-    /// the stored one (2-norm). The angle turns at arms x v / |arms|^2, an inversion of the arms. \pre the plane
+    /// Columns: velocities of the bodies in (X, Y, angle), X and Y of the mean of the centres of their members, less
+    /// their mean along periodic axes, and of the walls or the cell; and the error of all columns together (Frobenius
+    /// norm) where the configuration is within `moved` of the stored one (2-norm). The angle turns at arms x v /
+    /// |arms|^2, an inversion of the arms. \pre the plane
     [[nodiscard]] std::pair<Eigen::MatrixXd, double> of_bodies(const std::vector<HeldMotion>& motions,
                                                                double moved) const {
         const Packing& packing = vertex_.packing;
         const Bodies bodies(packing);
         const int n = packing.disk_count();
+        const auto rest = std::ssize(packing.q) - 2 * n;
         const auto at = [](const std::vector<double>& q, int i) {
             return Eigen::Map<const Eigen::RowVector2d>(&q[2 * static_cast<std::size_t>(i)]);
         };
@@ -286,7 +329,8 @@ class HeldForm {
         }
         const double shortest = std::sqrt((members.array() > 1).select(inertia.array(), roundoff::infinity).minCoeff());
         moved += roundings_ * Eigen::Map<const Eigen::VectorXd>(packing.q.data(), 2 * n).norm();
-        Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(3 * n + 2, static_cast<Eigen::Index>(motions.size()));
+        Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(3 * n + rest, static_cast<Eigen::Index>(motions.size()));
+        const Eigen::VectorXd is_body = (members.array() > 0).cast<double>();
         double off = 0;
         for (Eigen::Index c = 0; c < columns.cols(); ++c) {
             const HeldMotion& m = motions[static_cast<std::size_t>(c)];
@@ -298,7 +342,13 @@ class HeldForm {
                     columns(3 * body + 2, c) += (arm(i, 0) * v.y() - arm(i, 1) * v.x()) / inertia[body];
                 }
             }
-            columns.col(c).tail<2>() = at(m.v, n).transpose(); // the walls
+            columns.col(c).tail(rest) = Eigen::Map<const Eigen::VectorXd>(&m.v[2 * static_cast<std::size_t>(n)], rest);
+            for (Eigen::Index a = 0; a < 2; ++a) {
+                if (packing.cell.periodic[static_cast<std::size_t>(a)]) {
+                    const auto along = columns.col(c)(Eigen::seqN(a, n, 3));
+                    columns.col(c)(Eigen::seqN(a, n, 3)) -= is_body * (along.sum() / is_body.sum());
+                }
+            }
             const double e = velocity_error(m) + roundings_ * m.size;
             const double most =
                 e * (1 + 1 / shortest) + (m.size + e) * moved / (shortest * std::max(shortest - moved, 0.0));
@@ -333,15 +383,16 @@ class HeldForm {
 
     const Vertex& vertex_;
     const std::vector<Contact>& contacts_;
-    double sigma_;
+    const Load& load_;
     const std::vector<std::size_t>& acting_;
+    bool follows_ = load_.kind == LoadKind::true_stress;
     double lipschitz_;
     ArcBodies arcs_;
     double roundings_ = (static_cast<double>(contacts_.size()) + 32) * u; // relative, of sums over the contacts
     double force_size_;
     std::vector<HeldMotion> motions_;
     Eigen::MatrixXd form_, error_;
-    double nearer_ = 0, turned_ = 0, sigma_min_ = vertex_.inverse.sigma_min, force_changes_ = 0;
+    double nearer_ = 0, way_ = 0, turned_ = 0, strain_ = 0, sigma_min_ = vertex_.inverse.sigma_min, force_changes_ = 0;
 };
 
 /// Where something that changes at a `rate`, a sum of `terms` in magnitude, is 0: counted in the direction of the
@@ -362,8 +413,9 @@ double force_norm(const Vertex& vertex, double sigma) {
     return std::sqrt(square) * up;
 }
 
-Yielding yielding_at(const Vertex& vertex, double sigma, const std::vector<std::size_t>& acting,
+Yielding yielding_at(const Vertex& vertex, const Load& load, const std::vector<std::size_t>& acting,
                      const HeldMinimum& minimum, const std::vector<Contact>& candidates) {
+    const double sigma = load.loaded_stress();
     const auto& contacts = vertex.structure.contacts();
     std::vector<double> velocity(vertex.packing.q.size(), 0.0);
     for (std::size_t i = 0; i < acting.size(); ++i) {
@@ -384,6 +436,14 @@ Yielding yielding_at(const Vertex& vertex, double sigma, const std::vector<std::
         Separation(contacts[l], vertex.packing.layout())
             .for_each_entry(vertex.structure.dofs(), along,
                             [&](int dof, double entry) { turning[static_cast<std::size_t>(dof)] -= times * entry; });
+    }
+    for (const WallForce& wall : load.wall_forces(vertex.packing)) { // true stresses follow the lengths
+        const auto strain = [&](int at) {
+            const auto c = static_cast<std::size_t>(at);
+            return at < 0 ? 0 : velocity[c] / vertex.packing.q[c];
+        };
+        turning[static_cast<std::size_t>(vertex.structure.dofs().dof_of(static_cast<std::size_t>(wall.coordinate)))] -=
+            wall.stress * wall.length * wall.other * (strain(wall.length_at) + strain(wall.other_at));
     }
     vertex.factorisation.solve_forces(turning);
     Yielding yielding;
@@ -413,13 +473,13 @@ Yielding yielding_at(const Vertex& vertex, double sigma, const std::vector<std::
     return yielding;
 }
 
-Enclosure least_curvature(const Vertex& vertex, double sigma, const std::vector<std::size_t>& slots) {
-    return HeldForm(vertex, sigma, slots).least_curvature();
+Enclosure least_curvature(const Vertex& vertex, const Load& load, const std::vector<std::size_t>& slots) {
+    return HeldForm(vertex, load, slots).least_curvature();
 }
 
-std::optional<HeldMinimum> minimum_near(const Vertex& vertex, double sigma, const std::vector<std::size_t>& acting,
+std::optional<HeldMinimum> minimum_near(const Vertex& vertex, const Load& load, const std::vector<std::size_t>& acting,
                                         double nearest) {
-    HeldForm form(vertex, sigma, acting);
+    HeldForm form(vertex, load, acting);
     for (double share = 0x1p-39; share < 1; share *= 0x1p3) { // on a shorter way the form changes less
         if (auto minimum = form.prove(share * vertex.packing.min_radius(), nearest)) {
             form.describe(*minimum);

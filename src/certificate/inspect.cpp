@@ -143,7 +143,7 @@ Result<Inspection> inspect_vertex(const State& state) {
     // Of clumps, other mechanisms than free motions: the certificate counts these, and claims nothing of them.
     const bool moves = clumps ? counting.mechanisms > 0 && has_held(state) && !inspection.truth.claims.counting
                               : counting.mechanisms > 0 || has_held(state);
-    if ((space || state.packing.cell.any()) && moves) {
+    if ((space || state.packing.cell.any()) && moves && !clumps) {
         return Failure{FailureKind::not_isostatic,
                        fmt::format("{}: mechanisms {} are counted, not followed yet", numbers(counting),
                                    space ? "of spheres" : "in a periodic cell")};

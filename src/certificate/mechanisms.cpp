@@ -1,4 +1,5 @@
 #include "certificate/held_minimum.hpp"
+#include "certificate/reach.hpp"
 #include "certificate/sectors.hpp"
 #include "contact/other_pairs.hpp"
 #include "core/decimal.hpp"
@@ -19,12 +20,10 @@ namespace isostat {
 
 namespace {
 
-/// The potential of the load falls where W does: dead loads; true stresses >= 0 without forces on disks (S2, S5).
-bool falls_with_work(const Load& load) {
-    const auto not_zero = [](double f) { return f != 0; };
+/// Dead loads; true stresses without forces on disks (S5).
+bool has_potential(const Load& load) {
     return load.kind == LoadKind::nominal ||
-           (std::none_of(load.disk_force.begin(), load.disk_force.end(), not_zero) &&
-            std::all_of(load.stress.begin(), load.stress.end(), [](double stress) { return stress >= 0; }));
+           std::all_of(load.disk_force.begin(), load.disk_force.end(), [](double force) { return force == 0; });
 }
 
 /// Signs of the forces, multipliers of what is held, and what the potential does along one mechanism. Rows that are
@@ -63,11 +62,10 @@ std::vector<std::size_t> judge_forces(MechanismInspection& inspection, Vertex& v
     }
     const std::size_t most = state.packing.bars.empty() ? 1 : acting.size(); // of clumps any one of several
     if (positive && at_rest && !acting.empty() && acting.size() <= most && inspection.remark.empty()) {
-        const Enclosure second = least_curvature(vertex, sigma, acting);
-        if (state.load.kind == LoadKind::nominal) {
-            inspection.second_order = second;
-        }
-        const bool maximum = second.negative() && falls_with_work(state.load);
+        const bool known = has_potential(state.load) && !state.packing.cell.keeps_shape;
+        const Enclosure second = known ? least_curvature(vertex, state.load, acting) : Enclosure{0, roundoff::infinity};
+        inspection.second_order = second;
+        const bool maximum = second.negative();
         if (maximum) {
             inspection.stable = Verdict::refuted;
         }
@@ -80,23 +78,23 @@ std::vector<std::size_t> judge_forces(MechanismInspection& inspection, Vertex& v
 
 /// The potential has a minimum along what is held (U8). \pre the nearest gap is recorded
 void judge_minimum(MechanismInspection& inspection, const Vertex& vertex, const Load& load,
-                   const std::vector<std::size_t>& acting, const std::vector<Contact>& candidates) {
+                   const std::vector<std::size_t>& acting, const std::vector<Contact>& candidates, double moved) {
     const EquilibriumRecord& record = inspection.record;
-    const bool dead = load.kind == LoadKind::nominal && load.infinitesimal.empty();
-    const auto minimum = acting.empty() || !dead ? std::nullopt
-                                                 : minimum_near(vertex, load.loaded_stress(), acting,
-                                                                record.min_gap - record.min_gap_bound);
+    const bool asked =
+        !acting.empty() && has_potential(load) && load.infinitesimal.empty() && !vertex.packing.cell.keeps_shape;
+    const auto minimum =
+        asked ? minimum_near(vertex, load, acting, record.min_gap - record.min_gap_bound) : std::nullopt;
     if (minimum) {
         inspection.stable = Verdict::proved;
-        inspection.away = minimum->away;
+        inspection.away = minimum->away + 3 * moved * std::sqrt(static_cast<double>(vertex.packing.q.size()));
         inspection.curvature = minimum->curvature;
         inspection.yielding =
-            yielding_at(vertex, load.loaded_stress(), acting, *minimum,
+            yielding_at(vertex, load, acting, *minimum,
                         without(candidates, vertex.structure.contacts(), vertex.packing.disk_count()));
         inspection.remark =
             fmt::format("equilibrium with {} mechanism(s), a strict local minimum within {} of the "
                         "stored place: W'' >= {} in the coordinates that are held",
-                        acting.size(), rounded_up(minimum->away, 2), rounded_down(minimum->curvature, 6));
+                        acting.size(), rounded_up(inspection.away, 2), rounded_down(minimum->curvature, 6));
     }
 }
 
@@ -114,9 +112,18 @@ std::string overlap_of(const Packing& packing, const Result<Vertex::Gaps>& gaps)
 
 } // namespace
 
-Result<MechanismInspection> inspect_mechanism(const State& state, const Counting& counting) {
+Result<MechanismInspection> inspect_mechanism(const State& stored, const Counting& counting) {
     require_floating_point();
-    require_box(state.packing, "state", "what a mechanism does");
+    State state = stored;
+    double moved = 0; // of a coordinate; the pinned grain is moved back afterwards, and all others with it
+    if (state.packing.cell.any()) {
+        auto snapped = on_grid(state.packing, state.contacts, moved);
+        if (!snapped) {
+            return Failure{FailureKind::undecided,
+                           "a period or tilt that cannot move is not on the grid of the packing, or an image too far"};
+        }
+        state.packing = std::move(*snapped);
+    }
     MechanismInspection inspection;
     inspection.contacts = state.contacts;
     const DofMap dofs(state.packing);
@@ -162,7 +169,7 @@ Result<MechanismInspection> inspect_mechanism(const State& state, const Counting
         if (auto failure = record_smallest_gap(record, vertex, vertex.enclosure, candidates)) {
             return *failure;
         }
-        judge_minimum(inspection, vertex, state.load, acting, candidates.contacts);
+        judge_minimum(inspection, vertex, state.load, acting, candidates.contacts, moved);
         const double least =
             std::max(0.0, (record.min_gap - record.min_gap_bound) * (1 - 2 * roundoff::u)); // it is no overlap
         record.min_gap = ArcBodies(state.packing).below(least);

@@ -59,40 +59,83 @@ std::string not_positive(const Evidence& e) {
 
 using Form = std::vector<std::vector<Bounds>>;
 
-/// d2W on the held coordinates: - sum f_l D_l v_i . D_l v_j / D_l, v_i the velocities at which one of them moves at the
-/// rate 1 and all other rows stay.
-Form second_variation(const Evidence& e, const std::vector<std::size_t>& acting) {
-    const Layout& layout = e.problem.layout;
+using Motions = std::vector<std::vector<Bounds>>;
+
+/// Velocities of the coordinates at which one held coordinate moves at the rate 1 and all other rows stay.
+Motions motions_of(const Evidence& e, const std::vector<std::size_t>& acting) {
     const Velocities velocities(e);
-    std::vector<std::vector<Bounds>> v;
+    Motions motions;
     for (const std::size_t l : acting) {
         const Velocities::Solution motion = velocities.opening(l, 1);
-        std::vector<Bounds>& of = v.emplace_back();
+        std::vector<Bounds>& of = motions.emplace_back();
         for (std::size_t k = 0; k < motion.middle.size(); ++k) {
             of.push_back(e.problem.dof_of[k] < 0 ? Bounds(0)
                                                  : bounds_of(Range::around(motion.middle[k], motion.radius)));
         }
     }
-    Form form(acting.size(), std::vector<Bounds>(acting.size(), Bounds(0)));
-    for (std::size_t l = 0; l < e.forces.size(); ++l) {
-        const Contact& c = e.state.contacts[l];
-        if (!c.of_disks()) {
-            continue;
+    return motions;
+}
+
+/// A coordinate at all vertices of the evidence.
+Bounds place(const Evidence& e, std::size_t k) {
+    return bounds_of(
+        Range::around(e.problem.length(e.vertex.middle[k]), e.problem.dof_of[k] < 0 ? Rational(0) : e.vertex.radius));
+}
+
+/// form += factor times the products of all changes.
+void add_products(Form& form, const Bounds& factor, const std::vector<Bounds>& change) {
+    for (std::size_t i = 0; i < form.size(); ++i) {
+        for (std::size_t j = 0; j < form.size(); ++j) {
+            form[i][j] = form[i][j] + factor * change[i] * change[j];
         }
-        const auto [one, other] = closed_at(e.state.packing, c);
-        const Bounds per_length = bounds_of(e.forces[l] / Range(Rational(one) + Rational(other)));
-        for (std::size_t a = 0; a < layout.axes(); ++a) {
-            const auto change = [&](std::size_t m) {
-                return v[m][layout.of_disk(c.i) + a] - v[m][layout.of_disk(c.j) + a];
-            };
-            for (std::size_t i = 0; i < acting.size(); ++i) {
-                for (std::size_t j = 0; j < acting.size(); ++j) {
-                    form[i][j] = form[i][j] - per_length * change(i) * change(j);
+    }
+}
+
+bool follows(const Evidence& e) {
+    return e.state.load.kind == LoadKind::true_stress;
+}
+
+/// d2W on the held coordinates: - sum f_l D_l v_i . D_l v_j / D_l; under true stresses the second derivative of the
+/// area times their potential, with F_a / L_a on the lengths besides.
+Form second_variation(const Evidence& e, const Motions& v) {
+    const Layout& layout = e.problem.layout;
+    Form form(v.size(), std::vector<Bounds>(v.size(), Bounds(0)));
+    std::vector<Bounds> change(v.size());
+    for (std::size_t l = 0; l < e.forces.size(); ++l) {
+        const Row& row = e.problem.rows[l];
+        const auto [one, other] = closed_at(e.state.packing, e.state.contacts[l]);
+        for (std::size_t a = 0; row.quadratic && a < layout.axes(); ++a) {
+            for (std::size_t m = 0; m < v.size(); ++m) {
+                change[m] = Bounds(0);
+                for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
+                    const Bounds& part = v[m][static_cast<std::size_t>(row.coordinate[k])];
+                    change[m] = row.axis[k] == a ? change[m] + part * row.sign[k] : change[m];
                 }
             }
+            add_products(form, -bounds_of(e.forces[l] / Range(Rational(one) + Rational(other))), change);
+        }
+    }
+    for (std::size_t a = 0; follows(e) && a < layout.axes(); ++a) {
+        const std::size_t k = layout.of_length(a);
+        if (const int dof = e.problem.dof_of[k]; dof >= 0) {
+            std::transform(v.begin(), v.end(), change.begin(), [k](const auto& motion) { return motion[k]; });
+            const Bounds length = place(e, k);
+            add_products(form, bounds_of(e.finite_load[at(dof)]) * Bounds::outwards(1 / length.upper, 1 / length.lower),
+                         change);
         }
     }
     return form;
+}
+
+/// By how much the product of the lengths changes at most, from vertex to vertex.
+double growth(const Evidence& e) {
+    double most = 1;
+    for (std::size_t a = 0; follows(e) && a < e.problem.layout.axes(); ++a) {
+        const Bounds length = place(e, e.problem.layout.of_length(a));
+        most = length.positive() ? product_above(most, quotient_above(length.upper, length.lower))
+                                 : std::numeric_limits<double>::infinity();
+    }
+    return most;
 }
 
 /// A number that no eigenvalue is below: in a basis that is nearly that of the eigenvectors, by Gershgorin's discs.
@@ -139,17 +182,16 @@ double least_eigenvalue(const Form& form) {
 }
 
 /// The most that a coordinate moves to first order where the held ones do by 1 in the 2-norm.
-double swing_above(const Evidence& e, const std::vector<std::size_t>& acting) {
-    const Velocities velocities(e);
-    std::vector<double> square(e.problem.dof_of.size(), 0.0);
-    for (const std::size_t l : acting) {
-        const Velocities::Solution motion = velocities.opening(l, 1);
-        for (std::size_t k = 0; k < square.size(); ++k) {
-            const double most = e.problem.dof_of[k] < 0 ? 0 : rounded_up(abs(motion.middle[k]) + motion.radius);
-            square[k] = sum_above(square[k], product_above(most, most));
+double swing_above(const Motions& motions) {
+    double most = 0;
+    for (std::size_t k = 0; k < motions.front().size(); ++k) {
+        double square = 0;
+        for (const std::vector<Bounds>& motion : motions) {
+            square = sum_above(square, product_above(motion[k].size(), motion[k].size()));
         }
+        most = std::max(most, square);
     }
-    return root_above(*std::max_element(square.begin(), square.end()));
+    return root_above(most);
 }
 
 Evidence evidence_around(const Evidence& e, double swing, double reach) {
@@ -161,8 +203,12 @@ Evidence evidence_around(const Evidence& e, double swing, double reach) {
 ClaimCheck judge_minimum(const Evidence& e, const MinimumClaim& claim) {
     ClaimCheck check{.claim = "minimum", .claimed = true};
     const Load& load = e.state.load;
-    if (load.kind != LoadKind::nominal || !load.infinitesimal.empty() || e.state.packing.cell.any()) {
-        return answer(check, Verdict::undecided, "asked of dead loads in a box, without infinitesimal ones");
+    const auto any = [](const std::vector<double>& forces) {
+        return std::any_of(forces.begin(), forces.end(), [](double f) { return f != 0; });
+    };
+    if (!load.infinitesimal.empty() || (follows(e) && any(load.disk_force)) || e.state.packing.cell.keeps_shape) {
+        return answer(check, Verdict::undecided,
+                      "asked of loads with a potential, without infinitesimal ones, and not of the size of a cell");
     }
     if (!e.vertex.found) {
         return answer(check, Verdict::undecided, "no true vertex is proved: " + e.why_no_vertex());
@@ -180,7 +226,7 @@ ClaimCheck judge_minimum(const Evidence& e, const MinimumClaim& claim) {
                                      : fmt::format("multipliers up to {:.3g} are too large for a curvature of {:.6g}",
                                                    multiplier, claim.curvature));
     }
-    const double swing = swing_above(e, acting);
+    const double swing = swing_above(motions_of(e, acting));
     if (!std::isfinite(product_above(swing, reach))) { // levers beyond the range of double
         return answer(check, Verdict::undecided, "velocities are beyond the range of double");
     }
@@ -188,17 +234,17 @@ ClaimCheck judge_minimum(const Evidence& e, const MinimumClaim& claim) {
     if (!wide.vertex.found) {
         return answer(check, Verdict::undecided, "no vertices around the stored place are proved");
     }
-    if (const std::string why = not_positive(wide); !why.empty()) {
-        return answer(check, Verdict::undecided, why);
+    if (const std::string why = not_positive(wide); !why.empty() || !(growth(wide) < 2)) {
+        return answer(check, Verdict::undecided, why.empty() ? "the lengths are not known well enough" : why);
     }
-    const double curvature = least_eigenvalue(second_variation(wide, acting));
+    const double curvature = least_eigenvalue(second_variation(wide, motions_of(wide, acting)));
     const std::string found =
         fmt::format("d2W is at least {:.6g} times |dc|^2, claimed {:.6g}; multipliers up to {:.3g}", curvature,
                     claim.curvature, multiplier);
     if (!(curvature >= claim.curvature) || !(product_above(4, multiplier) < next_below(curvature * reach))) {
         return answer(check, Verdict::undecided, found);
     }
-    const Evidence nearer = evidence_around(e, swing, next_above(multiplier / curvature));
+    const Evidence nearer = evidence_around(e, swing, next_above((follows(e) ? 2 : 1) * multiplier / curvature));
     const double away =
         nearer.vertex.found ? rounded_up(nearer.vertex.moved_most) : std::numeric_limits<double>::infinity();
     check.numbers = {{"away", away}, {"curvature", curvature}};

@@ -230,6 +230,95 @@ BOOST_AUTO_TEST_CASE(what_is_level_with_the_load_only_where_it_is_held_is_no_fre
     }
 }
 
+/// Lengths of the cell move on the mechanism, in opposite directions: relative velocities through images matter.
+BOOST_AUTO_TEST_CASE(a_dimer_in_a_cell_has_the_second_variation_of_its_closed_form) {
+    const Inspection upright = inspected(dimer_in_a_cell(2));
+    BOOST_TEST(upright.counting.dof_count == 3);
+    BOOST_TEST(upright.counting.contact_count == 2);
+    BOOST_TEST_REQUIRE((upright.stable == Verdict::proved), upright.remark);
+    const double second = 12 - 2 * (3 + 81.0 / 64); // per radian squared
+    const Enclosure found = upright.yielding->second_variation.at(0);
+    BOOST_TEST(std::abs(found.value - second / (1 + 2 * 5.25 * 5.25)) <= found.radius);
+    BOOST_TEST(found.radius < 1e-9);
+    const auto& rate = upright.yielding->length_rate;
+    BOOST_TEST(std::abs(rate[0].value - 5.25 * 5.25 / second) <= rate[0].radius);
+    BOOST_TEST(std::abs(rate[1].value + 5.25 * 5.25 / second) <= rate[1].radius);
+    BOOST_TEST(rate[1].radius < 1e-6);
+    for (const double g : {1.0, 1.42}) { // positive above 1.4219
+        const Inspection falls = inspected(dimer_in_a_cell(g));
+        BOOST_TEST((falls.stable == Verdict::refuted), falls.remark);
+        const double scale = 5.25 * 5.25; // s is a length of the cell
+        BOOST_TEST(std::abs(falls.second_order.value - (6 * g - 2 * (3 + 81.0 / 64)) / scale) <=
+                   falls.second_order.radius);
+    }
+    BOOST_TEST((inspected(dimer_in_a_cell(1.423)).stable == Verdict::proved));
+    // At another load it moves; a tilt without load falls over.
+    BOOST_TEST((inspected(dimer_in_a_cell(2, 1, 1.1)).stable == Verdict::undecided));
+    BOOST_TEST((inspected(dimer_in_a_cell(2, 1, 1, R"("x", "y", "xy")")).stable == Verdict::undecided));
+    // Stored beside the minimum, and off the grid of the cell.
+    State beside = dimer_in_a_cell(2);
+    for (std::size_t k = 0; k < 4; ++k) {
+        beside.packing.q[k] += 1.0 / 3;
+    }
+    beside.packing.q[2] += 0x1p-30;
+    beside.packing.q[3] -= 0x1p-30;
+    const auto near = required(inspect_mechanism(beside, count_contacts(beside.packing, beside.contacts)));
+    BOOST_TEST((near.stable == Verdict::proved), near.remark);
+    BOOST_TEST(near.away > 0x1p-31);
+    BOOST_TEST(near.away < 0x1p-26);
+}
+
+BOOST_AUTO_TEST_CASE(bodies_in_space_have_minima_along_mechanisms) {
+    const State corner = sphere_in_a_corner();
+    BOOST_TEST((inspected(corner).stable == Verdict::proved));
+    const auto hanging = required(inspect_mechanism(corner, count_contacts(corner.packing, corner.contacts)));
+    BOOST_TEST((hanging.stable == Verdict::proved), hanging.remark);
+    BOOST_TEST(hanging.record.mechanisms == 2);
+    BOOST_TEST(hanging.curvature > 7.99); // 49/8 per radian squared, of an arm of 7/8
+    BOOST_TEST(hanging.curvature < 8 * (1 + 1e-9));
+    State standing = corner;
+    for (std::size_t a = 0; a < 3; ++a) {
+        standing.packing.q[3 + a] = 2 - corner.packing.q[3 + a];
+    }
+    BOOST_TEST((inspected(standing).stable == Verdict::refuted));
+    const State cell = spheres_in_a_cell(2);
+    const auto upright = required(inspect_mechanism(cell, count_contacts(cell.packing, cell.contacts)));
+    BOOST_TEST((upright.stable == Verdict::proved), upright.remark);
+    const double least = (18 - 3888.0 / 343) / 108; // two coordinates of the member at the square arm 108 are held
+    BOOST_TEST(upright.curvature < least * (1 + 1e-9));
+    BOOST_TEST(upright.curvature > least * 0.999);
+    BOOST_TEST((inspected(spheres_in_a_cell(1)).stable == Verdict::refuted));
+}
+
+/// The area times the potential of true stresses: lengths that move against each other lower it.
+BOOST_AUTO_TEST_CASE(under_true_stresses_the_second_variation_has_the_term_of_the_lengths) {
+    const Inspection turned = inspected(turned_rectangle(1, 1));
+    BOOST_TEST_REQUIRE((turned.stable == Verdict::proved), turned.remark);
+    const Enclosure second = turned.yielding->second_variation.at(0);
+    BOOST_TEST(std::abs(second.value - 8320.0 / 4169) <= second.radius); // X and Y move by half of the lengths
+    BOOST_TEST(second.radius < 1e-9);
+    const auto& rate = turned.yielding->length_rate;
+    BOOST_TEST(std::abs(rate[0].value - 150.0 / 169) <= rate[0].radius);
+    BOOST_TEST(std::abs(rate[1].value + 150.0 / 169) <= rate[1].radius);
+    BOOST_TEST(rate[1].radius < 1e-6);
+    // The forces are sigma_1 L_y and sigma_2 L_x: lengths of 60/13 that change by -+150/169.
+    BOOST_TEST(std::abs(turned.yielding->down.stress - 5.0 / 31) < 1e-9);
+    BOOST_TEST(std::abs(turned.yielding->up.stress - 6.2) < 1e-9);
+    BOOST_TEST((inspected(turned_rectangle(1, 1.1)).stable == Verdict::undecided));
+    // Under dead loads 4/3 of each other every angle is neutral; under the true stresses of the same forces it falls.
+    State falls = oval_in_a_box(4, 3, std::atan2(5, 12));
+    BOOST_TEST((inspected(falls).stable == Verdict::undecided));
+    falls.load.kind = LoadKind::true_stress;
+    falls.load.stress = {98, 45};
+    BOOST_TEST((inspected(falls).stable == Verdict::refuted));
+    // With forces on disks they have no potential.
+    State loaded = turned_rectangle(1, 1);
+    loaded.load.disk_force.assign(16, 0);
+    BOOST_TEST((inspected(loaded).stable == Verdict::proved));
+    loaded.load.disk_force[1] = 0x1p-40;
+    BOOST_TEST((inspected(loaded).stable != Verdict::proved));
+}
+
 BOOST_AUTO_TEST_CASE(a_dimer_across_a_box_under_another_load_moves) {
     const Inspection inspection = inspected(dimer_across(3, 4.1));
     BOOST_TEST(!inspection.equilibrium);

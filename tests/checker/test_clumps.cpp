@@ -145,6 +145,32 @@ BOOST_AUTO_TEST_CASE(a_minimum_along_mechanisms_is_certified_and_verified) {
     }
 }
 
+/// Of cells and under true stresses: the curvature that the checker finds is that of the closed form, on the held
+/// coordinate, a length of the cells.
+BOOST_AUTO_TEST_CASE(minima_in_cells_and_under_true_stresses_are_verified_to_their_closed_form) {
+    const std::vector<std::pair<State, double>> all{
+        {dimer_in_a_cell(2), (12 - 2 * (3 + 81.0 / 64)) / (5.25 * 5.25)},
+        {spheres_in_a_cell(2), (18 - 3888.0 / 343) / (3 * 78.0 * 78 / 49)},
+        {turned_rectangle(1, 1), 8320.0 / (68 * 68)}}; // a flank moves by 68/13 per radian
+    for (const auto& [state, curvature] : all) {
+        const Certificate certificate = of_clumps(state);
+        BOOST_REQUIRE(certificate.claims.minimum.has_value());
+        const Verification verification = read_and_verified(certificate);
+        BOOST_TEST((verification.verdict == Verdict::proved), verification.checks.back().detail);
+        const double found = verification.checks.back().numbers.at(1).second;
+        BOOST_TEST(found == curvature, boost::test_tools::tolerance(1e-6));
+        Certificate forged = certificate;
+        forged.claims.minimum->curvature = curvature * (1 + 1e-6);
+        BOOST_TEST((verify(forged).verdict == Verdict::undecided));
+    }
+    for (const State& state : {dimer_in_a_cell(1), dimer_in_a_cell(1.42), spheres_in_a_cell(1)}) {
+        Certificate forged = of_clumps(state);
+        BOOST_TEST(!forged.claims.minimum.has_value());
+        forged.claims.minimum = MinimumClaim{1, 1e-6};
+        BOOST_TEST((read_and_verified(forged).verdict != Verdict::proved));
+    }
+}
+
 /// Claims of free motions, where a bar is level with what it hangs from at the held place alone.
 BOOST_AUTO_TEST_CASE(what_is_level_where_it_is_held_is_no_free_motion_for_the_checker) {
     for (const double second : {-2.0, 2.0}) {

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <string>
@@ -156,6 +157,66 @@ inline State row_of_dimers() {
         "cell": {"axes": ["periodic", "walls"], "moves": ["x"], "tilt": [0], "pin": 0},
         "load": {"stress": [12, 20], "reference_length": [1, 1]}, "disks": [[1, 1, 1], [2.8, 0.25, 0.25]],
         "bars": [[0, 1, 1.95]], "contacts": [[0, 1, [-1, 0]], [0, "bottom"], [1, "bottom"], [0, "top"]]})");
+}
+
+/// One dimer per period, both of which move: it touches its next images along x and along y, where its bar, 3-3, leans
+/// towards both, at 4-3. A couple (g, g) on the members holds it upright: with L = 3 (cos + sin) + (25 - 9 (cos -
+/// sin)^2)^(1/2) along x, and so on, W'' = 6 g - (3 + 81/64) (F_1 + F_2) per radian squared, L_x' = -21/4 = -L_y'.
+/// `moves`: of the cell; "xy" leaves the tilt without a load.
+inline State dimer_in_a_cell(double g, double f1 = 1, double f2 = 1, const char* moves = R"("x", "y")") {
+    return clumps_of(fmt::format(R"({{"format": "isostat-state", "version": 2, "length": [7, 7],
+        "cell": {{"axes": ["periodic", "periodic"], "moves": [{}], "tilt": [0], "pin": 0}},
+        "load": {{"stress": [{:.17g}, {:.17g}], "reference_length": [1, 1]}},
+        "disk_force": [[{:.17g}, {:.17g}], [{:.17g}, {:.17g}]], "disks": [[1, 1, 2.5], [4, 4, 2.5]],
+        "bars": [[0, 1, "0x1.0f876ccdf6cd9p+2"]], "contacts": [[0, 1, [-1, 0]], [0, 1, [0, -1]]]}})",
+                                 moves, f1, f2, -g, -g, g, g));
+}
+
+/// The same in space, three periods, the bar 6-6-6 and the images at 7-6-6: W'' = 18 (g - 1) - 3888/343 about
+/// two axes, L_a' = 78/7 sqrt 3 tau_a for a turn along tau.
+inline State spheres_in_a_cell(double g) {
+    return clumps_of(fmt::format(R"({{"format": "isostat-state", "version": 2, "dimension": 3, "length": [13, 13, 13],
+        "cell": {{"axes": ["periodic", "periodic", "periodic"], "moves": ["x", "y", "z"], "tilt": [0, 0, 0], "pin": 0}},
+        "load": {{"stress": [1, 1, 1], "reference_length": [1, 1, 1]}},
+        "disk_force": [[{0:.17g}, {0:.17g}, {0:.17g}], [{1:.17g}, {1:.17g}, {1:.17g}]],
+        "disks": [[1, 1, 1, 5.5], [7, 7, 7, 5.5]], "bars": [[0, 1, {2:.17g}]],
+        "contacts": [[0, 1, [-1, 0, 0]], [0, 1, [0, -1, 0]], [0, 1, [0, 0, -1]]]}})",
+                                 -g, g, std::sqrt(108.0)));
+}
+
+/// A rectangle of eight arcs between four walls, its flanks turned by +-alpha from the walls, cos = 12/13: with flanks
+/// of radius 6 whose centres are 4 from the middle L = 12 - 8 cos(theta -+ alpha). Under equal true stresses the area
+/// times their potential has the second derivative 8320/169 per radian squared, 5760/169 twice of it that of the
+/// forces.
+inline State turned_rectangle(double s1, double s2) {
+    const double alpha = std::asin(5.0 / 13);
+    const double right = std::asin(1.0);
+    const std::array<double, 4> flank{alpha, right - alpha, 2 * right + alpha, 3 * right - alpha}; // outward normals
+    const auto radius = [](std::size_t k) { return k % 2 == 0 ? 6.0 : 0.25; };
+    std::array<std::array<double, 2>, 8> at{}; // flanks and the caps after them
+    for (std::size_t k = 0; k < 4; ++k) {
+        const double next = k < 3 ? flank[k + 1] : flank[0] + 4 * right;
+        const double half = (next - flank[k]) / 2;
+        const double far = std::sqrt(5.75 * 5.75 - 16 * std::sin(half) * std::sin(half)) - 4 * std::cos(half);
+        at[2 * k] = {-4 * std::cos(flank[k]), -4 * std::sin(flank[k])};
+        at[2 * k + 1] = {far * std::cos(flank[k] + half), far * std::sin(flank[k] + half)};
+    }
+    std::string disks, bars;
+    for (std::size_t i = 0; i < 8; ++i) {
+        disks += fmt::format("{}[{:.17g}, {:.17g}, {}]", i == 0 ? "" : ", ", 30.0 / 13 + at[i][0], 30.0 / 13 + at[i][1],
+                             radius(i));
+        for (std::size_t j = i + 1; j < 8; ++j) {
+            if (j == i + 1 || (j == i + 2 && j < 7) || (i == 0 && j == 7)) { // the ring, and neighbours but one
+                const double length = j == i + 2 ? std::hypot(at[i][0] - at[j][0], at[i][1] - at[j][1]) : 5.75;
+                bars += fmt::format("{}[{}, {}, {:.17g}]", bars.empty() ? "" : ", ", i, j, length);
+            }
+        }
+    }
+    return clumps_of(fmt::format(R"({{"format": "isostat-state", "version": 2, "length": [{0:.17g}, {0:.17g}],
+        "load": {{"kind": "true", "stress": [{1:.17g}, {2:.17g}]}}, "disks": [{3}], "bars": [{4}],
+        "arcs": [[0, 1, 2, 3, 4, 5, 6, 7]],
+        "contacts": [[0, "right"], [2, "top"], [4, "left"], [6, "bottom"]]}})",
+                                 60.0 / 13, s1, s2, disks, bars));
 }
 
 } // namespace isostat::test

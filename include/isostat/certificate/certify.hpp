@@ -88,8 +88,8 @@ State with_free_motions_held(State state);
 struct Yielding {
     PerAxis<Enclosure> length_rate{}; ///< dL_a per unit of the loaded stress
     /// Eigenvalues of d2W at the minimum on the mechanisms that the load reaches (it is 0 on all others), ascending:
-    /// bodies in (X, Y, angle), X and Y of the mean of the centres of their members, and lengths. Empty above 256
-    /// mechanisms, and where no bound was proved.
+    /// bodies in (X, Y, angle), X and Y of the mean of the centres of their members, along periodic axes without the
+    /// mean of all bodies, and lengths and tilt. Empty above 256 mechanisms, in space, and where no bound was proved.
     std::vector<Enclosure> second_variation;
     /// Where the stress rises, and where it falls: what happens first if forces and gaps went on changing at the rates
     /// that they have, in double. Not proved, and not where it will happen. Contact i = -1: nothing.
@@ -114,7 +114,8 @@ struct MechanismInspection {
     /// refuted: the potential has a maximum along the mechanism, the equilibrium is not stable; proved: an equilibrium
     /// next to the stored place is a strict local minimum; undecided: not shown.
     Verdict stable = Verdict::undecided;
-    Enclosure second_order; ///< d2W/ds2 along the mechanism (k = 1, dead loads), s = the fastest coordinate
+    /// d2W/ds2 along the mechanism (k = 1), s = the fastest coordinate; under true stresses of the area times Phi.
+    Enclosure second_order;
     /// `stable` is proved: how far the minimum is from the stored configuration, at most, and a lower bound of d2W on
     /// the held coordinates (U8).
     double away = 0, curvature = 0;

@@ -121,7 +121,8 @@ struct LoadIntervalClaim {
 /// farther than `away` from the stored one: the listed contacts and bars are closed, all contacts
 /// bear positive forces, no held coordinate bears a multiplier, and no other pair touches. There the
 /// potential of the load has a strict local minimum, except for motions that change no force: d2W is
-/// at least `curvature` times |dc|^2, c the held coordinates on which the load acts (statement U8).
+/// at least `curvature` times |dc|^2, c the held coordinates on which the load acts (statement U8); under true stresses
+/// that of the product of the lengths there times their potential.
 struct MinimumClaim {
     double away = 0;
     double curvature = 0;

@@ -20,10 +20,13 @@ namespace isostat {
 
 namespace {
 
-/// Dead loads; true stresses without forces on disks (S5).
-bool has_potential(const Load& load) {
-    return load.kind == LoadKind::nominal ||
-           std::all_of(load.disk_force.begin(), load.disk_force.end(), [](double force) { return force == 0; });
+/// Of U8: dead loads; true stresses without forces on disks and without a tilt that moves (S5).
+bool has_potential(const State& state) {
+    const std::vector<double>& forces = state.load.disk_force;
+    const Cell& cell = state.packing.cell;
+    return !cell.keeps_shape &&
+           (state.load.kind == LoadKind::nominal ||
+            (!cell.shears() && std::all_of(forces.begin(), forces.end(), [](double force) { return force == 0; })));
 }
 
 /// Signs of the forces, multipliers of what is held, and what the potential does along one mechanism. Rows that are
@@ -62,8 +65,8 @@ std::vector<std::size_t> judge_forces(MechanismInspection& inspection, Vertex& v
     }
     const std::size_t most = state.packing.bars.empty() ? 1 : acting.size(); // of clumps any one of several
     if (positive && at_rest && !acting.empty() && acting.size() <= most && inspection.remark.empty()) {
-        const bool known = has_potential(state.load) && !state.packing.cell.keeps_shape;
-        const Enclosure second = known ? least_curvature(vertex, state.load, acting) : Enclosure{0, roundoff::infinity};
+        const Enclosure second =
+            has_potential(state) ? least_curvature(vertex, state.load, acting) : Enclosure{0, roundoff::infinity};
         inspection.second_order = second;
         const bool maximum = second.negative();
         if (maximum) {
@@ -77,19 +80,18 @@ std::vector<std::size_t> judge_forces(MechanismInspection& inspection, Vertex& v
 }
 
 /// The potential has a minimum along what is held (U8). \pre the nearest gap is recorded
-void judge_minimum(MechanismInspection& inspection, const Vertex& vertex, const Load& load,
+void judge_minimum(MechanismInspection& inspection, const Vertex& vertex, const State& state,
                    const std::vector<std::size_t>& acting, const std::vector<Contact>& candidates, double moved) {
     const EquilibriumRecord& record = inspection.record;
-    const bool asked =
-        !acting.empty() && has_potential(load) && load.infinitesimal.empty() && !vertex.packing.cell.keeps_shape;
+    const bool asked = !acting.empty() && has_potential(state) && state.load.infinitesimal.empty();
     const auto minimum =
-        asked ? minimum_near(vertex, load, acting, record.min_gap - record.min_gap_bound) : std::nullopt;
+        asked ? minimum_near(vertex, state.load, acting, record.min_gap - record.min_gap_bound) : std::nullopt;
     if (minimum) {
         inspection.stable = Verdict::proved;
         inspection.away = minimum->away + 3 * moved * std::sqrt(static_cast<double>(vertex.packing.q.size()));
         inspection.curvature = minimum->curvature;
         inspection.yielding =
-            yielding_at(vertex, load, acting, *minimum,
+            yielding_at(vertex, state.load, acting, *minimum,
                         without(candidates, vertex.structure.contacts(), vertex.packing.disk_count()));
         inspection.remark =
             fmt::format("equilibrium with {} mechanism(s), a strict local minimum within {} of the "
@@ -169,7 +171,7 @@ Result<MechanismInspection> inspect_mechanism(const State& stored, const Countin
         if (auto failure = record_smallest_gap(record, vertex, vertex.enclosure, candidates)) {
             return *failure;
         }
-        judge_minimum(inspection, vertex, state.load, acting, candidates.contacts, moved);
+        judge_minimum(inspection, vertex, state, acting, candidates.contacts, moved);
         const double least =
             std::max(0.0, (record.min_gap - record.min_gap_bound) * (1 - 2 * roundoff::u)); // it is no overlap
         record.min_gap = ArcBodies(state.packing).below(least);

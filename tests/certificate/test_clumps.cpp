@@ -255,6 +255,14 @@ BOOST_AUTO_TEST_CASE(a_dimer_in_a_cell_has_the_second_variation_of_its_closed_fo
     // At another load it moves; a tilt without load falls over.
     BOOST_TEST((inspected(dimer_in_a_cell(2, 1, 1.1)).stable == Verdict::undecided));
     BOOST_TEST((inspected(dimer_in_a_cell(2, 1, 1, R"("x", "y", "xy")")).stable == Verdict::undecided));
+    // One period moves; the size of the cell would be another potential.
+    State leaning = dimer_that_leans_along_one_period();
+    const Inspection leans = inspected(leaning);
+    BOOST_TEST_REQUIRE((leans.stable == Verdict::proved), leans.remark);
+    const Enclosure along = leans.yielding->second_variation.at(0);
+    BOOST_TEST(std::abs(along.value - (69.0 / 4 - 3 - 81.0 / 64) / (1 + 5.25 * 5.25)) <= along.radius);
+    leaning.packing.cell.keep_shape();
+    BOOST_TEST((inspected(leaning).stable == Verdict::undecided));
     // Stored beside the minimum, and off the grid of the cell.
     State beside = dimer_in_a_cell(2);
     for (std::size_t k = 0; k < 4; ++k) {

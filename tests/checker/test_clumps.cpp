@@ -163,6 +163,10 @@ BOOST_AUTO_TEST_CASE(minima_in_cells_and_under_true_stresses_are_verified_to_the
         forged.claims.minimum->curvature = curvature * (1 + 1e-6);
         BOOST_TEST((verify(forged).verdict == Verdict::undecided));
     }
+    Certificate leaning = of_clumps(dimer_that_leans_along_one_period());
+    BOOST_TEST((verify(leaning).verdict == Verdict::proved));
+    leaning.state.packing.cell.keep_shape(); // the size of the cell would be another potential
+    BOOST_TEST((verify(leaning).verdict == Verdict::undecided));
     for (const State& state : {dimer_in_a_cell(1), dimer_in_a_cell(1.42), spheres_in_a_cell(1)}) {
         Certificate forged = of_clumps(state);
         BOOST_TEST(!forged.claims.minimum.has_value());

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <fstream>
@@ -170,6 +171,15 @@ inline State dimer_in_a_cell(double g, double f1 = 1, double f2 = 1, const char*
         "disk_force": [[{:.17g}, {:.17g}], [{:.17g}, {:.17g}]], "disks": [[1, 1, 2.5], [4, 4, 2.5]],
         "bars": [[0, 1, "0x1.0f876ccdf6cd9p+2"]], "contacts": [[0, 1, [-1, 0]], [0, 1, [0, -1]]]}})",
                                  moves, f1, f2, -g, -g, g, g));
+}
+
+/// One period moves, along which its bar leans on the next image under forces (2, 15/4): W'' = 69/4 - 3 - 81/64.
+inline State dimer_that_leans_along_one_period() {
+    State state = dimer_in_a_cell(0, 1, 1, R"("y")");
+    state.load.disk_force = {-2, -3.75, 2, 3.75};
+    state.packing.length(0) = 7.5;
+    state.contacts.erase(std::find(state.contacts.begin(), state.contacts.end(), pair_of(0, 1, {{-1, 0, 0}})));
+    return state;
 }
 
 /// The same in space, three periods, the bar 6-6-6 and the images at 7-6-6: W'' = 18 (g - 1) - 3888/343 about

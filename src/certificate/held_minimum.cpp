@@ -402,6 +402,34 @@ double way_to_zero(double value, double rate, double terms, int direction) {
     return falls > 0x1p-40 * terms ? value / falls : roundoff::infinity;
 }
 
+/// Rates of the forces on such a motion at a fixed stress: H f' + H' f = F', where normals turn with the relative
+/// velocity over the distance.
+std::vector<double> turning_of(const Vertex& vertex, const Load& load, const std::vector<double>& velocity) {
+    const auto& contacts = vertex.structure.contacts();
+    std::vector<double> turning(contacts.size(), 0.0); // on degrees of freedom
+    for (std::size_t l = 0; l < contacts.size(); ++l) {
+        if (!contacts[l].of_disks()) {
+            continue;
+        }
+        const auto along = separation(vertex.packing.layout(), velocity, contacts[l]);
+        const double times =
+            vertex.statics.force(ContactId(l), load.loaded_stress()).value / zero_distance(vertex.packing, contacts[l]);
+        Separation(contacts[l], vertex.packing.layout())
+            .for_each_entry(vertex.structure.dofs(), along,
+                            [&](int dof, double entry) { turning[static_cast<std::size_t>(dof)] -= times * entry; });
+    }
+    for (const WallForce& wall : load.wall_forces(vertex.packing)) { // true stresses follow the lengths
+        const auto strain = [&](int at) {
+            const auto c = static_cast<std::size_t>(at);
+            return at < 0 ? 0 : velocity[c] / vertex.packing.q[c];
+        };
+        turning[static_cast<std::size_t>(vertex.structure.dofs().dof_of(static_cast<std::size_t>(wall.coordinate)))] -=
+            wall.stress * wall.length * wall.other * (strain(wall.length_at) + strain(wall.other_at));
+    }
+    vertex.factorisation.solve_forces(turning);
+    return turning;
+}
+
 } // namespace
 
 double force_norm(const Vertex& vertex, double sigma) {
@@ -424,28 +452,7 @@ Yielding yielding_at(const Vertex& vertex, const Load& load, const std::vector<s
             velocity[k] += minimum.rate[i] * motion.v[k];
         }
     }
-    // H f' + H' f = F': normals turn with the relative velocity over the distance.
-    std::vector<double> turning(contacts.size(), 0.0); // on degrees of freedom
-    for (std::size_t l = 0; l < contacts.size(); ++l) {
-        if (!contacts[l].of_disks()) {
-            continue;
-        }
-        const auto along = separation(vertex.packing.layout(), velocity, contacts[l]);
-        const double times =
-            vertex.statics.force(ContactId(l), sigma).value / zero_distance(vertex.packing, contacts[l]);
-        Separation(contacts[l], vertex.packing.layout())
-            .for_each_entry(vertex.structure.dofs(), along,
-                            [&](int dof, double entry) { turning[static_cast<std::size_t>(dof)] -= times * entry; });
-    }
-    for (const WallForce& wall : load.wall_forces(vertex.packing)) { // true stresses follow the lengths
-        const auto strain = [&](int at) {
-            const auto c = static_cast<std::size_t>(at);
-            return at < 0 ? 0 : velocity[c] / vertex.packing.q[c];
-        };
-        turning[static_cast<std::size_t>(vertex.structure.dofs().dof_of(static_cast<std::size_t>(wall.coordinate)))] -=
-            wall.stress * wall.length * wall.other * (strain(wall.length_at) + strain(wall.other_at));
-    }
-    vertex.factorisation.solve_forces(turning);
+    const std::vector<double> turning = turning_of(vertex, load, velocity);
     Yielding yielding;
     yielding.length_rate = minimum.length_rate;
     yielding.second_variation = minimum.second_variation;

@@ -100,6 +100,14 @@ void judge_minimum(MechanismInspection& inspection, const Vertex& vertex, const 
     }
 }
 
+void record_counts(EquilibriumRecord& record, const Counting& counting) {
+    record.dof_count = counting.dof_count;
+    record.contact_count = counting.contact_count;
+    record.rank = counting.rank;
+    record.hyperstaticity = counting.hyperstaticity;
+    record.mechanisms = counting.mechanisms;
+}
+
 /// Which pair overlaps, or why the gaps are not known; empty: none does.
 std::string overlap_of(const Packing& packing, const Result<Vertex::Gaps>& gaps) {
     if (!gaps.ok()) {
@@ -121,8 +129,7 @@ Result<MechanismInspection> inspect_mechanism(const State& stored, const Countin
     if (state.packing.cell.any()) {
         auto snapped = on_grid(state.packing, state.contacts, moved);
         if (!snapped) {
-            return Failure{FailureKind::undecided,
-                           "a period or tilt that cannot move is not on the grid of the packing, or an image too far"};
+            return Failure{FailureKind::undecided, "the cell cannot be put on the grid of the packing"};
         }
         state.packing = std::move(*snapped);
     }
@@ -158,11 +165,7 @@ Result<MechanismInspection> inspect_mechanism(const State& stored, const Countin
     record.opens_low = record.opens_high = record.min_gap_contact = {ContactKind::disk_disk, -1, -1};
     record.min_gap = unknown;
     record.force_bound = vertex.statics.bound(sigma);
-    record.dof_count = counting.dof_count;
-    record.contact_count = counting.contact_count;
-    record.rank = counting.rank;
-    record.hyperstaticity = counting.hyperstaticity;
-    record.mechanisms = counting.mechanisms;
+    record_counts(record, counting);
     record.rattlers = static_cast<int>(inspection.rattlers.size());
     record.backbone = carrying_contacts(vertex);
     record.gap_residual = vertex.enclosure.max_gap;

@@ -1,21 +1,17 @@
 // Cost of a trajectory in units of its linear algebra: milliseconds per arc divided by one KLU, and one UMFPACK,
 // analysis + factorisation of the same contact matrices, at level `decisions` (regularity, bound of the inverse and
-// every decision proved at every vertex), and the parts of that cost. Everything that an equilibrium costs is shared
-// out among its arcs. With one thread CPU time, so that other processes disturb little; with several time on the wall,
-// which only a quiet machine tells; the units are those of one thread. Each run is repeated from the same start, the
-// tables show medians and extremes. The status is 1 when a run fails. Usage:
+// every decision proved at every vertex). Everything that an equilibrium costs is shared out among its arcs. With one
+// thread CPU time, so that other processes disturb little; with several time on the wall, which only a quiet machine
+// tells; the units are those of one thread. Each run is repeated from the same start, the tables show medians and
+// extremes. The status is 1 when a run fails. Usage:
 //   bench_arc_cost [--json FILE] [--equilibria E] [--arcs A] [--repeats R] [--threads T] [--levels]
-//   [n | state file ...]
+//   [--dimension D] [n | state file ...]
 // default: 400 1936 4900, 30 equilibria, 3 repeats. --arcs A ends each run after A arcs: large packings, where a
 // rearrangement can have thousands. --levels: the cost of the levels `states` and `arcs` too, one certificate of an
 // equilibrium and one certified arc; the status is 1 when something stays uncertified.
 #include "bench/shared/references.hpp"
 #include "bench/shared/report.hpp"
 #include "bench/shared/stretch.hpp"
-#include "contact/candidates.hpp"
-#include "exact/rank.hpp"
-#include "statics/statics.hpp"
-#include "verified/configuration.hpp"
 
 #include <isostat/certificate/certify.hpp>
 
@@ -34,30 +30,7 @@ namespace {
 struct Row {
     int n = 0;
     bench::Stretches proved;
-    Sample rank_against_umfpack;
 };
-
-/// Parts of the cost of an arc, at the last equilibrium; returns exact rank / UMFPACK.
-Sample parts(int n, const State& state, bench::Table& table) {
-    const DofMap dofs(state.packing);
-    const auto residues = exact_contact_matrix(state.packing, dofs, state.contacts);
-    const sparse::Ordering ordering(residues);
-    auto proved = IsostaticStructure::prove(state.packing, state.contacts);
-    const IsostaticStructure& structure = proved.value();
-    const Factorisation factorisation(structure);
-    InverseBoundCache cache;
-    InverseBound inverse = bound_inverse(structure, factorisation, cache);
-    const bench::Pair rank =
-        bench::in_turn([&] { (void)exact::rank(residues, ordering); }, [&] { bench::umfpack(structure.matrix()); });
-    table.add({static_cast<long>(n), rank.second, rank.first,
-               bench::milliseconds([&] { const sparse::Ordering again(residues); }),
-               bench::milliseconds([&] { const Factorisation again(structure); }),
-               bench::milliseconds([&] { inverse = bound_inverse(structure, factorisation, cache); }),
-               bench::milliseconds(
-                   [&] { const Statics again(state.packing, state.load, structure, factorisation, inverse); }),
-               bench::milliseconds([&] { (void)find_candidates(state.packing, 0.8); })});
-    return rank.ratio();
-}
 
 /// Of y ~ n^x between two rows, repeat by repeat.
 Sample exponent(const Row& small, const Row& large, const Sample& at_small, const Sample& at_large) {
@@ -107,26 +80,19 @@ int main(int argc, char** argv) {
     int arcs = 0;
     int repeats = 3;
     int threads = 1;
+    int dimension = plane;
     bool with_levels = false;
     bench::Program program("bench_arc_cost", "milliseconds per arc / one KLU or UMFPACK analysis + factorisation");
     program.option("--equilibria", equilibria, "equilibria of each run");
     program.option("--arcs", arcs, "end each run after this many arcs (0: at its last equilibrium)");
     program.option("--repeats", repeats, "runs of each level");
     program.option("--threads", threads, "threads of each run; above one, time on the wall counts");
+    program.option("--dimension", dimension, "3: numbers are of spheres");
     program.flag("--levels", with_levels, "certificates of states and arcs too");
     program.words("starts", sources, "numbers of disks or state files");
     if (const auto status = program.parse(argc, argv)) {
         return *status;
     }
-    bench::Table parts_table("parts", "Parts at an equilibrium:",
-                             {{"n", "n", ""},
-                              {"umfpack", "UMFPACK analysis + factorisation, ms", "ms", "{:.2f}"},
-                              {"rank", "exact rank, ms", "ms", "{:.2f}"},
-                              {"analysis", "symbolic analysis, ms", "ms", "{:.2f}"},
-                              {"factorisation", "numeric factorisation and layout, ms", "ms", "{:.2f}"},
-                              {"inverse", "bound of the inverse, ms", "ms", "{:.2f}"},
-                              {"statics", "statics, ms", "ms", "{:.2f}"},
-                              {"candidates", "candidates, ms", "ms", "{:.2f}"}});
     bench::Table table("arc_cost",
                        fmt::format("Cost of an arc, {}, {}, median (range) of {} runs:",
                                    arcs > 0 ? fmt::format("{} arcs", arcs) : fmt::format("{} equilibria", equilibria),
@@ -140,8 +106,7 @@ int main(int argc, char** argv) {
                         {"decisions", "decisions, ms", "ms", "{:.2f}"},
                         {"decisions_cpu", "decisions, CPU of all threads, ms", "ms", "{:.2f}"},
                         {"decisions_klu", "decisions / KLU", "KLU", "{:.2f}"},
-                        {"decisions_umfpack", "decisions / UMFPACK", "UMFPACK", "{:.2f}"},
-                        {"rank_umfpack", "exact rank / UMFPACK", "UMFPACK", "{:.2f}"}});
+                        {"decisions_umfpack", "decisions / UMFPACK", "UMFPACK", "{:.2f}"}});
     bench::Table level_table(
         "level_cost", fmt::format("Cost of certificates, median (range) of {} runs; of the states: of all", repeats),
         {{"n", "n", ""},
@@ -157,7 +122,7 @@ int main(int argc, char** argv) {
     bool good = true;
     std::vector<Row> rows;
     for (const std::string& source : sources) {
-        const auto begin_state = bench::start(source);
+        const auto begin_state = bench::start(source, dimension);
         if (!begin_state) {
             good = false;
             continue;
@@ -179,7 +144,6 @@ int main(int argc, char** argv) {
                 levels.enclosed.runs.push_back(bench::run_stretch(*begin_state, options));
             }
         }
-        row.rank_against_umfpack = parts(row.n, row.proved.front().last, parts_table);
         if (!row.proved.front().failure.empty()) {
             fmt::print(stderr, "{}: {}\n", source, row.proved.front().failure);
             good = false;
@@ -187,11 +151,10 @@ int main(int argc, char** argv) {
         const Sample proved = row.proved.per_arc();
         table.add({static_cast<long>(row.n), row.proved.front().counters.steps, row.proved.klu().median(),
                    row.proved.umfpack().median(), proved, row.proved.cpu_per_arc(), proved.over(row.proved.klu()),
-                   proved.over(row.proved.umfpack()), row.rank_against_umfpack});
+                   proved.over(row.proved.umfpack())});
         good = (!with_levels || levels.add_to(level_table, row)) && good;
         rows.push_back(std::move(row));
     }
-    program.show(parts_table);
     program.show(table);
     if (with_levels) {
         program.show(level_table);

@@ -26,6 +26,10 @@ klu_common defaults() {
 
 } // namespace
 
+FillReducing order_of(const isostat::State& state) {
+    return state.packing.dimension == isostat::plane ? FillReducing::chosen : FillReducing::metis;
+}
+
 void klu(const Matrix<double>& matrix) {
     (void)KluAnalysis(matrix).factorise();
 }

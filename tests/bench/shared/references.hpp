@@ -13,6 +13,8 @@ namespace bench {
 
 /// UMFPACK's own choice of an order, or nested dissection.
 enum class FillReducing { chosen, metis };
+/// Nested dissection for spheres, whose factors fill less with it.
+FillReducing order_of(const isostat::State& state);
 
 /// One analysis and one factorisation of the matrix, factors thrown away.
 void klu(const isostat::sparse::Matrix<double>& matrix);

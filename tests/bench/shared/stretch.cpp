@@ -52,8 +52,7 @@ class Watcher final : public RunObserver {
         if (seen_++ % options_.reference_every == 0) {
             const auto matrix = matrix_of(state);
             klu.add(milliseconds([&] { bench::klu(matrix); }).median());
-            umfpack.add(milliseconds([&] { bench::umfpack(matrix); }).median());
-            stretch_.last = state;
+            umfpack.add(milliseconds([&] { bench::umfpack(matrix, order_of(state)); }).median());
         }
         if (options_.visit) {
             options_.visit(state);

@@ -30,7 +30,6 @@ struct StretchOptions {
 struct Stretch {
     isostat::RunCounters counters;
     std::vector<isostat::ArcRecord> arcs;
-    isostat::State last;             ///< last equilibrium where the units were measured
     double milliseconds_per_arc = 0; ///< all of the run, equilibria included, shared out among its arcs
     double cpu_per_arc = 0;          ///< the same of all threads together, CPU time
     double klu = 0, umfpack = 0;     ///< medians over the equilibria: one analysis + factorisation, milliseconds

@@ -1,8 +1,8 @@
-// Error against run time of events, stresses and the two usual shortcuts (soft grains, small displacements), against a
-// certified reference of 320 bits. Static forces by rung of precision: bench_precision. Prints tables (Markdown);
+// Error against run time of events, stresses and a usual shortcut (small displacements), against a certified reference
+// of 320 bits. Static forces by rung of precision: bench_precision. Prints tables (Markdown);
 // writes tables.md, one CSV per table and, with gnuplot, figures. The status is 1 when an error is above its proved
 // bound.
-//   bench_work_precision [--json FILE] [--quick] [--part events|soft|small] [folder]      --quick: seconds, n = 36 and
+//   bench_work_precision [--json FILE] [--quick] [--part events|small] [folder]      --quick: seconds, n = 36 and
 //   64
 
 #include "bench/work_precision/report.hpp"
@@ -16,9 +16,9 @@ int main(int argc, char** argv) {
     work_precision::Settings settings;
     std::string part;
     std::string folder = ".";
-    bench::Program program("bench_work_precision", "error against run time of events, stresses and usual shortcuts");
+    bench::Program program("bench_work_precision", "error against run time of events, stresses and a usual shortcut");
     program.flag("--quick", settings.quick, "seconds, n = 36 and 64");
-    program.option("--part", part, "events, soft or small: only that part");
+    program.option("--part", part, "events or small: only that part");
     program.option("folder", folder, "for tables and figures");
     if (const auto status = program.parse(argc, argv)) {
         return *status;
@@ -30,12 +30,9 @@ int main(int argc, char** argv) {
         settings.seeds = {1};
         settings.equilibria = 5;
         settings.drift_equilibria = 8;
-        settings.soft_equilibria = 3;
-        settings.stiffness_ratios = {1e2, 1e3, 1e4};
     } else {
         settings.sizes = {100, 400};
         settings.seeds = {1, 2, 3};
-        settings.stiffness_ratios = {1e2, 1e3, 1e4, 1e5, 1e6};
     }
     std::filesystem::create_directories(settings.folder);
     if (part.empty()) {
@@ -46,7 +43,6 @@ int main(int argc, char** argv) {
         const auto wanted = [&](const char* name) { return part.empty() || part == name; };
         holds = (!wanted("events") || work_precision::events_and_stresses(settings)) && holds;
         holds = (!wanted("small") || work_precision::small_displacements(settings)) && holds;
-        holds = (!wanted("soft") || work_precision::soft_grains(settings)) && holds;
         return program.finish(holds);
     } catch (const std::exception& error) {
         fmt::print(stderr, "{}\n", error.what());

@@ -18,7 +18,7 @@ using namespace isostat;
 struct Row {
     std::string family, parameter;
     int disks = 0;
-    std::string outcome; ///< proved, refuted, undecided, refused, approximate (soft grains)
+    std::string outcome; ///< proved, refuted, undecided, refused
     std::string reason;  ///< of everything but proved
     std::string rung;
     double bound = -1; ///< proved bound of the error of every force / largest force; negative: none was proved

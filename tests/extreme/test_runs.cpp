@@ -1,10 +1,7 @@
-// Runs, not only states: what steers them decided at the edge too. And dynamics of any stiffness.
+// Runs, not only states: what steers them decided at the edge too.
 #include "extreme/catalogue.hpp"
 #include "support/crafted.hpp"
 #include "support/segments.hpp"
-#include "support/shortcuts/soft_grains.hpp"
-
-#include <isostat/certificate/certify.hpp>
 
 using namespace isostat;
 
@@ -104,45 +101,6 @@ BOOST_AUTO_TEST_CASE(runs_towards_every_stress_ratio) {
             follow("stress ratio", fmt::format("{} disks, run to σ₂/σ₁ = 1e{:+03d}", count, power), *start,
                    until(power < 0 ? -1 : +1, std::pow(10.0, power)));
         }
-    }
-}
-
-BOOST_AUTO_TEST_CASE(soft_grains_of_any_stiffness_choose_their_step) {
-    const auto start = prepared_or_none(disks_of(30));
-    BOOST_REQUIRE(start);
-    const auto rigid = inspect_vertex(*start);
-    BOOST_REQUIRE((rigid.ok() && rigid.value().equilibrium));
-    const double largest = *std::max_element(rigid.value().forces.begin(), rigid.value().forces.end());
-    for (const double kappa : {1e2, 1e4, 1e6, 1e8}) {
-        extreme::Row row;
-        row.family = "stiff dynamics";
-        row.disks = 30;
-        row.rung = "none";
-        SoftGrainOptions options{.stiffness_ratio = kappa, .max_steps = 400'000};
-        const extreme::Clock clock;
-        SoftGrains soft(start->packing, start->load, options);
-        const bool relaxed = soft.relax();
-        row.seconds = clock.seconds();
-        row.parameter = fmt::format("soft grains, stiffness / pressure = {:.0e} ({} steps of {:.2f} sqrt(m/K))", kappa,
-                                    soft.steps(), soft.time_step());
-        BOOST_TEST(std::isfinite(soft.energy())); // no step was unstable
-        double error = 0;
-        const auto contacts = soft.contacts();
-        for (std::size_t l = 0; l < start->contacts.size(); ++l) {
-            const auto at = std::find_if(contacts.begin(), contacts.end(),
-                                         [&](const SoftContact& c) { return c.contact == start->contacts[l]; });
-            const double force = at == contacts.end() ? 0 : at->force;
-            error = std::max(error, std::abs(force - rigid.value().forces[l]) / largest);
-        }
-        row.outcome = "approximate";
-        row.reason = fmt::format("forces differ from the rigid ones by {:.1e} of the largest{}", error,
-                                 relaxed ? "" : "; not relaxed");
-        row.checked = "forces of the rigid state; error below 1000 / stiffness ratio where it relaxes";
-        if (relaxed && kappa >= 1e4) {
-            BOOST_TEST(error < 1e3 / kappa + 1e-6);
-        }
-        BOOST_TEST((relaxed || kappa > 1e7)); // beyond, rounding of the overlaps is above the tolerance
-        extreme::add(row);
     }
 }
 

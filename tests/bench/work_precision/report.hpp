@@ -15,12 +15,9 @@ struct Settings {
     bench::Program* program = nullptr; ///< gets every table that is written
     std::filesystem::path folder = ".";
     std::vector<int> sizes;           ///< disks
-    std::vector<std::uint64_t> seeds; ///< of the soft grains; the other parts use the first
+    std::vector<std::uint64_t> seeds; ///< of small displacements; events use the first
     int equilibria = 20;              ///< of the reference trajectory
     int drift_equilibria = 40;        ///< of the trajectories with linear gaps
-    int soft_equilibria = 8;          ///< per sample
-    std::vector<double> stiffness_ratios;
-    int soft_disks_limit = 400; ///< larger packings are left out of the dynamics
     bool quick = false;
 };
 
@@ -57,7 +54,6 @@ isostat::State prepared(int disks, std::uint64_t seed);
 
 /// Each part fills its tables; false when a check of the part fails (an error above its proved bound...).
 bool events_and_stresses(const Settings& settings);
-bool soft_grains(const Settings& settings);
 bool small_displacements(const Settings& settings);
 
 /// Runs gnuplot on a script in the folder.

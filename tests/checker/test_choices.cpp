@@ -51,8 +51,7 @@ struct ForgedExchange {
 BOOST_AUTO_TEST_SUITE(checker)
 
 BOOST_AUTO_TEST_CASE(a_forged_choice_is_refused) {
-    const scratch::Folder scratch_folder;
-    const fs::path folder = scratch_folder / "run";
+    const scratch::Folder folder;
     State state = crafted::mirror_forces();
     state.perturbation.emplace();
     state.perturbation->rho.assign(state.packing.radius.size(), 0.5);
@@ -139,8 +138,7 @@ BOOST_AUTO_TEST_CASE(bounds_so_wide_that_they_say_nothing_are_no_evidence_of_a_t
 
 /// No record says how an end of the interval was chosen, and each of them ends it (C1 b).
 BOOST_AUTO_TEST_CASE(a_row_may_name_any_of_the_forces_that_vanish_at_an_end) {
-    const scratch::Folder scratch_folder;
-    const fs::path folder = scratch_folder / "run";
+    const scratch::Folder folder;
     play(crafted::mirror_forces(), -1, folder);
     BOOST_TEST((verify_run(folder).verdict == Verdict::proved));
     const std::string rows = scratch::read(folder / "equilibria.csv");
@@ -151,8 +149,7 @@ BOOST_AUTO_TEST_CASE(a_row_may_name_any_of_the_forces_that_vanish_at_an_end) {
 }
 
 BOOST_AUTO_TEST_CASE(the_way_of_a_square_of_disks_is_replayed) {
-    const scratch::Folder scratch_folder;
-    const fs::path folder = scratch_folder / "run";
+    const scratch::Folder folder;
     play(crafted::square(), 3, folder);
     const RunVerification run = verify_run(folder);
     BOOST_TEST(run.wrong == "");
@@ -164,8 +161,7 @@ BOOST_AUTO_TEST_CASE(the_way_of_a_square_of_disks_is_replayed) {
 
 /// Bounds of its records end next to the number: the checker needs more digits than its usual ones.
 BOOST_AUTO_TEST_CASE(rows_that_change_their_lists_where_they_are_and_spread_are_replayed_and_proved) {
-    const scratch::Folder scratch_folder;
-    const fs::path folder = scratch_folder / "run";
+    const scratch::Folder folder;
     State state = crafted::pile(5, 4);
     state.load.reference_length = {16, 4}; // the same forces; strains stay below the cap
     state.load.stress = {0.25, 0.25};
@@ -193,8 +189,7 @@ BOOST_AUTO_TEST_CASE(rows_that_change_their_lists_where_they_are_and_spread_are_
 }
 
 BOOST_AUTO_TEST_CASE(a_choice_in_a_run_that_chooses_nothing_is_refused) {
-    const scratch::Folder scratch_folder;
-    const fs::path folder = scratch_folder / "run";
+    const scratch::Folder folder;
     State state = crafted::mirror_gaps();
     state.perturbation.emplace();
     state.perturbation->rho.assign(state.packing.radius.size(), 0.5);
@@ -213,8 +208,7 @@ BOOST_AUTO_TEST_CASE(a_choice_in_a_run_that_chooses_nothing_is_refused) {
 }
 
 BOOST_AUTO_TEST_CASE(a_forged_exchange_at_second_order_is_refused) {
-    const scratch::Folder scratch_folder;
-    const fs::path folder = scratch_folder / "run";
+    const scratch::Folder folder;
     play(crafted::two_crests(true), -1, folder);
     const RunVerification run = played::proved(folder);
     BOOST_TEST(run.equilibria_proved == 2);
@@ -234,8 +228,7 @@ BOOST_AUTO_TEST_CASE(a_forged_exchange_at_second_order_is_refused) {
 
 /// The rows of a lattice sink until they lie in line: the contacts that the run would keep are dependent there.
 BOOST_AUTO_TEST_CASE(a_list_that_is_exchanged_for_the_end_of_an_arc_is_proved_and_a_forged_one_refused) {
-    const scratch::Folder scratch_folder;
-    const fs::path folder = scratch_folder / "run";
+    const scratch::Folder folder;
     play(crafted::triangular(3, 4), 20, folder);
     const RunVerification run = played::proved(folder);
     const ForgedExchange forged{folder, exchange_in(scratch::read(folder / "events.jsonl"), "end")};

@@ -82,8 +82,7 @@ BOOST_AUTO_TEST_CASE(closed_forms_of_dimers_run_and_are_proved) {
 
 /// What differs in the body makes another run: of a state file the bars are compared with those of the replay.
 BOOST_AUTO_TEST_CASE(a_stored_state_with_another_bar_is_refuted) {
-    const scratch::Folder scratch_folder;
-    const std::filesystem::path folder = scratch_folder / "run";
+    const scratch::Folder folder;
     const SegmentOutcome outcome =
         played::into(folder, at_the_start(test::lying_dimer(12, 12)), {towards(-1)}, {.max_strain = 1e9});
     BOOST_REQUIRE(outcome.completed);

@@ -61,8 +61,7 @@ std::string scaled(const std::string& number, double factor) {
 BOOST_AUTO_TEST_SUITE(checker)
 
 BOOST_AUTO_TEST_CASE(power_turn_held_coordinate_and_release_are_replayed_and_altered_ones_are_found) {
-    const scratch::Folder scratch_folder;
-    const fs::path folder = scratch_folder / "run";
+    const scratch::Folder folder;
     play(read_state(fs::path(ISOSTAT_EXAMPLES) / "turns/three-disks.json").state, towards(-1), Ties::stop, 1, folder);
     is_proved(folder);
     BOOST_TEST(verify_run(folder).turns_checked == 1);
@@ -81,23 +80,15 @@ BOOST_AUTO_TEST_CASE(power_turn_held_coordinate_and_release_are_replayed_and_alt
     finds(folder, "events.jsonl", "\"force\":" + force, "\"force\":" + scaled(force, 1 + 1e-5), "force");
 }
 
-BOOST_AUTO_TEST_CASE(a_contact_that_is_passed_on_the_way_is_found) {
-    // The turning arc closes 3-bottom; said to close another pair, the record is wrong.
-    const scratch::Folder scratch_folder;
-    const fs::path folder = scratch_folder / "run";
-    play(read_state(fs::path(ISOSTAT_EXAMPLES) / "turns/four-disks.json").state, towards(-1), Ties::stop, 1, folder);
-    if (verify_run(folder).arcs == 0) {
-        const fs::path other = scratch_folder / "up";
-        play(read_state(fs::path(ISOSTAT_EXAMPLES) / "turns/four-disks.json").state, towards(1), Ties::stop, 1, other);
-        is_proved(other);
-        return;
-    }
+BOOST_AUTO_TEST_CASE(a_turning_arc_is_replayed) {
+    const scratch::Folder folder;
+    play(read_state(fs::path(ISOSTAT_EXAMPLES) / "turns/four-disks.json").state, towards(1), Ties::stop, 1, folder);
     is_proved(folder);
+    BOOST_TEST(verify_run(folder).arcs > 0);
 }
 
 BOOST_AUTO_TEST_CASE(a_tie_of_two_forces_is_replayed_and_altered_first_order_terms_are_found) {
-    const scratch::Folder scratch_folder;
-    const fs::path folder = scratch_folder / "run";
+    const scratch::Folder folder;
     play(crafted::mirror_forces(), towards(-1), Ties::first_order, 1, folder);
     is_proved(folder);
     BOOST_TEST(verify_run(folder).ties_checked == 2);
@@ -122,8 +113,7 @@ BOOST_AUTO_TEST_CASE(a_tie_of_two_forces_is_replayed_and_altered_first_order_ter
 }
 
 BOOST_AUTO_TEST_CASE(a_tie_of_two_gaps_is_replayed_and_an_altered_choice_is_found) {
-    const scratch::Folder scratch_folder;
-    const fs::path folder = scratch_folder / "run";
+    const scratch::Folder folder;
     play(crafted::mirror_gaps(), towards(1), Ties::first_order, 1, folder);
     is_proved(folder);
     const std::string events = scratch::read(folder / "events.jsonl");

@@ -50,6 +50,12 @@ inline void expect(const Outcome& outcome, int status, const std::vector<std::st
     }
 }
 
+/// What has this exit status.
+inline Outcome done(Outcome outcome, int status = 0) {
+    expect(outcome, status);
+    return outcome;
+}
+
 /// Exit status, and all of the words on standard output.
 inline Outcome says(Outcome outcome, int status, const std::vector<std::string>& words) {
     expect(outcome, status);

@@ -16,8 +16,7 @@ BOOST_AUTO_TEST_SUITE(cli)
 BOOST_AUTO_TEST_CASE(help_of_every_subcommand_has_an_example) {
     for (const char* name : {"prepare", "run", "ensemble", "inspect", "certify", "verify", "plateau", "genericity",
                              "plan", "report", "import"}) {
-        const Outcome outcome = run({name, "--help"});
-        expect(outcome, 0);
+        const Outcome outcome = done(run({name, "--help"}));
         BOOST_TEST(contains(outcome.out, "isostat " + std::string(name) + " "), name);
         BOOST_TEST(contains(outcome.out, "Example"), name);
         BOOST_TEST(contains(run({"--help"}).out, name));
@@ -105,8 +104,7 @@ BOOST_AUTO_TEST_CASE(prepare_makes_a_state_with_its_history_and_the_same_bits_ag
     const std::string first = folder.at("1.json");
     const std::string second = folder.at("2.json");
     expect(run({"prepare", folder.at("s.toml"), "-o", first}), 0);
-    const Outcome quiet = run({"prepare", folder.at("s.toml"), "-o", second, "--quiet"});
-    expect(quiet, 0);
+    const Outcome quiet = done(run({"prepare", folder.at("s.toml"), "-o", second, "--quiet"}));
     BOOST_TEST(quiet.out.empty());
     BOOST_TEST(quiet.err.empty());
     const isostat::State a = isostat::read_state(first).state;
@@ -129,8 +127,7 @@ BOOST_AUTO_TEST_CASE(plan_prints_a_scene_that_gives_the_same_plan) {
         const auto plan =
             says(run({"plan", std::string(ISOSTAT_EXAMPLES) + "/" + name}), 0, {"max_arcs = 20000", "# default"});
         scratch::write(folder / "again.toml", plan.out);
-        const Outcome again = run({"plan", folder.at("again.toml")});
-        expect(again, 0);
+        const Outcome again = done(run({"plan", folder.at("again.toml")}));
         const auto settings = [](const std::string& text) { // without the remarks on lines
             std::string kept;
             for (const std::string& line : scratch::split(text.substr(text.find("\n[packing]")), '\n')) {
@@ -185,14 +182,12 @@ BOOST_AUTO_TEST_CASE(a_run_with_cycles_writes_everything_and_says_so) {
 BOOST_AUTO_TEST_CASE(json_output_is_one_object_and_nothing_else) {
     const scratch::Folder folder;
     scratch::write_scene(folder / "s.toml", scene_from(scratch::data("vertex100.txt"), up_6));
-    const Outcome outcome = run({"run", folder.at("s.toml"), "-o", folder.at("run"), "--json"});
-    expect(outcome, 0);
+    const Outcome outcome = done(run({"run", folder.at("s.toml"), "-o", folder.at("run"), "--json"}));
     const json j = json::parse(outcome.out);
     has(j, {{"status", "completed"}, {"counters/equilibria", 6}, {"counters/decisions/undecided", 0}});
     BOOST_TEST(outcome.err.empty());
     scratch::write(folder / "p.toml", "[packing]\ndisks = 9\n");
-    const Outcome prepared = run({"prepare", folder.at("p.toml"), "-o", folder.at("p.json"), "--json"});
-    expect(prepared, 0);
+    const Outcome prepared = done(run({"prepare", folder.at("p.toml"), "-o", folder.at("p.json"), "--json"}));
     BOOST_TEST(json::parse(prepared.out)["contacts"] == 20);
     BOOST_TEST(json::parse(
                    run({"import", scratch::data("vertex100.txt"), "-o", folder.at("q.json"), "--json"}).out)["disks"] ==
@@ -243,8 +238,7 @@ BOOST_AUTO_TEST_CASE(figures_are_drawn_and_without_gnuplot_data_and_scripts_rema
         BOOST_TEST(fs::exists(out + "/figures/" + name + ".gp"), name);
         BOOST_TEST(!fs::exists(out + "/figures/" + name + ".svg"), name);
     }
-    const Outcome with = run({"report", out, "--vtk", "--pdf"});
-    expect(with, 0);
+    const Outcome with = done(run({"report", out, "--vtk", "--pdf"}));
     BOOST_TEST(with.err.empty(), with.err);
     for (const char* name : {"staircase", "cycles", "stress_increments", "strain_increments"}) {
         BOOST_TEST(contains(scratch::read(out + "/figures/" + name + ".svg"), "</svg>"), name);

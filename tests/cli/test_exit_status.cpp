@@ -75,8 +75,7 @@ BOOST_AUTO_TEST_CASE(names_of_files_may_be_any_bytes) {
              {"plateau", bad, "--json", "--thresholds", "1e-9:1e-8"},
              {"report", bad, "-o", folder.at("fig\xff"), "--json", "--no-charts"},
          }) {
-        const Outcome outcome = run(command);
-        expect(outcome, 0);
+        const Outcome outcome = done(run(command));
         BOOST_TEST(contains(outcome.out, "\xEF\xBF\xBD"), command[0]); // U+FFFD stands for the byte
     }
     const std::string scene = folder.at("s\xff.toml");
@@ -92,8 +91,8 @@ BOOST_AUTO_TEST_CASE(names_of_files_may_be_any_bytes) {
 
 BOOST_AUTO_TEST_CASE(nesting_without_end_is_bad_input_for_every_command) {
     const scratch::Folder folder;
-    const std::string deep = folder.at("deep.json");
-    scratch::write(deep, "{\"format\":" + std::string(100'000, '[') + std::string(100'000, ']') + "}");
+    const std::string deep =
+        folder.file("deep.json", "{\"format\":" + std::string(100'000, '[') + std::string(100'000, ']') + "}");
     for (const std::vector<std::string>& command : std::vector<std::vector<std::string>>{
              {"inspect", deep},
              {"certify", deep, "-o", folder.at("c.json")},
@@ -135,8 +134,7 @@ BOOST_AUTO_TEST_CASE(a_packing_in_which_nothing_can_move_is_answered_by_every_co
     state.packing.fixed = {1};
     state.packing.walls.upper.fill(isostat::WallKind::fixed);
     state.contacts.clear();
-    const std::string file = folder.at("still.json");
-    scratch::write(file, state_text(state));
+    const std::string file = folder.file("still.json", state_text(state));
     says(run({"inspect", file}), 1, {"no degrees of freedom"});
     expect(run({"certify", file, "-o", folder.at("c.json")}), 1);
     expect(run({"report", file, "-o", folder.path().string(), "--no-charts"}), 0);

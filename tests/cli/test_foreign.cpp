@@ -54,9 +54,9 @@ BOOST_AUTO_TEST_CASE(plateau_says_what_is_wrong_with_walls_and_pseudo_atoms) {
 
 BOOST_AUTO_TEST_CASE(rows_are_selected_by_a_column) {
     const scratch::Folder folder;
-    const std::string file = folder.at("start.data");
-    scratch::write(file, "disks and a wall\n\n3 atoms\n2 atom types\n\n-4 9 xlo xhi\n-4 9 ylo yhi\n-0.5 0.5 zlo zhi\n\n"
-                         "Atoms # sphere\n\n1 1 2 1 1 1 0\n2 1 2 1 3 1 0\n3 2 1 1 8 -2 0\n");
+    const std::string file = folder.file(
+        "start.data", "disks and a wall\n\n3 atoms\n2 atom types\n\n-4 9 xlo xhi\n-4 9 ylo yhi\n-0.5 0.5 zlo zhi\n\n"
+                      "Atoms # sphere\n\n1 1 2 1 1 1 0\n2 1 2 1 3 1 0\n3 2 1 1 8 -2 0\n");
     const auto all = run({"plateau", file});
     BOOST_TEST(contains(all.out, "types 1 (2 rows), 2 (1 rows): every row is taken for a disk"), all.out);
     BOOST_TEST(contains(all.out, "disks                       3,"), all.out);
@@ -73,8 +73,7 @@ BOOST_AUTO_TEST_CASE(rows_are_selected_by_a_column) {
 
 BOOST_AUTO_TEST_CASE(plateau_of_a_table_with_walls_in_text_json_and_csv) {
     const scratch::Folder folder;
-    const std::string file = folder.at("disks.csv");
-    scratch::write(file, three_disks("x,y,diameter\n", "2"));
+    const std::string file = folder.file("disks.csv", three_disks("x,y,diameter\n", "2"));
     // 0-0-0: the box fits to rounding; the top wall touches disk 2.
     const std::vector<std::string> command{"plateau",
                                            file,
@@ -99,8 +98,7 @@ BOOST_AUTO_TEST_CASE(plateau_of_a_table_with_walls_in_text_json_and_csv) {
 
 BOOST_AUTO_TEST_CASE(what_the_user_must_state_is_asked_for) {
     const scratch::Folder folder;
-    const std::string file = folder.at("disks.txt");
-    scratch::write(file, three_disks("", "1"));
+    const std::string file = folder.file("disks.txt", three_disks("", "1"));
     expect(run({"plateau", file}), 65, {"disks.txt:1", "--columns x,y,r"});
     expect(run({"plateau", file, "--columns", "x,y,r"}), 1);
     expect(run({"plateau", file, "--columns", "x,y,s"}), 65, {"disks.txt", "--radius COLUMN"});

@@ -72,8 +72,7 @@ BOOST_AUTO_TEST_CASE(names_of_segments_are_text_for_gnuplot_and_in_every_figure)
     const scratch::Folder folder;
     scratch::write(folder / "s.toml", scene_of_names(commands));
     const std::string here = "cd '" + folder.path().string() + "'; ";
-    const Outcome made = run({"run", "s.toml", "-o", "run"}, here);
-    expect(made, 0);
+    const Outcome made = done(run({"run", "s.toml", "-o", "run"}, here));
     BOOST_TEST(made.err.empty(), made.err);
     expect(run({"report", "run", "--html", "--vtk", "--pdf"}, here), 0);
     expect(run({"ensemble", "s.toml", "--samples", "1", "-o", "many", "-q"}, here), 0);
@@ -110,8 +109,7 @@ BOOST_AUTO_TEST_CASE(names_in_a_folder_of_somebody_else_are_text) {
             header["programme"] = {names[k], names[k + 1]};
             header["scene_file"] = header["program"] = names[k];
             scratch::write(folder / "run/run.json", header.dump());
-            const Outcome report = run({"report", "run", "--html", "--vtk"}, here);
-            expect(report, 0);
+            const Outcome report = done(run({"report", "run", "--html", "--vtk"}, here));
             expect_harmless(report);
         }
         header["status"] = "completed: " + names.back();

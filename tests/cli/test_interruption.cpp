@@ -166,8 +166,7 @@ BOOST_AUTO_TEST_CASE(a_run_killed_before_its_first_equilibrium_is_one_without_eq
 
 BOOST_AUTO_TEST_CASE(a_preparation_that_is_interrupted_says_where_and_keeps_what_it_reached) {
     const scratch::Folder folder;
-    const std::string scene = folder.at("s.toml");
-    scratch::write(scene, "[packing]\ndisks = 3000\n" + up_6);
+    const std::string scene = folder.file("s.toml", "[packing]\ndisks = 3000\n" + up_6);
     Background background({"run", scene, "-o", folder.at("run"), "-q"});
     BOOST_TEST(background.signal_at(folder / "run/run.json", 1, SIGINT)); // it is there before the preparation
     BOOST_TEST(background.wait() == 130);

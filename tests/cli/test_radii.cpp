@@ -189,8 +189,7 @@ BOOST_AUTO_TEST_CASE(the_plan_offers_a_jitter_for_equal_radii_only) {
     const scratch::Folder folder;
     const auto planned = [&](const std::string& packing) {
         scratch::write(folder / "s.toml", "[packing]\n" + packing);
-        const Outcome outcome = run({"plan", folder.at("s.toml")});
-        expect(outcome, 0);
+        const Outcome outcome = done(run({"plan", folder.at("s.toml")}));
         return outcome.out;
     };
     for (const std::string packing : {"disks = 9\nlaw = \"bidisperse\"\n", "radii = [1, 2, 1]\n"}) {

@@ -7,12 +7,11 @@ namespace fs = std::filesystem;
 namespace {
 
 std::vector<std::string> events_of_scene(const std::string& scene) {
-    const scratch::Folder folder;
-    const fs::path out = folder / "run";
-    expect(run({"run", scratch::data("../../examples/turns/" + scene), "-o", out.string(), "-q"}), 0);
+    const scratch::Folder out;
+    expect(run({"run", scratch::data("../../examples/turns/" + scene), "-o", out.path().string(), "-q"}), 0);
     const std::vector<std::string> lines = scratch::lines_of(out / "events.jsonl");
     BOOST_TEST(contains(scratch::read(out / "summary.json"), "\"undecided\": 0"));
-    const Outcome verified = run({"verify", out.string()}); // held coordinates and all
+    const Outcome verified = run({"verify", out.path().string()}); // held coordinates and all
     expect(verified, 0);
     BOOST_TEST(contains(verified.out, "proved"));
     return lines;

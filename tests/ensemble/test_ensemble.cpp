@@ -46,8 +46,7 @@ BOOST_AUTO_TEST_SUITE(ensemble)
 
 BOOST_AUTO_TEST_CASE(the_tables_do_not_depend_on_the_number_of_jobs) {
     const scratch::Folder folder;
-    scratch::write(folder / "s.toml", small);
-    const std::string scene = folder.at("s.toml");
+    const std::string scene = folder.file("s.toml", small);
     for (const char* jobs : {"1", "2", "7"}) {
         expect(run({"ensemble", scene, "--samples", "9", "-o", (folder / jobs).string(), "-j", jobs, "-q"}), 0);
         same_tables(folder / "1", folder / jobs);
@@ -85,8 +84,7 @@ BOOST_AUTO_TEST_CASE(a_sample_is_the_run_of_its_scene) {
 
 BOOST_AUTO_TEST_CASE(one_sample_that_cannot_be_written_loses_no_other_and_is_made_up_for) {
     const scratch::Folder folder;
-    scratch::write(folder / "s.toml", small);
-    const std::string scene = folder.at("s.toml");
+    const std::string scene = folder.file("s.toml", small);
     expect(run({"ensemble", scene, "-S", "4", "-o", folder.at("whole"), "-q"}), 0);
     expect(run({"ensemble", scene, "-S", "1", "-o", folder.at("e"), "-q"}), 0);
     fs::create_directories(folder / "e/samples/seed_000002");
@@ -104,8 +102,7 @@ BOOST_AUTO_TEST_CASE(one_sample_that_cannot_be_written_loses_no_other_and_is_mad
 BOOST_AUTO_TEST_CASE(a_sample_that_fails_at_its_load_is_a_result) {
     const scratch::Folder folder;
     const std::string text = scratch::replaced(small, "to = 1.1", "to = 1000.0") + "[run]\nmax_strain = 0.01\n";
-    scratch::write(folder / "s.toml", text);
-    const std::string scene = folder.at("s.toml");
+    const std::string scene = folder.file("s.toml", text);
     const Outcome outcome = run({"ensemble", scene, "-S", "3", "-o", folder.at("e"), "--json"});
     expect(outcome, 1, {"max_strain"});
     const auto object = nlohmann::json::parse(outcome.out);
@@ -119,8 +116,7 @@ BOOST_AUTO_TEST_CASE(a_sample_that_fails_at_its_load_is_a_result) {
 
 BOOST_AUTO_TEST_CASE(killed_ensembles_and_killed_samples_resume_to_the_same_tables) {
     const scratch::Folder folder;
-    scratch::write(folder / "s.toml", scratch::replaced(small, "disks = 30", "disks = 200"));
-    const std::string scene = folder.at("s.toml");
+    const std::string scene = folder.file("s.toml", scratch::replaced(small, "disks = 30", "disks = 200"));
     const fs::path whole = folder / "whole";
     expect(run({"ensemble", scene, "-S", "3", "-o", whole.string(), "-q"}), 0);
     for (const int signal : {SIGKILL, SIGTERM, SIGSEGV}) {
@@ -158,8 +154,7 @@ BOOST_AUTO_TEST_CASE(killed_ensembles_and_killed_samples_resume_to_the_same_tabl
 
 BOOST_AUTO_TEST_CASE(more_samples_are_added_to_a_finished_ensemble) {
     const scratch::Folder folder;
-    scratch::write(folder / "s.toml", small);
-    const std::string scene = folder.at("s.toml");
+    const std::string scene = folder.file("s.toml", small);
     expect(run({"ensemble", scene, "-S", "5", "-o", folder.at("five"), "-q"}), 0);
     expect(run({"ensemble", scene, "-S", "2", "-o", folder.at("e"), "-q"}), 0);
     expect(run({"ensemble", scene, "-S", "5", "-o", folder.at("e"), "-q", "--resume"}), 0);
@@ -196,8 +191,7 @@ BOOST_AUTO_TEST_CASE(wrong_use_is_refused_before_anything_is_made) {
 #ifdef ISOSTAT_MPIRUN
 BOOST_AUTO_TEST_CASE(two_ranks_of_mpirun_make_the_tables_of_one_process) {
     const scratch::Folder folder;
-    scratch::write(folder / "s.toml", small);
-    const std::string scene = folder.at("s.toml");
+    const std::string scene = folder.file("s.toml", small);
     const std::string mpirun =
         std::string(ISOSTAT_MPIRUN) + " --allow-run-as-root --oversubscribe -n 2 "; // Open MPI refuses both by default
     expect(run({"ensemble", scene, "-S", "9", "-o", folder.at("one"), "-q"}), 0);

@@ -81,9 +81,8 @@ BOOST_AUTO_TEST_CASE(what_cannot_be_followed_is_left_out_up_to_the_next_stored_s
 }
 
 BOOST_AUTO_TEST_CASE(a_walk_holds_and_releases_coordinates) {
-    const scratch::Folder folder;
-    const fs::path out = folder / "run";
-    expect(run({"run", scratch::data("../../examples/turns/power-turn.toml"), "-o", out.string(), "-q"}), 0);
+    const scratch::Folder out;
+    expect(run({"run", scratch::data("../../examples/turns/power-turn.toml"), "-o", out.path().string(), "-q"}), 0);
     const checker::RunRecords records = records_of(out);
     int held = 0;
     const auto left_out = walk_run(records, [&](const WalkedVertex& vertex) {

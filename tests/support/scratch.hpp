@@ -24,6 +24,13 @@ class Folder {
     [[nodiscard]] std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
     [[nodiscard]] std::string at(const std::string& name) const { return (path_ / name).string(); }
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+    // NOLINTNEXTLINE(google-explicit-constructor): a folder stands where its path is asked for
+    operator const std::filesystem::path&() const { return path_; }
+    /// The whole name of a file with this text.
+    [[nodiscard]] std::string file(const std::string& name, const std::string& text) const {
+        std::ofstream(path_ / name, std::ios::binary) << text;
+        return at(name);
+    }
 
   private:
     std::filesystem::path path_;

@@ -1,13 +1,16 @@
 #pragma once
-// Sparse matrices to test with, and their dense exact twins: GMP rationals, and plain elimination mod p.
+// Sparse matrices to test with, and their dense twins in FLINT, which the library does not use.
 
 #include "exact/rank.hpp"
 #include "oracle/random.hpp"
 #include "sparse/pattern.hpp"
 
+#include <flint/fmpz_mat.h>
+#include <flint/nmod_mat.h>
 #include <gmpxx.h>
 
 #include <algorithm>
+#include <optional>
 #include <vector>
 
 namespace isostat::oracle {
@@ -39,89 +42,46 @@ inline sparse::Matrix<std::uint64_t> reduce(const sparse::Matrix<double>& matrix
     return reduced;
 }
 
-/// Rank over the rationals, by elimination of the stored doubles.
+/// Rank of the stored doubles over the rationals. 2^1074 makes every double an integer.
 inline int rational_rank(const sparse::Matrix<double>& matrix) {
-    Dense<mpq_class> a(static_cast<std::size_t>(matrix.rows),
-                       std::vector<mpq_class>(static_cast<std::size_t>(matrix.cols)));
+    const mpq_class unit(mpz_class(1) << 1074);
+    fmpz_mat_t integers;
+    fmpz_mat_init(integers, matrix.rows, matrix.cols);
     for (std::size_t j = 0; j < static_cast<std::size_t>(matrix.cols); ++j) {
         for (auto e = static_cast<std::size_t>(matrix.start[j]); e < static_cast<std::size_t>(matrix.start[j + 1]);
              ++e) {
-            a[static_cast<std::size_t>(matrix.row[e])][j] = mpq_class(matrix.value[e]);
+            const mpq_class integer = matrix.value[e] * unit;
+            fmpz_set_mpz(fmpz_mat_entry(integers, matrix.row[e], j), integer.get_num_mpz_t());
         }
     }
-    std::size_t rank = 0;
-    for (std::size_t j = 0; j < static_cast<std::size_t>(matrix.cols) && rank < a.size(); ++j) {
-        std::size_t pivot = rank;
-        while (pivot < a.size() && sgn(a[pivot][j]) == 0) {
-            ++pivot;
+    const auto rank = static_cast<int>(fmpz_mat_rank(integers));
+    fmpz_mat_clear(integers);
+    return rank;
+}
+
+/// The first columns of a matrix of residues mod p.
+class Modular {
+  public:
+    Modular(const Dense<std::uint64_t>& dense, int cols, std::uint64_t p) {
+        nmod_mat_init(a_, static_cast<slong>(dense.size()), cols, p);
+        for (std::size_t i = 0; i < dense.size(); ++i) {
+            std::copy_n(dense[i].begin(), cols, a_->rows[i]);
         }
-        if (pivot == a.size()) {
-            continue;
-        }
-        std::swap(a[rank], a[pivot]);
-        for (std::size_t i = rank + 1; i < a.size(); ++i) {
-            const mpq_class factor = a[i][j] / a[rank][j];
-            for (std::size_t k = j; sgn(factor) != 0 && k < a[i].size(); ++k) {
-                a[i][k] -= factor * a[rank][k];
-            }
-        }
-        ++rank;
     }
-    return static_cast<int>(rank);
-}
+    Modular(const Modular&) = delete;
+    Modular& operator=(const Modular&) = delete;
+    ~Modular() { nmod_mat_clear(a_); }
 
-__extension__ using Wide = unsigned __int128;
-
-inline std::uint64_t multiply_mod(std::uint64_t a, std::uint64_t b, std::uint64_t p) {
-    return static_cast<std::uint64_t>(static_cast<Wide>(a) * b % p);
-}
-
-/// a^(p-2): the inverse by Fermat's theorem.
-inline std::uint64_t inverse_mod(std::uint64_t a, std::uint64_t p) {
-    std::uint64_t result = 1;
-    for (std::uint64_t e = p - 2; e != 0; e >>= 1) {
-        if ((e & 1) != 0) {
-            result = multiply_mod(result, a, p);
-        }
-        a = multiply_mod(a, a, p);
+    [[nodiscard]] int rank() const { return static_cast<int>(nmod_mat_rank(a_)); }
+    /// A x = b; nothing where A is singular.
+    [[nodiscard]] std::optional<std::vector<std::uint64_t>> solution(const std::vector<std::uint64_t>& b) const {
+        std::vector<std::uint64_t> x(b.size());
+        return nmod_mat_solve_vec(x.data(), a_, b.data()) != 0 ? std::optional(x) : std::nullopt;
     }
-    return result;
-}
 
-/// Reduces [A | b] mod p by dense elimination; returns the rank of A. When A is regular, b is the solution afterwards,
-/// in the order of the columns.
-inline int dense_eliminate(Dense<std::uint64_t> a, std::vector<std::uint64_t>& b, int cols,
-                           std::uint64_t p = exact::mersenne61) {
-    std::size_t rank = 0;
-    for (std::size_t j = 0; j < static_cast<std::size_t>(cols) && rank < a.size(); ++j) {
-        std::size_t pivot = rank;
-        while (pivot < a.size() && a[pivot][j] == 0) {
-            ++pivot;
-        }
-        if (pivot == a.size()) {
-            continue;
-        }
-        std::swap(a[rank], a[pivot]);
-        std::swap(b[rank], b[pivot]);
-        const std::uint64_t scale = inverse_mod(a[rank][j], p);
-        for (std::uint64_t& x : a[rank]) {
-            x = multiply_mod(x, scale, p);
-        }
-        b[rank] = multiply_mod(b[rank], scale, p);
-        for (std::size_t i = 0; i < a.size(); ++i) {
-            if (i == rank || a[i][j] == 0) {
-                continue;
-            }
-            const std::uint64_t factor = p - a[i][j];
-            for (std::size_t k = j; k < a[i].size(); ++k) {
-                a[i][k] = (a[i][k] + multiply_mod(factor, a[rank][k], p)) % p;
-            }
-            b[i] = (b[i] + multiply_mod(factor, b[rank], p)) % p;
-        }
-        ++rank;
-    }
-    return static_cast<int>(rank);
-}
+  private:
+    nmod_mat_t a_;
+};
 
 template <class Value> Dense<Value> expand(const sparse::Matrix<Value>& matrix) {
     Dense<Value> dense(static_cast<std::size_t>(matrix.rows),
@@ -136,8 +96,7 @@ template <class Value> Dense<Value> expand(const sparse::Matrix<Value>& matrix) 
 }
 
 inline int dense_rank(const sparse::Matrix<std::uint64_t>& matrix, std::uint64_t p = exact::mersenne61) {
-    std::vector<std::uint64_t> unused(static_cast<std::size_t>(matrix.rows), 0);
-    return dense_eliminate(expand(matrix), unused, matrix.cols, p);
+    return Modular(expand(matrix), matrix.cols, p).rank();
 }
 
 /// Size of a maximum matching of the pattern, by augmenting paths.

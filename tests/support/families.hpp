@@ -7,8 +7,8 @@
 // same question is put to exact coordinates (rational numbers), which carry every delta.
 
 #include "oracle/structures.hpp"
-#include "statics/decisions.hpp"
 #include "support/crafted.hpp"
+#include "support/loaded.hpp"
 #include "verified/inverse_bound.hpp"
 
 #include <isostat/crafted/exact_packing.hpp>
@@ -41,22 +41,8 @@ struct Answer {
 
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
-struct Statement {
-    IsostaticStructure structure;
-    Factorisation factorisation;
-    InverseBoundCache cache;
-    InverseBound inverse;
-    VertexEnclosure vertex;
-    Statics statics;
-
-    Statement(const State& state, bool truth)
-        : structure(std::move(IsostaticStructure::prove(state.packing, state.contacts).value())),
-          factorisation(structure), inverse(bound_inverse(structure, factorisation, cache)),
-          vertex(enclose_vertex(state.packing, structure, inverse)),
-          statics(state.packing, state.load, structure, factorisation, inverse, {{}, truth ? &vertex : nullptr}) {}
-};
-
-/// Unit disks 0 and 1 on the bottom, 2 on top of 0; forces in y on the disks.
+/// Unit disks 0 and 1 on the bottom side by side between the side walls, 2 on top of 0 under the top wall: all
+/// coordinates are integers, so the stored configuration is the true vertex. Forces in y on the disks.
 inline State stack(double up0, double up1, double up2) {
     State state = in_box({{1, 1, 1}, {1, 3, 1}, {1, 1, 3}}, 4, 4, 1, 1,
                          {left(0), bottom(0), left(2), pair(0, 2), pair(0, 1), bottom(1), right(1), top(2)});
@@ -65,7 +51,7 @@ inline State stack(double up0, double up1, double up2) {
 }
 
 inline Answer which_opens(const State& state, const Contact& plus, const Contact& minus) {
-    Statement s(state, true);
+    AtVertex s(state);
     const double sigma = state.load.stress[1];
     const auto decision = decide_opening(s.statics, sigma, OpeningRule::most_negative, {}, 0);
     Answer answer{0, s.statics.rung(), s.statics.bits(), 0};
@@ -83,7 +69,7 @@ inline Answer tractions(double delta) {
 
 inline Answer limits(double delta) {
     const State state = stack(delta, -1, 0.5);
-    Statement s(state, true);
+    AtVertex s(state);
     const auto limit = find_limit(s.statics, 1, -1);
     Answer answer{0, s.statics.rung(), s.statics.bits(), 0};
     if (limit.ok() && limit.value().tie_class.size() == 1) {
@@ -132,7 +118,7 @@ inline Answer grazing(double delta) {
     state.packing.radius[3] = 1 - delta;
     state.packing.q[6] = 3 + delta;
     state.packing.q[7] = 3 + delta;
-    Statement s(state, true);
+    AtVertex s(state);
     if (s.vertex.verdict != Verdict::proved) {
         s.vertex = enclose_vertex_double_double(state.packing, s.structure, s.factorisation, s.inverse);
     }

@@ -31,6 +31,32 @@ auto of_double(Answer (*ask)(double)) {
 
 BOOST_AUTO_TEST_SUITE(trajectory)
 
+BOOST_AUTO_TEST_CASE(two_tractions_are_told_apart_by_the_lowest_rung_that_can) {
+    using isostat::Rung;
+    for (int decade = 1; decade <= 300; decade += decade < 30 ? 1 : 30) {
+        const Rung expected = decade < 11 ? Rung::double_bound : Rung::multiprecision;
+        for (const double sign : {1.0, -1.0}) {
+            const Answer answer = families::tractions(sign * std::pow(10.0, -decade));
+            BOOST_TEST(answer.sign == sign, "1e-" << decade);
+            BOOST_TEST(answer.margin > 1);
+            if (decade < 11 || decade > 33) { // not at the seams, nor between them
+                BOOST_TEST((answer.rung == expected), "1e-" << decade << ": " << to_string(answer.rung));
+            }
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(unequal_radii_are_ordered_as_long_as_they_differ_at_all) {
+    const int orientation = families::notch(0.5).sign;
+    for (int bits = 1; bits <= 51; bits += 2) {
+        for (const int sign : {1, -1}) {
+            const Answer answer = families::notch(std::ldexp(sign, -bits));
+            BOOST_TEST(answer.sign == sign * orientation, sign << " 2^-" << bits);
+            BOOST_TEST(answer.sign != 0);
+        }
+    }
+}
+
 BOOST_AUTO_TEST_CASE(families_whose_delta_is_a_double_are_decided_down_to_1e_300) {
     const auto decades = {2, 8, 13, 16, 18, 25, 40, 100, 300};
     has_opposite_answers_and_a_tie("tractions", of_double(families::tractions), decades);

@@ -99,11 +99,7 @@ BOOST_AUTO_TEST_CASE(own_image_of_two_disks_takes_what_the_centred_rectangle_lea
 }
 
 BOOST_AUTO_TEST_CASE(one_disk_in_a_channel) {
-    State state = cells::in_cell({{1, 0.5, 1}}, {2, 2, 0}, false, 2, 3,
-                                 {cells::across(0, 0, 1, 0), crafted::bottom(0), crafted::top(0)});
-    state.packing.cell = {{true, false}, {true, false}, {false}, 0};
-    state.packing.walls.lower[1] = isostat::WallKind::fixed;
-    state.packing.walls.upper[1] = isostat::WallKind::movable;
+    const State state = cells::channel_disk();
     check_forces(state, {2, 3, 3});
     BOOST_TEST((certify(state).verdict == Verdict::proved));
     BOOST_TEST(certify(state).counting.dof_count == 3);
@@ -114,21 +110,9 @@ BOOST_AUTO_TEST_CASE(one_disk_in_a_channel) {
 BOOST_AUTO_TEST_CASE(two_disks_in_a_channel_have_the_two_states_of_a_loop) {
     for (const auto& [large, small] : {std::pair(2.0, 1.0), {1.5, 0.8}, {1.0, 0.75}}) {
         BOOST_TEST_INFO_SCOPE("radii " << large << ", " << small);
-        const auto channel = [&](double period, double height, double x, double y, std::vector<Contact> contacts) {
-            State state = cells::in_cell({{large, 0, large}, {small, x, y}}, {period, height, 0}, false, 1, 1,
-                                         std::move(contacts));
-            state.packing.cell = {{true, false}, {true, false}, {false}, 0};
-            state.packing.walls.lower[1] = isostat::WallKind::fixed;
-            state.packing.walls.upper[1] = isostat::WallKind::movable;
-            return state;
-        };
-        const double width = 2 * std::sqrt(large * small);
-        const State low = channel(2 * width, 2 * large, width, small,
-                                  {crafted::bottom(0), crafted::top(0), crafted::bottom(1), cells::across(0, 1, 0, 0),
-                                   cells::across(0, 1, -1, 0)});
         const double tilt = (large - small) / (large + small); // of the line of centres
         const double pair = 1 / std::sqrt(1 - tilt * tilt);    // of which F1 is the part along x
-        State pressed = low;
+        State pressed = cells::between_images(large, small);
         pressed.load.stress[1] = 4;
         check_forces(pressed, {4 - 2 * pair * tilt, 4, 2 * pair * tilt, pair, pair});
         const double opens = (large - small) / std::sqrt(large * small);
@@ -139,9 +123,10 @@ BOOST_AUTO_TEST_CASE(two_disks_in_a_channel_have_the_two_states_of_a_loop) {
 
         const double reach = large + small;
         const double rise = std::sqrt(reach * reach - large * large);
-        State high = channel(2 * large, large + rise + small, large, large + rise,
-                             {crafted::bottom(0), crafted::top(1), cells::across(0, 1, 0, 0),
-                              cells::across(0, 1, -1, 0), cells::across(0, 0, 1, 0)});
+        State high =
+            cells::in_channel({{large, 0, large}, {small, large, large + rise}}, 2 * large, large + rise + small, 1, 1,
+                              {crafted::bottom(0), crafted::top(1), cells::across(0, 1, 0, 0),
+                               cells::across(0, 1, -1, 0), cells::across(0, 0, 1, 0)});
         const double back = 2 * rise / large;
         const double f2 = 0.5 * back;
         high.load.stress[1] = f2;
@@ -195,14 +180,8 @@ BOOST_AUTO_TEST_CASE(forces_do_not_depend_on_the_pin_the_representatives_the_nam
 }
 
 BOOST_AUTO_TEST_CASE(a_rattler_must_not_overlap_an_image) {
-    // It rests on a disk and its image, under an infinitesimal force; there is room for it below the next images up to
-    // a radius of sqrt 2 - 1.
     for (const double radius : {0.3, 0.5}) {
-        State state = cells::in_cell({{1, 0, 0}, {radius, 1, std::sqrt((2 + radius) * radius)}}, {2, 2, 0}, false, 2, 3,
-                                     {cells::across(0, 0, 0, 1), cells::across(0, 0, 1, 0), cells::across(0, 1, 0, 0),
-                                      cells::across(0, 1, -1, 0)});
-        state.load.infinitesimal = {0, 1, 0, -1};
-        const Certification truth = certify(state);
+        const Certification truth = certify(cells::with_a_rattler(radius));
         BOOST_TEST(truth.signs.structural_zero == 2);
         BOOST_TEST((truth.verdict == (radius < 0.4 ? Verdict::proved : Verdict::refuted)));
     }

@@ -18,15 +18,6 @@ using namespace claims;
 
 namespace {
 
-State channel_disk() {
-    State state = cells::in_cell({{1, 0.5, 1}}, {2, 2, 0}, false, 2, 3,
-                                 {cells::across(0, 0, 1, 0), crafted::bottom(0), crafted::top(0)});
-    state.packing.cell = {{true, false}, {true, false}, {false}, 0};
-    state.packing.walls.lower[1] = WallKind::fixed;
-    state.packing.walls.upper[1] = WallKind::movable;
-    return state;
-}
-
 /// Two disks of a centred rectangle under a shear, with an own image. Inversion makes the forces equal in pairs: the
 /// ends of the interval are ties that no counting explains.
 State sheared_rectangle() {
@@ -36,21 +27,13 @@ State sheared_rectangle() {
     return state;
 }
 
-/// A small disk that rests on another one and an image of it.
-State with_a_rattler(double radius) {
-    State state = cells::in_cell(
-        {{1, 0, 0}, {radius, 1, std::sqrt((2 + radius) * radius)}}, {2, 2, 0}, false, 2, 3,
-        {cells::across(0, 0, 0, 1), cells::across(0, 0, 1, 0), cells::across(0, 1, 0, 0), cells::across(0, 1, -1, 0)});
-    state.load.infinitesimal = {0, 1, 0, -1};
-    return state;
-}
-
 State of_file(const std::string& name) {
     return read_any_state(std::string(ISOSTAT_TEST_DATA) + "/cells/" + name + "_16.json").state;
 }
 
 std::vector<State> small_cells() {
-    return {cells::one_disk(2, 3), cells::one_tilted_disk(2, 1, 0.25), channel_disk(), with_a_rattler(0.3)};
+    return {cells::one_disk(2, 3), cells::one_tilted_disk(2, 1, 0.25), cells::channel_disk(),
+            cells::with_a_rattler(0.3)};
 }
 
 bool accepted(const Certificate& certificate) {
@@ -197,7 +180,7 @@ BOOST_AUTO_TEST_CASE(another_pin_or_shear_is_another_state) {
 
 BOOST_AUTO_TEST_CASE(an_overlap_with_an_image_is_refuted) {
     const auto verdict = [](double radius) { // beside it there is room up to sqrt 2 - 1
-        return answer_to(verify(maker::certificate(with_a_rattler(radius))), "gaps").verdict;
+        return answer_to(verify(maker::certificate(cells::with_a_rattler(radius))), "gaps").verdict;
     };
     BOOST_TEST((verdict(0.41) == Verdict::proved));
     BOOST_TEST((verdict(0.42) == Verdict::refuted));

@@ -103,12 +103,7 @@ BOOST_AUTO_TEST_CASE(a_cell_is_drawn_with_its_images_and_contacts_from_both_side
     BOOST_TEST(widths(force_picture(moved, forces, ""), "force") ==
                    widths(force_picture(cells::two_disks(false, 1, 1), forces, ""), "force"),
                boost::test_tools::per_element());
-    State channel = cells::in_cell({{1, 0.5, 1}}, {2, 2, 0}, false, 2, 3,
-                                   {cells::across(0, 0, 1, 0), crafted::bottom(0), crafted::top(0)});
-    channel.packing.cell = {{true, false}, {true, false}, {false}, 0};
-    channel.packing.walls.lower[1] = WallKind::fixed;
-    channel.packing.walls.upper[1] = WallKind::movable;
-    const std::string strip = force_picture(channel, std::vector<double>{1, 2, 3}, "");
+    const std::string strip = force_picture(cells::channel_disk(), std::vector<double>{1, 2, 3}, "");
     BOOST_TEST(count(strip, "class=\"cell\"") == 2);
     BOOST_TEST(count(strip, "class=\"fixed\"") == 1);
     BOOST_TEST(count(strip, "class=\"disk image\"") == 2);

@@ -42,6 +42,38 @@ inline State in_cell(const std::vector<DiskAt>& disks, const Periods& periods, b
     return state;
 }
 
+/// Periodic along x, between a fixed wall below and a movable one above.
+inline State in_channel(const std::vector<DiskAt>& disks, double period, double height, double f1, double f2,
+                        std::vector<Contact> contacts) {
+    State state = in_cell(disks, {period, height, 0}, false, f1, f2, std::move(contacts));
+    state.packing.cell = {{true, false}, {true, false}, {false}, 0};
+    state.packing.walls.lower[1] = isostat::WallKind::fixed;
+    state.packing.walls.upper[1] = isostat::WallKind::movable;
+    return state;
+}
+
+/// One disk of radius 1 that touches its image and both walls.
+inline State channel_disk() {
+    return in_channel({{1, 0.5, 1}}, 2, 2, 2, 3, {across(0, 0, 1, 0), ::crafted::bottom(0), ::crafted::top(0)});
+}
+
+/// Disks of radii R1 > R2 on the bottom of a channel, the second between the first and its image.
+inline State between_images(double large, double small) {
+    const double width = 2 * std::sqrt(large * small);
+    return in_channel(
+        {{large, 0, large}, {small, width, small}}, 2 * width, 2 * large, 1, 1,
+        {::crafted::bottom(0), ::crafted::top(0), ::crafted::bottom(1), across(0, 1, 0, 0), across(0, 1, -1, 0)});
+}
+
+/// A small disk that rests on another one and an image of it, under an infinitesimal force; there is room for it below
+/// the next images up to a radius of sqrt 2 - 1.
+inline State with_a_rattler(double radius) {
+    State state = in_cell({{1, 0, 0}, {radius, 1, std::sqrt((2 + radius) * radius)}}, {2, 2, 0}, false, 2, 3,
+                          {across(0, 0, 0, 1), across(0, 0, 1, 0), across(0, 1, 0, 0), across(0, 1, -1, 0)});
+    state.load.infinitesimal = {0, 1, 0, -1};
+    return state;
+}
+
 /// One disk of radius 1 that touches its images along x and y.
 inline State one_disk(double f1, double f2) {
     return in_cell({{1, 0.25, 0.5}}, {2, 2, 0}, false, f1, f2, {across(0, 0, 0, 1), across(0, 0, 1, 0)});
@@ -96,6 +128,14 @@ inline State triangular_lattice(int a, int b, bool tilts) {
         }
     }
     return in_cell(disks, {static_cast<double>(a), height * rows, 0}, tilts, 1, 1, contacts);
+}
+
+/// Loads that balance, and coordinates on the grid: a run may start from it.
+inline State with_infinitesimal_loads(State state) {
+    state.load.infinitesimal = isostat::generic_infinitesimal(state.packing.radius, 7);
+    balance(state.load.infinitesimal, state.packing.cell);
+    snap_to_grid(state.packing);
+    return state;
 }
 
 /// Its cell moved by other representatives: disk i shifted by `shift[i]` periods, the same contacts.

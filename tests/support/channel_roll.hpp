@@ -23,14 +23,11 @@ struct ChannelRoll {
         const double period = 6 * std::cos(angle);
         const double away = 4.1 + clearance;
         const auto short_number = [](double x) { return std::ldexp(std::nearbyint(std::ldexp(x, 40)), -40); };
-        State state =
-            in_cell({{2, origin, 2},
-                     {1, origin + 3 * std::cos(angle) + shift * period, 2 + 3 * std::sin(angle)},
-                     {0.1, short_number(origin + away * std::cos(passes)), short_number(2 + away * std::sin(passes))}},
-                    {period, short_number(3 + 3 * std::sin(ends)), 0}, false, 1, 1, {});
-        state.packing.cell = {{true, false}, {true, false}, {false}, 0};
-        state.packing.walls.lower[1] = isostat::WallKind::fixed;
-        state.packing.walls.upper[1] = isostat::WallKind::movable;
+        State state = in_channel(
+            {{2, origin, 2},
+             {1, origin + 3 * std::cos(angle) + shift * period, 2 + 3 * std::sin(angle)},
+             {0.1, short_number(origin + away * std::cos(passes)), short_number(2 + away * std::sin(passes))}},
+            period, short_number(3 + 3 * std::sin(ends)), 1, 1, {});
         state.load.disk_force = {0, 0, 0, 20, 0, 0};
         const auto held = [](int k) { return Contact{isostat::ContactKind::held, k, 0}; };
         state.contacts = {

@@ -63,11 +63,7 @@ inline State mirror_pairs() {
 
 /// A triangular lattice under forces of 1, with all its contacts.
 inline State loaded_lattice(int columns, int double_rows, bool tilts) {
-    State state = triangular_lattice(columns, double_rows, tilts);
-    state.load.infinitesimal = isostat::generic_infinitesimal(state.packing.radius, 7);
-    balance(state.load.infinitesimal, state.packing.cell);
-    snap_to_grid(state.packing);
-    return state;
+    return with_infinitesimal_loads(triangular_lattice(columns, double_rows, tilts));
 }
 
 } // namespace cells

@@ -4,25 +4,6 @@
 using namespace isostat;
 using crafted::Played;
 
-namespace {
-
-/// Disks R1 > R2 on the bottom of a channel, the second between the first and its image.
-State between_images(double large, double small) {
-    const double width = 2 * std::sqrt(large * small);
-    State state = cells::in_cell({{large, 0, large}, {small, width, small}}, {2 * width, 2 * large, 0}, false, 1, 1,
-                                 {crafted::bottom(0), crafted::top(0), crafted::bottom(1), cells::across(0, 1, 0, 0),
-                                  cells::across(0, 1, -1, 0)});
-    state.packing.cell = {{true, false}, {true, false}, {false}, 0};
-    state.packing.walls.lower[1] = WallKind::fixed;
-    state.packing.walls.upper[1] = WallKind::movable;
-    state.load.infinitesimal = generic_infinitesimal(state.packing.radius, 7);
-    balance(state.load.infinitesimal, state.packing.cell);
-    snap_to_grid(state.packing);
-    return state;
-}
-
-} // namespace
-
 BOOST_AUTO_TEST_SUITE(trajectory_cells)
 
 BOOST_AUTO_TEST_CASE(two_disks_in_a_channel_go_round_a_loop) {
@@ -30,7 +11,7 @@ BOOST_AUTO_TEST_CASE(two_disks_in_a_channel_go_round_a_loop) {
         BOOST_TEST_INFO_SCOPE("radii " << large << ", " << small);
         const double rise = std::sqrt((large + small) * (large + small) - large * large);
         const Contact own = cells::across(0, 0, 1, 0);
-        const State start = between_images(large, small);
+        const State start = cells::with_infinitesimal_loads(cells::between_images(large, small));
         const Played down = crafted::play(start, -1, 1);
         crafted::check_arc(down, crafted::bottom(0), own, (large - small) / std::sqrt(large * small));
         BOOST_TEST(down.state.packing.length(0) == 2 * large, boost::test_tools::tolerance(1e-12));

@@ -2,6 +2,8 @@
 
 #include "cli/program.hpp"
 
+#include <isostat/foreign/foreign.hpp>
+
 #include <cmath>
 
 namespace {
@@ -75,7 +77,11 @@ BOOST_AUTO_TEST_CASE(kind_2_a_box_that_is_flipped_is_the_same_path) {
 
 BOOST_AUTO_TEST_CASE(kind_3_thresholds_that_nobody_asked_for_do_not_count) {
     says(in_field("plateau", "03_soft14.xyz", {"--cell", "diagonal", "--thresholds=-1e-9:1e-9"}), 1,
-         {"at no threshold of [-1e-09, 1e-09]", "h = 3"});
+         {"backbone isostatic, proved  at no threshold of [-1e-09, 1e-09]", "h = 3"});
+    says(in_field("plateau", "03_soft14.xyz", {"--cell", "diagonal", "--thresholds=-4e-3:-3.5e-3"}), 0,
+         {"-0.0040000000000000001 <= threshold <= -0.0035"});
+    // Below the rounding no list is known.
+    expect(in_field("plateau", "05_torus11.xyz", {"--thresholds=-1e-17:1e-17"}), 2);
 }
 
 BOOST_AUTO_TEST_CASE(kind_4_circles_in_a_square) {
@@ -83,6 +89,8 @@ BOOST_AUTO_TEST_CASE(kind_4_circles_in_a_square) {
     more.emplace_back("--json");
     const auto thirteen = json_of(in_field("plateau", "04_square13.txt", more), 1);
     has(thirteen, {{"widest/N", 25}, {"widest/rattlers", 1}, {"widest/counts/N_f", 24}, {"widest/counts/h", 1}});
+    BOOST_TEST(thirteen["isostatic"].empty());
+    BOOST_TEST(thirteen["rounding"].get<double>() < 1e-15);
     more = in_square("fixed", radius_of_19);
     more.emplace_back("--json");
     const auto nineteen = json_of(in_field("plateau", "04_square19.txt", more), 1);
@@ -98,6 +106,31 @@ BOOST_AUTO_TEST_CASE(kind_4_circles_in_a_square) {
         says(in_field("import", file, more), 0, {"their size alone moves", "proved"});
         const auto found = json_of(run({"inspect", state, "--json"}));
         has(found, {{"box/N", contacts}, {"box/h", 1}, {"box/k", 0}, {"box/jammed/collective/verdict", "proved"}});
+    }
+}
+
+BOOST_AUTO_TEST_CASE(kind_4_a_hyperstatic_packing_is_not_isostatic_by_rounding_wherever_it_is) {
+    const scratch::Folder folder;
+    isostat::ForeignOptions options{.columns = {"-", "x", "y"}};
+    options.size = isostat::SizeStatement{isostat::SizeMeaning::radius, "", std::stod(radius_of_13)};
+    const isostat::Packing read = isostat::read_foreign(scratch::data("field/04_square13.txt"), options).packing;
+    const std::string file = folder.at("p.txt");
+    for (int k = 0; k < 24; ++k) {
+        const double scale = 0.3 + 0.37 * k, shift = 0.1 * k * k, sign = k % 2 == 0 ? 1 : -1;
+        const int digits = k % 3 == 0 ? 17 : k % 3 == 1 ? 12 : 8;
+        std::string text = "x y r\n";
+        for (std::size_t i = 0; i < read.radius.size(); ++i) {
+            text += fmt::format("{:.{}g} {:.{}g} {:.{}g}\n", sign * scale * read.q[2 * i] + shift, digits,
+                                scale * read.q[2 * i + 1] - shift, digits, scale * read.radius[i], digits);
+        }
+        scratch::write(file, text);
+        const std::string box = fmt::format("--box={:.17g}:{:.17g},{:.17g}:{:.17g}", shift - 0.5 * scale,
+                                            shift + 0.5 * scale, -shift - 0.5 * scale, -shift + 0.5 * scale);
+        const Outcome outcome = run({"plateau", file, "--walls", "fixed", box, "--json"});
+        BOOST_TEST_INFO_SCOPE("placement " << k << ", " << digits << " digits");
+        expect(outcome, 1);
+        BOOST_TEST(
+            (digits == 8 || nlohmann::json::parse(outcome.out).at("widest").at("N") == 25)); // the next gap is 4.9e-5
     }
 }
 
@@ -177,7 +210,8 @@ BOOST_AUTO_TEST_CASE(kind_4_a_square_whose_walls_stay_is_jammed_by_its_size) {
 }
 
 BOOST_AUTO_TEST_CASE(kind_5_gaps_and_forces_below_the_digits_are_not_told_from_0) {
-    for (const char* lattice : {"05_torus3_triangular.xyz", "05_torus11.xyz"}) {
+    for (const char* lattice :
+         {"05_torus3_triangular.xyz", "05_torus_n7_c1.xyz", "05_torus_n8_c2.xyz", "05_torus11.xyz"}) {
         const auto found = json_of(in_field("plateau", lattice, {"--json"}), 1);
         BOOST_TEST(found["isostatic"].empty(), lattice);
     }
@@ -198,6 +232,28 @@ BOOST_AUTO_TEST_CASE(kind_5_gaps_and_forces_below_the_digits_are_not_told_from_0
     says(in_field("import", "05_torus3_triangular.xyz", {"--cell", "isotropic", "--jitter", "1e-9", "-o", copy}), 0,
          {"this is a copy with other radii"});
     says(run({"inspect", copy}), 0, {"copy                     of", "may be others of the file"});
+}
+
+BOOST_AUTO_TEST_CASE(kind_5_an_imported_state_says_what_its_file_cannot_tell) {
+    const scratch::Folder folder;
+    const std::string state = folder.at("s.json");
+    for (const auto& [name, gaps] :
+         {std::pair{"05_torus_n7_c1.xyz", 8}, {"05_torus_n8_c2.xyz", 1}, {"05_torus11.xyz", 1}}) {
+        BOOST_TEST_INFO_SCOPE(name);
+        const auto answer = json_of(in_field("import", name, {"--cell", "isotropic", "-o", state, "--json"}), 2);
+        BOOST_TEST(answer.at("verdict") == "undecided");
+        BOOST_TEST(static_cast<int>(answer.at("untold").at("gaps").size()) == gaps);
+        BOOST_TEST(answer.at("untold").at("verdict_of_the_doubles") == "proved");
+        says(run({"inspect", state}), 2,
+             {"isostatic equilibrium    undecided: ", "jammed strictly          undecided: "});
+        says(run({"certify", state, "-o", folder.at("c.json")}), 2,
+             {"undecided      the claims are of the stored doubles"});
+    }
+    // A forged rounding is no way round it.
+    std::string text = scratch::read(state);
+    text.replace(text.find("\"rounding\":") + 11, 1, "-");
+    scratch::write(state, text);
+    expect(run({"inspect", state}), 65, {});
 }
 
 BOOST_AUTO_TEST_CASE(kind_5_a_lattice_in_a_cell_that_stays_is_jammed_if_its_contacts_close) {
@@ -417,10 +473,20 @@ BOOST_AUTO_TEST_CASE(kind_19_atoms_that_are_walls) {
 }
 
 BOOST_AUTO_TEST_CASE(kind_20_sizes_that_are_wrong_by_a_factor) {
-    says(in_field("plateau", "20_half_radii.xyz"), 2, {"the smallest gap is 1.99 of the smallest radius"});
+    says(in_field("plateau", "20_half_radii.xyz"), 2,
+         {"the smallest gap is 1.99 of the smallest radius", "are the sizes wrong by a factor"});
     const scratch::Folder folder;
-    expect(in_field("import", "20_half_radii.xyz", {"--cell", "isotropic", "-o", folder.at("s.json")}), 65,
-           {"of its radius", "wrong by a factor"});
+    const std::string state = folder.at("s.json");
+    expect(in_field("import", "20_half_radii.xyz", {"--cell", "isotropic", "-o", state}), 65,
+           {"of its radius: expected at most one", "wrong by a factor", "--far"});
+    BOOST_TEST(!std::filesystem::exists(state));
+    says(in_field("import", "20_half_radii.xyz", {"-o", state, "--far"}), 0,
+         {"more than a tenth: the vertex may not be that of the file", "(taken by default: --stress, --load)"});
+    const auto of_size = [](const char* file, const char* option, const char* size) {
+        return in_field("plateau", file, {option, size}).out;
+    };
+    BOOST_TEST(contains(of_size("20_half_radii.xyz", "--diameter", "radius"), "are the sizes wrong by a factor"));
+    BOOST_TEST(contains(of_size("03_soft14.xyz", "--radius", "1"), "are the sizes diameters, taken for radii"));
 }
 
 BOOST_AUTO_TEST_CASE(kind_22_the_pair_of_the_deepest_overlap_and_the_list) {
@@ -439,6 +505,19 @@ BOOST_AUTO_TEST_CASE(kind_23_decimals_and_their_digits) {
     const auto over = json_of(in_field("plateau", "23_over.csv", box), 1);
     BOOST_TEST(over["smallest_gap_of"] == "0-left");
     BOOST_TEST(std::abs(over["smallest_gap"].get<double>() + 1e-5) < 1e-15);
+}
+
+BOOST_AUTO_TEST_CASE(kind_23_where_every_gap_is_told_the_answer_is_that_of_the_doubles) {
+    const scratch::Folder folder;
+    const std::string state = folder.at("s.json");
+    const auto answer =
+        json_of(run({"import", scratch::data("yade20.txt"), "--box", "0:6.797743980394215,0:6.804741233269178", "-o",
+                     state, "--stress", "1,1", "--json"}));
+    BOOST_TEST(answer.at("rounding").get<double>() > 1e-6); // six digits
+    BOOST_TEST(answer.at("rounding").get<double>() < 1e-4);
+    BOOST_TEST(answer.at("load").at("by_default").at("stress") == false);
+    BOOST_TEST(answer.at("load").at("by_default").at("kind") == true);
+    expect(run({"inspect", state}), 0);
 }
 
 BOOST_AUTO_TEST_CASE(kind_24_lattices_have_their_categories) {

@@ -1,5 +1,6 @@
 // Runs re-checked from their records; altered records must be found, the first of them named.
 #include "checker/strut.hpp"
+#include "support/bad_input.hpp"
 #include "support/crafted.hpp"
 #include "support/played.hpp"
 #include "support/same_sequence.hpp"
@@ -384,8 +385,7 @@ BOOST_AUTO_TEST_CASE(true_stresses_and_forces_on_disks_in_cells_are_replayed) {
 }
 
 BOOST_AUTO_TEST_CASE(altered_records_of_a_run_in_a_cell_are_named, *boost::unit_test::label("slow")) {
-    const scratch::Folder folder;
-    const std::filesystem::path run = folder / "run";
+    const scratch::Folder run;
     play_and_store(of_cell("tilt_16", 0), {2}, run);
     const std::string events = scratch::read(run / "events.jsonl");
     const std::string csv = scratch::read(run / "equilibria.csv");
@@ -436,9 +436,7 @@ BOOST_AUTO_TEST_CASE(folders_without_the_records_are_bad_input) {
         R"({"format":"isostat-run","version":1,"status":"completed","program":"","programme":[],"settings":{"run":{"rule":"most_negative"}}})");
     scratch::write(folder / "events.jsonl", "");
     scratch::write(folder / "equilibria.csv", "# number,previous\n0,-1\n");
-    BOOST_CHECK_EXCEPTION((void)verify_run(folder.path()), Error, [](const Error& error) {
-        return std::string(error.what()).find("the names of the columns") != std::string::npos;
-    });
+    expect_bad_input([&] { (void)verify_run(folder.path()); }, {"the names of the columns"});
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -1,7 +1,7 @@
 // A series of LAMMPS against the exact run: what each frame is, where the series departs, and damaged files by name.
 #include "compare/report.hpp"
 #include "compare/series_copy.hpp"
-#include "io/bad_input.hpp"
+#include "support/bad_input.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/io/state_file.hpp>

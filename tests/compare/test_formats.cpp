@@ -2,7 +2,7 @@
 #include "compare/path.hpp"
 #include "compare/report.hpp"
 #include "compare/series_copy.hpp"
-#include "io/bad_input.hpp"
+#include "support/bad_input.hpp"
 #include "support/segments.hpp"
 
 #include <isostat/core/error.hpp>

@@ -2,9 +2,10 @@
 
 #include "crafted/genericity.hpp"
 #include "examples.hpp"
-#include "io/bad_input.hpp"
 #include "packing/bodies.hpp"
+#include "support/bad_input.hpp"
 #include "support/clumps.hpp"
+#include "support/test.hpp"
 
 #include <isostat/crafted/exact_packing.hpp>
 #include <isostat/crafted/plateau.hpp>

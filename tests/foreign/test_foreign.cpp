@@ -1,8 +1,8 @@
 // Packings of other programs: every format, what each says of sizes, walls and boundaries, and what is refused.
 
 #include "certificate/averages.hpp"
-#include "io/bad_input.hpp"
 #include "snap/frame_file.hpp"
+#include "support/bad_input.hpp"
 #include "support/scratch.hpp"
 
 #include <isostat/foreign/foreign.hpp>

@@ -1,6 +1,6 @@
 // Rigid bodies in packings of other programs: which rows are members, which bars are made, and what is refused.
 
-#include "io/bad_input.hpp"
+#include "support/bad_input.hpp"
 
 #include <isostat/foreign/foreign.hpp>
 #include <isostat/rigidity/counting.hpp>

@@ -1,8 +1,8 @@
 // Packings of spheres by other programs: every format, cells, walls, and what is refused.
 
-#include "io/bad_input.hpp"
 #include "io/numbers.hpp"
 #include "oracle/pairs.hpp"
+#include "support/bad_input.hpp"
 #include "support/scratch.hpp"
 
 #include <isostat/contact/state.hpp>

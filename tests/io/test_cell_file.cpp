@@ -1,6 +1,6 @@
-#include "io/bad_input.hpp"
 #include "io/files.hpp"
 #include "packing/cell_wrap.hpp"
+#include "support/bad_input.hpp"
 #include "support/cells.hpp"
 #include "support/scratch.hpp"
 

@@ -1,6 +1,6 @@
 // Damaged folders: a resume says which file is wrong and changes nothing; a disk without room loses no record.
-#include "io/bad_input.hpp"
 #include "io/record_digests.hpp"
+#include "support/bad_input.hpp"
 #include "support/scratch.hpp"
 #include "support/segments.hpp"
 

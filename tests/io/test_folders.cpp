@@ -1,8 +1,8 @@
 // Where output may go, and which files a file may name.
-#include "io/bad_input.hpp"
 #include "io/files.hpp"
 #include "io/folders.hpp"
 #include "io/section.hpp"
+#include "support/bad_input.hpp"
 #include "support/scratch.hpp"
 
 #include <isostat/io/run_directory.hpp>

@@ -1,5 +1,5 @@
-#include "io/bad_input.hpp"
 #include "io/equilibria.hpp"
+#include "support/bad_input.hpp"
 #include "support/cells.hpp"
 #include "support/scratch.hpp"
 #include "support/segments.hpp"

@@ -1,5 +1,5 @@
-#include "io/bad_input.hpp"
 #include "io/files.hpp"
+#include "support/bad_input.hpp"
 #include "support/crafted.hpp"
 #include "support/scratch.hpp"
 
@@ -213,10 +213,7 @@ BOOST_AUTO_TEST_CASE(a_path_of_stresses_comes_back_and_contradictions_are_refuse
         const std::size_t path = changed.find("\"path\"");
         const std::size_t at = changed.find(from, std::string(from).find("stress") == 1 ? path : 0);
         changed.replace(at, std::string(from).size(), to);
-        BOOST_CHECK_EXCEPTION((void)read(changed), Error, [&](const Error& error) {
-            BOOST_TEST_MESSAGE(error.what());
-            return std::string(error.what()).find(word) != std::string::npos;
-        });
+        expect_bad_input([&] { (void)read(changed); }, {word});
     }
 }
 
@@ -302,22 +299,16 @@ BOOST_AUTO_TEST_CASE(failed_writing_keeps_the_old_file_and_leaves_nothing_else) 
 BOOST_AUTO_TEST_CASE(a_disk_that_is_full_leaves_the_old_file_and_no_part_of_the_new_one) {
     const scratch::Folder folder;
     scratch::write(folder / "state.json", "old");
-    // The system refuses_state the 101st byte of any file, as it would on a full disk.
+    // The system refuses the 101st byte of any file, as it would on a full disk.
     rlimit before{};
     BOOST_REQUIRE(::getrlimit(RLIMIT_FSIZE, &before) == 0);
     rlimit small = before;
     small.rlim_cur = 100;
     const auto handler = std::signal(SIGXFSZ, SIG_IGN);
     BOOST_REQUIRE(::setrlimit(RLIMIT_FSIZE, &small) == 0);
-    bool refused = false;
-    try {
-        write_atomically(folder / "state.json", std::string(1000, 'x'));
-    } catch (const Error& error) {
-        refused = error.kind() == ErrorKind::cannot_write;
-    }
+    expect_error([&] { write_atomically(folder / "state.json", std::string(1000, 'x')); }, ErrorKind::cannot_write, {});
     ::setrlimit(RLIMIT_FSIZE, &before);
     std::signal(SIGXFSZ, handler);
-    BOOST_TEST(refused);
     BOOST_TEST(scratch::read(folder / "state.json") == "old");
     BOOST_TEST(std::distance(std::filesystem::directory_iterator(folder.path()), {}) == 1);
 }

@@ -1,5 +1,5 @@
-#include "io/bad_input.hpp"
 #include "io/vertex_text.hpp"
+#include "support/bad_input.hpp"
 #include "support/scratch.hpp"
 
 #include <isostat/io/state_file.hpp>

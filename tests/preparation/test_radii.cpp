@@ -1,6 +1,6 @@
 // Laws of the radii: the shape of each, where it is cut, the same bits everywhere, laws without sense.
 
-#include "io/bad_input.hpp"
+#include "support/bad_input.hpp"
 
 #include <isostat/preparation/preparation.hpp>
 

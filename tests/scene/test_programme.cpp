@@ -1,4 +1,4 @@
-#include "io/bad_input.hpp"
+#include "support/bad_input.hpp"
 
 #include <isostat/scene/scene.hpp>
 

@@ -1,5 +1,5 @@
-#include "io/bad_input.hpp"
 #include "scene/seed.hpp"
+#include "support/bad_input.hpp"
 #include "support/scratch.hpp"
 
 #include <isostat/scene/scene.hpp>

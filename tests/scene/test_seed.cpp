@@ -1,4 +1,5 @@
 #include "scene/seed.hpp"
+#include "support/bad_input.hpp"
 #include "support/scratch.hpp"
 
 #include <isostat/core/error.hpp>
@@ -13,9 +14,7 @@ std::string seeded(const std::string& text, std::uint64_t seed) {
 }
 
 void refused(const std::string& text, std::uint64_t seed, const std::string& word) {
-    BOOST_CHECK_EXCEPTION(seeded(text, seed), Error, [&](const Error& error) {
-        return error.kind() == ErrorKind::bad_input && std::string(error.what()).find(word) != std::string::npos;
-    });
+    expect_bad_input([&] { (void)seeded(text, seed); }, {word});
 }
 
 } // namespace

@@ -1,4 +1,5 @@
 // Trajectories in periodic cells: three sequences of an independent program, and what is a matter of description.
+#include "support/bad_input.hpp"
 #include "support/disguised_cells.hpp"
 #include "support/scratch.hpp"
 #include "support/segments.hpp"
@@ -320,9 +321,7 @@ BOOST_AUTO_TEST_CASE(a_dead_shear_that_flows_ends_the_run) {
 BOOST_AUTO_TEST_CASE(what_is_not_followed_is_refused) {
     const State start = start_of("rect_16");
     const auto refuses = [&](const State& state, const std::string& words) {
-        BOOST_CHECK_EXCEPTION(require_followed(state, "state"), Error, [&](const Error& error) {
-            return std::string(error.what()).find(words) != std::string::npos;
-        });
+        expect_bad_input([&] { require_followed(state, "state"); }, {words});
     };
     BOOST_CHECK_NO_THROW(require_followed(start, "state"));
     State state = start_of("tilt_16");

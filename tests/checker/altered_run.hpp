@@ -179,21 +179,6 @@ inline std::vector<Altered> of_file(const std::string& name, const std::string& 
     return of_object(text, budget);
 }
 
-/// A certificate has a digest of its own.
-inline std::string signed_certificate(const std::string& text) {
-    try {
-        (void)isostat::parse_certificate(text, "altered");
-    } catch (const isostat::Error& error) {
-        const std::string message = error.what();
-        const std::size_t at = message.find("expected \"");
-        if (message.find("digest is") != std::string::npos && at != std::string::npos) {
-            return scratch::replaced(text, Json::parse(text).at("digest").get<std::string>(),
-                                     message.substr(at + 10, 64));
-        }
-    }
-    return text;
-}
-
 /// The checkpoint is signed as it is; with any other file it is brought to what the folder holds.
 inline void write_signed(const fs::path& run, const std::string& name, const std::string& text) {
     if (name == "checkpoint.json") {
@@ -207,7 +192,7 @@ inline void write_signed(const fs::path& run, const std::string& name, const std
         scratch::write(run / name, body + isostat::before_digest + '"' + isostat::sha256(body) + "\"}\n");
         return;
     }
-    scratch::write(run / name, name.starts_with("certificates/eq_") ? signed_certificate(text) : text);
+    scratch::write(run / name, name.starts_with("certificates/eq_") ? forger::sealed_certificate(text) : text);
     forger::seal(run);
 }
 

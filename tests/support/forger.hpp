@@ -78,4 +78,18 @@ inline void unreadable(const std::filesystem::path& folder, const std::string& f
     expect_bad_input([&] { (void)isostat::verify_run(folder); }, {file, said});
 }
 
+/// A certificate with the digest that belongs to it: taken from the reader's message.
+inline std::string sealed_certificate(const std::string& text) {
+    try {
+        (void)isostat::parse_certificate(text, "forged");
+    } catch (const isostat::Error& error) {
+        const std::string message = error.what();
+        const std::size_t at = message.find("expected \""), old = text.find("\"digest\": \"");
+        if (message.find("digest is") != std::string::npos && at != std::string::npos && old != std::string::npos) {
+            return std::string(text).replace(old + 11, 64, message, at + 10, 64);
+        }
+    }
+    return text; // refused for another reason already
+}
+
 } // namespace forger

@@ -1,5 +1,5 @@
 // Claims against the true vertex to 200 digits and against closed forms; states about which less can be said.
-#include "oracle/truth.hpp"
+#include "oracle/claims.hpp"
 #include "support/crafted.hpp"
 
 #include <isostat/certificate/certify.hpp>
@@ -31,17 +31,6 @@ oracle::Truth known_truth(const State& state) {
     return truth;
 }
 
-void check_end(const LoadEndClaim& end, const oracle::Truth::End& limit, const State& state) {
-    BOOST_TEST(end.unbounded == limit.unbounded);
-    if (end.unbounded || limit.unbounded) {
-        return;
-    }
-    BOOST_TEST(contains(end.stress, limit.stress));
-    // Several forces may vanish there: the contact named is one of theirs.
-    BOOST_TEST(std::any_of(limit.opens.begin(), limit.opens.end(),
-                           [&](int l) { return state.contacts[static_cast<std::size_t>(l)] == end.opens; }));
-}
-
 /// The independent checker contradicts no claim, and confirms nearly all; returns how many it leaves open.
 int open_for_the_checker(const State& state, const Certification& c) {
     const Certificate certificate{state, "state", sha256(""), "test", c.claims};
@@ -68,43 +57,23 @@ bool check_claims(const State& state, const Certification& c, int open = 0) {
         BOOST_TEST((!claims.forces && !claims.gaps && !claims.load_interval && !claims.stable));
         return false;
     }
+    BOOST_REQUIRE((!claims.forces || claims.forces->finite.size() == n));
     const oracle::Truth truth = known_truth(state);
-    BOOST_TEST(truth.moved <= Real(claims.vertex->radius));
+    BOOST_TEST(oracle::objections(claims, state, truth) == std::vector<std::string>{},
+               boost::test_tools::per_element());
     BOOST_TEST(claims.vertex->radius <= claims.vertex->unique_radius);
-    const auto& f = truth.force;
-    if (claims.forces) {
-        const ForcesClaim& forces = *claims.forces;
-        BOOST_REQUIRE(forces.finite.size() == n);
-        const auto& g = truth.infinitesimal;
-        std::size_t next = 0;
-        for (std::size_t l = 0; l < n; ++l) {
-            BOOST_TEST_INFO_SCOPE("contact " << to_string(state.contacts[l]));
-            if (next < forces.structural_zeros.size() && forces.structural_zeros[next] == static_cast<int>(l)) {
-                BOOST_TEST(abs(f[l]) < Real("1e-60"));
-                BOOST_TEST(contains(forces.infinitesimal[next], g[l]));
-                BOOST_TEST(forces.infinitesimal[next].lower > 0);
-                BOOST_TEST((forces.finite[l] == Interval{0, 0}));
-                ++next;
-            } else {
-                BOOST_TEST(contains(forces.finite[l], f[l]),
-                           f[l] << " not in [" << forces.finite[l].lower << ", " << forces.finite[l].upper << "]");
-                BOOST_TEST(forces.finite[l].lower > 0);
-            }
-        }
-        BOOST_TEST(next == forces.structural_zeros.size());
+    for (std::size_t l = 0; claims.forces && l < n; ++l) {
+        const auto& zeros = claims.forces->structural_zeros;
+        const bool zero = std::find(zeros.begin(), zeros.end(), static_cast<int>(l)) != zeros.end();
+        const Interval& f = claims.forces->finite[l];
+        BOOST_TEST((zero ? f == Interval{0, 0} : f.lower > 0), to_string(state.contacts[l]));
     }
-    if (claims.gaps) {
-        if (const auto* const nearest = truth.nearest()) {
-            BOOST_TEST(Real(claims.gaps->smallest) <= nearest->gap);
-            BOOST_TEST(abs(truth.gap(claims.gaps->where) - nearest->gap) <= nearest->gap * Real("1e-6"));
-            BOOST_TEST(Real(claims.gaps->smallest) >= nearest->gap * Real("0.999"));
-        } else {
-            BOOST_TEST(std::isinf(claims.gaps->smallest));
-        }
-    }
-    if (claims.load_interval) {
-        check_end(claims.load_interval->low, truth.low, state);
-        check_end(claims.load_interval->high, truth.high, state);
+    if (claims.gaps && truth.nearest() != nullptr) {
+        const Real nearest = truth.nearest()->gap;
+        BOOST_TEST(Real(claims.gaps->smallest) >= nearest * Real("0.999"));
+        BOOST_TEST(abs(truth.gap(claims.gaps->where) - nearest) <= nearest * Real("1e-6"));
+    } else if (claims.gaps) {
+        BOOST_TEST(std::isinf(claims.gaps->smallest));
     }
     return made == 6;
 }

@@ -2,6 +2,7 @@
 // digits. ISOSTAT_LONG=1: a million states; ISOSTAT_STATES=N: as many as one likes.
 #include "contradictions/jamming.hpp"
 #include "contradictions/states.hpp"
+#include "oracle/claims.hpp"
 #include "support/crafted.hpp"
 
 #include <isostat/certificate/certify.hpp>
@@ -46,76 +47,12 @@ double seconds() {
     return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
-/// Up to what 200 digits leave open of a number of that scale.
-bool inside(const Interval& i, const Real& x, const Real& scale = 1) {
-    const Real room = negligible * scale;
-    return Real(i.lower) <= x + room && x - room <= Real(i.upper);
-}
-
-std::string text(const Real& x) {
-    std::ostringstream stream;
-    stream << std::setprecision(20) << x;
-    return stream.str();
-}
-
 void check_verdict(const char* who, Verdict verdict, int truth, Objections& wrong) {
     if (verdict == Verdict::proved && truth <= 0) {
         wrong.push_back(std::string(who) + " proves what is false");
     }
     if (verdict == Verdict::refuted && truth > 0) {
         wrong.push_back(std::string(who) + " refutes what is true");
-    }
-}
-
-void check_claims(const CertificateClaims& claims, const State& state, const Truth& truth, Objections& wrong) {
-    if (claims.vertex && Real(claims.vertex->radius) < truth.moved) {
-        wrong.push_back("the true vertex is " + text(truth.moved) + " away, claimed " +
-                        std::to_string(claims.vertex->radius));
-    }
-    if (claims.forces) {
-        for (std::size_t l = 0; l < claims.forces->finite.size(); ++l) {
-            if (!inside(claims.forces->finite[l], truth.force[l], truth.force_scale)) {
-                wrong.push_back("force of " + to_string(state.contacts[l]) + " is " + text(truth.force[l]));
-            }
-        }
-        for (std::size_t k = 0; k < claims.forces->structural_zeros.size(); ++k) {
-            const auto l = static_cast<std::size_t>(claims.forces->structural_zeros[k]);
-            if (sign_of(truth.force[l], truth.force_scale) != 0) {
-                wrong.push_back("force of " + to_string(state.contacts[l]) + " is no zero: " + text(truth.force[l]));
-            }
-            if (!inside(claims.forces->infinitesimal[k], truth.infinitesimal[l])) {
-                wrong.push_back("infinitesimal force of " + to_string(state.contacts[l]) + " is " +
-                                text(truth.infinitesimal[l]));
-            }
-        }
-    }
-    if (const OtherPair* nearest = truth.nearest(); claims.gaps && nearest != nullptr) {
-        if (Real(claims.gaps->smallest) > nearest->gap) {
-            wrong.push_back("smallest gap is " + text(nearest->gap) + ", claimed at least " +
-                            std::to_string(claims.gaps->smallest));
-        }
-    }
-    if (claims.load_interval) {
-        const auto end = [&](const LoadEndClaim& claim, const End& real, const char* name) {
-            if (claim.unbounded != real.unbounded) {
-                wrong.push_back(std::string(name) + " end of the interval: bounded or not");
-                return;
-            }
-            if (claim.unbounded) {
-                return;
-            }
-            if (!inside(claim.stress, real.stress)) {
-                wrong.push_back(std::string(name) + " end of the interval is " + text(real.stress));
-            }
-            const bool opens = std::any_of(real.opens.begin(), real.opens.end(), [&](int l) {
-                return state.contacts[static_cast<std::size_t>(l)] == claim.opens;
-            });
-            if (!opens) {
-                wrong.push_back(std::string(name) + " end opens another contact than " + to_string(claim.opens));
-            }
-        };
-        end(claims.load_interval->low, truth.low, "lower");
-        end(claims.load_interval->high, truth.high, "upper");
     }
 }
 
@@ -126,7 +63,7 @@ void check_inspection(const Inspection& inspection, const State& state, const Tr
         return;
     }
     if (Real(r.gap_residual) < truth.stored_gap - negligible) {
-        wrong.push_back("the largest gap of a contact is " + text(truth.stored_gap));
+        wrong.push_back("the largest gap of a contact is " + oracle::text(truth.stored_gap));
     }
     if (const double smallest = truth.singular_value(); r.sigma_min_bound > smallest * (1 + 1e-9) + 1e-14) {
         wrong.push_back("the smallest singular value is " + std::to_string(smallest));
@@ -136,7 +73,8 @@ void check_inspection(const Inspection& inspection, const State& state, const Tr
         const bool zero = inspection.structural_zero[l] != 0;
         const Real off = abs(Real(zero ? 0 : inspection.forces[l]) - truth.force[l]);
         if (off > Real(zero ? 0 : r.force_bound) + room) {
-            wrong.push_back("inspect: force of " + to_string(state.contacts[l]) + " is " + text(truth.force[l]));
+            wrong.push_back("inspect: force of " + to_string(state.contacts[l]) + " is " +
+                            oracle::text(truth.force[l]));
         }
     }
     if (inspection.truth.claims.gaps) {
@@ -256,7 +194,9 @@ Objections ask(const State& state, const Truth& truth, bool run, Count& tally) {
     certificate.claims = certified.claims;
     answers.certify = certified.verdict;
     tally.exact += certified.verdict == Verdict::undecided && equilibrium == 0 ? 1 : 0;
-    check_claims(certified.claims, state, truth, wrong);
+    for (std::string& other : oracle::objections(certified.claims, state, truth)) {
+        wrong.push_back(std::move(other));
+    }
     if (run || state.packing.dimension == plane || !state.packing.cell.any()) { // in exact numbers, which takes 50 ms
         check_counts(state, certified.claims, wrong);
     }

@@ -4,6 +4,7 @@
 #include "support/scratch.hpp"
 
 #include <isostat/compare/compare.hpp>
+#include <isostat/trajectory/trajectory.hpp>
 
 #include <memory>
 
@@ -19,6 +20,29 @@ inline Lines words_of(const std::string& line, char at = ' ') {
     return scratch::split(line, at);
 }
 using scratch::joined;
+
+/// The run from one load to the next: `reach(state)` at each. A load where the run is already asks for no arc.
+template <class Reach> void run_through(isostat::State state, const std::vector<double>& loads, Reach reach) {
+    isostat::RunCounters counters;
+    isostat::RunObserver nobody;
+    for (const double load : loads) {
+        isostat::Segment segment;
+        if (load == state.load.loaded_stress()) {
+            segment.equilibria = 0;
+        } else {
+            segment.to_stress = load;
+        }
+        const isostat::SegmentOutcome outcome = run_segment(state, segment, 0, {}, counters, nobody);
+        BOOST_REQUIRE_MESSAGE(!outcome.failure, (outcome.failure ? outcome.failure->message() : ""));
+        reach(state);
+    }
+}
+
+/// The frame contradicts itself, and the reason says how.
+inline void is_file(const isostat::compare::FrameResult& frame, const std::string& words) {
+    BOOST_TEST((frame.status == isostat::compare::FrameStatus::file), isostat::compare::to_string(frame.status));
+    BOOST_TEST((frame.reason.find(words) != std::string::npos), frame.reason);
+}
 
 /// The first `frames` frames, to be damaged, in a folder of their own.
 class Copy {

@@ -45,23 +45,6 @@ double length_of(const dd_real& x) {
     return std::abs(x.x[0] + x.x[1]);
 }
 
-/// Velocity at q that opens one contact, refined with residuals in double-double.
-std::vector<double> velocity_at(const Packing& packing, const std::vector<dd_real>& q,
-                                const std::vector<Contact>& contacts, std::size_t opened) {
-    using Matrix = oracle::RefinedMatrix<dd_real>;
-    const Matrix derivative = oracle::ContactEquations<dd_real>(packing, contacts, q).derivative();
-    std::vector<dd_real> opening(q.size(), dd_real(0.0));
-    opening[opened] = 1.0;
-    const auto v = derivative.solve(opening, Matrix::Of::matrix, derivative.usable ? 4 : 0).x;
-    const auto fastest =
-        std::max_element(v.begin(), v.end(), [](const dd_real& a, const dd_real& b) { return abs(a) < abs(b); });
-    std::vector<double> out;
-    for (const dd_real& x : v) {
-        out.push_back(oracle::as_double(dd_real(x / *fastest)));
-    }
-    return out;
-}
-
 True truth_of(const Packing& start, const std::vector<Contact>& contacts, std::size_t opened, const Packing& end,
               const std::vector<Contact>& end_contacts, const Load& load) {
     True out;
@@ -80,7 +63,8 @@ True truth_of(const Packing& start, const std::vector<Contact>& contacts, std::s
     for (std::size_t l = 0; l < out.fixed.size(); ++l) {
         out.largest = std::max(out.largest, length_of(out.fixed[l] + load.stress[1] * out.unit[l]));
     }
-    out.velocity = velocity_at(start, from.q, contacts, opened);
+    const auto velocity = oracle::opening_velocity(start, from.q, contacts, opened, 4);
+    std::transform(velocity.begin(), velocity.end(), std::back_inserter(out.velocity), oracle::as_double<dd_real>);
     return out;
 }
 

@@ -9,10 +9,8 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cmath>
 #include <cstdlib>
-#include <ctime>
 #include <string>
 #include <vector>
 
@@ -25,15 +23,6 @@ struct Stage {
     Sample wall, cpu;
     PreparationStage last;
 };
-
-/// CPU seconds of all threads: the preparation may use both cores.
-double process_seconds() {
-    return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-}
-
-double wall_seconds() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 } // namespace
 
@@ -85,11 +74,11 @@ int main(int argc, char** argv) {
         double klu = 0;
         for (int repeat = 0; repeat < repeats; ++repeat) {
             report = {};
-            const double wall_begin = wall_seconds();
-            const double begin = process_seconds();
+            const double wall_begin = bench::wall_milliseconds();
+            const double begin = bench::process_milliseconds(); // the preparation may use both cores
             const auto result = prepare(options, report);
-            cpu.add(process_seconds() - begin);
-            wall.add(wall_seconds() - wall_begin);
+            cpu.add(1e-3 * (bench::process_milliseconds() - begin));
+            wall.add(1e-3 * (bench::wall_milliseconds() - wall_begin));
             if (!result.ok()) {
                 fmt::print(stderr, "{} disks: {}\n", n, result.failure().message());
                 good = false;

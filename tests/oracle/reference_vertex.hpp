@@ -93,6 +93,23 @@ Polished<T> polish(const Packing& packing, std::vector<T> q, const std::vector<C
     return result;
 }
 
+/// Velocity at q that opens one contact and keeps the others closed, the fastest coordinate at 1; empty where the
+/// factors are unusable.
+template <class T>
+std::vector<T> opening_velocity(const Packing& packing, const std::vector<T>& q, const std::vector<Contact>& contacts,
+                                std::size_t opened, int corrections) {
+    const RefinedMatrix<T> derivative = ContactEquations<T>(packing, contacts, q).derivative();
+    if (!derivative.usable) {
+        return {};
+    }
+    std::vector<T> opening(q.size(), T(0.0));
+    opening[opened] = T(1.0);
+    std::vector<T> v = derivative.solve(opening, RefinedMatrix<T>::Of::matrix, corrections).x;
+    const T fastest = largest_of(v);
+    std::for_each(v.begin(), v.end(), [&fastest](T& c) { c /= fastest; });
+    return v;
+}
+
 /// What is proved of a true vertex near q (maximum norm). `radius` infinite: nothing.
 struct VertexCertificate {
     double radius = std::numeric_limits<double>::infinity(); ///< a true vertex lies within, and is alone within `alone`

@@ -39,20 +39,9 @@ template <class T> double distance(const std::vector<T>& q, const ReferenceArc& 
     return static_cast<double>(worst) / arc.start.min_radius();
 }
 
-/// Velocity at the start of an arc that opens its contact, the fastest coordinate at 1; empty when the factors are
-/// unusable.
+/// Velocity that opens the contact of an arc; empty when the factors are unusable.
 std::vector<double> velocity(const ReferenceArc& arc, const std::vector<double>& q) {
-    using Equations = oracle::ContactEquations<double>;
-    const Equations::Matrix derivative = Equations(arc.start, arc.contacts, q).derivative();
-    if (!derivative.usable) {
-        return {};
-    }
-    std::vector<double> opening(q.size(), 0.0);
-    opening[arc.opened.index()] = 1;
-    std::vector<double> v = derivative.solve(opening, Equations::Matrix::Of::matrix, 1).x;
-    const double fastest = oracle::largest_of(v);
-    std::for_each(v.begin(), v.end(), [fastest](double& c) { c /= fastest; });
-    return v;
+    return oracle::opening_velocity(arc.start, q, arc.contacts, arc.opened.index(), 1);
 }
 
 double gap_rate(const Packing& packing, const Contact& contact, const std::vector<double>& v) {

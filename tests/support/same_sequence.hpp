@@ -126,31 +126,10 @@ inline Disguised exchanged(const State& start) {
 
 /// (x, y) -> (L_y - y, x): left becomes bottom, bottom right, right top, top left.
 inline Disguised quarter_turned(const State& start) {
-    State state = start;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(start.packing.disk_count()); ++i) {
-        state.packing.q[2 * i] = start.packing.length(1) - start.packing.q[2 * i + 1];
-        state.packing.q[2 * i + 1] = start.packing.q[2 * i];
-        state.load.infinitesimal[2 * i] = -start.load.infinitesimal[2 * i + 1];
-        state.load.infinitesimal[2 * i + 1] = start.load.infinitesimal[2 * i];
-    }
-    state.packing.length(0) = start.packing.length(1);
-    state.packing.length(1) = start.packing.length(0);
-    std::swap(state.load.stress[0], state.load.stress[1]);
-    std::swap(state.load.reference_length[0], state.load.reference_length[1]);
-    state.load.loaded_axis = 0;
-    const auto turn = [](const Contact& c) {
-        switch (c.kind) {
-        case ContactKind::disk_disk:
-        case ContactKind::bar: return c;
-        case ContactKind::held: return Contact{c.kind, c.i ^ 1, 0};
-        case ContactKind::lower_wall:
-            return Contact{c.j == 0 ? ContactKind::lower_wall : ContactKind::upper_wall, c.i, 1 - c.j};
-        case ContactKind::upper_wall:
-            return Contact{c.j == 0 ? ContactKind::upper_wall : ContactKind::lower_wall, c.i, 1 - c.j};
-        }
-        return c;
-    };
-    return disguised(std::move(state), turn, [turn](const Contact& c) { return turn(turn(turn(c))); });
+    const Disguised once = exchanged(start);
+    Disguised twice = mirrored(once.state);
+    const auto back = [once = once.back, twice = twice.back](const Contact& c) { return once(twice(c)); };
+    return {std::move(twice.state), back};
 }
 
 inline void check_same_sequence(const Played& played, const Disguised& other, int equilibria, int direction = +1) {

@@ -141,11 +141,8 @@ class VertexSearch {
                 continue;
             }
             move(step);
-            if (auto failure = too_flat()) {
+            if (auto failure = stuck(step)) {
                 return give_up(*failure);
-            }
-            if (!packing_.bars.empty() && programmes_ > swinging && step.bounds != 0) {
-                return give_up(with_free_motions(step));
             }
             if (!worth_an_attempt(step) || (step.bounds != 0 && !complete(programme, weight, step.contacts))) {
                 continue;
@@ -248,8 +245,11 @@ class VertexSearch {
             failed(FailureKind::not_converged, "{} coordinates move freely", step.at_bounds.size()));
     }
 
-    /// A failure when the cell has become so flat that the next programme could not list its pairs.
-    [[nodiscard]] std::optional<Failure> too_flat() const {
+    /// A failure when only what bears no force still moves, or the cell is too flat for the next programme.
+    std::optional<Failure> stuck(const ProgrammeStep& step) {
+        if (!packing_.bars.empty() && programmes_ > swinging && step.bounds != 0) {
+            return with_free_motions(step);
+        }
         const auto beyond = packing_.cell.any()
                                 ? disk_beyond(packing_, listed_within * packing_.max_radius(), farthest_disk)
                                 : std::nullopt;

@@ -89,6 +89,32 @@ Number second_variation(const ExactPacking& packing, const crafted::Inspection& 
     return sum;
 }
 
+/// A body among fixed disks, see below.
+struct Family {
+    Eigen::ArrayXd fx, fy, a, member, fixed; // forces but the last, places and radii
+    double form = -1;
+    bool apart = false;
+};
+
+void judge(Family& f) {
+    const Eigen::Index n = f.a.size();
+    Eigen::ArrayXd x(n), y(n);
+    x << f.fx, -f.fx.sum();
+    y << f.fy, -f.fy.sum();
+    const Eigen::ArrayXd t = (x * x + y * y).sqrt();
+    const Eigen::ArrayXd d = f.member + f.fixed, b = f.a + d;
+    f.form = -(t * f.a * b / d).sum() / t.sum();
+    f.apart = t.minCoeff() > 1e-3 * t.sum();
+    for (Eigen::Index k = 0; k < n; ++k) {
+        for (Eigen::Index l = 0; l < n; ++l) {
+            const double cosine = (x[k] * x[l] + y[k] * y[l]) / (t[k] * t[l]);
+            const double square = f.a[k] * f.a[k] + b[l] * b[l] - 2 * f.a[k] * b[l] * cosine;
+            const double touching = f.member[k] + f.fixed[l];
+            f.apart = f.apart && (k == l || square >= touching * touching);
+        }
+    }
+}
+
 } // namespace
 
 BOOST_AUTO_TEST_SUITE(statements)
@@ -191,29 +217,6 @@ BOOST_AUTO_TEST_CASE(no_body_was_found_that_contacts_alone_keep_in_a_minimum) {
         return low + (high - low) * (static_cast<double>(random() >> 11) * 0x1p-53);
     };
     const auto bounded = [](const Eigen::ArrayXd& x, double low) { return x.max(low).min(1); };
-    struct Family {
-        Eigen::ArrayXd fx, fy, a, member, fixed; // forces but the last, places and radii
-        double form = -1;
-        bool apart = false;
-    };
-    const auto judge = [](Family& f) {
-        const Eigen::Index n = f.a.size();
-        Eigen::ArrayXd x(n), y(n);
-        x << f.fx, -f.fx.sum();
-        y << f.fy, -f.fy.sum();
-        const Eigen::ArrayXd t = (x * x + y * y).sqrt();
-        const Eigen::ArrayXd d = f.member + f.fixed, b = f.a + d;
-        f.form = -(t * f.a * b / d).sum() / t.sum();
-        f.apart = t.minCoeff() > 1e-3 * t.sum();
-        for (Eigen::Index k = 0; k < n; ++k) {
-            for (Eigen::Index l = 0; l < n; ++l) {
-                const double cosine = (x[k] * x[l] + y[k] * y[l]) / (t[k] * t[l]);
-                const double square = f.a[k] * f.a[k] + b[l] * b[l] - 2 * f.a[k] * b[l] * cosine;
-                const double touching = f.member[k] + f.fixed[l];
-                f.apart = f.apart && (k == l || square >= touching * touching);
-            }
-        }
-    };
     const auto search = [&](int contacts, bool apart) {
         double best = -1;
         for (int start = 0; start < 60; ++start) {

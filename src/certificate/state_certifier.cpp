@@ -1,6 +1,7 @@
 #include "certificate/state_certifier.hpp"
 
 #include "contact/words.hpp"
+#include "io/state_json.hpp"
 #include "io/files.hpp"
 
 #include <isostat/certificate/certify.hpp>
@@ -27,10 +28,12 @@ void StateCertifier::on_equilibrium(const EquilibriumRecord& record, const State
     certificate.program = program_;
     certificate.state = state;
     certificate.state.provenance.clear();
-    certificate.input_hash = sha256(state_text(certificate.state));
+    const std::string text = state_text(certificate.state);
+    certificate.input_hash = sha256(text);
     const Certification result = certify(certificate.state);
     certificate.claims = result.claims;
-    write_certificate(folder_ / fmt::format("eq_{:06}.json", record.number), certificate);
+    write_output(folder_ / fmt::format("eq_{:06}.json", record.number), json::certificate_text(certificate, text),
+                 "\"isostat-certificate\"");
     StateTally& tally = counters_.states;
     (result.verdict == Verdict::proved    ? tally.proved
      : result.verdict == Verdict::refuted ? tally.refuted

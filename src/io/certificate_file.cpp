@@ -9,6 +9,8 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
+#include <string_view>
 
 namespace isostat {
 
@@ -19,6 +21,73 @@ using json::member_line;
 
 bool is_hash(const std::string& text) {
     return text.size() == 64 && text.find_first_not_of("0123456789abcdef") == std::string::npos;
+}
+
+/// Copies a document that was dumped here, without white space and with sorted keys: what parsing and dumping it would
+/// give, ten times faster. \pre no backslash, so that the next quote ends a string and keys are sorted as they stand
+class SortedCopy {
+  public:
+    explicit SortedCopy(std::string_view text) : rest_(text) {}
+    void value(std::string& copy) {
+        const char first = next();
+        if (first == '{') {
+            object(copy);
+        } else if (first == '[') {
+            copy += take(1);
+            while (next() != ']') {
+                if (next() == ',') {
+                    copy += take(1);
+                }
+                value(copy);
+            }
+            copy += take(1);
+        } else {
+            copy += first == '"' ? take(rest_.find('"', 1) + 1) : take(rest_.find_first_of(" \n,]}"));
+        }
+    }
+
+  private:
+    char next() {
+        rest_.remove_prefix(rest_.find_first_not_of(" \n"));
+        return rest_.front();
+    }
+    std::string_view take(std::size_t size) {
+        const std::string_view taken = rest_.substr(0, size);
+        rest_.remove_prefix(taken.size());
+        return taken;
+    }
+    void object(std::string& copy) {
+        std::map<std::string, std::string> members;
+        take(1);
+        while (next() != '}') {
+            std::string name;
+            value(name);
+            next();
+            take(1); // the colon
+            value(members[name]);
+            if (next() == ',') {
+                take(1);
+            }
+        }
+        take(1);
+        copy += '{';
+        for (auto member = members.begin(); member != members.end(); ++member) {
+            copy += (member == members.begin() ? "" : ",") + member->first + ':' + member->second;
+        }
+        copy += '}';
+    }
+
+    std::string_view rest_;
+};
+
+/// `digest_of` of a document that was dumped here.
+std::string digest_of_text(const std::string& text) {
+    if (text.find('\\') != std::string::npos) {
+        return json::digest_of(json::Json::parse(text));
+    }
+    std::string sorted;
+    SortedCopy(text).value(sorted);
+    return sha256(sorted);
 }
 
 } // namespace
@@ -34,13 +103,16 @@ std::string sha256(const std::string& bytes) {
 }
 
 std::string json::digest_of(const json::Json& document) {
-    nlohmann::json sorted = nlohmann::json::parse(json::dumped(document));
+    nlohmann::json sorted = document;
     sorted.erase("digest");
     return sha256(sorted.dump());
 }
 
 std::string certificate_text(const Certificate& certificate) {
-    std::string state = state_text(certificate.state);
+    return json::certificate_text(certificate, state_text(certificate.state));
+}
+
+std::string json::certificate_text(const Certificate& certificate, std::string state) {
     while (state.ends_with('\n')) {
         state.pop_back();
     }
@@ -50,7 +122,7 @@ std::string certificate_text(const Certificate& certificate) {
     text += member_line("input_hash", certificate.input_hash) + ",\n";
     text += json::claims_text(certificate.claims, certificate.state.packing.dimension) + ",\n";
     text += "\"state\": " + state;
-    return text + ",\n" + member_line("digest", json::digest_of(json::Json::parse(text + "}"))) + "\n}\n";
+    return text + ",\n" + member_line("digest", digest_of_text(text + "}")) + "\n}\n";
 }
 
 void write_certificate(const std::filesystem::path& path, const Certificate& certificate) {

@@ -39,6 +39,9 @@ std::string claims_text(const CertificateClaims& claims, int dimension);
 /// What `claims_text` wrote. Throws as `parse_certificate` does.
 CertificateClaims claims_of(const Field& field, const State& state);
 
+/// The text of a certificate whose state has the text `state`.
+std::string certificate_text(const Certificate& certificate, std::string state);
+
 /// SHA-256 of a document without its field "digest", dumped without white space and with sorted keys.
 std::string digest_of(const Json& document);
 

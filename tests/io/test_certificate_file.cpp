@@ -82,6 +82,22 @@ BOOST_AUTO_TEST_CASE(a_certificate_comes_back_bit_for_bit) {
     BOOST_TEST((claims.undecided == made.claims.undecided));
 }
 
+// The writer sorts the text that it has, the reader what it parsed: both must have the same digest.
+BOOST_AUTO_TEST_CASE(texts_with_and_without_escapes_have_the_digest_of_what_they_say) {
+    Certificate certificate = full_certificate();
+    for (const char* words : {"a, {b: [c]} and d", "", "\u00e9, z", "nothing \"else\"", "one\ntwo", "c:\\folder"}) {
+        certificate.program = words;
+        certificate.claims.undecided = {words, "z"};
+        for (const char* provenance :
+             {"", "{}", R"({"z": 1, "a": [], "b": {"y": -0.0, "x": 1e300}, "\u0001": null})",
+              R"({"zz": [[1, 2.5], {}], "Z": "", "B\"": 3, "B": 4, "B!": 12345678901234567890})"}) {
+            certificate.state.provenance = provenance;
+            const std::string text = certificate_text(certificate);
+            BOOST_TEST(certificate_text(parse_certificate(text, "text")) == text);
+        }
+    }
+}
+
 BOOST_AUTO_TEST_CASE(absent_claims_and_infinite_radii_come_back) {
     Certificate certificate = full_certificate();
     certificate.claims = {};

@@ -10,6 +10,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace isostat {
 
@@ -405,17 +406,20 @@ std::optional<Failure> Prover::power(ArcProof& proof, const Opening& opening, do
 }
 
 /// Level `arcs`: the certificate does not depend on how the arc was found, and an arc without one stays in the run.
-void Prover::certify(ArcProof& proof, const Vertex& from, const Opening& opening, const Load& load) const {
+void Prover::certify(ArcProof& proof, const Vertex& from, const Opening& opening, const Load& load) {
     const auto begin = std::chrono::steady_clock::now();
     // New factors: those of the run count their passes, and only fresh ones give exactly 0 for what does not move.
     const Vertex& to = *proof.vertex;
-    const Factorisation first(from.structure);
-    const Factorisation last(to.structure);
+    const std::shared_ptr<const Vertex> start = std::exchange(certified_end_, proof.vertex); // the factors refer to it
+    const std::unique_ptr<const Factorisation> first =
+        start.get() == &from ? std::move(factors_there_) : std::make_unique<const Factorisation>(from.structure);
+    factors_there_ = std::make_unique<const Factorisation>(to.structure);
     const auto vertex = [](const Vertex& v, const Factorisation& factorisation) {
         return ArcVertex{v.packing, v.structure, factorisation, v.inverse, v.enclosure};
     };
-    proof.record.certificate = certify_arc(vertex(from, first), opening.contact, opening.direction, vertex(to, last),
-                                           power_load(load, opening, proof.record.kind), candidates_);
+    proof.record.certificate =
+        certify_arc(vertex(from, *first), opening.contact, opening.direction, vertex(to, *factors_there_),
+                    power_load(load, opening, proof.record.kind), candidates_);
     proof.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 

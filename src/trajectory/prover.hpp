@@ -108,7 +108,7 @@ class Prover {
     /// The precisions that a sign may climb through. Where ties are chosen, the last precision is the one at which a
     /// sign counts as tied, because more digits would change no answer.
     [[nodiscard]] LadderOptions ladder() const;
-    void certify(ArcProof& proof, const Vertex& from, const Opening& opening, const Load& load) const;
+    void certify(ArcProof& proof, const Vertex& from, const Opening& opening, const Load& load);
     std::optional<Failure> reach(ArcProof& proof, const Vertex& from, ArcProposal& arc, const LimitLoad& at);
     std::optional<Failure> arrive(ArcProof& proof, std::vector<TieDecision> settled, const Way& way,
                                   const Vertex::Gaps& gaps) const;
@@ -122,6 +122,9 @@ class Prover {
     CandidateList candidates_;
     KeptCandidates kept_; ///< flags of `candidates_`
     InverseBoundCache bounds_;
+    /// The end of the last certified arc, where the next one mostly starts, with new factors.
+    std::shared_ptr<const Vertex> certified_end_;
+    std::unique_ptr<const Factorisation> factors_there_;
 };
 
 /// Proofs of successive arcs, each from the end of the previous arc. The first arc that is not proved ends the chain.

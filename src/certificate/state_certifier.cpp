@@ -1,8 +1,8 @@
 #include "certificate/state_certifier.hpp"
 
 #include "contact/words.hpp"
-#include "io/state_json.hpp"
 #include "io/files.hpp"
+#include "io/state_json.hpp"
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/io/state_file.hpp>

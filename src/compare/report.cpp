@@ -6,7 +6,6 @@
 #include "io/json.hpp"
 #include "io/text.hpp"
 #include "report/charts.hpp"
-#include "report/gnuplot.hpp"
 
 #include <isostat/io/state_file.hpp>
 

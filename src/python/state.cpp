@@ -26,7 +26,8 @@ WallKind wall_kind(const std::string& name) {
 
 /// The first `dimension` entries.
 template <class T> std::vector<T> per_axis(const PerAxis<T>& values, int dimension) {
-    return std::vector<T>(values.begin(), values.begin() + dimension); // NOLINT(modernize-return-braced-init-list): bool
+    return std::vector<T>(values.begin(),
+                          values.begin() + dimension); // NOLINT(modernize-return-braced-init-list): bool
 }
 
 As<"dict[str, tuple[str, str]]"> walls_dict(const Walls& walls, int dimension) {

@@ -31,7 +31,7 @@ std::optional<int> eliminated_rank(const Problem& problem) {
 } // namespace
 
 Evidence::Evidence(const State& checked, CheckerArithmetic arithmetic, bool held_allowed,
-                   std::shared_ptr<const Solver> near, int digits, const Rational& around)
+                   const std::shared_ptr<const Solver>& near, int digits, const Rational& around)
     : state(checked), problem(checked, held_allowed, digits) {
     if (!problem.unsupported.empty()) {
         return;
@@ -41,19 +41,19 @@ Evidence::Evidence(const State& checked, CheckerArithmetic arithmetic, bool held
         rank = eliminated_rank(problem);
         return;
     }
-    const auto bound = [this, &around](CheckerArithmetic kind) {
-        InverseBound found = bound_inverse(problem, *solver, kind);
+    const auto bound = [this, &around](CheckerArithmetic kind, bool roughly = false) {
+        InverseBound found = bound_inverse(problem, *solver, kind, roughly);
         if (found.found || !inverse.found) {
             inverse = std::move(found);
             vertex = inverse.found ? find_vertex(problem, *solver, inverse, around) : TrueVertex();
         }
     };
     if (near) {
-        solver = std::move(near);
-        bound(CheckerArithmetic::singular_value);
+        solver = near;
+        bound(CheckerArithmetic::singular_value, digits < usual_digits);
     }
     if (!well_known()) {
-        solver = std::make_shared<Solver>(problem);
+        solver = std::make_shared<Solver>(problem, near.get());
         bound(arithmetic);
     }
     if (inverse.singular_value > 0 && !vertex.found && arithmetic == CheckerArithmetic::automatic) {

@@ -18,7 +18,7 @@ struct Evidence {
     /// of the problem; forces get as many more. `around`: everything holds at every vertex of the list with other
     /// values of the held coordinates which, to first order, move no coordinate farther than that (K28).
     Evidence(const State& checked, CheckerArithmetic arithmetic, bool held_allowed = false,
-             std::shared_ptr<const Solver> near = {}, int digits = usual_digits, const Rational& around = 0);
+             const std::shared_ptr<const Solver>& near = {}, int digits = usual_digits, const Rational& around = 0);
 
     const State& state;
     Problem problem;

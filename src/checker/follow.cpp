@@ -140,7 +140,8 @@ class Walk {
         if (Followed there = arrive_at_once(); there.end || motion_.displacement == 0) {
             return there;
         }
-        double longest = std::min(motion_.displacement / 3.5, motion_.step * from_.packing.min_radius());
+        const double parts = motion_.doublings > 0 ? 3.5 : 1.75; // the end lies within the last of four steps, or two
+        double longest = std::min(motion_.displacement / parts, motion_.step * from_.packing.min_radius());
         auto steps = static_cast<long>(std::min(8 * motion_.displacement / longest + 16, 1e5)) + motion_.doublings;
         double step = std::ldexp(longest, -motion_.doublings);
         int zooms = 0;
@@ -349,12 +350,11 @@ class Walk {
             q[i] += part * (next[i] - q[i]);
         }
         return end_near(std::move(q), [](System& end, std::vector<double>& at) {
-            constexpr double accuracy = 0x1p-46;
-            if (!end.newton(at, {}, accuracy)) {
+            if (!end.newton(at, {}, 0x1p-38)) {
                 return false;
             }
             std::vector<double> better = at;
-            if (end.step_in_quadruple(at) > accuracy && end.newton_in_quadruple(better)) {
+            if (end.newton_in_quadruple(better)) { // double may be too rough
                 at = std::move(better);
             }
             return true;
@@ -372,7 +372,7 @@ class Walk {
     template <class Newton> [[nodiscard]] Followed end_near(std::vector<double> q, const Newton& newton) const {
         std::vector<Contact> contacts = from_.contacts;
         contacts[motion_.opened] = motion_.closed;
-        System end(from_.packing, contacts);
+        System end(from_.packing, contacts, {}, kept_.solver());
         if (turns_) {
             end.hold(motion_.closed, motion_.held_at);
         }

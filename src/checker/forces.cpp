@@ -89,21 +89,32 @@ void add_multiple(Integer& target, int times, const Integer& value) {
 }
 
 /// The balance A^T g = -load in integers: g in multiples of 2^-shift per unit of length, forces of 2^(fine - shift).
+/// Thousands of numbers, whose memory serves one vertex after the other.
 class Balance {
   public:
-    Balance(const Problem& problem, const TrueVertex& vertex, const Forces& load, long shift)
-        : problem_(problem), sought_(problem.rows.size()), blur_(ceiling_of(2 * vertex.radius, -problem.fine)) {
+    void begin(const Problem& problem, const TrueVertex& vertex, const Forces& load, long shift) {
+        problem_ = &problem;
+        blur_ = ceiling_of(2 * vertex.radius, -problem.fine);
+        rounding_ = 0;
+        sought_.resize(problem.rows.size());
+        std::fill(sought_.begin(), sought_.end(), 0);
         target_.resize(load.size());
         unknown_.resize(load.size());
         for (std::size_t j = 0; j < load.size(); ++j) {
+            target_[j] = unknown_[j] = 0;
             if (const auto& [lower, upper] = load[j]; lower != 0 || upper != 0) {
                 target_[j] = floor_of(-upper, shift - problem.fine);
                 unknown_[j] = ceiling_of(-lower, shift - problem.fine) - target_[j];
             }
         }
-        for (const Row& row : problem.rows) {
-            for (std::size_t a = 0; row.quadratic && a < problem.layout.axes(); ++a) {
-                row.separate(vertex.middle, a, difference_.emplace_back());
+        const std::size_t axes = problem.layout.axes();
+        difference_.resize(axes * sought_.size());
+        for (std::size_t l = 0; l < sought_.size(); ++l) {
+            for (std::size_t a = 0; a < axes; ++a) {
+                difference_[axes * l + a] = 0;
+                if (problem.rows[l].quadratic) {
+                    problem.rows[l].separate(vertex.middle, a, difference_[axes * l + a]);
+                }
             }
         }
         find_residual();
@@ -117,13 +128,13 @@ class Balance {
     void refine(const Solver& solver) {
         long size = bits(largest_of(residual_));
         for (int step = 0; step < most_refinements && size > rounding_; ++step) {
-            Eigen::MatrixXd b(problem_.dofs(), 1);
-            for (int j = 0; j < problem_.dofs(); ++j) {
+            Eigen::MatrixXd b(problem_->dofs(), 1);
+            for (int j = 0; j < problem_->dofs(); ++j) {
                 b(j, 0) = approximate(residual_[at(j)], -size);
             }
             const Eigen::MatrixXd x = solver.solve_transposed(b);
             for (std::size_t l = 0; l < sought_.size(); ++l) {
-                add_scaled(sought_[l], x(static_cast<Eigen::Index>(l), 0), size - solver.scale(problem_));
+                add_scaled(sought_[l], x(static_cast<Eigen::Index>(l), 0), size - solver.scale(*problem_));
             }
             find_residual();
             const long now = bits(largest_of(residual_));
@@ -136,21 +147,28 @@ class Balance {
 
     /// Upper bound of the residual at the true vertex (K6): entries of contacts of two disks differ by twice the
     /// radius, or more through periods.
-    [[nodiscard]] Integer residual_at_vertex() const {
-        std::vector<Integer> unsure(residual_.size());
+    [[nodiscard]] Integer residual_at_vertex() {
+        unsure_.resize(residual_.size());
+        std::fill(unsure_.begin(), unsure_.end(), 0);
+        Integer size;
         for (std::size_t l = 0; l < sought_.size(); ++l) {
-            const Row& row = problem_.rows[l];
+            const Row& row = problem_->rows[l];
+            size = abs(sought_[l]);
             for (std::size_t k = 0; row.quadratic && k < at(row.count); ++k) {
-                if (const int dof = problem_.dof_of[at(row.coordinate[k])]; dof >= 0) {
+                if (const int dof = problem_->dof_of[at(row.coordinate[k])]; dof >= 0) {
                     const int weight = (std::abs(row.sign[k]) * row.spread(row.axis[k]) + 1) / 2; // of twice the radius
-                    unsure[at(dof)] += weight * abs(sought_[l]);
+                    add_multiple(unsure_[at(dof)], weight, size);
                 }
             }
         }
         Integer worst = 0;
         for (std::size_t j = 0; j < residual_.size(); ++j) {
-            const Integer sum = abs(residual_[j]) + unknown_[j] + blur_ * unsure[j];
-            worst = std::max(worst, sum);
+            size = abs(residual_[j]);
+            size += unknown_[j];
+            mpz_addmul(size.get_mpz_t(), blur_.get_mpz_t(), unsure_[j].get_mpz_t());
+            if (size > worst) {
+                std::swap(size, worst);
+            }
         }
         return worst;
     }
@@ -161,26 +179,26 @@ class Balance {
     /// -load - A^T g at the middle of the vertex and the lower end of -load.
     void find_residual() {
         residual_ = target_;
-        auto difference = difference_.begin();
+        const std::size_t axes = problem_->layout.axes();
         std::array<Integer, most_axes> products;
         for (std::size_t l = 0; l < sought_.size(); ++l) {
-            const Row& row = problem_.rows[l];
-            for (std::size_t a = 0; row.quadratic && a < problem_.layout.axes(); ++a) {
-                products[a] = *difference++ * sought_[l];
+            const Row& row = problem_->rows[l];
+            for (std::size_t a = 0; row.quadratic && a < axes; ++a) {
+                products[a] = difference_[axes * l + a] * sought_[l];
             }
             if (!row.quadratic) {
-                products[row.axis[0]] = shifted_left(sought_[l], problem_.weight_bits);
+                products[row.axis[0]] = shifted_left(sought_[l], problem_->weight_bits);
             }
             for (std::size_t k = 0; k < at(row.count); ++k) {
-                if (const int dof = problem_.dof_of[at(row.coordinate[k])]; dof >= 0) {
+                if (const int dof = problem_->dof_of[at(row.coordinate[k])]; dof >= 0) {
                     add_multiple(residual_[at(dof)], -row.sign[k], products[row.axis[k]]);
                 }
             }
         }
     }
 
-    const Problem& problem_;
-    std::vector<Integer> sought_, target_, residual_;
+    const Problem* problem_ = nullptr;
+    std::vector<Integer> sought_, target_, residual_, unsure_;
     std::vector<Integer> unknown_;    ///< width of the load
     std::vector<Integer> difference_; ///< entries of the contacts of two disks, axis by axis
     Integer blur_;
@@ -211,7 +229,8 @@ std::vector<Range> contact_forces(const Problem& problem, const Solver& solver, 
     // Entries of A are below 2^(scale + fine), so forces per length are above the largest load / that. 40 bits more
     // than the vertex has are kept below.
     const long shift = problem.digits + 40 + solver.scale(problem) + problem.fine - *size;
-    Balance balance(problem, vertex, load, shift);
+    static thread_local Balance balance;
+    balance.begin(problem, vertex, load, shift);
     if (solver.usable()) {
         balance.refine(solver);
     }
@@ -219,14 +238,18 @@ std::vector<Range> contact_forces(const Problem& problem, const Solver& solver, 
         Rational(balance.residual_at_vertex()) / (1 - vertex.column_residual) * power_of_two(problem.fine);
     const auto around_by = [&error](const Rational& column_sum) { return ceiling_of(error * column_sum); };
     Integer around = around_by(inverse.column_sum_max);
+    Integer end;
     for (std::size_t l = 0; l < forces.size(); ++l) {
         if (!inverse.column_sum.empty()) {
             around = around_by(inverse.column_sum[l]);
         }
         const Integer factor = problem.force_units(static_cast<int>(l));
-        const Integer& g = balance.sought()[l];
-        forces[l] = {dyadic((g - around) * factor, problem.fine - shift),
-                     dyadic((g + around) * factor, problem.fine - shift)};
+        const auto set = [&](Rational& force, const Integer& per_length) { // in place: there are thousands
+            mpz_mul(force.get_num_mpz_t(), per_length.get_mpz_t(), factor.get_mpz_t());
+            scale(force, problem.fine - shift);
+        };
+        set(forces[l].lower, end = balance.sought()[l] - around);
+        set(forces[l].upper, end = balance.sought()[l] + around);
     }
     return forces;
 }

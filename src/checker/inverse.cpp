@@ -325,8 +325,8 @@ Rational root(unsigned long value) {
 }
 
 /// Bounds the inverse by the smallest singular value, when R is the inverse.
-InverseBound bound_by_singular_value(const Problem& problem) {
-    const std::optional<Rational> sigma = smallest_singular_value(problem);
+InverseBound bound_by_singular_value(const Problem& problem, const Solver& solver, bool roughly) {
+    const std::optional<Rational> sigma = smallest_singular_value(problem, solver.order(), roughly ? 0x1p-20 : 0);
     if (!sigma) {
         return {};
     }
@@ -346,10 +346,10 @@ InverseBound bound_by_singular_value(const Problem& problem) {
 
 } // namespace
 
-InverseBound bound_inverse(const Problem& problem, const Solver& solver, CheckerArithmetic arithmetic) {
+InverseBound bound_inverse(const Problem& problem, const Solver& solver, CheckerArithmetic arithmetic, bool roughly) {
     InverseBound bound;
     if (arithmetic == CheckerArithmetic::automatic || arithmetic == CheckerArithmetic::singular_value) {
-        bound = bound_by_singular_value(problem);
+        bound = bound_by_singular_value(problem, solver, roughly);
     }
     if (bound.found || arithmetic == CheckerArithmetic::singular_value) {
         return bound;

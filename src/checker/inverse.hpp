@@ -29,7 +29,8 @@ struct InverseBound {
     std::vector<Rational> column_sum; ///< per contact l: >= sum_k |R_kl|; empty: `column_sum_max` is all that is known
 };
 
-/// \pre the problem is square.
-InverseBound bound_inverse(const Problem& problem, const Solver& solver, CheckerArithmetic arithmetic);
+/// `roughly`: a small bound of the singular value does, and costs less. \pre the problem is square.
+InverseBound bound_inverse(const Problem& problem, const Solver& solver, CheckerArithmetic arithmetic,
+                           bool roughly = false);
 
 } // namespace isostat::checker

@@ -20,9 +20,10 @@ using Quadruple = long double;
 
 } // namespace
 
-System::System(const Packing& packing, std::vector<Contact> contacts, std::shared_ptr<const Solver> near)
+System::System(const Packing& packing, std::vector<Contact> contacts, std::shared_ptr<const Solver> near,
+               std::shared_ptr<const Solver> like)
     : packing_(packing), contacts_(std::move(contacts)), structure_(packing, contacts_),
-      weight_(std::ldexp(1.0, structure_.wall_exponent)), solver_(std::move(near)) {}
+      weight_(std::ldexp(1.0, structure_.wall_exponent)), solver_(std::move(near)), like_(std::move(like)) {}
 
 double System::held_value(const Contact& c) const {
     return fresh_ && fresh_->first == c ? fresh_->second : packing_.q[static_cast<std::size_t>(c.i)];
@@ -45,7 +46,7 @@ template <class T> T System::value(const std::vector<T>& q, const Contact& c) co
 }
 
 void System::renew(const std::vector<double>& q) {
-    solver_ = std::make_shared<Solver>(structure_, q);
+    solver_ = std::make_shared<Solver>(structure_, q, solver_ ? solver_.get() : like_.get());
     kernel_.reset();
 }
 
@@ -163,10 +164,6 @@ bool System::newton(std::vector<double>& q, const std::optional<Way>& way, doubl
         }
     }
     return false;
-}
-
-double System::step_in_quadruple(const std::vector<double>& q) {
-    return step_at(std::vector<Quadruple>(q.begin(), q.end()), {}).lpNorm<Eigen::Infinity>() / packing_.max_radius();
 }
 
 bool System::newton_in_quadruple(std::vector<double>& q, const std::optional<Way>& way) {

@@ -16,8 +16,9 @@ namespace isostat::checker {
 class System {
   public:
     /// `near`: factors of the same list at a nearby configuration, or
-    /// null. They are made anew when iterations do not converge with them.
-    System(const Packing& packing, std::vector<Contact> contacts, std::shared_ptr<const Solver> near = {});
+    /// null. They are made anew when iterations do not converge with them. `like`: of nearly the same list, or null.
+    System(const Packing& packing, std::vector<Contact> contacts, std::shared_ptr<const Solver> near = {},
+           std::shared_ptr<const Solver> like = {});
 
     [[nodiscard]] bool square() const { return contacts_.size() == structure_.coordinate_of.size(); }
     [[nodiscard]] std::size_t size() const { return structure_.coordinate_of.size(); }
@@ -39,11 +40,9 @@ class System {
         Eigen::Index kept;
     };
     bool newton(std::vector<double>& q, const std::optional<Way>& way, double accuracy);
-    /// Newton to a zero of all F where the contacts are nearly
-    /// singular: F in quadruple precision, new factors at each step.
+    /// Newton to a zero of all F where the contacts may be nearly
+    /// singular: F in quadruple precision, new factors where the last ones do not serve.
     bool newton_in_quadruple(std::vector<double>& q, const std::optional<Way>& way = {});
-    /// Size of the next step with F in quadruple precision, as double may be too rough, in units of the largest radius.
-    [[nodiscard]] double step_in_quadruple(const std::vector<double>& q);
 
   private:
     void renew(const std::vector<double>& q);
@@ -56,6 +55,7 @@ class System {
     Structure structure_;
     double weight_; ///< scale of the rows of walls
     std::shared_ptr<const Solver> solver_;
+    std::shared_ptr<const Solver> like_;
     std::optional<std::pair<std::size_t, Eigen::VectorXd>> kernel_; ///< the step for e_l, with the present factors
     std::optional<std::pair<Contact, double>> fresh_;
 };

@@ -26,7 +26,7 @@ long granularity(double value, long if_zero) {
 Integer in_units(double value, long unit) {
     int exponent = 0;
     const double fraction = std::frexp(value, &exponent);
-    Integer result(std::ldexp(fraction, 53)); // exact: at most 53 bits
+    Integer result(static_cast<long>(std::ldexp(fraction, 53))); // exact: at most 53 bits
     const long shift = exponent - 53 - unit;
     if (shift >= 0) {
         mpz_mul_2exp(result.get_mpz_t(), result.get_mpz_t(), static_cast<mp_bitcnt_t>(shift));
@@ -39,7 +39,7 @@ Integer in_units(double value, long unit) {
 /// Where a coordinate is at every true vertex, counted from the origin or from the upper wall.
 struct Known {
     enum From { nothing, origin, upper_wall } from = nothing;
-    Integer value = 0;
+    Integer value;
 };
 
 /// Disks on walls, held and fixed coordinates. Of clumps what is held may move freely, and is at no known place (U2).
@@ -298,6 +298,10 @@ void Problem::find_contacts_of(const State& state) {
     };
     contacts_of.resize(coordinate_of.size());
     acting_on.resize(coordinate_of.size());
+    for (std::size_t j = 0; j < contacts_of.size(); ++j) {
+        contacts_of[j].reserve(4);
+        acting_on[j].reserve(4);
+    }
     std::vector<unsigned long> change(coordinate_of.size(), 0);
     for (std::size_t l = 0; l < rows.size(); ++l) {
         const Row& row = rows[l];
@@ -370,13 +374,12 @@ Integer Problem::entry(int contact, int k, const std::vector<Integer>& q) const 
     return row.sign[slot] * d;
 }
 
-std::vector<Integer> Problem::twice_residuals(const std::vector<Integer>& q) const {
-    std::vector<Integer> residuals;
-    residuals.reserve(rows.size());
+std::vector<Integer> Problem::twice_residuals(const std::vector<Integer>& q, std::vector<Integer> residuals) const {
+    residuals.resize(rows.size());
     Integer difference;
     for (std::size_t l = 0; l < rows.size(); ++l) {
         const Row& row = rows[l];
-        Integer& value = residuals.emplace_back();
+        Integer& value = residuals[l];
         if (row.quadratic) {
             mpz_neg(value.get_mpz_t(), sum_square[l].get_mpz_t());
             for (std::size_t a = 0; a < layout.axes(); ++a) {

@@ -140,8 +140,10 @@ class Problem : public Structure {
     [[nodiscard]] Integer weight() const { return shifted_left(1, weight_bits); }
     /// Entry k of row l of A at a configuration, k < row.count.
     [[nodiscard]] Integer entry(int contact, int k, const std::vector<Integer>& q) const;
-    /// 2 F_l in squares of the unit: |x_i - x_j|^2 - (R_i + R_j)^2, or 2 weight gap; of all contacts.
-    [[nodiscard]] std::vector<Integer> twice_residuals(const std::vector<Integer>& q) const;
+    /// 2 F_l in squares of the unit: |x_i - x_j|^2 - (R_i + R_j)^2, or 2 weight gap; of all contacts. The memory of
+    /// `residuals` is used again.
+    [[nodiscard]] std::vector<Integer> twice_residuals(const std::vector<Integer>& q,
+                                                       std::vector<Integer> residuals = {}) const;
     /// A force per length g_l as a force: times R_i + R_j at the true vertex, times the weight at a wall.
     [[nodiscard]] Rational force_factor(int contact) const { return length(force_units(contact)); }
     [[nodiscard]] Integer force_units(int contact) const;

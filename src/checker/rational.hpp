@@ -16,25 +16,18 @@ namespace isostat::checker {
 using Integer = mpz_class;
 using Rational = mpq_class;
 
-/// 2^exponent.
-inline Rational power_of_two(long exponent) {
-    Rational value(1);
+/// Multiplies by 2^exponent.
+inline void scale(Rational& value, long exponent) {
     if (exponent >= 0) {
         mpq_mul_2exp(value.get_mpq_t(), value.get_mpq_t(), static_cast<mp_bitcnt_t>(exponent));
     } else {
         mpq_div_2exp(value.get_mpq_t(), value.get_mpq_t(), static_cast<mp_bitcnt_t>(-exponent));
     }
-    return value;
 }
-
 /// value * 2^exponent.
 inline Rational dyadic(const Integer& value, long exponent) {
     Rational result(value);
-    if (exponent >= 0) {
-        mpq_mul_2exp(result.get_mpq_t(), result.get_mpq_t(), static_cast<mp_bitcnt_t>(exponent));
-    } else {
-        mpq_div_2exp(result.get_mpq_t(), result.get_mpq_t(), static_cast<mp_bitcnt_t>(-exponent));
-    }
+    scale(result, exponent);
     return result;
 }
 
@@ -69,6 +62,11 @@ inline Integer largest_of(const std::vector<Integer>& values) {
         return mpz_cmpabs(a.get_mpz_t(), b.get_mpz_t()) < 0;
     });
     return largest == values.end() ? Integer(0) : Integer(abs(*largest));
+}
+
+/// 2^exponent.
+inline Rational power_of_two(long exponent) {
+    return dyadic(1, exponent);
 }
 
 /// An integer times 2^exponent, as an approximation (for solvers that are not trusted).

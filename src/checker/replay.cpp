@@ -79,11 +79,14 @@ void add_first_order(Place& place) {
 } // namespace
 
 double largest_force(const std::vector<Range>& forces) {
-    double size = 0;
+    const auto size = [](const Rational& value) {
+        return std::abs(approximate(value.get_num(), 0) / approximate(value.get_den(), 0));
+    };
+    double largest = 0;
     for (const Range& force : forces) {
-        size = std::max({size, std::abs(force.lower.get_d()), std::abs(force.upper.get_d())});
+        largest = std::max({largest, size(force.lower), size(force.upper)});
     }
-    return size;
+    return largest;
 }
 
 const std::vector<Gap>& Place::gaps() const {
@@ -106,9 +109,9 @@ Range Place::length(int axis) const {
 namespace {
 
 Objections place_with(int digits, State state, Place& place, const ExactLoad& load, int fresh,
-                      std::shared_ptr<const Solver> near) {
+                      const std::shared_ptr<const Solver>& near) {
     place.state = std::make_unique<State>(std::move(state));
-    place.evidence = std::make_unique<Evidence>(*place.state, CheckerArithmetic::automatic, true, std::move(near),
+    place.evidence = std::make_unique<Evidence>(*place.state, CheckerArithmetic::automatic, true, near,
                                                 place.state->perturbation ? std::max(digits, more_digits) : digits);
     place.load = load;
     place.fresh = fresh;

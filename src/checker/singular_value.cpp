@@ -4,14 +4,13 @@
 #include "checker/wide.hpp"
 
 #include <Eigen/OrderingMethods>
-#include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <numeric>
 #include <span>
-#include <tuple>
 
 namespace isostat::checker {
 
@@ -19,17 +18,16 @@ namespace {
 
 /// Entries of A and of the factor are integers times 2^-point, in units of a power of two above all of A.
 constexpr long point = 54;
-/// Sums of magnitudes of products stay below 2^126 (K15).
-constexpr double largest_square = 0x1p17;
+/// Sums of magnitudes of products stay below 2^125 (K15).
+constexpr double largest_square = 0x1p16;
 /// Entries of the residual, of which up to 2^24 are added.
 constexpr long residual_bits = 100;
 constexpr int most_rows = 1 << 24;
 
-using Sparse = Eigen::SparseMatrix<double>;
-using Cholesky = Eigen::SimplicialLLT<Sparse, Eigen::Lower, Eigen::NaturalOrdering<int>>;
-
+/// To some units: this is three times as fast as the conversion of the compiler's library.
 double as_double(Wide value) {
-    return static_cast<double>(value);
+    const auto low = static_cast<std::int64_t>(static_cast<std::uint64_t>(value) >> 1U);
+    return 0x1p64 * static_cast<double>(static_cast<std::int64_t>(value >> 64U)) + 2 * static_cast<double>(low);
 }
 
 Integer integer_of(WideMagnitude value) {
@@ -38,53 +36,43 @@ Integer integer_of(WideMagnitude value) {
            Integer(static_cast<unsigned long>(value & ~std::uint64_t{0}));
 }
 
-/// A rounded to fixed point, and B = A^T A of what is left, in an order that fills little.
+/// A rounded to fixed point, and B = A^T A of what is left, in a given order of the degrees of freedom.
 struct Normal {
     long scale = 0;           ///< A is below 2^scale units of the problem
     std::size_t touching = 1; ///< most entries in a column or row of A
     int most_periods = 1;     ///< the largest factor of an entry, which multiplies its rounding
     bool usable = false;
-    /// The lower triangle of B column by column, rows ascending; times 2^(2 point).
-    std::vector<int> start{0};
-    std::vector<int> row;
+    /// The lower triangle of B row by row, columns in any order; times 2^(2 point).
+    std::vector<std::size_t> start{0};
+    std::vector<int> column;
     std::vector<Wide> value;
 
-    explicit Normal(const Problem& problem) {
+    Normal(const Problem& problem, const std::vector<int>& order) : place_(order.size()) {
+        for (std::size_t k = 0; k < order.size(); ++k) {
+            place_[at(order[k])] = static_cast<int>(k);
+        }
         if (problem.dofs() > most_rows || !round(problem)) {
             return;
         }
         for (const std::vector<int>& contacts : problem.contacts_of) {
             touching = std::max(touching, contacts.size());
         }
-        usable = static_cast<double>(touching) <= largest_square / 2 && // an entry of B is at most that
+        usable = static_cast<double>(touching) <= largest_square && // an entry of B is at most that
                  std::ranges::none_of(problem.contacts_of, &std::vector<int>::empty);
         if (usable) {
-            multiply(problem);
-            arrange();
+            multiply(problem, order);
         }
     }
 
     /// What entries of a column or row of A are off by together, in units of 2^-point of the scale.
     [[nodiscard]] unsigned long rounding() const { return touching * static_cast<unsigned long>(most_periods); }
 
-    /// B - shift I in double.
-    [[nodiscard]] Sparse approximate(double shift) const {
-        const auto n = static_cast<Eigen::Index>(start.size()) - 1;
-        Sparse b(n, n);
-        b.resizeNonZeros(static_cast<Eigen::Index>(row.size()));
-        std::copy(start.begin(), start.end(), b.outerIndexPtr());
-        std::copy(row.begin(), row.end(), b.innerIndexPtr());
-        std::transform(value.begin(), value.end(), b.valuePtr(),
-                       [](Wide entry) { return std::ldexp(as_double(entry), -2 * point); });
-        b.diagonal().array() -= shift;
-        return b;
-    }
-
   private:
     struct Entry {
-        int dof;
+        int place;
         std::int64_t value;
     };
+    std::vector<int> place_;            ///< of each degree of freedom in the order
     std::vector<Entry> entries_;        ///< row by row
     std::vector<std::size_t> first_{0}; ///< of each row
 
@@ -126,7 +114,7 @@ struct Normal {
             }
             for (std::size_t k = 0; k < static_cast<std::size_t>(contact.count); ++k) {
                 if (const int dof = problem.dof_of[at(contact.coordinate[k])]; dof >= 0) {
-                    entries_.push_back({dof, contact.sign[k] * separation[contact.axis[k]]});
+                    entries_.push_back({place_[at(dof)], contact.sign[k] * separation[contact.axis[k]]});
                 }
             }
             touching = std::max(touching, entries_.size() - first_.back());
@@ -135,219 +123,249 @@ struct Normal {
         return true;
     }
 
-    /// B in the order of the degrees of freedom.
-    void multiply(const Problem& problem) {
-        const int n = problem.dofs();
-        std::vector<Wide> sum(at(n), 0);
-        std::vector<int> rows;
-        for (int j = 0; j < n; ++j) {
-            rows.clear();
-            for (const int l : problem.contacts_of[at(j)]) {
-                std::int64_t own = 0;
-                for (const Entry& e : entries_of(l)) {
-                    own = e.dof == j ? e.value : own;
-                }
-                for (const Entry& e : entries_of(l)) {
-                    if (e.dof >= j) {
-                        sum[at(e.dof)] += static_cast<Wide>(e.value) * own;
-                        rows.push_back(e.dof);
+    void multiply(const Problem& problem, const std::vector<int>& order) {
+        std::vector<Wide> sum(order.size(), 0);
+        std::vector<int> last(order.size(), -1); // the row in which a column was met last
+        for (int i = 0; at(i) < order.size(); ++i) {
+            for (const int l : problem.contacts_of[at(order[at(i)])]) {
+                const auto entries = entries_of(l);
+                const Wide own = std::ranges::find(entries, i, &Entry::place)->value;
+                for (const Entry& e : entries) {
+                    if (e.place > i) {
+                        continue;
                     }
+                    if (std::exchange(last[at(e.place)], i) != i) {
+                        column.push_back(e.place);
+                    }
+                    sum[at(e.place)] += own * e.value;
                 }
             }
-            std::sort(rows.begin(), rows.end());
-            rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
-            for (const int i : rows) {
-                row.push_back(i);
-                value.push_back(std::exchange(sum[at(i)], 0));
+            for (std::size_t p = start.back(); p < column.size(); ++p) {
+                value.push_back(std::exchange(sum[at(column[p])], 0));
             }
-            start.push_back(static_cast<int>(row.size()));
-        }
-    }
-
-    /// Puts B in an order that fills little.
-    void arrange() {
-        Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
-        Eigen::AMDOrdering<int>()(approximate(0).selfadjointView<Eigen::Lower>(), order);
-        const std::size_t n = start.size() - 1;
-        std::vector<int> place(n);
-        for (std::size_t k = 0; k < n; ++k) {
-            place[at(order.indices()[static_cast<Eigen::Index>(k)])] = static_cast<int>(k);
-        }
-        struct Moved {
-            int column, row;
-            Wide value;
-        };
-        std::vector<Moved> moved;
-        moved.reserve(row.size());
-        for (std::size_t j = 0; j < n; ++j) {
-            for (std::size_t p = at(start[j]); p < at(start[j + 1]); ++p) {
-                const auto [column, below] = std::minmax(place[j], place[at(row[p])]);
-                moved.push_back({column, below, value[p]});
-            }
-        }
-        std::sort(moved.begin(), moved.end(),
-                  [](const Moved& a, const Moved& b) { return std::tie(a.column, a.row) < std::tie(b.column, b.row); });
-        start.assign(n + 1, 0);
-        for (std::size_t p = 0; p < moved.size(); ++p) {
-            start[at(moved[p].column) + 1] = static_cast<int>(p) + 1; // the last of them stays
-            row[p] = moved[p].row;
-            value[p] = moved[p].value;
+            start.push_back(column.size());
         }
     }
 };
 
-/// An estimate of the smallest eigenvalue of B by some inverse iterations, seldom much above it.
-double smallest_eigenvalue(const Cholesky& factors, Eigen::Index n) {
-    constexpr int steps = 8;
-    Eigen::VectorXd x(n);
-    std::uint32_t state = 1;
-    for (Eigen::Index k = 0; k < n; ++k) { // any vector serves, but always the same one
-        state = 1664525U * state + 1013904223U;
-        x[k] = static_cast<double>(state) * 0x1p-32 - 0.5;
-    }
-    double eigenvalue = 0;
-    for (int step = 0; step < steps; ++step) {
-        x /= x.norm();
-        const Eigen::VectorXd y = factors.solve(x);
-        eigenvalue = 1 / x.dot(y);
-        x = y;
-    }
-    return eigenvalue;
-}
-
-/// A lower triangular matrix of integers times 2^-point.
-struct Factor {
-    std::vector<std::size_t> start{0};
-    std::vector<int> row;
-    std::vector<std::int64_t> value;
-    bool usable = true;
-
-    explicit Factor(const Sparse& l) {
-        std::vector<double> square(static_cast<std::size_t>(l.rows()), 0.0);
-        row.reserve(static_cast<std::size_t>(l.nonZeros()));
-        value.reserve(static_cast<std::size_t>(l.nonZeros()));
-        for (Eigen::Index j = 0; j < l.cols(); ++j) {
-            for (Sparse::InnerIterator e(l, j); e; ++e) {
-                const bool in_order = row.size() == start.back() || row.back() < e.row();
-                if (!(std::abs(e.value()) < 0x1p8) || !in_order) {
-                    usable = false;
-                    return;
-                }
-                row.push_back(static_cast<int>(e.row()));
-                value.push_back(std::llrint(std::ldexp(e.value(), point)));
-                square[static_cast<std::size_t>(e.row())] += e.value() * e.value();
+/// A lower triangular matrix L of integers times 2^-point, and what B - L L^T - shift I is, which is exact.
+class Factor {
+  public:
+    explicit Factor(const Normal& b)
+        : b_(b), n_(b.start.size() - 1), parent_(n_, -1), met_(n_, -1), diagonal_(n_), row_sum_(n_), x_(n_, 0) {
+        find_parents();
+        std::vector<std::size_t> count(n_, 0);
+        for (int i = 0; at(i) < n_; ++i) {
+            for (const int k : columns_of(i)) {
+                ++count[at(k)];
             }
-            start.push_back(row.size());
         }
-        usable = std::all_of(square.begin(), square.end(), [](double s) { return s < largest_square / 2; });
+        start_.resize(n_ + 1, 0);
+        std::partial_sum(count.begin(), count.end(), start_.begin() + 1);
+        row_.resize(start_.back());
+        value_.resize(start_.back());
     }
+
+    /// Row by row. False: the matrix is not positive definite as far as is seen, or an entry is too large.
+    bool compute(Wide shift) {
+        std::fill(row_sum_.begin(), row_sum_.end(), 0);
+        std::fill(x_.begin(), x_.end(), 0);
+        std::fill(met_.begin(), met_.end(), -1);
+        end_.assign(start_.begin(), start_.end() - 1);
+        for (int i = 0; at(i) < n_; ++i) {
+            if (!compute_row(i, shift)) {
+                return false;
+            }
+        }
+        return true;
+    }
+
+    /// Largest row sum of magnitudes of B - L L^T - shift I, times 2^(2 point).
+    [[nodiscard]] Integer residual_norm() const { return integer_of(*std::ranges::max_element(row_sum_)); }
+
+    /// An estimate of the smallest eigenvalue of L L^T by some inverse iterations, seldom much above it.
+    [[nodiscard]] double smallest_eigenvalue() const {
+        constexpr int steps = 8;
+        Eigen::VectorXd x(static_cast<Eigen::Index>(n_));
+        std::uint32_t state = 1;
+        for (double& component : x) { // any vector serves, but always the same one
+            state = 1664525U * state + 1013904223U;
+            component = static_cast<double>(state) * 0x1p-32 - 0.5;
+        }
+        double eigenvalue = 0;
+        for (int step = 0; step < steps; ++step) {
+            x /= x.norm();
+            Eigen::VectorXd y = x;
+            solve(y);
+            eigenvalue = 1 / x.dot(y);
+            x = y;
+        }
+        return eigenvalue;
+    }
+
+  private:
+    /// The columns of row i, each before its parent.
+    std::span<const int> columns_of(int i) {
+        reach_.resize(n_);
+        std::size_t top = n_;
+        met_[at(i)] = i;
+        for (std::size_t p = b_.start[at(i)]; p < b_.start[at(i) + 1]; ++p) {
+            std::size_t length = 0;
+            for (int k = b_.column[p]; met_[at(k)] != i; k = parent_[at(k)]) {
+                if (parent_[at(k)] < 0) {
+                    leads_ = false;
+                    break;
+                }
+                met_[at(k)] = i;
+                reach_[length++] = k;
+            }
+            while (length > 0) {
+                reach_[--top] = reach_[--length];
+            }
+        }
+        return std::span(reach_).subspan(top);
+    }
+
+    /// Of each column the first row below the diagonal (Liu), with ancestors as shortcuts.
+    void find_parents() {
+        std::vector<int> ancestor(n_, -1);
+        for (int i = 0; at(i) < n_; ++i) {
+            for (std::size_t p = b_.start[at(i)]; p < b_.start[at(i) + 1]; ++p) {
+                for (int k = b_.column[p]; k >= 0 && k < i;) {
+                    const int next = std::exchange(ancestor[at(k)], i);
+                    if (next < 0) {
+                        parent_[at(k)] = i;
+                    }
+                    k = next;
+                }
+            }
+        }
+    }
+
+    bool compute_row(int i, Wide shift) {
+        for (std::size_t p = b_.start[at(i)]; p < b_.start[at(i) + 1]; ++p) {
+            x_[at(b_.column[p])] = b_.value[p];
+        }
+        Wide square = std::exchange(x_[at(i)], 0) - shift; // of the diagonal entry, in the end
+        for (const int k : columns_of(i)) {
+            const Wide sought = std::exchange(x_[at(k)], 0);
+            const double quotient = as_double(sought) / static_cast<double>(diagonal_[at(k)]);
+            if (!(std::abs(quotient) < 0x1p62)) {
+                return false;
+            }
+            const auto entry = static_cast<std::int64_t>(quotient);
+            square -= static_cast<Wide>(entry) * entry;
+            if (square <= 0 || !add_residual(i, k, sought - static_cast<Wide>(entry) * diagonal_[at(k)])) {
+                return false;
+            }
+            for (std::size_t p = start_[at(k)]; p < end_[at(k)]; ++p) {
+                x_[at(row_[p])] -= static_cast<Wide>(entry) * value_[p];
+            }
+            row_[end_[at(k)]] = i;
+            value_[end_[at(k)]++] = entry;
+        }
+        diagonal_[at(i)] = square > 0 ? static_cast<std::int64_t>(std::sqrt(as_double(square))) : 0;
+        return leads_ && diagonal_[at(i)] > 0 &&
+               add_residual(i, i, square - static_cast<Wide>(diagonal_[at(i)]) * diagonal_[at(i)]);
+    }
+
+    bool add_residual(int i, int k, Wide residual) {
+        const WideMagnitude size = magnitude(residual);
+        row_sum_[at(i)] += size;
+        row_sum_[at(k)] += i != k ? size : 0;
+        return size >> residual_bits == 0;
+    }
+
+    /// x becomes (L L^T)^-1 x.
+    void solve(Eigen::VectorXd& x) const {
+        const auto entry = [](std::int64_t value) { return std::ldexp(static_cast<double>(value), -point); };
+        const auto component = [&x](auto k) -> double& { return x(static_cast<Eigen::Index>(k)); };
+        for (std::size_t k = 0; k < n_; ++k) {
+            component(k) /= entry(diagonal_[k]);
+            for (std::size_t p = start_[k]; p < end_[k]; ++p) {
+                component(row_[p]) -= entry(value_[p]) * component(k);
+            }
+        }
+        for (std::size_t k = n_; k-- > 0;) {
+            for (std::size_t p = start_[k]; p < end_[k]; ++p) {
+                component(k) -= entry(value_[p]) * component(row_[p]);
+            }
+            component(k) /= entry(diagonal_[k]);
+        }
+    }
+
+    const Normal& b_;
+    std::size_t n_;
+    std::vector<int> parent_; ///< above its column
+    bool leads_ = true;       ///< all paths along parents that were gone led to their row
+    std::vector<int> met_;    ///< the last row whose columns were sought
+    std::vector<int> reach_;
+    std::vector<std::size_t> start_, end_; ///< of the columns below the diagonal: rows ascend
+    std::vector<int> row_;
+    std::vector<std::int64_t> value_;
+    std::vector<std::int64_t> diagonal_;
+    std::vector<WideMagnitude> row_sum_; ///< of the residual
+    std::vector<Wide> x_;                ///< the row that is computed; 0 elsewhere
 };
 
-/// Whether all products of entries of a column of L, and the column of B, lie where the columns of L have entries: what
-/// is left of a column k below its first entry p off the diagonal lies in column p, and so on from column to column.
-bool closed_under_products(const Normal& b, const Factor& l) {
-    const auto rows_of = [](const auto& matrix, std::size_t j, std::size_t skipped) {
-        return std::span(matrix.row)
-            .subspan(static_cast<std::size_t>(matrix.start[j]) + skipped,
-                     static_cast<std::size_t>(matrix.start[j + 1] - matrix.start[j]) - skipped);
-    };
-    for (std::size_t j = 0; j + 1 < l.start.size(); ++j) {
-        const auto own = rows_of(l, j, 0);
-        if (own.empty() || own[0] != static_cast<int>(j) || !std::ranges::includes(own, rows_of(b, j, 0)) ||
-            (own.size() > 1 && !std::ranges::includes(rows_of(l, at(own[1]), 0), rows_of(l, j, 1)))) {
-            return false;
-        }
-    }
-    return true;
-}
-
-/// Largest row sum of magnitudes of B - L L^T - shift I, times 2^(2 point), exact; nothing when an entry is too large.
-std::optional<Integer> residual_norm(const Normal& b, const Factor& l, Wide shift) {
-    if (!closed_under_products(b, l)) {
+/// The bound from factors for a shift that is a part of 1; nothing: they show none.
+std::optional<Rational> bound_of(const Problem& problem, const Normal& normal, Factor& factor, double shift) {
+    const Wide exact_shift = static_cast<Wide>(std::ldexp(shift, 2 * point)); // towards zero
+    if (!factor.compute(exact_shift)) {
         return std::nullopt;
     }
-    const std::size_t n = b.start.size() - 1;
-    std::vector<WideMagnitude> row_sum(n, 0);
-    std::vector<Wide> w(n, 0); // of the column; 0 again afterwards
-    // Columns k of L with an entry in row j, linked; `next_entry[k]` is the position of that entry.
-    std::vector<int> first(n, -1);
-    std::vector<int> next(n, -1);
-    std::vector<std::size_t> next_entry(n);
-    const auto subtract_column = [&](std::size_t k, std::size_t entry) {
-        const Wide factor = l.value[entry]; // in row j
-        for (std::size_t p = entry; p < l.start[k + 1]; ++p) {
-            w[at(l.row[p])] -= factor * l.value[p];
-        }
-        next_entry[k] = entry + 1; // the column waits until the row of its next entry
-        if (entry + 1 < l.start[k + 1]) {
-            next[k] = std::exchange(first[at(l.row[entry + 1])], static_cast<int>(k));
-        }
-    };
-    for (std::size_t j = 0; j < n; ++j) {
-        for (std::size_t p = at(b.start[j]); p < at(b.start[j + 1]); ++p) {
-            w[at(b.row[p])] = b.value[p];
-        }
-        w[j] -= shift;
-        for (int k = first[j]; k >= 0;) {
-            const std::size_t column = at(k);
-            k = next[column];
-            subtract_column(column, next_entry[column]);
-        }
-        subtract_column(j, l.start[j]);
-        for (std::size_t p = l.start[j]; p < l.start[j + 1]; ++p) {
-            const auto i = at(l.row[p]);
-            const WideMagnitude size = magnitude(std::exchange(w[i], 0));
-            if (size >> residual_bits != 0) {
-                return std::nullopt;
-            }
-            row_sum[j] += size;
-            row_sum[i] += i != j ? size : 0;
-        }
+    // sigma^2 of the rounded matrix in units of 2^-(2 point), and the rounding of each entry of A.
+    const Integer square = integer_of(magnitude(exact_shift)) - factor.residual_norm();
+    if (square <= 0) {
+        return std::nullopt;
     }
-    return integer_of(*std::max_element(row_sum.begin(), row_sum.end()));
+    const Integer sigma = sqrt(square) - Integer(normal.rounding());
+    return sigma > 0 ? std::optional(Rational(sigma) * power_of_two(normal.scale + problem.fine - point))
+                     : std::nullopt;
 }
 
 } // namespace
 
-std::optional<Rational> smallest_singular_value(const Problem& problem) {
-    const Normal normal(problem);
+std::vector<int> order_of_normal(const Structure& structure) {
+    std::vector<Eigen::Triplet<double>> entries;
+    for (std::size_t l = 0; l < structure.rows.size(); ++l) {
+        for (int k = 0; k < structure.rows[l].count; ++k) {
+            if (const int dof = structure.dof_of[at(structure.rows[l].coordinate[at(k)])]; dof >= 0) {
+                entries.emplace_back(static_cast<int>(l), dof, 1);
+            }
+        }
+    }
+    const auto n = static_cast<Eigen::Index>(structure.coordinate_of.size());
+    Eigen::SparseMatrix<double> a(static_cast<Eigen::Index>(structure.rows.size()), n);
+    a.setFromTriplets(entries.begin(), entries.end());
+    const Eigen::SparseMatrix<double> b = a.transpose() * a;
+    Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
+    Eigen::AMDOrdering<int>()(b, order);
+    return {order.indices().begin(), order.indices().end()};
+}
+
+std::optional<Rational> smallest_singular_value(const Problem& problem, const std::vector<int>& order, double enough) {
+    const Normal normal(problem, order.size() == problem.coordinate_of.size() ? order : order_of_normal(problem));
     if (!normal.usable) {
         return std::nullopt;
     }
-    Cholesky factors;
-    const Sparse b = normal.approximate(0);
-    factors.compute(b);
-    if (factors.info() != Eigen::Success) {
+    Factor factor(normal);
+    if (enough > 0) {
+        if (const auto bound = bound_of(problem, normal, factor, enough * enough)) {
+            return bound;
+        }
+    }
+    if (!factor.compute(0)) {
         return std::nullopt;
     }
-    double shift = smallest_eigenvalue(factors, b.rows());
+    double shift = factor.smallest_eigenvalue();
     for (int attempt = 0; attempt < 3; ++attempt) {
         shift *= attempt == 0 ? 0.7 : 0.2;
         if (!(shift > 0 && shift < 1)) {
             return std::nullopt;
         }
-        factors.factorize(normal.approximate(shift));
-        if (factors.info() != Eigen::Success) {
-            continue;
-        }
-        const Factor l(Sparse(factors.matrixL()));
-        if (!l.usable) {
-            return std::nullopt;
-        }
-        const Wide exact_shift = static_cast<Wide>(std::ldexp(shift, 2 * point)); // towards zero
-        const auto residual = residual_norm(normal, l, exact_shift);
-        if (!residual) {
-            return std::nullopt;
-        }
-        // sigma^2 of the rounded matrix in units of 2^-(2 point), and the rounding of each entry of A.
-        const Integer square = integer_of(magnitude(exact_shift)) - *residual;
-        if (square <= 0) {
-            continue;
-        }
-        const Integer rounding(normal.rounding());
-        const Integer sigma = sqrt(square) - rounding;
-        if (sigma > 0) {
-            return Rational(sigma) * power_of_two(normal.scale + problem.fine - point);
+        if (const auto bound = bound_of(problem, normal, factor, shift)) {
+            return bound;
         }
     }
     return std::nullopt;

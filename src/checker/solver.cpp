@@ -1,5 +1,7 @@
 #include "checker/solver.hpp"
 
+#include "checker/singular_value.hpp"
+
 #include <Eigen/SparseCore>
 #include <klu.h>
 
@@ -31,13 +33,36 @@ struct Solver::Factors {
     klu_numeric* numeric = nullptr;
     int size = 0;
 
-    explicit Factors(Eigen::SparseMatrix<double>& matrix) : size(static_cast<int>(matrix.rows())) {
+    std::vector<int> order; ///< for A^T A
+    int kept = 0;           ///< how many lists before this one had these orders
+    int entries = 0;        ///< in the factors that had new orders
+
+    /// `like`: has orders that may serve, or null.
+    Factors(const Structure& structure, Eigen::SparseMatrix<double>& matrix, const Factors* like)
+        : size(static_cast<int>(matrix.rows())) {
+        constexpr int longest = 16;
+        constexpr double most_fill = 1.25;
         klu_defaults(&common);
-        symbolic = klu_analyze(size, matrix.outerIndexPtr(), matrix.innerIndexPtr(), &common);
+        if (like != nullptr && like->size == size && like->kept < longest &&
+            like->filled() <= most_fill * like->entries) {
+            common.btf = 0; // a contact more may connect the blocks
+            symbolic = klu_analyze_given(size, matrix.outerIndexPtr(), matrix.innerIndexPtr(), like->numeric->Pnum,
+                                         like->symbolic->Q, &common);
+            order = like->order;
+            kept = like->kept + 1;
+            entries = like->entries;
+        } else {
+            symbolic = klu_analyze(size, matrix.outerIndexPtr(), matrix.innerIndexPtr(), &common);
+            order = order_of_normal(structure);
+        }
         if (symbolic != nullptr) {
             numeric = klu_factor(matrix.outerIndexPtr(), matrix.innerIndexPtr(), matrix.valuePtr(), symbolic, &common);
         }
+        if (kept == 0 && numeric != nullptr) {
+            entries = filled();
+        }
     }
+    [[nodiscard]] int filled() const { return numeric->lnz + numeric->unz + numeric->nzoff; }
     ~Factors() {
         klu_free_numeric(&numeric, &common);
         klu_free_symbolic(&symbolic, &common);
@@ -77,9 +102,9 @@ std::vector<double> as_doubles(const Problem& problem) {
 
 } // namespace
 
-Solver::Solver(const Problem& problem) : Solver(problem, as_doubles(problem)) {}
+Solver::Solver(const Problem& problem, const Solver* like) : Solver(problem, as_doubles(problem), like) {}
 
-Solver::Solver(const Structure& structure, const std::vector<double>& q) {
+Solver::Solver(const Structure& structure, const std::vector<double>& q, const Solver* like) {
     std::vector<Eigen::Triplet<double>> entries;
     double largest = 0;
     for (std::size_t l = 0; l < structure.rows.size(); ++l) {
@@ -106,10 +131,19 @@ Solver::Solver(const Structure& structure, const std::vector<double>& q) {
     Eigen::SparseMatrix<double> matrix(n, n);
     matrix.setFromTriplets(entries.begin(), entries.end());
     matrix *= std::ldexp(1.0, -exponent_);
-    auto factors = std::make_shared<const Factors>(matrix);
+    const Factors* known = like != nullptr ? like->factors_.get() : nullptr;
+    auto factors = std::make_shared<const Factors>(structure, matrix, known);
+    if (factors->numeric == nullptr && factors->kept > 0) {
+        factors = std::make_shared<const Factors>(structure, matrix, nullptr);
+    }
     if (factors->numeric != nullptr) {
         factors_ = std::move(factors);
     }
+}
+
+const std::vector<int>& Solver::order() const {
+    static const std::vector<int> none;
+    return factors_ ? factors_->order : none;
 }
 
 } // namespace isostat::checker

@@ -13,15 +13,18 @@ namespace isostat::checker {
 /// A sparse LU factorisation in double of the scaled matrix A / 2^exponent at a configuration.
 class Solver {
   public:
-    Solver(const Structure& structure, const std::vector<double>& q);
+    /// `like`: factors of a list in which nearly all contacts are the same, whose orders then serve; or null.
+    Solver(const Structure& structure, const std::vector<double>& q, const Solver* like = nullptr);
     /// The matrix at the stored coordinates.
-    explicit Solver(const Problem& problem);
+    explicit Solver(const Problem& problem, const Solver* like = nullptr);
     /// False: the factorisation failed (which proves nothing about the matrix).
     [[nodiscard]] bool usable() const { return factors_ != nullptr; }
     /// About the size of the largest entry, as a length.
     [[nodiscard]] int exponent() const { return exponent_; }
     /// `exponent` relative to the problem's `fine`.
     [[nodiscard]] long scale(const Problem& problem) const { return exponent_ - problem.fine; }
+    /// An order for A^T A of these contacts or others; empty: none is known.
+    [[nodiscard]] const std::vector<int>& order() const;
     /// (A / 2^exponent)^-1 b: b per contact, result per degree of freedom. Several threads may call it. \pre usable
     [[nodiscard]] Eigen::MatrixXd solve(Eigen::MatrixXd b) const;
     /// (A / 2^exponent)^-T b: b per degree of freedom, result per contact.

@@ -4,20 +4,22 @@ namespace isostat::checker {
 
 namespace {
 
-/// Newton steps with the factorisation at the stored configuration and exact residuals.
-std::vector<Integer> improved(const Problem& problem, const Solver& solver) {
+/// Newton steps with the factorisation at the stored configuration and exact residuals. `largest`: of those at the end.
+std::vector<Integer> improved(const Problem& problem, const Solver& solver, Integer& largest) {
     std::vector<Integer> q = problem.stored;
     long size = -1;
     long rounding = 0; // bits of the residual where a coordinate is off by some units
     for (const Integer& length : problem.sum) {
         rounding = std::max(rounding, bits(length) + 3);
     }
-    for (int step = 0; step < 40; ++step) {
+    std::vector<Integer> residual;
+    for (int step = 0;; ++step) {
         Eigen::MatrixXd b(problem.contacts(), 1);
-        const std::vector<Integer> residual = problem.twice_residuals(q);
-        const long now = bits(largest_of(residual));
-        if (now <= rounding || (size >= 0 && now >= size)) {
-            break;
+        residual = problem.twice_residuals(q, std::move(residual));
+        largest = largest_of(residual);
+        const long now = bits(largest);
+        if (step == 40 || now <= rounding || (size >= 0 && now >= size)) {
+            return q;
         }
         size = now;
         for (int l = 0; l < problem.contacts(); ++l) {
@@ -30,7 +32,6 @@ std::vector<Integer> improved(const Problem& problem, const Solver& solver) {
                        now - 1 - solver.scale(problem));
         }
     }
-    return q;
 }
 
 Integer largest_move(const Problem& problem, const std::vector<Integer>& q) {
@@ -61,8 +62,9 @@ TrueVertex find_vertex(const Problem& problem, const Solver& solver, const Inver
         if (!at_stored && !solver.usable()) {
             continue;
         }
-        std::vector<Integer> start = at_stored ? problem.stored : improved(problem, solver);
-        const Rational largest = Rational(largest_of(problem.twice_residuals(start)));
+        Integer residual;
+        std::vector<Integer> start = at_stored ? problem.stored : improved(problem, solver, residual);
+        const Rational largest(at_stored ? largest_of(problem.twice_residuals(start)) : residual);
         const Rational moved = problem.length(largest_move(problem, start));
         const Rational error = inverse.residual_row + slope * moved;
         const Rational step =

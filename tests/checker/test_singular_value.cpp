@@ -12,6 +12,8 @@
 
 #include <Eigen/SVD>
 
+#include <numeric>
+
 using namespace isostat;
 using isostat::checker::Problem;
 using isostat::checker::smallest_singular_value;
@@ -28,6 +30,15 @@ void agrees_with_a_dense_one(const State& state) {
     BOOST_REQUIRE(bound.has_value());
     BOOST_TEST(bound->get_d() <= sigma + error);
     BOOST_TEST(bound->get_d() >= 0.8 * sigma);
+
+    // A bound that does is none above the truth, and any order of elimination serves.
+    std::vector<int> backwards(static_cast<std::size_t>(problem.dofs()));
+    std::iota(backwards.rbegin(), backwards.rend(), 0);
+    for (int exponent = 1; exponent < 30; ++exponent) {
+        const auto rough = smallest_singular_value(problem, backwards, std::ldexp(1.0, -exponent));
+        BOOST_REQUIRE(rough.has_value());
+        BOOST_TEST(rough->get_d() <= sigma + error, "2^-" << exponent);
+    }
 
     // What follows from it, against the inverse itself.
     const isostat::checker::InverseBound sums =

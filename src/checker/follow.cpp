@@ -130,8 +130,9 @@ class Walk {
   public:
     Walk(const State& from, const Motion& motion)
         : from_(from), motion_(motion), turns_(motion.closed.kind == ContactKind::held),
-          tolerance_(1e-9 * from.packing.min_radius()), reach_(0.2 * from.packing.min_radius()),
-          body_(bodies_of(from.packing)), kept_(from.packing, from.contacts, motion.solver), q_(from.packing.q) {}
+          tolerance_(1e-9 * from.packing.min_radius()),
+          reach_(std::min(0.2 * from.packing.min_radius(), 4 * motion.displacement)), body_(bodies_of(from.packing)),
+          kept_(from.packing, from.contacts, motion.solver), q_(from.packing.q) {}
 
     Followed to_the_end() {
         if (!kept_.square() || !(motion_.displacement >= 0) || !std::isfinite(motion_.displacement)) {

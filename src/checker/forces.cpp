@@ -31,10 +31,10 @@ Range force_per_stress(const Problem& problem, const State& state, const TrueVer
 }
 
 Forces disk_loads(const Problem& problem, const std::vector<double>& per_coordinate) {
-    Forces load(static_cast<std::size_t>(problem.dofs()), Range(Rational(0)));
+    Forces load(static_cast<std::size_t>(problem.dofs()));
     for (std::size_t j = 0; j < load.size(); ++j) {
         const auto coordinate = static_cast<std::size_t>(problem.coordinate_of[j]);
-        if (coordinate < per_coordinate.size()) {
+        if (coordinate < per_coordinate.size() && per_coordinate[coordinate] != 0) {
             load[j] = Range(Rational(per_coordinate[coordinate]));
         }
     }
@@ -60,7 +60,7 @@ Forces finite_load(const Problem& problem, const State& state, const TrueVertex&
 }
 
 Forces unit_load(const Problem& problem, const State& state, const TrueVertex& vertex) {
-    Forces load(static_cast<std::size_t>(problem.dofs()), Range(Rational(0)));
+    Forces load(static_cast<std::size_t>(problem.dofs()));
     const std::size_t walls = problem.layout.of_length(0);
     for (std::size_t place = 0; walls + place < problem.dof_of.size(); ++place) { // tilts follow the lengths
         const int dof = problem.dof_of[walls + place];

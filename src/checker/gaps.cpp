@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <set>
 
 namespace isostat::checker {
 
@@ -114,15 +113,16 @@ class Collector {
   public:
     Collector(const State& state, const Approximation& at)
         : state_(state), layout_(state.packing.layout()), at_(at), body_(bodies_of(state.packing)),
-          arcs_(state.packing, at.q, at.radius) {
-        contacts_.insert(state.contacts.begin(), state.contacts.end());
+          arcs_(state.packing, at.q, at.radius), contacts_(state.contacts) {
+        std::sort(contacts_.begin(), contacts_.end());
     }
     /// Pairs with an approximate gap above this are certainly not the nearest.
     [[nodiscard]] double limit() const { return best_ + 4 * at_.error; }
     void offer(const Contact& pair) {
         const double gap = at_.gap(pair, layout_);
-        if (gap > limit() || !exists_and_moves(state_.packing, pair) || contacts_.contains(pair) ||
-            are_members(body_, pair) || !arcs_.contains(pair)) {
+        if (gap > limit() || !exists_and_moves(state_.packing, pair) ||
+            std::binary_search(contacts_.begin(), contacts_.end(), pair) || are_members(body_, pair) ||
+            !arcs_.contains(pair)) {
             return;
         }
         best_ = std::min(best_, gap);
@@ -145,7 +145,7 @@ class Collector {
     const Approximation& at_;
     std::vector<int> body_;
     NearestArcs arcs_;
-    std::set<Contact> contacts_;
+    std::vector<Contact> contacts_; ///< sorted
     std::vector<std::pair<double, Contact>> near_;
     double best_ = std::numeric_limits<double>::infinity();
 };

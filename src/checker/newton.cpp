@@ -29,7 +29,7 @@ double System::held_value(const Contact& c) const {
     return fresh_ && fresh_->first == c ? fresh_->second : packing_.q[static_cast<std::size_t>(c.i)];
 }
 
-template <class T> T System::value(const std::vector<T>& q, const Contact& c) const {
+template <class T> T System::value(const std::vector<T>& q, const Contact& c, const Row& row) const {
     const auto i = static_cast<std::size_t>(c.i);
     const auto j = static_cast<std::size_t>(c.j);
     if (c.kind == ContactKind::held) {
@@ -37,13 +37,14 @@ template <class T> T System::value(const std::vector<T>& q, const Contact& c) co
     }
     const auto [one, other] = closed_at(packing_, c);
     if (c.of_disks()) {
-        const Row row(c, packing_.layout());
         const T sum = T(one) + other;
         return (row.square(q, packing_.axes()) - sum * sum) / 2;
     }
     const T& x = q[packing_.axes() * i + j];
     return weight_ * ((c.kind == ContactKind::lower_wall ? x : T(q[packing_.length_at(j)] - x)) - one);
 }
+
+template double System::value(const std::vector<double>& q, const Contact& c, const Row& row) const;
 
 void System::renew(const std::vector<double>& q) {
     solver_ = std::make_shared<Solver>(structure_, q, solver_ ? solver_.get() : like_.get());
@@ -59,7 +60,8 @@ template <class T> Eigen::VectorXd System::step_at(const std::vector<T>& q, cons
     Eigen::VectorXd residual(static_cast<Eigen::Index>(contacts_.size()));
     for (std::size_t l = 0; l < contacts_.size(); ++l) {
         const bool free = way && way->left_out == l;
-        residual(static_cast<Eigen::Index>(l)) = free ? 0.0 : static_cast<double>(-value(q, contacts_[l]));
+        residual(static_cast<Eigen::Index>(l)) =
+            free ? 0.0 : static_cast<double>(-value(q, contacts_[l], structure_.rows[l]));
     }
     Eigen::VectorXd x = step(residual);
     if (way) {

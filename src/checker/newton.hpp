@@ -28,7 +28,9 @@ class System {
     /// Holds one coordinate at a given value; the other held coordinates keep their values in the packing.
     void hold(const Contact& c, double at) { fresh_ = {c, at}; }
     [[nodiscard]] double held_value(const Contact& c) const;
-    template <class T> [[nodiscard]] T value(const std::vector<T>& q, const Contact& c) const;
+    template <class T> [[nodiscard]] T value(const std::vector<T>& q, const Contact& c) const {
+        return value(q, c, Row(c, packing_.layout()));
+    }
     [[nodiscard]] std::shared_ptr<const Solver> solver() const { return solver_; }
 
     /// A(q) v = e_opened; on entry v is a guess, or empty.
@@ -46,6 +48,7 @@ class System {
 
   private:
     void renew(const std::vector<double>& q);
+    template <class T> [[nodiscard]] T value(const std::vector<T>& q, const Contact& c, const Row& row) const;
     [[nodiscard]] Eigen::VectorXd step(const Eigen::VectorXd& residual) const;
     template <class T> [[nodiscard]] Eigen::VectorXd step_at(const std::vector<T>& q, const std::optional<Way>& way);
     [[nodiscard]] Eigen::VectorXd product(const std::vector<double>& q, const Eigen::VectorXd& v) const;

@@ -267,9 +267,12 @@ Problem::Problem(const State& state, bool held_allowed, int asked)
     fine = unit - digits;
     spare = coordinate_unit - fine;
     weight_bits = wall_exponent - fine;
+    stored.reserve(packing.q.size());
     for (const double x : packing.q) {
         stored.push_back(in_units(x, fine));
     }
+    sum.reserve(rows.size());
+    sum_square.reserve(rows.size());
     for (const double r : packing.radius) {
         radius.push_back(in_units(r, fine));
     }
@@ -280,6 +283,8 @@ Problem::Problem(const State& state, bool held_allowed, int asked)
         const auto i = static_cast<std::size_t>(contact.i);
         if (contact.kind == ContactKind::held) {
             sum.push_back(stored[i]);
+        } else if (contact.kind == ContactKind::disk_disk) {
+            sum.emplace_back(radius[i] + radius[static_cast<std::size_t>(contact.j)]);
         } else {
             const auto [one, other] = closed_at(packing, contact);
             sum.emplace_back(in_units(one, fine) + in_units(other, fine));

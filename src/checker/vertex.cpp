@@ -12,7 +12,7 @@ std::vector<Integer> improved(const Problem& problem, const Solver& solver, Inte
     for (const Integer& length : problem.sum) {
         rounding = std::max(rounding, bits(length) + 3);
     }
-    std::vector<Integer> residual;
+    static thread_local std::vector<Integer> residual; // memory that serves one vertex after the other
     for (int step = 0;; ++step) {
         Eigen::MatrixXd b(problem.contacts(), 1);
         residual = problem.twice_residuals(q, std::move(residual));

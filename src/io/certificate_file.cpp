@@ -57,11 +57,12 @@ class SortedCopy {
         return taken;
     }
     void object(std::string& copy) {
-        std::map<std::string, std::string> members;
+        std::map<std::string, std::string> members; // names without the last quote, which sorts after a space
         take(1);
         while (next() != '}') {
             std::string name;
             value(name);
+            name.pop_back();
             next();
             take(1); // the colon
             value(members[name]);
@@ -72,7 +73,7 @@ class SortedCopy {
         take(1);
         copy += '{';
         for (auto member = members.begin(); member != members.end(); ++member) {
-            copy += (member == members.begin() ? "" : ",") + member->first + ':' + member->second;
+            copy += (member == members.begin() ? "" : ",") + member->first + "\":" + member->second;
         }
         copy += '}';
     }

@@ -90,7 +90,8 @@ BOOST_AUTO_TEST_CASE(texts_with_and_without_escapes_have_the_digest_of_what_they
         certificate.claims.undecided = {words, "z"};
         for (const char* provenance :
              {"", "{}", R"({"z": 1, "a": [], "b": {"y": -0.0, "x": 1e300}, "\u0001": null})",
-              R"({"zz": [[1, 2.5], {}], "Z": "", "B\"": 3, "B": 4, "B!": 12345678901234567890})"}) {
+              R"({"zz": [[1, 2.5], {}], "Z": "", "B\"": 3, "B": 4, "B!": 12345678901234567890})",
+              R"({"by hand": 1, "by": [{"B!": 2, "B": 3}]})"}) { // a space sorts before a quote
             certificate.state.provenance = provenance;
             const std::string text = certificate_text(certificate);
             BOOST_TEST(certificate_text(parse_certificate(text, "text")) == text);

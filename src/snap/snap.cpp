@@ -1,4 +1,5 @@
 #include "certificate/subject.hpp"
+#include "contact/candidates.hpp"
 #include "contact/contact_set.hpp"
 #include "core/words.hpp"
 #include "crafted/peeling.hpp"

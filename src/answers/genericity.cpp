@@ -57,9 +57,9 @@ std::string list_text(const std::vector<Contact>& list, const std::vector<Contac
             added += " " + to_string(c, dimension);
         }
     }
-    return fmt::format("without{}{}, with{}{}", lost == 0 ? " nothing less" : missing,
+    return fmt::format("{}{}, {}{}", lost == 0 ? "with all contacts of the packing" : "without" + missing,
                        lost > most ? fmt::format(" and {} more", lost - most) : "",
-                       gained == 0 ? " nothing new" : added,
+                       gained == 0 ? "no new contact" : "with" + added,
                        gained > most ? fmt::format(" and {} more", gained - most) : "");
 }
 

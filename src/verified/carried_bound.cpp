@@ -1,6 +1,7 @@
 #include "core/dot.hpp"
 #include "core/roundoff.hpp"
 #include "verified/inverse_bound.hpp"
+#include "verified/norm.hpp"
 #include "verified/regularity_prover.hpp"
 
 #include <algorithm>
@@ -130,10 +131,10 @@ double residual_of_forces(const sparse::Matrix<double>& h, const std::vector<dou
     }
     double square = 0;
     for (std::size_t i = 0; i < r.size(); ++i) {
-        const double bound = std::abs(r[i]) + terms[i] * 1.001 * u * size[i];
-        square += bound * bound;
+        size[i] = std::abs(r[i]) + terms[i] * (1.001 * u * size[i] + underflow_unit); // a product may underflow
+        square += size[i] * size[i];
     }
-    return std::sqrt(square) * slack;
+    return std::max(std::sqrt(square) * slack, norm_above(size)); // of small forces the squares are 0
 }
 
 std::optional<ProvedExchange> carry_bound(const IsostaticStructure& before, const InverseBound& bound,

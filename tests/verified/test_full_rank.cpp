@@ -53,4 +53,37 @@ BOOST_AUTO_TEST_CASE(rows_that_depend_on_each_other_have_no_bound) {
     BOOST_TEST(isostat::smallest_row_singular_value(compressed(h.leftCols(2)), 2) == 0); // and more rows than columns
 }
 
+BOOST_AUTO_TEST_CASE(the_residual_of_forces_is_bounded_in_every_unit_of_force) {
+    std::mt19937_64 random(5);
+    constexpr int n = 6;
+    const auto number = [&] { return static_cast<double>(random() >> 11U) * 0x1p-53 - 0.5; };
+    Eigen::MatrixXd h(n, n);
+    for (double& entry : h.reshaped()) {
+        entry = number();
+    }
+    Eigen::VectorXd z(n);
+    for (double& entry : z) {
+        entry = number();
+    }
+    const Eigen::VectorXd v = h * z;
+    const Eigen::Matrix<long double, n, 1> rest = v.cast<long double>() - h.cast<long double>() * z.cast<long double>();
+    BOOST_TEST_REQUIRE(rest.norm() > 0);
+    const auto bound = [&](double unit) {
+        std::vector<double> load(v.begin(), v.end()), force(z.begin(), z.end()), r(n), size(n);
+        for (std::vector<double>* numbers : {&load, &force}) {
+            for (double& entry : *numbers) {
+                entry *= unit;
+            }
+        }
+        std::vector<int> terms(n);
+        return isostat::residual_of_forces(compressed(h), load, force, r, size, terms) / unit;
+    };
+    BOOST_TEST(bound(1) >= static_cast<double>(rest.norm()));
+    BOOST_TEST(bound(1) < 1e-13);
+    for (const double unit : {0x1p-300, 0x1p-500, 0x1p-700, 0x1p-900}) { // squares vanish from 1e-162 on
+        BOOST_TEST(std::abs(bound(unit) / bound(1) - 1) < 1e-8, unit);
+    }
+    BOOST_TEST(bound(0x1p-1040) >= static_cast<double>(rest.norm())); // where products underflow
+}
+
 BOOST_AUTO_TEST_SUITE_END()

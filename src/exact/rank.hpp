@@ -37,7 +37,7 @@ std::uint64_t inverse(std::uint64_t a);
 ///   non-zero number that p divides).
 /// \pre `ordering` belongs to the pattern of `matrix` (square, structurally regular); stored zeros are allowed,
 /// rows are not repeated in a column. Cost: 0.3 of one UMFPACK analysis and factorisation of the matrix at n =
-/// 4000, 0.4 at n = 10 000 (1.9 and 7.5 ms; tests/bench/exact_rank.cpp). The workspace, about 16 bytes per entry of
+/// 4000, 0.4 at n = 10 000 (1.9 and 7.5 ms; tests/bench/state_cost.cpp). The workspace, about 16 bytes per entry of
 /// the factor L, is kept per thread.
 int rank(const sparse::Matrix<std::uint64_t>& matrix, const sparse::Ordering& ordering);
 

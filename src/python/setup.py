@@ -39,7 +39,8 @@ class BuildWithCMake(build_ext):
         target.parent.mkdir(parents=True, exist_ok=True)
         (built,) = (build / "python" / "isostat").glob("_core.*.so")
         shutil.copy(built, target)
-        shutil.copy(built.with_name("_core.pyi"), target.parent)
+        if (types := built.with_name("_core.pyi")).exists():
+            shutil.copy(types, target.parent)
 
 
 setup(

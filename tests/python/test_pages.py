@@ -80,6 +80,19 @@ class Pages(unittest.TestCase):
         for line in text.splitlines():
             self.assertNotRegex(line, r"::|numpy\.ndarray|: object\b|(-> |Final\[)(object|list|dict|tuple)(:|\])", line)
 
+    def test_the_module_is_built_without_types_where_numpy_is_not(self):
+        with tempfile.TemporaryDirectory() as folder:
+            package = pathlib.Path(folder) / "isostat"
+            package.mkdir()
+            for file in pathlib.Path(_core.__file__).parent.glob("*.*"):
+                if file.name != "_core.pyi":
+                    (package / file.name).symlink_to(file)
+            stub = [sys.executable, "-S", "-B", project / "src" / "python" / "stub.py", package]  # -S: no packages
+            out = subprocess.run(stub, capture_output=True, text=True)
+            self.assertEqual(out.returncode, 0, out.stderr)
+            self.assertIn("numpy", out.stdout)
+            self.assertFalse((package / "_core.pyi").exists())
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -118,7 +118,7 @@ GenericityOriginal read_original(const std::string& file) {
     GenericityOriginal out;
     if (format == "packing") {
         const crafted::PackingFile crafted = crafted::parse_packing(text, file);
-        const auto inspection = crafted::inspect(crafted.packing);
+        const auto inspection = crafted::inspect_file(crafted, file);
         if (!inspection.ok()) {
             throw Error(ErrorKind::bad_input, fmt::format("{}: {}", file, inspection.failure().message()));
         }

@@ -220,7 +220,7 @@ Result<Imported> from_vertex_text(const ImportArguments& a) {
 /// A crafted packing with its exact contacts and load, and the doubles next to its numbers.
 Result<Imported> from_crafted(const ImportArguments& a, const std::string& text) {
     const crafted::PackingFile file = crafted::parse_packing(text, a.file);
-    const auto inspection = crafted::inspect(file.packing);
+    const auto inspection = crafted::inspect_file(file, a.file);
     if (!inspection.ok()) {
         return inspection.failure();
     }

@@ -20,7 +20,7 @@ namespace {
 /// file's [expected]; an entry that does not hold is named and gives 1, a rank that is not proved 2.
 int inspect_packing(const InspectArguments& arguments) {
     const crafted::PackingFile file = crafted::read_packing(arguments.file);
-    const Result<crafted::Inspection> result = crafted::inspect(file.packing);
+    const Result<crafted::Inspection> result = crafted::inspect_file(file, arguments.file);
     if (!result.ok()) {
         throw Error(ErrorKind::bad_input, fmt::format("{}: {}", arguments.file, result.failure().message()));
     }

@@ -4,6 +4,7 @@
 #include "crafted/rigid_motions.hpp"
 #include "rigidity/strained_matrix.hpp"
 
+#include <isostat/core/error.hpp>
 #include <isostat/core/machine.hpp>
 #include <isostat/crafted/exact_packing.hpp>
 
@@ -347,6 +348,14 @@ Result<Inspection> inspect(const ExactPacking& packing, const InspectionLimits& 
         out.jamming = judge_jamming(packing, out.hold, limits);
     }
     return out;
+}
+
+Result<Inspection> inspect_file(const PackingFile& file, const std::string& source) {
+    try {
+        return inspect(file.packing);
+    } catch (const Error& error) { // of the search for contacts in a cell, which reaches a little farther than touching
+        throw Error(error.kind(), source + ": " + error.what());
+    }
 }
 
 Inspection inspect_contacts(const ExactPacking& packing, const std::vector<Contact>& contacts,

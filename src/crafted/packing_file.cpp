@@ -165,7 +165,7 @@ class Reader {
 
     /// Reads which axes are periodic, and which coordinates of the cell move.
     void cell() {
-        if (!root_.has("cell")) {
+        if (root_.table("cell") == nullptr) {
             return;
         }
         Section cell = section("cell");
@@ -247,7 +247,7 @@ class Reader {
     static bool is_none(const toml::node& node) { return node.value_or(std::string_view()) == "none"; }
 
     void box() {
-        if (!root_.has("box")) {
+        if (root_.table("box") == nullptr) {
             return;
         }
         Section box = section("box");
@@ -314,7 +314,7 @@ class Reader {
     }
 
     void load() {
-        if (!root_.has("load")) {
+        if (root_.table("load") == nullptr) {
             return;
         }
         Section load = section("load");

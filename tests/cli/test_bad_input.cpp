@@ -145,4 +145,19 @@ BOOST_AUTO_TEST_CASE(a_folder_that_holds_a_run) {
     expect(run({"run", folder.at("t.toml"), "-o", out, "-q", "--resume"}), 65, {"run.json", "another scene", "t.toml"});
 }
 
+BOOST_AUTO_TEST_CASE(a_cell_that_is_refused_after_reading_is_refused_with_its_file) {
+    // Pairs up to just 29 periods apart may touch: the search reaches a little farther, and refuses what was read.
+    const scratch::Folder folder;
+    const std::string file = folder.at("leaning.toml");
+    scratch::write(file, "format = \"isostat-packing 1\"\ndisks = [[0, 0, 1]]\n[cell]\nperiod = [2, 2]\n"
+                         "moves = [\"x\"]\ntilt = \"8077051742094299/140737488355328\"\n");
+    for (const std::string command : {"inspect", "genericity", "import"}) {
+        std::vector<std::string> words{command, file};
+        if (command == "import") {
+            words.insert(words.end(), {"-o", folder.at("o.json")});
+        }
+        expect(run(words), 65, {file + ": disk 0", "periods apart"});
+    }
+}
+
 BOOST_AUTO_TEST_SUITE_END()

@@ -58,6 +58,7 @@ BOOST_AUTO_TEST_CASE(bad_files_are_refused_with_line_and_what_was_expected) {
     refused(head + "disks = [[0, 0, \"sin(1)\"]]\n", 2, "position 1");
     refused(head + "disks = [[0, 0, 1]\n", 2, "end-of-file");
     refused(head + "disks = [[0, 0, 1]]\n[boxes]\n", 3, "unknown key 'boxes': expected one of format, ");
+    refused(head + "disks = [[0, 0, 1]]\n[boxes]\n", 3, "cell, box, bodies, load, expected");
     refused(head + "[[disk]]\nx = 0\ny = 0\nr = 1\nz = 1\n", 6,
             "unknown key 'z' in [disk]: expected one of x, y, r, fixed");
     refused(head + "[[disk]]\nx = 0\nr = 1\n", 2, "no y in [disk]");

@@ -264,6 +264,9 @@ struct Inspection {
 /// beyond that rank and verdicts that need no kernel. \pre none: any walls, fixed disks, or neither
 Result<Inspection> inspect(const ExactPacking& packing, const InspectionLimits& limits = {});
 
+/// As `inspect`; an `Error` begins with the name of the file.
+Result<Inspection> inspect_file(const PackingFile& file, const std::string& source);
+
 /// The same for a given contact list whose gaps need not be 0: stored doubles (`exact_copy`), whose contacts are part
 /// of the state. All results are about the *stored* matrix, with columns (x_j - x_i) / (R_i + R_j) in place of unit
 /// normals (a force differs from the true one by the factor 1 + gap / (R_i + R_j)), not about a true configuration

@@ -18,18 +18,19 @@ namespace {
 constexpr const char* format_name = "isostat-series 1";
 
 std::string required(Section& section, const std::string& key, const std::string& expected) {
+    (void)section.required(key, expected);
     auto text = section.string(key);
-    if (!text || text->empty()) {
-        section.refuse(key, fmt::format("no {}: expected {}", key, expected));
+    if (text->empty()) {
+        section.fail(key, expected);
     }
     return *text;
 }
 
 double positive(Section& section, const std::string& key, std::optional<double> fallback) {
-    const auto value = section.number(key);
-    if (!value && !fallback) {
-        section.refuse(key, fmt::format("no {}: expected a positive number", key));
+    if (!fallback) {
+        (void)section.required(key, "a positive number");
     }
+    const auto value = section.number(key);
     if (value && !(*value > 0)) {
         section.fail(key, "a positive number");
     }
@@ -97,10 +98,8 @@ void read_law(Section& section, Manifest& out) {
 
 void read_load(Section& section, Manifest& out) {
     out.load = section.word("kind", LoadKind::nominal, load_kind_words);
+    (void)section.required("reference_length", "[L1, L2], of spheres [L1, L2, L3]");
     const auto lengths = section.numbers("reference_length");
-    if (!lengths) {
-        section.refuse("reference_length", "no reference_length: expected [L1, L2], of spheres [L1, L2, L3]");
-    }
     const bool positive_all = std::all_of(lengths->begin(), lengths->end(), [](double length) { return length > 0; });
     if ((lengths->size() != 2 && lengths->size() != 3) || !positive_all) {
         section.fail("reference_length", "two positive numbers, of spheres three");

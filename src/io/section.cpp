@@ -70,7 +70,7 @@ void Section::refuse(const std::string& key, const std::string& what) const {
 
 int Section::line_of(const std::string& key) const {
     if (table_ == nullptr) {
-        return 0;
+        return 1; // the file's
     }
     const toml::node* node = table_->get(key);
     return std::max(line_of_node(node != nullptr ? *node : *table_), 1);

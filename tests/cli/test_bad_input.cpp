@@ -160,4 +160,15 @@ BOOST_AUTO_TEST_CASE(a_cell_that_is_refused_after_reading_is_refused_with_its_fi
     }
 }
 
+BOOST_AUTO_TEST_CASE(a_manifest_without_a_table_is_told_which_table_and_which_key) {
+    const scratch::Folder folder;
+    const std::string head = "format = \"isostat-series 1\"\n", files = "[files]\ndisks = \"a\"\nframes = \"b\"\n";
+    for (const auto& [text, words] : {std::pair(head, ":1: no disks in [files]: expected the name of a LAMMPS dump"),
+                                      std::pair(head + files, ":1: no reference_length in [load]: expected [L1, L2]"),
+                                      std::pair(head + "[files]\ndisks = \"\"\n", ":3: disks in [files] is ''")}) {
+        scratch::write(folder / "m.toml", text);
+        expect(run({"compare", folder.at("m.toml"), "-o", folder.at("out")}), 65, {folder.at("m.toml") + words});
+    }
+}
+
 BOOST_AUTO_TEST_SUITE_END()

@@ -68,6 +68,9 @@ bool check_claims(const State& state, const Certification& c, int open = 0) {
         const Interval& f = claims.forces->finite[l];
         BOOST_TEST((zero ? f == Interval{0, 0} : f.lower > 0), to_string(state.contacts[l]));
     }
+    for (std::size_t k = 0; claims.forces && k < claims.forces->structural_zeros.size(); ++k) {
+        BOOST_TEST(claims.forces->infinitesimal[k].lower > 0);
+    }
     if (claims.gaps && truth.nearest() != nullptr) {
         const Real nearest = truth.nearest()->gap;
         BOOST_TEST(Real(claims.gaps->smallest) >= nearest * Real("0.999"));

@@ -49,6 +49,9 @@ inline std::vector<std::string> objections(const CertificateClaims& claims, cons
             }
             zeros += zero ? 1 : 0;
         }
+        if (zeros != structural.size()) {
+            wrong.push_back("a structural zero is no contact, or is named twice");
+        }
     }
     if (const auto* nearest = truth.nearest(); claims.gaps && nearest != nullptr) {
         if (Real(claims.gaps->smallest) > nearest->gap) {

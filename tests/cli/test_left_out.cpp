@@ -66,7 +66,7 @@ BOOST_AUTO_TEST_CASE(two_small_scenes_cost_what_they_did_with_any_number_of_thre
                                                                     {{"candidate_searches", 26},
                                                                      {"overlap_proofs", 14},
                                                                      {"rank_proofs", 69},
-                                                                     {"factorisations", 172},
+                                                                     {"factorisations", 133},
                                                                      {"inverse_bounds", 95},
                                                                      {"states_written", 4}}}};
     for (const auto& [scene, expected] : known) {

@@ -204,8 +204,9 @@ void Prover::claim_minimum() {
         return;
     }
     const auto found = inspect_mechanism(state_, result_.counting);
-    if (found.ok() && found.value().stable == Verdict::proved) {
-        result_.claims.minimum = MinimumClaim{room * found.value().away, found.value().curvature / 2};
+    if (found.ok() && !found.value().form.empty()) {
+        const MechanismInspection& minimum = found.value();
+        result_.claims.minimum = MinimumClaim{room * minimum.away, minimum.curvature / 2, minimum.held, minimum.form};
         result_.claims.undecided = {"all other claims: of an isostatic structure, and the load acts on mechanisms"};
     }
 }

@@ -97,7 +97,7 @@ class HeldForm {
         }
     }
 
-    std::optional<HeldMinimum> prove(double way, double nearest) {
+    std::optional<HeldMinimum> prove(double way, double nearest, double off) {
         const double open = std::min(arcs_.below(nearest), vertex_.packing.max_radius());
         if (!(open > far_weight(vertex_.packing, open) * (way + 2 * vertex_.enclosure.distance()) * up) ||
             !stay_in_sectors(way) || !look_at(way) || !forces_stay_positive()) {
@@ -109,11 +109,18 @@ class HeldForm {
         const Enclosure least = eigenvalues(form_, error_, Eigen::MatrixXd::Identity(k, k), 0).front();
         const double curvature = (least.value - least.radius) / up;
         const double multiplier = multiplier_size();
-        if (!(curvature > 0) || !(multiplier < 0.49 * curvature * reach)) {
+        if (!(curvature > 0) || !(multiplier < 0.49 * curvature * reach) || !(off * up < reach)) {
             return {};
         }
         nearer_ = multiplier / curvature * fastest() * up;
-        return HeldMinimum{(vertex_.enclosure.distance() + nearer_) * up, curvature};
+        HeldMinimum minimum{(vertex_.enclosure.distance() + nearer_) * up, curvature};
+        for (Eigen::Index i = 0; i < k; ++i) {
+            for (Eigen::Index j = i; j < k; ++j) {
+                const double wide = error_(i, j) * up + std::abs(form_(i, j)) * 2 * u; // of the sums that are the ends
+                minimum.form.push_back({form_(i, j) - wide, form_(i, j) + wide});
+            }
+        }
+        return minimum;
     }
 
     /// Rates and eigenvalues at the minimum that was proved last.
@@ -485,10 +492,10 @@ Enclosure least_curvature(const Vertex& vertex, const Load& load, const std::vec
 }
 
 std::optional<HeldMinimum> minimum_near(const Vertex& vertex, const Load& load, const std::vector<std::size_t>& acting,
-                                        double nearest) {
+                                        double nearest, double off) {
     HeldForm form(vertex, load, acting);
     for (double share = 0x1p-39; share < 1; share *= 0x1p3) { // on a shorter way the form changes less
-        if (auto minimum = form.prove(share * vertex.packing.min_radius(), nearest)) {
+        if (auto minimum = form.prove(share * vertex.packing.min_radius(), nearest, off)) {
             form.describe(*minimum);
             return minimum;
         }

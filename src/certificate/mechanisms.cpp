@@ -84,12 +84,17 @@ void judge_minimum(MechanismInspection& inspection, const Vertex& vertex, const 
                    const std::vector<std::size_t>& acting, const std::vector<Contact>& candidates, double moved) {
     const EquilibriumRecord& record = inspection.record;
     const bool asked = !acting.empty() && has_potential(state) && state.load.infinitesimal.empty();
+    const double off = 3 * moved * std::sqrt(static_cast<double>(vertex.packing.q.size())); // what is stored
     const auto minimum =
-        asked ? minimum_near(vertex, state.load, acting, record.min_gap - record.min_gap_bound) : std::nullopt;
+        asked ? minimum_near(vertex, state.load, acting, record.min_gap - record.min_gap_bound, off) : std::nullopt;
     if (minimum) {
         inspection.stable = Verdict::proved;
-        inspection.away = minimum->away + 3 * moved * std::sqrt(static_cast<double>(vertex.packing.q.size()));
+        inspection.away = minimum->away + off;
         inspection.curvature = minimum->curvature;
+        inspection.form = minimum->form;
+        for (const std::size_t slot : acting) {
+            inspection.held.push_back(inspection.contacts[slot]);
+        }
         inspection.yielding =
             yielding_at(vertex, state.load, acting, *minimum,
                         without(candidates, vertex.structure.contacts(), vertex.packing.disk_count()));

@@ -181,6 +181,39 @@ double least_eigenvalue(const Form& form) {
     return next_below(least / stretch);
 }
 
+/// The claimed form: of what it should be, and positive definite whatever matrix of it is the true one.
+std::pair<Verdict, std::string> judge_form(const Evidence& e, const MinimumClaim& claim,
+                                           const std::vector<std::size_t>& acting, const Motions& motions) {
+    const std::size_t k = acting.size();
+    const auto of_claim = [&](std::size_t l, const Contact& held) { return e.state.contacts[l] == held; };
+    if (!std::equal(acting.begin(), acting.end(), claim.held.begin(), claim.held.end(), of_claim) ||
+        claim.form.size() != k * (k + 1) / 2) {
+        return {Verdict::undecided, fmt::format("the load reaches {} held coordinates, and the form is of {}, or of "
+                                                "others, or in another order",
+                                                k, claim.held.size())};
+    }
+    const Form found = second_variation(e, motions);
+    Form claimed = found;
+    std::pair<Verdict, std::string> answer{Verdict::proved, {}};
+    auto entry = claim.form.begin();
+    for (std::size_t i = 0; i < k; ++i) {
+        for (std::size_t j = i; j < k; ++j, ++entry) {
+            claimed[i][j] = claimed[j][i] = {entry->lower, entry->upper};
+            const bool apart = found[i][j].lower > entry->upper || found[i][j].upper < entry->lower;
+            const bool inside = found[i][j].lower >= entry->lower && found[i][j].upper <= entry->upper;
+            if (apart || (!inside && answer.first == Verdict::proved)) {
+                answer = {apart ? Verdict::refuted : Verdict::undecided,
+                          fmt::format("entry {} {} of the form is in [{:.17g}, {:.17g}], claimed {}", i, j,
+                                      found[i][j].lower, found[i][j].upper, shown(*entry))};
+            }
+        }
+    }
+    if (answer.first == Verdict::proved && !(least_eigenvalue(claimed) >= claim.curvature)) {
+        return {Verdict::undecided, "the claimed form does not have the claimed curvature"};
+    }
+    return answer;
+}
+
 /// The most that a coordinate moves to first order where the held ones do by 1 in the 2-norm.
 double swing_above(const Motions& motions) {
     double most = 0;
@@ -226,7 +259,11 @@ ClaimCheck judge_minimum(const Evidence& e, const MinimumClaim& claim) {
                                      : fmt::format("multipliers up to {:.3g} are too large for a curvature of {:.6g}",
                                                    multiplier, claim.curvature));
     }
-    const double swing = swing_above(motions_of(e, acting));
+    const Motions motions = motions_of(e, acting);
+    if (const auto [verdict, why] = judge_form(e, claim, acting, motions); verdict != Verdict::proved) {
+        return answer(check, verdict, why);
+    }
+    const double swing = swing_above(motions);
     if (!std::isfinite(product_above(swing, reach))) { // levers beyond the range of double
         return answer(check, Verdict::undecided, "velocities are beyond the range of double");
     }

@@ -86,9 +86,15 @@ Json claim(const LoadIntervalClaim& load, int dimension) {
     return {{"low", claim(load.low, dimension)}, {"high", claim(load.high, dimension)}, {"rung", to_string(load.rung)}};
 }
 
-Json claim(const MinimumClaim& minimum) {
+Json claim(const MinimumClaim& minimum, int dimension) {
+    Json held = Json::array();
+    for (const Contact& coordinate : minimum.held) {
+        held.push_back(contact_to_json(coordinate, dimension));
+    }
     return {{"away", number(minimum.away, "minimum.away")},
-            {"curvature", number(minimum.curvature, "minimum.curvature")}};
+            {"curvature", number(minimum.curvature, "minimum.curvature")},
+            {"held", held},
+            {"form", intervals(minimum.form, "minimum.form")}};
 }
 
 template <class Claim, class... More> Json or_absent(const std::optional<Claim>& value, More... more) {
@@ -219,15 +225,21 @@ LoadEndClaim load_end_of(const Field& field, const State& state) {
     return claim;
 }
 
-MinimumClaim minimum_of(const Field& field) {
-    field.only({"away", "curvature"});
-    const MinimumClaim claim{field.at("away").number(), field.at("curvature").number()};
+MinimumClaim minimum_of(const Field& field, const Packing& packing) {
+    field.only({"away", "curvature", "held", "form"});
+    MinimumClaim claim{field.at("away").number(), field.at("curvature").number()};
     if (!(claim.away >= 0)) {
         field.at("away").fail("a distance >= 0");
     }
     if (!(claim.curvature > 0)) {
         field.at("curvature").fail("a positive number");
     }
+    const Field held = field.at("held");
+    for (std::size_t k = 0; k < held.size(); ++k) {
+        claim.held.push_back(contact_from_json(held.at(k), packing));
+    }
+    const std::size_t entries = held.size() * (held.size() + 1) / 2;
+    claim.form = intervals_of(field.at("form"), entries, "one interval per entry of the upper triangle");
     return claim;
 }
 
@@ -247,7 +259,7 @@ std::string claims_text(const CertificateClaims& claims, int dimension) {
     text += "  " + member_line("load_interval", or_absent(claims.load_interval, dimension)) + ",\n";
     text += "  " + member_line("stable", claims.stable) + ",\n";
     if (claims.minimum) {
-        text += "  " + member_line("minimum", claim(*claims.minimum)) + ",\n";
+        text += "  " + member_line("minimum", claim(*claims.minimum, dimension)) + ",\n";
     }
     text += "  " + member_line("undecided", claims.undecided) + "\n}";
     return text;
@@ -274,7 +286,7 @@ CertificateClaims claims_of(const Field& field, const State& state) {
     }
     claims.stable = field.at("stable").boolean();
     if (field.has("minimum")) {
-        claims.minimum = minimum_of(field.at("minimum"));
+        claims.minimum = minimum_of(field.at("minimum"), state.packing);
     }
     const Field undecided = field.at("undecided");
     for (std::size_t k = 0; k < undecided.size(); ++k) {

@@ -108,7 +108,12 @@ void bind_claims(CertificateClass& certificate) {
             "minimum", claim(&Claims::minimum, [](const MinimumClaim& c) { return std::pair(c.away, c.curvature); }),
             "(away, curvature), of clumps with mechanisms that the load reaches, in the place of the other claims: no "
             "coordinate is farther than `away` from an equilibrium that is a strict local minimum, where the second "
-            "variation on the held coordinates is at least `curvature`. None.");
+            "variation on the held coordinates is at least `curvature`. None.")
+        .def_property_readonly(
+            "form",
+            claim(&Claims::minimum, [](const MinimumClaim& c) { return std::pair(c.held, interval_array(c.form)); }),
+            "(held, (m, 2) ends of intervals) of `minimum`: the held coordinates that the load reaches, and the second "
+            "variation on them at their stored values, rows of the upper triangle. None.");
 }
 
 void bind_certificate(py::module_& module) {

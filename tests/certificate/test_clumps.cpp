@@ -155,6 +155,37 @@ BOOST_AUTO_TEST_CASE(a_dimer_across_a_box_is_balanced_where_the_potential_has_a_
 }
 
 /// N = 2, N_f = 3: hypostatic, and a minimum, which hangs below the place where the force points away from the corner.
+/// A sphere that hangs at an arm of 7/8 under a force of 7, n = (2, 3, 6)/7 along it: W'' = 8 per square of the way of
+/// its small member, which is (1 + n_a^2/n_c^2, ..) on two coordinates a, b, c following by n.dx = 0.
+BOOST_AUTO_TEST_CASE(the_form_of_a_minimum_in_a_certificate_encloses_the_closed_form) {
+    const Certification sphere = certify(with_free_motions_held(sphere_in_a_corner()));
+    BOOST_REQUIRE(sphere.claims.minimum.has_value());
+    const std::vector<Contact>& held = sphere.claims.minimum->held;
+    BOOST_TEST_REQUIRE(held.size() == 2U);
+    const std::array<double, 3> n{2, 3, 6};
+    const auto axis = [&held](std::size_t i) { return static_cast<std::size_t>(held[i].i % 3); };
+    const double last = n.at(3 - axis(0) - axis(1));
+    const std::vector<Interval>& form = sphere.claims.minimum->form;
+    std::size_t entry = 0;
+    for (std::size_t i = 0; i < 2; ++i) {
+        for (std::size_t j = i; j < 2; ++j, ++entry) {
+            const double expected = 8 * ((i == j ? 1 : 0) + n.at(axis(i)) * n.at(axis(j)) / (last * last));
+            BOOST_TEST(form.at(entry).lower < expected - 1e-13);
+            BOOST_TEST(form.at(entry).upper > expected + 1e-13);
+            BOOST_TEST(form.at(entry).upper - form.at(entry).lower < 1e-9);
+        }
+    }
+    for (const auto& [state, expected] : {std::pair(disk_in_a_corner(), 12.5),
+                                          std::pair(dimer_in_a_cell(2), (12 - 2 * (3 + 81.0 / 64)) / (5.25 * 5.25))}) {
+        const Certification truth = certify(with_free_motions_held(state));
+        BOOST_REQUIRE(truth.claims.minimum.has_value());
+        BOOST_TEST_REQUIRE(truth.claims.minimum->form.size() == 1U);
+        BOOST_TEST(truth.claims.minimum->form[0].lower < expected - 1e-14);
+        BOOST_TEST(truth.claims.minimum->form[0].upper > expected + 1e-14);
+        BOOST_TEST(truth.claims.minimum->form[0].upper - truth.claims.minimum->form[0].lower < 1e-9);
+    }
+}
+
 BOOST_AUTO_TEST_CASE(a_disk_in_a_corner_under_an_eccentric_load_has_a_minimum_that_is_proved) {
     const Inspection hanging = inspected(disk_in_a_corner());
     BOOST_TEST(hanging.counting.mechanisms == 1);

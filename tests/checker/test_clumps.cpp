@@ -2,7 +2,9 @@
 #include "checker/claims.hpp"
 #include "checker/evidence.hpp"
 #include "checker/gaps.hpp"
+#include "support/bad_input.hpp"
 #include "support/clumps.hpp"
+#include "support/forger.hpp"
 #include "support/test.hpp"
 
 #include <cmath>
@@ -17,6 +19,25 @@ namespace {
 Certificate of_clumps(const State& state) {
     const State held = with_free_motions_held(state);
     return certificate_of(held, certify(held).claims);
+}
+
+/// A claim about all that is held, with a diagonal form that says no more than its curvature, so that what a forger
+/// changes besides is judged by the rest.
+Certificate with_a_minimum(Certificate certificate, double away, double curvature) {
+    MinimumClaim claim{away, curvature};
+    const std::vector<Contact>& list = certificate.state.contacts;
+    std::copy_if(list.begin(), list.end(), std::back_inserter(claim.held),
+                 [](const Contact& contact) { return contact.kind == ContactKind::held; });
+    for (std::size_t i = 0; i < claim.held.size(); ++i) {
+        claim.form.push_back({1.01 * curvature, 1e9});
+        claim.form.insert(claim.form.end(), claim.held.size() - i - 1, Interval{0, 0});
+    }
+    certificate.claims.minimum = claim;
+    return certificate;
+}
+
+Certificate with_a_vague_form(const Certificate& certificate) {
+    return with_a_minimum(certificate, certificate.claims.minimum->away, certificate.claims.minimum->curvature);
 }
 
 } // namespace
@@ -168,10 +189,9 @@ BOOST_AUTO_TEST_CASE(minima_in_cells_and_under_true_stresses_are_verified_to_the
     leaning.state.packing.cell.keep_shape(); // the size of the cell would be another potential
     BOOST_TEST((verify(leaning).verdict == Verdict::undecided));
     for (const State& state : {dimer_in_a_cell(1), dimer_in_a_cell(1.42), spheres_in_a_cell(1)}) {
-        Certificate forged = of_clumps(state);
+        const Certificate forged = of_clumps(state);
         BOOST_TEST(!forged.claims.minimum.has_value());
-        forged.claims.minimum = MinimumClaim{1, 1e-6};
-        BOOST_TEST((read_and_verified(forged).verdict != Verdict::proved));
+        BOOST_TEST((read_and_verified(with_a_minimum(forged, 1, 1e-6)).verdict != Verdict::proved));
     }
 }
 
@@ -216,7 +236,7 @@ BOOST_AUTO_TEST_CASE(minima_of_ovals_are_certified_and_verified) {
 }
 
 BOOST_AUTO_TEST_CASE(forged_minima_of_ovals_do_not_verify) {
-    const Certificate right = of_clumps(oval_in_a_box(1, 1));
+    const Certificate right = with_a_vague_form(of_clumps(oval_in_a_box(1, 1)));
     BOOST_TEST((verify(right).verdict == Verdict::proved));
     const std::vector<std::pair<const char*, std::function<void(Certificate&)>>> forgeries{
         {"no arcs: circles that overlap the walls", [](Certificate& c) { c.state.packing.arcs.clear(); }},
@@ -244,14 +264,12 @@ BOOST_AUTO_TEST_CASE(forged_minima_of_ovals_do_not_verify) {
         BOOST_TEST((verify(forged).verdict != Verdict::proved), what);
     }
     // What the circle of a flank touches beyond its arc.
-    Certificate beyond = of_clumps(circle_of_an_oval_in_a_corner());
-    beyond.claims.minimum = MinimumClaim{1, 1e-3};
+    const Certificate beyond = with_a_minimum(of_clumps(circle_of_an_oval_in_a_corner()), 1, 1e-3);
     BOOST_TEST((verify(beyond).verdict != Verdict::proved));
     // At a joint, and a hair beside it on either side.
     const double joint = std::atan2(4, 3);
     for (const double off : {0.0, 0x1p-50, -0x1p-50}) {
-        Certificate there = of_clumps(oval_in_a_box(1, 1, joint + off));
-        there.claims.minimum = MinimumClaim{1, 1e-3};
+        const Certificate there = with_a_minimum(of_clumps(oval_in_a_box(1, 1, joint + off)), 1, 1e-3);
         BOOST_TEST((verify(there).verdict != Verdict::proved));
     }
 }
@@ -295,7 +313,7 @@ BOOST_AUTO_TEST_CASE(an_oval_above_a_wall_that_a_joint_points_to_verifies) {
 }
 
 BOOST_AUTO_TEST_CASE(forged_minima_do_not_verify) {
-    const Certificate right = of_clumps(disk_in_a_corner(0x1p-20));
+    const Certificate right = with_a_vague_form(of_clumps(disk_in_a_corner(0x1p-20)));
     BOOST_TEST((read_and_verified(right).verdict == Verdict::proved));
     const std::vector<std::pair<const char*, std::function<void(Certificate&)>>> forgeries{
         {"nearer than it is", [](Certificate& c) { c.claims.minimum->away = 0x1p-22; }},
@@ -320,22 +338,19 @@ BOOST_AUTO_TEST_CASE(forged_minima_do_not_verify) {
         BOOST_TEST((verify(forged).verdict != Verdict::proved), what);
     }
     // On its head: where the prover found a minimum below.
-    Certificate turned = of_clumps(disk_in_a_corner(std::acos(-1)));
-    turned.claims.minimum = MinimumClaim{1, 1e-3};
+    const Certificate turned = with_a_minimum(of_clumps(disk_in_a_corner(std::acos(-1))), 1, 1e-3);
     BOOST_TEST((read_and_verified(turned).verdict != Verdict::proved));
     // Too far from where it would hang; where the left wall would have to pull.
     for (const double angle : {0.5, 0x1p-9}) {
-        Certificate far = of_clumps(disk_in_a_corner(angle));
-        far.claims.minimum = MinimumClaim{1, 1e-3};
+        const Certificate far = with_a_minimum(of_clumps(disk_in_a_corner(angle)), 1, 1e-3);
         BOOST_TEST((read_and_verified(far).verdict == Verdict::undecided));
     }
-    Certificate pulled = of_clumps(disk_in_a_corner());
+    Certificate pulled = with_a_vague_form(of_clumps(disk_in_a_corner()));
     pulled.state.packing.q[2] = 1.375;
     pulled.state.load.disk_force[2] = 3;
     BOOST_TEST((verify(pulled).verdict == Verdict::undecided));
     // An isostatic state has no mechanism along which there could be one.
-    Certificate isostatic = of_clumps(lying_dimer(12, 12));
-    isostatic.claims.minimum = MinimumClaim{1, 1e-3};
+    const Certificate isostatic = with_a_minimum(of_clumps(lying_dimer(12, 12)), 1, 1e-3);
     BOOST_TEST((verify(isostatic).verdict == Verdict::undecided));
     // Two that hang above each other touch: no way is left.
     State near = disk_in_a_corner();
@@ -343,10 +358,83 @@ BOOST_AUTO_TEST_CASE(forged_minima_do_not_verify) {
     near.packing.length(0) = 2 + 0x1p-30;
     BOOST_TEST((read_and_verified(of_clumps(near)).verdict == Verdict::proved));
     near.packing.length(0) = 2;
-    Certificate touching = of_clumps(near);
-    BOOST_TEST(!touching.claims.minimum.has_value());
-    touching.claims.minimum = MinimumClaim{1, 1e-3};
+    BOOST_TEST(!of_clumps(near).claims.minimum.has_value());
+    const Certificate touching = with_a_minimum(of_clumps(near), 1, 1e-3);
     BOOST_TEST((verify(touching).verdict != Verdict::proved));
+}
+
+/// Of a sphere that hangs: two coordinates, and an entry between them.
+BOOST_AUTO_TEST_CASE(a_forged_form_does_not_verify) {
+    const Certificate right = of_clumps(sphere_in_a_corner());
+    BOOST_TEST((read_and_verified(right).verdict == Verdict::proved));
+    BOOST_TEST_REQUIRE(right.claims.minimum->held.size() == 2U);
+    BOOST_TEST_REQUIRE(right.claims.minimum->form.size() == 3U);
+    const auto found = [&right](const auto& forge) {
+        Certificate forged = right;
+        forge(*forged.claims.minimum);
+        return verdict_on(read_and_verified(forged), "minimum");
+    };
+    for (std::size_t entry = 0; entry < 3; ++entry) {
+        const Interval true_one = right.claims.minimum->form[entry];
+        const double width = true_one.upper - true_one.lower;
+        BOOST_TEST(width < 1e-9);
+        for (const double by : {-2.0, 2.0}) { // widths
+            const auto moved = [&](double share) {
+                return [&, share](MinimumClaim& claim) {
+                    claim.form[entry] = {true_one.lower + share * width, true_one.upper + share * width};
+                };
+            };
+            BOOST_TEST((found(moved(by)) == Verdict::refuted));
+            BOOST_TEST((found(moved(by / 16)) == Verdict::proved)); // the true one is still in there
+        }
+        const auto narrow = [&](MinimumClaim& claim) { // narrower than any enclosure
+            claim.form[entry].lower = claim.form[entry].upper = true_one.lower + width / 2;
+        };
+        BOOST_TEST((found(narrow) != Verdict::proved));
+    }
+    const std::vector<std::pair<const char*, std::function<void(MinimumClaim&)>>> forgeries{
+        {"in another order", [](MinimumClaim& claim) { std::swap(claim.held[0], claim.held[1]); }},
+        {"diagonal entries exchanged", [](MinimumClaim& claim) { std::swap(claim.form[0], claim.form[2]); }},
+        {"one coordinate left out",
+         [](MinimumClaim& claim) {
+             claim.held.pop_back();
+             claim.form.resize(1);
+         }},
+        {"one coordinate twice", [](MinimumClaim& claim) { claim.held[1] = claim.held[0]; }},
+        {"says nothing",
+         [](MinimumClaim& claim) {
+             claim.form.assign(3, {-1e300, 1e300});
+         }},
+        {"no numbers", [](MinimumClaim& claim) {
+             claim.form.assign(3, {-HUGE_VAL, HUGE_VAL});
+         }}};
+    for (const auto& [what, forge] : forgeries) {
+        BOOST_TEST((found(forge) != Verdict::proved), what);
+    }
+    Certificate short_of_one = right; // as no file is
+    short_of_one.claims.minimum->form.pop_back();
+    BOOST_TEST((verify(short_of_one).verdict != Verdict::proved));
+    short_of_one.claims.minimum->form.push_back({std::nan(""), std::nan("")});
+    BOOST_TEST((verify(short_of_one).verdict != Verdict::proved));
+}
+
+BOOST_AUTO_TEST_CASE(files_without_the_form_or_with_another_number_of_entries_are_refused) {
+    const std::string text = certificate_text(of_clumps(disk_in_a_corner()));
+    const std::size_t at = text.find(",\"form\":");
+    BOOST_TEST_REQUIRE(at != std::string::npos);
+    const std::string form = text.substr(at, text.find("]]", at) + 2 - at);
+    const std::vector<std::pair<std::string, std::vector<std::string>>> spoiled{
+        {"", {"claims.minimum.form", "missing"}},
+        {",\"form\":[]", {"claims.minimum.form", "upper triangle", "1 values, 0 found"}},
+        {",\"form\":[[\"nan\",13]]", {"claims.minimum.form[0]", "number"}},
+        {",\"form\":[[null,13]]", {"claims.minimum.form[0]", "number"}},
+        {",\"form\":[[13,12]]", {"claims.minimum.form[0]", "lower <= upper"}}};
+    for (const auto& [by, words] : spoiled) {
+        std::string other = text;
+        other.replace(at, form.size(), by);
+        expect_bad_input([&other = other] { (void)parse_certificate(forger::sealed_certificate(other), "file"); },
+                         words);
+    }
 }
 
 BOOST_AUTO_TEST_CASE(without_bars_nothing_may_be_held) {

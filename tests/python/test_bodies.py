@@ -100,6 +100,9 @@ class Bodies(Folder):
         away, curvature = made.minimum
         self.assertLess(away, 1e-12)
         self.assertTrue(1 < curvature < 3)
+        held, form = made.form
+        self.assertEqual((len(held), form.shape), (1, (1, 2)))
+        self.assertTrue(3 - 1e-9 < form[0, 0] < 3 < form[0, 1] < 3 + 1e-9)
         self.assertEqual(isostat.verify(made).verdict, isostat.Verdict.PROVED)
         self.assertIsNone(isostat.certify(lying()).minimum)
 

@@ -119,6 +119,8 @@ struct MechanismInspection {
     /// `stable` is proved: how far the minimum is from the stored configuration, at most, and a lower bound of d2W on
     /// the held coordinates (U8).
     double away = 0, curvature = 0;
+    std::vector<Contact> held{};      ///< then: the coordinates of that form, as in `MinimumClaim`
+    std::vector<Interval> form{};     ///< and the form
     std::optional<Yielding> yielding; ///< where `stable` is proved
     std::string remark;               ///< when not an equilibrium: which contact and by how much
 };

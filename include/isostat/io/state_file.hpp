@@ -122,10 +122,14 @@ struct LoadIntervalClaim {
 /// bear positive forces, no held coordinate bears a multiplier, and no other pair touches. There the
 /// potential of the load has a strict local minimum, except for motions that change no force: d2W is
 /// at least `curvature` times |dc|^2, c the held coordinates on which the load acts (statement U8); under true stresses
-/// that of the product of the lengths there times their potential.
+/// that of the product of the lengths there times their potential. The form d2W itself, at the stored values of `held`,
+/// is in `form`, whose matrices all have no eigenvalue below `curvature`.
 struct MinimumClaim {
     double away = 0;
     double curvature = 0;
+    std::vector<Contact> held{};  ///< the coordinates c, in the order of the contacts of the state
+    std::vector<Interval> form{}; ///< rows of the upper triangle; entry ij is of the velocities that move c_i, or c_j,
+                                  ///< at the rate 1, and no other row
 };
 
 /// The claims of a certificate. An absent claim was not proved; `undecided` says why. When all are there, the true

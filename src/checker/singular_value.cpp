@@ -351,7 +351,7 @@ std::optional<Rational> smallest_singular_value(const Problem& problem, const st
     }
     Factor factor(normal);
     if (enough > 0) {
-        if (const auto bound = bound_of(problem, normal, factor, enough * enough)) {
+        if (auto bound = bound_of(problem, normal, factor, enough * enough)) {
             return bound;
         }
     }
@@ -364,7 +364,7 @@ std::optional<Rational> smallest_singular_value(const Problem& problem, const st
         if (!(shift > 0 && shift < 1)) {
             return std::nullopt;
         }
-        if (const auto bound = bound_of(problem, normal, factor, shift)) {
+        if (auto bound = bound_of(problem, normal, factor, shift)) {
             return bound;
         }
     }

@@ -80,7 +80,8 @@ void add_first_order(Place& place) {
 
 double largest_force(const std::vector<Range>& forces) {
     const auto size = [](const Rational& value) {
-        return std::abs(approximate(value.get_num(), 0) / approximate(value.get_den(), 0));
+        const long unit = bits(value.get_den()); // neither of the two numbers need be within the range of double
+        return std::abs(approximate(value.get_num(), -unit) / approximate(value.get_den(), -unit));
     };
     double largest = 0;
     for (const Range& force : forces) {

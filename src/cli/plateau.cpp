@@ -48,6 +48,22 @@ void note_walls(const PlateauArguments& a, const crafted::Plateau& plateau, Fore
     }
 }
 
+/// The counts, between thresholds that are found where none are named; a cell that is refused is that of the file.
+crafted::Plateau counts_of(const ForeignPacking& file, const PlateauArguments& a, Strain strain,
+                           std::array<double, 2>& thresholds) {
+    try {
+        if (a.thresholds.empty()) {
+            constexpr double share = 0.1; // of the smallest radius
+            thresholds[1] = share * file.packing.min_radius();
+            thresholds[0] =
+                std::min(crafted::plateau(file.packing, {thresholds[1]}, strain).deepest_overlap, thresholds[1]);
+        }
+        return crafted::plateau(file.packing, thresholds[0], thresholds[1], a.rows, strain, file.rounding);
+    } catch (const Error& error) {
+        throw Error(error.kind(), a.file + ": " + error.what());
+    }
+}
+
 } // namespace
 
 int plateau(const PlateauArguments& a) {
@@ -60,14 +76,7 @@ int plateau(const PlateauArguments& a) {
     foreign.cells = foreign.spheres = foreign.fixes = foreign.clumps = true;
     ForeignPacking file = read_any_packing(a.file, foreign);
     const Strain strain = value_of<Strain>(a.strain, std::array{"fixed", "isotropic", "diagonal", "full"}).value();
-    if (a.thresholds.empty()) {
-        constexpr double share = 0.1; // of the smallest radius
-        thresholds[1] = share * file.packing.min_radius();
-        thresholds[0] =
-            std::min(crafted::plateau(file.packing, {thresholds[1]}, strain).deepest_overlap, thresholds[1]);
-    }
-    const crafted::Plateau result =
-        crafted::plateau(file.packing, thresholds[0], thresholds[1], a.rows, strain, file.rounding);
+    const crafted::Plateau result = counts_of(file, a, strain, thresholds);
     const crafted::Told told = crafted::told_of(result);
     note_walls(a, result, file);
     if (const std::string sizes = compare::far_disks(file.packing, thresholds[1], result); !sizes.empty()) {

@@ -151,7 +151,7 @@ BOOST_AUTO_TEST_CASE(a_cell_that_is_refused_after_reading_is_refused_with_its_fi
     const std::string file = folder.at("leaning.toml");
     scratch::write(file, "format = \"isostat-packing 1\"\ndisks = [[0, 0, 1]]\n[cell]\nperiod = [2, 2]\n"
                          "moves = [\"x\"]\ntilt = \"8077051742094299/140737488355328\"\n");
-    for (const std::string command : {"inspect", "genericity", "import"}) {
+    for (const std::string command : {"inspect", "genericity", "import", "plateau"}) {
         std::vector<std::string> words{command, file};
         if (command == "import") {
             words.insert(words.end(), {"-o", folder.at("o.json")});

@@ -108,11 +108,11 @@ class HeldForm {
         const Eigen::Index k = form_.rows();
         const Enclosure least = eigenvalues(form_, error_, Eigen::MatrixXd::Identity(k, k), 0).front();
         const double curvature = (least.value - least.radius) / up;
-        const double multiplier = multiplier_size();
-        if (!(curvature > 0) || !(multiplier < 0.49 * curvature * reach) || !(off * up < reach)) {
+        const double step = newton_step();
+        if (!(curvature > 0) || !(step < 0.49 * reach) || !(off * up < reach)) {
             return {};
         }
-        nearer_ = multiplier / curvature * fastest() * up;
+        nearer_ = 2 * step * fastest() * up;
         HeldMinimum minimum{(vertex_.enclosure.distance() + nearer_) * up, curvature};
         for (Eigen::Index i = 0; i < k; ++i) {
             for (Eigen::Index j = i; j < k; ++j) {
@@ -201,15 +201,24 @@ class HeldForm {
         return true;
     }
 
-    /// Of all held coordinates that are no free motions; under true stresses over the area, which changes by less than
-    /// a tenth.
-    [[nodiscard]] double multiplier_size() const {
-        double square = 0;
-        for (const std::size_t slot : acting_) {
-            const double most = std::abs(force(slot).value) + force(slot).radius;
-            square += most * most;
+    /// |B mu| (2-norm), B an inverse of the form as double computes it, mu the multipliers; infinite where |1 - B M|
+    /// may exceed a quarter within reach.
+    [[nodiscard]] double newton_step() const {
+        const Eigen::Index k = form_.rows();
+        const Eigen::MatrixXd inverse = form_.inverse();
+        const Eigen::MatrixXd size = inverse.cwiseAbs();
+        const double roundings = static_cast<double>(k + 4) * u;
+        Eigen::VectorXd multiplier(k);
+        Eigen::VectorXd open(k);
+        for (Eigen::Index i = 0; i < k; ++i) {
+            const Enclosure f = force(acting_[static_cast<std::size_t>(i)]);
+            multiplier(i) = f.value;
+            open(i) = f.radius + roundings * std::abs(f.value);
         }
-        return std::sqrt(square) * (follows_ ? 1.1 : 1) * up;
+        const Eigen::MatrixXd rest = (Eigen::MatrixXd::Identity(k, k) - inverse * form_).cwiseAbs() +
+                                     size * (error_ + roundings * form_.cwiseAbs());
+        const Eigen::VectorXd step = (inverse * multiplier).cwiseAbs() + size * open;
+        return rest.norm() * up < 0.25 ? step.norm() * up : roundoff::infinity;
     }
 
     /// The most that the configuration moves (2-norm) where the held coordinates move by 1, anywhere within reach.

@@ -29,16 +29,6 @@ std::vector<std::size_t> acting_rows(const Evidence& e) {
     return acting;
 }
 
-/// 2-norm of the multipliers, at most.
-double multiplier_above(const Evidence& e, const std::vector<std::size_t>& acting) {
-    double square = 0;
-    for (const std::size_t l : acting) {
-        const double size = bounds_of(e.forces[l]).size();
-        square = sum_above(square, product_above(size, size));
-    }
-    return root_above(square);
-}
-
 /// What is not positive at every vertex of the evidence, in words; empty: nothing.
 std::string not_positive(const Evidence& e) {
     for (std::size_t l = 0; l < e.forces.size(); ++l) {
@@ -138,16 +128,17 @@ double growth(const Evidence& e) {
     return most;
 }
 
+Eigen::MatrixXd middle_of(const Form& form) {
+    const auto k = static_cast<Eigen::Index>(form.size());
+    return Eigen::MatrixXd::NullaryExpr(k, k, [&](Eigen::Index i, Eigen::Index j) {
+        return form[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)].middle();
+    });
+}
+
 /// A number that no eigenvalue is below: in a basis that is nearly that of the eigenvectors, by Gershgorin's discs.
 double least_eigenvalue(const Form& form) {
     const auto k = static_cast<Eigen::Index>(form.size());
-    Eigen::MatrixXd middle(k, k);
-    for (Eigen::Index i = 0; i < k; ++i) {
-        for (Eigen::Index j = 0; j < k; ++j) {
-            middle(i, j) = form[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)].middle();
-        }
-    }
-    const Eigen::MatrixXd q = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(middle).eigenvectors();
+    const Eigen::MatrixXd q = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(middle_of(form)).eigenvectors();
     const auto in_basis = [&](const auto& entry, Eigen::Index i, Eigen::Index j) {
         Bounds sum(0);
         for (Eigen::Index a = 0; a < k; ++a) {
@@ -181,9 +172,37 @@ double least_eigenvalue(const Form& form) {
     return next_below(least / stretch);
 }
 
+/// 2-norm of what the inverse makes of the multipliers of the held rows, at most.
+double newton_step_above(const Evidence& e, const std::vector<std::size_t>& acting, const Eigen::MatrixXd& inverse) {
+    double square = 0;
+    for (Eigen::Index i = 0; i < inverse.rows(); ++i) {
+        Bounds sum(0);
+        for (Eigen::Index j = 0; j < inverse.cols(); ++j) {
+            sum = sum + bounds_of(e.forces[acting[static_cast<std::size_t>(j)]]) * inverse(i, j);
+        }
+        square = sum_above(square, product_above(sum.size(), sum.size()));
+    }
+    return root_above(square);
+}
+
+/// Frobenius norm of 1 - inverse M, at most, whatever matrix of the form M is.
+double defect_above(const Eigen::MatrixXd& inverse, const Form& form) {
+    double square = 0;
+    for (Eigen::Index i = 0; i < inverse.rows(); ++i) {
+        for (std::size_t j = 0; j < form.size(); ++j) {
+            Bounds entry(static_cast<std::size_t>(i) == j ? 1 : 0);
+            for (std::size_t m = 0; m < form.size(); ++m) {
+                entry = entry - form[m][j] * inverse(i, static_cast<Eigen::Index>(m));
+            }
+            square = sum_above(square, product_above(entry.size(), entry.size()));
+        }
+    }
+    return root_above(square);
+}
+
 /// The claimed form: of what it should be, and positive definite whatever matrix of it is the true one.
 std::pair<Verdict, std::string> judge_form(const Evidence& e, const MinimumClaim& claim,
-                                           const std::vector<std::size_t>& acting, const Motions& motions) {
+                                           const std::vector<std::size_t>& acting, const Form& found) {
     const std::size_t k = acting.size();
     const auto of_claim = [&](std::size_t l, const Contact& held) { return e.state.contacts[l] == held; };
     if (!std::equal(acting.begin(), acting.end(), claim.held.begin(), claim.held.end(), of_claim) ||
@@ -192,7 +211,6 @@ std::pair<Verdict, std::string> judge_form(const Evidence& e, const MinimumClaim
                                                 "others, or in another order",
                                                 k, claim.held.size())};
     }
-    const Form found = second_variation(e, motions);
     Form claimed = found;
     std::pair<Verdict, std::string> answer{Verdict::proved, {}};
     auto entry = claim.form.begin();
@@ -250,18 +268,21 @@ ClaimCheck judge_minimum(const Evidence& e, const MinimumClaim& claim) {
         return answer(check, Verdict::refuted, e.named(*overlap) + " overlap, and cannot move");
     }
     const std::vector<std::size_t> acting = acting_rows(e);
-    const double multiplier = multiplier_above(e, acting);
-    // The narrower, the sharper all enclosures; below this the multipliers might move the minimum out.
-    const double reach = std::max(0x1p-40 * e.state.packing.min_radius(), 4.01 * multiplier / claim.curvature);
-    if (acting.empty() || !(claim.curvature > 0) || !(reach < 0.125 * e.state.packing.min_radius())) {
+    if (acting.empty() || !(claim.curvature > 0)) {
         return answer(check, Verdict::undecided,
-                      acting.empty() ? "no coordinate is held that the load reaches"
-                                     : fmt::format("multipliers up to {:.3g} are too large for a curvature of {:.6g}",
-                                                   multiplier, claim.curvature));
+                      "no coordinate is held that the load reaches, or no curvature is claimed");
     }
     const Motions motions = motions_of(e, acting);
-    if (const auto [verdict, why] = judge_form(e, claim, acting, motions); verdict != Verdict::proved) {
+    const Form stored = second_variation(e, motions);
+    if (const auto [verdict, why] = judge_form(e, claim, acting, stored); verdict != Verdict::proved) {
         return answer(check, verdict, why);
+    }
+    const Eigen::MatrixXd inverse = middle_of(stored).inverse();
+    const double step = newton_step_above(e, acting, inverse);
+    // The narrower, the sharper all enclosures; below twice the step the minimum might be outside.
+    const double reach = std::max(0x1p-40 * e.state.packing.min_radius(), 2.01 * step);
+    if (!(reach < 0.125 * e.state.packing.min_radius())) {
+        return answer(check, Verdict::undecided, fmt::format("Newton's step is up to {:.3g}, too long", step));
     }
     const double swing = swing_above(motions);
     if (!std::isfinite(product_above(swing, reach))) { // levers beyond the range of double
@@ -271,17 +292,19 @@ ClaimCheck judge_minimum(const Evidence& e, const MinimumClaim& claim) {
     if (!wide.vertex.found) {
         return answer(check, Verdict::undecided, "no vertices around the stored place are proved");
     }
-    if (const std::string why = not_positive(wide); !why.empty() || !(growth(wide) < 2)) {
+    if (const std::string why = not_positive(wide); !why.empty() || !(growth(wide) < 1.1)) {
         return answer(check, Verdict::undecided, why.empty() ? "the lengths are not known well enough" : why);
     }
-    const double curvature = least_eigenvalue(second_variation(wide, motions_of(wide, acting)));
-    const std::string found =
-        fmt::format("d2W is at least {:.6g} times |dc|^2, claimed {:.6g}; multipliers up to {:.3g}", curvature,
-                    claim.curvature, multiplier);
-    if (!(curvature >= claim.curvature) || !(product_above(4, multiplier) < next_below(curvature * reach))) {
+    const Form form = second_variation(wide, motions_of(wide, acting));
+    const double curvature = least_eigenvalue(form);
+    const double defect = defect_above(inverse, form);
+    const std::string found = fmt::format("d2W is at least {:.6g} times |dc|^2, claimed {:.6g}; Newton's step up to "
+                                          "{:.3g}, defect of the inverse {:.3g}",
+                                          curvature, claim.curvature, step, defect);
+    if (!(curvature >= claim.curvature) || !(defect < 0.25)) {
         return answer(check, Verdict::undecided, found);
     }
-    const Evidence nearer = evidence_around(e, swing, next_above((follows(e) ? 2 : 1) * multiplier / curvature));
+    const Evidence nearer = evidence_around(e, swing, product_above(2, step));
     const double away =
         nearer.vertex.found ? rounded_up(nearer.vertex.moved_most) : std::numeric_limits<double>::infinity();
     check.numbers = {{"away", away}, {"curvature", curvature}};

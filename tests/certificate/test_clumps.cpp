@@ -205,10 +205,19 @@ BOOST_AUTO_TEST_CASE(a_disk_in_a_corner_under_an_eccentric_load_has_a_minimum_th
     BOOST_TEST(away > 0.625 * 0x1p-20);
     BOOST_TEST(away < 0x1p-18);
     BOOST_TEST((inspected(disk_in_a_corner(0.5)).stable == Verdict::undecided));
-    // The member touches the bottom before it hangs.
-    State before = disk_in_a_corner(-0x1p-20);
-    before.packing.radius[1] = 0.5 + 0x1p-23;
-    BOOST_TEST((inspected(before).stable == Verdict::undecided));
+    BOOST_TEST((inspected(disk_that_lands()).stable == Verdict::undecided));
+}
+
+/// Newton's step tells how far the minimum is, and not the multipliers over the least curvature, 2^-30 over 2^-20.
+BOOST_AUTO_TEST_CASE(a_minimum_is_proved_where_the_potential_is_flat_along_one_mechanism_and_steep_along_another) {
+    const Inspection both = inspected(flat_beside_steep());
+    BOOST_TEST((both.stable == Verdict::proved), both.remark);
+    const double away = std::stod(both.remark.substr(both.remark.find("within ") + 7));
+    BOOST_TEST(away >= 0x1p-30);
+    BOOST_TEST(away < 0x1p-27);
+    State far = flat_beside_steep();
+    far.packing.q[6] = 7 + 0x1p-7; // too far for the form, which changes
+    BOOST_TEST((inspected(far).stable == Verdict::undecided));
 }
 
 BOOST_AUTO_TEST_CASE(several_mechanisms_have_a_minimum_together_or_none) {

@@ -149,7 +149,7 @@ BOOST_AUTO_TEST_CASE(a_held_coordinate_that_bears_the_load_is_no_equilibrium) {
 /// Not isostatic: the potential has a minimum along mechanisms, and one claim stands in the place of all others.
 BOOST_AUTO_TEST_CASE(a_minimum_along_mechanisms_is_certified_and_verified) {
     for (const State& state : {disk_in_a_corner(), disk_in_a_corner(0x1p-30), two_disks_in_a_corner(),
-                               sphere_in_a_corner(), pendulums(-5, -8)}) {
+                               sphere_in_a_corner(), pendulums(-5, -8), flat_beside_steep()}) {
         const Certificate certificate = of_clumps(state);
         BOOST_REQUIRE(certificate.claims.minimum.has_value());
         BOOST_TEST(!certificate.claims.counting.has_value());
@@ -340,6 +340,9 @@ BOOST_AUTO_TEST_CASE(forged_minima_do_not_verify) {
     // On its head: where the prover found a minimum below.
     const Certificate turned = with_a_minimum(of_clumps(disk_in_a_corner(std::acos(-1))), 1, 1e-3);
     BOOST_TEST((read_and_verified(turned).verdict != Verdict::proved));
+    // What ends the way to it is further than the stored place.
+    const Certificate lands = with_a_minimum(of_clumps(disk_that_lands()), 1, 1e-3);
+    BOOST_TEST((read_and_verified(lands).verdict == Verdict::undecided));
     // Too far from where it would hang; where the left wall would have to pull.
     for (const double angle : {0.5, 0x1p-9}) {
         const Certificate far = with_a_minimum(of_clumps(disk_in_a_corner(angle)), 1, 1e-3);

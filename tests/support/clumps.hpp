@@ -71,6 +71,13 @@ inline State disk_in_a_corner(double angle = 0) {
                                  1 + x, 1 + y));
 }
 
+/// Its member touches the bottom before it hangs.
+inline State disk_that_lands() {
+    State state = disk_in_a_corner(-0x1p-20);
+    state.packing.radius[1] = 0.5 + 0x1p-23;
+    return state;
+}
+
 /// A sphere in the corner of three walls, 2-3-6-7: it hangs in the direction of its load, about two axes.
 inline State sphere_in_a_corner() {
     return clumps_of(R"({"format": "isostat-state", "version": 2, "dimension": 3, "length": [10, 10, 10],
@@ -90,6 +97,13 @@ inline State pendulums(double first, double second) {
         "disk_force": [[0, 0], [0, {}], [0, 0], [0, {}]], "contacts": [],
         "disks": [[2, 5, 0.25], [2, 4, 0.25], [7, 5, 0.25], [7, 4, 0.25]]}})",
                                  first, second));
+}
+
+/// W'' is 2^-20 along one mechanism and 1 along the other, where the pendulum is 2^-30 beside its minimum.
+inline State flat_beside_steep() {
+    State state = pendulums(-0x1p-20, -1);
+    state.packing.q[6] = 7 + 0x1p-30;
+    return state;
 }
 
 /// An oval between four walls, turned by `angle`: caps of radius 1 at a distance of 3 from the middle, flanks of radius

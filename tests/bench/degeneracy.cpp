@@ -7,16 +7,6 @@
 #include "bench/shared/report.hpp"
 #include "support/families.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <functional>
-#include <string>
-#include <vector>
-
 using namespace isostat;
 using families::Answer;
 

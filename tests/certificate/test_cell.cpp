@@ -51,8 +51,6 @@ void check_same_forces(const State& a, const State& b) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(cell)
-
 BOOST_AUTO_TEST_CASE(one_disk_bears_the_forces_of_its_periods) {
     const State state = cells::one_disk(2, 3);
     check_forces(state, {3, 2});
@@ -366,5 +364,3 @@ BOOST_AUTO_TEST_CASE(a_cell_that_keeps_its_shape_is_not_pulled) {
     pulled.load.stress = {-1, -1};
     BOOST_TEST((certify(pulled).verdict == Verdict::refuted));
 }
-
-BOOST_AUTO_TEST_SUITE_END()

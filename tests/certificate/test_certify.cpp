@@ -131,8 +131,6 @@ double two_disks_limit(double r) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(certificate)
-
 BOOST_AUTO_TEST_CASE(the_samples_certify) {
     for (const auto& [name, positive, zero] :
          {std::tuple("vertex100.txt", 188, 14), std::tuple("vertex400.txt", 760, 42),
@@ -527,5 +525,3 @@ BOOST_AUTO_TEST_CASE(every_equilibrium_of_a_biaxial_run_at_n_100_certifies, *boo
         }
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

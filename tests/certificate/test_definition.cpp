@@ -60,8 +60,6 @@ Verdict answer(const State& state, const CertificateClaims& made, const std::str
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(certificate)
-
 BOOST_DATA_TEST_CASE(inspection_certificate_checker_and_runs_give_one_answer, known_states, known) {
     const State state = stored(known.name);
     const auto inspection = required(inspect_vertex(state));
@@ -172,5 +170,3 @@ BOOST_AUTO_TEST_CASE(where_nothing_can_move_there_is_no_equilibrium) {
     sunk.packing.q[0] = 0.5;
     BOOST_TEST(certify(sunk).refuted.size() == 2U); // and it overlaps
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -84,8 +84,6 @@ struct Worse {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(certificate)
-
 BOOST_AUTO_TEST_CASE(the_centre_has_the_constants_of_V4) {
     for (const double size : {0.0, 1e-5}) {
         const State state = pushed(read_state(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state, size);
@@ -312,5 +310,3 @@ BOOST_AUTO_TEST_CASE(periods_in_space_are_stretched_as_little_as_C4_counts_on) {
     }
     BOOST_TEST(nearest > 0.99);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

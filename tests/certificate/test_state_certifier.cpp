@@ -30,8 +30,6 @@ struct Claimed {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(certificate)
-
 // What a run left at 0 it calls an equilibrium of the finite loads: what the infinitesimal ones do there is no
 // refutation.
 BOOST_AUTO_TEST_CASE(a_force_that_a_run_left_at_zero_is_not_refuted_by_the_infinitesimal_loads) {
@@ -74,5 +72,3 @@ BOOST_AUTO_TEST_CASE(a_proved_equilibrium_is_passed_on) {
     BOOST_TEST(right.counters.states.proved == 1);
     BOOST_TEST((right.next.equilibria[0].certified == Verdict::proved));
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -222,8 +222,6 @@ std::vector<ClaimAlteration> alterations_of_the_state(const Certificate& origina
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(checker)
-
 BOOST_AUTO_TEST_CASE(no_altered_claim_of_a_small_packing_verifies) {
     const Certificate original = maker::certificate(small_states::with_a_rattler());
     BOOST_REQUIRE((verify(original).verdict == Verdict::proved));
@@ -311,5 +309,3 @@ BOOST_AUTO_TEST_CASE(random_forgeries_prove_nothing_that_is_wrong, *boost::unit_
     BOOST_TEST(proved < read);
     BOOST_TEST_MESSAGE(read << " read, " << proved << " proved");
 }
-
-BOOST_AUTO_TEST_SUITE_END()

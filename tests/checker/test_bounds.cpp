@@ -66,8 +66,6 @@ void check_sharper(const State& state) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(checker)
-
 BOOST_AUTO_TEST_CASE(more_digits_narrow_the_vertex_and_its_forces) {
     check_sharper(crafted::three_disks(1, 1.1, 1.3, 1, 1));
 }
@@ -269,5 +267,3 @@ BOOST_AUTO_TEST_CASE(ranges_contain_what_they_must) {
     BOOST_TEST(isostat::checker::rounded_down(isostat::checker::power_of_two(3000)) ==
                std::numeric_limits<double>::max());
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -46,8 +46,6 @@ bool accepted(const Certificate& certificate) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(checker)
-
 BOOST_AUTO_TEST_CASE(every_arithmetic_proves_small_cells) {
     for (const State& state : small_cells()) {
         for (const CheckerArithmetic arithmetic : every_arithmetic) {
@@ -337,5 +335,3 @@ BOOST_AUTO_TEST_CASE(a_disk_between_images_carries_force_where_they_are_on_one_l
         }
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -48,8 +48,6 @@ struct ForgedExchange {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(checker)
-
 BOOST_AUTO_TEST_CASE(a_forged_choice_is_refused) {
     const scratch::Folder folder;
     State state = crafted::mirror_forces();
@@ -264,5 +262,3 @@ BOOST_AUTO_TEST_CASE(an_exchange_for_a_pair_that_parts_at_second_order_is_refuse
                            : altered(folder, "events.jsonl", "}\n", ",\"perturbed\":[" + entry + "]}\n"),
                     "second derivative");
 }
-
-BOOST_AUTO_TEST_SUITE_END()

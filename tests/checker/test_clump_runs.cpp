@@ -39,8 +39,6 @@ int total(const isostat::checker::RunRecords& records, const std::string& column
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(checker_of_clump_runs)
-
 BOOST_AUTO_TEST_CASE(runs_of_clumps_are_proved_with_the_way_of_every_arc) {
     int held = 0;
     int turns = 0;
@@ -114,5 +112,3 @@ BOOST_AUTO_TEST_CASE(a_bar_that_is_said_to_open_or_to_limit_is_refuted) {
         BOOST_TEST(made.claims.load_interval->high.opens.is_unilateral());
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -5,11 +5,6 @@
 #include "support/bad_input.hpp"
 #include "support/clumps.hpp"
 #include "support/forger.hpp"
-#include "support/test.hpp"
-
-#include <cmath>
-#include <functional>
-#include <utility>
 
 using namespace claims;
 using namespace isostat::test;
@@ -41,8 +36,6 @@ Certificate with_a_vague_form(const Certificate& certificate) {
 }
 
 } // namespace
-
-BOOST_AUTO_TEST_SUITE(checker)
 
 BOOST_AUTO_TEST_CASE(what_is_certified_of_clumps_verifies) {
     for (const char* const name : {"dimer_20_1", "dimer2_20_2", "trimer_20_1", "trimer_20_3"}) {
@@ -474,5 +467,3 @@ BOOST_AUTO_TEST_CASE(members_of_one_body_are_no_pair_for_the_checker) {
     BOOST_TEST(!isostat::checker::is_free_pair(state, isostat::pair_of(0, 2)));
     BOOST_TEST(isostat::checker::is_free_pair(state, isostat::pair_of(0, 3)));
 }
-
-BOOST_AUTO_TEST_SUITE_END()

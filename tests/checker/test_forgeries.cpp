@@ -239,8 +239,6 @@ std::string said_of(const fs::path& original, const std::function<void(const fs:
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(checker)
-
 BOOST_AUTO_TEST_CASE(some_altered_fields_of_signed_runs_are_refused_or_undecided_or_listed_on_the_page,
                      *boost::unit_test::label("slow")) {
     altered_run::Counts counts;
@@ -419,5 +417,3 @@ BOOST_AUTO_TEST_CASE(a_disk_that_passes_through_another_one_is_not_proved) {
     BOOST_TEST((forged.undecided[0].find("the gap of 0-4 is not proved positive") != std::string::npos),
                forged.undecided[0]);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

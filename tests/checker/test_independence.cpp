@@ -30,8 +30,6 @@ bool of_the_standard(const std::string& header) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(checker)
-
 BOOST_AUTO_TEST_CASE(the_checker_includes_nothing_of_what_it_checks) {
     int files = 0;
     int headers = 0;
@@ -54,5 +52,3 @@ BOOST_AUTO_TEST_CASE(the_checker_includes_nothing_of_what_it_checks) {
     BOOST_TEST(files > 20);
     BOOST_TEST(headers > 50);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -24,8 +24,6 @@ void play(std::uint64_t seed, int equilibria, const fs::path& folder) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(checker)
-
 BOOST_AUTO_TEST_CASE(ends_near_another_branch_are_proved_and_what_contradicts_them_is_not,
                      *boost::unit_test::label("slow")) {
     const scratch::Folder scratch_folder;
@@ -48,5 +46,3 @@ BOOST_AUTO_TEST_CASE(ends_near_another_branch_are_proved_and_what_contradicts_th
         BOOST_TEST((forged.verdict != Verdict::proved));
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -165,8 +165,6 @@ void refutes_a_row_before(const std::filesystem::path& folder, int line) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(checker)
-
 BOOST_AUTO_TEST_CASE(progress_counts_every_arc_and_every_equilibrium_once) {
     const scratch::Folder folder;
     play_and_store(read_state(scratch::data("vertex100.txt")).state, {2}, folder / "run");
@@ -438,5 +436,3 @@ BOOST_AUTO_TEST_CASE(folders_without_the_records_are_bad_input) {
     scratch::write(folder / "equilibria.csv", "# number,previous\n0,-1\n");
     expect_bad_input([&] { (void)verify_run(folder.path()); }, {"the names of the columns"});
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -7,8 +7,6 @@
 
 using namespace isostat;
 
-BOOST_AUTO_TEST_SUITE(checker)
-
 BOOST_AUTO_TEST_CASE(a_sample_of_another_program_is_proved_with_every_arithmetic) {
     const Certificate certificate = maker::certificate(read_state(scratch::data("vertex100.txt")).state);
     for (const CheckerArithmetic arithmetic :
@@ -20,5 +18,3 @@ BOOST_AUTO_TEST_CASE(a_sample_of_another_program_is_proved_with_every_arithmetic
         }
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

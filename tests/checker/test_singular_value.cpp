@@ -12,8 +12,6 @@
 
 #include <Eigen/SVD>
 
-#include <numeric>
-
 using namespace isostat;
 using isostat::checker::Problem;
 using isostat::checker::smallest_singular_value;
@@ -61,8 +59,6 @@ Verdict about_vertex(const Certificate& certificate, CheckerArithmetic arithmeti
 }
 
 } // namespace
-
-BOOST_AUTO_TEST_SUITE(checker)
 
 BOOST_AUTO_TEST_CASE(the_singular_value_agrees_with_a_dense_one, *boost::unit_test::label("slow")) {
     agrees_with_a_dense_one(crafted::one_disk(1, 1));
@@ -167,5 +163,3 @@ BOOST_AUTO_TEST_CASE(a_claim_beyond_the_singular_value_is_decided_row_by_row) {
     BOOST_TEST(by_rows > 0);
     BOOST_TEST(by_singular_value > 0);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

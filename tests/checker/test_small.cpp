@@ -26,8 +26,6 @@ Interval neighbours(double value) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(checker)
-
 BOOST_AUTO_TEST_CASE(every_arithmetic_proves_the_small_cases) {
     for (const CheckerArithmetic arithmetic : every_arithmetic) {
         are_proved(verify(maker::certificate(crafted::one_disk(1, 2)), arithmetic));
@@ -211,5 +209,3 @@ BOOST_AUTO_TEST_CASE(scales_from_tiny_to_huge) {
         are_proved(verify(certificate));
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

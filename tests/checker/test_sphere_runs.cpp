@@ -44,8 +44,6 @@ const std::vector<std::pair<std::string, std::function<void(Json&)>>> sphere_alt
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(checker_of_sphere_runs)
-
 BOOST_AUTO_TEST_CASE(every_equilibrium_and_both_ends_of_every_arc_are_proved) {
     for (const SphereRun& run : sphere_runs) {
         BOOST_TEST_CONTEXT(run.name) {
@@ -184,5 +182,3 @@ BOOST_AUTO_TEST_CASE(no_contact_of_spheres_is_left_out_at_a_turn) {
     BOOST_TEST(std::count(place.silent.begin(), place.silent.end(), true) == 0);
     BOOST_TEST(place.silent.size() == state.contacts.size());
 }
-
-BOOST_AUTO_TEST_SUITE_END()

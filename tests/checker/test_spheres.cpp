@@ -9,14 +9,10 @@
 #include "checker/smallest_gap.hpp"
 #include "oracle/pairs.hpp"
 #include "support/spheres.hpp"
-#include "support/test.hpp"
 
 #include <isostat/core/error.hpp>
 
 #include <Eigen/SVD>
-
-#include <functional>
-#include <random>
 
 using namespace claims;
 using namespace isostat::checker;
@@ -64,8 +60,6 @@ room::TrueVertex blurred(const Problem& problem, const Rational& radius) {
 }
 
 } // namespace
-
-BOOST_AUTO_TEST_SUITE(checker)
 
 BOOST_AUTO_TEST_CASE(what_is_certified_of_spheres_verifies) {
     for (const std::string& name : random_packings) {
@@ -452,5 +446,3 @@ BOOST_AUTO_TEST_CASE(contacts_of_spheres_have_their_names) {
     state.packing.cell.pin = 0;
     BOOST_TEST(Problem(state).unsupported.find(to_string(state.contacts[0], 3)) != std::string::npos);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

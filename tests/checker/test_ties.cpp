@@ -58,8 +58,6 @@ std::string scaled(const std::string& number, double factor) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(checker)
-
 BOOST_AUTO_TEST_CASE(power_turn_held_coordinate_and_release_are_replayed_and_altered_ones_are_found) {
     const scratch::Folder folder;
     play(read_state(fs::path(ISOSTAT_EXAMPLES) / "turns/three-disks.json").state, towards(-1), Ties::stop, 1, folder);
@@ -204,5 +202,3 @@ BOOST_AUTO_TEST_CASE(a_hyperstatic_start_and_lattices_are_replayed) {
     BOOST_TEST_MESSAGE(arcs << " arcs, " << ties << " first-order decisions, " << altered << " altered, of "
                             << kinds.size() << " kinds");
 }
-
-BOOST_AUTO_TEST_SUITE_END()

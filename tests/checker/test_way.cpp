@@ -85,8 +85,6 @@ struct Rolled {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(checker)
-
 BOOST_AUTO_TEST_CASE(bounds_hold_the_exact_results_of_random_operations) {
     std::mt19937 random(5);
     std::uniform_real_distribution<double> number(-3, 3);
@@ -262,5 +260,3 @@ BOOST_AUTO_TEST_CASE(a_way_in_a_channel_is_proved_unless_a_pair_of_images_meets_
         }
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

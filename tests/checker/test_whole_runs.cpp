@@ -62,8 +62,6 @@ State overloaded(double factor) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(checker)
-
 BOOST_AUTO_TEST_CASE(the_way_from_a_start_that_is_no_equilibrium_is_replayed) {
     const scratch::Folder folder;
     play_whole(overloaded(2), 1, {}, folder / "run");
@@ -191,5 +189,3 @@ BOOST_AUTO_TEST_CASE(logarithms_are_enclosed_narrowly) {
     const Range wide = logarithm({Rational(1, 4096), Rational(4096)});
     BOOST_TEST((wide.lower <= -8.3 && wide.upper >= 8.3));
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -41,8 +41,6 @@ const std::string two = state_text(crafted::two_disks(1, 2, 1, 1));
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(cli)
-
 BOOST_AUTO_TEST_CASE(overlapping_disks) {
     isostat::State state = crafted::two_disks(1, 2, 1, 1);
     state.packing.q[2] -= 0.5;
@@ -170,5 +168,3 @@ BOOST_AUTO_TEST_CASE(a_manifest_without_a_table_is_told_which_table_and_which_ke
         expect(run({"compare", folder.at("m.toml"), "-o", folder.at("out")}), 65, {folder.at("m.toml") + words});
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -36,8 +36,6 @@ std::string dump() {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(cli_cells)
-
 BOOST_AUTO_TEST_CASE(inspect_counts_and_proves_a_rectangle) {
     says(run({"inspect", rectangle}), 0,
          {"9.596462314332681 (periodic) x 10.938004019205389 (periodic), tilt 0; x, y move, disk 0 "
@@ -404,5 +402,3 @@ BOOST_AUTO_TEST_CASE(genericity_of_radii_and_tilt) {
     expect(run({"genericity", std::string(ISOSTAT_EXAMPLES) + "/packings/two_disks.toml", "--tilt"}), 65,
            {"a period along each axis"});
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -10,8 +10,6 @@ using namespace program;
 using isostat::state_text;
 namespace fs = std::filesystem;
 
-BOOST_AUTO_TEST_SUITE(cli)
-
 BOOST_AUTO_TEST_CASE(a_sample_certifies_and_its_certificate_is_verified) {
     const scratch::Folder folder;
     const std::string input = scratch::data("vertex100.txt");
@@ -84,5 +82,3 @@ BOOST_AUTO_TEST_CASE(inspect_states_the_rank_as_stored_and_what_is_proved_of_the
     scratch::write(folder / "pulled.json", state_text(crafted::two_disks(1, 2, 1, 0.3)));
     says(run({"inspect", folder.at("pulled.json"), "--json"}), 1, {"\"negative\":1"});
 }
-
-BOOST_AUTO_TEST_SUITE_END()

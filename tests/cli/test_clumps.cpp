@@ -6,8 +6,6 @@
 
 using namespace program;
 
-BOOST_AUTO_TEST_SUITE(cli)
-
 BOOST_AUTO_TEST_CASE(clumps_are_inspected_certified_verified_and_drawn) {
     const scratch::Folder folder;
     const std::string state = std::string(ISOSTAT_TEST_DATA) + "/clumps/dimer2_20_2.json";
@@ -122,5 +120,3 @@ BOOST_AUTO_TEST_CASE(what_takes_single_grains_names_clumps) {
     BOOST_TEST(!std::filesystem::exists(folder / "grains.csv"));
     BOOST_TEST(!std::filesystem::exists(folder / "imported.json"));
 }
-
-BOOST_AUTO_TEST_SUITE_END()

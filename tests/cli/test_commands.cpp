@@ -11,8 +11,6 @@ using isostat::state_text;
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-BOOST_AUTO_TEST_SUITE(cli)
-
 BOOST_AUTO_TEST_CASE(help_of_every_subcommand_has_an_example) {
     for (const char* name : {"prepare", "run", "ensemble", "inspect", "certify", "verify", "plateau", "genericity",
                              "plan", "report", "import"}) {
@@ -267,5 +265,3 @@ BOOST_AUTO_TEST_CASE(a_state_without_forces_gets_them_for_its_picture) {
     BOOST_TEST(contains(scratch::read(folder / "forces_vertex100.svg"), "class=\"rattler\""));
     BOOST_TEST(fs::exists(folder / "forces_vertex100.vtk"));
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -31,8 +31,6 @@ fs::path small_scene(const scratch::Folder& folder) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(cli)
-
 BOOST_AUTO_TEST_CASE(an_answer_that_does_not_get_out_is_74_for_every_command) {
     const scratch::Folder folder;
     const std::string scene = small_scene(folder).string();
@@ -191,5 +189,3 @@ BOOST_AUTO_TEST_CASE(memory_that_does_not_suffice_is_an_internal_failure) {
     expect(run({"plateau", folder.at("t.txt")}, "ulimit -v 80000; "), 70, {"not enough memory"});
 }
 #endif
-
-BOOST_AUTO_TEST_SUITE_END()

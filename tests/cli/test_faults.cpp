@@ -18,8 +18,6 @@ std::string scene(const std::string& level) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(cli)
-
 BOOST_AUTO_TEST_CASE(runs_killed_again_and_again_at_random_instants_end_with_the_records_of_a_whole_run,
                      *boost::unit_test::label("slow")) {
     std::mt19937 random(8);
@@ -92,5 +90,3 @@ BOOST_AUTO_TEST_CASE(the_levels_leave_what_they_promise) {
     scratch::write_scene(file, scene("everything"));
     expect(run({"run", file, "-o", folder.at("none"), "-q"}), 65, {"certify", "decisions"});
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -15,8 +15,6 @@ std::string three_disks(const std::string& header, const std::string& size) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(cli_foreign)
-
 BOOST_AUTO_TEST_CASE(plateau_of_a_state_and_of_a_crafted_packing) {
     says(run({"plateau", scratch::data("vertex100.txt")}), 0,
          {"backbone isostatic, proved", "from N = 188 with 7 rattlers", "the contact list of the file is not used"});
@@ -153,5 +151,3 @@ BOOST_AUTO_TEST_CASE(genericity_refuses_what_it_cannot_perturb) {
     expect(run({"genericity", folder.at("x.csv")}), 65,
            {"isostat import makes a state of a packing of another program"});
 }
-
-BOOST_AUTO_TEST_SUITE_END()

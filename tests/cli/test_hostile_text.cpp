@@ -66,8 +66,6 @@ std::string scene_of_names(const std::vector<std::string>& names) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(cli)
-
 BOOST_AUTO_TEST_CASE(names_of_segments_are_text_for_gnuplot_and_in_every_figure) {
     const scratch::Folder folder;
     scratch::write(folder / "s.toml", scene_of_names(commands));
@@ -187,5 +185,3 @@ BOOST_AUTO_TEST_CASE(words_of_files_of_other_programs_do_not_command_the_termina
         expect_harmless(run({"inspect", folder.at("file.toml")}));
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -63,8 +63,6 @@ Outcome import_text(const scratch::Folder& folder, const std::string& text, std:
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(cli_import)
-
 BOOST_AUTO_TEST_CASE(soft_grains_end_at_the_vertex_that_they_came_from) {
     for (const double part : {1e-12, 1e-6, 1e-4}) {
         BOOST_TEST_INFO_SCOPE("overlap " << part);
@@ -298,5 +296,3 @@ BOOST_AUTO_TEST_CASE(what_is_not_written_for_spheres_is_refused_by_name) {
     says(run({"snap", file, "-o", out}), 1, {"snap      moving"}); // half of its contacts do not overlap
     BOOST_TEST(!fs::exists(out));
 }
-
-BOOST_AUTO_TEST_SUITE_END()

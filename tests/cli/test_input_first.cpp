@@ -3,8 +3,6 @@
 
 using namespace program;
 
-BOOST_AUTO_TEST_SUITE(cli)
-
 BOOST_AUTO_TEST_CASE(a_file_that_is_not_there_or_is_for_others_is_told_before_a_missing_option) {
     const scratch::Folder folder;
     const std::string none = folder.at("none.toml"), scene = folder.at("s.toml");
@@ -26,5 +24,3 @@ BOOST_AUTO_TEST_CASE(a_file_of_no_format_is_shown_by_its_beginning) {
     scratch::write(folder / "s.toml", "[packing]\ndisks = 10\n");
     expect(run({"report", folder.at("s.toml")}), 65, {"neither a state", "'[packing]'", "is a scene"});
 }
-
-BOOST_AUTO_TEST_SUITE_END()

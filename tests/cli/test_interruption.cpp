@@ -24,8 +24,6 @@ const std::string long_scene =
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(cli)
-
 /// Choices are made again by a resumed run, with other arithmetic behind it and any number of threads.
 BOOST_AUTO_TEST_CASE(runs_that_choose_are_the_same_resumed_and_with_any_number_of_threads,
                      *boost::unit_test::label("slow")) {
@@ -176,5 +174,3 @@ BOOST_AUTO_TEST_CASE(a_preparation_that_is_interrupted_says_where_and_keeps_what
     BOOST_TEST(!fs::exists(folder / "run/start.json"));
     BOOST_TEST(!fs::exists(folder / "run/states/last.json"));
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -7,8 +7,6 @@ using namespace program;
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-BOOST_AUTO_TEST_SUITE(cli)
-
 BOOST_AUTO_TEST_CASE(what_plan_leaves_out_is_not_done, *boost::unit_test::label("slow")) {
     // Entries of the plan that a counter tells of.
     const std::map<std::string, std::vector<std::string>> counters{
@@ -88,5 +86,3 @@ BOOST_AUTO_TEST_CASE(two_small_scenes_cost_what_they_did_with_any_number_of_thre
         }
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

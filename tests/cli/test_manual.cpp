@@ -34,8 +34,6 @@ std::string without_backslashes(std::string text) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(cli)
-
 BOOST_AUTO_TEST_CASE(the_manual_has_every_command_and_every_option) {
     const std::string man = run({"--man"}).out;
     BOOST_TEST(man.starts_with(".TH ISOSTAT 1 "));
@@ -107,5 +105,3 @@ BOOST_AUTO_TEST_CASE(zsh_and_fish_have_every_command_option_and_value) {
         BOOST_TEST(std::system(line.c_str()) == 0, shell);
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -23,8 +23,6 @@ std::string seed(int number) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(cli)
-
 BOOST_AUTO_TEST_CASE(verify_takes_an_ensemble_and_adds_up_its_runs) {
     const scratch::Folder folder;
     const fs::path many = ensemble(folder);
@@ -90,5 +88,3 @@ BOOST_AUTO_TEST_CASE(report_takes_an_ensemble) {
     BOOST_TEST(fs::exists(folder / "out/seed_000003/report.txt")); // the others are reported
     BOOST_TEST(!fs::exists(folder / "out/seed_000002"));
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -35,8 +35,6 @@ struct Desk {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(cli)
-
 BOOST_FIXTURE_TEST_CASE(no_command_writes_into_a_folder_of_the_user, Desk) {
     for (const char* name :
          {"u/equilibria.csv", "u/states/eq_000000.json", "u/figures/staircase.svg", "u/samples.csv"}) {
@@ -174,5 +172,3 @@ BOOST_FIXTURE_TEST_CASE(an_ensemble_has_as_many_rows_as_there_are_samples, Desk)
     const auto some = says(run({"verify", at("e")}, "timeout 300 "), 2, {"missing, and 997 after it"});
     BOOST_TEST(std::count(some.out.begin(), some.out.end(), '\n') < 30);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -122,8 +122,6 @@ std::vector<std::vector<std::string>> commands_of(const std::string& text) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(pages)
-
 BOOST_AUTO_TEST_CASE(the_page_of_scenes_has_every_key) {
     const std::string page = scratch::read(project / "src/scene/README.md");
     const std::string disks = "[packing]\ndisks = 10\n";
@@ -285,5 +283,3 @@ BOOST_AUTO_TEST_CASE(the_readme_names_every_command) {
     }
     BOOST_TEST(commands_found.size() >= 11U);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

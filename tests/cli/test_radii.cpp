@@ -27,8 +27,6 @@ std::string mixture(int seed, const std::string& jitter) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(cli)
-
 BOOST_AUTO_TEST_CASE(every_law_is_prepared_and_run, *boost::unit_test::label("slow")) {
     std::string list;
     for (int i = 0; i < 100; ++i) {
@@ -202,5 +200,3 @@ BOOST_AUTO_TEST_CASE(the_plan_offers_a_jitter_for_equal_radii_only) {
     BOOST_TEST(contains(planned("radii = [1, 2, 3]\n"), "jitter = 0; no radii are equal"));
     BOOST_TEST(contains(planned("radii = [1, 2, 1]\njitter = 1e-6\n"), "R_i (1 + 1e-06 rho_i)"));
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -51,8 +51,6 @@ void refuses(std::vector<std::string> call, const std::string& word) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(cli)
-
 BOOST_AUTO_TEST_CASE(numbers_of_options_are_finite_and_in_their_range) {
     const Called called;
     for (const auto& call : called.with_numbers()) {
@@ -88,5 +86,3 @@ BOOST_AUTO_TEST_CASE(integers_of_options_are_written_as_integers) {
     }
     expect(run({"inspect", called.state, "--threads", "1"}), 0);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -31,8 +31,6 @@ void replay(int disks, int seed, int equilibria) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(cli)
-
 BOOST_AUTO_TEST_CASE(verify_proves_every_end_of_runs_with_100_disks, *boost::unit_test::label("slow")) {
     for (const int seed : {1, 2, 3, 4}) {
         replay(100, seed, 12);
@@ -64,5 +62,3 @@ BOOST_AUTO_TEST_CASE(verify_proves_every_end_of_runs_with_400_disks, *boost::uni
         replay(400, seed, 5);
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -19,8 +19,6 @@ const std::array edge_runs{EdgeRun{17, "1-right", "1-top"}, EdgeRun{31, "7-botto
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(cli)
-
 // A pinned sphere keeps two contacts and a coordinate is held relative to it: with another one pinned the zeros show
 // (C9).
 BOOST_AUTO_TEST_CASE(zeros_of_a_pinned_sphere_are_seen_while_a_coordinate_is_held, *boost::unit_test::label("slow")) {
@@ -85,5 +83,3 @@ BOOST_AUTO_TEST_CASE(two_walls_of_an_edge_bear_one_force_and_the_infinitesimal_l
         says(run({"verify", out}), 1, {"takes " + edge.opened});
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

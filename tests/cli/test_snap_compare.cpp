@@ -20,8 +20,6 @@ const std::string first_box = "0:15.4590235640695,0:14.8856200965158";
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(cli)
-
 BOOST_AUTO_TEST_CASE(a_soft_frame_snaps_to_a_state_that_certify_takes) {
     const scratch::Folder folder;
     const fs::path state = folder / "state.json";
@@ -254,5 +252,3 @@ BOOST_AUTO_TEST_CASE(report_says_where_soft_grains_would_leave_the_structures_of
     expect(run({"report", out + "/states/last.json", "--stiffness", "1e6"}), 64, {"--stiffness"});
     expect(run({"report", out, "--stiffness", "-1"}), 64);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -17,8 +17,6 @@ std::string state_file(const scratch::Folder& folder, const std::string& name) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(cli_spheres)
-
 BOOST_AUTO_TEST_CASE(inspect_answers_for_a_box_a_slab_and_cells) {
     const scratch::Folder folder;
     says(run({"inspect", state_file(folder, "box_uniform_30_1")}), 0,
@@ -170,5 +168,3 @@ BOOST_AUTO_TEST_CASE(what_takes_disks_only_says_so_in_one_sentence) {
     }
     says(run({"snap", state, "-o", folder.at("t.json")}), 0, {"h = 0, k = 0, 6 rattlers", "snap      vertex"});
 }
-
-BOOST_AUTO_TEST_SUITE_END()

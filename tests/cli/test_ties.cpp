@@ -24,8 +24,6 @@ std::string stopped(const scratch::Folder& folder, const std::string& name) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(cli)
-
 BOOST_AUTO_TEST_CASE(ties_stop_the_run_or_are_settled_and_the_records_say_how) {
     for (const std::string name : {"two-gaps", "two-forces"}) {
         BOOST_TEST_INFO_SCOPE(name);
@@ -101,5 +99,3 @@ BOOST_AUTO_TEST_CASE(a_run_with_a_force_at_zero_is_resumed_with_the_same_records
     };
     BOOST_TEST(reason("one") == reason("two"));
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -25,8 +25,6 @@ void has(const std::string& line, const std::vector<std::string>& parts) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(cli)
-
 BOOST_AUTO_TEST_CASE(three_disks_meet_a_power_turn_hold_a_coordinate_and_release_it) {
     const auto events = events_of_scene("power-turn.toml");
     BOOST_TEST_REQUIRE(events.size() == 3U);
@@ -44,5 +42,3 @@ BOOST_AUTO_TEST_CASE(four_disks_open_a_contact_whose_gap_turns_back) {
     has(events[0], {"\"opened\":\"0-2\"", "\"closed\":\"3-bottom\"", "\"verdict\":\"proved\"", "\"turning\":true"});
     has(events[1], {"\"verdict\":\"proved\"", "\"turning\":false"});
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -9,8 +9,6 @@
 
 using namespace program;
 
-BOOST_AUTO_TEST_SUITE(cli)
-
 BOOST_AUTO_TEST_CASE(verify_answers_for_every_claim_of_a_certificate) {
     const scratch::Folder folder;
     const std::string state = scratch::data("vertex100.txt");
@@ -139,5 +137,3 @@ BOOST_AUTO_TEST_CASE(a_shear_near_0_is_known_as_well_as_the_largest_stress_asks)
     BOOST_TEST((said(low + 2e-6, "1e-3") == isostat::Verdict::undecided));
     BOOST_TEST((said(low, "1e-18") == isostat::Verdict::refuted));
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -8,8 +8,6 @@
 
 using namespace program;
 
-BOOST_AUTO_TEST_SUITE(cli)
-
 namespace {
 
 /// A certificate of the state, and what `verify --coq` says of it where Python is there and Coq is not.
@@ -122,5 +120,3 @@ BOOST_AUTO_TEST_CASE(several_certificates_are_verified_one_after_the_other) {
     BOOST_TEST(answer["verdict"] == "proved");
     expect(run({"verify", good, good, "--input", good}), 64, {"--input"});
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -4,8 +4,6 @@
 using namespace program;
 namespace fs = std::filesystem;
 
-BOOST_AUTO_TEST_SUITE(cli)
-
 BOOST_AUTO_TEST_CASE(the_wrong_kind_of_file_names_the_commands_that_take_it) {
     const scratch::Folder folder;
     const auto path = [&folder](const char* name) { return (folder / name).string(); };
@@ -81,5 +79,3 @@ BOOST_AUTO_TEST_CASE(a_run_that_is_stopped_says_how_to_go_on) {
     }
     BOOST_TEST(false, "the run had not begun after ten minutes");
 }
-
-BOOST_AUTO_TEST_SUITE_END()

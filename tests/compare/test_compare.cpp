@@ -49,8 +49,6 @@ std::string& contact_row(Copy& copy, std::size_t row) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(compare_series)
-
 /// Both stresses and all forces of frame k are 2^k times those of the series: rigid grains do not know the difference.
 BOOST_AUTO_TEST_CASE(frames_whose_stresses_all_vary_are_placed_by_their_ratio) {
     Copy copy(9);
@@ -501,5 +499,3 @@ BOOST_AUTO_TEST_CASE(hertzian_contacts_have_their_own_law) {
         }
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -115,8 +115,6 @@ Copy changed(Copy copy, const std::function<void(Copy&)>& change) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(compare_formats)
-
 BOOST_AUTO_TEST_CASE(tables_and_xyz_are_the_same_frames_as_dumps) {
     const std::string dumps = compare::frames_csv(Copy(2).compare());
     BOOST_TEST(compare::frames_csv(table_copy(',').compare()) == dumps);
@@ -273,5 +271,3 @@ BOOST_AUTO_TEST_CASE(a_frame_in_motion_is_on_the_arc_of_the_exact_run_whose_cont
     BOOST_TEST(frames[2].result.nearest_arc ==
                fmt::format("arc {} on the way to equilibrium 7, the same contacts", told.arcs[2].arc));
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -114,8 +114,6 @@ class PeriodicSeries {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(compare_periodic)
-
 BOOST_AUTO_TEST_CASE(a_box_that_is_flipped_by_whole_periods_is_the_same_lattice) {
     const std::vector<double> loads{1, 1.05, 1.1, 1.15};
     const PeriodicSeries plain("tilt_16", loads), flipped("tilt_16", loads, {0, -1, -1, 2});
@@ -214,5 +212,3 @@ BOOST_AUTO_TEST_CASE(a_cell_and_its_manifest_must_agree) {
     series.disks = scratch::replaced(series.disks, "pp pp pp", "pp ff pp");
     refuses("the box is not periodic along y");
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -76,8 +76,6 @@ std::string cut(const std::string& number, int digits) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(compare_reading)
-
 BOOST_AUTO_TEST_CASE(dashpots_of_a_slow_frame_are_told_from_wrong_forces_by_the_velocities) {
     // The forces of the law balance to 1e-8: that alone said that the files are wrong.
     for (const int power : {3, 2, 0}) {
@@ -170,5 +168,3 @@ BOOST_AUTO_TEST_CASE(the_figure_is_drawn_where_there_is_no_exact_run) {
         BOOST_TEST(std::filesystem::file_size(folder / "out" / "comparison.svg") > 1000U);
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

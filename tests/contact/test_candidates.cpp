@@ -105,8 +105,6 @@ Packing spheres_that_cling(Random& random, int axes) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(candidates)
-
 BOOST_AUTO_TEST_CASE(edges_of_spheres_are_all_the_pairs_that_the_grid_finds) {
     Random random(31);
     for (int trial = 0; trial < isostat::testing::scaled(40); ++trial) {
@@ -427,5 +425,3 @@ BOOST_AUTO_TEST_CASE(worst_gap_is_the_smallest_gap_met) {
     BOOST_TEST(overlap.worst_gap == -0.375);
     BOOST_TEST((overlap.worst == Contact{ContactKind::disk_disk, 0, 3}));
 }
-
-BOOST_AUTO_TEST_SUITE_END()

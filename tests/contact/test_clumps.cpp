@@ -5,10 +5,6 @@
 #include "packing/bodies.hpp"
 #include "support/test.hpp"
 
-#include <algorithm>
-#include <random>
-#include <set>
-
 using isostat::Contact;
 using isostat::Packing;
 
@@ -39,8 +35,6 @@ Packing random_clumps(unsigned seed, int bodies, bool cell) {
 }
 
 } // namespace
-
-BOOST_AUTO_TEST_SUITE(contact)
 
 BOOST_AUTO_TEST_CASE(pairs_of_clumps_are_all_but_those_of_one_body) {
     for (const bool cell : {false, true}) {
@@ -90,5 +84,3 @@ BOOST_AUTO_TEST_CASE(a_single_body_has_no_pair_but_with_the_walls) {
     inside.q[0] = inside.q[1] = inside.q[2] = inside.q[3] = inside.q[4] = 5;
     BOOST_TEST((isostat::certify_admissible(inside, 0).verdict == isostat::Verdict::proved)); // members overlap
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -49,8 +49,6 @@ const std::vector<Contact> every_kind = {pair,
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(gaps)
-
 BOOST_AUTO_TEST_CASE(gaps_and_normals_keep_their_error_bounds) {
     Random random(51);
     for (int repeat = 0; repeat < testing::scaled(3000); ++repeat) {
@@ -167,5 +165,3 @@ BOOST_AUTO_TEST_CASE(contact_sets_contain_exactly_their_members) {
         BOOST_TEST(std::none_of(others.begin(), others.end(), [&](const Contact& c) { return set.contains(c); }));
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

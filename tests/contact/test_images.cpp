@@ -74,8 +74,6 @@ bool all_there(const std::vector<Contact>& wanted, const std::vector<Contact>& f
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(images)
-
 BOOST_AUTO_TEST_CASE(a_pair_many_periods_apart_is_listed_whatever_its_sums_lose) {
     // Each of 116 periods is rounded the same way: the gap as computed is 8.5e-13 above the true one.
     const double x = -0x1.6174d7ec396b3p+6, y = 118;
@@ -169,5 +167,3 @@ BOOST_AUTO_TEST_CASE(a_nearest_pair_that_no_list_reaches_is_far) {
     BOOST_TEST(none.reach > 0); // complete so far
     BOOST_TEST(none.reach <= 2);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -90,8 +90,6 @@ void check_complete(const Packing& packing, const Triangulation& triangulation) 
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(regular_triangulation)
-
 BOOST_AUTO_TEST_CASE(edges_are_pairs_whose_power_cells_meet) {
     Random random(2022);
     for (const double ratio : {1.0, 4.0, 100.0}) {
@@ -302,5 +300,3 @@ BOOST_AUTO_TEST_CASE(coordinates_far_larger_than_the_radii_are_listed_completely
         BOOST_TEST((near_pairs(packing, 0.8).pairs == pairs_within(packing, 0.8)));
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -13,8 +13,6 @@ const std::vector<Contact> contacts{{ContactKind::disk_disk, 0, 2},  {ContactKin
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(contact)
-
 BOOST_AUTO_TEST_CASE(a_separation_is_the_sum_of_its_coordinates_with_their_signs) {
     for (const Contact& contact : contacts) {
         isostat::PerAxis<double> sum{};
@@ -59,5 +57,3 @@ BOOST_AUTO_TEST_CASE(grains_touch_at_the_sum_of_their_radii) {
     BOOST_TEST(touching_distance(radius, contacts[4]) == 0.5);
     BOOST_TEST(touching_distance(radius, {ContactKind::held, 2, 0}) == 0);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

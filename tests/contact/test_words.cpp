@@ -5,8 +5,6 @@
 
 using namespace isostat;
 
-BOOST_AUTO_TEST_SUITE(failures)
-
 namespace {
 
 constexpr Contact pair{ContactKind::disk_disk, 3, 8};
@@ -34,5 +32,3 @@ BOOST_AUTO_TEST_CASE(words_within_words_keep_what_they_name) {
     BOOST_TEST(outer.message() == "arc 4: class of 2: zero: 3-8, 5-left");
     BOOST_TEST((outer.contacts() == std::vector<Contact>{pair, wall}));
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -253,8 +253,6 @@ std::vector<std::size_t> classes_asked(const std::vector<StateClass>& classes) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(contradictions_of_states)
-
 BOOST_AUTO_TEST_CASE(no_two_answers_differ_and_none_differs_from_the_truth) {
     const auto begin = std::chrono::steady_clock::now();
     constexpr std::uint64_t seed = 21;
@@ -330,5 +328,3 @@ BOOST_AUTO_TEST_CASE(no_two_answers_differ_and_none_differs_from_the_truth) {
     }
     std::cout << std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() << " s\n";
 }
-
-BOOST_AUTO_TEST_SUITE_END()

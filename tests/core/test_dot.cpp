@@ -2,8 +2,6 @@
 #include "core/dot.hpp"
 #include "support/test.hpp"
 
-BOOST_AUTO_TEST_SUITE(core)
-
 BOOST_AUTO_TEST_CASE(the_largest_component_is_no_number_where_one_is_none) {
     // It was left out: what divided by 0 passed for a step of length 0.
     constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -22,5 +20,3 @@ BOOST_AUTO_TEST_CASE(the_largest_component_is_no_number_where_one_is_none) {
         }
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

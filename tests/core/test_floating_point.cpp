@@ -49,8 +49,6 @@ int status_rounding_up(const std::function<void()>& work) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(core)
-
 BOOST_AUTO_TEST_CASE(arithmetic_as_it_must_be_has_no_defect) {
     BOOST_TEST((floating_point_defect() == nullptr));
     BOOST_CHECK_NO_THROW(require_floating_point());
@@ -133,5 +131,3 @@ BOOST_AUTO_TEST_CASE(a_thread_that_inherited_other_arithmetic_does_no_work) {
     };
     BOOST_TEST(status_rounding_up(task) == 70);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -2,14 +2,10 @@
 
 #include "support/test.hpp"
 
-#include <isostat/core/result.hpp>
-
 #include <memory>
 #include <stdexcept>
 
 using namespace isostat;
-
-BOOST_AUTO_TEST_SUITE(core)
 
 namespace {
 
@@ -69,5 +65,3 @@ BOOST_AUTO_TEST_CASE(words_are_put_together_when_they_are_asked_for) {
     BOOST_TEST(Words("").empty());
     BOOST_TEST(Words().text().empty());
 }
-
-BOOST_AUTO_TEST_SUITE_END()

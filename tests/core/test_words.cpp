@@ -9,8 +9,6 @@
 #include <set>
 #include <string>
 
-BOOST_AUTO_TEST_SUITE(core)
-
 BOOST_AUTO_TEST_CASE(a_word_leads_to_its_value_and_back_and_no_other_word_to_any) {
     using namespace isostat;
     for (const WallKind kind : {WallKind::absent, WallKind::fixed, WallKind::movable}) {
@@ -34,5 +32,3 @@ BOOST_AUTO_TEST_CASE(every_kind_of_work_and_of_failure_has_a_word_of_its_own) {
     BOOST_TEST(to_string(FailureKind::flows) == std::string("flows"));
     BOOST_TEST(to_string(FailureKind::interrupted) == std::string("interrupted"));
 }
-
-BOOST_AUTO_TEST_SUITE_END()

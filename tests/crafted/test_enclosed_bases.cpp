@@ -56,8 +56,6 @@ int check(const std::vector<EnclosedVector>& vectors, const std::vector<std::vec
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(crafted_enclosed_bases)
-
 BOOST_AUTO_TEST_CASE(enclosures_contain_the_exact_vectors_of_the_examples) {
     int stresses = 0, motions = 0;
     for (const auto& path : examples::packing_files()) {
@@ -89,5 +87,3 @@ BOOST_AUTO_TEST_CASE(a_lattice_without_exact_bases_gets_enclosures) {
         BOOST_TEST(vector.radius < 1e-6);
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -98,8 +98,6 @@ void parse(const std::string& text) {
     (void)isostat::crafted::parse_packing("format = \"isostat-packing 1\"\n" + text, "file");
 }
 
-BOOST_AUTO_TEST_SUITE(crafted_exact_spheres)
-
 BOOST_AUTO_TEST_CASE(lattices_have_their_counts_in_all_four_kinds_of_cell) {
     struct Case {
         const char* name;
@@ -301,7 +299,5 @@ BOOST_AUTO_TEST_CASE(files_of_spheres_take_three_of_everything) {
         expect_bad_input([&, source = text] { parse(source); }, {part});
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()
 
 } // namespace exact_spheres

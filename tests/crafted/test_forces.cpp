@@ -37,8 +37,6 @@ void add(ExactPacking& packing, const Vector& centre, const Number& radius, bool
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(crafted_forces)
-
 BOOST_AUTO_TEST_CASE(forces_of_random_chains_agree_with_back_substitution) {
     // Disk k touches disk k - 1 and its own small fixed support: two contacts each, solved from the free end inwards.
     std::mt19937_64 random(41);
@@ -271,5 +269,3 @@ BOOST_AUTO_TEST_CASE(common_rigid_motions_are_mechanisms_under_any_walls_and_fix
                    static_cast<int>(answer.contacts.size()) + answer.mechanisms);
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

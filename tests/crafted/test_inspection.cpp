@@ -43,8 +43,6 @@ const std::string head = "format = \"isostat-packing 1\"\n";
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(crafted_inspection)
-
 BOOST_AUTO_TEST_CASE(bad_files_are_refused_with_line_and_what_was_expected) {
     refused("disks = [[0, 0, 1]]\n", 1, "no format: expected \"isostat-packing 1\"");
     refused("format = \"isostat-packing 2\"\n", 1, "expected \"isostat-packing 1\"");
@@ -335,5 +333,3 @@ BOOST_AUTO_TEST_CASE(a_byte_order_mark_shifts_no_number) {
     BOOST_TEST(marked.packing.centre[1][0].text() == "49/20");
     BOOST_TEST(marked.packing.radius[1].text() == "5/4");
 }
-
-BOOST_AUTO_TEST_SUITE_END()

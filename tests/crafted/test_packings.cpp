@@ -1,11 +1,8 @@
 // Every file of examples/packings is read, inspected and held against the answers it carries.
 
 #include "examples.hpp"
-#include "support/test.hpp"
 
 #include <isostat/crafted/exact_packing.hpp>
-
-BOOST_AUTO_TEST_SUITE(crafted_packings)
 
 BOOST_AUTO_TEST_CASE(every_example_packing_has_the_answers_it_carries) {
     using namespace isostat::crafted;
@@ -27,5 +24,3 @@ BOOST_AUTO_TEST_CASE(every_example_packing_has_the_answers_it_carries) {
         BOOST_TEST(!to_text(inspection, file.packing).empty());
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

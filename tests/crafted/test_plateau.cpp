@@ -55,8 +55,6 @@ Packing rounded_example(const std::string& name) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(crafted_plateau)
-
 BOOST_AUTO_TEST_CASE(noise_moves_the_lower_end_of_the_plateau) {
     for (const double noise : {1e-9, 1e-6, 1e-3}) {
         Packing packing = rounded_example("three_disks_and_a_rattler.toml");
@@ -271,5 +269,3 @@ BOOST_AUTO_TEST_CASE(lengths_beyond_the_squares_of_doubles_are_refused) {
     BOOST_CHECK_THROW((void)plateau(packing, {0.1}), isostat::Error);
     BOOST_CHECK_THROW((void)plateau(rounded_example("two_disks.toml"), {1e200}), isostat::Error);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -46,8 +46,6 @@ bool can_carry(const std::vector<std::array<int, 3>>& places, std::size_t m, std
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(crafted_spheres)
-
 BOOST_AUTO_TEST_CASE(contacts_of_a_sphere_carry_where_exact_linear_programming_says_so) {
     std::mt19937_64 random(1);
     int carrying = 0, idle = 0;
@@ -108,5 +106,3 @@ BOOST_AUTO_TEST_CASE(two_spheres_at_one_place_are_refused) {
     const std::vector<Contact> contacts{{ContactKind::disk_disk, 1, 2}};
     BOOST_CHECK_THROW(isostat::crafted::peel_in_space(packing, contacts), isostat::Error);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

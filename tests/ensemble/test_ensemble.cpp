@@ -42,8 +42,6 @@ pid_t child_of(pid_t parent) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(ensemble)
-
 BOOST_AUTO_TEST_CASE(the_tables_do_not_depend_on_the_number_of_jobs) {
     const scratch::Folder folder;
     const std::string scene = folder.file("s.toml", small);
@@ -202,5 +200,3 @@ BOOST_AUTO_TEST_CASE(two_ranks_of_mpirun_make_the_tables_of_one_process) {
            64); // rank 0 alone knows
 }
 #endif
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -45,8 +45,6 @@ Watch run_shell(
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(ensemble)
-
 BOOST_AUTO_TEST_CASE(every_end_is_told_and_none_ends_another) {
     std::atomic<bool> stop{false};
     const Watch watch = run_shell(
@@ -84,5 +82,3 @@ BOOST_AUTO_TEST_CASE(a_stop_reaches_those_that_run_and_starts_no_more) {
     BOOST_TEST(watch.ends.at(0).signal == SIGTERM);
     BOOST_TEST(watch.ends.at(1).status == 5); // it had the time to end in order
 }
-
-BOOST_AUTO_TEST_SUITE_END()

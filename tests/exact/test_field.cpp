@@ -29,8 +29,6 @@ mpz_class big(std::uint64_t x) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(field)
-
 BOOST_AUTO_TEST_CASE(residues_of_doubles_are_exact_at_every_magnitude) {
     oracle::Random random(1);
     std::vector<double> values = {0.0,
@@ -105,5 +103,3 @@ BOOST_AUTO_TEST_CASE(field_operations_agree_with_integers) {
         }
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

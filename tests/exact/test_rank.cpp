@@ -127,8 +127,6 @@ void check_mod_p(const sparse::Matrix<std::uint64_t>& matrix) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(rank)
-
 BOOST_AUTO_TEST_CASE(random_square_matrices_have_their_rational_rank) {
     Random random(11);
     for (int repeat = 0; repeat < testing::scaled(2500); ++repeat) {
@@ -315,5 +313,3 @@ BOOST_AUTO_TEST_CASE(empty_matrices_have_rank_zero) {
     BOOST_TEST(exact::rank(nothing, ordering) == 0);
     BOOST_TEST(exact::rank(sparse::Matrix<std::uint32_t>{0, 0, {0}, {}, {}}, ordering) == 0);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

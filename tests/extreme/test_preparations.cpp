@@ -11,8 +11,6 @@ PreparationOptions disks(int count, double smallest = 1, double largest = 2) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(extreme_cases)
-
 BOOST_AUTO_TEST_CASE(size_ratios_up_to_ten_thousand) {
     for (const double ratio : {1.5, 10.0, 100.0, 1e3, 1e4}) {
         extreme::prepared("size ratio", fmt::format("diameters in [1, {:g}]", ratio), disks(60, 1, ratio));
@@ -79,5 +77,3 @@ BOOST_AUTO_TEST_CASE(five_thousand_disks, *boost::unit_test::label("slow")) {
 BOOST_AUTO_TEST_CASE(twenty_thousand_disks, *boost::unit_test::disabled()) {
     extreme::prepared("number of disks", "20000", disks(20000));
 }
-
-BOOST_AUTO_TEST_SUITE_END()

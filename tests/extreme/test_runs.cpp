@@ -58,8 +58,6 @@ void follow(const std::string& family, const std::string& parameter, State state
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(extreme_cases)
-
 BOOST_AUTO_TEST_CASE(runs_from_extreme_packings) {
     struct Case {
         std::string name;
@@ -103,5 +101,3 @@ BOOST_AUTO_TEST_CASE(runs_towards_every_stress_ratio) {
         }
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

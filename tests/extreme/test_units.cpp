@@ -83,8 +83,6 @@ void compare(const std::string& unit, const Played& base, const State& state, do
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(extreme_cases)
-
 BOOST_AUTO_TEST_CASE(units_that_are_powers_of_two_change_no_bit_and_others_no_event) {
     const State one = start();
     const Played base = play(one, +1, equilibria);
@@ -101,5 +99,3 @@ BOOST_AUTO_TEST_CASE(units_that_are_powers_of_two_change_no_bit_and_others_no_ev
         compare(fmt::format("stress {:.0e}", s), base, scaled(one, 1, s), 1, s, false);
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

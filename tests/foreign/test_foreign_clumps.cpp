@@ -5,10 +5,6 @@
 #include <isostat/foreign/foreign.hpp>
 #include <isostat/rigidity/counting.hpp>
 
-#include <fmt/format.h>
-
-#include <algorithm>
-
 namespace foreign_clumps { // names of its own, beside test_foreign.cpp
 
 namespace {
@@ -55,8 +51,6 @@ void expect_rigid(const ForeignPacking& file, std::size_t bars) {
 }
 
 } // namespace
-
-BOOST_AUTO_TEST_SUITE(foreign_files)
 
 BOOST_AUTO_TEST_CASE(rows_with_the_same_body_are_kept_at_their_distance) {
     const std::string text = "x,y,r,body\n0,0,1,4\n3,4,1,4\n9,9,1,5\n20,0,1,0\n30,0,1,0\n40,0,1,-1\n50,0,1,-1\n";
@@ -111,7 +105,5 @@ BOOST_AUTO_TEST_CASE(members_are_put_together_across_the_boundary_of_a_cell) {
     BOOST_TEST((joined.packing.bars == std::vector<Bar>{{0, 2, 5}}));
     expect_bad_input([&] { read(dump("mol", {3, 8, 0, 3}), "mol"); }, {"disk 3", "0.406 periods"});
 }
-
-BOOST_AUTO_TEST_SUITE_END()
 
 } // namespace foreign_clumps

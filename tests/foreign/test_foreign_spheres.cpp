@@ -9,8 +9,6 @@
 #include <isostat/foreign/foreign.hpp>
 #include <isostat/io/state_file.hpp>
 
-#include <cmath>
-
 namespace foreign_spheres { // names of its own, beside test_foreign.cpp
 
 namespace {
@@ -78,8 +76,6 @@ void near(double found, double expected) {
 }
 
 } // namespace
-
-BOOST_AUTO_TEST_SUITE(foreign_files_of_spheres)
 
 /// Of an independent program (tests/data/spheres): its contacts are those of 32 digits, N = N_f.
 BOOST_AUTO_TEST_CASE(packings_of_an_independent_program_have_their_contacts) {
@@ -287,7 +283,5 @@ BOOST_AUTO_TEST_CASE(the_bound_of_a_gap_is_reached_in_a_triclinic_cell) {
     // Fewer digits than the radii have: those of the coordinates were cut off.
     near(read(replaced(digits, "1 0.5\n", "1 0.5000000000000001\n")).rounding, 2 * std::sqrt(3.0) * 5e-7);
 }
-
-BOOST_AUTO_TEST_SUITE_END()
 
 } // namespace foreign_spheres

@@ -15,8 +15,6 @@ std::string state_with(const std::string& bars, const std::string& contacts) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(io)
-
 BOOST_AUTO_TEST_CASE(bars_come_back_bit_for_bit_and_close_the_list_of_contacts) {
     const State state = isostat::test::clumps_of(state_with(R"([[0, 1, "0x1.0000000000001p1"]])", R"([[0, "left"]])"));
     BOOST_TEST(state.packing.bars.size() == 1U);
@@ -69,5 +67,3 @@ BOOST_AUTO_TEST_CASE(what_takes_single_grains_refuses_clumps) {
     BOOST_CHECK_THROW((void)isostat::parse_state(text, "clumps"), Error);
     BOOST_CHECK_NO_THROW((void)isostat::parse_any_state(text, "clumps", Dimensions::any_clumps));
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -36,8 +36,6 @@ std::string dump_of(const std::string& bounds, const std::string& atoms, int cou
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(cell_file)
-
 BOOST_AUTO_TEST_CASE(a_state_with_a_cell_comes_back) {
     State state = cells::one_tilted_disk(2, 1, 0.25);
     state.packing.cell.period_moves = {true, false};
@@ -247,5 +245,3 @@ BOOST_AUTO_TEST_CASE(a_packing_that_is_isostatic_under_pressure_is_found_so) {
     BOOST_TEST(counts(Strain::full).mechanisms == 1);
     BOOST_TEST(counts(Strain::none).hyperstaticity == 2);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -47,8 +47,6 @@ std::string forged(const std::string& text, const std::string& from, const std::
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(io)
-
 BOOST_AUTO_TEST_CASE(sha256_of_the_standards_examples) {
     // FIPS 180-4 examples: "abc", the empty string, and the 448-bit message.
     BOOST_TEST(sha256("abc") == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
@@ -200,5 +198,3 @@ BOOST_AUTO_TEST_CASE(what_is_no_number_or_no_interval_is_not_written) {
     certificate.claims.forces->finite[2] = {1, 0};
     expect_bad_input([&] { (void)certificate_text(certificate); }, {"forces.finite", "increasing order"});
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -71,8 +71,6 @@ bool play(const fs::path& path, RunDirectory::Mode mode, long stop_at, bool fini
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(io)
-
 BOOST_AUTO_TEST_CASE(a_run_leaves_records_states_and_a_summary) {
     const scratch::Folder folder;
     BOOST_TEST(play(folder / "run", RunDirectory::Mode::fresh, -1, true));
@@ -337,5 +335,3 @@ BOOST_AUTO_TEST_CASE(a_run_that_was_killed_before_it_wrote_anything_is_begun_by_
         BOOST_CHECK_THROW(RunDirectory(empty / "none", header(), RunDirectory::Mode::resume, counters), Error);
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

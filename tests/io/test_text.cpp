@@ -4,8 +4,6 @@
 
 using namespace isostat;
 
-BOOST_AUTO_TEST_SUITE(io)
-
 BOOST_AUTO_TEST_CASE(control_characters_and_bytes_that_are_not_utf8_are_shown) {
     BOOST_TEST(text::shown("a\x1b[2J\a\n\r\t\x7f"
                            "b") == "a\\x1b[2J\\x07\\x0a\\x0d\\x09\\x7fb");
@@ -41,5 +39,3 @@ BOOST_AUTO_TEST_CASE(each_language_keeps_foreign_text_as_text) {
     BOOST_TEST(text::json("{\n\"a\": \"\x7f\xC2\x9B σ\"}") == "{\n\"a\": \"\\u007f\\u009b σ\"}");
     BOOST_TEST(text::in_script(R"({"a": "</script><!--&"})") == R"({"a": "\u003c/script\u003e\u003c!--\u0026"})");
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -20,8 +20,6 @@ void refuses_vertex(const std::string& text, const std::vector<std::string>& wor
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(io)
-
 BOOST_AUTO_TEST_CASE(the_samples_have_as_many_contacts_as_degrees_of_freedom) {
     for (const int n : {100, 400, 1936}) {
         const State state = read_state(scratch::data("vertex" + std::to_string(n) + ".txt")).state;
@@ -94,5 +92,3 @@ BOOST_AUTO_TEST_CASE(files_that_end_too_early_or_too_late_are_refused) {
         BOOST_CHECK_THROW((void)parse_vertex_text(two_disks.substr(0, cut), "v.txt"), Error);
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

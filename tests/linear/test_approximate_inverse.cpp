@@ -1,14 +1,11 @@
 #include "linear/disturbed.hpp"
 #include "linear/factorisation.hpp"
 #include "support/regular.hpp"
-#include "support/test.hpp"
 #include "support/threads.hpp"
 
 #include <isostat/io/state_file.hpp>
 
 using namespace isostat;
-
-BOOST_AUTO_TEST_SUITE(linear)
 
 namespace {
 
@@ -300,5 +297,3 @@ BOOST_AUTO_TEST_CASE(when_old_factors_give_up_after_questions_the_forces_are_tho
     }
     BOOST_TEST(gave_up_after_questions > 0);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -25,8 +25,6 @@ static_assert(!std::is_constructible_v<Statics, const Packing&, const Load&>);
 // A verdict is not a truth value.
 static_assert(!std::is_convertible_v<Verdict, bool>);
 
-BOOST_AUTO_TEST_SUITE(linear)
-
 BOOST_AUTO_TEST_CASE(several_right_hand_sides_are_solved_like_one_after_the_other) {
     const State state = three_disks(1, 1.2, 1.4, 1, 1);
     const auto proved = crafted::Regular::proved(state);
@@ -222,5 +220,3 @@ BOOST_AUTO_TEST_CASE(factors_of_a_singular_or_overflowing_matrix_are_replaced_by
         }
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

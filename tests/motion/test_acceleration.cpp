@@ -3,8 +3,6 @@
 
 using namespace isostat;
 
-BOOST_AUTO_TEST_SUITE(motion)
-
 namespace {
 
 /// Iterations until x <- x + y(x), y = A (1 - x) with eigenvalues of 1 - A as given, is at its fixed point.
@@ -62,5 +60,3 @@ BOOST_AUTO_TEST_CASE(changes_that_repeat_each_other_do_no_harm) {
         }
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -63,8 +63,6 @@ struct Rolling {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(motion)
-
 BOOST_AUTO_TEST_CASE(an_arc_ends_where_the_closed_form_says) {
     for (const double fraction : {0.5, 0.1, 0.003}) {
         Rolling rolling;
@@ -311,5 +309,3 @@ BOOST_AUTO_TEST_CASE(a_motion_without_end_is_reported) {
     BOOST_TEST_REQUIRE(!arc.ok());
     BOOST_TEST((arc.failure().kind == FailureKind::unbounded));
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -40,8 +40,6 @@ struct OnCircle {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(motion)
-
 BOOST_AUTO_TEST_CASE(the_true_curve_lies_in_the_tube_and_its_tangent_within_the_bound) {
     for (const double angle : {0.3, 0.8, 1.2, 2.5}) {
         OnCircle on(angle, 0);
@@ -382,5 +380,3 @@ BOOST_AUTO_TEST_CASE(the_true_curve_of_a_cell_lies_in_the_tube_of_a_shifted_poly
         }
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -43,8 +43,6 @@ std::vector<Contact> candidates_without(const CandidateList& candidates, const s
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(motion)
-
 BOOST_AUTO_TEST_CASE(an_arc_hands_on_the_candidates_that_are_open_at_its_end) {
     Start start;
     int followed = 0;
@@ -141,5 +139,3 @@ BOOST_AUTO_TEST_CASE(an_exchange_does_not_depend_on_the_guess_of_it) {
     }
     BOOST_TEST(predicted > 10);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -93,8 +93,6 @@ double error_of_sum(int dimension, int terms) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(motion)
-
 BOOST_AUTO_TEST_CASE(rows_of_spheres_through_images_lose_more_than_those_of_disks) {
     double disks = 0;
     double spheres = 0;
@@ -192,5 +190,3 @@ BOOST_AUTO_TEST_CASE(the_tube_holds_the_circle_of_a_sphere_in_a_groove) {
         }
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -5,11 +5,6 @@
 
 #include <isostat/core/error.hpp>
 
-#include <cmath>
-#include <functional>
-#include <numbers>
-#include <random>
-
 using namespace isostat;
 
 namespace {
@@ -73,8 +68,6 @@ std::vector<Contact> nearest_of(const Packing& packing, int one, int other) {
 }
 
 } // namespace
-
-BOOST_AUTO_TEST_SUITE(packing)
 
 /// Of flat ovals on each other the lower flank of the lower one and the upper flank of the upper one face each other
 /// too, with a gap of minus both heights.
@@ -200,5 +193,3 @@ BOOST_AUTO_TEST_CASE(arcs_that_are_no_convex_curve_are_refused) {
     }
     BOOST_CHECK_NO_THROW(isostat::validate(again, "ovals"));
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -4,10 +4,6 @@
 
 #include <isostat/core/error.hpp>
 
-#include <cmath>
-#include <numbers>
-#include <random>
-
 using isostat::Bodies;
 using isostat::Error;
 using isostat::Packing;
@@ -38,8 +34,6 @@ double lens(double r, double d) {
 }
 
 } // namespace
-
-BOOST_AUTO_TEST_SUITE(packing)
 
 BOOST_AUTO_TEST_CASE(what_bars_connect_is_one_body) {
     const Packing p = bodies_of({{10, 10, 1}, {20, 10, 1}, {30, 10, 1}, {40, 10, 1}, {50, 10, 1}},
@@ -115,5 +109,3 @@ BOOST_AUTO_TEST_CASE(bars_that_make_no_rigid_body_are_refused) {
     BOOST_CHECK_NO_THROW(isostat::validate(bodies_of(three, {{0, 1, 2}}), "bars"));
     BOOST_CHECK_THROW(isostat::require_single_grains(bodies_of(three, {{0, 1, 2}}), "file", "this"), Error);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

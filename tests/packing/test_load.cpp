@@ -5,9 +5,6 @@
 
 #include <gmpxx.h>
 
-#include <limits>
-#include <random>
-
 using namespace isostat;
 using namespace isostat::oracle;
 
@@ -28,8 +25,6 @@ Load two_stresses() {
 }
 
 } // namespace
-
-BOOST_AUTO_TEST_SUITE(load)
 
 BOOST_AUTO_TEST_CASE(dead_wall_forces_use_the_reference_lengths) {
     const Packing packing = boxed();
@@ -196,5 +191,3 @@ BOOST_AUTO_TEST_CASE(infinitesimal_loads_of_a_cell_sum_to_zero_exactly) {
         }
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -33,8 +33,6 @@ void refused(const Packing& packing, const std::vector<std::string>& words) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(packing)
-
 BOOST_AUTO_TEST_CASE(snapped_coordinates_are_on_the_grid_and_near_where_they_were) {
     Random random(41);
     for (int repeat = 0; repeat < testing::scaled(400); ++repeat) {
@@ -276,5 +274,3 @@ BOOST_AUTO_TEST_CASE(on_the_grid_is_a_multiple_of_the_step_and_nothing_else) {
         }
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

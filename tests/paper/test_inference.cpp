@@ -26,8 +26,6 @@ double draw_power_law(oracle::Random& random, double a, double low, double high)
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(paper)
-
 BOOST_AUTO_TEST_CASE(means_have_the_interval_of_student) {
     const Estimate e = mean_with_t(std::vector<double>{1, 2, 3, 4}, level);
     BOOST_TEST(e.value == 2.5);
@@ -152,5 +150,3 @@ BOOST_AUTO_TEST_CASE(bootstrap_draws_within_the_groups_and_repeats_itself) {
                               {3}, [](auto&) { return std::nan(""); }, 10, 4, level)
                               .low));
 }
-
-BOOST_AUTO_TEST_SUITE_END()

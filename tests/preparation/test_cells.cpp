@@ -17,8 +17,6 @@ PreparationOptions periodic(int disks, std::uint64_t seed) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(preparation)
-
 BOOST_AUTO_TEST_CASE(periodic_packings_are_proved_equilibria) {
     for (const auto& [disks, seeds] : {std::pair{30, 5}, {100, 2}}) {
         for (int seed = 1; seed <= seeds; ++seed) {
@@ -166,5 +164,3 @@ BOOST_AUTO_TEST_CASE(a_way_down_that_flattens_the_cell_ends_with_words) {
     options.ratio = 1;
     BOOST_TEST(find_vertex(start, options, report).ok());
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -2,7 +2,6 @@
 
 #include "../../src/preparation/clique_matrix.hpp"
 #include "check.hpp"
-#include "support/test.hpp"
 
 namespace {
 
@@ -93,8 +92,6 @@ std::vector<double> some_numbers(std::size_t count, double step) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(preparation)
-
 BOOST_AUTO_TEST_CASE(sums_of_blocks_of_two_grids_are_solved_with_the_same_bits_every_time) {
     const Grids grids;
     const std::vector<double> ground(Grids::columns(), 1e-3);
@@ -163,5 +160,3 @@ BOOST_AUTO_TEST_CASE(a_sum_of_blocks_that_is_not_positive_has_no_factor) {
     BOOST_TEST(!matrix.factorise(Ring::block, std::vector<double>(Ring::points, -0.1)));
     BOOST_TEST(matrix.factorise(Ring::block, std::vector<double>(Ring::points, 0.1)));
 }
-
-BOOST_AUTO_TEST_SUITE_END()

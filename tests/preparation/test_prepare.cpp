@@ -37,8 +37,6 @@ void must_be_vertex(const Outcome& outcome, double stress = 1) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(preparation)
-
 BOOST_AUTO_TEST_CASE(every_size_and_seed_ends_at_a_proved_vertex) {
     for (const auto& [disks, seeds] : {std::pair{1, 5}, {2, 30}, {3, 30}, {20, 20}, {100, 5}}) {
         for (int seed = 1; seed <= seeds; ++seed) {
@@ -288,5 +286,3 @@ BOOST_AUTO_TEST_CASE(options_without_sense_are_named) {
     refused([](auto& o) { o.loose_fraction = 0.95; }, "loose fraction 0.95");
     refused([](auto& o) { o.softness = 0.1; }, "softness 0.1");
 }
-
-BOOST_AUTO_TEST_SUITE_END()

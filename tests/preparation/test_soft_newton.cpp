@@ -32,8 +32,6 @@ room::SoftMeasures judged(Packing packing, double pressure) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(preparation)
-
 BOOST_AUTO_TEST_CASE(newton_steps_end_where_the_dynamics_find_every_force_balanced) {
     for (const double squeeze : {0.9, 0.95}) {
         Packing packing = pressed(14, squeeze);
@@ -76,5 +74,3 @@ BOOST_AUTO_TEST_CASE(newton_steps_have_the_same_bits_for_any_number_of_threads_a
     BOOST_TEST(made.steps == 0);
     BOOST_TEST((packing.q == pressed(10, 0.9).q));
 }
-
-BOOST_AUTO_TEST_SUITE_END()

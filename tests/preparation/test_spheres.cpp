@@ -34,8 +34,6 @@ void is_proved_vertex_of_spheres(const State& state, std::size_t dofs) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(preparation)
-
 BOOST_AUTO_TEST_CASE(spheres_in_a_box_are_a_proved_equilibrium) {
     for (const std::uint64_t seed : {1, 2, 3}) {
         const State state = prepared(spheres(20, seed));
@@ -131,5 +129,3 @@ BOOST_AUTO_TEST_CASE(four_dimensions_and_too_few_spheres_for_a_cell_are_refused)
     BOOST_CHECK_THROW((void)prepare(options, report), Error);
     BOOST_CHECK_THROW((void)prepare(spheres(1, 1, PreparedCell::rectangular), report), Error);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

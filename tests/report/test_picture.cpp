@@ -31,8 +31,6 @@ const State state = crafted::two_disks(1, 2, 1, 1);
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(report)
-
 BOOST_AUTO_TEST_CASE(a_picture_has_every_disk_wall_and_contact_once) {
     const std::string svg = force_picture(state, std::vector<double>{1, 2, 3, 4, 5, 6}, "a < b & c");
     BOOST_TEST(count(svg, "<circle") == 2);
@@ -185,5 +183,3 @@ BOOST_AUTO_TEST_CASE(vtk_counts_agree_with_its_lists) {
     BOOST_TEST(rest.find("SCALARS rattler int 1\nLOOKUP_TABLE default\n1\n0\n0\n") != std::string::npos);
     BOOST_TEST(rest.ends_with("CELL_DATA 8\nSCALARS force double 1\nLOOKUP_TABLE default\n0\n0\n0\n0\n0\n4\n5\n6\n"));
 }
-
-BOOST_AUTO_TEST_SUITE_END()

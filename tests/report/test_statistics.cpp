@@ -2,8 +2,6 @@
 #include "report/statistics.hpp"
 #include "support/test.hpp"
 
-#include <cmath>
-
 using namespace isostat;
 
 namespace {
@@ -26,8 +24,6 @@ const std::vector<EquilibriumRow> rows{row(0, -1, 0, 1.0, 0.0, 0),    row(1, 0, 
                                        row(6, 5, 2, 1.0625, 0.125, 1)};
 
 } // namespace
-
-BOOST_AUTO_TEST_SUITE(report)
 
 BOOST_AUTO_TEST_CASE(a_triaxial_test_has_logarithmic_strains_and_q_over_p) {
     Load load;
@@ -107,5 +103,3 @@ BOOST_AUTO_TEST_CASE(a_histogram_whose_bins_have_no_width_keeps_its_values) {
         BOOST_TEST(histogram({low, high}, low, high, 4).size() == 4U);
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

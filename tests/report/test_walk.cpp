@@ -29,8 +29,6 @@ checker::RunRecords records_of(const fs::path& run) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(report)
-
 BOOST_AUTO_TEST_CASE(a_walk_along_the_records_passes_through_every_stored_state) {
     const scratch::Folder folder;
     make_run(folder, scratch::data("vertex100.txt"));
@@ -175,5 +173,3 @@ BOOST_AUTO_TEST_CASE(a_report_draws_bodies_bounded_by_arcs_and_writes_no_disks_o
     expect(drawn({}), 0);
     BOOST_TEST(fs::exists(folder / "pictures" / "forces_oval.svg"));
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -29,8 +29,6 @@ Counting own(const State& state) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(cell_counting)
-
 BOOST_AUTO_TEST_CASE(squares_shear) {
     for (const int m : {2, 3, 4}) {
         check(own(cells::square_lattice(m, false)), {2 * m * m, 2 * m * m, 2 * m - 2, 2 * m - 2});
@@ -106,5 +104,3 @@ BOOST_AUTO_TEST_CASE(the_count_of_elastic_moduli) {
     BOOST_TEST(isostat::contacts_for_bulk_modulus(15, 2) == 29);
     BOOST_TEST(isostat::contacts_for_all_moduli(15, 2) == 31);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

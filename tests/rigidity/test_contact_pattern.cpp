@@ -30,8 +30,6 @@ std::vector<unsigned char> carrying(const State& state, bool perturbed = false) 
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(rigidity)
-
 BOOST_AUTO_TEST_CASE(entries_follow_from_the_contacts_not_from_the_stored_coordinates) {
     BOOST_TEST(entries(side_by_side(1, 1)) == entries(side_by_side(1, 1 + 0x1p-52)));
     BOOST_TEST(entries(side_by_side(1, 1)) == 4U + 1 + 1 + 1 + 2 + 2);
@@ -50,5 +48,3 @@ BOOST_AUTO_TEST_CASE(what_vanishes_is_told_by_indices_and_by_equal_radii_on_one_
     BOOST_TEST(bottom_of_second(side_by_side(1 + 0x1p-52, 1), false));
     BOOST_TEST(bottom_of_second(side_by_side(1, 1), true));
 }
-
-BOOST_AUTO_TEST_SUITE_END()

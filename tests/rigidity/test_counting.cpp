@@ -86,8 +86,6 @@ State pile(int disks, std::uint64_t seed) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(rigidity)
-
 BOOST_AUTO_TEST_CASE(square_lattices_have_the_hyperstaticity_of_the_closed_form) {
     for (const int m : {2, 3, 5, 8}) {
         const State state = square_lattice(m);
@@ -353,5 +351,3 @@ BOOST_AUTO_TEST_CASE(exchanging_a_row_multiplies_the_determinant_by_the_closing_
         BOOST_TEST((determinant(exchanged) == det * speed));
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

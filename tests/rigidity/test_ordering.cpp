@@ -9,8 +9,6 @@
 
 using namespace isostat;
 
-BOOST_AUTO_TEST_SUITE(rigidity)
-
 BOOST_AUTO_TEST_CASE(an_ordering_is_made_once_for_all_copies_whatever_thread_asks_first,
                      *boost::unit_test::label("threads")) {
     const State state = prepared(30, 3);
@@ -38,5 +36,3 @@ BOOST_AUTO_TEST_CASE(an_ordering_is_made_once_for_all_copies_whatever_thread_ask
         BOOST_TEST(structure.ordering().column_order() == proved.ordering().column_order());
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

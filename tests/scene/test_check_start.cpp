@@ -15,8 +15,6 @@ void refuses_start(const State& state, const std::vector<std::string>& words) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(scene)
-
 BOOST_AUTO_TEST_CASE(isostatic_starts_pass) {
     BOOST_CHECK_NO_THROW(check_start(::crafted::two_disks(1, 2, 1, 1), "start.json"));
     BOOST_CHECK_NO_THROW(check_start(::crafted::three_disks(1, 1, 1.5, 1, 1), "start.json"));
@@ -50,5 +48,3 @@ BOOST_AUTO_TEST_CASE(an_open_contact_is_named) {
     state.packing.length(0) += 0.25;
     refuses_start(state, {"1-right", "0.25", "expected 0"});
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -3,15 +3,12 @@
 #include "support/clumps.hpp"
 #include "support/recorder.hpp"
 #include "support/segments.hpp"
-#include "support/test.hpp"
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/core/error.hpp>
 #include <isostat/scene/scene.hpp>
 
 using isostat::State;
-
-BOOST_AUTO_TEST_SUITE(scene)
 
 namespace {
 
@@ -65,5 +62,3 @@ BOOST_AUTO_TEST_CASE(a_body_that_hangs_where_its_power_turned_stays_there) {
     BOOST_TEST(run.equilibria[0].held == 1);
     BOOST_TEST(run.equilibria[0].stress_low < run.equilibria[0].stress_high);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -19,8 +19,6 @@ void refused(const std::string& text, std::uint64_t seed, const std::string& wor
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(scene)
-
 BOOST_AUTO_TEST_CASE(only_the_seed_of_the_packing_changes) {
     const std::string text =
         "# größe\n[packing] # here\ndisks = 7\n  seed = 12 # of the sample\n[run]\nrule_seed = 12\n";
@@ -53,5 +51,3 @@ BOOST_AUTO_TEST_CASE(scenes_without_samples_are_refused) {
     refused("[packing]\ndisks = 3\nfly = 1\n", 2, "fly");
     refused("[packing\n", 2, "TOML");
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -17,8 +17,6 @@ std::vector<Reference> lifted(const std::vector<double>& q) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(shortcuts)
-
 BOOST_AUTO_TEST_CASE(the_reference_of_two_disks_is_their_closed_form) {
     const State state = two_disks(1, 2, 1, 1);
     const auto polished = oracle::polish(state.packing, lifted(state.packing.q), state.contacts, 1e-93);
@@ -90,5 +88,3 @@ BOOST_AUTO_TEST_CASE(every_event_of_a_short_trajectory_is_certified) {
     }
     BOOST_TEST(compared == 5);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -22,8 +22,6 @@ LinearEvent event_of(const State& state, const Contact& opened) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(shortcuts)
-
 BOOST_AUTO_TEST_CASE(the_linear_event_of_two_disks_errs_with_the_square_of_the_arc) {
     // Disk 1 leaves the bottom and rolls on disk 0 until it meets the left wall: (x1 - R0, y1 - R0) goes from
     // (X, Y) = (2 sqrt(R0 R1), R1 - R0) to (Y, X). The tangent at the start is (-Y, X) / |.|.
@@ -124,5 +122,3 @@ BOOST_AUTO_TEST_CASE(geometry_that_moves_follows_the_exact_path_for_some_arcs_an
     BOOST_TEST(run.arcs.back().drift > run.arcs.front().drift);
     BOOST_TEST(run.arcs.back().drift > 1e-9); // it is an approximation
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -5,8 +5,6 @@
 #include "support/test.hpp"
 
 #include <future>
-#include <numeric>
-#include <set>
 
 using namespace isostat;
 using namespace isostat::oracle;
@@ -66,8 +64,6 @@ std::size_t fill(const sparse::Matrix<std::uint64_t>& matrix, const std::vector<
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(fill_order)
-
 BOOST_AUTO_TEST_CASE(nested_dissection_fills_less_than_half_of_the_order_by_planes) {
     const sparse::Matrix<std::uint64_t> matrix = cube(12, 0);
     std::vector<int> by_planes(static_cast<std::size_t>(matrix.rows));
@@ -95,5 +91,3 @@ BOOST_AUTO_TEST_CASE(large_matrices_with_copied_columns_have_their_rank) {
         BOOST_TEST(exact::rank(cube(side, 0)) == matrix.rows);
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

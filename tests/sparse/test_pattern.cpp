@@ -26,8 +26,6 @@ bool is_permutation_of_all(const std::vector<int>& order, int n) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(pattern)
-
 BOOST_AUTO_TEST_CASE(orderings_match_every_column_and_are_block_upper_triangular) {
     Random random(21);
     int many_blocks = 0;
@@ -178,5 +176,3 @@ BOOST_AUTO_TEST_CASE(a_repaired_matching_is_perfect_exactly_when_there_is_one) {
     BOOST_TEST(repaired > 50);
     BOOST_TEST(none > 50);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

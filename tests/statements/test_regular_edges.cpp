@@ -3,7 +3,6 @@
 #include "contact/candidates.hpp"
 #include "contact/near_pairs.hpp"
 #include "families.hpp"
-#include "support/test.hpp"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Regular_triangulation_2.h>
@@ -98,8 +97,6 @@ std::vector<Disk> random_cluster(int count, double ratio, std::uint64_t seed) {
 }
 
 } // namespace
-
-BOOST_AUTO_TEST_SUITE(statements)
 
 BOOST_AUTO_TEST_CASE(pairs_below_their_bound_are_edges_in_random_clusters) {
     int near_the_bound = 0;
@@ -268,5 +265,3 @@ BOOST_AUTO_TEST_CASE(bodies_may_overlap_where_no_edge_does) {
     packing.bars = {{1, 2, 0.1}}; // members of one body may overlap
     BOOST_TEST((isostat::certify_admissible(packing, 0).verdict == isostat::Verdict::proved));
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -3,7 +3,6 @@
 #include "families.hpp"
 #include "linear/factorisation.hpp"
 #include "support/prepared.hpp"
-#include "support/test.hpp"
 
 #include <isostat/crafted/exact_packing.hpp>
 #include <isostat/packing/load.hpp>
@@ -102,8 +101,6 @@ crafted::Inspection inspected(const std::string& name) {
 }
 
 } // namespace
-
-BOOST_AUTO_TEST_SUITE(statements)
 
 BOOST_AUTO_TEST_CASE(counting_and_orthogonality_hold_for_random_matrices) {
     std::mt19937_64 random(1);
@@ -367,5 +364,3 @@ BOOST_AUTO_TEST_CASE(a_force_may_vanish_by_geometry_without_being_structural) {
     const auto turned = required(crafted::inspect(packing));
     BOOST_TEST(!turned.forces[0].is_zero());
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -97,8 +97,6 @@ State nearly_collinear(double angle) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(verified)
-
 BOOST_AUTO_TEST_CASE(bounds_hold_on_prepared_packings) {
     for (const int n : {1, 2, 5, 12}) {
         for (std::uint64_t seed = 1; seed <= 4; ++seed) {
@@ -302,5 +300,3 @@ BOOST_AUTO_TEST_CASE(no_vertex_is_proved_where_there_is_none) {
     BOOST_TEST(
         (enclose_vertex(state.packing, at.structure, at.factorisation, at.inverse).verdict == Verdict::undecided));
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -2,15 +2,12 @@
 #include "oracle/truth.hpp"
 #include "support/clumps.hpp"
 #include "support/regular.hpp"
-#include "support/test.hpp"
 #include "verified/configuration.hpp"
 
 #include <isostat/certificate/certify.hpp>
 
 using namespace isostat;
 using isostat::oracle::Real;
-
-BOOST_AUTO_TEST_SUITE(verified)
 
 BOOST_AUTO_TEST_CASE(vertices_with_bars_lie_within_their_enclosures) {
     for (const char* const name : {"dimer_20_1", "dimer2_20_2", "trimer_20_1"}) {
@@ -37,5 +34,3 @@ BOOST_AUTO_TEST_CASE(vertices_with_bars_lie_within_their_enclosures) {
         }
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

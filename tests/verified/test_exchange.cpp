@@ -63,8 +63,6 @@ struct Exchange : Regular {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(verified)
-
 BOOST_AUTO_TEST_CASE(bounds_after_an_exchange_lie_below_the_smallest_singular_value_and_near_it) {
     Exchange from(read_state(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state);
     int carried = 0;
@@ -411,5 +409,3 @@ BOOST_AUTO_TEST_CASE(nothing_is_carried_when_the_grains_moved_farther_than_the_b
         !carry_bound(from.structure, from.inverse, *next, approximate, from.factorisation.approximate().mechanism(5))
              .has_value());
 }
-
-BOOST_AUTO_TEST_SUITE_END()

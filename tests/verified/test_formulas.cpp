@@ -129,8 +129,6 @@ Real smaller_singular_value(const State& state) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(verified)
-
 BOOST_AUTO_TEST_CASE(norms_are_rounded_up_whatever_their_length_and_range) {
     oracle::Random random(3);
     for (const std::size_t size : {1U, 2U, 7U, 1000U, 100000U}) {
@@ -431,5 +429,3 @@ BOOST_AUTO_TEST_CASE(rates_of_gaps_turn_with_the_line_of_a_small_pair) {
     }
     BOOST_TEST(largest > 0.1);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

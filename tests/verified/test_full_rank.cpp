@@ -6,10 +6,6 @@
 
 #include <Eigen/Dense>
 
-#include <random>
-
-BOOST_AUTO_TEST_SUITE(full_rank)
-
 namespace {
 
 isostat::sparse::Matrix<double> compressed(const Eigen::MatrixXd& dense) {
@@ -85,5 +81,3 @@ BOOST_AUTO_TEST_CASE(the_residual_of_forces_is_bounded_in_every_unit_of_force) {
     }
     BOOST_TEST(bound(0x1p-1040) >= static_cast<double>(rest.norm())); // where products underflow
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -5,7 +5,6 @@
 #include "oracle/structures.hpp"
 #include "oracle/truth.hpp"
 #include "support/regular.hpp"
-#include "support/test.hpp"
 #include "verified/force_ladder.hpp"
 #include "verified/inverse_bound.hpp"
 
@@ -150,8 +149,6 @@ void report(const char* what, const Count& count) {
 }
 
 } // namespace
-
-BOOST_AUTO_TEST_SUITE(verified)
 
 BOOST_AUTO_TEST_CASE(every_rung_agrees_with_exact_rationals_on_random_and_special_structures) {
     Random random(20240611);
@@ -344,5 +341,3 @@ BOOST_AUTO_TEST_CASE(distances_to_a_limit_are_ordered_as_the_rationals_order_the
     }
     BOOST_TEST(settled_above_double > 100);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

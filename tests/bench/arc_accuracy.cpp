@@ -19,13 +19,6 @@
 #include <fmt/format.h>
 #include <qd/dd_real.h>
 
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
-#include <limits>
-#include <string>
-#include <vector>
-
 using namespace isostat;
 using bench::Sample;
 

@@ -19,8 +19,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
-#include <vector>
 
 using namespace isostat;
 using bench::Sample;

@@ -21,10 +21,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
 
 using namespace isostat;
 

@@ -11,8 +11,6 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <string>
-#include <vector>
 
 using namespace isostat;
 using bench::Sample;

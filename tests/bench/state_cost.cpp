@@ -22,9 +22,6 @@
 
 #include <cstdlib>
 #include <fstream>
-#include <functional>
-#include <string>
-#include <vector>
 
 using namespace isostat;
 

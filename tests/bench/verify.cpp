@@ -17,11 +17,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <filesystem>
-#include <optional>
-#include <string>
-#include <vector>
-
 using namespace isostat;
 
 namespace {

@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include <exception>
-#include <string>
 
 int main(int argc, char** argv) {
     work_precision::Settings settings;

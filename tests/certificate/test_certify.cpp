@@ -4,7 +4,6 @@
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/checker/verify.hpp>
-#include <isostat/io/state_file.hpp>
 #include <isostat/preparation/preparation.hpp>
 
 using namespace isostat;

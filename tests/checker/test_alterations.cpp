@@ -7,10 +7,6 @@
 #include "support/scale.hpp"
 #include "support/scratch.hpp"
 
-#include <isostat/checker/verify.hpp>
-#include <isostat/core/error.hpp>
-#include <isostat/io/state_file.hpp>
-
 using namespace isostat;
 
 namespace {

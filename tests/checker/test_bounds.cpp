@@ -12,8 +12,6 @@
 #include "support/scale.hpp"
 #include "support/scratch.hpp"
 
-#include <isostat/io/state_file.hpp>
-
 using namespace isostat;
 
 namespace {

@@ -12,7 +12,6 @@
 #include "support/scale.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/io/state_file.hpp>
 
 using namespace claims;
 

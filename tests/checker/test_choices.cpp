@@ -2,9 +2,6 @@
 #include "support/mirror.hpp"
 #include "support/played.hpp"
 
-#include <isostat/checker/verify.hpp>
-#include <isostat/io/state_file.hpp>
-
 using namespace isostat;
 using forger::altered;
 namespace fs = std::filesystem;

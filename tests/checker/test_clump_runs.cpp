@@ -5,7 +5,6 @@
 #include "support/scratch.hpp"
 
 #include <isostat/certificate/certify.hpp>
-#include <isostat/checker/verify.hpp>
 
 using namespace isostat;
 using json::Json;

@@ -9,10 +9,7 @@
 #include "support/segments.hpp"
 
 #include <isostat/certificate/certify.hpp>
-#include <isostat/checker/verify.hpp>
-#include <isostat/core/error.hpp>
 #include <isostat/io/run_directory.hpp>
-#include <isostat/io/state_file.hpp>
 
 using namespace isostat;
 namespace fs = std::filesystem;

@@ -3,9 +3,6 @@
 #include "support/played.hpp"
 #include "support/prepared.hpp"
 
-#include <isostat/checker/verify.hpp>
-#include <isostat/trajectory/trajectory.hpp>
-
 #include <tuple>
 
 using namespace isostat;

@@ -6,10 +6,7 @@
 #include "support/same_sequence.hpp"
 #include "support/strut.hpp"
 
-#include <isostat/checker/verify.hpp>
-#include <isostat/core/error.hpp>
 #include <isostat/core/machine.hpp>
-#include <isostat/io/state_file.hpp>
 
 using namespace isostat;
 

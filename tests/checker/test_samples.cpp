@@ -3,7 +3,6 @@
 #include "support/scratch.hpp"
 
 #include <isostat/checker/verify.hpp>
-#include <isostat/io/state_file.hpp>
 
 using namespace isostat;
 

@@ -8,7 +8,6 @@
 #include "support/scratch.hpp"
 
 #include <isostat/checker/verify.hpp>
-#include <isostat/io/state_file.hpp>
 
 #include <Eigen/SVD>
 

@@ -4,8 +4,6 @@
 #include "support/scratch.hpp"
 #include "support/spheres.hpp"
 
-#include <isostat/checker/verify.hpp>
-
 using namespace isostat;
 using json::Json;
 

@@ -5,9 +5,6 @@
 #include "support/mirror_cells.hpp"
 #include "support/played.hpp"
 
-#include <isostat/checker/verify.hpp>
-#include <isostat/io/state_file.hpp>
-
 using namespace isostat;
 using crafted::Ties;
 namespace fs = std::filesystem;

@@ -7,9 +7,6 @@
 #include "support/prepared.hpp"
 #include "support/scratch.hpp"
 
-#include <isostat/io/run_directory.hpp>
-#include <isostat/io/state_file.hpp>
-
 #include <boost/multiprecision/mpfr.hpp>
 
 using namespace isostat;

@@ -5,8 +5,6 @@
 
 #include <isostat/io/state_file.hpp>
 
-#include <nlohmann/json.hpp>
-
 namespace {
 
 using namespace program;

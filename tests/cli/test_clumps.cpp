@@ -2,8 +2,6 @@
 #include "cli/program.hpp"
 #include "support/clumps.hpp"
 
-#include <isostat/io/state_file.hpp>
-
 using namespace program;
 
 BOOST_AUTO_TEST_CASE(clumps_are_inspected_certified_verified_and_drawn) {

@@ -4,8 +4,6 @@
 #include <isostat/io/run_directory.hpp>
 #include <isostat/io/state_file.hpp>
 
-#include <nlohmann/json.hpp>
-
 using namespace program;
 using isostat::state_text;
 using nlohmann::json;

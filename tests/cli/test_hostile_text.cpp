@@ -5,8 +5,6 @@
 
 #include <isostat/io/state_file.hpp>
 
-#include <nlohmann/json.hpp>
-
 using namespace program;
 using nlohmann::json;
 namespace fs = std::filesystem;

@@ -4,8 +4,6 @@
 #include <isostat/foreign/foreign.hpp>
 #include <isostat/io/state_file.hpp>
 
-#include <nlohmann/json.hpp>
-
 using namespace program;
 using namespace isostat;
 using nlohmann::json;

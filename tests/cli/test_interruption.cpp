@@ -4,14 +4,7 @@
 
 #include <isostat/io/run_directory.hpp>
 
-#include <fcntl.h>
 #include <sys/stat.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <chrono>
-#include <csignal>
-#include <thread>
 
 using namespace program;
 namespace fs = std::filesystem;

@@ -1,8 +1,6 @@
 // What `plan` says that a scene leaves out is not done, and what it says to be used is: counted by the program itself.
 #include "cli/program.hpp"
 
-#include <nlohmann/json.hpp>
-
 using namespace program;
 using nlohmann::json;
 namespace fs = std::filesystem;

@@ -2,8 +2,6 @@
 #include "cli/program.hpp"
 #include "support/forger.hpp"
 
-#include <nlohmann/json.hpp>
-
 using namespace program;
 namespace fs = std::filesystem;
 

@@ -9,7 +9,6 @@
 #include <isostat/io/run_directory.hpp>
 
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 
 using namespace program;
 namespace fs = std::filesystem;

@@ -1,8 +1,6 @@
 // Ties in the smallest scenes known, as a user runs them: examples/ties.
 #include "cli/program.hpp"
 
-#include <nlohmann/json.hpp>
-
 using namespace program;
 namespace fs = std::filesystem;
 

@@ -3,10 +3,6 @@
 #include "support/forger.hpp"
 #include "support/spheres.hpp"
 
-#include <isostat/io/state_file.hpp>
-
-#include <nlohmann/json.hpp>
-
 using namespace program;
 
 BOOST_AUTO_TEST_CASE(verify_answers_for_every_claim_of_a_certificate) {

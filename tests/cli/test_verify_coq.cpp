@@ -4,8 +4,6 @@
 
 #include <isostat/io/state_file.hpp>
 
-#include <nlohmann/json.hpp>
-
 using namespace program;
 
 namespace {

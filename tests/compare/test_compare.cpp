@@ -3,7 +3,6 @@
 #include "compare/series_copy.hpp"
 #include "support/bad_input.hpp"
 
-#include <isostat/core/error.hpp>
 #include <isostat/io/state_file.hpp>
 
 #include <tuple>

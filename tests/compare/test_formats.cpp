@@ -5,9 +5,6 @@
 #include "support/bad_input.hpp"
 #include "support/segments.hpp"
 
-#include <isostat/core/error.hpp>
-#include <isostat/trajectory/trajectory.hpp>
-
 using namespace isostat;
 using compare::Comparison;
 using compare::FrameStatus;

@@ -3,12 +3,7 @@
 #include "compare/series_copy.hpp"
 #include "support/bad_input.hpp"
 
-#include <isostat/compare/compare.hpp>
-#include <isostat/core/error.hpp>
 #include <isostat/io/state_file.hpp>
-#include <isostat/trajectory/trajectory.hpp>
-
-#include <memory>
 
 using namespace isostat;
 using compare::Comparison;

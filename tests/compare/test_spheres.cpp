@@ -5,12 +5,6 @@
 #include "support/bad_input.hpp"
 #include "support/spheres.hpp"
 
-#include <isostat/compare/compare.hpp>
-#include <isostat/core/error.hpp>
-#include <isostat/trajectory/trajectory.hpp>
-
-#include <memory>
-
 using namespace isostat;
 using compare::Comparison;
 using compare::ForceLaw;

@@ -5,16 +5,11 @@
 #include "oracle/claims.hpp"
 #include "support/crafted.hpp"
 
-#include <isostat/certificate/certify.hpp>
 #include <isostat/checker/verify.hpp>
-#include <isostat/core/error.hpp>
-#include <isostat/crafted/exact_packing.hpp>
-#include <isostat/io/state_file.hpp>
 #include <isostat/scene/scene.hpp>
 
 #include <chrono>
 #include <ctime>
-#include <iomanip>
 #include <iostream>
 
 using namespace isostat;

@@ -4,7 +4,6 @@
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/contact/state.hpp>
-#include <isostat/crafted/exact_packing.hpp>
 #include <isostat/io/state_file.hpp>
 #include <isostat/rigidity/counting.hpp>
 

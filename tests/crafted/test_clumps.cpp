@@ -6,10 +6,7 @@
 #include "support/bad_input.hpp"
 #include "support/clumps.hpp"
 
-#include <isostat/crafted/exact_packing.hpp>
 #include <isostat/crafted/plateau.hpp>
-
-#include <nlohmann/json.hpp>
 
 namespace crafted_clumps { // names of its own, beside test_inspection.cpp
 

@@ -2,8 +2,6 @@
 #include "examples.hpp"
 #include "support/bad_input.hpp"
 
-#include <isostat/core/error.hpp>
-
 namespace exact_spheres {
 
 using examples::ExactPacking, examples::inspected, examples::Inspection, examples::n, examples::Number;

@@ -5,7 +5,6 @@
 #include "support/exact_lattices.hpp"
 #include "support/scratch.hpp"
 
-#include <isostat/core/error.hpp>
 #include <isostat/rigidity/counting.hpp>
 
 #include <chrono>

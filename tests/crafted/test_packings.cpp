@@ -2,8 +2,6 @@
 
 #include "examples.hpp"
 
-#include <isostat/crafted/exact_packing.hpp>
-
 BOOST_AUTO_TEST_CASE(every_example_packing_has_the_answers_it_carries) {
     using namespace isostat::crafted;
     std::vector<std::string> paths = examples::packing_files();

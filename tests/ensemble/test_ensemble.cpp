@@ -5,8 +5,6 @@
 
 #include <isostat/core/error.hpp>
 
-#include <nlohmann/json.hpp>
-
 using namespace program;
 namespace fs = std::filesystem;
 

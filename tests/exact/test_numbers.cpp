@@ -2,7 +2,6 @@
 
 #include "support/bad_input.hpp"
 
-#include <isostat/core/error.hpp>
 #include <isostat/exact/number.hpp>
 
 #include <mpfr.h>

@@ -3,8 +3,6 @@
 #include "support/crafted.hpp"
 #include "support/prepared.hpp"
 
-#include <isostat/certificate/certify.hpp>
-
 using namespace isostat;
 using namespace crafted;
 

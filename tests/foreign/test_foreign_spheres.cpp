@@ -5,7 +5,6 @@
 #include "support/bad_input.hpp"
 #include "support/scratch.hpp"
 
-#include <isostat/contact/state.hpp>
 #include <isostat/foreign/foreign.hpp>
 #include <isostat/io/state_file.hpp>
 

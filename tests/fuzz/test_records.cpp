@@ -12,9 +12,7 @@
 #include "support/scratch.hpp"
 #include "support/segments.hpp"
 
-#include <isostat/checker/verify.hpp>
 #include <isostat/io/run_directory.hpp>
-#include <isostat/io/state_file.hpp>
 
 #include <sys/resource.h>
 

@@ -3,8 +3,6 @@
 #include "support/forger.hpp"
 #include "support/scratch.hpp"
 
-#include <isostat/io/state_file.hpp>
-
 using namespace isostat;
 using scratch::replaced;
 

@@ -2,9 +2,6 @@
 #include "support/bad_input.hpp"
 #include "support/scale.hpp"
 
-#include <isostat/core/error.hpp>
-#include <isostat/packing/packing.hpp>
-
 #include <gmpxx.h>
 
 using namespace isostat;

@@ -5,7 +5,6 @@
 #include "check.hpp"
 #include "support/prepared.hpp"
 
-#include <isostat/certificate/certify.hpp>
 #include <isostat/core/error.hpp>
 
 namespace {

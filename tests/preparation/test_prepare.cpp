@@ -4,8 +4,6 @@
 #include "support/bad_input.hpp"
 #include "support/prepared.hpp"
 
-#include <isostat/certificate/certify.hpp>
-#include <isostat/core/error.hpp>
 #include <isostat/core/machine.hpp>
 
 #include <atomic>

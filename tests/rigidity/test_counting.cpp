@@ -8,7 +8,6 @@
 #include "support/threads.hpp"
 
 #include <isostat/certificate/certify.hpp>
-#include <isostat/core/error.hpp>
 #include <isostat/rigidity/counting.hpp>
 
 #include <gmpxx.h>

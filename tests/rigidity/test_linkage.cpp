@@ -3,8 +3,6 @@
 #include "rigidity/rigid_group.hpp"
 #include "support/crafted.hpp"
 
-#include <isostat/contact/state.hpp>
-
 using namespace isostat;
 using namespace crafted;
 

@@ -5,7 +5,6 @@
 #include "support/segments.hpp"
 
 #include <isostat/certificate/certify.hpp>
-#include <isostat/core/error.hpp>
 #include <isostat/scene/scene.hpp>
 
 using isostat::State;

@@ -2,7 +2,6 @@
 #include "support/bad_input.hpp"
 #include "support/scratch.hpp"
 
-#include <isostat/core/error.hpp>
 #include <isostat/scene/scene.hpp>
 
 using namespace isostat;

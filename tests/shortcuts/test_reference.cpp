@@ -3,8 +3,6 @@
 #include "support/crafted.hpp"
 #include "support/prepared.hpp"
 
-#include <isostat/preparation/preparation.hpp>
-
 using namespace isostat;
 using namespace crafted;
 using oracle::Reference;

@@ -4,7 +4,6 @@
 #include "packing/bodies.hpp"
 
 #include <isostat/certificate/certify.hpp>
-#include <isostat/crafted/exact_packing.hpp>
 #include <isostat/rigidity/counting.hpp>
 
 #include <eigen3/Eigen/Dense>

@@ -2,8 +2,6 @@
 // happens when a hypothesis is dropped.
 #include "families.hpp"
 
-#include <isostat/crafted/exact_packing.hpp>
-
 using namespace isostat;
 using namespace families;
 

@@ -5,8 +5,6 @@
 #include "rigidity/isostatic.hpp"
 #include "support/prepared.hpp"
 
-#include <isostat/preparation/preparation.hpp>
-
 #include <eigen3/Eigen/Dense>
 
 using namespace isostat;

@@ -4,9 +4,7 @@
 #include "linear/factorisation.hpp"
 #include "support/prepared.hpp"
 
-#include <isostat/crafted/exact_packing.hpp>
 #include <isostat/packing/load.hpp>
-#include <isostat/preparation/preparation.hpp>
 
 using namespace isostat;
 using exact::Number;

@@ -7,9 +7,7 @@
 #include <fmt/format.h>
 #include <qd/dd_real.h>
 
-#include <cmath>
 #include <functional>
-#include <limits>
 
 using namespace isostat;
 using oracle::Reference;

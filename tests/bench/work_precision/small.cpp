@@ -5,8 +5,6 @@
 #include "support/segments.hpp"
 #include "support/shortcuts/small_displacements.hpp"
 
-#include <isostat/trajectory/trajectory.hpp>
-
 #include <fmt/format.h>
 
 #include <cmath>

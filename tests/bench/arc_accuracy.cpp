@@ -244,8 +244,7 @@ Errors recorded(const bench::Stretch& run, const std::vector<State>& equilibria,
 int main(int argc, char** argv) {
     std::string where = ".";
     std::string source = "1936";
-    int equilibria = 4;
-    int repeats = 3;
+    int equilibria = 4, repeats = 3;
     bench::Program program("bench_arc_accuracy", "errors of arc ends, forces and velocities against time per arc");
     program.option("--equilibria", equilibria, "equilibria of the runs");
     program.option("--repeats", repeats, "of each time");
@@ -304,8 +303,7 @@ int main(int argc, char** argv) {
          {"velocity", "velocities", "", "{:.1e}"},
          {"velocity_largest", "largest", "", "{:.1e}"},
          {"elsewhere", "arcs that end elsewhere", ""}});
-    double position_with_fresh = 0;
-    double force_with_fresh = 0;
+    double position_with_fresh = 0, force_with_fresh = 0;
     for (const Choice& choice : choices) {
         Followed last;
         Sample time;

@@ -74,10 +74,7 @@ struct Levels {
 
 int main(int argc, char** argv) {
     std::vector<std::string> sources{"400", "1936", "4900"};
-    int equilibria = 30;
-    int arcs = 0;
-    int repeats = 3;
-    int threads = 1;
+    int equilibria = 30, arcs = 0, repeats = 3, threads = 1;
     int dimension = plane;
     bool with_levels = false;
     bench::Program program("bench_arc_cost", "milliseconds per arc / one KLU or UMFPACK analysis + factorisation");

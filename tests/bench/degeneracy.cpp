@@ -48,8 +48,7 @@ int main(int argc, char** argv) {
         return *status;
     }
     const std::filesystem::path folder = where;
-    constexpr int all = 300;
-    constexpr int of_doubles = 15;
+    constexpr int all = 300, of_doubles = 15;
     using namespace families;
     const std::vector<::Family> list{{"two tractions within delta", of_double(tractions), all, 5},
                                      {"two forces vanish within delta", of_double(limits), all, 5},

@@ -141,9 +141,7 @@ class Between {
         Vector ex(contacts.size(), 0.0);
         Vector ez(contacts.size(), 0.0);
         of_a_ = of_b_ = {0, 0, 0, Vector(delta_.size(), 0.0), Vector(delta_.size(), 0.0)};
-        double rho = 0;
-        double rate = 0;
-        double straight = 0;
+        double rho = 0, rate = 0, straight = 0;
         for (std::size_t l = 0; l < contacts.size(); ++l) {
             const Contact& contact = contacts[l];
             if (l == slot_) {
@@ -338,8 +336,7 @@ bool count(const State& start, const bench::Stretch& stretch, int passes, Counts
 
 int main(int argc, char** argv) {
     std::vector<std::string> sources{"400", "1936"};
-    int equilibria = 20;
-    int passes = 0;
+    int equilibria = 20, passes = 0;
     bench::Program program("bench_power_sign", "the sign of the power along an arc from its two ends");
     program.option("--equilibria", equilibria, "equilibria of each run");
     program.option("--passes", passes, "passes for the quadratic correction (0: 1 and 3)");

@@ -28,8 +28,7 @@ using Digits = oracle::Decimal<422>;
 
 struct Line {
     std::string family;
-    int disks;
-    int size;
+    int disks, size;
     double condition;
     std::string rung;
     int bits;

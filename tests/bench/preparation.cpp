@@ -26,8 +26,7 @@ struct Stage {
 
 int main(int argc, char** argv) {
     std::vector<std::string> sizes{"100", "400", "1936"};
-    int repeats = 3;
-    int seed = 1;
+    int repeats = 3, seed = 1;
     bench::Program program("bench_preparation", "seconds of the preparation, stage by stage");
     program.option("--repeats", repeats, "preparations of each size");
     program.option("--seed", seed, "of radii and positions");
@@ -67,8 +66,7 @@ int main(int argc, char** argv) {
         PreparationOptions options{.disks = n, .seed = static_cast<std::uint64_t>(seed)};
         PreparationReport report;
         std::vector<Stage> seen;
-        Sample wall;
-        Sample cpu;
+        Sample wall, cpu;
         double klu = 0;
         for (int repeat = 0; repeat < repeats; ++repeat) {
             report = {};

@@ -22,8 +22,7 @@ using namespace isostat;
 namespace {
 
 struct Measured {
-    long equilibria = 0;
-    long arcs = 0;
+    long equilibria = 0, arcs = 0;
     double klu = 0;          ///< one analysis + factorisation, milliseconds: median over the equilibria
     double milliseconds = 0; ///< of `verify_run`
     bool proved = false;     ///< every end
@@ -66,8 +65,7 @@ std::optional<Measured> measure(State state, long wanted) {
 
 int main(int argc, char** argv) {
     std::vector<std::string> sources{"400", "1936", "4900"};
-    int arcs = 300;
-    int at_most = 0;
+    int arcs = 300, at_most = 0;
     bench::Program program("bench_verify",
                            "milliseconds per vertex of `verify DIR` / one KLU analysis + factorisation");
     program.option("--arcs", arcs, "arcs to verify for each size, and the rest of the rearrangement");

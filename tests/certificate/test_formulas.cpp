@@ -90,9 +90,7 @@ BOOST_AUTO_TEST_CASE(the_centre_has_the_constants_of_V4) {
         const auto made = required(Centre::make(state.packing, state.contacts));
         const Centre& centre = *made;
         std::vector<int> count(state.packing.radius.size(), 0);
-        double smallest = 1e300;
-        double ratio = 0;
-        double largest = 0;
+        double smallest = 1e300, ratio = 0, largest = 0;
         for (const Contact& c : state.contacts) {
             const auto i = static_cast<std::size_t>(c.i);
             const auto j = static_cast<std::size_t>(c.j);

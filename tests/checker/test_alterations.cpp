@@ -266,8 +266,7 @@ BOOST_AUTO_TEST_CASE(random_forgeries_prove_nothing_that_is_wrong, *boost::unit_
     std::mt19937_64 random(7);
     const auto below = [&random](std::size_t limit) { return static_cast<std::size_t>(random() % limit); };
     const std::string digits = "0123456789.-e";
-    int read = 0;
-    int proved = 0;
+    int read = 0, proved = 0;
     for (int trial = 0; trial < testing::scaled(1500); ++trial) {
         std::string spoilt = text;
         for (std::size_t k = 1 + below(2); k > 0; --k) {

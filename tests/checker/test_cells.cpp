@@ -279,8 +279,7 @@ BOOST_AUTO_TEST_CASE(the_derivative_changes_by_at_most_its_curvature) {
     states.push_back(of_file("tilt"));
     for (const State& state : states) {
         const checker::Problem problem(state);
-        checker::Integer farthest_row = 0;
-        checker::Integer farthest_column = 0;
+        checker::Integer farthest_row = 0, farthest_column = 0;
         const checker::Integer step = checker::shifted_left(1, problem.spare);
         for (int sample = 0; sample < testing::scaled(100); ++sample) {
             std::vector<checker::Integer> q = problem.stored;

@@ -39,8 +39,7 @@ int total(const isostat::checker::RunRecords& records, const std::string& column
 } // namespace
 
 BOOST_AUTO_TEST_CASE(runs_of_clumps_are_proved_with_the_way_of_every_arc) {
-    int held = 0;
-    int turns = 0;
+    int held = 0, turns = 0;
     for (const char* const name :
          {"dimer_20_1", "dimer_20_10", "dimer2_20_2", "dimer2_20_3", "trimer_20_1", "trimer_20_3"}) {
         BOOST_TEST_CONTEXT(name) {

@@ -165,8 +165,7 @@ void refutes_a_row_before(const std::filesystem::path& folder, int line) {
 BOOST_AUTO_TEST_CASE(progress_counts_every_arc_and_every_equilibrium_once) {
     const scratch::Folder folder;
     play_and_store(read_state(scratch::data("vertex100.txt")).state, {2}, folder / "run");
-    int arcs = 0;
-    int equilibria = 0;
+    int arcs = 0, equilibria = 0;
     VerificationProgress last;
     const RunVerification run = verify_run(folder / "run", [&](const VerificationProgress& at) {
         (at.closed ? equilibria : arcs) += 1;

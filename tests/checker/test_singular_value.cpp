@@ -129,8 +129,7 @@ BOOST_AUTO_TEST_CASE(lengths_scale) {
 
 // No way of bounding the inverse shows the widest uniqueness everywhere; `automatic` is not weaker than either.
 BOOST_AUTO_TEST_CASE(a_claim_beyond_the_singular_value_is_decided_row_by_row) {
-    int by_rows = 0;
-    int by_singular_value = 0;
+    int by_rows = 0, by_singular_value = 0;
     for (const State& state :
          {crafted::one_disk(1, 1), crafted::three_disks(1, 1.1, 1.3, 1, 1), small_states::with_a_rattler(),
           small_states::in_a_corner(), crafted::two_disks(1, 2, 1, 1), crafted::two_disks(1, 40, 1, 1),

@@ -158,9 +158,7 @@ BOOST_AUTO_TEST_CASE(a_hyperstatic_start_and_lattices_are_replayed) {
     const Segment to = until(-1, 0.5);
     play(crafted::equal_pair(), to, Ties::first_order, 1, scratch_folder / "pair");
     is_proved(scratch_folder / "pair");
-    int arcs = 0;
-    int ties = 0;
-    int altered = 0;
+    int arcs = 0, ties = 0, altered = 0;
     std::set<std::string> kinds;
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
         const fs::path folder = scratch_folder / ("lattice" + std::to_string(seed));

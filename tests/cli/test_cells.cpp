@@ -219,8 +219,7 @@ BOOST_AUTO_TEST_CASE(a_dead_shear_that_flows_ends_as_flows) {
 
 BOOST_AUTO_TEST_CASE(periodic_packings_of_other_programs_become_states) {
     const scratch::Folder folder;
-    const std::string file = folder.at("disks.dump");
-    const std::string made = folder.at("made.json");
+    const std::string file = folder.at("disks.dump"), made = folder.at("made.json");
     for (const char* name : {"rect_16", "tilt_16"}) {
         for (const double part : {1e-12, 1e-6, 1e-4}) {
             BOOST_TEST_INFO_SCOPE(name << ", overlap " << part);

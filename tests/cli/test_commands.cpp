@@ -97,8 +97,7 @@ BOOST_AUTO_TEST_CASE(import_keeps_every_number_of_a_vertex_text_and_proves_it) {
 BOOST_AUTO_TEST_CASE(prepare_makes_a_state_with_its_history_and_the_same_bits_again) {
     const scratch::Folder folder;
     scratch::write(folder / "s.toml", "[packing]\ndisks = 25\nseed = 5\n");
-    const std::string first = folder.at("1.json");
-    const std::string second = folder.at("2.json");
+    const std::string first = folder.at("1.json"), second = folder.at("2.json");
     expect(run({"prepare", folder.at("s.toml"), "-o", first}), 0);
     const Outcome quiet = done(run({"prepare", folder.at("s.toml"), "-o", second, "--quiet"}));
     BOOST_TEST(quiet.out.empty());

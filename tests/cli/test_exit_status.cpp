@@ -34,8 +34,7 @@ fs::path small_scene(const scratch::Folder& folder) {
 BOOST_AUTO_TEST_CASE(an_answer_that_does_not_get_out_is_74_for_every_command) {
     const scratch::Folder folder;
     const std::string scene = small_scene(folder).string();
-    const std::string cert = folder.at("c.json");
-    const std::string done_run = folder.at("done");
+    const std::string cert = folder.at("c.json"), done_run = folder.at("done");
     expect(run({"certify", vertex, "-o", cert}), 0);
     expect(run({"run", scene, "-o", done_run, "-q"}), 0);
     const std::vector<std::vector<std::string>> commands{

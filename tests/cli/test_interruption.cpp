@@ -71,10 +71,8 @@ BOOST_AUTO_TEST_CASE(ctrl_c_leaves_valid_files_and_resumes) {
 /// A command that reads a pipe from which nothing ever comes ends by one signal.
 void ends_by(int signal, const std::string& pipe, const std::vector<std::string>& command) {
     const Background background(command);
-    int status = 0;
-    int writer = -1;
-    bool ended = false;
-    bool sent = false;
+    int status = 0, writer = -1;
+    bool ended = false, sent = false;
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(10);
     while (!ended && std::chrono::steady_clock::now() < deadline) {
         if (!sent && (writer = ::open(pipe.c_str(), O_WRONLY | O_NONBLOCK)) >= 0) { // it reads
@@ -97,8 +95,7 @@ void ends_by(int signal, const std::string& pipe, const std::vector<std::string>
 
 BOOST_AUTO_TEST_CASE(one_ctrl_c_ends_a_command_that_has_written_no_records) {
     const scratch::Folder folder;
-    const std::string pipe = folder.at("input");
-    const std::string out = folder.at("out");
+    const std::string pipe = folder.at("input"), out = folder.at("out");
     BOOST_TEST_REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
     for (const int signal : {SIGINT, SIGTERM}) {
         for (const std::vector<std::string>& command : {std::vector<std::string>{"verify", pipe},

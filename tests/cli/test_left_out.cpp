@@ -15,8 +15,7 @@ BOOST_AUTO_TEST_CASE(what_plan_leaves_out_is_not_done, *boost::unit_test::label(
         {"sparse LU (KLU)", {"factorisations", "inverse_bounds"}},
         {"figures/*.svg, *.png (gnuplot), force pictures", {"pictures", "charts"}},
         {"figures/*.vtk", {"vtk_files"}}};
-    std::set<std::string> seen_used;
-    std::set<std::string> seen_unused;
+    std::set<std::string> seen_used, seen_unused;
     int runs = 0;
     for (const fs::directory_entry& entry : fs::directory_iterator(std::string(ISOSTAT_EXAMPLES) + "/plans")) {
         if (entry.path().extension() != ".toml") {

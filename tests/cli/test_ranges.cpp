@@ -11,8 +11,7 @@ namespace {
 
 struct Called {
     const scratch::Folder folder;
-    std::string state = folder.at("state.json");
-    std::string out = folder.at("out");
+    std::string state = folder.at("state.json"), out = folder.at("out");
     Called() { scratch::write(state, isostat::state_text(::crafted::two_disks(1, 2, 1, 1), {})); }
     /// Each option with the words that its command needs besides.
     [[nodiscard]] std::vector<std::vector<std::string>> with_numbers() const {

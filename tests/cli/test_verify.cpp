@@ -67,8 +67,7 @@ BOOST_AUTO_TEST_CASE(verify_tells_altered_false_and_incomplete_certificates_apar
 // A certificate whose state is not that of the file, with the hash of the file.
 BOOST_AUTO_TEST_CASE(the_state_of_a_certificate_is_compared_with_the_input_itself) {
     const scratch::Folder folder;
-    const std::string input = folder.at("two.json");
-    const std::string file = folder.at("two.cert.json");
+    const std::string input = folder.at("two.json"), file = folder.at("two.cert.json");
     scratch::write(input, isostat::state_text(crafted::two_disks(1, 2, 1, 1)));
     expect(run({"certify", input, "-o", file}), 0);
     expect(run({"verify", file, "--input", input}), 0);

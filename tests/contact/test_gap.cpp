@@ -143,8 +143,7 @@ BOOST_AUTO_TEST_CASE(contact_sets_contain_exactly_their_members) {
     Random random(53);
     for (int repeat = 0; repeat < testing::scaled(100); ++repeat) {
         const int n = 1 + random.integer(8);
-        std::vector<Contact> members;
-        std::vector<Contact> others;
+        std::vector<Contact> members, others;
         const auto deal = [&](const Contact& contact) {
             (random.integer(2) == 0 ? members : others).push_back(contact);
         };

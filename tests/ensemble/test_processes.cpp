@@ -11,8 +11,7 @@ namespace {
 struct Watch {
     std::map<std::size_t, ProcessEnd> ends;
     std::vector<std::size_t> done;
-    int running = 0;
-    int most = 0;
+    int running = 0, most = 0;
 };
 
 /// Runs shell commands; `on_wait` is called now and then.

@@ -176,8 +176,7 @@ BOOST_AUTO_TEST_CASE(renewed_factors_take_over_the_order_until_they_have_filled_
     }
     double before = entries_of_factors(inverse, h, dense);
     double most = 0;
-    int taken_over = 0;
-    int anew = 0;
+    int taken_over = 0, anew = 0;
     // Contacts between grains far from those that they replace, a few each time.
     int exchanges = 0;
     for (int slot = dense + 1; slot < h.cols && exchanges < 60; slot += 7) {

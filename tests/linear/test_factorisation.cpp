@@ -66,8 +66,7 @@ BOOST_AUTO_TEST_CASE(rattlers_move_in_a_block_of_their_own_and_the_rest_stays_at
         ++blocks;
         const std::vector<double>& quick = block->approximate().mechanism(slot);
         const std::vector<double>& slow = whole.approximate().mechanism(slot);
-        double size = 0;
-        double off = 0;
+        double size = 0, off = 0;
         for (std::size_t mu = 0; mu < quick.size(); ++mu) {
             size = std::max(size, std::abs(slow[mu]));
             off = std::max(off, std::abs(quick[mu] - slow[mu]));
@@ -153,8 +152,7 @@ BOOST_AUTO_TEST_CASE(factors_taken_over_from_another_structure_solve_as_well_as_
             std::vector<double> b = a;
             forces ? taken_over.solve_forces(a) : taken_over.solve_velocities(a);
             forces ? fresh.solve_forces(b) : fresh.solve_velocities(b);
-            double size = 0;
-            double difference = 0;
+            double size = 0, difference = 0;
             for (std::size_t i = 0; i < n; ++i) {
                 size = std::max(size, std::abs(b[i]));
                 difference = std::max(difference, std::abs(a[i] - b[i]));
@@ -207,8 +205,7 @@ BOOST_AUTO_TEST_CASE(factors_of_a_singular_or_overflowing_matrix_are_replaced_by
                 std::vector<double> b = a;
                 forces ? factorisation.solve_forces(a) : factorisation.solve_velocities(a);
                 forces ? fresh.solve_forces(b) : fresh.solve_velocities(b);
-                double off = 0;
-                double size = 0;
+                double off = 0, size = 0;
                 for (std::size_t i = 0; i < n; ++i) {
                     BOOST_TEST(std::isfinite(a[i]), "factor " << factor << " column " << column);
                     off = std::max(off, std::abs(a[i] - b[i]));

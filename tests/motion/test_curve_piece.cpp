@@ -243,8 +243,7 @@ BOOST_AUTO_TEST_CASE(a_gap_of_the_polynomial_within_the_tube_proves_nothing) {
 
 // Seen from a disk far away the curve goes one way, the polynomial the other.
 BOOST_AUTO_TEST_CASE(a_rate_of_the_polynomial_within_its_error_proves_nothing) {
-    constexpr double off = 1e-6;
-    constexpr double far = 1000;
+    constexpr double off = 1e-6, far = 1000;
     for (const double angle : {0.8, 1.1}) {
         const double x = (2 + off) * std::cos(angle);
         const double on_curve = std::acos(x / 2); // the angle of the point of the curve with the same x

@@ -80,8 +80,7 @@ BOOST_AUTO_TEST_CASE(open_candidates_at_hand_do_not_change_an_arc) {
 
 BOOST_AUTO_TEST_CASE(the_expected_end_is_mostly_the_end_and_never_decides_it) {
     Start start;
-    int right = 0;
-    int wrong = 0;
+    int right = 0, wrong = 0;
     for (std::size_t slot = 0; slot < start.state.contacts.size(); ++slot) {
         ArcDeparture departure = start.depart(slot);
         const auto expected = departure.expected();
@@ -94,8 +93,7 @@ BOOST_AUTO_TEST_CASE(the_expected_end_is_mostly_the_end_and_never_decides_it) {
             continue;
         }
         ++right;
-        double moved = 0;
-        double off = 0;
+        double moved = 0, off = 0;
         for (std::size_t k = 0; k < arc.value().end.q.size(); ++k) {
             moved = std::max(moved, std::abs(arc.value().end.q[k] - start.state.packing.q[k]));
             off = std::max(off, std::abs(arc.value().end.q[k] - expected->end.q[k]));

@@ -72,8 +72,7 @@ BOOST_AUTO_TEST_CASE(the_exponent_of_a_truncated_power_law_comes_back) {
 
 BOOST_AUTO_TEST_CASE(exponential_values_pass_and_others_do_not) {
     oracle::Random random(9);
-    std::vector<double> exponential;
-    std::vector<double> uniform;
+    std::vector<double> exponential, uniform;
     for (int i = 0; i < 300; ++i) {
         exponential.push_back(-3 * std::log1p(-random.real()));
         uniform.push_back(random.real());

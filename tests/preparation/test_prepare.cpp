@@ -61,8 +61,7 @@ BOOST_AUTO_TEST_CASE(one_disk_is_held_by_the_four_walls) {
 // Figures of an independent program: solid fraction 0.823 at n = 400, 5-7 % rattlers; one sample scatters by 0.005 and
 // by 2 %.
 BOOST_AUTO_TEST_CASE(solid_fraction_and_rattlers_are_those_of_random_packings) {
-    double fraction = 0;
-    double rattlers = 0;
+    double fraction = 0, rattlers = 0;
     constexpr int samples = 4;
     for (int seed = 1; seed <= samples; ++seed) {
         const Outcome outcome = run(400, static_cast<std::uint64_t>(seed));
@@ -81,8 +80,7 @@ BOOST_AUTO_TEST_CASE(solid_fraction_and_rattlers_are_those_of_random_packings) {
 
 // The way of large packings (pressed harder first, patches, interior points) on small ones: four to nine patches.
 BOOST_AUTO_TEST_CASE(the_way_of_large_packings_ends_at_proved_vertices_of_the_same_kind) {
-    double fraction = 0;
-    double rattlers = 0;
+    double fraction = 0, rattlers = 0;
     constexpr int samples = 3;
     for (int seed = 1; seed <= samples; ++seed) {
         const Outcome outcome = run({.disks = 1000, .seed = static_cast<std::uint64_t>(seed), .large_above = 100});

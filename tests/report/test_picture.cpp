@@ -143,8 +143,7 @@ BOOST_AUTO_TEST_CASE(displacements_are_vectors_of_the_disks) {
 BOOST_AUTO_TEST_CASE(vtk_counts_agree_with_its_lists) {
     const std::string vtk = vtk_text(state, std::vector<double>{0, 0, 0, 4, 5, 6}, "title");
     std::istringstream in(vtk);
-    std::string word;
-    std::string line;
+    std::string word, line;
     std::getline(in, line);
     BOOST_TEST(line == "# vtk DataFile Version 3.0");
     std::getline(in, line);
@@ -159,8 +158,7 @@ BOOST_AUTO_TEST_CASE(vtk_counts_agree_with_its_lists) {
             BOOST_TEST(c == state.packing.q[2]); // 17 digits: the same bits
         }
     }
-    int cells = 0;
-    int size = 0;
+    int cells = 0, size = 0;
     in >> word >> cells >> size;
     BOOST_TEST(word == "VERTICES");
     BOOST_TEST(cells == 2);
@@ -171,9 +169,7 @@ BOOST_AUTO_TEST_CASE(vtk_counts_agree_with_its_lists) {
     BOOST_TEST(word == "LINES");
     BOOST_TEST(cells == 6);
     for (int l = 0; l < cells; ++l) {
-        int two = 0;
-        int a = 0;
-        int b = 0;
+        int two = 0, a = 0, b = 0;
         in >> two >> a >> b;
         BOOST_TEST(two == 2);
         BOOST_TEST((a >= 0 && a < 2 && b > a && b < points));

@@ -297,8 +297,7 @@ BOOST_AUTO_TEST_CASE(bead_by_bead_piles_are_isostatic_and_balance_by_back_substi
             BOOST_TEST(blocks[b + 1] - blocks[b] <= 2);
         }
         const auto inspection = required(inspect_vertex(state));
-        double bottom_force = 0;
-        double weight = 0;
+        double bottom_force = 0, weight = 0;
         for (std::size_t l = 0; l < state.contacts.size(); ++l) {
             if (state.contacts[l].kind == ContactKind::lower_wall && state.contacts[l].j == 1) {
                 bottom_force += inspection.forces[l];

@@ -25,8 +25,7 @@ LinearEvent event_of(const State& state, const Contact& opened) {
 BOOST_AUTO_TEST_CASE(the_linear_event_of_two_disks_errs_with_the_square_of_the_arc) {
     // Disk 1 leaves the bottom and rolls on disk 0 until it meets the left wall: (x1 - R0, y1 - R0) goes from
     // (X, Y) = (2 sqrt(R0 R1), R1 - R0) to (Y, X). The tangent at the start is (-Y, X) / |.|.
-    std::vector<double> error;
-    std::vector<double> arc;
+    std::vector<double> error, arc;
     for (const double distance : {1e-1, 1e-2, 1e-3}) {
         const double r1 = (3 + 2 * std::sqrt(2.0)) * (1 - distance);
         const State state = two_disks(1, r1, 1, 1);
@@ -70,8 +69,7 @@ BOOST_AUTO_TEST_CASE(the_drift_of_the_first_arc_is_the_curvature_of_the_gaps) {
 }
 
 BOOST_AUTO_TEST_CASE(a_frozen_geometry_keeps_its_linear_gaps_closed_and_the_load_works) {
-    int arcs = 0;
-    int changes = 0;
+    int arcs = 0, changes = 0;
     for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
         const State start = prepared(20, seed);
         const auto run = load_with_linear_gaps(start, LinearGeometry::frozen, 6, 300);

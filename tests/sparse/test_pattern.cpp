@@ -147,8 +147,7 @@ BOOST_AUTO_TEST_CASE(no_load_means_no_structural_nonzero) {
 
 BOOST_AUTO_TEST_CASE(a_repaired_matching_is_perfect_exactly_when_there_is_one) {
     Random random(22);
-    int repaired = 0;
-    int none = 0;
+    int repaired = 0, none = 0;
     for (int repeat = 0; repeat < testing::scaled(800); ++repeat) {
         const int n = 1 + random.integer(30);
         Dense<char> pattern = random_pattern(n, n, random.integer(n), true, random);

@@ -188,8 +188,7 @@ BOOST_AUTO_TEST_CASE(first_order_gaps_separate_every_tie_of_a_lattice) {
             }
             return sum;
         };
-        std::vector<Number> rho;
-        std::vector<Number> in_proportion;
+        std::vector<Number> rho, in_proportion;
         for (const Number& r : packing.radius) {
             rho.emplace_back(1 + static_cast<long>(random() % 1000003));
             in_proportion.push_back(r);

@@ -65,8 +65,7 @@ struct Exchange : Regular {
 
 BOOST_AUTO_TEST_CASE(bounds_after_an_exchange_lie_below_the_smallest_singular_value_and_near_it) {
     Exchange from(read_state(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state);
-    int carried = 0;
-    int fresh = 0;
+    int carried = 0, fresh = 0;
     for (int opened = 0; opened < from.structure.size(); opened += 7) {
         const auto arc = from.open(opened);
         if (!arc.ok()) {

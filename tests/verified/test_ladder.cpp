@@ -16,8 +16,7 @@ namespace {
 constexpr unsigned bits = IntegerSystem::bits;
 
 struct Count {
-    int cases = 0;
-    int regular = 0;
+    int cases = 0, regular = 0;
     std::array<int, 3> inverse{}; ///< bounds of the inverse, by route
     int exact_only = 0;           ///< no bound of the inverse in the range of double
     std::map<std::string, int> settled;
@@ -243,8 +242,7 @@ BOOST_AUTO_TEST_CASE(what_a_stress_lacks_to_a_limit_is_known_after_the_ladder_wa
     Random random(5);
     const Structure s = layers(3, 4, 0.5, random);
     const crafted::Regular at(s.packing, s.contacts);
-    std::vector<double> down;
-    std::vector<double> aside;
+    std::vector<double> down, aside;
     for (std::size_t i = 0; i < s.contacts.size(); ++i) {
         down.push_back(i % 2 == 0 ? 0 : -1);
         aside.push_back(i % 2 == 0 ? 0.3 : -0.1);

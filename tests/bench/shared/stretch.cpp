@@ -46,8 +46,7 @@ class Watcher final : public RunObserver {
         }
     }
     void on_equilibrium(const EquilibriumRecord&, const State& state, const std::vector<double>&) override {
-        const double begin = time();
-        const double process_begin = process_milliseconds();
+        const double begin = time(), process_begin = process_milliseconds();
         if (seen_++ % options_.reference_every == 0) {
             const auto matrix = matrix_of(state);
             klu.add(milliseconds([&] { bench::klu(matrix); }).median());

@@ -69,13 +69,9 @@ std::vector<double> predicted_end(const ReferenceArc& arc) {
 template <class T>
 bool at_tolerance(const std::string& arithmetic, int refinements, double tolerance, const ReferencePath& path, int n,
                   Table& table) {
-    std::vector<double> position;
-    std::vector<double> stress;
-    std::vector<double> iterations;
-    double event_time = 0;
-    double limit_time = 0;
-    int elsewhere = 0;
-    int open = 0;
+    std::vector<double> position, stress, iterations;
+    double event_time = 0, limit_time = 0;
+    int elsewhere = 0, open = 0;
     for (const ReferenceArc& arc : path.arcs) {
         const std::vector<double> guess = predicted_end(arc);
         std::vector<T> start;
@@ -134,10 +130,8 @@ bool predictor_steps(const ReferencePath& path, int n, Table& table) {
     for (const double fraction : {1.0, 0.3, 0.1, 0.03, 0.01, 0.003}) {
         std::vector<double> error;
         double time = 0;
-        long steps = 0;
-        long factorisations = 0;
-        int wrong = 0;
-        int failed = 0;
+        long steps = 0, factorisations = 0;
+        int wrong = 0, failed = 0;
         for (const ReferenceArc& arc : path.arcs) {
             const auto structure = IsostaticStructure::prove(arc.start, arc.contacts);
             CandidateList candidates = find_candidates(arc.start, candidate_fraction);
@@ -243,8 +237,7 @@ void integration(const ReferencePath& path, int n, bool quick, Table& table) {
             std::vector<double> error;
             double time = 0;
             long solves = 0;
-            int lost = 0;
-            int wrong = 0;
+            int lost = 0, wrong = 0;
             for (const ReferenceArc* arc : arcs) {
                 const double begin = cpu_seconds();
                 Packing here = arc->start;

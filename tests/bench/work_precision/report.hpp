@@ -35,8 +35,7 @@ class Table {
     void write_csv(const std::filesystem::path& folder) const;
 
   private:
-    std::string name_;
-    std::string caption_;
+    std::string name_, caption_;
     std::vector<std::string> heads_;
     std::vector<std::vector<std::string>> rows_;
 };

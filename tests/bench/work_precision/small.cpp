@@ -176,10 +176,8 @@ bool small_displacements(const Settings& settings) {
         }
         const char* names[] = {"below 1e-4", "1e-4 to 1e-3", "1e-3 to 1e-2", "1e-2 to 1e-1", "above 1e-1"};
         for (std::size_t bin = 0; bin < 5; ++bin) {
-            std::vector<double> position;
-            std::vector<double> length;
-            int arcs = 0;
-            int wrong = 0;
+            std::vector<double> position, length;
+            int arcs = 0, wrong = 0;
             for (const Compared& c : compared) {
                 if (static_cast<std::size_t>(std::clamp(4 + std::floor(std::log10(c.length)) + 1, 0.0, 4.0)) == bin) {
                     ++arcs;

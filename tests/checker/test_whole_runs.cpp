@@ -1,13 +1,21 @@
 // Runs from a start that is no equilibrium to whatever ends them: every recorded arc is replayed, and an altered one
 // found.
+// Nearly equal disks: where some stand nearly in line two branches of the motion come near each other, and steps in
+// double may end on the wrong one. Small steps from the equilibrium before tell them apart.
+// Certificates of equilibria of other programs, made from approximations.
 #include "checker/logarithm.hpp"
+#include "checker/maker.hpp"
 #include "checker/replay.hpp"
 #include "support/mirror.hpp"
 #include "support/played.hpp"
 #include "support/prepared.hpp"
 #include "support/scratch.hpp"
 
+#include <isostat/checker/verify.hpp>
+
 #include <boost/multiprecision/mpfr.hpp>
+
+#include <tuple>
 
 using namespace isostat;
 using namespace isostat::checker;
@@ -55,6 +63,15 @@ State overloaded(double factor) {
     State state = prepared(14, 3);
     state.load.stress[1] *= factor;
     return state;
+}
+
+/// 36 disks, equal but for a jitter of 1e-9.
+void play(std::uint64_t seed, int equilibria, const fs::path& folder) {
+    PreparationOptions options{.disks = 36};
+    options.diameters.kind = RadiiLaw::equal;
+    options.jitter = 1e-9;
+    options.seed = seed;
+    BOOST_REQUIRE(played::into(folder, prepared(options), {towards(equilibria)}).completed);
 }
 
 } // namespace
@@ -185,4 +202,39 @@ BOOST_AUTO_TEST_CASE(logarithms_are_enclosed_narrowly) {
     }
     const Range wide = logarithm({Rational(1, 4096), Rational(4096)});
     BOOST_TEST((wide.lower <= -8.3 && wide.upper >= 8.3));
+}
+
+BOOST_AUTO_TEST_CASE(ends_near_another_branch_are_proved_and_what_contradicts_them_is_not,
+                     *boost::unit_test::label("slow")) {
+    const scratch::Folder scratch_folder;
+    // The arc in question leads to the last equilibrium: it opens this contact.
+    for (const auto& [seed, equilibria, opened] :
+         {std::tuple{11, 10, "1-31"}, std::tuple{29, 10, "12-34"}, std::tuple{37, 12, "5-7"}}) {
+        BOOST_TEST_INFO_SCOPE("seed " << seed);
+        const fs::path folder = scratch_folder / std::to_string(seed);
+        play(static_cast<std::uint64_t>(seed), equilibria, folder);
+        const RunVerification run = played::proved(folder);
+        BOOST_TEST(run.equilibria_proved == equilibria + 1);
+        const std::string events = scratch::read(folder / "events.jsonl");
+        const std::size_t arc = events.rfind("\"opened\":\"" + std::string(opened));
+        BOOST_TEST_REQUIRE(arc != std::string::npos);
+        const std::size_t eps2 = events.find("\"eps2\":", arc) + 7;
+        const std::string said = events.substr(eps2, events.find(',', eps2) - eps2);
+        std::string other = said;
+        other[9] = other[9] == '5' ? '6' : '5';
+        const RunVerification forged = forger::altered(folder, "events.jsonl", said, other);
+        BOOST_TEST((forged.verdict != Verdict::proved));
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_sample_of_another_program_is_proved_with_every_arithmetic) {
+    const Certificate certificate = maker::certificate(read_state(scratch::data("vertex100.txt")).state);
+    for (const CheckerArithmetic arithmetic :
+         {CheckerArithmetic::singular_value, CheckerArithmetic::fixed64, CheckerArithmetic::gmp}) {
+        const Verification verification = verify(certificate, arithmetic);
+        for (const ClaimCheck& check : verification.checks) {
+            BOOST_TEST((check.verdict == Verdict::proved), check.claim << ": " << check.detail);
+            BOOST_TEST_MESSAGE(check.claim << ": " << check.detail);
+        }
+    }
 }

@@ -1,4 +1,5 @@
 // Ties in the smallest scenes known, as a user runs them: examples/ties.
+// Power turns, held coordinates and turning arcs in the smallest scenes known: examples/turns.
 #include "cli/program.hpp"
 
 using namespace program;
@@ -18,6 +19,23 @@ std::string stopped(const scratch::Folder& folder, const std::string& name) {
         scratch::replaced(scratch::replaced(text, "ties = \"choose\"\nmax_choices = 0", "ties = \"stop\""), "file = \"",
                           "file = \"" + example("")));
     return folder.at("stop.toml");
+}
+
+std::vector<std::string> events_of_scene(const std::string& scene) {
+    const scratch::Folder out;
+    expect(run({"run", scratch::data("../../examples/turns/" + scene), "-o", out.path().string(), "-q"}), 0);
+    const std::vector<std::string> lines = scratch::lines_of(out / "events.jsonl");
+    BOOST_TEST(contains(scratch::read(out / "summary.json"), "\"undecided\": 0"));
+    const Outcome verified = run({"verify", out.path().string()}); // held coordinates and all
+    expect(verified, 0);
+    BOOST_TEST(contains(verified.out, "proved"));
+    return lines;
+}
+
+void has(const std::string& line, const std::vector<std::string>& parts) {
+    for (const std::string& part : parts) {
+        BOOST_TEST(contains(line, part), part << " is not in " << line);
+    }
 }
 
 } // namespace
@@ -96,4 +114,22 @@ BOOST_AUTO_TEST_CASE(a_run_with_a_force_at_zero_is_resumed_with_the_same_records
         return summary.substr(summary.find("arc 1 of the rearrangement"), 60);
     };
     BOOST_TEST(reason("one") == reason("two"));
+}
+
+BOOST_AUTO_TEST_CASE(three_disks_meet_a_power_turn_hold_a_coordinate_and_release_it) {
+    const auto events = events_of_scene("power-turn.toml");
+    BOOST_TEST_REQUIRE(events.size() == 3U);
+    const std::string proved = "\"certificate\":{\"verdict\":\"proved\"";
+    has(events[0], {"\"kind\":\"limit\"", "\"opened\":\"1-left\"", "\"closed\":\"held x of grain 1\"",
+                    "\"power_turn\":true", proved, "\"power\":\"proved\""});
+    has(events[1], {"\"kind\":\"tension\"", "\"opened\":\"1-2\"", "\"closed\":\"0-1\"", proved});
+    has(events[2], {"\"kind\":\"release\"", "\"opened\":\"held x of grain 1\"", "\"closed\":\"1-left\"", proved,
+                    "\"power\":\"proved\""});
+}
+
+BOOST_AUTO_TEST_CASE(four_disks_open_a_contact_whose_gap_turns_back) {
+    const auto events = events_of_scene("turning.toml");
+    BOOST_TEST_REQUIRE(events.size() == 2U);
+    has(events[0], {"\"opened\":\"0-2\"", "\"closed\":\"3-bottom\"", "\"verdict\":\"proved\"", "\"turning\":true"});
+    has(events[1], {"\"verdict\":\"proved\"", "\"turning\":false"});
 }

@@ -1,8 +1,10 @@
 // Proved bounds against the truth to 200 digits: the bound is never below the error, and it is not useless.
+// Enclosures of vertices with bars against the vertex to 200 digits.
 #include "contact/candidates.hpp"
 #include "oracle/random.hpp"
 #include "oracle/truth.hpp"
 #include "statics/statics.hpp"
+#include "support/clumps.hpp"
 #include "support/crafted.hpp"
 #include "support/regular.hpp"
 #include "verified/configuration.hpp"
@@ -10,11 +12,13 @@
 #include "verified/to_vertex.hpp"
 #include "verified/vertex_bounds.hpp"
 
+#include <isostat/certificate/certify.hpp>
 #include <isostat/io/state_file.hpp>
 #include <isostat/preparation/preparation.hpp>
 
 using namespace isostat;
 using namespace crafted;
+using isostat::oracle::Real;
 
 namespace {
 
@@ -299,4 +303,30 @@ BOOST_AUTO_TEST_CASE(no_vertex_is_proved_where_there_is_none) {
     BOOST_TEST((enclose_vertex(state.packing, at.structure, at.inverse).verdict == Verdict::undecided));
     BOOST_TEST(
         (enclose_vertex(state.packing, at.structure, at.factorisation, at.inverse).verdict == Verdict::undecided));
+}
+
+BOOST_AUTO_TEST_CASE(vertices_with_bars_lie_within_their_enclosures) {
+    for (const char* const name : {"dimer_20_1", "dimer2_20_2", "trimer_20_1"}) {
+        const State state = isostat::with_free_motions_held(isostat::test::clumps(name));
+        const crafted::Regular at(state);
+        const isostat::oracle::Truth truth(state);
+        BOOST_TEST_REQUIRE(truth.known);
+        for (const int way : {0, 1, 2}) {
+            const VertexEnclosure vertex =
+                way == 2   ? enclose_vertex_double_double(state.packing, at.structure, at.factorisation, at.inverse)
+                : way == 1 ? enclose_vertex(state.packing, at.structure, at.factorisation, at.inverse)
+                           : enclose_vertex(state.packing, at.structure, at.inverse);
+            BOOST_TEST_CONTEXT(name << ", way " << way) {
+                BOOST_TEST_REQUIRE((vertex.verdict == Verdict::proved));
+                Real square = 0;
+                for (std::size_t k = 0; k < state.packing.q.size(); ++k) {
+                    const Real place =
+                        Real(state.packing.q[k]) + (vertex.correction.empty() ? Real(0) : Real(vertex.correction[k]));
+                    square += (place - truth.q[k]) * (place - truth.q[k]);
+                }
+                BOOST_TEST(sqrt(square) <= Real(vertex.radius));
+                BOOST_TEST(vertex.radius < (way == 2 ? 1e-20 : 1e-9));
+            }
+        }
+    }
 }

@@ -341,9 +341,7 @@ int main(int argc, char** argv) {
     program.option("--equilibria", equilibria, "equilibria of each run");
     program.option("--passes", passes, "passes for the quadratic correction (0: 1 and 3)");
     program.words("starts", sources, "numbers of disks or state files");
-    if (const auto status = program.parse(argc, argv)) {
-        return *status;
-    }
+    program.parse(argc, argv);
     bench::Table table("power_sign", "Power proved positive along arcs (A9), estimates without rounding:",
                        {{"n", "n", ""},
                         {"arcs", "arcs", ""},

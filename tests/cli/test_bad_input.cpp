@@ -14,25 +14,22 @@ namespace fs = std::filesystem;
 namespace {
 
 /// A scene whose start file has a given content; `run` must refuse it before it makes a folder.
-void run_refuses(const std::string& start, const std::vector<std::string>& words) {
+void run_refuses(const std::string& start, const Arguments& words) {
     const scratch::Folder folder;
     scratch::write(folder / "start.json", start);
-    scratch::write(folder / "s.toml", scene_from("start.json", up_6));
+    scratch::write(folder / "s.toml", scene_from("start.json", up(6)));
     const Outcome outcome = run({"run", folder.at("s.toml"), "-o", folder.at("run"), "-q"});
-    expect(outcome, 65, {"start.json"});
-    expect(outcome, 65, words);
+    expect(outcome, 65, plus(words, {"start.json"}));
     BOOST_TEST(!fs::exists(folder / "run"));
     BOOST_TEST(outcome.out.empty());
 }
 
 /// A scene that every command must refuse.
-void scene_refused(const std::string& scene, const std::vector<std::string>& words) {
+void scene_refused(const std::string& scene, const Arguments& words) {
     const scratch::Folder folder;
     scratch::write_scene(folder / "s.toml", scene);
     for (const std::string command : {"run", "prepare"}) {
-        const Outcome outcome = run({command, folder.at("s.toml"), "-o", folder.at("out")});
-        expect(outcome, 65, {"s.toml"});
-        expect(outcome, 65, words);
+        expect(run({command, folder.at("s.toml"), "-o", folder.at("out")}), 65, plus(words, {"s.toml"}));
         BOOST_TEST(!fs::exists(folder / "out"));
     }
     expect(run({"plan", folder.at("s.toml")}), 65, words);
@@ -45,7 +42,7 @@ struct Called {
     std::string state = folder.at("state.json"), out = folder.at("out");
     Called() { scratch::write(state, isostat::state_text(::crafted::two_disks(1, 2, 1, 1), {})); }
     /// Each option with the words that its command needs besides.
-    [[nodiscard]] std::vector<std::vector<std::string>> with_numbers() const {
+    [[nodiscard]] std::vector<Arguments> with_numbers() const {
         return {{"inspect", state, "--at"},
                 {"report", out, "--stiffness"},
                 {"snap", state, "-o", out, "--stiffness"},
@@ -54,7 +51,7 @@ struct Called {
                 {"genericity", state, "--stress"},
                 {"genericity", state, "--size"}};
     }
-    [[nodiscard]] std::vector<std::vector<std::string>> with_integers() const {
+    [[nodiscard]] std::vector<Arguments> with_integers() const {
         return {{"inspect", state, "--threads"},
                 {"ensemble", state, "-o", out, "--samples"},
                 {"ensemble", state, "-o", out, "--samples", "1", "--jobs"},
@@ -71,7 +68,7 @@ struct Called {
     }
 };
 
-void refuses(std::vector<std::string> call, const std::string& word) {
+void refuses(Arguments call, const std::string& word) {
     const std::string option = call.back();
     call.back() += "=" + word;
     const Outcome outcome = run(call);
@@ -102,7 +99,7 @@ BOOST_AUTO_TEST_CASE(radii_that_are_not_positive_numbers) {
 }
 
 BOOST_AUTO_TEST_CASE(unknown_keys) {
-    scene_refused("[packing]\ndisks = 4\nsede = 1\n" + up_6, {":3:", "unknown key 'sede'", "seed"});
+    scene_refused("[packing]\ndisks = 4\nsede = 1\n" + up(6), {":3:", "unknown key 'sede'", "seed"});
     scene_refused("[packing]\ndisks = 4\n[lode]\n", {":3:", "'lode'", "load"});
     run_refuses(replaced(two, "\"length\"", "\"lenght\""), {"unknown field 'lenght'", "length"});
 }
@@ -137,7 +134,7 @@ BOOST_AUTO_TEST_CASE(disks_larger_than_the_box) {
 BOOST_AUTO_TEST_CASE(folders_that_cannot_be_written) {
     const scratch::Folder folder;
     scratch::write(folder / "plain", "a file");
-    scratch::write_scene(folder / "s.toml", scene_from(scratch::data("vertex100.txt"), up_6));
+    scratch::write_scene(folder / "s.toml", scene_from(scratch::data("vertex100.txt"), up(6)));
     scratch::write(folder / "p.toml", "[packing]\ndisks = 2000\n"); // would take a while: it must be refused before
     const std::string below = folder.at("plain/below");
     expect(run({"run", folder.at("s.toml"), "-o", below, "-q"}), 74, {"plain/below", "cannot write"});
@@ -156,7 +153,7 @@ BOOST_AUTO_TEST_CASE(contradictory_programmes) {
     scene_refused(packing + "[[programme]]\ndo = \"up\"\n", {":3:", "no end"});
     scene_refused(packing + "[[programme]]\ndo = \"up\"\nto = 0.5\n",
                   {":3:", "0.5", "ratio at its start is 1", "larger"});
-    scene_refused(packing + up_6 + "[[programme]]\ndo = \"down\"\nfrom = 7\nto = 1.0\n",
+    scene_refused(packing + up(6) + "[[programme]]\ndo = \"down\"\nfrom = 7\nto = 1.0\n",
                   {":6:", "equilibrium 7", "number 6"});
     const scratch::Folder folder;
     scratch::write(folder / "s.toml", packing);
@@ -173,13 +170,13 @@ BOOST_AUTO_TEST_CASE(contradictory_programmes) {
 BOOST_AUTO_TEST_CASE(a_folder_that_holds_a_run) {
     const scratch::Folder folder;
     const std::string out = folder.at("run");
-    scratch::write_scene(folder / "s.toml", scene_from(scratch::data("vertex100.txt"), up_6));
+    scratch::write_scene(folder / "s.toml", scene_from(scratch::data("vertex100.txt"), up(6)));
     expect(run({"run", folder.at("s.toml"), "-o", out, "--resume", "-q"}), 65, {"run.json", "no run to resume"});
     expect(run({"run", folder.at("s.toml"), "-o", out, "-q"}), 0);
     expect(run({"run", folder.at("s.toml"), "-o", out, "-q"}), 64, {"holds a run already", "--resume", "--force"});
     expect(run({"run", folder.at("s.toml"), "-o", out, "-q", "--force"}), 0);
     scratch::write_scene(folder / "t.toml",
-                         scene_from(scratch::data("vertex100.txt"), up_6, "[run]\nrule = \"least_index\"\n"));
+                         scene_from(scratch::data("vertex100.txt"), up(6), "[run]\nrule = \"least_index\"\n"));
     expect(run({"run", folder.at("t.toml"), "-o", out, "-q", "--resume"}), 65, {"run.json", "another scene", "t.toml"});
 }
 
@@ -190,11 +187,8 @@ BOOST_AUTO_TEST_CASE(a_cell_that_is_refused_after_reading_is_refused_with_its_fi
     scratch::write(file, "format = \"isostat-packing 1\"\ndisks = [[0, 0, 1]]\n[cell]\nperiod = [2, 2]\n"
                          "moves = [\"x\"]\ntilt = \"8077051742094299/140737488355328\"\n");
     for (const std::string command : {"inspect", "genericity", "import", "plateau"}) {
-        std::vector<std::string> words{command, file};
-        if (command == "import") {
-            words.insert(words.end(), {"-o", folder.at("o.json")});
-        }
-        expect(run(words), 65, {file + ": disk 0", "periods apart"});
+        const Arguments output = command == "import" ? Arguments{"-o", folder.at("o.json")} : Arguments{};
+        expect(run(plus({command, file}, output)), 65, {file + ": disk 0", "periods apart"});
     }
 }
 
@@ -217,8 +211,8 @@ BOOST_AUTO_TEST_CASE(numbers_of_options_are_finite_and_in_their_range) {
             refuses(call, word);
         }
     }
-    for (const auto& call : {std::vector<std::string>{"report", called.out, "--stiffness"},
-                             {"snap", called.state, "-o", called.out, "--stiffness"}}) {
+    for (const auto& call :
+         {Arguments{"report", called.out, "--stiffness"}, {"snap", called.state, "-o", called.out, "--stiffness"}}) {
         for (const char* word : {"1e-320", "0", "-1", "1e-101"}) {
             refuses(call, word);
         }

@@ -128,27 +128,27 @@ BOOST_AUTO_TEST_CASE(names_of_files_do_not_command_the_terminal) {
         for (const std::string& content : {state, std::string("nonsense")}) {
             scratch::write(file, content);
             scratch::write(scene, content);
-            const std::vector<std::vector<std::string>> calls{{"inspect", file},
-                                                              {"inspect", scene},
-                                                              {"certify", file, "-o", out},
-                                                              {"verify", file},
-                                                              {"verify", out, "--input", file},
-                                                              {"export", file, "-o", out + ".xyz"},
-                                                              {"plateau", file},
-                                                              {"import", file, "-o", out},
-                                                              {"snap", file, "-o", out},
-                                                              {"genericity", file, "--samples", "1"},
-                                                              {"report", file, "-o", out + ".d"},
-                                                              {"plan", scene},
-                                                              {"prepare", scene, "-o", out},
-                                                              {"run", scene, "-o", out + ".d"},
-                                                              {"ensemble", scene, "--samples", "1", "-o", out},
-                                                              {"compare", scene, "-o", out},
-                                                              {"inspect", file + "absent"},
-                                                              {file},
-                                                              {"inspect", file, "--" + name},
-                                                              {"inspect", file, "--at", name}};
-            for (std::vector<std::string> call : calls) {
+            const std::vector<Arguments> calls{{"inspect", file},
+                                               {"inspect", scene},
+                                               {"certify", file, "-o", out},
+                                               {"verify", file},
+                                               {"verify", out, "--input", file},
+                                               {"export", file, "-o", out + ".xyz"},
+                                               {"plateau", file},
+                                               {"import", file, "-o", out},
+                                               {"snap", file, "-o", out},
+                                               {"genericity", file, "--samples", "1"},
+                                               {"report", file, "-o", out + ".d"},
+                                               {"plan", scene},
+                                               {"prepare", scene, "-o", out},
+                                               {"run", scene, "-o", out + ".d"},
+                                               {"ensemble", scene, "--samples", "1", "-o", out},
+                                               {"compare", scene, "-o", out},
+                                               {"inspect", file + "absent"},
+                                               {file},
+                                               {"inspect", file, "--" + name},
+                                               {"inspect", file, "--at", name}};
+            for (Arguments call : calls) {
                 expect_harmless(run(call));
                 call.emplace_back("--json");
                 const Outcome machine = run(call);

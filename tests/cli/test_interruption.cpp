@@ -80,7 +80,7 @@ BOOST_AUTO_TEST_CASE(ctrl_c_leaves_valid_files_and_resumes) {
 }
 
 /// A command that reads a pipe from which nothing ever comes ends by one signal.
-void ends_by(int signal, const std::string& pipe, const std::vector<std::string>& command) {
+void ends_by(int signal, const std::string& pipe, const Arguments& command) {
     const Background background(command);
     int status = 0, writer = -1;
     bool ended = false, sent = false;
@@ -109,10 +109,10 @@ BOOST_AUTO_TEST_CASE(one_ctrl_c_ends_a_command_that_has_written_no_records) {
     const std::string pipe = folder.at("input"), out = folder.at("out");
     BOOST_TEST_REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
     for (const int signal : {SIGINT, SIGTERM}) {
-        for (const std::vector<std::string>& command : {std::vector<std::string>{"verify", pipe},
-                                                        {"run", pipe, "-o", out},
-                                                        {"prepare", pipe, "-o", out},
-                                                        {"ensemble", pipe, "-o", out, "--samples", "2"}}) {
+        for (const Arguments& command : {Arguments{"verify", pipe},
+                                         {"run", pipe, "-o", out},
+                                         {"prepare", pipe, "-o", out},
+                                         {"ensemble", pipe, "-o", out, "--samples", "2"}}) {
             BOOST_TEST_INFO_SCOPE(command[0]);
             ends_by(signal, pipe, command);
         }
@@ -135,7 +135,7 @@ BOOST_AUTO_TEST_CASE(resuming_a_finished_run_changes_nothing) {
     const scratch::Folder folder;
     const std::string scene = folder.at("s.toml");
     const fs::path out = folder / "run";
-    scratch::write_scene(scene, scene_from(scratch::data("vertex100.txt"), up_6));
+    scratch::write_scene(scene, scene_from(scratch::data("vertex100.txt"), up(6)));
     expect(run({"run", scene, "-o", out.string(), "-q"}), 0);
     std::vector<std::string> before;
     for (const char* name : {"events.jsonl", "equilibria.csv", "summary.json", "run.json", "states/last.json"}) {
@@ -151,7 +151,7 @@ BOOST_AUTO_TEST_CASE(resuming_a_finished_run_changes_nothing) {
 BOOST_AUTO_TEST_CASE(a_run_killed_before_its_first_equilibrium_is_one_without_equilibria) {
     const scratch::Folder folder;
     const std::string scene = folder.at("s.toml"), out = folder.at("run");
-    scratch::write(scene, "[packing]\ndisks = 3000\n" + up_6);
+    scratch::write(scene, "[packing]\ndisks = 3000\n" + up(6));
     Background background({"run", scene, "-o", out, "-q"});
     for (int k = 0; k < 600000 && !fs::exists(folder / "run/equilibria.csv"); ++k) {
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -165,7 +165,7 @@ BOOST_AUTO_TEST_CASE(a_run_killed_before_its_first_equilibrium_is_one_without_eq
 
 BOOST_AUTO_TEST_CASE(a_preparation_that_is_interrupted_says_where_and_keeps_what_it_reached) {
     const scratch::Folder folder;
-    const std::string scene = folder.file("s.toml", "[packing]\ndisks = 3000\n" + up_6);
+    const std::string scene = folder.file("s.toml", "[packing]\ndisks = 3000\n" + up(6));
     Background background({"run", scene, "-o", folder.at("run"), "-q"});
     BOOST_TEST(background.signal_at(folder / "run/run.json", 1, SIGINT)); // it is there before the preparation
     BOOST_TEST(background.wait() == 130);

@@ -86,28 +86,26 @@ BOOST_AUTO_TEST_CASE(the_state_of_a_certificate_is_compared_with_the_input_itsel
 
 BOOST_AUTO_TEST_CASE(verify_replays_a_run_and_names_the_first_wrong_record) {
     const scratch::Folder folder;
-    scratch::write_scene(folder / "scene.toml", scene_from(scratch::data("vertex100.txt"), up_6));
-    const std::string out = folder.at("out");
-    expect(run({"run", folder.at("scene.toml"), "-o", out, "-q"}), 0);
+    const std::string out = ran(folder, scene_from(scratch::data("vertex100.txt"), up(6)));
     const auto answer = json_of(run({"verify", out, "--json"}));
     has(answer, {{"verdict", "ends proved, way looked at"},
                  {"ends_proved", answer["arcs"]},
                  {"ways_proved", 0},
                  {"equilibria_proved", 7}});
 
-    const std::string events = scratch::read(folder / "out/events.jsonl");
-    scratch::write(folder / "out/events.jsonl", scratch::replaced(events, "\"power\":", "\"power\":1"));
+    const std::string events = scratch::read(folder / "run/events.jsonl");
+    scratch::write(folder / "run/events.jsonl", scratch::replaced(events, "\"power\":", "\"power\":1"));
     says(run({"verify", out}), 1, {"events.jsonl: damaged", "refuted"});
     expect(run({"report", out}), 65, {"events.jsonl: damaged"});
     forger::seal(out);
     BOOST_TEST(contains(run({"verify", out}).out, "events.jsonl:1"));
 
-    const std::string header = scratch::read(folder / "out/run.json");
-    scratch::write(folder / "out/run.json", scratch::replaced(header, "\"completed\"", "\"running\""));
+    const std::string header = scratch::read(folder / "run/run.json");
+    scratch::write(folder / "run/run.json", scratch::replaced(header, "\"completed\"", "\"running\""));
     says(run({"verify", out}), 2, {"not finished"});
-    scratch::write(folder / "out/run.json", header);
+    scratch::write(folder / "run/run.json", header);
 
-    scratch::write(folder / "out/events.jsonl", events.substr(0, events.size() / 2));
+    scratch::write(folder / "run/events.jsonl", events.substr(0, events.size() / 2));
     expect(run({"verify", out}), 65, {"events.jsonl:", "truncated"});
     expect(run({"verify", folder.path().string()}), 65, {"run.json"});
 }
@@ -115,11 +113,10 @@ BOOST_AUTO_TEST_CASE(verify_replays_a_run_and_names_the_first_wrong_record) {
 // An end at a shear of 3e-4 need not be known to a thousandth of that: sigma1 = 1 is what it is measured in.
 BOOST_AUTO_TEST_CASE(a_shear_near_0_is_known_as_well_as_the_largest_stress_asks) {
     const scratch::Folder folder;
-    const auto out = folder / "out";
-    scratch::write(folder / "shear.toml",
-                   "[packing]\ndisks = 200\ndiameters = [1.0, 2.0]\nseed = 9\n[cell]\nkind = \"tilted\"\n[load]\n"
-                   "loaded = \"tilt\"\n[output]\npictures = false\n[[programme]]\ndo = \"up\"\nequilibria = 1\n");
-    expect(run({"run", folder.at("shear.toml"), "-o", out.string(), "-q"}), 0);
+    const std::filesystem::path out =
+        ran(folder, "[packing]\ndisks = 200\ndiameters = [1.0, 2.0]\nseed = 9\n[cell]\nkind = \"tilted\"\n[load]\n"
+                    "loaded = \"tilt\"\n[output]\npictures = false\n" +
+                        up(1));
     const std::string first = scratch::lines_of(out / "equilibria.csv").at(1);
     auto row = scratch::row_of(out / "equilibria.csv", 0);
     BOOST_TEST_REQUIRE(std::abs(std::stod(row["sigma2_low"])) < 8e-4);
@@ -163,8 +160,7 @@ BOOST_AUTO_TEST_CASE(forces_in_the_file_are_compared_and_never_used) {
     nlohmann::json file = nlohmann::json::parse(state_text(state));
     file["forces"] = std::vector<double>(state.contacts.size(), 2.0);
     const std::string input = folder.file("state.json", file.dump());
-    for (const std::vector<std::string>& command :
-         {std::vector<std::string>{"certify", input, "-o", folder.at("c.json")}, {"inspect", input}}) {
+    for (const Arguments& command : {Arguments{"certify", input, "-o", folder.at("c.json")}, {"inspect", input}}) {
         says(run(command), 0, {"forces in the file       differ from the proved ones by at most"});
     }
     const Outcome json = run({"certify", input, "-o", folder.at("c.json"), "--json"});

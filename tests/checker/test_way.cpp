@@ -9,7 +9,7 @@
 #include "support/spheres.hpp"
 
 using namespace isostat;
-using namespace isostat::checker;
+using namespace checker;
 
 namespace {
 

@@ -49,7 +49,7 @@ bool small_displacements(const Settings& settings) {
                 "arc: that opens or closes another contact than the exact run",
                 columns({"n", "seed", "geometry", "arcs", "equilibria", "stopped", "first other arc", "its stress",
                          "~position error before", "~drift after 100 arcs", "~at the end", "~strain", "~exact strain",
-                         "ms per arc", "exact ms per arc, proofs included"}));
+                         "ms per arc", "exact ms per arc (proofs included)"}));
     Table growth(
         "small_growth",
         "Drift against the number of arcs (seed 1); distance from the exact path while the contacts are the same",

@@ -9,12 +9,12 @@
 #include <isostat/io/state_file.hpp>
 #include <isostat/rigidity/counting.hpp>
 
+using namespace isostat;
+using scratch::replaced;
+
 namespace foreign_spheres { // names of its own, beside test_foreign.cpp
 
 namespace {
-
-using namespace isostat;
-using scratch::replaced;
 
 ForeignPacking read(const std::string& text, ForeignOptions options = {}) {
     options.cells = true;

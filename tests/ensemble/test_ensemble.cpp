@@ -201,7 +201,7 @@ BOOST_AUTO_TEST_CASE(wrong_use_is_refused_before_anything_is_made) {
     const scratch::Folder folder;
     scratch::write(folder / "s.toml", small);
     scratch::write(folder / "other.toml", small + "# another text\n");
-    scratch::write_scene(folder / "read.toml", scene_from(scratch::data("vertex100.txt"), up_6));
+    scratch::write_scene(folder / "read.toml", scene_from(scratch::data("vertex100.txt"), up(6)));
     scratch::write(folder / "static.toml", "[packing]\ndisks = 12\n");
     const std::string out = folder.at("e");
     const auto with = [&](const char* scene, const std::vector<std::string>& more) {

@@ -7,16 +7,6 @@
 #include "bench/shared/report.hpp"
 #include "support/families.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <functional>
-#include <string>
-#include <vector>
-
 using namespace isostat;
 using families::Answer;
 
@@ -54,12 +44,9 @@ int main(int argc, char** argv) {
     std::string where = ".";
     bench::Program program("bench_degeneracy", "families that approach a degeneracy: answer, rung, time");
     program.option("folder", where, "for degeneracy.csv and the figure");
-    if (const auto status = program.parse(argc, argv)) {
-        return *status;
-    }
+    program.parse(argc, argv);
     const std::filesystem::path folder = where;
-    constexpr int all = 300;
-    constexpr int of_doubles = 15;
+    constexpr int all = 300, of_doubles = 15;
     using namespace families;
     const std::vector<::Family> list{{"two tractions within delta", of_double(tractions), all, 5},
                                      {"two forces vanish within delta", of_double(limits), all, 5},

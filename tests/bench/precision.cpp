@@ -17,10 +17,7 @@
 #include <fmt/format.h>
 
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
-#include <string>
-#include <vector>
 
 using namespace isostat;
 
@@ -31,8 +28,7 @@ using Digits = oracle::Decimal<422>;
 
 struct Line {
     std::string family;
-    int disks;
-    int size;
+    int disks, size;
     double condition;
     std::string rung;
     int bits;
@@ -177,9 +173,7 @@ int main(int argc, char** argv) {
     program.option("--repeats", repeats, "of each time");
     program.option("folder", where, "for error-time.csv and the figure");
     program.words("sizes", sizes, "numbers of disks");
-    if (const auto status = program.parse(argc, argv)) {
-        return *status;
-    }
+    program.parse(argc, argv);
     const std::filesystem::path folder = where;
     std::vector<Line> lines;
     bool holds = true;

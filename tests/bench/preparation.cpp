@@ -11,8 +11,6 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <string>
-#include <vector>
 
 using namespace isostat;
 using bench::Sample;
@@ -28,15 +26,12 @@ struct Stage {
 
 int main(int argc, char** argv) {
     std::vector<std::string> sizes{"100", "400", "1936"};
-    int repeats = 3;
-    int seed = 1;
+    int repeats = 3, seed = 1;
     bench::Program program("bench_preparation", "seconds of the preparation, stage by stage");
     program.option("--repeats", repeats, "preparations of each size");
     program.option("--seed", seed, "of radii and positions");
     program.words("sizes", sizes, "numbers of disks");
-    if (const auto status = program.parse(argc, argv)) {
-        return *status;
-    }
+    program.parse(argc, argv);
     bench::Table stages("stages", "Stages, median (range):",
                         {{"n", "n", ""},
                          {"stage", "stage", ""},
@@ -69,8 +64,7 @@ int main(int argc, char** argv) {
         PreparationOptions options{.disks = n, .seed = static_cast<std::uint64_t>(seed)};
         PreparationReport report;
         std::vector<Stage> seen;
-        Sample wall;
-        Sample cpu;
+        Sample wall, cpu;
         double klu = 0;
         for (int repeat = 0; repeat < repeats; ++repeat) {
             report = {};

@@ -17,18 +17,12 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <filesystem>
-#include <optional>
-#include <string>
-#include <vector>
-
 using namespace isostat;
 
 namespace {
 
 struct Measured {
-    long equilibria = 0;
-    long arcs = 0;
+    long equilibria = 0, arcs = 0;
     double klu = 0;          ///< one analysis + factorisation, milliseconds: median over the equilibria
     double milliseconds = 0; ///< of `verify_run`
     bool proved = false;     ///< every end
@@ -71,16 +65,13 @@ std::optional<Measured> measure(State state, long wanted) {
 
 int main(int argc, char** argv) {
     std::vector<std::string> sources{"400", "1936", "4900"};
-    int arcs = 300;
-    int at_most = 0;
+    int arcs = 300, at_most = 0;
     bench::Program program("bench_verify",
                            "milliseconds per vertex of `verify DIR` / one KLU analysis + factorisation");
     program.option("--arcs", arcs, "arcs to verify for each size, and the rest of the rearrangement");
     program.option("--at-most", at_most, "status 1 when a vertex costs more KLU than this (0: whatever it costs)");
     program.words("starts", sources, "numbers of disks or state files");
-    if (const auto status = program.parse(argc, argv)) {
-        return *status;
-    }
+    program.parse(argc, argv);
     bench::Table table("verify", "Cost of a vertex in `verify DIR`, one thread, CPU time:",
                        {{"n", "n", ""},
                         {"equilibria", "equilibria", ""},

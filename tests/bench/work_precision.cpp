@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include <exception>
-#include <string>
 
 int main(int argc, char** argv) {
     work_precision::Settings settings;
@@ -20,9 +19,7 @@ int main(int argc, char** argv) {
     program.flag("--quick", settings.quick, "seconds, n = 36 and 64");
     program.option("--part", part, "events or small: only that part");
     program.option("folder", folder, "for tables and figures");
-    if (const auto status = program.parse(argc, argv)) {
-        return *status;
-    }
+    program.parse(argc, argv);
     settings.program = &program;
     settings.folder = folder;
     if (settings.quick) {

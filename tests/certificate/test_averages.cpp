@@ -4,8 +4,6 @@
 
 #include <isostat/certificate/certify.hpp>
 
-#include <cmath>
-
 using namespace isostat;
 
 namespace {
@@ -45,8 +43,6 @@ void check_averages(const State& state, const std::string& name) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(averages_of_contacts)
-
 BOOST_AUTO_TEST_CASE(the_stress_of_the_contacts_is_that_on_the_walls) {
     for (const char* name : {"box_uniform_30_1", "slab_uniform_30_1", "ortho_uniform_30_1"}) {
         const State spheres = isostat::test::state_of_spheres(isostat::test::read_spheres(name));
@@ -68,5 +64,3 @@ BOOST_AUTO_TEST_CASE(coordination_counts_pairs_twice_and_rattlers_once) {
     BOOST_TEST(some.all == 4.5);
     BOOST_TEST(some.carrying == 6);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -51,8 +51,6 @@ void check_same_forces(const State& a, const State& b) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(cell)
-
 BOOST_AUTO_TEST_CASE(one_disk_bears_the_forces_of_its_periods) {
     const State state = cells::one_disk(2, 3);
     check_forces(state, {3, 2});
@@ -65,8 +63,7 @@ BOOST_AUTO_TEST_CASE(one_disk_bears_the_forces_of_its_periods) {
 }
 
 BOOST_AUTO_TEST_CASE(one_tilted_disk_bears_pressure_and_shear) {
-    const double f1 = 2;
-    const double f2 = 1;
+    const double f1 = 2, f2 = 1;
     for (const double t : {0.0, 0.25, -0.5}) {
         const double half = f2 / std::sqrt(3.0);
         check_forces(cells::one_tilted_disk(f1, f2, t), {half + t, half - t, f1 - (half - t) / 2});
@@ -81,8 +78,7 @@ BOOST_AUTO_TEST_CASE(a_shear_beyond_what_the_tilt_bears_is_refuted) {
 BOOST_AUTO_TEST_CASE(own_image_of_two_disks_takes_what_the_centred_rectangle_leaves) {
     State state = cells::two_disks(true, 5, 2);
     state.contacts.push_back(cells::across(0, 0, 1, 0));
-    const double f1 = 5;
-    const double f2 = 2;
+    const double f1 = 5, f2 = 2;
     for (const double t : {0.0, 0.3}) {
         state.load.shear = {t};
         const double even = f2 * 2 / (2 * 1.6);
@@ -366,5 +362,3 @@ BOOST_AUTO_TEST_CASE(a_cell_that_keeps_its_shape_is_not_pulled) {
     pulled.load.stress = {-1, -1};
     BOOST_TEST((certify(pulled).verdict == Verdict::refuted));
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -4,7 +4,6 @@
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/checker/verify.hpp>
-#include <isostat/io/state_file.hpp>
 #include <isostat/preparation/preparation.hpp>
 
 using namespace isostat;
@@ -131,8 +130,6 @@ double two_disks_limit(double r) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(certificate)
-
 BOOST_AUTO_TEST_CASE(the_samples_certify) {
     for (const auto& [name, positive, zero] :
          {std::tuple("vertex100.txt", 188, 14), std::tuple("vertex400.txt", 760, 42),
@@ -179,8 +176,7 @@ BOOST_AUTO_TEST_CASE(closed_forms_of_one_two_and_three_disks_lie_in_the_claimed_
 }
 
 BOOST_AUTO_TEST_CASE(every_interval_contains_the_value_at_the_true_vertex_of_random_packings) {
-    int complete = 0;
-    int tried = 0;
+    int complete = 0, tried = 0;
     for (const int n : {1, 2, 3, 5, 8, 12}) {
         for (std::uint64_t seed = 1; seed <= 4; ++seed) {
             const State state = prepared_or_none(n, seed);
@@ -480,8 +476,7 @@ BOOST_AUTO_TEST_CASE(a_state_that_holds_a_coordinate_claims_nothing) {
 }
 
 BOOST_AUTO_TEST_CASE(claims_hold_for_many_small_packings, *boost::unit_test::label("slow")) {
-    int complete = 0;
-    int tried = 0;
+    int complete = 0, tried = 0;
     for (const int n : {2, 3, 4, 6}) {
         for (std::uint64_t seed = 100; seed < 140; ++seed) {
             const State state = prepared_or_none(n, seed);
@@ -527,5 +522,3 @@ BOOST_AUTO_TEST_CASE(every_equilibrium_of_a_biaxial_run_at_n_100_certifies, *boo
         }
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -8,8 +8,6 @@
 #include <isostat/certificate/certify.hpp>
 #include <isostat/core/error.hpp>
 
-#include <cmath>
-
 using namespace isostat;
 using namespace isostat::test;
 
@@ -29,8 +27,6 @@ const std::vector<std::string> unions{"dimer_20_1",  "dimer_20_2",  "dimer_20_3"
                                       "dimer2_20_3", "trimer_20_1", "trimer_20_2", "trimer_20_3"};
 
 } // namespace
-
-BOOST_AUTO_TEST_SUITE(certificate)
 
 BOOST_AUTO_TEST_CASE(a_dimer_that_lies_has_the_forces_of_the_closed_form_and_one_limit) {
     const Certification truth = certify(lying_dimer(12, 12));
@@ -634,5 +630,3 @@ BOOST_AUTO_TEST_CASE(the_stress_of_clumps_is_that_of_the_walls) {
     BOOST_TEST(std::abs(mean.stress[0][0] * state.packing.length(1) - 1) < 1e-9);
     BOOST_TEST(std::abs(mean.stress[1][1] * state.packing.length(0) - 1) < 1e-9);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -1,5 +1,7 @@
 // One definition of the problem (proofs/definition.md): inspection, certificate, checker and the engine of runs speak
 // of the same load, pattern, pairs and point.
+// Level `states`: a certificate that refutes an equilibrium ends the run.
+#include "certificate/state_certifier.hpp"
 #include "checker/claims.hpp"
 #include "linear/factorisation.hpp"
 #include "statics/decisions.hpp"
@@ -8,6 +10,7 @@
 #include "support/scratch.hpp"
 #include "verified/configuration.hpp"
 
+#include <isostat/certificate/certify.hpp>
 #include <isostat/io/state_file.hpp>
 
 #include <boost/test/data/test_case.hpp>
@@ -58,9 +61,25 @@ Verdict answer(const State& state, const CertificateClaims& made, const std::str
     return claims::verdict_on(verify(claims::certificate_of(state, made)), claim);
 }
 
-} // namespace
+/// Two disks in a box, and what a run would say of them if it were wrong.
+struct Claimed {
+    State state = crafted::two_disks(1, 2, 1, 1);
+    EquilibriumRecord record;
+    RunCounters counters;
+    crafted::Recorder next;
+    scratch::Folder folder;
+    Claimed() {
+        record.number = 3;
+        record.verdict = Verdict::proved;
+    }
+    std::optional<Failure> told() {
+        StateCertifier certifier(folder.path(), "test", counters, next);
+        certifier.on_equilibrium(record, state, std::vector<double>(state.contacts.size(), 1.0));
+        return certifier.objection();
+    }
+};
 
-BOOST_AUTO_TEST_SUITE(certificate)
+} // namespace
 
 BOOST_DATA_TEST_CASE(inspection_certificate_checker_and_runs_give_one_answer, known_states, known) {
     const State state = stored(known.name);
@@ -173,4 +192,45 @@ BOOST_AUTO_TEST_CASE(where_nothing_can_move_there_is_no_equilibrium) {
     BOOST_TEST(certify(sunk).refuted.size() == 2U); // and it overlaps
 }
 
-BOOST_AUTO_TEST_SUITE_END()
+// What a run left at 0 it calls an equilibrium of the finite loads: what the infinitesimal ones do there is no
+// refutation.
+BOOST_AUTO_TEST_CASE(a_force_that_a_run_left_at_zero_is_not_refuted_by_the_infinitesimal_loads) {
+    State state = parse_state(R"({"format": "isostat-state", "version": 1, "disks": [[1, 1, 1]],
+        "length": [10, 2], "walls": {"lower": ["fixed", "fixed"], "upper": ["absent", "movable"]},
+        "load": {"kind": "nominal", "stress": [1, 1], "loaded_axis": 1, "reference_length": [1, 1]},
+        "infinitesimal": [[1, -1]], "contacts": [[0, "left"], [0, "bottom"], [0, "top"]]})",
+                              "state")
+                      .state;
+    BOOST_TEST((certify(state).verdict == Verdict::refuted));
+    state.perturbation.emplace().rho = {0.1};
+    BOOST_TEST((certify(state).verdict == Verdict::refuted));
+    state.perturbation->zero = {{crafted::left(0), {0, 0}}};
+    BOOST_TEST((certify(state).verdict == Verdict::undecided));
+    state.load.infinitesimal = {-1, -1};
+    BOOST_TEST((certify(state).verdict == Verdict::proved));
+    // At the load where it vanishes, which is no double: at the stored one the force is -1e-17.
+    state.load.disk_force = {1e-17, 0};
+    BOOST_TEST((certify(state).verdict == Verdict::refuted));
+    state.perturbation->load_zero = crafted::left(0);
+    BOOST_TEST((certify(state).verdict == Verdict::undecided));
+}
+
+BOOST_AUTO_TEST_CASE(a_refuted_equilibrium_ends_the_run_and_is_not_recorded_as_proved) {
+    Claimed wrong;
+    wrong.state.load.stress[1] = 0.01; // below the interval that the two disks support
+    const auto objection = wrong.told();
+    BOOST_REQUIRE(objection.has_value());
+    BOOST_TEST((objection->kind == FailureKind::contradiction));
+    BOOST_TEST(objection->message().find("equilibrium 3 is refuted by its certificate") != std::string::npos);
+    BOOST_TEST(wrong.counters.states.refuted == 1);
+    BOOST_REQUIRE(wrong.next.equilibria.size() == 1U);
+    BOOST_TEST((wrong.next.equilibria[0].verdict == Verdict::refuted));
+    BOOST_TEST((wrong.next.equilibria[0].certified == Verdict::refuted));
+}
+
+BOOST_AUTO_TEST_CASE(a_proved_equilibrium_is_passed_on) {
+    Claimed right;
+    BOOST_TEST(!right.told().has_value());
+    BOOST_TEST(right.counters.states.proved == 1);
+    BOOST_TEST((right.next.equilibria[0].certified == Verdict::proved));
+}

@@ -84,17 +84,13 @@ struct Worse {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(certificate)
-
 BOOST_AUTO_TEST_CASE(the_centre_has_the_constants_of_V4) {
     for (const double size : {0.0, 1e-5}) {
         const State state = pushed(read_state(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state, size);
         const auto made = required(Centre::make(state.packing, state.contacts));
         const Centre& centre = *made;
         std::vector<int> count(state.packing.radius.size(), 0);
-        double smallest = 1e300;
-        double ratio = 0;
-        double largest = 0;
+        double smallest = 1e300, ratio = 0, largest = 0;
         for (const Contact& c : state.contacts) {
             const auto i = static_cast<std::size_t>(c.i);
             const auto j = static_cast<std::size_t>(c.j);
@@ -312,5 +308,3 @@ BOOST_AUTO_TEST_CASE(periods_in_space_are_stretched_as_little_as_C4_counts_on) {
     }
     BOOST_TEST(nearest > 0.99);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -5,9 +5,6 @@
 #include <isostat/certificate/certify.hpp>
 #include <isostat/packing/load.hpp>
 
-#include <array>
-#include <cmath>
-#include <optional>
 #include <tuple>
 
 using namespace isostat;
@@ -85,8 +82,6 @@ State state_of(const Lattice& lattice) {
 }
 
 } // namespace
-
-BOOST_AUTO_TEST_SUITE(certificate_of_spheres)
 
 BOOST_AUTO_TEST_CASE(the_digits_of_another_program_lie_in_every_interval) {
     for (const std::string& name : packings) {
@@ -245,5 +240,3 @@ BOOST_AUTO_TEST_CASE(lattices_in_doubles_are_jammed_if_their_contacts_close) {
         BOOST_TEST((verdict(seen.strict) == strict));
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -15,8 +15,7 @@ using isostat::json::Json;
 /// The text of a file with one field altered.
 struct Altered {
     std::string field; ///< with the numbers of entries left out: "load.stress[0]", "disks[][2]"
-    std::string how;
-    std::string text;
+    std::string how, text;
 };
 
 /// So often each alteration of a field is tried, in the files of a kind.

@@ -7,10 +7,6 @@
 #include "support/scale.hpp"
 #include "support/scratch.hpp"
 
-#include <isostat/checker/verify.hpp>
-#include <isostat/core/error.hpp>
-#include <isostat/io/state_file.hpp>
-
 using namespace isostat;
 
 namespace {
@@ -222,8 +218,6 @@ std::vector<ClaimAlteration> alterations_of_the_state(const Certificate& origina
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(checker)
-
 BOOST_AUTO_TEST_CASE(no_altered_claim_of_a_small_packing_verifies) {
     const Certificate original = maker::certificate(small_states::with_a_rattler());
     BOOST_REQUIRE((verify(original).verdict == Verdict::proved));
@@ -272,8 +266,7 @@ BOOST_AUTO_TEST_CASE(random_forgeries_prove_nothing_that_is_wrong, *boost::unit_
     std::mt19937_64 random(7);
     const auto below = [&random](std::size_t limit) { return static_cast<std::size_t>(random() % limit); };
     const std::string digits = "0123456789.-e";
-    int read = 0;
-    int proved = 0;
+    int read = 0, proved = 0;
     for (int trial = 0; trial < testing::scaled(1500); ++trial) {
         std::string spoilt = text;
         for (std::size_t k = 1 + below(2); k > 0; --k) {
@@ -311,5 +304,3 @@ BOOST_AUTO_TEST_CASE(random_forgeries_prove_nothing_that_is_wrong, *boost::unit_
     BOOST_TEST(proved < read);
     BOOST_TEST_MESSAGE(read << " read, " << proved << " proved");
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -7,25 +7,22 @@
 #include "checker/maker.hpp"
 #include "checker/replay.hpp"
 #include "checker/small_states.hpp"
-#include "checker/smallest_gap.hpp"
 #include "oracle/pairs.hpp"
 #include "support/scale.hpp"
 #include "support/scratch.hpp"
-
-#include <isostat/io/state_file.hpp>
 
 using namespace isostat;
 
 namespace {
 
 void check_bounds(const State& state, CheckerArithmetic arithmetic) {
-    const isostat::checker::Problem problem(state);
-    const isostat::checker::Solver solver(problem);
-    const isostat::checker::InverseBound bound = isostat::checker::bound_inverse(problem, solver, arithmetic);
+    const checker::Problem problem(state);
+    const checker::Solver solver(problem);
+    const checker::InverseBound bound = checker::bound_inverse(problem, solver, arithmetic);
     BOOST_REQUIRE(bound.found);
     const maker::Matrix inverse = dense::derivative(problem).inverse();
     const maker::Matrix sizes = inverse.cwiseAbs();
-    const auto near = [](const isostat::checker::Rational& upper, maker::Real value) {
+    const auto near = [](const checker::Rational& upper, maker::Real value) {
         // R is the inverse to a relative 1e-9 here, and the oracle to 1e-12.
         return upper.get_d() >= static_cast<double>(value) * (1 - 1e-9) &&
                upper.get_d() <= static_cast<double>(value) * (1 + 1e-9);
@@ -49,24 +46,21 @@ void check_bounds(const State& state, CheckerArithmetic arithmetic) {
 }
 
 void check_sharper(const State& state) {
-    isostat::checker::Place place;
-    BOOST_REQUIRE(!isostat::checker::make_place(state, place));
-    const isostat::checker::Rational radius = place.evidence->vertex.radius;
-    const std::vector<isostat::checker::Range> forces = place.evidence->forces;
+    checker::Place place;
+    BOOST_REQUIRE(!checker::make_place(state, place));
+    const checker::Rational radius = place.evidence->vertex.radius;
+    const std::vector<checker::Range> forces = place.evidence->forces;
     BOOST_TEST(radius > 0);
-    BOOST_REQUIRE(!isostat::checker::sharpen(place, isostat::checker::usual_digits + 240));
-    BOOST_TEST((place.evidence->vertex.radius < radius * isostat::checker::power_of_two(-200)));
+    BOOST_REQUIRE(!checker::sharpen(place, checker::usual_digits + 240));
+    BOOST_TEST((place.evidence->vertex.radius < radius * checker::power_of_two(-200)));
     for (std::size_t l = 0; l < forces.size(); ++l) {
-        const isostat::checker::Range& now = place.evidence->forces[l];
-        BOOST_TEST(
-            (now.upper - now.lower <= (forces[l].upper - forces[l].lower) * isostat::checker::power_of_two(-200)));
+        const checker::Range& now = place.evidence->forces[l];
+        BOOST_TEST((now.upper - now.lower <= (forces[l].upper - forces[l].lower) * checker::power_of_two(-200)));
         BOOST_TEST((now.lower <= forces[l].upper && now.upper >= forces[l].lower)); // of the same number
     }
 }
 
 } // namespace
-
-BOOST_AUTO_TEST_SUITE(checker)
 
 BOOST_AUTO_TEST_CASE(more_digits_narrow_the_vertex_and_its_forces) {
     check_sharper(crafted::three_disks(1, 1.1, 1.3, 1, 1));
@@ -87,16 +81,15 @@ BOOST_AUTO_TEST_CASE(bounds_of_the_inverse_agree_with_a_dense_inverse) {
 
 // A factorisation of another matrix must be noticed by the residual, whatever it is.
 BOOST_AUTO_TEST_CASE(a_wrong_factorisation_proves_nothing) {
-    const isostat::checker::Problem problem(crafted::three_disks(1, 1.1, 1.3, 1, 1));
-    const isostat::checker::Problem other(crafted::three_disks(1, 1.4, 2.3, 1, 1));
-    const isostat::checker::Solver wrong(other);
-    BOOST_TEST(!isostat::checker::bound_inverse(problem, wrong, CheckerArithmetic::fixed64).found);
+    const checker::Problem problem(crafted::three_disks(1, 1.1, 1.3, 1, 1));
+    const checker::Problem other(crafted::three_disks(1, 1.4, 2.3, 1, 1));
+    const checker::Solver wrong(other);
+    BOOST_TEST(!checker::bound_inverse(problem, wrong, CheckerArithmetic::fixed64).found);
 }
 
 // K4 at the stored place itself: a useless factorisation does not lead to a better one. Rational numbers throughout.
 BOOST_AUTO_TEST_CASE(a_vertex_is_found_where_K4_has_its_condition_and_nowhere_else) {
-    namespace checker = isostat::checker;
-    using isostat::checker::Rational;
+    using checker::Rational;
     const double h = 0x1p-5;
     for (const double target : {0.1, 0.5, 0.9, 0.99, 1.01, 1.1, 1.5, 1.9, 2.5}) { // of 2 kappa eta
         State state = small_states::between_two(h);
@@ -105,9 +98,9 @@ BOOST_AUTO_TEST_CASE(a_vertex_is_found_where_K4_has_its_condition_and_nowhere_el
         const double x = std::sqrt(4 - h * h + 2 * off);
         state.packing.q[0] = 2 - x;
         state.packing.q[2] = 2 + x;
-        const isostat::checker::Problem problem(state);
-        const isostat::checker::InverseBound inverse = isostat::checker::bound_inverse(
-            problem, isostat::checker::Solver(problem), CheckerArithmetic::singular_value);
+        const checker::Problem problem(state);
+        const checker::InverseBound inverse =
+            checker::bound_inverse(problem, checker::Solver(problem), CheckerArithmetic::singular_value);
         BOOST_REQUIRE(inverse.found);
         Rational largest = 0;
         for (const std::size_t k : {0U, 2U}) {
@@ -117,9 +110,8 @@ BOOST_AUTO_TEST_CASE(a_vertex_is_found_where_K4_has_its_condition_and_nowhere_el
         }
         const Rational kappa = 8 * inverse.quadratic_sum;
         const Rational eta = inverse.row_sum * largest;
-        const isostat::checker::Problem flat(small_states::between_two(h / 64));
-        const isostat::checker::TrueVertex vertex =
-            isostat::checker::find_vertex(problem, isostat::checker::Solver(flat), inverse);
+        const checker::Problem flat(small_states::between_two(h / 64));
+        const checker::TrueVertex vertex = checker::find_vertex(problem, checker::Solver(flat), inverse);
         BOOST_TEST(vertex.found == (2 * kappa * eta < 1), target);
         if (vertex.found) {
             BOOST_TEST((vertex.radius >= 2 * eta && vertex.radius <= 2 * eta * Rational(1.001)));
@@ -131,39 +123,35 @@ BOOST_AUTO_TEST_CASE(a_vertex_is_found_where_K4_has_its_condition_and_nowhere_el
 // The vertex may be anywhere in its enclosure, so the ranges of the forces hold those of every point of it; and not a
 // hundred times more.
 BOOST_AUTO_TEST_CASE(forces_hold_at_every_point_of_the_enclosure) {
-    namespace checker = isostat::checker;
     const State state = crafted::three_disks(1, 1.1, 1.3, 1, 1.5);
-    const isostat::checker::Problem problem(state);
-    const isostat::checker::Solver solver(problem);
-    const isostat::checker::InverseBound inverse =
-        isostat::checker::bound_inverse(problem, solver, CheckerArithmetic::fixed64);
-    isostat::checker::TrueVertex vertex = isostat::checker::find_vertex(problem, solver, inverse);
+    const checker::Problem problem(state);
+    const checker::Solver solver(problem);
+    const checker::InverseBound inverse = checker::bound_inverse(problem, solver, CheckerArithmetic::fixed64);
+    checker::TrueVertex vertex = checker::find_vertex(problem, solver, inverse);
     BOOST_REQUIRE(vertex.found);
-    const isostat::checker::Rational radius = isostat::checker::power_of_two(-12);
+    const checker::Rational radius = checker::power_of_two(-12);
     vertex.moved_most += radius;
-    vertex.column_residual = inverse.residual_column + inverse.column_sum_max *
-                                                           isostat::checker::Rational(problem.column_curvature()) *
-                                                           vertex.moved_most;
-    const auto forces_at = [&](const isostat::checker::TrueVertex& at) {
-        return isostat::checker::contact_forces(problem, solver, inverse, at,
-                                                isostat::checker::finite_load(problem, state, at));
+    vertex.column_residual = inverse.residual_column +
+                             inverse.column_sum_max * checker::Rational(problem.column_curvature()) * vertex.moved_most;
+    const auto forces_at = [&](const checker::TrueVertex& at) {
+        return checker::contact_forces(problem, solver, inverse, at, checker::finite_load(problem, state, at));
     };
     vertex.radius = radius;
-    const std::vector<isostat::checker::Range> enclosed = forces_at(vertex);
-    isostat::checker::Rational farthest = 0; // of the way to an end
+    const std::vector<checker::Range> enclosed = forces_at(vertex);
+    checker::Rational farthest = 0; // of the way to an end
     std::mt19937_64 random(1);
     for (int sample = 0; sample < testing::scaled(200); ++sample) {
-        isostat::checker::TrueVertex point = vertex;
+        checker::TrueVertex point = vertex;
         point.radius = 0;
         for (const int k : problem.coordinate_of) {
             const int sign = random() % 2 == 0 ? 1 : -1;
-            point.middle[static_cast<std::size_t>(k)] += sign * isostat::checker::floor_of(radius, -problem.fine);
+            point.middle[static_cast<std::size_t>(k)] += sign * checker::floor_of(radius, -problem.fine);
         }
-        const std::vector<isostat::checker::Range> there = forces_at(point);
+        const std::vector<checker::Range> there = forces_at(point);
         for (std::size_t l = 0; l < there.size(); ++l) {
             BOOST_REQUIRE((there[l].lower >= enclosed[l].lower && there[l].upper <= enclosed[l].upper));
-            const isostat::checker::Rational middle = (enclosed[l].lower + enclosed[l].upper) / 2;
-            const isostat::checker::Rational way = abs(there[l].lower - middle) / (enclosed[l].upper - middle);
+            const checker::Rational middle = (enclosed[l].lower + enclosed[l].upper) / 2;
+            const checker::Rational way = abs(there[l].lower - middle) / (enclosed[l].upper - middle);
             farthest = std::max(farthest, way);
         }
     }
@@ -172,32 +160,31 @@ BOOST_AUTO_TEST_CASE(forces_hold_at_every_point_of_the_enclosure) {
 
 // The same for motions (K12).
 BOOST_AUTO_TEST_CASE(motions_hold_at_every_point_of_the_enclosure) {
-    namespace checker = isostat::checker;
     const State state = crafted::three_disks(1, 1.1, 1.3, 1, 1.5);
-    isostat::checker::Evidence wide(state, CheckerArithmetic::fixed64);
-    isostat::checker::Evidence point(state, CheckerArithmetic::fixed64);
+    checker::Evidence wide(state, CheckerArithmetic::fixed64);
+    checker::Evidence point(state, CheckerArithmetic::fixed64);
     BOOST_REQUIRE(wide.vertex.found);
-    const isostat::checker::Rational radius = isostat::checker::power_of_two(-12);
+    const checker::Rational radius = checker::power_of_two(-12);
     wide.vertex.radius = radius;
     wide.vertex.moved_most += radius;
     wide.vertex.row_residual += wide.problem.row_curvature() * wide.inverse.quadratic_sum * radius;
-    const std::vector<isostat::checker::Integer> middle = point.vertex.middle;
-    isostat::checker::Rational farthest = 0; // of the way to an end
+    const std::vector<checker::Integer> middle = point.vertex.middle;
+    checker::Rational farthest = 0; // of the way to an end
     std::mt19937_64 random(2);
     for (std::size_t l = 0; l < state.contacts.size(); ++l) {
-        const isostat::checker::Velocities::Solution enclosed = isostat::checker::Velocities(wide).opening(l, 1);
+        const checker::Velocities::Solution enclosed = checker::Velocities(wide).opening(l, 1);
         for (int sample = 0; sample < testing::scaled(20); ++sample) {
             for (const int k : point.problem.coordinate_of) {
                 const auto c = static_cast<std::size_t>(k);
                 const int sign = random() % 2 == 0 ? 1 : -1;
-                point.vertex.middle[c] = middle[c] + sign * isostat::checker::floor_of(radius, -point.problem.fine);
+                point.vertex.middle[c] = middle[c] + sign * checker::floor_of(radius, -point.problem.fine);
             }
             point.vertex.row_residual = wide.vertex.row_residual;
-            const isostat::checker::Velocities::Solution there = isostat::checker::Velocities(point).opening(l, 1);
+            const checker::Velocities::Solution there = checker::Velocities(point).opening(l, 1);
             for (std::size_t c = 0; c < middle.size(); ++c) {
-                const isostat::checker::Rational way = abs(there.middle[c] - enclosed.middle[c]) + there.radius;
+                const checker::Rational way = abs(there.middle[c] - enclosed.middle[c]) + there.radius;
                 BOOST_REQUIRE((way <= enclosed.radius));
-                farthest = std::max<isostat::checker::Rational>(farthest, way / enclosed.radius);
+                farthest = std::max<checker::Rational>(farthest, way / enclosed.radius);
             }
         }
     }
@@ -206,7 +193,7 @@ BOOST_AUTO_TEST_CASE(motions_hold_at_every_point_of_the_enclosure) {
 
 // One disk between four walls: the two contacts along x are alone with x and the right wall, unless that is loaded.
 BOOST_AUTO_TEST_CASE(forces_vanish_by_counting_only_without_load) {
-    using namespace isostat::checker;
+    using namespace checker;
     const Problem problem(crafted::one_disk(1, 1)); // contacts left, right, bottom, top; coordinates x, y, Lx, Ly
     Forces load(4, Range(Rational(0)));
     BOOST_TEST(vanish_structurally(problem, {0, 1}, load));
@@ -245,8 +232,8 @@ BOOST_AUTO_TEST_CASE(the_sweep_finds_the_smallest_gap) {
 }
 
 BOOST_AUTO_TEST_CASE(ranges_contain_what_they_must) {
-    using isostat::checker::Range;
-    using isostat::checker::Rational;
+    using checker::Range;
+    using checker::Rational;
     const Range a(Rational(-1, 3), Rational(1, 2));
     const Range b(Rational(-5, 7), Rational(-2, 7));
     for (const Rational& x : {a.lower, Rational(0), a.upper}) {
@@ -260,14 +247,10 @@ BOOST_AUTO_TEST_CASE(ranges_contain_what_they_must) {
             BOOST_TEST(inside(a / b, x / y));
         }
     }
-    BOOST_TEST(isostat::checker::rounded_up(Rational(1, 3)) == std::nextafter(1.0 / 3, 1.0));
-    BOOST_TEST(isostat::checker::rounded_down(Rational(1, 3)) == 1.0 / 3);
-    BOOST_TEST(isostat::checker::rounded_up(Rational(-1, 3)) == -1.0 / 3);
-    BOOST_TEST(isostat::checker::rounded_up(isostat::checker::power_of_two(-3000)) > 0);
-    BOOST_TEST(isostat::checker::rounded_up(isostat::checker::power_of_two(3000)) ==
-               std::numeric_limits<double>::infinity());
-    BOOST_TEST(isostat::checker::rounded_down(isostat::checker::power_of_two(3000)) ==
-               std::numeric_limits<double>::max());
+    BOOST_TEST(checker::rounded_up(Rational(1, 3)) == std::nextafter(1.0 / 3, 1.0));
+    BOOST_TEST(checker::rounded_down(Rational(1, 3)) == 1.0 / 3);
+    BOOST_TEST(checker::rounded_up(Rational(-1, 3)) == -1.0 / 3);
+    BOOST_TEST(checker::rounded_up(checker::power_of_two(-3000)) > 0);
+    BOOST_TEST(checker::rounded_up(checker::power_of_two(3000)) == std::numeric_limits<double>::infinity());
+    BOOST_TEST(checker::rounded_down(checker::power_of_two(3000)) == std::numeric_limits<double>::max());
 }
-
-BOOST_AUTO_TEST_SUITE_END()

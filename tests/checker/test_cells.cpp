@@ -5,14 +5,13 @@
 #include "checker/gaps.hpp"
 #include "checker/maker.hpp"
 #include "checker/replay.hpp"
-#include "checker/smallest_gap.hpp"
+#include "checker/small_states.hpp"
 #include "checker/strut.hpp"
 #include "oracle/pairs.hpp"
 #include "support/cells.hpp"
 #include "support/scale.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/io/state_file.hpp>
 
 using namespace claims;
 
@@ -45,8 +44,6 @@ bool accepted(const Certificate& certificate) {
 }
 
 } // namespace
-
-BOOST_AUTO_TEST_SUITE(checker)
 
 BOOST_AUTO_TEST_CASE(every_arithmetic_proves_small_cells) {
     for (const State& state : small_cells()) {
@@ -115,20 +112,15 @@ BOOST_AUTO_TEST_CASE(forged_certificates_of_cells_do_not_verify) {
         const char* name;
         std::function<void(Certificate&)> forge;
     };
+    const auto first_image = [](Certificate& c) -> Image& {
+        return std::find_if(c.state.contacts.begin(), c.state.contacts.end(),
+                            [](const Contact& l) { return l.i != l.j && !l.image.is_here(); })
+            ->image;
+    };
     const std::vector<Forgery> forgeries{
         {"an image changed", [](Certificate& c) { c.state.contacts[0].image.m[1] = 1; }},
-        {"an image left out",
-         [](Certificate& c) {
-             const auto with_image = std::find_if(c.state.contacts.begin(), c.state.contacts.end(),
-                                                  [](const Contact& l) { return l.i != l.j && !l.image.is_here(); });
-             with_image->image = {};
-         }},
-        {"an image turned round",
-         [](Certificate& c) {
-             const auto with_image = std::find_if(c.state.contacts.begin(), c.state.contacts.end(),
-                                                  [](const Contact& l) { return l.i != l.j && !l.image.is_here(); });
-             with_image->image = with_image->image.opposite();
-         }},
+        {"an image left out", [&](Certificate& c) { first_image(c) = {}; }},
+        {"an image turned round", [&](Certificate& c) { first_image(c) = first_image(c).opposite(); }},
         {"a contact left out", [](Certificate& c) { c.state.contacts.pop_back(); }},
         {"a period longer", [](Certificate& c) { c.state.packing.length(0) *= 1 + 1e-9; }},
         {"a tilt", [](Certificate& c) { c.state.packing.q.back() += 1e-9; }},
@@ -241,7 +233,6 @@ BOOST_AUTO_TEST_CASE(the_sweep_finds_the_smallest_gap_among_images) {
 
 // The vertex may be anywhere in its enclosure, the cell too.
 BOOST_AUTO_TEST_CASE(forces_in_a_cell_hold_at_every_point_of_the_enclosure) {
-    namespace checker = isostat::checker;
     for (const State& state : {cells::one_tilted_disk(2, 1, 0.25), sheared_rectangle(), of_file("tilt")}) {
         const checker::Problem problem(state);
         const checker::Solver solver(problem);
@@ -276,14 +267,12 @@ BOOST_AUTO_TEST_CASE(forces_in_a_cell_hold_at_every_point_of_the_enclosure) {
 
 // K1 (b) and K2: rows and columns of the derivative between two configurations.
 BOOST_AUTO_TEST_CASE(the_derivative_changes_by_at_most_its_curvature) {
-    namespace checker = isostat::checker;
     std::mt19937_64 random(5);
     std::vector<State> states = small_cells();
     states.push_back(of_file("tilt"));
     for (const State& state : states) {
         const checker::Problem problem(state);
-        checker::Integer farthest_row = 0;
-        checker::Integer farthest_column = 0;
+        checker::Integer farthest_row = 0, farthest_column = 0;
         const checker::Integer step = checker::shifted_left(1, problem.spare);
         for (int sample = 0; sample < testing::scaled(100); ++sample) {
             std::vector<checker::Integer> q = problem.stored;
@@ -329,13 +318,11 @@ BOOST_AUTO_TEST_CASE(a_disk_between_images_carries_force_where_they_are_on_one_l
                             {ContactKind::held, 3, 0},
                             {ContactKind::held, 5, 0}});
         snap_to_grid(state.packing);
-        isostat::checker::Place place;
-        (void)isostat::checker::make_place(state, place, {}, 4);
+        checker::Place place;
+        (void)checker::make_place(state, place, {}, 4);
         BOOST_TEST_REQUIRE(place.evidence->vertex.found);
         for (const std::size_t l : {0U, 1U}) {
-            BOOST_TEST(isostat::checker::without_force(place)[l] == (y > 0));
+            BOOST_TEST(checker::without_force(place)[l] == (y > 0));
         }
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

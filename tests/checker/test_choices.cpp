@@ -2,9 +2,6 @@
 #include "support/mirror.hpp"
 #include "support/played.hpp"
 
-#include <isostat/checker/verify.hpp>
-#include <isostat/io/state_file.hpp>
-
 using namespace isostat;
 using forger::altered;
 namespace fs = std::filesystem;
@@ -47,8 +44,6 @@ struct ForgedExchange {
 };
 
 } // namespace
-
-BOOST_AUTO_TEST_SUITE(checker)
 
 BOOST_AUTO_TEST_CASE(a_forged_choice_is_refused) {
     const scratch::Folder folder;
@@ -264,5 +259,3 @@ BOOST_AUTO_TEST_CASE(an_exchange_for_a_pair_that_parts_at_second_order_is_refuse
                            : altered(folder, "events.jsonl", "}\n", ",\"perturbed\":[" + entry + "]}\n"),
                     "second derivative");
 }
-
-BOOST_AUTO_TEST_SUITE_END()

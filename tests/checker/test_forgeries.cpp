@@ -5,14 +5,12 @@
 #include "support/clumps.hpp"
 #include "support/crafted.hpp"
 #include "support/mirror.hpp"
+#include "support/played.hpp"
 #include "support/same_sequence.hpp"
 #include "support/segments.hpp"
 
 #include <isostat/certificate/certify.hpp>
-#include <isostat/checker/verify.hpp>
-#include <isostat/core/error.hpp>
 #include <isostat/io/run_directory.hpp>
-#include <isostat/io/state_file.hpp>
 
 using namespace isostat;
 namespace fs = std::filesystem;
@@ -20,63 +18,22 @@ using json::Json;
 
 namespace {
 
-/// Certificates of the equilibria, as a run of level `arcs` has them.
-class Certifying final : public RunObserver {
-  public:
-    explicit Certifying(RunDirectory& next) : next_(next) {}
-    void on_arc(const ArcRecord& arc) override { next_.on_arc(arc); }
-    void on_equilibrium(const EquilibriumRecord& record, const State& state,
-                        const std::vector<double>& forces) override {
-        write(next_.path(), record.number, state);
-        EquilibriumRecord certified = record;
-        certified.certified = Verdict::proved;
-        next_.on_equilibrium(certified, state, forces);
-    }
-    static void write(const fs::path& run, int number, const State& state) {
-        Certificate certificate;
-        certificate.input = "equilibrium";
-        certificate.program = "test";
-        certificate.state = state;
-        certificate.state.provenance.clear();
-        certificate.input_hash = sha256(state_text(certificate.state));
-        certificate.claims = certify(certificate.state).claims;
-        write_certificate(run / "certificates" / ("eq_00000" + std::to_string(number) + ".json"), certificate);
-    }
-
-  private:
-    RunDirectory& next_;
-};
+/// Puts another state into a certificate, with what is true of it.
+void certify_again(const fs::path& file, const State& state) {
+    Certificate certificate = read_certificate(file);
+    certificate.state = state;
+    certificate.state.provenance.clear();
+    certificate.input_hash = sha256(state_text(certificate.state));
+    certificate.claims = certify(certificate.state).claims;
+    write_certificate(file, certificate);
+}
 
 void play(const State& start, const std::vector<Segment>& segments, const fs::path& folder,
           CertifyLevel level = CertifyLevel::arcs, TiePolicy ties = TiePolicy::stop) {
-    const bool arcs = level == CertifyLevel::arcs;
-    RunHeader header;
-    header.program = "test";
-    header.settings = Json{{"run",
-                            {{"rule", "most_negative"},
-                             {"certify", to_string(level)},
-                             {"ties", tie_policy_words[static_cast<std::size_t>(ties)]},
-                             {"ties_seed", 1}}}}
-                          .dump();
-    header.programme.assign(segments.size(), "segment");
-    header.states_every = 1;
-    header.witnesses = arcs;
-    header.touching = ties == TiePolicy::choose;
-    RunCounters counters;
-    RunDirectory directory(folder, header, RunDirectory::Mode::fresh, counters);
-    directory.store_start(start);
-    Certifying certifying(directory);
-    RunObserver& observer = arcs ? static_cast<RunObserver&>(certifying) : directory;
-    State state = start;
-    RunOptions options{.max_strain = 1e9, .certify = level, .ties = ties};
-    for (std::size_t k = 0; k < segments.size(); ++k) {
-        directory.begin_segment(static_cast<int>(k), segments[k], 0, counters.equilibria);
-        const SegmentOutcome outcome =
-            run_segment(state, segments[k], static_cast<int>(k), options, counters, observer);
-        const bool played = outcome.completed || ties == TiePolicy::choose; // a lattice may end at its walls
-        BOOST_REQUIRE_MESSAGE(played, (outcome.failure ? outcome.failure->message() : ""));
-    }
-    directory.finish(RunStatus::completed, "");
+    const RunOptions options{.max_strain = 1e9, .certify = level, .ties = ties};
+    const SegmentOutcome outcome = played::into(folder, start, segments, options, true);
+    const bool played = outcome.completed || ties == TiePolicy::choose; // a lattice may end at its walls
+    BOOST_REQUIRE_MESSAGE(played, (outcome.failure ? outcome.failure->message() : ""));
 }
 
 /// Two forces that vanish together, which nothing but the infinitesimal loads orders.
@@ -239,8 +196,6 @@ std::string said_of(const fs::path& original, const std::function<void(const fs:
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(checker)
-
 BOOST_AUTO_TEST_CASE(some_altered_fields_of_signed_runs_are_refused_or_undecided_or_listed_on_the_page,
                      *boost::unit_test::label("slow")) {
     altered_run::Counts counts;
@@ -394,7 +349,7 @@ BOOST_AUTO_TEST_CASE(a_disk_that_passes_through_another_one_is_not_proved) {
         file.state.packing.q[9] = near.packing.q[9];
         write_state(run / "states" / name, file.state, file.forces);
         if (name[0] == 'e') {
-            Certifying::write(run, name[8] - '0', file.state);
+            certify_again(run / "certificates" / name, file.state);
         }
     }
     const std::vector<std::string> names = equilibria_columns();
@@ -404,8 +359,8 @@ BOOST_AUTO_TEST_CASE(a_disk_that_passes_through_another_one_is_not_proved) {
     for (const std::size_t row : {1, 2}) {
         const State state = read_state(run / ("states/eq_00000" + std::to_string(row - 1) + ".json")).state;
         const std::vector<std::string> fields = fields_of(run, row);
-        const auto nearest = isostat::checker::contact_of_columns(
-            std::stoi(fields[column("min_gap_i")]), std::stoi(fields[column("min_gap_j")]), state.packing);
+        const auto nearest = checker::contact_of_columns(std::stoi(fields[column("min_gap_i")]),
+                                                         std::stoi(fields[column("min_gap_j")]), state.packing);
         BOOST_REQUIRE(nearest.has_value());
         set_field(run, row, column("min_gap"), Json(gap(state.packing, *nearest)).dump(), "");
         set_field(run, row, column("min_gap_bound"), "1e-12", "");
@@ -419,5 +374,3 @@ BOOST_AUTO_TEST_CASE(a_disk_that_passes_through_another_one_is_not_proved) {
     BOOST_TEST((forged.undecided[0].find("the gap of 0-4 is not proved positive") != std::string::npos),
                forged.undecided[0]);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

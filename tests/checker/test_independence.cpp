@@ -30,11 +30,8 @@ bool of_the_standard(const std::string& header) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(checker)
-
 BOOST_AUTO_TEST_CASE(the_checker_includes_nothing_of_what_it_checks) {
-    int files = 0;
-    int headers = 0;
+    int files = 0, headers = 0;
     for (const char* folder : {"/../src/checker", "/../include/isostat/checker"}) {
         for (const auto& entry : std::filesystem::directory_iterator(std::string(ISOSTAT_EXAMPLES) + folder)) {
             ++files;
@@ -54,5 +51,3 @@ BOOST_AUTO_TEST_CASE(the_checker_includes_nothing_of_what_it_checks) {
     BOOST_TEST(files > 20);
     BOOST_TEST(headers > 50);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -6,10 +6,7 @@
 #include "support/same_sequence.hpp"
 #include "support/strut.hpp"
 
-#include <isostat/checker/verify.hpp>
-#include <isostat/core/error.hpp>
 #include <isostat/core/machine.hpp>
-#include <isostat/io/state_file.hpp>
 
 using namespace isostat;
 
@@ -165,13 +162,10 @@ void refutes_a_row_before(const std::filesystem::path& folder, int line) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(checker)
-
 BOOST_AUTO_TEST_CASE(progress_counts_every_arc_and_every_equilibrium_once) {
     const scratch::Folder folder;
     play_and_store(read_state(scratch::data("vertex100.txt")).state, {2}, folder / "run");
-    int arcs = 0;
-    int equilibria = 0;
+    int arcs = 0, equilibria = 0;
     VerificationProgress last;
     const RunVerification run = verify_run(folder / "run", [&](const VerificationProgress& at) {
         (at.closed ? equilibria : arcs) += 1;
@@ -196,12 +190,12 @@ BOOST_AUTO_TEST_CASE(the_rolling_disk_is_replayed) {
 BOOST_AUTO_TEST_CASE(what_a_grain_without_force_puts_on_a_strut_orders_its_ends) {
     for (const double angle : {0.5235987755982988, 1.3089969389957472}) {
         for (const crafted::StrutLoad& load : crafted::strut_loads()) {
-            isostat::checker::Place place;
-            const auto objection = isostat::checker::make_place(crafted::strut_with_a_grain(angle, load), place, {}, 7);
+            checker::Place place;
+            const auto objection = checker::make_place(crafted::strut_with_a_grain(angle, load), place, {}, 7);
             BOOST_REQUIRE_MESSAGE(!objection, (objection ? objection->text : ""));
-            BOOST_TEST(isostat::checker::same_at_turn(place, 0, 1));
-            BOOST_TEST(isostat::checker::strut_order(place, 0, 1).value_or(0) == (load.to_the_right ? -1 : 1));
-            BOOST_TEST(isostat::checker::strut_order(place, 1, 0).value_or(0) == (load.to_the_right ? 1 : -1));
+            BOOST_TEST(checker::same_at_turn(place, 0, 1));
+            BOOST_TEST(checker::strut_order(place, 0, 1).value_or(0) == (load.to_the_right ? -1 : 1));
+            BOOST_TEST(checker::strut_order(place, 1, 0).value_or(0) == (load.to_the_right ? 1 : -1));
         }
     }
 }
@@ -232,15 +226,11 @@ BOOST_AUTO_TEST_CASE(a_run_by_contact_numbers_is_verified_and_no_other_rule_fits
     const scratch::Folder folder;
     play_and_store(prepared(36, 3), {3}, folder / "run", OpeningRule::least_index);
     const RunVerification run = played::proved(folder / "run");
-    const std::string header = scratch::read(folder / "run/run.json");
-    scratch::write(folder / "run/run.json", scratch::replaced(header, "least_index", "most_negative"));
-    const RunVerification other = verify_run(folder / "run");
-    BOOST_TEST((other.wrong.find("but the rule 'most_negative' takes") != std::string::npos), other.wrong);
+    played::refuted(forger::altered(folder / "run", "run.json", "least_index", "most_negative"),
+                    "but the rule 'most_negative' takes");
     play_and_store(prepared(36, 3), {3}, folder / "most");
-    const std::string paper = scratch::read(folder / "most/run.json");
-    scratch::write(folder / "most/run.json", scratch::replaced(paper, "most_negative", "least_index"));
-    const RunVerification most = verify_run(folder / "most");
-    BOOST_TEST((most.wrong.find("but the rule 'least_index' takes") != std::string::npos), most.wrong);
+    played::refuted(forger::altered(folder / "most", "run.json", "most_negative", "least_index"),
+                    "but the rule 'least_index' takes");
 }
 
 // Under true stresses the load changes along an arc: the derivatives of the power count that.
@@ -297,17 +287,10 @@ BOOST_AUTO_TEST_CASE(a_run_of_a_hundred_disks_is_replayed_and_altered_records_ar
     finds(folder / "run", {"events.jsonl", 1, "\"opened\":\"" + name_in("opened", 1), "\"opened\":\"" + kept, ""});
 
     // Several forces are negative somewhere: the other rule takes another one of them.
-    const std::string header = scratch::read(folder / "run/run.json");
-    scratch::write(folder / "run/run.json", scratch::replaced(header, "most_negative", "least_negative"));
-    played::refuted(verify_run(folder / "run"), "but the rule 'least_negative' takes");
-    scratch::write(folder / "run/run.json", header);
+    played::refuted(forger::altered(folder / "run", "run.json", "most_negative", "least_negative"),
+                    "but the rule 'least_negative' takes");
     // A record left out.
-    const std::string without = scratch::replaced(events, line_of(events, tension) + "\n", "");
-    scratch::write(folder / "run/events.jsonl", without);
-    forger::seal(folder / "run");
-    BOOST_TEST((verify_run(folder / "run").verdict == Verdict::refuted));
-    scratch::write(folder / "run/events.jsonl", events);
-    forger::seal(folder / "run");
+    played::refuted(forger::altered(folder / "run", "events.jsonl", line_of(events, tension) + "\n", ""), "");
     refutes_a_row_before(folder / "run", tension);
     // Another stored state, by a coordinate and by a contact.
     const std::filesystem::path stored = folder / "run/states/eq_000001.json";
@@ -438,5 +421,3 @@ BOOST_AUTO_TEST_CASE(folders_without_the_records_are_bad_input) {
     scratch::write(folder / "equilibria.csv", "# number,previous\n0,-1\n");
     expect_bad_input([&] { (void)verify_run(folder.path()); }, {"the names of the columns"});
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -8,16 +8,13 @@
 #include "support/scratch.hpp"
 
 #include <isostat/checker/verify.hpp>
-#include <isostat/io/state_file.hpp>
 
 #include <Eigen/SVD>
 
-#include <numeric>
-
 using namespace isostat;
-using isostat::checker::Problem;
-using isostat::checker::smallest_singular_value;
-using isostat::checker::Solver;
+using checker::Problem;
+using checker::smallest_singular_value;
+using checker::Solver;
 
 namespace {
 
@@ -41,8 +38,8 @@ void agrees_with_a_dense_one(const State& state) {
     }
 
     // What follows from it, against the inverse itself.
-    const isostat::checker::InverseBound sums =
-        isostat::checker::bound_inverse(problem, Solver(problem), CheckerArithmetic::singular_value);
+    const checker::InverseBound sums =
+        checker::bound_inverse(problem, Solver(problem), CheckerArithmetic::singular_value);
     BOOST_REQUIRE(sums.found);
     const Eigen::MatrixXd sizes = a.inverse().cwiseAbs();
     BOOST_TEST(sums.row_sum.get_d() >= sizes.rowwise().sum().maxCoeff());
@@ -62,16 +59,12 @@ Verdict about_vertex(const Certificate& certificate, CheckerArithmetic arithmeti
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(checker)
-
 BOOST_AUTO_TEST_CASE(the_singular_value_agrees_with_a_dense_one, *boost::unit_test::label("slow")) {
-    agrees_with_a_dense_one(crafted::one_disk(1, 1));
-    agrees_with_a_dense_one(crafted::three_disks(1, 1.1, 1.3, 1, 1));
-    agrees_with_a_dense_one(small_states::with_a_rattler());
-    agrees_with_a_dense_one(small_states::with_a_fixed_disk());
-    agrees_with_a_dense_one(small_states::in_a_corner());
-    agrees_with_a_dense_one(sample("vertex100.txt"));
-    agrees_with_a_dense_one(sample("vertex400.txt"));
+    for (const State& state : {crafted::one_disk(1, 1), crafted::three_disks(1, 1.1, 1.3, 1, 1),
+                               small_states::with_a_rattler(), small_states::with_a_fixed_disk(),
+                               small_states::in_a_corner(), sample("vertex100.txt"), sample("vertex400.txt")}) {
+        agrees_with_a_dense_one(state);
+    }
 }
 
 // The rows are (2, h) and (-2, h): singular values sqrt(8) and sqrt(2) h.
@@ -121,21 +114,20 @@ BOOST_AUTO_TEST_CASE(a_wall_with_more_than_2_to_the_16_contacts_has_no_singular_
 BOOST_AUTO_TEST_CASE(lengths_scale) {
     for (const int exponent : {-900, -60, 60, 900}) {
         State state = small_states::with_a_rattler();
-        const isostat::checker::Rational one = smallest_singular_value(Problem(state)).value();
+        const checker::Rational one = smallest_singular_value(Problem(state)).value();
         for (std::vector<double>* lengths : {&state.packing.q, &state.packing.radius}) {
             for (double& x : *lengths) {
                 x = std::ldexp(x, exponent);
             }
         }
-        const isostat::checker::Rational scaled = smallest_singular_value(Problem(state)).value();
-        BOOST_TEST((scaled == one * isostat::checker::power_of_two(exponent)), exponent);
+        const checker::Rational scaled = smallest_singular_value(Problem(state)).value();
+        BOOST_TEST((scaled == one * checker::power_of_two(exponent)), exponent);
     }
 }
 
 // No way of bounding the inverse shows the widest uniqueness everywhere; `automatic` is not weaker than either.
 BOOST_AUTO_TEST_CASE(a_claim_beyond_the_singular_value_is_decided_row_by_row) {
-    int by_rows = 0;
-    int by_singular_value = 0;
+    int by_rows = 0, by_singular_value = 0;
     for (const State& state :
          {crafted::one_disk(1, 1), crafted::three_disks(1, 1.1, 1.3, 1, 1), small_states::with_a_rattler(),
           small_states::in_a_corner(), crafted::two_disks(1, 2, 1, 1), crafted::two_disks(1, 40, 1, 1),
@@ -144,9 +136,8 @@ BOOST_AUTO_TEST_CASE(a_claim_beyond_the_singular_value_is_decided_row_by_row) {
         const Problem problem(state);
         const Solver solver(problem);
         const auto unique = [&](CheckerArithmetic arithmetic) {
-            const isostat::checker::InverseBound bound = isostat::checker::bound_inverse(problem, solver, arithmetic);
-            return bound.found ? isostat::checker::largest_unique_distance(
-                                     bound, isostat::checker::find_vertex(problem, solver, bound))
+            const checker::InverseBound bound = checker::bound_inverse(problem, solver, arithmetic);
+            return bound.found ? checker::largest_unique_distance(bound, checker::find_vertex(problem, solver, bound))
                                : 0.0;
         };
         const double wide = unique(CheckerArithmetic::singular_value);
@@ -167,5 +158,3 @@ BOOST_AUTO_TEST_CASE(a_claim_beyond_the_singular_value_is_decided_row_by_row) {
     BOOST_TEST(by_rows > 0);
     BOOST_TEST(by_singular_value > 0);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -26,16 +26,13 @@ Interval neighbours(double value) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(checker)
-
 BOOST_AUTO_TEST_CASE(every_arithmetic_proves_the_small_cases) {
-    for (const CheckerArithmetic arithmetic : every_arithmetic) {
-        are_proved(verify(maker::certificate(crafted::one_disk(1, 2)), arithmetic));
-        are_proved(verify(maker::certificate(crafted::two_disks(1, 2, 1, 1)), arithmetic));
-        are_proved(verify(maker::certificate(crafted::three_disks(1, 1.1, 1.3, 1, 1)), arithmetic));
-        are_proved(verify(maker::certificate(small_states::with_a_rattler()), arithmetic));
-        are_proved(verify(maker::certificate(small_states::with_a_fixed_disk()), arithmetic));
-        are_proved(verify(maker::certificate(small_states::in_a_corner()), arithmetic));
+    for (const State& state :
+         {crafted::one_disk(1, 2), crafted::two_disks(1, 2, 1, 1), crafted::three_disks(1, 1.1, 1.3, 1, 1),
+          small_states::with_a_rattler(), small_states::with_a_fixed_disk(), small_states::in_a_corner()}) {
+        for (const CheckerArithmetic arithmetic : every_arithmetic) {
+            are_proved(verify(maker::certificate(state), arithmetic));
+        }
     }
 }
 
@@ -211,5 +208,3 @@ BOOST_AUTO_TEST_CASE(scales_from_tiny_to_huge) {
         are_proved(verify(certificate));
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -5,23 +5,20 @@
 #include "checker/evidence.hpp"
 #include "checker/gaps.hpp"
 #include "checker/images.hpp"
+#include "checker/maker.hpp"
 #include "checker/singular_value.hpp"
-#include "checker/smallest_gap.hpp"
+#include "checker/small_states.hpp"
 #include "oracle/pairs.hpp"
 #include "support/spheres.hpp"
-#include "support/test.hpp"
 
 #include <isostat/core/error.hpp>
 
 #include <Eigen/SVD>
 
-#include <functional>
-#include <random>
-
 using namespace claims;
-using namespace isostat::checker;
+using namespace checker;
 using namespace isostat::test;
-namespace room = isostat::checker;
+namespace room = checker;
 
 namespace {
 
@@ -65,40 +62,35 @@ room::TrueVertex blurred(const Problem& problem, const Rational& radius) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(checker)
-
 BOOST_AUTO_TEST_CASE(what_is_certified_of_spheres_verifies) {
     for (const std::string& name : random_packings) {
-        BOOST_TEST_CONTEXT(name) {
-            are_proved(read_and_verified(certified(state_of_spheres(read_spheres(name)))));
-        }
+        BOOST_TEST_INFO_SCOPE(name);
+        are_proved(read_and_verified(certified(state_of_spheres(read_spheres(name)))));
     }
     for (const char* name : {"closed_one", "closed_rattler", "closed_two", "closed_three", "closed_tetra"}) {
-        BOOST_TEST_CONTEXT(name) {
-            State state = state_of_spheres(read_spheres(name));
-            state.load.stress = {1, 1.3, 1.7};
-            const Certificate certificate = certified(state);
-            for (const CheckerArithmetic arithmetic : {CheckerArithmetic::singular_value, CheckerArithmetic::fixed64,
-                                                       CheckerArithmetic::gmp, CheckerArithmetic::rational}) {
-                are_proved(read_and_verified(certificate, arithmetic));
-            }
+        BOOST_TEST_INFO_SCOPE(name);
+        State state = state_of_spheres(read_spheres(name));
+        state.load.stress = {1, 1.3, 1.7};
+        const Certificate certificate = certified(state);
+        for (const CheckerArithmetic arithmetic : {CheckerArithmetic::singular_value, CheckerArithmetic::fixed64,
+                                                   CheckerArithmetic::gmp, CheckerArithmetic::rational}) {
+            are_proved(read_and_verified(certificate, arithmetic));
         }
     }
 }
 
 BOOST_AUTO_TEST_CASE(ranges_of_forces_of_spheres_hold_the_digits_of_another_program) {
     for (const std::string& name : random_packings) {
-        BOOST_TEST_CONTEXT(name) {
-            const auto file = read_spheres(name);
-            const State state = state_of_spheres(file);
-            const Evidence evidence(state, CheckerArithmetic::automatic);
-            BOOST_TEST_REQUIRE(evidence.vertex.found);
-            BOOST_TEST_REQUIRE(file["forces"].size() == evidence.forces.size());
-            for (std::size_t l = 0; l < evidence.forces.size(); ++l) {
-                BOOST_TEST(has_digits(evidence.forces[l], exactly(file["forces"][l])), evidence.name(l));
-                const Range slope = evidence.slopes()[l] * Range(Rational(state.load.stress[2]));
-                BOOST_TEST(has_digits(slope, exactly(file["forces_per_unit_ratio"][l])), evidence.name(l));
-            }
+        BOOST_TEST_INFO_SCOPE(name);
+        const auto file = read_spheres(name);
+        const State state = state_of_spheres(file);
+        const Evidence evidence(state, CheckerArithmetic::automatic);
+        BOOST_TEST_REQUIRE(evidence.vertex.found);
+        BOOST_TEST_REQUIRE(file["forces"].size() == evidence.forces.size());
+        for (std::size_t l = 0; l < evidence.forces.size(); ++l) {
+            BOOST_TEST(has_digits(evidence.forces[l], exactly(file["forces"][l])), evidence.name(l));
+            const Range slope = evidence.slopes()[l] * Range(Rational(state.load.stress[2]));
+            BOOST_TEST(has_digits(slope, exactly(file["forces_per_unit_ratio"][l])), evidence.name(l));
         }
     }
 }
@@ -452,5 +444,3 @@ BOOST_AUTO_TEST_CASE(contacts_of_spheres_have_their_names) {
     state.packing.cell.pin = 0;
     BOOST_TEST(Problem(state).unsupported.find(to_string(state.contacts[0], 3)) != std::string::npos);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

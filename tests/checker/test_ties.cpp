@@ -5,9 +5,6 @@
 #include "support/mirror_cells.hpp"
 #include "support/played.hpp"
 
-#include <isostat/checker/verify.hpp>
-#include <isostat/io/state_file.hpp>
-
 using namespace isostat;
 using crafted::Ties;
 namespace fs = std::filesystem;
@@ -30,15 +27,13 @@ void is_proved(const fs::path& folder) {
 /// One change in a file; the replay must not accept it, and refute the run with these words.
 bool finds(const fs::path& folder, const std::string& file, const std::string& from, const std::string& to,
            const std::string& said) {
-    BOOST_TEST_CONTEXT(file << " " << from << " -> " << to) {
-        const RunVerification run = forger::altered(folder, file, from, to);
-        // What the way seems to be refutes nothing: then the record is left undecided, and named.
-        const bool seen = run.verdict == Verdict::undecided && run.undecided[0].find("as far as") != std::string::npos;
-        BOOST_TEST((seen || run.verdict == Verdict::refuted), (run.undecided.empty() ? "" : run.undecided[0]));
-        BOOST_TEST((seen || run.wrong.find(said) != std::string::npos), run.wrong);
-        return run.verdict == Verdict::refuted;
-    }
-    return false;
+    BOOST_TEST_INFO_SCOPE(file << " " << from << " -> " << to);
+    const RunVerification run = forger::altered(folder, file, from, to);
+    // What the way seems to be refutes nothing: then the record is left undecided, and named.
+    const bool seen = run.verdict == Verdict::undecided && run.undecided[0].find("as far as") != std::string::npos;
+    BOOST_TEST((seen || run.verdict == Verdict::refuted), (run.undecided.empty() ? "" : run.undecided[0]));
+    BOOST_TEST((seen || run.wrong.find(said) != std::string::npos), run.wrong);
+    return run.verdict == Verdict::refuted;
 }
 
 /// The text of the number or list after "name": in the first line that has it.
@@ -56,9 +51,25 @@ std::string scaled(const std::string& number, double factor) {
     return text.str();
 }
 
-} // namespace
+/// The number at the head of the first list of this name in the events, multiplied.
+void finds_head(const fs::path& folder, const std::string& name, double factor) {
+    const std::string head = value_of(scratch::read(folder / "events.jsonl"), name).substr(1);
+    const std::string key = "\"" + name + "\":[";
+    finds(folder, "events.jsonl", key + head, key + scaled(head, factor), "first-order");
+}
 
-BOOST_AUTO_TEST_SUITE(checker)
+/// The first term of a list of equilibrium 1, multiplied; `name` ends with this in its contact.
+void finds_term(const fs::path& folder, const std::string& list, const std::string& name, double factor,
+                const std::string& said) {
+    const std::string stored = scratch::read(folder / "states/eq_000001.json");
+    const std::size_t at = stored.find("\"" + list + "\":[[");
+    BOOST_REQUIRE(at != std::string::npos);
+    const std::size_t begin = stored.find(name, at) + name.size();
+    const std::string term = stored.substr(begin, stored.find(',', begin) - begin);
+    finds(folder, "states/eq_000001.json", name + term, name + scaled(term, factor), said);
+}
+
+} // namespace
 
 BOOST_AUTO_TEST_CASE(power_turn_held_coordinate_and_release_are_replayed_and_altered_ones_are_found) {
     const scratch::Folder folder;
@@ -92,12 +103,10 @@ BOOST_AUTO_TEST_CASE(a_tie_of_two_forces_is_replayed_and_altered_first_order_ter
     play(crafted::mirror_forces(), towards(-1), Ties::first_order, 1, folder);
     is_proved(folder);
     BOOST_TEST(verify_run(folder).ties_checked == 2);
-    const std::string events = scratch::read(folder / "events.jsonl");
-    const std::string first = value_of(events, "first_order").substr(1);
-    finds(folder, "events.jsonl", "\"first_order\":[" + first, "\"first_order\":[" + scaled(first, -1), "first-order");
-    finds(folder, "events.jsonl", "\"first_order\":[" + first, "\"first_order\":[" + scaled(first, 1 + 1e-6),
-          "first-order");
+    finds_head(folder, "first_order", -1);
+    finds_head(folder, "first_order", 1 + 1e-6);
     // The other one of the two is said to open.
+    const std::string events = scratch::read(folder / "events.jsonl");
     const bool one = events.find("\"opened\":\"1-bottom\"") != std::string::npos;
     finds(folder, "events.jsonl", one ? "\"opened\":\"1-bottom\"" : "\"opened\":\"2-bottom\"",
           one ? "\"opened\":\"2-bottom\"" : "\"opened\":\"1-bottom\"", "at first order");
@@ -105,11 +114,7 @@ BOOST_AUTO_TEST_CASE(a_tie_of_two_forces_is_replayed_and_altered_first_order_ter
     const std::string stored = scratch::read(folder / "states/eq_000001.json");
     const std::string rho = value_of(stored, "rho").substr(1);
     finds(folder, "states/eq_000001.json", "\"rho\":[" + rho, "\"rho\":[" + scaled(rho, 2), "direction of the radii");
-    const std::size_t zero = stored.find("\"zero\":[[");
-    BOOST_REQUIRE(zero != std::string::npos);
-    const std::size_t begin = stored.find("],", zero) + 2;
-    const std::string term = stored.substr(begin, stored.find(',', begin) - begin);
-    finds(folder, "states/eq_000001.json", "]," + term, "]," + scaled(term, 1.001), "first-order force");
+    finds_term(folder, "zero", "],", 1.001, "first-order force");
 }
 
 BOOST_AUTO_TEST_CASE(a_tie_of_two_gaps_is_replayed_and_an_altered_choice_is_found) {
@@ -120,15 +125,8 @@ BOOST_AUTO_TEST_CASE(a_tie_of_two_gaps_is_replayed_and_an_altered_choice_is_foun
     const bool one = events.find("\"closed\":\"1-bottom\"") != std::string::npos;
     finds(folder, "events.jsonl", one ? "\"closed\":\"1-bottom\"" : "\"closed\":\"2-bottom\"",
           one ? "\"closed\":\"2-bottom\"" : "\"closed\":\"1-bottom\"", "first-order gap");
-    const std::string other = value_of(events, "against_first_order").substr(1);
-    finds(folder, "events.jsonl", "\"against_first_order\":[" + other,
-          "\"against_first_order\":[" + scaled(other, 1 + 1e-6), "first-order");
-    const std::string stored = scratch::read(folder / "states/eq_000001.json");
-    const std::size_t open = stored.find("\"open\":[[");
-    BOOST_REQUIRE(open != std::string::npos);
-    const std::size_t begin = stored.find("],", open) + 2;
-    const std::string term = stored.substr(begin, stored.find(',', begin) - begin);
-    finds(folder, "states/eq_000001.json", "]," + term, "]," + scaled(term, -1), "first-order gap");
+    finds_head(folder, "against_first_order", 1 + 1e-6);
+    finds_term(folder, "open", "],", -1, "first-order gap");
 }
 
 BOOST_AUTO_TEST_CASE(ties_in_cells_are_replayed_and_altered_first_order_terms_are_found) {
@@ -139,17 +137,8 @@ BOOST_AUTO_TEST_CASE(ties_in_cells_are_replayed_and_altered_first_order_terms_ar
         play(cells::mirror_pairs(), towards(1), Ties::first_order, seed, folder);
         is_proved(folder);
         ties += verify_run(folder).ties_checked;
-        const std::string events = scratch::read(folder / "events.jsonl");
-        const std::string first = value_of(events, "against_first_order").substr(1);
-        finds(folder, "events.jsonl", "\"against_first_order\":[" + first,
-              "\"against_first_order\":[" + scaled(first, 1 + 1e-6), "first-order");
-        // The pair that stays open touches across a side of the cell.
-        const std::string stored = scratch::read(folder / "states/eq_000001.json");
-        const std::size_t open = stored.find("\"open\":[[");
-        BOOST_REQUIRE(open != std::string::npos);
-        const std::size_t begin = stored.find("]],", open) + 3;
-        const std::string term = stored.substr(begin, stored.find(',', begin) - begin);
-        finds(folder, "states/eq_000001.json", "]]," + term, "]]," + scaled(term, 1.001), "first-order gap");
+        finds_head(folder, "against_first_order", 1 + 1e-6);
+        finds_term(folder, "open", "]],", 1.001, "first-order gap"); // the pair touches across a side of the cell
     }
     BOOST_TEST(ties > 5);
     // A hyperstatic start.
@@ -163,9 +152,7 @@ BOOST_AUTO_TEST_CASE(a_hyperstatic_start_and_lattices_are_replayed) {
     const Segment to = until(-1, 0.5);
     play(crafted::equal_pair(), to, Ties::first_order, 1, scratch_folder / "pair");
     is_proved(scratch_folder / "pair");
-    int arcs = 0;
-    int ties = 0;
-    int altered = 0;
+    int arcs = 0, ties = 0, altered = 0;
     std::set<std::string> kinds;
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
         const fs::path folder = scratch_folder / ("lattice" + std::to_string(seed));
@@ -204,5 +191,3 @@ BOOST_AUTO_TEST_CASE(a_hyperstatic_start_and_lattices_are_replayed) {
     BOOST_TEST_MESSAGE(arcs << " arcs, " << ties << " first-order decisions, " << altered << " altered, of "
                             << kinds.size() << " kinds");
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -9,7 +9,7 @@
 #include "support/spheres.hpp"
 
 using namespace isostat;
-using namespace isostat::checker;
+using namespace checker;
 
 namespace {
 
@@ -84,8 +84,6 @@ struct Rolled {
 };
 
 } // namespace
-
-BOOST_AUTO_TEST_SUITE(checker)
 
 BOOST_AUTO_TEST_CASE(bounds_hold_the_exact_results_of_random_operations) {
     std::mt19937 random(5);
@@ -176,8 +174,7 @@ BOOST_AUTO_TEST_CASE(the_power_of_true_stresses_on_spheres_is_positive_from_wher
     moving.coordinates = {0, 1, 2, 3, 4, 5, 6, 7, 8};
     moving.moves.assign(9, true);
     moving.loose.assign(9, false);
-    const double start = 0.58;
-    const double turn = 0.6;
+    const double start = 0.58, turn = 0.6;
     const double radius = std::sqrt(8.0);
     std::vector<double>& q = moving.state.packing.q;
     q[3] = 1 + radius * std::cos(start);
@@ -241,8 +238,7 @@ BOOST_AUTO_TEST_CASE(a_way_in_a_channel_is_proved_unless_a_pair_of_images_meets_
         for (const double clearance : {1e-2, 1e-5, 1e-8, -1e-2, -1e-5, -1e-8}) {
             BOOST_TEST_INFO_SCOPE("disk 1 stored " << shift << " periods away, clearance " << clearance);
             const cells::ChannelRoll roll{clearance, shift};
-            Place from;
-            Place to;
+            Place from, to;
             (void)make_place(roll.start(), from); // of its forces nothing is asked
             (void)make_place(roll.end(), to);
             BOOST_TEST_REQUIRE((from.evidence->vertex.found && to.evidence->vertex.found));
@@ -262,5 +258,3 @@ BOOST_AUTO_TEST_CASE(a_way_in_a_channel_is_proved_unless_a_pair_of_images_meets_
         }
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

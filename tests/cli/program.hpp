@@ -8,6 +8,8 @@
 
 namespace program {
 
+using Arguments = std::vector<std::string>;
+
 struct Outcome {
     int status = -1; ///< exit status; 128 + signal when it was killed
     std::string out, err;
@@ -22,7 +24,7 @@ inline std::string quoted(const std::string& word) {
 }
 
 /// Runs `isostat ARGUMENTS` to its end; `before` goes in front of the command ("PATH= ", "cd x; ").
-inline Outcome run(const std::vector<std::string>& arguments, const std::string& before = "") {
+inline Outcome run(const Arguments& arguments, const std::string& before = "") {
     const scratch::Folder folder;
     std::string line = before + quoted(ISOSTAT_PROGRAM);
     for (const std::string& argument : arguments) {
@@ -42,7 +44,7 @@ inline bool contains(const std::string& text, const std::string& what) {
 }
 
 /// Exit status, and all of the words on standard error.
-inline void expect(const Outcome& outcome, int status, const std::vector<std::string>& words = {}) {
+inline void expect(const Outcome& outcome, int status, const Arguments& words = {}) {
     BOOST_TEST(outcome.status == status,
                "exit status " << outcome.status << ", expected " << status << "; " << outcome.err);
     for (const std::string& word : words) {
@@ -57,12 +59,29 @@ inline Outcome done(Outcome outcome, int status = 0) {
 }
 
 /// Exit status, and all of the words on standard output.
-inline Outcome says(Outcome outcome, int status, const std::vector<std::string>& words) {
+inline Outcome says(Outcome outcome, int status, const Arguments& words) {
     expect(outcome, status);
     for (const std::string& word : words) {
         BOOST_TEST(contains(outcome.out, word), "'" << word << "' is not in: " << outcome.out << outcome.err);
     }
     return outcome;
+}
+
+/// The words of a command, and some more.
+inline Arguments plus(Arguments words, const Arguments& more) {
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+}
+
+/// A scene, written into a folder and run there with this exit status, or with any: the folder of the run.
+inline std::string ran(const scratch::Folder& folder, const std::string& scene, std::optional<int> status = 0,
+                       const Arguments& said = {}) {
+    scratch::write_scene(folder / "s.toml", scene);
+    const Outcome outcome = run({"run", folder.at("s.toml"), "-o", folder.at("run"), "-q"});
+    if (status) {
+        expect(outcome, *status, said);
+    }
+    return folder.at("run");
 }
 
 /// The JSON on standard output.
@@ -110,6 +129,8 @@ inline std::string scene_from(const std::string& file, const std::string& progra
     return "[packing]\nfile = \"" + file + "\"\n" + programme + "[output]\npictures = false\n" + rest;
 }
 
-inline const std::string up_6 = "[[programme]]\ndo = \"up\"\nequilibria = 6\n";
+inline std::string up(int equilibria) {
+    return "[[programme]]\ndo = \"up\"\nequilibria = " + std::to_string(equilibria) + "\n";
+}
 
 } // namespace program

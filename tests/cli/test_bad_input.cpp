@@ -1,5 +1,6 @@
 // Every bad input: the exit status, a message with file, line or field, value and expectation, and nothing left that
 // looks complete.
+// Numbers on the command line: finite, all of their word, in their range.
 #include "cli/program.hpp"
 #include "support/crafted.hpp"
 
@@ -13,25 +14,22 @@ namespace fs = std::filesystem;
 namespace {
 
 /// A scene whose start file has a given content; `run` must refuse it before it makes a folder.
-void run_refuses(const std::string& start, const std::vector<std::string>& words) {
+void run_refuses(const std::string& start, const Arguments& words) {
     const scratch::Folder folder;
     scratch::write(folder / "start.json", start);
-    scratch::write(folder / "s.toml", scene_from("start.json", up_6));
+    scratch::write(folder / "s.toml", scene_from("start.json", up(6)));
     const Outcome outcome = run({"run", folder.at("s.toml"), "-o", folder.at("run"), "-q"});
-    expect(outcome, 65, {"start.json"});
-    expect(outcome, 65, words);
+    expect(outcome, 65, plus(words, {"start.json"}));
     BOOST_TEST(!fs::exists(folder / "run"));
     BOOST_TEST(outcome.out.empty());
 }
 
 /// A scene that every command must refuse.
-void scene_refused(const std::string& scene, const std::vector<std::string>& words) {
+void scene_refused(const std::string& scene, const Arguments& words) {
     const scratch::Folder folder;
     scratch::write_scene(folder / "s.toml", scene);
     for (const std::string command : {"run", "prepare"}) {
-        const Outcome outcome = run({command, folder.at("s.toml"), "-o", folder.at("out")});
-        expect(outcome, 65, {"s.toml"});
-        expect(outcome, 65, words);
+        expect(run({command, folder.at("s.toml"), "-o", folder.at("out")}), 65, plus(words, {"s.toml"}));
         BOOST_TEST(!fs::exists(folder / "out"));
     }
     expect(run({"plan", folder.at("s.toml")}), 65, words);
@@ -39,9 +37,46 @@ void scene_refused(const std::string& scene, const std::vector<std::string>& wor
 
 const std::string two = state_text(crafted::two_disks(1, 2, 1, 1));
 
-} // namespace
+struct Called {
+    const scratch::Folder folder;
+    std::string state = folder.at("state.json"), out = folder.at("out");
+    Called() { scratch::write(state, isostat::state_text(::crafted::two_disks(1, 2, 1, 1), {})); }
+    /// Each option with the words that its command needs besides.
+    [[nodiscard]] std::vector<Arguments> with_numbers() const {
+        return {{"inspect", state, "--at"},
+                {"report", out, "--stiffness"},
+                {"snap", state, "-o", out, "--stiffness"},
+                {"import", state, "-o", out, "--jitter"},
+                {"import", state, "-o", out, "--threshold"},
+                {"genericity", state, "--stress"},
+                {"genericity", state, "--size"}};
+    }
+    [[nodiscard]] std::vector<Arguments> with_integers() const {
+        return {{"inspect", state, "--threads"},
+                {"ensemble", state, "-o", out, "--samples"},
+                {"ensemble", state, "-o", out, "--samples", "1", "--jobs"},
+                {"ensemble", state, "-o", out, "--samples", "1", "--first-seed"},
+                {"import", state, "-o", out, "--seed"},
+                {"snap", state, "-o", out, "--seed"},
+                {"genericity", state, "--seed"},
+                {"genericity", state, "--samples"},
+                {"genericity", state, "--lists"},
+                {"plateau", state, "--rows"},
+                {"compare", state, "--bundle"},
+                {"compare", state, "--frames"},
+                {"plateau", state, "--frame"}};
+    }
+};
 
-BOOST_AUTO_TEST_SUITE(cli)
+void refuses(Arguments call, const std::string& word) {
+    const std::string option = call.back();
+    call.back() += "=" + word;
+    const Outcome outcome = run(call);
+    BOOST_TEST(outcome.status == 64, option << " " << word << ": " << outcome.status << " " << outcome.err);
+    BOOST_TEST(contains(outcome.err, option), outcome.err);
+}
+
+} // namespace
 
 BOOST_AUTO_TEST_CASE(overlapping_disks) {
     isostat::State state = crafted::two_disks(1, 2, 1, 1);
@@ -64,7 +99,7 @@ BOOST_AUTO_TEST_CASE(radii_that_are_not_positive_numbers) {
 }
 
 BOOST_AUTO_TEST_CASE(unknown_keys) {
-    scene_refused("[packing]\ndisks = 4\nsede = 1\n" + up_6, {":3:", "unknown key 'sede'", "seed"});
+    scene_refused("[packing]\ndisks = 4\nsede = 1\n" + up(6), {":3:", "unknown key 'sede'", "seed"});
     scene_refused("[packing]\ndisks = 4\n[lode]\n", {":3:", "'lode'", "load"});
     run_refuses(replaced(two, "\"length\"", "\"lenght\""), {"unknown field 'lenght'", "length"});
 }
@@ -99,7 +134,7 @@ BOOST_AUTO_TEST_CASE(disks_larger_than_the_box) {
 BOOST_AUTO_TEST_CASE(folders_that_cannot_be_written) {
     const scratch::Folder folder;
     scratch::write(folder / "plain", "a file");
-    scratch::write_scene(folder / "s.toml", scene_from(scratch::data("vertex100.txt"), up_6));
+    scratch::write_scene(folder / "s.toml", scene_from(scratch::data("vertex100.txt"), up(6)));
     scratch::write(folder / "p.toml", "[packing]\ndisks = 2000\n"); // would take a while: it must be refused before
     const std::string below = folder.at("plain/below");
     expect(run({"run", folder.at("s.toml"), "-o", below, "-q"}), 74, {"plain/below", "cannot write"});
@@ -118,7 +153,7 @@ BOOST_AUTO_TEST_CASE(contradictory_programmes) {
     scene_refused(packing + "[[programme]]\ndo = \"up\"\n", {":3:", "no end"});
     scene_refused(packing + "[[programme]]\ndo = \"up\"\nto = 0.5\n",
                   {":3:", "0.5", "ratio at its start is 1", "larger"});
-    scene_refused(packing + up_6 + "[[programme]]\ndo = \"down\"\nfrom = 7\nto = 1.0\n",
+    scene_refused(packing + up(6) + "[[programme]]\ndo = \"down\"\nfrom = 7\nto = 1.0\n",
                   {":6:", "equilibrium 7", "number 6"});
     const scratch::Folder folder;
     scratch::write(folder / "s.toml", packing);
@@ -135,13 +170,13 @@ BOOST_AUTO_TEST_CASE(contradictory_programmes) {
 BOOST_AUTO_TEST_CASE(a_folder_that_holds_a_run) {
     const scratch::Folder folder;
     const std::string out = folder.at("run");
-    scratch::write_scene(folder / "s.toml", scene_from(scratch::data("vertex100.txt"), up_6));
+    scratch::write_scene(folder / "s.toml", scene_from(scratch::data("vertex100.txt"), up(6)));
     expect(run({"run", folder.at("s.toml"), "-o", out, "--resume", "-q"}), 65, {"run.json", "no run to resume"});
     expect(run({"run", folder.at("s.toml"), "-o", out, "-q"}), 0);
     expect(run({"run", folder.at("s.toml"), "-o", out, "-q"}), 64, {"holds a run already", "--resume", "--force"});
     expect(run({"run", folder.at("s.toml"), "-o", out, "-q", "--force"}), 0);
     scratch::write_scene(folder / "t.toml",
-                         scene_from(scratch::data("vertex100.txt"), up_6, "[run]\nrule = \"least_index\"\n"));
+                         scene_from(scratch::data("vertex100.txt"), up(6), "[run]\nrule = \"least_index\"\n"));
     expect(run({"run", folder.at("t.toml"), "-o", out, "-q", "--resume"}), 65, {"run.json", "another scene", "t.toml"});
 }
 
@@ -152,11 +187,8 @@ BOOST_AUTO_TEST_CASE(a_cell_that_is_refused_after_reading_is_refused_with_its_fi
     scratch::write(file, "format = \"isostat-packing 1\"\ndisks = [[0, 0, 1]]\n[cell]\nperiod = [2, 2]\n"
                          "moves = [\"x\"]\ntilt = \"8077051742094299/140737488355328\"\n");
     for (const std::string command : {"inspect", "genericity", "import", "plateau"}) {
-        std::vector<std::string> words{command, file};
-        if (command == "import") {
-            words.insert(words.end(), {"-o", folder.at("o.json")});
-        }
-        expect(run(words), 65, {file + ": disk 0", "periods apart"});
+        const Arguments output = command == "import" ? Arguments{"-o", folder.at("o.json")} : Arguments{};
+        expect(run(plus({command, file}, output)), 65, {file + ": disk 0", "periods apart"});
     }
 }
 
@@ -171,4 +203,38 @@ BOOST_AUTO_TEST_CASE(a_manifest_without_a_table_is_told_which_table_and_which_ke
     }
 }
 
-BOOST_AUTO_TEST_SUITE_END()
+BOOST_AUTO_TEST_CASE(numbers_of_options_are_finite_and_in_their_range) {
+    const Called called;
+    for (const auto& call : called.with_numbers()) {
+        for (const char* word :
+             {"nan", "NaN", "inf", "-inf", "infinity", "1e400", "1e101", "0x1p3", "1,5x", "1 2", "one"}) {
+            refuses(call, word);
+        }
+    }
+    for (const auto& call :
+         {Arguments{"report", called.out, "--stiffness"}, {"snap", called.state, "-o", called.out, "--stiffness"}}) {
+        for (const char* word : {"1e-320", "0", "-1", "1e-101"}) {
+            refuses(call, word);
+        }
+    }
+    refuses({"import", called.state, "-o", called.out, "--jitter"}, "0.11");
+    for (const char* word : {"nan,1", "1,inf", "1", "1,2,3", "0,1", "1e-320,1"}) {
+        refuses({"snap", called.state, "-o", called.out, "--stress"}, word);
+    }
+    for (const char* word : {"nan:1", "0:inf", "1:0", "1"}) {
+        refuses({"plateau", called.state, "--thresholds"}, word);
+    }
+    expect(run({"inspect", called.state, "--at", "1.5"}), 0);
+    expect(run({"inspect", called.state, "--at=-1e98"}), 1);
+    expect(run({"inspect", called.state, "--at=-1e100"}), 2); // times a length it is beyond what is computed with
+}
+
+BOOST_AUTO_TEST_CASE(integers_of_options_are_written_as_integers) {
+    const Called called;
+    for (const auto& call : called.with_integers()) {
+        for (const char* word : {"4.9", "4.0", "1e1", "-0", "+4", "010", "0x10", "nan", "99999999999999999999", "4 "}) {
+            refuses(call, word);
+        }
+    }
+    expect(run({"inspect", called.state, "--threads", "1"}), 0);
+}

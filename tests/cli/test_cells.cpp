@@ -5,8 +5,6 @@
 
 #include <isostat/io/state_file.hpp>
 
-#include <nlohmann/json.hpp>
-
 namespace {
 
 using namespace program;
@@ -35,8 +33,6 @@ std::string dump() {
 }
 
 } // namespace
-
-BOOST_AUTO_TEST_SUITE(cli_cells)
 
 BOOST_AUTO_TEST_CASE(inspect_counts_and_proves_a_rectangle) {
     says(run({"inspect", rectangle}), 0,
@@ -95,17 +91,11 @@ BOOST_AUTO_TEST_CASE(certificates_of_a_cell_verify_and_forged_ones_do_not) {
 
 BOOST_AUTO_TEST_CASE(a_run_of_a_cell_is_written_resumed_and_replayed) {
     const scratch::Folder folder;
-    const std::string scene = folder.at("cell.toml");
-    const auto programme = [](int equilibria) {
-        return fmt::format("[[programme]]\ndo = \"up\"\nequilibria = {}\n", equilibria);
-    };
-    const std::string packing = fmt::format("[packing]\nfile = \"{}\"\n", scratch::data("cells/tilt_16.json"));
-    scratch::write_scene(scene, packing + programme(2));
-    const std::string out = folder.at("out");
-    expect(run({"run", scene, "-o", out}), 0);
+    const std::string out = ran(folder, "[packing]\nfile = \"" + scratch::data("cells/tilt_16.json") +
+                                            "\"\n[[programme]]\ndo = \"up\"\nequilibria = 2\n");
     says(run({"verify", out}), 0, {"ends proved, way looked at"});
-    BOOST_TEST(contains(scratch::read(folder / "out" / "events.jsonl"), "\"opened\":\"3-8(1,0)\""));
-    const auto state = isostat::read_any_state(folder / "out" / "states" / "last.json").state;
+    BOOST_TEST(contains(scratch::read(folder / "run/events.jsonl"), "\"opened\":\"3-8(1,0)\""));
+    const auto state = isostat::read_any_state(out + "/states/last.json").state;
     BOOST_TEST(std::abs(state.packing.lattice(0, 1) - -0.9095404261907584) < 1e-9);
 }
 
@@ -223,8 +213,7 @@ BOOST_AUTO_TEST_CASE(a_dead_shear_that_flows_ends_as_flows) {
 
 BOOST_AUTO_TEST_CASE(periodic_packings_of_other_programs_become_states) {
     const scratch::Folder folder;
-    const std::string file = folder.at("disks.dump");
-    const std::string made = folder.at("made.json");
+    const std::string file = folder.at("disks.dump"), made = folder.at("made.json");
     for (const char* name : {"rect_16", "tilt_16"}) {
         for (const double part : {1e-12, 1e-6, 1e-4}) {
             BOOST_TEST_INFO_SCOPE(name << ", overlap " << part);
@@ -281,8 +270,8 @@ BOOST_AUTO_TEST_CASE(lists_and_channels_of_other_programs_become_states) {
             isostat::read_any_state(scratch::data(std::string("cells/") + name + ".json")).state;
         scratch::write(in("soft.dump"), soft_dump(scratch::data(std::string("cells/") + name + ".json"), 1e-7));
         expect(run({"import", in("soft.dump"), "-o", in("made.json"), "--contacts", "plateau"}), 0);
-        BOOST_TEST(
-            (isostat::read_any_state(in("made.json")).state.packing.cell.tilt_moves == state.packing.cell.tilt_moves));
+        const isostat::Packing made = isostat::read_any_state(in("made.json")).state.packing;
+        BOOST_TEST((made.cell.tilt_moves == state.packing.cell.tilt_moves));
         expect(run({"import", in("soft.dump"), "-o", in("made.json"), "--threshold", "1e-9"}), 0);
     }
     // Periodic along x, walls at the bounds along y.
@@ -359,8 +348,7 @@ BOOST_AUTO_TEST_CASE(soft_frames_of_a_cell_snap_with_their_contacts_and_forces) 
         isostat::StateFile state = isostat::read_any_state(from);
         const auto forces_of = [&] {
             isostat::write_state(folder / "state.json", state.state, state.forces);
-            const Outcome out = done(run({"snap", folder.at("state.json"), "-o", made, "--json"}));
-            return nlohmann::json::parse(out.out).at("forces");
+            return json_of(run({"snap", folder.at("state.json"), "-o", made, "--json"})).at("forces");
         };
         BOOST_TEST(forces_of().at("rest").get<double>() < 1e-9);
         const auto strongest = std::max_element(state.forces.begin(), state.forces.end());
@@ -375,7 +363,7 @@ BOOST_AUTO_TEST_CASE(soft_frames_of_a_cell_snap_with_their_contacts_and_forces) 
 }
 
 BOOST_AUTO_TEST_CASE(crafted_packings_in_cells_become_states_or_the_reason_is_said) {
-    const std::string packings = std::string(ISOSTAT_EXAMPLES) + "/packings/";
+    const std::string packings = ISOSTAT_EXAMPLES "/packings/";
     const scratch::Folder folder;
     const std::string state = folder.at("state.json");
     for (const char* name : {"channel_two_disks_low", "channel_two_disks_high", "cell_one_disk_tilted"}) {
@@ -396,13 +384,11 @@ BOOST_AUTO_TEST_CASE(crafted_packings_in_cells_become_states_or_the_reason_is_sa
 }
 
 BOOST_AUTO_TEST_CASE(genericity_of_radii_and_tilt) {
-    const std::string two = std::string(ISOSTAT_EXAMPLES) + "/packings/counterexample_t7_centred_rectangle.toml";
+    const std::string two = ISOSTAT_EXAMPLES "/packings/counterexample_t7_centred_rectangle.toml";
     says(run({"genericity", two, "--samples", "2", "--size", "1e-3", "--json"}), 2, {"\"ties\":2"});
     says(run({"genericity", two, "--samples", "2", "--size", "1e-3", "--tilt", "--json"}), 0,
          {"\"proved_isostatic\":2"});
     expect(run({"genericity", rectangle, "--samples", "2", "--size", "1e-9"}), 0);
-    expect(run({"genericity", std::string(ISOSTAT_EXAMPLES) + "/packings/two_disks.toml", "--tilt"}), 65,
+    expect(run({"genericity", ISOSTAT_EXAMPLES "/packings/two_disks.toml", "--tilt"}), 65,
            {"a period along each axis"});
 }
-
-BOOST_AUTO_TEST_SUITE_END()

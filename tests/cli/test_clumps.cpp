@@ -2,15 +2,11 @@
 #include "cli/program.hpp"
 #include "support/clumps.hpp"
 
-#include <isostat/io/state_file.hpp>
-
 using namespace program;
-
-BOOST_AUTO_TEST_SUITE(cli)
 
 BOOST_AUTO_TEST_CASE(clumps_are_inspected_certified_verified_and_drawn) {
     const scratch::Folder folder;
-    const std::string state = std::string(ISOSTAT_TEST_DATA) + "/clumps/dimer2_20_2.json";
+    const std::string state = ISOSTAT_TEST_DATA "/clumps/dimer2_20_2.json";
     const std::string certificate = folder.at("certificate.json");
     says(run({"inspect", state}), 0,
          {"40 in 20 bodies", "mechanisms k             6", "1 bodies without force, 3 more",
@@ -21,7 +17,7 @@ BOOST_AUTO_TEST_CASE(clumps_are_inspected_certified_verified_and_drawn) {
     other.packing.bars[0].length *= 1 + 0x1p-50;
     isostat::write_state(folder.at("other.json"), other);
     says(run({"verify", certificate, "--input", folder.at("other.json")}), 1, {"a bar of the state"});
-    expect(run({"report", std::string(ISOSTAT_TEST_DATA) + "/clumps/dimer_20_1.json", "-o", folder.at("report")}), 0);
+    expect(run({"report", ISOSTAT_TEST_DATA "/clumps/dimer_20_1.json", "-o", folder.at("report")}), 0);
     const std::string picture = scratch::read(folder / "report/forces_dimer_20_1.svg");
     BOOST_TEST(contains(picture, "class=\"force\""));
     BOOST_TEST(!contains(picture, "class=\"traction\"")); // bars under tension are no contacts
@@ -87,7 +83,7 @@ BOOST_AUTO_TEST_CASE(clumps_of_another_program_are_imported_with_the_counts_that
 }
 
 BOOST_AUTO_TEST_CASE(plateaus_and_genericity_of_clumps_say_what_turns) {
-    const std::string state = std::string(ISOSTAT_TEST_DATA) + "/clumps/dimer2_20_2.json";
+    const std::string state = ISOSTAT_TEST_DATA "/clumps/dimer2_20_2.json";
     const scratch::Folder folder;
     const std::string csv = folder.at("table.csv");
     says(run({"plateau", state, "--csv", csv}), 0,
@@ -104,23 +100,20 @@ BOOST_AUTO_TEST_CASE(plateaus_and_genericity_of_clumps_say_what_turns) {
         BOOST_TEST(sample.at("turns") == 3);
         BOOST_TEST(sample.at("carrying") == 56);
     }
-    const std::string oval = std::string(ISOSTAT_TEST_DATA) + "/clumps/oval_1.4_16_1.json";
+    const std::string oval = ISOSTAT_TEST_DATA "/clumps/oval_1.4_16_1.json";
     expect(run({"plateau", oval}), 65, {"arcs"});
     expect(run({"genericity", oval}), 65, {"arcs"});
 }
 
 BOOST_AUTO_TEST_CASE(what_takes_single_grains_names_clumps) {
     const scratch::Folder folder;
-    const std::string state = std::string(ISOSTAT_TEST_DATA) + "/clumps/dimer_20_3.json";
-    for (const std::vector<std::string>& command :
-         std::vector<std::vector<std::string>>{{"snap", state, "-o", folder.at("snapped.json")},
-                                               {"import", state, "-o", folder.at("imported.json")},
-                                               {"export", state, "-o", folder.at("grains.csv")},
-                                               {"export", state, "-o", folder.at("grains.data")}}) {
+    const std::string state = ISOSTAT_TEST_DATA "/clumps/dimer_20_3.json";
+    for (const Arguments& command : std::vector<Arguments>{{"snap", state, "-o", folder.at("snapped.json")},
+                                                           {"import", state, "-o", folder.at("imported.json")},
+                                                           {"export", state, "-o", folder.at("grains.csv")},
+                                                           {"export", state, "-o", folder.at("grains.data")}}) {
         expect(run(command), 65, {"dimer_20_3.json", "clumps"});
     }
     BOOST_TEST(!std::filesystem::exists(folder / "grains.csv"));
     BOOST_TEST(!std::filesystem::exists(folder / "imported.json"));
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -4,14 +4,16 @@
 #include <isostat/io/run_directory.hpp>
 #include <isostat/io/state_file.hpp>
 
-#include <nlohmann/json.hpp>
-
 using namespace program;
 using isostat::state_text;
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-BOOST_AUTO_TEST_SUITE(cli)
+namespace {
+
+const std::string back_twice = "[[programme]]\ndo = \"down\"\nto = 1\n[[programme]]\ndo = \"down\"\nfrom = 3\nto = 1\n";
+
+} // namespace
 
 BOOST_AUTO_TEST_CASE(help_of_every_subcommand_has_an_example) {
     for (const char* name : {"prepare", "run", "ensemble", "inspect", "certify", "verify", "plateau", "genericity",
@@ -50,31 +52,21 @@ BOOST_AUTO_TEST_CASE(inspect_tells_the_closed_form_of_two_disks) {
     BOOST_TEST(j["opens"][0] == "1-bottom");
     BOOST_TEST(j["min_force"].get<double>() == t, boost::test_tools::tolerance(1e-12));
     BOOST_TEST(j["min_force_contact"] == "0-bottom");
-    const Outcome words = run({"inspect", folder.at("two.json")});
-    for (const char* line : {"degrees of freedom N_f   6", "self-stresses h          0", "opens 1-bottom", "unbounded",
-                             "equilibrium    proved"}) {
-        BOOST_TEST(contains(words.out, line), line);
-    }
+    says(run({"inspect", folder.at("two.json")}), 0,
+         {"degrees of freedom N_f   6", "self-stresses h          0", "opens 1-bottom", "unbounded",
+          "equilibrium    proved"});
 }
 
 BOOST_AUTO_TEST_CASE(inspect_refutes_what_is_no_isostatic_equilibrium) {
     const scratch::Folder folder;
-    const auto status = [&](const isostat::State& state) {
-        scratch::write(folder / "s.json", state_text(state));
-        return run({"inspect", folder.at("s.json"), "--json"});
+    const auto inspected = [&](const isostat::State& state) {
+        return run({"inspect", folder.file("s.json", state_text(state)), "--json"});
     };
-    const Outcome lattice = status(crafted::square_lattice(3));
-    expect(lattice, 1);
-    BOOST_TEST(json::parse(lattice.out)["h"] == 4);
-    BOOST_TEST(json::parse(lattice.out)["verdict"] == "refuted");
+    has(json_of(inspected(crafted::square_lattice(3)), 1), {{"h", 4}, {"verdict", "refuted"}});
     isostat::State open = crafted::two_disks(1, 2, 1, 1);
     open.contacts.pop_back();
-    const Outcome mechanism = status(open);
-    expect(mechanism, 1);
-    BOOST_TEST(json::parse(mechanism.out)["k"] == 1);
-    const Outcome tension = status(crafted::two_disks(1, 2, 1, 0.3)); // below the limit 0.3535: 1-bottom pulls
-    expect(tension, 1);
-    BOOST_TEST(contains(tension.out, "1-bottom"));
+    has(json_of(inspected(open), 1), {{"k", 1}});
+    says(inspected(crafted::two_disks(1, 2, 1, 0.3)), 1, {"1-bottom"}); // pulls below the limit 0.3535
 }
 
 BOOST_AUTO_TEST_CASE(import_keeps_every_number_of_a_vertex_text_and_proves_it) {
@@ -101,8 +93,7 @@ BOOST_AUTO_TEST_CASE(import_keeps_every_number_of_a_vertex_text_and_proves_it) {
 BOOST_AUTO_TEST_CASE(prepare_makes_a_state_with_its_history_and_the_same_bits_again) {
     const scratch::Folder folder;
     scratch::write(folder / "s.toml", "[packing]\ndisks = 25\nseed = 5\n");
-    const std::string first = folder.at("1.json");
-    const std::string second = folder.at("2.json");
+    const std::string first = folder.at("1.json"), second = folder.at("2.json");
     expect(run({"prepare", folder.at("s.toml"), "-o", first}), 0);
     const Outcome quiet = done(run({"prepare", folder.at("s.toml"), "-o", second, "--quiet"}));
     BOOST_TEST(quiet.out.empty());
@@ -122,10 +113,9 @@ BOOST_AUTO_TEST_CASE(prepare_makes_a_state_with_its_history_and_the_same_bits_ag
 
 BOOST_AUTO_TEST_CASE(plan_prints_a_scene_that_gives_the_same_plan) {
     const scratch::Folder folder;
-    for (const char* name : {"biaxial-400.toml", "biaxial-1936.toml", "biaxial-4900.toml", "periodic-1936.toml",
-                             "shear-400.toml", "spheres-100.toml"}) {
-        const auto plan =
-            says(run({"plan", std::string(ISOSTAT_EXAMPLES) + "/" + name}), 0, {"max_arcs = 20000", "# default"});
+    for (const std::string name : {"biaxial-400.toml", "biaxial-1936.toml", "biaxial-4900.toml", "periodic-1936.toml",
+                                   "shear-400.toml", "spheres-100.toml"}) {
+        const auto plan = says(run({"plan", ISOSTAT_EXAMPLES "/" + name}), 0, {"max_arcs = 20000", "# default"});
         scratch::write(folder / "again.toml", plan.out);
         const Outcome again = done(run({"plan", folder.at("again.toml")}));
         const auto settings = [](const std::string& text) { // without the remarks on lines
@@ -137,7 +127,7 @@ BOOST_AUTO_TEST_CASE(plan_prints_a_scene_that_gives_the_same_plan) {
         };
         BOOST_TEST(settings(again.out) == settings(plan.out));
     }
-    const json j = json_of(run({"plan", std::string(ISOSTAT_EXAMPLES) + "/biaxial-400.toml", "--json"}));
+    const json j = json_of(run({"plan", ISOSTAT_EXAMPLES "/biaxial-400.toml", "--json"}));
     BOOST_TEST(j["plan"].size() > 10U);
     BOOST_TEST(j["programme"].size() == 5U);
 }
@@ -145,9 +135,7 @@ BOOST_AUTO_TEST_CASE(plan_prints_a_scene_that_gives_the_same_plan) {
 BOOST_AUTO_TEST_CASE(a_run_with_cycles_writes_everything_and_says_so) {
     const scratch::Folder folder;
     const std::string out = folder.at("run");
-    scratch::write_scene(folder / "s.toml", scene_from(scratch::data("vertex100.txt"),
-                                                       up_6 + "[[programme]]\ndo = \"down\"\nto = 1\n" +
-                                                           "[[programme]]\ndo = \"down\"\nfrom = 3\nto = 1\n"));
+    scratch::write_scene(folder / "s.toml", scene_from(scratch::data("vertex100.txt"), up(6) + back_twice));
     says(run({"run", folder.at("s.toml"), "-o", out}), 0,
          {"sigma2/sigma1", "eps2", "arcs", "margin", "precision", "elapsed", "rest", "completed", "segment 3 of 3"});
     const auto rows = isostat::read_equilibria(out + "/equilibria.csv");
@@ -181,32 +169,25 @@ BOOST_AUTO_TEST_CASE(a_run_with_cycles_writes_everything_and_says_so) {
 
 BOOST_AUTO_TEST_CASE(json_output_is_one_object_and_nothing_else) {
     const scratch::Folder folder;
-    scratch::write_scene(folder / "s.toml", scene_from(scratch::data("vertex100.txt"), up_6));
-    const Outcome outcome = done(run({"run", folder.at("s.toml"), "-o", folder.at("run"), "--json"}));
-    const json j = json::parse(outcome.out);
-    has(j, {{"status", "completed"}, {"counters/equilibria", 6}, {"counters/decisions/undecided", 0}});
+    scratch::write_scene(folder / "s.toml", scene_from(scratch::data("vertex100.txt"), up(6)));
+    const Outcome outcome = run({"run", folder.at("s.toml"), "-o", folder.at("run"), "--json"});
+    has(json_of(outcome), {{"status", "completed"}, {"counters/equilibria", 6}, {"counters/decisions/undecided", 0}});
     BOOST_TEST(outcome.err.empty());
-    scratch::write(folder / "p.toml", "[packing]\ndisks = 9\n");
-    const Outcome prepared = done(run({"prepare", folder.at("p.toml"), "-o", folder.at("p.json"), "--json"}));
-    BOOST_TEST(json::parse(prepared.out)["contacts"] == 20);
-    BOOST_TEST(json::parse(
-                   run({"import", scratch::data("vertex100.txt"), "-o", folder.at("q.json"), "--json"}).out)["disks"] ==
-               100);
-    const Outcome report = run({"report", folder.at("run"), "--json", "--no-charts"});
-    BOOST_TEST(json::parse(report.out)["files"].size() > 3U);
+    const std::string nine = folder.file("p.toml", "[packing]\ndisks = 9\n");
+    has(json_of(run({"prepare", nine, "-o", folder.at("p.json"), "--json"})), {{"contacts", 20}});
+    has(json_of(run({"import", scratch::data("vertex100.txt"), "-o", folder.at("q.json"), "--json"})),
+        {{"disks", 100}});
+    BOOST_TEST(json_of(run({"report", folder.at("run"), "--json", "--no-charts"}))["files"].size() > 3U);
 }
 
 BOOST_AUTO_TEST_CASE(a_sample_that_fails_is_a_result_and_a_tie_is_undecided) {
     const scratch::Folder folder;
-    scratch::write_scene(folder / "cap.toml",
-                         scene_from(scratch::data("vertex100.txt"), up_6, "[run]\nmax_arcs = 3\n"));
-    const Outcome cap = run({"run", folder.at("cap.toml"), "-o", folder.at("cap"), "-q"});
-    expect(cap, 1, {"failed", "max_arcs"});
-    BOOST_TEST(contains(scratch::read(folder / "cap/run.json"), "\"status\": \"failed: "));
-    BOOST_TEST(fs::exists(folder / "cap/summary.json"));
+    ran(folder, scene_from(scratch::data("vertex100.txt"), up(6), "[run]\nmax_arcs = 3\n"), 1, {"failed", "max_arcs"});
+    BOOST_TEST(contains(scratch::read(folder / "run/run.json"), "\"status\": \"failed: "));
+    BOOST_TEST(fs::exists(folder / "run/summary.json"));
 
     scratch::write(folder / "three.json", state_text(crafted::three_disks(1, 1, 1, 1, 1)));
-    scratch::write(folder / "tie.toml", scene_from("three.json", "[[programme]]\ndo = \"up\"\nequilibria = 1\n"));
+    scratch::write(folder / "tie.toml", scene_from("three.json", up(1)));
     const Outcome tie = run({"run", folder.at("tie.toml"), "-o", folder.at("tie"), "-q"});
     expect(tie, 2, {"undecided", "tie"});
     BOOST_TEST(isostat::read_equilibria(folder / "tie/equilibria.csv").size() == 1U);
@@ -215,21 +196,14 @@ BOOST_AUTO_TEST_CASE(a_sample_that_fails_is_a_result_and_a_tie_is_undecided) {
 
 BOOST_AUTO_TEST_CASE(a_ratio_that_lies_behind_when_its_turn_comes_fails_the_run) {
     const scratch::Folder folder;
-    scratch::write_scene(folder / "s.toml",
-                         scene_from(scratch::data("vertex100.txt"), up_6 + "[[programme]]\ndo = \"up\"\nto = 1.01\n"));
-    const Outcome outcome = run({"run", folder.at("s.toml"), "-o", folder.at("run"), "-q"});
-    expect(outcome, 1, {"s.toml:6", "larger ratio than 1.01"});
+    ran(folder, scene_from(scratch::data("vertex100.txt"), up(6) + "[[programme]]\ndo = \"up\"\nto = 1.01\n"), 1,
+        {"s.toml:6", "larger ratio than 1.01"});
     BOOST_TEST(contains(scratch::read(folder / "run/run.json"), "failed"));
 }
 
 BOOST_AUTO_TEST_CASE(figures_are_drawn_and_without_gnuplot_data_and_scripts_remain) {
     const scratch::Folder folder;
-    const std::string out = folder.at("run");
-    scratch::write_scene(
-        folder / "s.toml",
-        scene_from(scratch::data("vertex100.txt"),
-                   up_6 + "[[programme]]\ndo = \"down\"\nto = 1\n[[programme]]\ndo = \"down\"\nfrom = 3\nto = 1\n"));
-    expect(run({"run", folder.at("s.toml"), "-o", out, "-q"}), 0);
+    const std::string out = ran(folder, scene_from(scratch::data("vertex100.txt"), up(6) + back_twice));
     BOOST_TEST(!fs::exists(out + "/figures"));
     const Outcome without = run({"report", out}, "PATH= ");
     expect(without, 0, {"gnuplot", "cannot be started", "gnuplot-nox"});
@@ -267,5 +241,3 @@ BOOST_AUTO_TEST_CASE(a_state_without_forces_gets_them_for_its_picture) {
     BOOST_TEST(contains(scratch::read(folder / "forces_vertex100.svg"), "class=\"rattler\""));
     BOOST_TEST(fs::exists(folder / "forces_vertex100.vtk"));
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -11,10 +11,10 @@ namespace fs = std::filesystem;
 namespace {
 
 const std::string vertex = scratch::data("vertex100.txt");
-const std::string packing = std::string(ISOSTAT_EXAMPLES) + "/packings/two_disks.toml";
+const std::string packing = ISOSTAT_EXAMPLES "/packings/two_disks.toml";
 
 /// `run`, with standard output to another place.
-int status_with_output_to(const std::string& place, const std::vector<std::string>& arguments) {
+int status_with_output_to(const std::string& place, const Arguments& arguments) {
     std::string line = quoted(ISOSTAT_PROGRAM);
     for (const std::string& argument : arguments) {
         line += " " + quoted(argument);
@@ -25,22 +25,19 @@ int status_with_output_to(const std::string& place, const std::vector<std::strin
 
 /// A scene with a short run from the sample of 100 disks.
 fs::path small_scene(const scratch::Folder& folder) {
-    scratch::write_scene(folder / "s.toml", scene_from(vertex, "[[programme]]\ndo = \"up\"\nequilibria = 1\n"));
+    scratch::write_scene(folder / "s.toml", scene_from(vertex, up(1)));
     return folder / "s.toml";
 }
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(cli)
-
 BOOST_AUTO_TEST_CASE(an_answer_that_does_not_get_out_is_74_for_every_command) {
     const scratch::Folder folder;
     const std::string scene = small_scene(folder).string();
-    const std::string cert = folder.at("c.json");
-    const std::string done_run = folder.at("done");
+    const std::string cert = folder.at("c.json"), done_run = folder.at("done");
     expect(run({"certify", vertex, "-o", cert}), 0);
     expect(run({"run", scene, "-o", done_run, "-q"}), 0);
-    const std::vector<std::vector<std::string>> commands{
+    const std::vector<Arguments> commands{
         {"--version"},
         {"--help"},
         {"inspect", vertex},
@@ -57,7 +54,7 @@ BOOST_AUTO_TEST_CASE(an_answer_that_does_not_get_out_is_74_for_every_command) {
         {"run", scene, "-o", folder.at("run")},
         {"run", scene, "-o", folder.at("run2"), "--json"},
     };
-    for (const std::vector<std::string>& command : commands) {
+    for (const Arguments& command : commands) {
         BOOST_TEST(status_with_output_to("/dev/full", command) == 74, command[0]);
     }
     BOOST_TEST(status_with_output_to("/dev/null", {"inspect", vertex}) == 0);
@@ -67,7 +64,7 @@ BOOST_AUTO_TEST_CASE(names_of_files_may_be_any_bytes) {
     const scratch::Folder folder;
     const std::string bad = folder.at("bad\xff.json");
     fs::copy(vertex, bad);
-    for (const std::vector<std::string>& command : std::vector<std::vector<std::string>>{
+    for (const Arguments& command : std::vector<Arguments>{
              {"inspect", bad, "--json"},
              {"certify", bad, "-o", folder.at("\xfe.cert"), "--json"},
              {"verify", folder.at("\xfe.cert"), "--input", bad, "--json"},
@@ -93,7 +90,7 @@ BOOST_AUTO_TEST_CASE(nesting_without_end_is_bad_input_for_every_command) {
     const scratch::Folder folder;
     const std::string deep =
         folder.file("deep.json", "{\"format\":" + std::string(100'000, '[') + std::string(100'000, ']') + "}");
-    for (const std::vector<std::string>& command : std::vector<std::vector<std::string>>{
+    for (const Arguments& command : std::vector<Arguments>{
              {"inspect", deep},
              {"certify", deep, "-o", folder.at("c.json")},
              {"import", deep, "-o", folder.at("o.json")},
@@ -138,9 +135,9 @@ BOOST_AUTO_TEST_CASE(a_packing_in_which_nothing_can_move_is_answered_by_every_co
     says(run({"inspect", file}), 1, {"no degrees of freedom"});
     expect(run({"certify", file, "-o", folder.at("c.json")}), 1);
     expect(run({"report", file, "-o", folder.path().string(), "--no-charts"}), 0);
-    scratch::write(folder / "s.toml", scene_from("still.json", up_6));
-    for (const std::vector<std::string>& command : std::vector<std::vector<std::string>>{
-             {"run", folder.at("s.toml"), "-o", folder.at("out")}, {"plan", folder.at("s.toml")}}) {
+    scratch::write(folder / "s.toml", scene_from("still.json", up(6)));
+    for (const Arguments& command :
+         std::vector<Arguments>{{"run", folder.at("s.toml"), "-o", folder.at("out")}, {"plan", folder.at("s.toml")}}) {
         expect(run(command), 65, {"still.json", "no degrees of freedom"});
     }
     BOOST_TEST(!fs::exists(folder / "out"));
@@ -159,7 +156,7 @@ BOOST_AUTO_TEST_CASE(where_memory_allows_few_threads_the_records_are_the_same) {
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 BOOST_AUTO_TEST_CASE(a_library_that_changed_the_rounding_is_an_internal_failure) {
     const std::string before = "LD_PRELOAD=" + quoted(ISOSTAT_ROUND_UP) + " ";
-    for (const std::vector<std::string>& command : std::vector<std::vector<std::string>>{
+    for (const Arguments& command : std::vector<Arguments>{
              {"inspect", vertex}, {"inspect", packing}, {"plateau", vertex, "--thresholds", "1e-9:1e-8"}}) {
         expect(run(command, before), 70, {"rounded to nearest"});
     }
@@ -170,9 +167,8 @@ BOOST_AUTO_TEST_CASE(whatever_memory_there_is_a_command_answers_or_says_that_it_
     const std::string out = folder.at("out");
     expect(run({"run", small_scene(folder).string(), "-o", out, "-q"}), 0);
     for (const char* limit : {"ulimit -v 400000; ", "ulimit -v 250000; ", "ulimit -v 200000; "}) {
-        for (const std::vector<std::string>& command :
-             std::vector<std::vector<std::string>>{{"verify", out, "-q"}, {"inspect", vertex}}) {
-            std::vector<std::string> many = command;
+        for (const Arguments& command : std::vector<Arguments>{{"verify", out, "-q"}, {"inspect", vertex}}) {
+            Arguments many = command;
             many.insert(many.end(), {"--threads", "64"});
             const Outcome found = run(many, limit);
             const bool says = found.status == 70 && found.err.find("not enough memory") != std::string::npos;
@@ -191,5 +187,3 @@ BOOST_AUTO_TEST_CASE(memory_that_does_not_suffice_is_an_internal_failure) {
     expect(run({"plateau", folder.at("t.txt")}, "ulimit -v 80000; "), 70, {"not enough memory"});
 }
 #endif
-
-BOOST_AUTO_TEST_SUITE_END()

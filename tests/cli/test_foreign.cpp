@@ -6,7 +6,7 @@ namespace {
 
 using namespace program;
 
-const std::string packings = std::string(ISOSTAT_EXAMPLES) + "/packings/";
+const std::string packings = ISOSTAT_EXAMPLES "/packings/";
 
 /// The three disks of the closed form, written as another program would; 0.5 to the left and 3 below the origin.
 std::string three_disks(const std::string& header, const std::string& size) {
@@ -14,8 +14,6 @@ std::string three_disks(const std::string& header, const std::string& size) {
 }
 
 } // namespace
-
-BOOST_AUTO_TEST_SUITE(cli_foreign)
 
 BOOST_AUTO_TEST_CASE(plateau_of_a_state_and_of_a_crafted_packing) {
     says(run({"plateau", scratch::data("vertex100.txt")}), 0,
@@ -25,9 +23,8 @@ BOOST_AUTO_TEST_CASE(plateau_of_a_state_and_of_a_crafted_packing) {
 
 BOOST_AUTO_TEST_CASE(plateau_says_what_is_wrong_with_walls_and_pseudo_atoms) {
     const std::string dump = scratch::data("series/disks.dump");
-    const auto with = [&dump](std::vector<std::string> more) {
-        more.insert(more.begin(), {"plateau", dump, "--frame", "0", "--walls", "box"});
-        return run(more);
+    const auto with = [&dump](Arguments more) {
+        return run(plus({"plateau", dump, "--frame", "0", "--walls", "box"}, more));
     };
     says(with({}), 1, {"no disk is near the left wall, the nearest gap is"});
     const auto exact = with({"--box", "0:15.4590235640695,0:14.8856200965158"});
@@ -75,25 +72,17 @@ BOOST_AUTO_TEST_CASE(plateau_of_a_table_with_walls_in_text_json_and_csv) {
     const scratch::Folder folder;
     const std::string file = folder.file("disks.csv", three_disks("x,y,diameter\n", "2"));
     // 0-0-0: the box fits to rounding; the top wall touches disk 2.
-    const std::vector<std::string> command{"plateau",
-                                           file,
-                                           "--walls",
-                                           "box",
-                                           "--box=-0.5:3.5,-3:0.7320508075688774",
-                                           "--thresholds=-1e-9:1e-3",
-                                           "--csv",
-                                           folder.at("table.csv")};
-    auto arguments = command;
+    Arguments arguments{"plateau", file, "--walls", "box", "--box=-0.5:3.5,-3:0.7320508075688774"};
+    arguments = plus(arguments, {"--thresholds=-1e-9:1e-3", "--csv", folder.at("table.csv")});
     says(run(arguments), 0, {"diameter from column 'diameter'", "left and bottom fixed, right and top movable"});
     const std::string table = scratch::read(folder / "table.csv");
     BOOST_TEST(table.starts_with("threshold,candidates,rattlers,N_f,N,rank,h,k,"));
-    arguments.emplace_back("--json");
+    arguments = plus(arguments, {"--json"});
     const auto json = says(run(arguments), 0, {"\"format\":\"isostat-plateau 1\"", "\"N\":8"});
     BOOST_TEST(std::count(json.out.begin(), json.out.end(), '\n') == 1);
     // The same numbers as radii: disks of twice the size overlap and leave the box of their walls.
-    arguments.emplace_back("--radius");
-    arguments.emplace_back("diameter");
-    BOOST_TEST(contains(run(arguments).out, "radius from column 'diameter', as stated"));
+    BOOST_TEST(
+        contains(run(plus(arguments, {"--radius", "diameter"})).out, "radius from column 'diameter', as stated"));
 }
 
 BOOST_AUTO_TEST_CASE(what_the_user_must_state_is_asked_for) {
@@ -103,22 +92,19 @@ BOOST_AUTO_TEST_CASE(what_the_user_must_state_is_asked_for) {
     expect(run({"plateau", file, "--columns", "x,y,r"}), 1);
     expect(run({"plateau", file, "--columns", "x,y,s"}), 65, {"disks.txt", "--radius COLUMN"});
     expect(run({"plateau", file, "--columns", "x,y,r", "--walls", "box"}), 65, {"--box"});
-    for (const std::vector<std::string>& wrong :
-         std::vector<std::vector<std::string>>{{"--thresholds", "1"},
-                                               {"--thresholds", "2:1"},
-                                               {"--thresholds", "a:b"},
-                                               {"--thresholds", "nan:1"},
-                                               {"--radius", "-1"},
-                                               {"--radius", "1", "--diameter", "2"},
-                                               {"--walls", "round"},
-                                               {"--box", "1:2"},
-                                               {"--frame", "-1"},
-                                               {"--frame", "1.5"},
-                                               {"--format", "pdf"},
-                                               {"--rows", "-1"}}) {
-        std::vector<std::string> arguments{"plateau", file, "--columns", "x,y,r"};
-        arguments.insert(arguments.end(), wrong.begin(), wrong.end());
-        expect(run(arguments), 64);
+    for (const Arguments& wrong : std::vector<Arguments>{{"--thresholds", "1"},
+                                                         {"--thresholds", "2:1"},
+                                                         {"--thresholds", "a:b"},
+                                                         {"--thresholds", "nan:1"},
+                                                         {"--radius", "-1"},
+                                                         {"--radius", "1", "--diameter", "2"},
+                                                         {"--walls", "round"},
+                                                         {"--box", "1:2"},
+                                                         {"--frame", "-1"},
+                                                         {"--frame", "1.5"},
+                                                         {"--format", "pdf"},
+                                                         {"--rows", "-1"}}) {
+        expect(run(plus({"plateau", file, "--columns", "x,y,r"}, wrong)), 64);
     }
     expect(run({"plateau", scratch::data("vertex100.txt"), "--walls", "box"}), 64, {"vertex", "--walls"});
     expect(run({"plateau", folder.at("none.txt")}), 65, {"none.txt"});
@@ -153,5 +139,3 @@ BOOST_AUTO_TEST_CASE(genericity_refuses_what_it_cannot_perturb) {
     expect(run({"genericity", folder.at("x.csv")}), 65,
            {"isostat import makes a state of a packing of another program"});
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -5,8 +5,6 @@
 
 #include <isostat/io/state_file.hpp>
 
-#include <nlohmann/json.hpp>
-
 using namespace program;
 using nlohmann::json;
 namespace fs = std::filesystem;
@@ -65,8 +63,6 @@ std::string scene_of_names(const std::vector<std::string>& names) {
 }
 
 } // namespace
-
-BOOST_AUTO_TEST_SUITE(cli)
 
 BOOST_AUTO_TEST_CASE(names_of_segments_are_text_for_gnuplot_and_in_every_figure) {
     const scratch::Folder folder;
@@ -132,27 +128,27 @@ BOOST_AUTO_TEST_CASE(names_of_files_do_not_command_the_terminal) {
         for (const std::string& content : {state, std::string("nonsense")}) {
             scratch::write(file, content);
             scratch::write(scene, content);
-            const std::vector<std::vector<std::string>> calls{{"inspect", file},
-                                                              {"inspect", scene},
-                                                              {"certify", file, "-o", out},
-                                                              {"verify", file},
-                                                              {"verify", out, "--input", file},
-                                                              {"export", file, "-o", out + ".xyz"},
-                                                              {"plateau", file},
-                                                              {"import", file, "-o", out},
-                                                              {"snap", file, "-o", out},
-                                                              {"genericity", file, "--samples", "1"},
-                                                              {"report", file, "-o", out + ".d"},
-                                                              {"plan", scene},
-                                                              {"prepare", scene, "-o", out},
-                                                              {"run", scene, "-o", out + ".d"},
-                                                              {"ensemble", scene, "--samples", "1", "-o", out},
-                                                              {"compare", scene, "-o", out},
-                                                              {"inspect", file + "absent"},
-                                                              {file},
-                                                              {"inspect", file, "--" + name},
-                                                              {"inspect", file, "--at", name}};
-            for (std::vector<std::string> call : calls) {
+            const std::vector<Arguments> calls{{"inspect", file},
+                                               {"inspect", scene},
+                                               {"certify", file, "-o", out},
+                                               {"verify", file},
+                                               {"verify", out, "--input", file},
+                                               {"export", file, "-o", out + ".xyz"},
+                                               {"plateau", file},
+                                               {"import", file, "-o", out},
+                                               {"snap", file, "-o", out},
+                                               {"genericity", file, "--samples", "1"},
+                                               {"report", file, "-o", out + ".d"},
+                                               {"plan", scene},
+                                               {"prepare", scene, "-o", out},
+                                               {"run", scene, "-o", out + ".d"},
+                                               {"ensemble", scene, "--samples", "1", "-o", out},
+                                               {"compare", scene, "-o", out},
+                                               {"inspect", file + "absent"},
+                                               {file},
+                                               {"inspect", file, "--" + name},
+                                               {"inspect", file, "--at", name}};
+            for (Arguments call : calls) {
                 expect_harmless(run(call));
                 call.emplace_back("--json");
                 const Outcome machine = run(call);
@@ -187,5 +183,3 @@ BOOST_AUTO_TEST_CASE(words_of_files_of_other_programs_do_not_command_the_termina
         expect_harmless(run({"inspect", folder.at("file.toml")}));
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -1,13 +1,9 @@
 // What `plan` says that a scene leaves out is not done, and what it says to be used is: counted by the program itself.
 #include "cli/program.hpp"
 
-#include <nlohmann/json.hpp>
-
 using namespace program;
 using nlohmann::json;
 namespace fs = std::filesystem;
-
-BOOST_AUTO_TEST_SUITE(cli)
 
 BOOST_AUTO_TEST_CASE(what_plan_leaves_out_is_not_done, *boost::unit_test::label("slow")) {
     // Entries of the plan that a counter tells of.
@@ -19,10 +15,9 @@ BOOST_AUTO_TEST_CASE(what_plan_leaves_out_is_not_done, *boost::unit_test::label(
         {"sparse LU (KLU)", {"factorisations", "inverse_bounds"}},
         {"figures/*.svg, *.png (gnuplot), force pictures", {"pictures", "charts"}},
         {"figures/*.vtk", {"vtk_files"}}};
-    std::set<std::string> seen_used;
-    std::set<std::string> seen_unused;
+    std::set<std::string> seen_used, seen_unused;
     int runs = 0;
-    for (const fs::directory_entry& entry : fs::directory_iterator(std::string(ISOSTAT_EXAMPLES) + "/plans")) {
+    for (const fs::directory_entry& entry : fs::directory_iterator(ISOSTAT_EXAMPLES "/plans")) {
         if (entry.path().extension() != ".toml") {
             continue;
         }
@@ -72,8 +67,8 @@ BOOST_AUTO_TEST_CASE(two_small_scenes_cost_what_they_did_with_any_number_of_thre
     for (const auto& [scene, expected] : known) {
         for (const char* threads : {"1", "3"}) {
             const scratch::Folder folder;
-            expect(run({"run", std::string(ISOSTAT_EXAMPLES) + "/plans/" + scene + ".toml", "-o", folder.at("r"), "-q",
-                        "--threads", threads}),
+            expect(run({"run", ISOSTAT_EXAMPLES "/plans/" + scene + ".toml", "-o", folder.at("r"), "-q", "--threads",
+                        threads}),
                    0);
             const json work = json::parse(scratch::read(folder / "r/work.json"))["counts"];
             BOOST_TEST_INFO_SCOPE(scene << ", threads " << threads);
@@ -88,5 +83,3 @@ BOOST_AUTO_TEST_CASE(two_small_scenes_cost_what_they_did_with_any_number_of_thre
         }
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -26,7 +26,7 @@ struct Desk {
         return at(name);
     }
     /// The command is refused and the file is as it was.
-    void refused(const std::string& name, const std::vector<std::string>& arguments, const std::string& word) const {
+    void refused(const std::string& name, const Arguments& arguments, const std::string& word) const {
         const std::string before = scratch::read(folder / name);
         expect(run(arguments), 64, {word});
         BOOST_TEST(scratch::read(folder / name) == before, arguments.front() << " " << name);
@@ -34,8 +34,6 @@ struct Desk {
 };
 
 } // namespace
-
-BOOST_AUTO_TEST_SUITE(cli)
 
 BOOST_FIXTURE_TEST_CASE(no_command_writes_into_a_folder_of_the_user, Desk) {
     for (const char* name :
@@ -75,18 +73,16 @@ BOOST_FIXTURE_TEST_CASE(no_command_writes_over_its_input_or_a_file_of_the_user, 
     refused("a.json", {"export", state, "-o", state, "--format", "csv"}, "is the input");
     refused("a.csv", {"plateau", at("a.csv"), "--csv", at("a.csv")}, "is the input");
     refused("a.json", {"genericity", state, "--samples", "1", "--csv", state}, "is the input");
-    for (const std::vector<std::string>& command : std::vector<std::vector<std::string>>{
-             {"prepare", scene, "-o"},
-             {"certify", state, "-o"},
-             {"snap", state, "-o"},
-             {"export", state, "--format", "xyz", "-o"},
-             {"plateau", at("a.csv"), "--csv"},
-             {"genericity", state, "--samples", "1", "--csv"},
-             {"import", at("a.csv"), "--walls", "box", "-o"},
-             {"import", at("a.csv"), "--walls", "box", "-o", at("i.json"), "--moved"}}) {
-        std::vector<std::string> words = command;
-        words.push_back(at("mine"));
-        refused("mine", words, "expected a new name");
+    for (const Arguments& command :
+         std::vector<Arguments>{{"prepare", scene, "-o"},
+                                {"certify", state, "-o"},
+                                {"snap", state, "-o"},
+                                {"export", state, "--format", "xyz", "-o"},
+                                {"plateau", at("a.csv"), "--csv"},
+                                {"genericity", state, "--samples", "1", "--csv"},
+                                {"import", at("a.csv"), "--walls", "box", "-o"},
+                                {"import", at("a.csv"), "--walls", "box", "-o", at("i.json"), "--moved"}}) {
+        refused("mine", plus(command, {at("mine")}), "expected a new name");
     }
     (void)precious("pictures/forces_a.svg");
     refused("pictures/forces_a.svg", {"report", state, "-o", at("pictures")}, "expected a new name");
@@ -113,13 +109,11 @@ BOOST_FIXTURE_TEST_CASE(a_scene_or_a_series_names_regular_files_beside_it, Desk)
     for (const std::string& name :
          {std::string("/dev/zero"), std::string("../pipe"), std::string("../outside.txt"), at("outside.txt")}) {
         for (const char* key : {"radii_file", "file"}) {
-            scratch::write(folder / "in/s.toml", std::string("[packing]\n") + key + " = \"" + name + "\"\n" + up_6);
+            scratch::write(folder / "in/s.toml", std::string("[packing]\n") + key + " = \"" + name + "\"\n" + up(6));
             for (const char* command : {"plan", "run"}) {
-                std::vector<std::string> words{command, at("in/s.toml")};
-                if (words.front() == "run") {
-                    words.insert(words.end(), {"-o", at("out")});
-                }
-                expect(run(words, "timeout 60 "), 65, {"s.toml:2: " + std::string(key), "beside"});
+                const Arguments output = std::string(command) == "run" ? Arguments{"-o", at("out")} : Arguments{};
+                expect(run(plus({command, at("in/s.toml")}, output), "timeout 60 "), 65,
+                       {"s.toml:2: " + std::string(key), "beside"});
             }
         }
         for (const char* key : {"disks", "contacts", "frames"}) {
@@ -174,5 +168,3 @@ BOOST_FIXTURE_TEST_CASE(an_ensemble_has_as_many_rows_as_there_are_samples, Desk)
     const auto some = says(run({"verify", at("e")}, "timeout 300 "), 2, {"missing, and 997 after it"});
     BOOST_TEST(std::count(some.out.begin(), some.out.end(), '\n') < 30);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

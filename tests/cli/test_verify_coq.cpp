@@ -4,11 +4,7 @@
 
 #include <isostat/io/state_file.hpp>
 
-#include <nlohmann/json.hpp>
-
 using namespace program;
-
-BOOST_AUTO_TEST_SUITE(cli)
 
 namespace {
 
@@ -28,9 +24,7 @@ struct WithoutCoq {
         return folder.at(name);
     }
     [[nodiscard]] Outcome verify(const std::vector<std::string>& files, const std::string& checker = "--coq") const {
-        std::vector<std::string> arguments{"verify", checker};
-        arguments.insert(arguments.end(), files.begin(), files.end());
-        return run(arguments, path);
+        return run(plus({"verify", checker}, files), path);
     }
 };
 
@@ -50,8 +44,8 @@ BOOST_AUTO_TEST_CASE(without_coq_nothing_is_said_to_be_proved_by_it) {
     const std::string missing = undecided_because("Coq is not installed (Debian packages coq, ");
     const Outcome one = says(here.verify({file}), 2, {"stable         proved", missing, "equilibrium    undecided"});
     BOOST_TEST(!contains(one.out, "coq            proved"));
-    for (const char* const name : {"pegs", "slot", "channel", "lattice"}) { // fixed disks and walls, cells
-        run({"certify", std::string(ISOSTAT_TEST_DATA) + "/coq/" + name + ".json", "-o", here.folder.at(name)});
+    for (const std::string name : {"pegs", "slot", "channel", "lattice"}) { // fixed disks and walls, cells
+        run({"certify", ISOSTAT_TEST_DATA "/coq/" + name + ".json", "-o", here.folder.at(name)});
         says(here.verify({here.folder.at(name)}), 2, {"stable         proved", missing});
     }
     says(run({"verify", file}), 0, {"equilibrium    proved"});
@@ -90,7 +84,7 @@ BOOST_AUTO_TEST_CASE(packings_that_the_checker_in_coq_does_not_cover_are_named) 
     touching_dimer.contacts[static_cast<std::size_t>(
         std::find(touching_dimer.contacts.begin(), touching_dimer.contacts.end(), crafted::pair(0, 1)) -
         touching_dimer.contacts.begin())] = {isostat::ContactKind::bar, 0, 1};
-    isostat::State pinned = isostat::read_any_state(std::string(ISOSTAT_EXAMPLES) + "/cells/tilted-100.json").state;
+    isostat::State pinned = isostat::read_any_state(ISOSTAT_EXAMPLES "/cells/tilted-100.json").state;
     isostat::State isotropic = pinned;
     isotropic.packing.cell.keep_shape();
     pinned.packing.cell.pin = 30; // a rattler
@@ -122,5 +116,3 @@ BOOST_AUTO_TEST_CASE(several_certificates_are_verified_one_after_the_other) {
     BOOST_TEST(answer["verdict"] == "proved");
     expect(run({"verify", good, good, "--input", good}), 64, {"--input"});
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -1,19 +1,21 @@
 // What the program says when the wrong file is given, and when it is stopped.
+// What a file is comes before what else is missing on the command line; a file of no format is described.
 #include "cli/program.hpp"
 
 using namespace program;
 namespace fs = std::filesystem;
 
-BOOST_AUTO_TEST_SUITE(cli)
-
 BOOST_AUTO_TEST_CASE(the_wrong_kind_of_file_names_the_commands_that_take_it) {
     const scratch::Folder folder;
     const auto path = [&folder](const char* name) { return (folder / name).string(); };
-    scratch::write_scene(folder / "s.toml", scene_from(scratch::data("vertex100.txt"), up_6));
+    ran(folder, scene_from(scratch::data("vertex100.txt"), up(6)));
     expect(run({"import", scratch::data("vertex100.txt"), "-o", path("state.json")}), 0);
-    expect(run({"run", path("s.toml"), "-o", path("run"), "-q"}), 0);
     expect(run({"certify", path("state.json"), "-o", path("cert.json")}), 0);
-    const std::string packing = std::string(ISOSTAT_EXAMPLES) + "/packings/square_lattice_3.toml";
+    const auto output_of = [&](const std::string& command) {
+        return command == "run" || command == "prepare" || command == "certify" ? Arguments{"-o", path("o")}
+                                                                                : Arguments{};
+    };
+    const std::string packing = ISOSTAT_EXAMPLES "/packings/square_lattice_3.toml";
     expect(run({"certify", path("s.toml"), "-o", path("c")}), 65,
            {"a scene, which says what to compute: for isostat run, plan, prepare, ensemble, not for certify"});
     expect(run({"inspect", path("s.toml")}), 65, {"a scene"});
@@ -26,21 +28,15 @@ BOOST_AUTO_TEST_CASE(the_wrong_kind_of_file_names_the_commands_that_take_it) {
         expect(run({"inspect", path("run") + "/" + name}), 65, {"a file of a run; its folder is meant"});
     }
     for (const char* command : {"inspect", "run", "verify"}) {
-        std::vector<std::string> words{command, scratch::data("series/disks.dump")};
-        if (words[0] == "run") {
-            words.insert(words.end(), {"-o", path("o")});
-        }
-        expect(run(words), 65, {"a LAMMPS dump: for isostat plateau, import, snap, not for " + words[0]});
+        expect(run(plus({command, scratch::data("series/disks.dump")}, output_of(command))), 65,
+               {std::string("a LAMMPS dump: for isostat plateau, import, snap, not for ") + command});
     }
     for (const char* rows : {"x,y,r\n1,1,1\n", "#format x_y_z_r\n1\t1\t0\t1\n", "# disks\n\n1 1 1\n"}) {
         scratch::write(folder / "table.csv", rows);
         for (const char* command :
              {"run", "plan", "prepare", "inspect", "certify", "verify", "genericity", "compare"}) {
-            std::vector<std::string> words{command, path("table.csv")};
-            if (words[0] == "run" || words[0] == "prepare" || words[0] == "certify") {
-                words.insert(words.end(), {"-o", path("o")});
-            }
-            expect(run(words), 65, {"a table of disks: for isostat plateau, import, snap, not for " + words[0]});
+            expect(run(plus({command, path("table.csv")}, output_of(command))), 65,
+                   {std::string("a table of disks: for isostat plateau, import, snap, not for ") + command});
         }
     }
     // The right kind with something wrong in it gets no such advice.
@@ -66,7 +62,7 @@ BOOST_AUTO_TEST_CASE(a_held_coordinate_is_not_counted_as_a_contact_that_carries_
 BOOST_AUTO_TEST_CASE(a_run_that_is_stopped_says_how_to_go_on) {
     const scratch::Folder folder;
     scratch::write_scene(folder / "s.toml", scene_from(scratch::data("vertex1936.txt"), // longer than anyone waits
-                                                       "[[programme]]\ndo = \"up\"\nequilibria = 100000\n"));
+                                                       up(100000)));
     const std::string scene = folder.at("s.toml");
     // A second signal ends the program at once: `timeout` sends one to the group too, but in the foreground.
     for (const char* seconds : {"1", "8", "60", "600"}) { // on a busy machine it has not begun after one
@@ -82,4 +78,24 @@ BOOST_AUTO_TEST_CASE(a_run_that_is_stopped_says_how_to_go_on) {
     BOOST_TEST(false, "the run had not begun after ten minutes");
 }
 
-BOOST_AUTO_TEST_SUITE_END()
+BOOST_AUTO_TEST_CASE(a_file_that_is_not_there_or_is_for_others_is_told_before_a_missing_option) {
+    const scratch::Folder folder;
+    const std::string none = folder.at("none.toml"), scene = folder.at("s.toml");
+    scratch::write(scene, "[packing]\ndisks = 10\n");
+    for (const char* command : {"run", "ensemble", "certify", "import", "export"}) {
+        expect(run({command, none}), 65, {none, "does not exist"});
+    }
+    expect(run({"certify", scene}), 65, {"is a scene", "not for certify"});
+    expect(run({"run", scene}), 64, {"--output is required"});
+    expect(run({"run"}), 64, {"required"});
+}
+
+BOOST_AUTO_TEST_CASE(a_file_of_no_format_is_shown_by_its_beginning) {
+    const scratch::Folder folder;
+    scratch::write(folder / "junk", "hello\x1b[2J, this is a letter and no packing at all\n1 2 3\n");
+    for (const char* command : {"inspect", "report"}) {
+        expect(run({command, folder.at("junk")}), 65, {"neither a state", "'hello\\x1b[2J, this is a letter and"});
+    }
+    scratch::write(folder / "s.toml", "[packing]\ndisks = 10\n");
+    expect(run({"report", folder.at("s.toml")}), 65, {"neither a state", "'[packing]'", "is a scene"});
+}

@@ -82,10 +82,17 @@ class Copy {
             }
         }
     }
+    std::string& disk(std::size_t frame, std::size_t row) { return disks[line(disks, frame, row)]; }
+    std::string& contact(std::size_t frame, std::size_t row) { return contacts[line(contacts, frame, row)]; }
+    void restate(const std::string& from, const std::string& to) { manifest = scratch::replaced(manifest, from, to); }
     static std::string field(const std::string& line, std::size_t k, const std::string& value) {
         Lines words = words_of(line);
         words[k] = value;
         return joined(words, ' ');
+    }
+    /// The number in a field becomes `factor` times what it was, and `more`.
+    static void change(std::string& line, std::size_t k, double factor, double more = 0) {
+        line = field(line, k, fmt::format("{}", factor * std::stod(words_of(line)[k]) + more));
     }
 
   private:

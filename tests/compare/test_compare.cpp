@@ -3,7 +3,6 @@
 #include "compare/series_copy.hpp"
 #include "support/bad_input.hpp"
 
-#include <isostat/core/error.hpp>
 #include <isostat/io/state_file.hpp>
 
 #include <tuple>
@@ -34,34 +33,23 @@ void expect_file(const std::function<void(Copy&)>& damage, const std::vector<std
     BOOST_TEST(result.departure->reason == "file");
 }
 
-void expect_error(const std::function<void(Copy&)>& damage, const std::vector<std::string>& words) {
-    Copy copy(2);
-    damage(copy);
-    expect_bad_input([&] { (void)copy.compare(); }, words);
-}
-
-std::string& disk_row(Copy& copy, std::size_t row) {
-    return copy.disks[Copy::line(copy.disks, 1, row)];
-}
-std::string& contact_row(Copy& copy, std::size_t row) {
-    return copy.contacts[Copy::line(copy.contacts, 1, row)];
-}
+/// What is done to two frames, and words of what is said.
+struct Damage {
+    const char* name;
+    std::function<void(Copy&)> apply;
+    std::vector<std::string> words;
+};
 
 } // namespace
-
-BOOST_AUTO_TEST_SUITE(compare_series)
 
 /// Both stresses and all forces of frame k are 2^k times those of the series: rigid grains do not know the difference.
 BOOST_AUTO_TEST_CASE(frames_whose_stresses_all_vary_are_placed_by_their_ratio) {
     Copy copy(9);
-    const auto scaled = [](const std::string& number, double factor) {
-        return fmt::format("{}", std::stod(number) * factor);
-    };
     for (std::size_t k = 0; k < copy.table.size(); ++k) {
         series::Lines row = series::words_of(copy.table[k], ',');
         const double factor = std::ldexp(1.0, static_cast<int>(k) - 1);
         for (std::size_t column = 5; k > 0 && column < row.size(); ++column) {
-            row[column] = scaled(row[column], factor);
+            row[column] = fmt::format("{}", std::stod(row[column]) * factor);
         }
         row.push_back(k == 0 ? "sigma1" : fmt::format("{}", factor));
         copy.table[k] = series::joined(row, ',');
@@ -70,8 +58,7 @@ BOOST_AUTO_TEST_CASE(frames_whose_stresses_all_vary_are_placed_by_their_ratio) {
         for (std::size_t k = 0; k < 9; ++k) {
             for (std::size_t at = Copy::line(dump, k, 0); at < dump.size() && dump[at].find("ITEM") != 0; ++at) {
                 for (const std::size_t column : columns) {
-                    const std::string old = series::words_of(dump[at])[column];
-                    dump[at] = Copy::field(dump[at], column, scaled(old, std::ldexp(1.0, static_cast<int>(k))));
+                    Copy::change(dump[at], column, std::ldexp(1.0, static_cast<int>(k)));
                 }
             }
         }
@@ -86,8 +73,7 @@ BOOST_AUTO_TEST_CASE(frames_whose_stresses_all_vary_are_placed_by_their_ratio) {
     };
     scale_forces(copy.disks, columns_of(copy.disks, {"f_wl[2]", "f_wr[2]", "f_wb[3]", "f_wt[3]"}));
     scale_forces(copy.contacts, columns_of(copy.contacts, {"force"}));
-    const std::string law = "kind = \"linear\"\nstiffness = 1e5";
-    copy.manifest = scratch::replaced(copy.manifest, law, "kind = \"none\"");
+    copy.restate("kind = \"linear\"\nstiffness = 1e5", "kind = \"none\"");
     const std::string varying = scratch::replaced(copy.manifest, "sigma1 = 1.0\n", "");
     Copy plain(9);
     plain.manifest = copy.manifest;
@@ -178,18 +164,12 @@ BOOST_AUTO_TEST_CASE(a_contact_that_nearly_closes_for_rigid_grains_is_a_tie_and_
 
 BOOST_AUTO_TEST_CASE(every_frame_is_compared_with_the_exact_run_from_the_frame_before_when_asked) {
     const Copy copy(5);
-    const auto compared = [&copy](bool local) {
-        compare::CompareOptions options;
-        options.bundle = 0;
-        options.local = local;
-        return copy.compare(options);
-    };
-    const Comparison result = compared(true);
+    const Comparison result = copy.compare({.start = {}, .bundle = 0, .local = true});
     const std::vector<std::string> expected{"", "same", "same", "other", "same"};
     for (std::size_t k = 0; k < expected.size(); ++k) {
         BOOST_TEST(result.frames[k].local == expected[k], "frame " << k << ": " << result.frames[k].local);
     }
-    const Comparison without = compared(false);
+    const Comparison without = copy.compare({.start = {}, .bundle = 0, .local = false});
     for (std::size_t k = 0; k < expected.size(); ++k) {
         BOOST_TEST(without.frames[k].local.empty());
         BOOST_TEST((without.frames[k].status == result.frames[k].status));
@@ -270,74 +250,66 @@ BOOST_AUTO_TEST_CASE(frames_that_are_all_the_exact_equilibrium_give_0) {
     BOOST_TEST(std::count(text.begin(), text.end(), '\n') == 4);
     // Another order of the rows of a dump is the same frame.
     Copy turned(3);
-    std::swap(disk_row(turned, 3), disk_row(turned, 60));
-    std::swap(contact_row(turned, 3), contact_row(turned, 60));
+    std::swap(turned.disk(1, 3), turned.disk(1, 60));
+    std::swap(turned.contact(1, 3), turned.contact(1, 60));
     BOOST_TEST(compare::frames_csv(turned.compare()) == text);
 }
 
-BOOST_AUTO_TEST_CASE(a_disk_moved_by_a_thousandth_is_no_frame_in_motion) {
-    for (const std::size_t row : {2U, 30U, 66U}) {
-        expect_file(
-            [row](Copy& c) {
-                const double x = std::stod(series::words_of(disk_row(c, row))[3]);
-                disk_row(c, row) = Copy::field(disk_row(c, row), 3, fmt::format("{}", x + 1e-3));
-            },
-            {"overlap"});
+BOOST_AUTO_TEST_CASE(a_frame_whose_files_contradict_each_other_is_told_from_one_in_motion) {
+    const std::string twice = fmt::format("contacts.dump:{}:", Copy::line(Copy(2).contacts, 1, 7) + 1);
+    const std::vector<Damage> damages{
+        {"a disk moved by a thousandth", [](Copy& c) { Copy::change(c.disk(1, 2), 3, 1, 1e-3); }, {"overlap"}},
+        {"another one", [](Copy& c) { Copy::change(c.disk(1, 30), 3, 1, 1e-3); }, {"overlap"}},
+        {"a third one", [](Copy& c) { Copy::change(c.disk(1, 66), 3, 1, 1e-3); }, {"overlap"}},
+        {"two ids exchanged, the radii with them",
+         [](Copy& c) {
+             series::Lines third = series::words_of(c.disk(1, 2)), last = series::words_of(c.disk(1, 66));
+             std::swap_ranges(third.begin(), third.begin() + 3, last.begin());
+             c.disk(1, 2) = series::joined(third, ' ');
+             c.disk(1, 66) = series::joined(last, ' ');
+         },
+         {"disks"}},
+        {"a contact twice", [](Copy& c) { c.contact(1, 7) = c.contact(1, 5); }, {twice, "come twice"}},
+        {"forces in other units",
+         [](Copy& c) {
+             for (std::size_t k = Copy::line(c.contacts, 1, 0); k < c.contacts.size(); ++k) {
+                 Copy::change(c.contacts[k], 2, 1000);
+             }
+         },
+         {"contacts.dump:", "stiffness x overlap", "ratio 1000"}},
+        {"a wall moved",
+         [](Copy& c) {
+             series::Lines cells = series::words_of(c.table[2], ',');
+             cells[3] = fmt::format("{}", std::stod(cells[3]) + 1e-4);
+             c.table[2] = series::joined(cells, ',');
+         },
+         {"right wall", "frames.csv:3"}},
+        {"a missing contact",
+         [](Copy& c) {
+             c.contacts.erase(c.contacts.begin() + static_cast<long>(Copy::line(c.contacts, 1, 3)));
+             std::string& count = c.contacts[Copy::line(c.contacts, 1, 0) - 6];
+             count = std::to_string(std::stoi(count) - 1);
+         },
+         {"overlap by", "no contact in the files", "disks 6 and 19"}},
+        {"the load of another frame",
+         [](Copy& c) {
+             series::Lines words = series::words_of(c.table[2], ',');
+             const series::Lines before = series::words_of(c.table[1], ',');
+             std::copy(before.begin() + 5, before.end(), words.begin() + 5);
+             c.table[2] = series::joined(words, ',');
+         },
+         {"frames.csv:3", "top wall", "load of another frame"}}};
+    for (const Damage& damage : damages) {
+        BOOST_TEST_INFO_SCOPE(damage.name);
+        expect_file(damage.apply, damage.words);
     }
-}
-
-BOOST_AUTO_TEST_CASE(two_ids_swapped) {
-    expect_file(
-        [](Copy& c) {
-            disk_row(c, 2) = Copy::field(disk_row(c, 2), 0, "67");
-            disk_row(c, 66) = Copy::field(disk_row(c, 66), 0, "3");
-            // The radii go with the ids, or the frame is bad input.
-            const std::string third = series::words_of(disk_row(c, 2))[2];
-            disk_row(c, 2) = Copy::field(disk_row(c, 2), 2, series::words_of(disk_row(c, 66))[2]);
-            disk_row(c, 66) = Copy::field(disk_row(c, 66), 2, third);
-        },
-        {"disks"});
-    expect_error([](Copy& c) { disk_row(c, 2) = Copy::field(disk_row(c, 2), 0, "67"); }, {"disks.dump:", "id is '67'"});
-}
-
-BOOST_AUTO_TEST_CASE(a_contact_twice) {
-    std::string row;
-    expect_file(
-        [&](Copy& c) {
-            const std::size_t at = Copy::line(c.contacts, 1, 7);
-            c.contacts[at] = c.contacts[at - 2];
-            row = fmt::format("contacts.dump:{}", at + 1);
-        },
-        {"come twice"});
-    expect_file([&](Copy& c) { contact_row(c, 7) = contact_row(c, 5); }, {row + ":", "twice"});
-}
-
-BOOST_AUTO_TEST_CASE(forces_in_other_units) {
-    const auto scaled = [](Copy& c) {
-        for (std::size_t k = Copy::line(c.contacts, 1, 0); k < c.contacts.size(); ++k) {
-            const double force = std::stod(series::words_of(c.contacts[k])[2]);
-            c.contacts[k] = Copy::field(c.contacts[k], 2, fmt::format("{}", 1000 * force));
-        }
-    };
-    expect_file(scaled, {"contacts.dump:", "stiffness x overlap", "ratio 1000"});
-}
-
-BOOST_AUTO_TEST_CASE(a_wall_moved) {
-    expect_file(
-        [](Copy& c) {
-            series::Lines cells = series::words_of(c.table[2], ',');
-            cells[3] = fmt::format("{}", std::stod(cells[3]) + 1e-4);
-            c.table[2] = series::joined(cells, ',');
-        },
-        {"right wall", "frames.csv:3"});
 }
 
 BOOST_AUTO_TEST_CASE(diameters_for_radii) {
     const auto doubled = [](Copy& c) {
         for (std::size_t frame : {0U, 1U}) {
             for (std::size_t row = 0; row < 100; ++row) {
-                std::string& line = c.disks[Copy::line(c.disks, frame, row)];
-                line = Copy::field(line, 2, fmt::format("{}", 2 * std::stod(series::words_of(line)[2])));
+                Copy::change(c.disk(frame, row), 2, 2);
             }
         }
     };
@@ -346,21 +318,8 @@ BOOST_AUTO_TEST_CASE(diameters_for_radii) {
     const Comparison result = copy.compare();
     BOOST_TEST((result.frames[0].status == FrameStatus::file));
     BOOST_TEST(contains(result.frames[0].reason, "diameters"), result.frames[0].reason);
-    copy.manifest = scratch::replaced(copy.manifest, "[columns]", "[columns]\ndiameter = \"radius\"");
+    copy.restate("[columns]", "[columns]\ndiameter = \"radius\"");
     BOOST_TEST(copy.compare().status == 0);
-    expect_error([](Copy& c) { disk_row(c, 4) = Copy::field(disk_row(c, 4), 2, "0.5"); },
-                 {"disks.dump:", "radius is '0.5'", "first frame"});
-}
-
-BOOST_AUTO_TEST_CASE(a_missing_contact) {
-    expect_file(
-        [](Copy& c) {
-            const std::size_t at = Copy::line(c.contacts, 1, 3);
-            c.contacts.erase(c.contacts.begin() + static_cast<long>(at));
-            const std::size_t count = Copy::line(c.contacts, 1, 0) - 6;
-            c.contacts[count] = std::to_string(std::stoi(c.contacts[count]) - 1);
-        },
-        {"overlap by", "no contact in the files", "disks 6 and 19"});
 }
 
 void swap_frames(series::Lines& dump, std::size_t frame) {
@@ -375,70 +334,72 @@ void swap_frames(series::Lines& dump, std::size_t frame) {
     std::rotate(begin + starts[frame], begin + starts[frame + 1], begin + starts[frame + 2]);
 }
 
-BOOST_AUTO_TEST_CASE(frames_twice_or_out_of_order) {
-    expect_error([](Copy& c) { c.table.push_back(c.table.back()); }, {"frames.csv:4", "timestep is '175000'", "above"});
-    expect_error(
-        [](Copy& c) {
-            const auto begin = c.disks.begin();
-            const series::Lines first(begin, begin + static_cast<long>(Copy::line(c.disks, 1, 0)) - 9);
-            c.disks.insert(begin, first.begin(), first.end());
-        },
-        {"disks.dump:118", "after", "each once"});
-    expect_error([](Copy& c) { swap_frames(c.contacts, 0); }, {"contacts.dump:", "after 175000", "in their order"});
-}
-
-BOOST_AUTO_TEST_CASE(a_disk_that_is_not_there) {
-    expect_error(
-        [](Copy& c) {
-            const std::size_t at = Copy::line(c.disks, 1, 5);
-            c.disks.erase(c.disks.begin() + static_cast<long>(at));
-            c.disks[Copy::line(c.disks, 1, 0) - 6] = "99";
-        },
-        {"disks.dump:", "id is '7'", "6 next"});
-}
-
-BOOST_AUTO_TEST_CASE(a_periodic_box_is_no_series) {
-    const auto periodic = [](Copy& c) {
-        std::string& box = c.disks[Copy::line(c.disks, 1, 0) - 5];
-        box = scratch::replaced(box, "ff ff", "ff pp");
-    };
-    expect_error(periodic, {"disks.dump:", "periodic along y"});
-}
-
-BOOST_AUTO_TEST_CASE(the_load_of_another_frame) {
-    const auto shifted = [](Copy& c) {
-        series::Lines words = series::words_of(c.table[2], ',');
-        const series::Lines before = series::words_of(c.table[1], ',');
-        std::copy(before.begin() + 5, before.end(), words.begin() + 5);
-        c.table[2] = series::joined(words, ',');
-    };
-    expect_file(shifted, {"frames.csv:3", "top wall", "load of another frame"});
-}
-
 BOOST_AUTO_TEST_CASE(bad_input_is_named_with_file_and_row) {
-    expect_error([](Copy& c) { c.table[0] = scratch::replaced(c.table[0], "right", "rihgt"); },
-                 {"frames.csv:1", "no column 'right'", "bounds of a dump are not taken"});
-    expect_error([](Copy& c) { contact_row(c, 3) = Copy::field(contact_row(c, 3), 1, "101"); },
-                 {"contacts.dump:", "j is '101'", "id of a disk"});
-    expect_error([](Copy& c) { contact_row(c, 3) = Copy::field(contact_row(c, 3), 2, "1.0x"); },
-                 {"contacts.dump:", "force is '1.0x'"});
-    expect_error([](Copy& c) { c.table[2] = scratch::replaced(c.table[2], "175000", "175001"); },
-                 {"disks.dump", "no time step 175001"});
-    expect_error([](Copy& c) { c.table[2] = scratch::replaced(c.table[2], ",1.03", ",1.04"); },
-                 {"frames.csv:3", "force_top", "column 7"});
-    expect_error([](Copy& c) { c.manifest = scratch::replaced(c.manifest, "stiffness = 1e5", "stifness = 1e5"); },
-                 {"series.toml", "stiffness"});
-    expect_error([](Copy& c) { c.manifest = scratch::replaced(c.manifest, "[law]", "colour = 1\n[law]"); },
-                 {"unknown key 'colour'"});
-    expect_error([](Copy& c) { c.manifest = scratch::replaced(c.manifest, "isostat-series 1", "isostat-series 2"); },
-                 {"isostat-series 1"});
-    expect_error(
-        [](Copy& c) { // spheres, where the manifest speaks of disks
-            c.manifest = scratch::replaced(c.manifest, "select = \"type 1\"", "");
-            c.disks[8] = scratch::replaced(c.disks[8], "type", "z");
-            c.disks[11] = Copy::field(c.disks[11], 1, "1.5");
-        },
-        {"disks.dump:12", "z is '1.5'", "three lengths in reference_length"});
+    const auto text = [](std::string& line, const std::string& from, const std::string& to) {
+        line = scratch::replaced(line, from, to);
+    };
+    const std::vector<Damage> damages{
+        {"an id for another",
+         [](Copy& c) { c.disk(1, 2) = Copy::field(c.disk(1, 2), 0, "67"); },
+         {"disks.dump:", "id is '67'"}},
+        {"another radius",
+         [](Copy& c) { c.disk(1, 4) = Copy::field(c.disk(1, 4), 2, "0.5"); },
+         {"disks.dump:", "radius is '0.5'", "first frame"}},
+        {"a row of the table twice",
+         [](Copy& c) { c.table.push_back(c.table.back()); },
+         {"frames.csv:4", "timestep is '175000'", "above"}},
+        {"a frame twice",
+         [](Copy& c) {
+             const auto begin = c.disks.begin();
+             const series::Lines first(begin, begin + static_cast<long>(Copy::line(c.disks, 1, 0)) - 9);
+             c.disks.insert(begin, first.begin(), first.end());
+         },
+         {"disks.dump:118", "after", "each once"}},
+        {"frames in another order",
+         [](Copy& c) { swap_frames(c.contacts, 0); },
+         {"contacts.dump:", "after 175000", "in their order"}},
+        {"a disk that is not there",
+         [](Copy& c) {
+             c.disks.erase(c.disks.begin() + static_cast<long>(Copy::line(c.disks, 1, 5)));
+             c.disks[Copy::line(c.disks, 1, 0) - 6] = "99";
+         },
+         {"disks.dump:", "id is '7'", "6 next"}},
+        {"a periodic box",
+         [&](Copy& c) { text(c.disks[Copy::line(c.disks, 1, 0) - 5], "ff ff", "ff pp"); },
+         {"disks.dump:", "periodic along y"}},
+        {"a name misspelt",
+         [&](Copy& c) { text(c.table[0], "right", "rihgt"); },
+         {"frames.csv:1", "no column 'right'", "bounds of a dump are not taken"}},
+        {"no id of a disk",
+         [](Copy& c) { c.contact(1, 3) = Copy::field(c.contact(1, 3), 1, "101"); },
+         {"contacts.dump:", "j is '101'", "id of a disk"}},
+        {"no number",
+         [](Copy& c) { c.contact(1, 3) = Copy::field(c.contact(1, 3), 2, "1.0x"); },
+         {"contacts.dump:", "force is '1.0x'"}},
+        {"no such time step",
+         [&](Copy& c) { text(c.table[2], "175000", "175001"); },
+         {"disks.dump", "no time step 175001"}},
+        {"no such column",
+         [&](Copy& c) { text(c.table[2], ",1.03", ",1.04"); },
+         {"frames.csv:3", "force_top", "column 7"}},
+        {"a key misspelt",
+         [](Copy& c) { c.restate("stiffness = 1e5", "stifness = 1e5"); },
+         {"series.toml", "stiffness"}},
+        {"an unknown key", [](Copy& c) { c.restate("[law]", "colour = 1\n[law]"); }, {"unknown key 'colour'"}},
+        {"another version", [](Copy& c) { c.restate("isostat-series 1", "isostat-series 2"); }, {"isostat-series 1"}},
+        {"spheres, where the manifest speaks of disks",
+         [&](Copy& c) {
+             c.restate("select = \"type 1\"", "");
+             text(c.disks[8], "type", "z");
+             c.disks[11] = Copy::field(c.disks[11], 1, "1.5");
+         },
+         {"disks.dump:12", "z is '1.5'", "three lengths in reference_length"}}};
+    for (const Damage& damage : damages) {
+        BOOST_TEST_INFO_SCOPE(damage.name);
+        Copy copy(2);
+        damage.apply(copy);
+        expect_bad_input([&] { (void)copy.compare(); }, damage.words);
+    }
 }
 
 BOOST_AUTO_TEST_CASE(the_files_of_a_comparison_are_complete) {
@@ -456,7 +417,7 @@ BOOST_AUTO_TEST_CASE(the_files_of_a_comparison_are_complete) {
 
 BOOST_AUTO_TEST_CASE(the_figure_has_no_curve_without_a_point) {
     Copy copy(2);
-    copy.manifest = scratch::replaced(copy.manifest, "stiffness = 1e5", "stiffness = 2e5");
+    copy.restate("stiffness = 1e5", "stiffness = 2e5");
     compare::SeriesReader reader(copy.write());
     const Comparison result = compare::compare(reader);
     BOOST_TEST((result.frames[0].status == FrameStatus::file));
@@ -501,5 +462,3 @@ BOOST_AUTO_TEST_CASE(hertzian_contacts_have_their_own_law) {
         }
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -5,9 +5,6 @@
 #include "support/bad_input.hpp"
 #include "support/segments.hpp"
 
-#include <isostat/core/error.hpp>
-#include <isostat/trajectory/trajectory.hpp>
-
 using namespace isostat;
 using compare::Comparison;
 using compare::FrameStatus;
@@ -115,8 +112,6 @@ Copy changed(Copy copy, const std::function<void(Copy&)>& change) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(compare_formats)
-
 BOOST_AUTO_TEST_CASE(tables_and_xyz_are_the_same_frames_as_dumps) {
     const std::string dumps = compare::frames_csv(Copy(2).compare());
     BOOST_TEST(compare::frames_csv(table_copy(',').compare()) == dumps);
@@ -189,8 +184,7 @@ BOOST_AUTO_TEST_CASE(bad_tables_are_named_with_file_and_row) {
     expect_error(table([](Copy& c) { c.contacts[40] = scratch::replaced(c.contacts[40], "43000,", "43000,roof"); }),
                  {"contacts.dump:41", "i is 'roof", "left, bottom, right, top"});
     expect_error(table([](Copy& c) { c.disks[0] = "ITEM:"; }), {"disks.dump:1", "ITEM: TIMESTEP"});
-    expect_error(table([](Copy& c) { c.manifest = scratch::replaced(c.manifest, "f_wl[2]", "f_w"); }),
-                 {"disks.dump:2", "no column 'f_w'"});
+    expect_error(table([](Copy& c) { c.restate("f_wl[2]", "f_w"); }), {"disks.dump:2", "no column 'f_w'"});
 }
 
 BOOST_AUTO_TEST_CASE(bad_xyz_is_named_with_file_and_row) {
@@ -214,11 +208,10 @@ BOOST_AUTO_TEST_CASE(bad_xyz_is_named_with_file_and_row) {
 
 BOOST_AUTO_TEST_CASE(a_list_without_a_law_says_which_disks_are_out_of_balance) {
     Copy copy(2);
-    copy.manifest = scratch::replaced(copy.manifest, "kind = \"linear\"\nstiffness = 1e5", "kind = \"none\"");
+    copy.restate("kind = \"linear\"\nstiffness = 1e5", "kind = \"none\"");
     BOOST_TEST(copy.compare().status == 0);
-    std::string& row = copy.contacts[Copy::line(copy.contacts, 1, 30)];
-    const Lines words = series::words_of(row);
-    row = Copy::field(row, 2, fmt::format("{}", 1.05 * std::stod(words[2])));
+    const Lines words = series::words_of(copy.contact(1, 30));
+    Copy::change(copy.contact(1, 30), 2, 1.05);
     const Comparison result = copy.compare();
     BOOST_TEST((result.frames[1].status == FrameStatus::moving));
     for (const std::string& word : {words[0], words[1], std::string("missing, or its force wrong")}) {
@@ -273,5 +266,3 @@ BOOST_AUTO_TEST_CASE(a_frame_in_motion_is_on_the_arc_of_the_exact_run_whose_cont
     BOOST_TEST(frames[2].result.nearest_arc ==
                fmt::format("arc {} on the way to equilibrium 7, the same contacts", told.arcs[2].arc));
 }
-
-BOOST_AUTO_TEST_SUITE_END()

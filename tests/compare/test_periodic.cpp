@@ -3,12 +3,7 @@
 #include "compare/series_copy.hpp"
 #include "support/bad_input.hpp"
 
-#include <isostat/compare/compare.hpp>
-#include <isostat/core/error.hpp>
 #include <isostat/io/state_file.hpp>
-#include <isostat/trajectory/trajectory.hpp>
-
-#include <memory>
 
 using namespace isostat;
 using compare::Comparison;
@@ -114,8 +109,6 @@ class PeriodicSeries {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(compare_periodic)
-
 BOOST_AUTO_TEST_CASE(a_box_that_is_flipped_by_whole_periods_is_the_same_lattice) {
     const std::vector<double> loads{1, 1.05, 1.1, 1.15};
     const PeriodicSeries plain("tilt_16", loads), flipped("tilt_16", loads, {0, -1, -1, 2});
@@ -214,5 +207,3 @@ BOOST_AUTO_TEST_CASE(a_cell_and_its_manifest_must_agree) {
     series.disks = scratch::replaced(series.disks, "pp pp pp", "pp ff pp");
     refuses("the box is not periodic along y");
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -23,7 +23,7 @@ class Slow {
         std::string& names = copy.disks[Copy::line(copy.disks, 1, 0) - 1];
         names += " vx vy";
         for (std::size_t row = 0; row < 100; ++row) {
-            std::string& line = disk(row);
+            std::string& line = copy.disk(1, row);
             const series::Lines words = series::words_of(line);
             Grain g{std::stod(words[2]), std::stod(words[3]), std::stod(words[4]), 0, 0};
             g.vx = speed * (g.x / 15 + 0.3 * noise(random));
@@ -38,11 +38,10 @@ class Slow {
             const double dx = b.x - a.x, dy = b.y - a.y, far = std::hypot(dx, dy);
             const double closing = -((b.vx - a.vx) * dx + (b.vy - a.vy) * dy) / far;
             const double ma = std::pow(a.r, power_), mb = std::pow(b.r, power_);
-            add(copy.contacts[at], 2, closing * (power_ == 0 ? 1 : ma * mb / (ma + mb)));
+            Copy::change(copy.contacts[at], 2, 1, closing * (power_ == 0 ? 1 : ma * mb / (ma + mb)));
         }
     }
     Copy copy{2};
-    std::string& disk(std::size_t row) { return copy.disks[Copy::line(copy.disks, 1, row)]; }
     void forget_velocities() {
         std::string& names = copy.disks[Copy::line(copy.disks, 1, 0) - 1];
         names = scratch::replaced(names, " vx vy", " ux uy");
@@ -53,15 +52,11 @@ class Slow {
     struct Grain {
         double r, x, y, vx, vy;
     };
-    static void add(std::string& line, std::size_t field, double force) {
-        const double before = std::stod(series::words_of(line)[field]);
-        line = Copy::field(line, field, fmt::format("{}", before + force));
-    }
     /// left, right, bottom, top: columns 5 to 8.
     void press_walls(std::string& line, const Grain& g) const {
         for (std::size_t wall = 0; wall < 4; ++wall) {
             if (std::stod(series::words_of(line)[5 + wall]) != 0) {
-                add(line, 5 + wall, -(wall < 2 ? g.vx : g.vy) * std::pow(g.r, power_));
+                Copy::change(line, 5 + wall, 1, -(wall < 2 ? g.vx : g.vy) * std::pow(g.r, power_));
             }
         }
     }
@@ -74,9 +69,14 @@ std::string cut(const std::string& number, int digits) {
     return fmt::format("{:.{}g}", std::stod(number), digits);
 }
 
-} // namespace
+/// Of the coordinates in a row of a dump.
+void cut_place(std::string& line, int digits) {
+    for (const std::size_t k : {3U, 4U}) {
+        line = Copy::field(line, k, cut(series::words_of(line)[k], digits));
+    }
+}
 
-BOOST_AUTO_TEST_SUITE(compare_reading)
+} // namespace
 
 BOOST_AUTO_TEST_CASE(dashpots_of_a_slow_frame_are_told_from_wrong_forces_by_the_velocities) {
     // The forces of the law balance to 1e-8: that alone said that the files are wrong.
@@ -88,8 +88,7 @@ BOOST_AUTO_TEST_CASE(dashpots_of_a_slow_frame_are_told_from_wrong_forces_by_the_
         BOOST_TEST(frame.law > 1e-3);
     }
     Slow wrong(0.1, 3); // and one force is wrong
-    std::string& row = wrong.copy.contacts[Copy::line(wrong.copy.contacts, 1, 20)];
-    row = Copy::field(row, 2, fmt::format("{}", 1.2 * std::stod(series::words_of(row)[2])));
+    Copy::change(wrong.copy.contact(1, 20), 2, 1.2);
     BOOST_TEST((wrong.result().status == FrameStatus::file));
 }
 
@@ -98,8 +97,7 @@ BOOST_AUTO_TEST_CASE(dashpots_without_velocities_are_told_by_what_the_law_leaves
     // and a part of what the files leave.
     Slow slow(0.04, 3);
     slow.forget_velocities();
-    const double x = std::stod(series::words_of(slow.disk(2))[3]);
-    slow.disk(2) = Copy::field(slow.disk(2), 3, fmt::format("{}", x + 1.5e-8));
+    Copy::change(slow.copy.disk(1, 2), 3, 1, 1.5e-8);
     const compare::FrameResult frame = slow.result();
     BOOST_TEST((frame.status == FrameStatus::moving), frame.reason);
     BOOST_TEST(says(frame.reason, "dashpots may be at work"), frame.reason);
@@ -109,14 +107,10 @@ BOOST_AUTO_TEST_CASE(the_digits_of_the_files_are_no_contradiction) {
     const auto rounded = [](int digits, double units) {
         Copy copy(2);
         for (std::size_t row = 0; row < 100; ++row) {
-            std::string& line = copy.disks[Copy::line(copy.disks, 1, row)];
-            for (const std::size_t k : {3U, 4U}) {
-                line = Copy::field(line, k, cut(series::words_of(line)[k], digits));
-            }
+            cut_place(copy.disk(1, row), digits);
         }
         for (std::size_t at = Copy::line(copy.contacts, 1, 0); at < copy.contacts.size(); ++at) {
-            const std::string force = series::words_of(copy.contacts[at])[2];
-            copy.contacts[at] = Copy::field(copy.contacts[at], 2, fmt::format("{}", units * std::stod(force)));
+            Copy::change(copy.contacts[at], 2, units);
         }
         series::Lines cells = series::words_of(copy.table[2], ',');
         for (const std::size_t k : {3U, 4U, 6U}) { // walls, the force on the top wall
@@ -135,16 +129,13 @@ BOOST_AUTO_TEST_CASE(the_digits_of_the_files_are_no_contradiction) {
 
 BOOST_AUTO_TEST_CASE(overlaps_that_digits_hide_leave_a_frame_without_forces_undecided) {
     Copy copy(1);
-    copy.manifest = scratch::replaced(copy.manifest, "contacts = \"contacts.dump\"", "");
-    copy.manifest = scratch::replaced(copy.manifest, "contact_i", "# contact_i");
-    copy.manifest = scratch::replaced(copy.manifest, "contact_j", "# contact_j");
-    copy.manifest = scratch::replaced(copy.manifest, "contact_force", "# contact_force");
+    copy.restate("contacts = \"contacts.dump\"", "");
+    for (const std::string key : {"contact_i", "contact_j", "contact_force"}) {
+        copy.restate(key, "# " + key);
+    }
     BOOST_TEST((copy.compare().frames.at(0).status == FrameStatus::same));
     for (std::size_t row = 0; row < 100; ++row) {
-        std::string& line = copy.disks[Copy::line(copy.disks, 0, row)];
-        for (const std::size_t k : {3U, 4U}) {
-            line = Copy::field(line, k, cut(series::words_of(line)[k], 6));
-        }
+        cut_place(copy.disk(0, row), 6);
     }
     const compare::FrameResult frame = copy.compare().frames.at(0);
     BOOST_TEST((frame.status == FrameStatus::undecided), frame.reason);
@@ -154,7 +145,7 @@ BOOST_AUTO_TEST_CASE(overlaps_that_digits_hide_leave_a_frame_without_forces_unde
 BOOST_AUTO_TEST_CASE(the_figure_is_drawn_where_there_is_no_exact_run) {
     // Every frame is refused, so there is no exact run: gnuplot does not count blocks without a line.
     Copy copy(2);
-    copy.manifest = scratch::replaced(copy.manifest, "stiffness = 1e5", "stiffness = 2e5");
+    copy.restate("stiffness = 1e5", "stiffness = 2e5");
     compare::SeriesReader reader(copy.write());
     const Comparison result = compare::compare(reader);
     BOOST_TEST(result.path.empty());
@@ -170,5 +161,3 @@ BOOST_AUTO_TEST_CASE(the_figure_is_drawn_where_there_is_no_exact_run) {
         BOOST_TEST(std::filesystem::file_size(folder / "out" / "comparison.svg") > 1000U);
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

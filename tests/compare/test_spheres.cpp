@@ -5,12 +5,6 @@
 #include "support/bad_input.hpp"
 #include "support/spheres.hpp"
 
-#include <isostat/compare/compare.hpp>
-#include <isostat/core/error.hpp>
-#include <isostat/trajectory/trajectory.hpp>
-
-#include <memory>
-
 using namespace isostat;
 using compare::Comparison;
 using compare::ForceLaw;
@@ -151,8 +145,6 @@ class SphereSeries {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(compare_spheres)
-
 BOOST_AUTO_TEST_CASE(frames_of_the_exact_run_of_spheres_are_the_same_under_both_laws) {
     for (const auto& [name, law] :
          {std::pair("box_uniform_30_1", ForceLaw::linear), std::pair("box_uniform_30_1", ForceLaw::hertz),
@@ -241,5 +233,3 @@ BOOST_AUTO_TEST_CASE(stresses_of_three_axes_are_those_of_the_manifest_or_refused
     series.load.stress[1] = 0;
     refuses("sigma2");
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -32,8 +32,7 @@ void check_against_every_pair(const Packing& packing, double fraction) {
     BOOST_TEST(list.reach == fraction * packing.min_radius());
     const std::set<Contact> listed(list.contacts.begin(), list.contacts.end());
     BOOST_TEST(listed.size() == list.contacts.size());
-    int missing = 0;
-    int superfluous = 0;
+    int missing = 0, superfluous = 0;
     const ExactGaps exact(packing);
     for (const Contact& contact : all_pairs(packing)) {
         if (listed.contains(contact)) {
@@ -104,8 +103,6 @@ Packing spheres_that_cling(Random& random, int axes) {
 }
 
 } // namespace
-
-BOOST_AUTO_TEST_SUITE(candidates)
 
 BOOST_AUTO_TEST_CASE(edges_of_spheres_are_all_the_pairs_that_the_grid_finds) {
     Random random(31);
@@ -212,8 +209,7 @@ BOOST_AUTO_TEST_CASE(the_pair_list_is_the_one_of_brute_force) {
     for (const double ratio : {1.0, 3.0, 40.0}) {
         for (const double reach : {0.0, 0.3, 5.0}) {
             for (const int n : {1, 2, 7, 150}) {
-                std::vector<double> x;
-                std::vector<double> radius;
+                std::vector<double> x, radius;
                 for (int i = 0; i < n; ++i) {
                     x.push_back(1e3 + 12 * noise());
                     x.push_back(n == 7 ? 0.0 : 6 * noise()); // seven disks in a row: no extent along y
@@ -221,8 +217,7 @@ BOOST_AUTO_TEST_CASE(the_pair_list_is_the_one_of_brute_force) {
                 }
                 PairList pairs;
                 find_pairs(2, x, radius, reach, pairs);
-                std::vector<std::pair<int, int>> found;
-                std::vector<std::pair<int, int>> expected;
+                std::vector<std::pair<int, int>> found, expected;
                 for (std::size_t i = 0; i < radius.size(); ++i) {
                     for (int k = pairs.start[i]; k < pairs.start[i + 1]; ++k) {
                         found.emplace_back(static_cast<int>(i), pairs.partner[static_cast<std::size_t>(k)]);
@@ -378,8 +373,7 @@ BOOST_AUTO_TEST_CASE(overlaps_below_double_precision_are_seen) {
     packing.q[0] = -0x1p-1000;
     BOOST_TEST((certify_admissible(packing, 0).verdict == Verdict::proved));
     // A right triangle with 52-bit integer sides: double-double is full with the squares alone.
-    const double m = 80000001;
-    const double k = 31415926;
+    const double m = 80000001, k = 31415926;
     Packing wide = pair_at(m * m - k * k, 2 * m * k, m * m, k * k);
     BOOST_TEST((certify_admissible(wide, 0).verdict == Verdict::proved));
     wide.q[0] = 0x1p-300;
@@ -400,8 +394,7 @@ BOOST_AUTO_TEST_CASE(overlaps_below_double_precision_are_seen) {
 
 BOOST_AUTO_TEST_CASE(verdicts_agree_with_rationals_on_tangent_clusters) {
     Random random(31415);
-    int refuted = 0;
-    int proved = 0;
+    int refuted = 0, proved = 0;
     for (int repeat = 0; repeat < testing::scaled(300); ++repeat) {
         const int n = 2 + random.integer(8);
         Packing packing = grown_cluster(n, repeat % 2 == 0 ? 1 : 20, random, [] { return 0; });
@@ -427,5 +420,3 @@ BOOST_AUTO_TEST_CASE(worst_gap_is_the_smallest_gap_met) {
     BOOST_TEST(overlap.worst_gap == -0.375);
     BOOST_TEST((overlap.worst == Contact{ContactKind::disk_disk, 0, 3}));
 }
-
-BOOST_AUTO_TEST_SUITE_END()

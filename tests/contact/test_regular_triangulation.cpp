@@ -43,8 +43,7 @@ bool power_cells_meet(const Packing& packing, int i, int j) {
     const mpq_class dy = y(j) - y(i);
     const mpq_class square = dx * dx + dy * dy;
     const mpq_class s = (square + weight(i) - weight(j)) / (2 * square); // c = c_i + s d
-    std::optional<mpq_class> least;
-    std::optional<mpq_class> most;
+    std::optional<mpq_class> least, most;
     for (int k = 0; k < packing.disk_count(); ++k) {
         if (k == i || k == j) {
             continue;
@@ -90,8 +89,6 @@ void check_complete(const Packing& packing, const Triangulation& triangulation) 
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(regular_triangulation)
-
 BOOST_AUTO_TEST_CASE(edges_are_pairs_whose_power_cells_meet) {
     Random random(2022);
     for (const double ratio : {1.0, 4.0, 100.0}) {
@@ -107,9 +104,7 @@ BOOST_AUTO_TEST_CASE(edges_are_pairs_whose_power_cells_meet) {
 
 BOOST_AUTO_TEST_CASE(a_triangulation_carried_to_where_disks_went_is_the_one_made_there) {
     Random random(2023);
-    int unchanged = 0;
-    int flipped = 0;
-    int lost = 0;
+    int unchanged = 0, flipped = 0, lost = 0;
     for (int repeat = 0; repeat < testing::scaled(150); ++repeat) {
         const double distance = std::ldexp(2.0, -(repeat % 10)); // 2 to 4e-3, the smallest radius being 1
         const Packing from = grown_cluster(50,
@@ -247,8 +242,7 @@ BOOST_AUTO_TEST_CASE(a_disk_that_comes_to_be_hidden_is_not_carried) {
 
 BOOST_AUTO_TEST_CASE(pairs_at_the_reach_are_listed_alike) {
     // Gaps a few roundings below and above the reach, along an axis and far from the origin.
-    int near = 0;
-    int apart = 0;
+    int near = 0, apart = 0;
     for (const double from : {0.0, -1.4, 1000.0}) {
         for (int ulps = -40; ulps <= 40; ++ulps) {
             for (const std::size_t axis : {std::size_t{0}, std::size_t{1}}) {
@@ -302,5 +296,3 @@ BOOST_AUTO_TEST_CASE(coordinates_far_larger_than_the_radii_are_listed_completely
         BOOST_TEST((near_pairs(packing, 0.8).pairs == pairs_within(packing, 0.8)));
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -7,11 +7,17 @@
 
 namespace contradictions::detail {
 
-inline double a_few_ulps_from(double x, Random& random) {
-    for (int k = random.integer(7) - 3; k != 0; k += k > 0 ? -1 : 1) {
-        x = std::nextafter(x, k > 0 ? HUGE_VAL : -HUGE_VAL);
+inline double ulps(double x, int count) {
+    for (int k = 0; k < std::abs(count); ++k) {
+        x = std::nextafter(x, count > 0 ? HUGE_VAL : -HUGE_VAL);
     }
     return x;
+}
+inline int few(Random& random) {
+    return random.integer(7) - 3;
+}
+inline double a_few_ulps_from(double x, Random& random) {
+    return ulps(x, few(random));
 }
 
 /// From 1 to 2, up to ten times as large, equal, or equal but for little.

@@ -13,16 +13,6 @@ struct StateClass {
 
 namespace detail {
 
-inline double ulps(double x, int count) {
-    for (int k = 0; k < std::abs(count); ++k) {
-        x = std::nextafter(x, count > 0 ? HUGE_VAL : -HUGE_VAL);
-    }
-    return x;
-}
-inline int few(Random& random) {
-    return random.integer(7) - 3;
-}
-
 /// 0, or so small that a rounding decides its sign.
 inline double hardly_a_force(Random& random) {
     return random.integer(4) == 0 ? 0.0 : few(random) * std::ldexp(1.0, -50 - random.integer(14));
@@ -277,10 +267,8 @@ inline std::optional<State> infinitesimal_decides(Random& random, int dimension 
 }
 
 inline std::optional<State> moved_by_ulps(std::optional<State> state, Random& random) {
-    if (state) {
-        for (double& x : state->packing.q) {
-            x = ulps(x, few(random));
-        }
+    for (std::size_t k = 0; state && k < state->packing.q.size(); ++k) {
+        state->packing.q[k] = a_few_ulps_from(state->packing.q[k], random);
     }
     return state;
 }

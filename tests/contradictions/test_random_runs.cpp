@@ -243,8 +243,6 @@ void try_runs(long otherwise, In where, Draw draw = Draw::all) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(contradictions_of_runs)
-
 BOOST_AUTO_TEST_CASE(no_run_is_refuted_and_no_recorded_number_is_outside_its_bound) {
     try_runs(40, In::boxes);
 }
@@ -365,5 +363,3 @@ BOOST_AUTO_TEST_CASE(a_power_that_is_negative_only_within_a_step_is_seen_to_turn
                std::string::npos);
     BOOST_TEST(again.verified().undecided.empty());
 }
-
-BOOST_AUTO_TEST_SUITE_END()

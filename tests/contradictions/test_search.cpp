@@ -5,16 +5,11 @@
 #include "oracle/claims.hpp"
 #include "support/crafted.hpp"
 
-#include <isostat/certificate/certify.hpp>
 #include <isostat/checker/verify.hpp>
-#include <isostat/core/error.hpp>
-#include <isostat/crafted/exact_packing.hpp>
-#include <isostat/io/state_file.hpp>
 #include <isostat/scene/scene.hpp>
 
 #include <chrono>
 #include <ctime>
-#include <iomanip>
 #include <iostream>
 
 using namespace isostat;
@@ -253,8 +248,6 @@ std::vector<std::size_t> classes_asked(const std::vector<StateClass>& classes) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(contradictions_of_states)
-
 BOOST_AUTO_TEST_CASE(no_two_answers_differ_and_none_differs_from_the_truth) {
     const auto begin = std::chrono::steady_clock::now();
     constexpr std::uint64_t seed = 21;
@@ -330,5 +323,3 @@ BOOST_AUTO_TEST_CASE(no_two_answers_differ_and_none_differs_from_the_truth) {
     }
     std::cout << std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() << " s\n";
 }
-
-BOOST_AUTO_TEST_SUITE_END()

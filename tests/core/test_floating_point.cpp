@@ -1,15 +1,16 @@
 // The arithmetic that the bounds count with: any other is noticed, by the thread that computes.
-
+// Sizes of long vectors.
 #include "contact/candidates.hpp"
+#include "core/dot.hpp"
 #include "io/vertex_text.hpp"
 #include "rigidity/isostatic.hpp"
 #include "support/crafted.hpp"
+#include "support/test.hpp"
 #include "support/threads.hpp"
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/checker/verify.hpp>
 #include <isostat/core/error.hpp>
-#include <isostat/core/machine.hpp>
 #include <isostat/crafted/exact_packing.hpp>
 #include <isostat/crafted/plateau.hpp>
 #include <isostat/foreign/foreign.hpp>
@@ -20,6 +21,7 @@
 
 #include <cfenv>
 #include <thread>
+
 #if defined(__SSE2__)
 #include <xmmintrin.h>
 #endif
@@ -48,8 +50,6 @@ int status_rounding_up(const std::function<void()>& work) {
 }
 
 } // namespace
-
-BOOST_AUTO_TEST_SUITE(core)
 
 BOOST_AUTO_TEST_CASE(arithmetic_as_it_must_be_has_no_defect) {
     BOOST_TEST((floating_point_defect() == nullptr));
@@ -134,4 +134,21 @@ BOOST_AUTO_TEST_CASE(a_thread_that_inherited_other_arithmetic_does_no_work) {
     BOOST_TEST(status_rounding_up(task) == 70);
 }
 
-BOOST_AUTO_TEST_SUITE_END()
+BOOST_AUTO_TEST_CASE(the_largest_component_is_no_number_where_one_is_none) {
+    // It was left out: what divided by 0 passed for a step of length 0.
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    BOOST_TEST(isostat::largest(std::vector<double>()) == 0);
+    for (const std::size_t size : {1U, 7U, 8U, 9U, 40U}) {
+        for (std::size_t at = 0; at < size; ++at) {
+            std::vector<double> x(size, 0.5);
+            x[at] = -2;
+            BOOST_TEST(isostat::largest(x) == 2);
+            x[at] = -infinity;
+            BOOST_TEST(isostat::largest(x) == infinity);
+            x[at] = std::nan("");
+            BOOST_TEST(std::isnan(isostat::largest(x)));
+            x[size - 1] = infinity;
+            BOOST_TEST((std::isnan(isostat::largest(x)) || at == size - 1));
+        }
+    }
+}

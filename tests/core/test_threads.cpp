@@ -16,8 +16,6 @@
 
 using namespace isostat;
 
-BOOST_AUTO_TEST_SUITE(core)
-
 BOOST_AUTO_TEST_CASE(every_piece_is_done_exactly_once, *boost::unit_test::label("threads")) {
     for (const int count : {1, 2, 5}) {
         const Threads threads(count);
@@ -249,5 +247,3 @@ BOOST_AUTO_TEST_CASE(where_the_system_refuses_threads_fewer_do_the_work) {
     BOOST_TEST(WEXITSTATUS(status) == 0);
 }
 #endif
-
-BOOST_AUTO_TEST_SUITE_END()

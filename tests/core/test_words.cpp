@@ -1,15 +1,39 @@
 // Words of enums.
+// A result without a value is never read as one, in any build.
 #include "core/work.hpp"
 #include "packing/words.hpp"
+#include "support/test.hpp"
 
 #include <isostat/core/result.hpp>
 
 #include <boost/test/unit_test.hpp>
 
+#include <memory>
 #include <set>
+#include <stdexcept>
 #include <string>
 
-BOOST_AUTO_TEST_SUITE(core)
+using namespace isostat;
+
+namespace {
+
+Result<std::unique_ptr<int>> half(int number) {
+    if (number % 2 != 0) {
+        return Failure{FailureKind::undecided, "3 is odd"};
+    }
+    return std::make_unique<int>(number / 2);
+}
+
+template <class Action> std::string thrown(Action action) {
+    try {
+        action();
+    } catch (const std::logic_error& error) {
+        return error.what();
+    }
+    return "nothing was thrown";
+}
+
+} // namespace
 
 BOOST_AUTO_TEST_CASE(a_word_leads_to_its_value_and_back_and_no_other_word_to_any) {
     using namespace isostat;
@@ -35,4 +59,41 @@ BOOST_AUTO_TEST_CASE(every_kind_of_work_and_of_failure_has_a_word_of_its_own) {
     BOOST_TEST(to_string(FailureKind::interrupted) == std::string("interrupted"));
 }
 
-BOOST_AUTO_TEST_SUITE_END()
+BOOST_AUTO_TEST_CASE(a_result_gives_what_it_has) {
+    auto four = half(8);
+    BOOST_TEST(four.ok());
+    BOOST_TEST(*four.value() == 4);
+    const auto none = half(3);
+    BOOST_TEST(!none.ok());
+    BOOST_TEST((none.failure().kind == FailureKind::undecided));
+}
+
+BOOST_AUTO_TEST_CASE(the_value_of_a_failure_throws_and_says_why_there_is_none) {
+    auto none = half(3);
+    const auto& constant = none;
+    BOOST_TEST(thrown([&] { (void)none.value(); }).ends_with("undecided: 3 is odd"));
+    BOOST_TEST(thrown([&] { (void)constant.value(); }).ends_with("undecided: 3 is odd"));
+}
+
+BOOST_AUTO_TEST_CASE(the_failure_of_a_value_throws) {
+    const auto four = half(8);
+    BOOST_TEST(thrown([&] { (void)four.failure(); }) == "the failure of a result was asked for, which has a value");
+}
+
+BOOST_AUTO_TEST_CASE(words_are_put_together_when_they_are_asked_for) {
+    int asked = 0;
+    Words why([&asked](int) { return "after " + std::to_string(++asked); });
+    why.contacts = {{ContactKind::disk_disk, 1, 2}};
+    const Failure inner{FailureKind::overlap, why};
+    Words place("arc 3");
+    place.disks = {7};
+    const Failure outer = located(inner, place);
+    BOOST_TEST(asked == 0);
+    BOOST_TEST(outer.message() == "arc 3: after 1");
+    BOOST_TEST((outer.kind == FailureKind::overlap));
+    BOOST_TEST((outer.contacts() == std::vector<Contact>{{ContactKind::disk_disk, 1, 2}}));
+    BOOST_TEST(outer.disks() == std::vector<int>{7});
+    BOOST_TEST(Words().empty());
+    BOOST_TEST(Words("").empty());
+    BOOST_TEST(Words().text().empty());
+}

@@ -1,19 +1,13 @@
 // Crafted packings in cells: contacts through images, and what may not matter for them.
 
 #include "examples.hpp"
-#include "support/test.hpp"
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/contact/state.hpp>
-#include <isostat/crafted/exact_packing.hpp>
 #include <isostat/io/state_file.hpp>
 #include <isostat/rigidity/counting.hpp>
 
 #include <Eigen/Dense>
-
-#include <random>
-
-BOOST_AUTO_TEST_SUITE(crafted_cells)
 
 namespace {
 
@@ -438,5 +432,3 @@ BOOST_AUTO_TEST_CASE(a_stored_state_has_the_counts_of_its_stored_numbers) {
         BOOST_TEST(exact.rank == static_cast<int>(state.contacts.size()));
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

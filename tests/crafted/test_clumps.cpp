@@ -5,12 +5,8 @@
 #include "packing/bodies.hpp"
 #include "support/bad_input.hpp"
 #include "support/clumps.hpp"
-#include "support/test.hpp"
 
-#include <isostat/crafted/exact_packing.hpp>
 #include <isostat/crafted/plateau.hpp>
-
-#include <nlohmann/json.hpp>
 
 namespace crafted_clumps { // names of its own, beside test_inspection.cpp
 
@@ -44,8 +40,6 @@ int body_dofs(const Packing& packing) {
 }
 
 } // namespace
-
-BOOST_AUTO_TEST_SUITE(crafted_inspection)
 
 BOOST_AUTO_TEST_CASE(clumps_in_exact_numbers_count_as_their_doubles_do) {
     const std::vector<std::string> paths = packing_files(false, true);
@@ -225,7 +219,5 @@ BOOST_AUTO_TEST_CASE(perturbed_packings_of_clumps_are_isostatic_but_for_rotation
     }
     BOOST_TEST(turning > 30);
 }
-
-BOOST_AUTO_TEST_SUITE_END()
 
 } // namespace crafted_clumps

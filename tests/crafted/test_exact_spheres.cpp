@@ -2,8 +2,6 @@
 #include "examples.hpp"
 #include "support/bad_input.hpp"
 
-#include <isostat/core/error.hpp>
-
 namespace exact_spheres {
 
 using examples::ExactPacking, examples::inspected, examples::Inspection, examples::n, examples::Number;
@@ -97,8 +95,6 @@ ExactPacking cluster(const std::vector<std::array<int, 3>>& centres, const std::
 void parse(const std::string& text) {
     (void)isostat::crafted::parse_packing("format = \"isostat-packing 1\"\n" + text, "file");
 }
-
-BOOST_AUTO_TEST_SUITE(crafted_exact_spheres)
 
 BOOST_AUTO_TEST_CASE(lattices_have_their_counts_in_all_four_kinds_of_cell) {
     struct Case {
@@ -301,7 +297,5 @@ BOOST_AUTO_TEST_CASE(files_of_spheres_take_three_of_everything) {
         expect_bad_input([&, source = text] { parse(source); }, {part});
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()
 
 } // namespace exact_spheres

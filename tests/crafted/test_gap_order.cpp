@@ -121,8 +121,6 @@ int dot_sign(const Direction& a, const Direction& b) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(crafted_gap_order)
-
 BOOST_AUTO_TEST_CASE(the_order_of_gaps_is_that_of_3000_bits) {
     std::mt19937_64 random(11);
     int equal = 0, close = 0;
@@ -224,5 +222,3 @@ BOOST_AUTO_TEST_CASE(two_disks_at_one_point_are_refused) {
     packing.q = {0.5, 0.5, 0.5, 0.5, 0, 0};
     BOOST_CHECK_THROW((void)peel(packing, {{ContactKind::disk_disk, 0, 1}}), isostat::Error);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

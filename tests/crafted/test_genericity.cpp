@@ -30,8 +30,6 @@ bool all_isostatic(const Genericity& answer, const ExactPacking& exact) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(crafted_genericity)
-
 BOOST_AUTO_TEST_CASE(an_isostatic_packing_keeps_its_contacts) {
     const Genericity answer = perturbed("two_disks.toml", 20, 1e-4);
     BOOST_TEST(answer.proved == 20);
@@ -177,5 +175,3 @@ BOOST_AUTO_TEST_CASE(a_packing_or_an_option_that_does_not_fit_is_refused) {
     GenericityOptions none{.samples = 0};
     BOOST_CHECK_THROW((void)genericity(box, {}, none), isostat::Error);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -1,11 +1,10 @@
 // Inspection of exact packings: what must be refused, invariances, agreement with independent counts, large lattices.
-
+// Every file of examples/packings is read, inspected and held against the answers it carries.
 #include "examples.hpp"
 #include "support/bad_input.hpp"
 #include "support/exact_lattices.hpp"
 #include "support/scratch.hpp"
 
-#include <isostat/core/error.hpp>
 #include <isostat/rigidity/counting.hpp>
 
 #include <chrono>
@@ -42,8 +41,6 @@ void refused(const std::string& text, int line, const std::string& part) {
 const std::string head = "format = \"isostat-packing 1\"\n";
 
 } // namespace
-
-BOOST_AUTO_TEST_SUITE(crafted_inspection)
 
 BOOST_AUTO_TEST_CASE(bad_files_are_refused_with_line_and_what_was_expected) {
     refused("disks = [[0, 0, 1]]\n", 1, "no format: expected \"isostat-packing 1\"");
@@ -336,4 +333,23 @@ BOOST_AUTO_TEST_CASE(a_byte_order_mark_shifts_no_number) {
     BOOST_TEST(marked.packing.radius[1].text() == "5/4");
 }
 
-BOOST_AUTO_TEST_SUITE_END()
+BOOST_AUTO_TEST_CASE(every_example_packing_has_the_answers_it_carries) {
+    using namespace isostat::crafted;
+    std::vector<std::string> paths = examples::packing_files();
+    BOOST_TEST(paths.size() >= 25u);
+    const std::vector<std::string> spheres = examples::packing_files(true);
+    BOOST_TEST(spheres.size() >= 8u);
+    const std::vector<std::string> clumps = examples::packing_files(false, true);
+    paths.insert(paths.end(), spheres.begin(), spheres.end());
+    paths.insert(paths.end(), clumps.begin(), clumps.end());
+    for (const std::string& path : paths) {
+        BOOST_TEST_INFO_SCOPE(path);
+        const PackingFile file = read_packing(path);
+        BOOST_TEST(file.expected.size() >= 3u);
+        const auto inspection = required(inspect(file.packing));
+        for (const std::string& message : check_expected(inspection, file, path)) {
+            BOOST_ERROR(message);
+        }
+        BOOST_TEST(!to_text(inspection, file.packing).empty());
+    }
+}

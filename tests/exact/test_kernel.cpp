@@ -86,8 +86,6 @@ Rows random_matrix(std::mt19937_64& random, int rows, int cols, int fields) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(exact_kernel)
-
 BOOST_AUTO_TEST_CASE(reduction_is_a_ring_homomorphism_for_every_choice_of_signs) {
     std::mt19937_64 random(11);
     const std::vector<Number> ring = {sqrt(Number(2)), sqrt(Number(3)), sqrt(Number(6)), sqrt(Number(15)),
@@ -258,5 +256,3 @@ BOOST_AUTO_TEST_CASE(one_sign_of_a_span) {
     const Number gap = Number::parse("sqrt(2) - 1.4142135623730950488016887242096980785697");
     BOOST_TEST((one_sign({{Number(1), -gap}}, 2).kind == (gap.sign() < 0 ? OneSign::strict : OneSign::none)));
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -1,9 +1,7 @@
 // Exact numbers: field laws, canonical form, signs against MPFR, text form in both directions.
 
 #include "support/bad_input.hpp"
-#include "support/test.hpp"
 
-#include <isostat/core/error.hpp>
 #include <isostat/exact/number.hpp>
 
 #include <mpfr.h>
@@ -73,8 +71,6 @@ void refused_at(const char* text, int position) {
 }
 
 } // namespace
-
-BOOST_AUTO_TEST_SUITE(exact_numbers)
 
 BOOST_AUTO_TEST_CASE(text_is_read_exactly) {
     BOOST_TEST((n("0.1") * Number(10) == Number(1)));
@@ -223,5 +219,3 @@ BOOST_AUTO_TEST_CASE(enclosures_hold_for_extreme_magnitudes) {
     BOOST_TEST(n("0.1").enclosure().radius > 0);
     BOOST_TEST((Number::from_double(0.1) != n("0.1")));
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -4,8 +4,6 @@
 #include "oracle/truth.hpp"
 #include "support/scratch.hpp"
 
-#include <isostat/certificate/certify.hpp>
-
 #include <regex>
 
 namespace extreme {

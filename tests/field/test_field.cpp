@@ -4,8 +4,6 @@
 
 #include <isostat/foreign/foreign.hpp>
 
-#include <cmath>
-
 namespace {
 
 using namespace program;
@@ -60,8 +58,6 @@ constexpr const char* radius_of_13 = "0.133993513499008491414263236065";
 constexpr const char* radius_of_19 = "0.112265437570936304737847917535";
 
 } // namespace
-
-BOOST_AUTO_TEST_SUITE(field)
 
 BOOST_AUTO_TEST_CASE(kind_1_a_tilted_cell_and_the_text_between_braces) {
     expect_base("00_base16.xyz", {});
@@ -597,5 +593,3 @@ BOOST_AUTO_TEST_CASE(lines_of_a_megabyte_end_no_reader) {
         expect(run({"plateau", folder.at("long.txt"), "--format", "braces"}), 65, {"at most 4096 characters"});
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

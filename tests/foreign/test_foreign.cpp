@@ -8,11 +8,6 @@
 #include <isostat/foreign/foreign.hpp>
 #include <isostat/io/state_file.hpp>
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <numeric>
-
 namespace {
 
 using namespace isostat;
@@ -69,8 +64,6 @@ void expect_disks(const ForeignPacking& file, const std::string& format) {
 }
 
 } // namespace
-
-BOOST_AUTO_TEST_SUITE(foreign_files)
 
 BOOST_AUTO_TEST_CASE(the_same_two_disks_in_every_format) {
     expect_disks(read(dump), "lammps-dump");
@@ -415,5 +408,3 @@ BOOST_AUTO_TEST_CASE(dumps_of_pairs_have_frames_and_named_columns) {
     refused(replaced(first, "ENTRIES\n1", "ENTRIES\n2"), 0, {"p.dump", "row 2 of 2"});
     refused(replaced(first, "ENTRIES i", "ATOMS i"), 0, {"p.dump:9:", "style local"});
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -168,8 +168,6 @@ std::string check(const std::string& changed, ForeignOptions options) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(fuzz_foreign)
-
 BOOST_AUTO_TEST_CASE(mutated_packings_of_other_programs_are_refused_by_name_or_lose_no_row) {
     for (const auto& [format, text] : {std::pair{"lammps-dump", dump},
                                        {"lammps-data", data_file},
@@ -245,5 +243,3 @@ BOOST_AUTO_TEST_CASE(files_with_announced_rows_are_refused_wherever_they_are_cut
     cut(data_file.substr(0, data_file.find("\nVelocities")), "lammps-data", std::string::npos);
     cut(xyz, "xyz", std::string::npos);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

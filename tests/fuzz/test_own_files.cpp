@@ -57,8 +57,6 @@ State small() {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(fuzz_own_files)
-
 BOOST_AUTO_TEST_CASE(mutated_states_and_vertices_are_refused_by_name_or_are_sound) {
     const std::string vertex = scratch::read(scratch::data("vertex100.txt"));
     const std::string text = state_text(small(), std::vector<double>(small().contacts.size(), 1.0));
@@ -189,5 +187,3 @@ BOOST_AUTO_TEST_CASE(mutated_files_of_radii_are_refused_by_name_or_lose_no_row) 
     };
     BOOST_TEST(fuzz::fuzz("radii", "# radii\n1\n1.5\n0.75\n2e-1\n", 3000, read).refused > 100);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -12,9 +12,7 @@
 #include "support/scratch.hpp"
 #include "support/segments.hpp"
 
-#include <isostat/checker/verify.hpp>
 #include <isostat/io/run_directory.hpp>
-#include <isostat/io/state_file.hpp>
 
 #include <sys/resource.h>
 
@@ -77,8 +75,6 @@ std::size_t lines_with_something(const std::string& text) {
 }
 
 } // namespace
-
-BOOST_AUTO_TEST_SUITE(fuzz_records)
 
 BOOST_AUTO_TEST_CASE(mutated_records_are_refused_by_name_or_lose_no_row, *boost::unit_test::label("slow")) {
     Damaged run;
@@ -200,5 +196,3 @@ BOOST_AUTO_TEST_CASE(all_files_took_bounded_time_and_memory) {
     BOOST_TEST(used.ru_maxrss / 1024 < 1000);
 #endif
 }
-
-BOOST_AUTO_TEST_SUITE_END()

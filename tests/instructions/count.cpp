@@ -4,11 +4,9 @@
 #include "support/segments.hpp"
 
 #include <isostat/io/state_file.hpp>
-#include <isostat/trajectory/trajectory.hpp>
 
 #include <fmt/format.h>
 
-#include <cstdlib>
 #include <string>
 
 // CGAL refuses to start where the rounding mode cannot be changed, as under valgrind. This program is for counting

@@ -3,8 +3,6 @@
 #include "support/forger.hpp"
 #include "support/scratch.hpp"
 
-#include <isostat/io/state_file.hpp>
-
 using namespace isostat;
 using scratch::replaced;
 
@@ -46,8 +44,6 @@ std::string forged(const std::string& text, const std::string& from, const std::
 }
 
 } // namespace
-
-BOOST_AUTO_TEST_SUITE(io)
 
 BOOST_AUTO_TEST_CASE(sha256_of_the_standards_examples) {
     // FIPS 180-4 examples: "abc", the empty string, and the 448-bit message.
@@ -200,5 +196,3 @@ BOOST_AUTO_TEST_CASE(what_is_no_number_or_no_interval_is_not_written) {
     certificate.claims.forces->finite[2] = {1, 0};
     expect_bad_input([&] { (void)certificate_text(certificate); }, {"forces.finite", "increasing order"});
 }
-
-BOOST_AUTO_TEST_SUITE_END()

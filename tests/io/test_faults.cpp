@@ -87,8 +87,6 @@ const std::vector<std::string> needed{"checkpoint.json", "events.jsonl",        
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(io)
-
 BOOST_FIXTURE_TEST_CASE(a_flipped_bit_in_any_file_that_a_resume_needs_is_found, Killed) {
     std::mt19937 random(4);
     for (const std::string& name : needed) {
@@ -253,5 +251,3 @@ BOOST_AUTO_TEST_CASE(a_run_that_met_a_limit_of_the_file_size_goes_on_to_the_same
     BOOST_TEST(met >= 2);
     std::signal(SIGXFSZ, handler);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -32,8 +32,6 @@ void not_taken(const fs::path& folder, const FolderKind& kind, FolderMode mode, 
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(io)
-
 BOOST_AUTO_TEST_CASE(the_names_of_a_run_are_those_that_it_writes) {
     for (const char* name : {"run.json", "lock", "states/eq_000000.json", "states/eq_1234567.json", "states/last.json",
                              "certificates/arcs.jsonl", "figures/forces_eq_000012.svg", "figures/staircase.gp.log",
@@ -184,5 +182,3 @@ BOOST_AUTO_TEST_CASE(a_file_names_regular_files_beside_it_or_below) {
                          {"s.toml:2: file in [packing]", name, "regular file beside"});
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

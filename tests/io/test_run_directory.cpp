@@ -11,18 +11,24 @@
 
 using namespace isostat;
 namespace fs = std::filesystem;
+using Mode = RunDirectory::Mode;
 
 namespace {
 
 RunHeader header() {
-    RunHeader h{.program = "isostat test",
-                .command = "isostat run",
-                .scene_name = "test.toml",
-                .scene_text = "text",
-                .programme = {"up"},
-                .keep = {2},
-                .checkpoint_seconds = 0};
-    return h;
+    return {.program = "isostat test",
+            .command = "isostat run",
+            .scene_name = "test.toml",
+            .scene_text = "text",
+            .programme = {"up"},
+            .keep = {2},
+            .checkpoint_seconds = 0};
+}
+
+/// The folder of a run, before its first record.
+RunDirectory opened(const fs::path& run, Mode mode, const RunHeader& head = header()) {
+    static const RunCounters none;
+    return RunDirectory(run, head, mode, none);
 }
 
 /// Writes the records, and raises a flag during some rearrangement.
@@ -46,7 +52,7 @@ class Stopper final : public RunObserver {
 
 /// Runs from the sample, or from the checkpoint of the folder; stops during arc `stop_at` (-1: never). Returns whether
 /// it completed.
-bool play(const fs::path& path, RunDirectory::Mode mode, long stop_at, bool finish, double checkpoint_seconds = 0) {
+bool play(const fs::path& path, Mode mode, long stop_at, bool finish, double checkpoint_seconds = 0) {
     RunCounters counters;
     RunHeader head = header();
     head.checkpoint_seconds = checkpoint_seconds;
@@ -71,11 +77,9 @@ bool play(const fs::path& path, RunDirectory::Mode mode, long stop_at, bool fini
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(io)
-
 BOOST_AUTO_TEST_CASE(a_run_leaves_records_states_and_a_summary) {
     const scratch::Folder folder;
-    BOOST_TEST(play(folder / "run", RunDirectory::Mode::fresh, -1, true));
+    BOOST_TEST(play(folder / "run", Mode::fresh, -1, true));
     const std::vector<EquilibriumRow> rows = read_equilibria(folder / "run/equilibria.csv");
     BOOST_REQUIRE_EQUAL(rows.size(), 7U);
     BOOST_TEST(rows[0].previous == -1);
@@ -96,8 +100,7 @@ BOOST_AUTO_TEST_CASE(a_run_leaves_records_states_and_a_summary) {
 BOOST_AUTO_TEST_CASE(columns_are_named_before_the_first_equilibrium) {
     for (const bool tilted : {false, true}) {
         const scratch::Folder folder;
-        const RunCounters counters;
-        RunDirectory directory(folder / "run", header(), RunDirectory::Mode::fresh, counters);
+        RunDirectory directory = opened(folder / "run", Mode::fresh);
         directory.store_start(tilted ? cells::one_tilted_disk(2, 1, 0.25)
                                      : read_state(scratch::data("vertex100.txt")).state);
         const std::string text = scratch::read(folder / "run/equilibria.csv");
@@ -127,8 +130,7 @@ BOOST_AUTO_TEST_CASE(every_row_has_the_columns_that_the_first_line_names_whateve
             const scratch::Folder folder;
             RunHeader with = ::header();
             with.touching = touching;
-            const RunCounters counters;
-            RunDirectory directory(folder / "run", with, RunDirectory::Mode::fresh, counters);
+            RunDirectory directory = opened(folder / "run", Mode::fresh, with);
             directory.store_start(tilt ? state : read_state(scratch::data("vertex100.txt")).state);
             BOOST_TEST(scratch::read(folder / "run/equilibria.csv") == header);
         }
@@ -155,7 +157,7 @@ BOOST_AUTO_TEST_CASE(columns_of_spheres_go_by_axis) {
 
 BOOST_AUTO_TEST_CASE(every_row_of_equilibria_has_a_number_for_every_column) {
     const scratch::Folder folder;
-    play(folder / "run", RunDirectory::Mode::fresh, -1, true);
+    play(folder / "run", Mode::fresh, -1, true);
     std::vector<std::string> lines = scratch::lines_of(folder / "run/equilibria.csv");
     BOOST_TEST(lines[0].starts_with("# number,previous,"));
     BOOST_TEST(scratch::split(lines[0], ',').size() == equilibria_columns().size());
@@ -173,7 +175,7 @@ BOOST_AUTO_TEST_CASE(every_row_of_equilibria_has_a_number_for_every_column) {
 
 BOOST_AUTO_TEST_CASE(numbers_of_a_table_of_equilibria_are_finite_and_its_integers_written_as_such) {
     const scratch::Folder folder;
-    play(folder / "run", RunDirectory::Mode::fresh, -1, true);
+    play(folder / "run", Mode::fresh, -1, true);
     const fs::path file = folder / "run/equilibria.csv";
     const std::string text = scratch::read(file);
     const std::vector<std::string> names = equilibria_columns();
@@ -209,16 +211,16 @@ BOOST_AUTO_TEST_CASE(numbers_of_a_table_of_equilibria_are_finite_and_its_integer
 
 BOOST_AUTO_TEST_CASE(an_interrupted_run_goes_on_to_the_same_files) {
     const scratch::Folder folder;
-    BOOST_REQUIRE(play(folder / "whole", RunDirectory::Mode::fresh, -1, true));
+    BOOST_REQUIRE(play(folder / "whole", Mode::fresh, -1, true));
     // Arc 9 is inside the rearrangement of 7 arcs that leads to equilibrium 3; 1 is before the first equilibrium after
     // the start.
     for (const long stop_at : {1L, 9L, 14L}) {
         for (const bool finish : {true, false}) {
             BOOST_TEST_INFO_SCOPE("stopped at arc " << stop_at << (finish ? "" : ", killed"));
             const fs::path path = folder / ("cut" + std::to_string(stop_at) + (finish ? "f" : "k"));
-            BOOST_TEST(!play(path, RunDirectory::Mode::fresh, stop_at, finish));
+            BOOST_TEST(!play(path, Mode::fresh, stop_at, finish));
             BOOST_TEST(scratch::read(path / "events.jsonl") != scratch::read(folder / "whole/events.jsonl"));
-            BOOST_TEST(play(path, RunDirectory::Mode::resume, -1, true));
+            BOOST_TEST(play(path, Mode::resume, -1, true));
             BOOST_TEST(scratch::read(path / "events.jsonl") == scratch::read(folder / "whole/events.jsonl"));
             BOOST_TEST(scratch::without_times(scratch::read(path / "equilibria.csv")) ==
                        scratch::without_times(scratch::read(folder / "whole/equilibria.csv")));
@@ -232,52 +234,49 @@ BOOST_AUTO_TEST_CASE(an_interrupted_run_goes_on_to_the_same_files) {
 
 BOOST_AUTO_TEST_CASE(checkpoints_that_are_further_apart_lose_time_but_no_record) {
     const scratch::Folder folder;
-    BOOST_REQUIRE(play(folder / "whole", RunDirectory::Mode::fresh, -1, true));
+    BOOST_REQUIRE(play(folder / "whole", Mode::fresh, -1, true));
     for (const bool finish : {true, false}) {
         const fs::path path = folder / (finish ? "finished" : "killed");
-        BOOST_TEST(!play(path, RunDirectory::Mode::fresh, 14, finish, 1000));
-        const RunCounters counters;
+        BOOST_TEST(!play(path, Mode::fresh, 14, finish, 1000));
         {
-            const RunDirectory directory(path, header(), RunDirectory::Mode::resume, counters);
+            const RunDirectory directory = opened(path, Mode::resume);
             BOOST_REQUIRE(directory.checkpoint().has_value());
             // The first one comes at once; a run that ends in order writes the last one.
             BOOST_TEST(directory.checkpoint()->state.equilibrium == (finish ? 5 : 1));
         }
-        BOOST_TEST(play(path, RunDirectory::Mode::resume, -1, true));
+        BOOST_TEST(play(path, Mode::resume, -1, true));
         BOOST_TEST(scratch::read(path / "events.jsonl") == scratch::read(folder / "whole/events.jsonl"));
     }
 }
 
 BOOST_AUTO_TEST_CASE(a_record_cut_in_the_middle_by_a_kill_is_dropped) {
     const scratch::Folder folder;
-    BOOST_REQUIRE(play(folder / "whole", RunDirectory::Mode::fresh, -1, true));
-    BOOST_REQUIRE(!play(folder / "cut", RunDirectory::Mode::fresh, 9, false));
+    BOOST_REQUIRE(play(folder / "whole", Mode::fresh, -1, true));
+    BOOST_REQUIRE(!play(folder / "cut", Mode::fresh, 9, false));
     std::ofstream(folder / "cut/events.jsonl", std::ios::app) << "{\"step\":10,\"equili";
     std::ofstream(folder / "cut/equilibria.csv", std::ios::app) << "3,2,0,1.05";
     BOOST_TEST(read_equilibria(folder / "cut/equilibria.csv").size() == 3U);
-    BOOST_TEST(play(folder / "cut", RunDirectory::Mode::resume, -1, true));
+    BOOST_TEST(play(folder / "cut", Mode::resume, -1, true));
     BOOST_TEST(scratch::read(folder / "cut/events.jsonl") == scratch::read(folder / "whole/events.jsonl"));
 }
 
 BOOST_AUTO_TEST_CASE(two_runs_in_one_folder_are_refused) {
     const scratch::Folder folder;
-    const RunCounters counters;
-    const RunDirectory first(folder / "run", header(), RunDirectory::Mode::fresh, counters);
-    for (const auto mode : {RunDirectory::Mode::fresh, RunDirectory::Mode::force, RunDirectory::Mode::resume}) {
-        expect_error([&] { const RunDirectory second(folder / "run", header(), mode, counters); },
-                     ErrorKind::cannot_write, {"run", "another running program"});
+    const RunDirectory first = opened(folder / "run", Mode::fresh);
+    for (const auto mode : {Mode::fresh, Mode::force, Mode::resume}) {
+        expect_error([&] { (void)opened(folder / "run", mode); }, ErrorKind::cannot_write,
+                     {"run", "another running program"});
     }
 }
 
 BOOST_AUTO_TEST_CASE(a_folder_that_holds_a_run_is_kept_unless_told_otherwise) {
     const scratch::Folder folder;
-    play(folder / "run", RunDirectory::Mode::fresh, -1, true);
+    play(folder / "run", Mode::fresh, -1, true);
     const std::string events = scratch::read(folder / "run/events.jsonl");
-    const RunCounters counters;
-    expect_error([&] { const RunDirectory again(folder / "run", header(), RunDirectory::Mode::fresh, counters); },
-                 ErrorKind::usage, {"holds a run already", "--resume", "--force"});
+    expect_error([&] { (void)opened(folder / "run", Mode::fresh); }, ErrorKind::usage,
+                 {"holds a run already", "--resume", "--force"});
     BOOST_TEST(scratch::read(folder / "run/events.jsonl") == events);
-    const RunDirectory forced(folder / "run", header(), RunDirectory::Mode::force, counters);
+    const RunDirectory forced = opened(folder / "run", Mode::force);
     BOOST_TEST(scratch::read(folder / "run/events.jsonl").empty());
     BOOST_TEST(!fs::exists(folder / "run/summary.json"));
     BOOST_TEST(!fs::exists(folder / "run/states/last.json"));
@@ -285,31 +284,25 @@ BOOST_AUTO_TEST_CASE(a_folder_that_holds_a_run_is_kept_unless_told_otherwise) {
 
 BOOST_AUTO_TEST_CASE(resuming_something_else_is_refused) {
     const scratch::Folder folder;
-    const RunCounters counters;
-    expect_bad_input([&] { const RunDirectory none(folder / "none", header(), RunDirectory::Mode::resume, counters); },
-                     {"run.json", "no run to resume"});
-    BOOST_REQUIRE(!play(folder / "run", RunDirectory::Mode::fresh, 9, false));
+    expect_bad_input([&] { (void)opened(folder / "none", Mode::resume); }, {"run.json", "no run to resume"});
+    BOOST_REQUIRE(!play(folder / "run", Mode::fresh, 9, false));
     RunHeader other = header();
     other.scene_text = "another";
-    expect_bad_input([&] { const RunDirectory changed(folder / "run", other, RunDirectory::Mode::resume, counters); },
-                     {"run.json", "another scene"});
+    expect_bad_input([&] { (void)opened(folder / "run", Mode::resume, other); }, {"run.json", "another scene"});
     other = header();
     other.program = "isostat 99";
-    expect_bad_input([&] { const RunDirectory newer(folder / "run", other, RunDirectory::Mode::resume, counters); },
-                     {"isostat test", "isostat 99"});
+    expect_bad_input([&] { (void)opened(folder / "run", Mode::resume, other); }, {"isostat test", "isostat 99"});
     const std::string checkpoint = scratch::read(folder / "run/checkpoint.json");
     scratch::write(folder / "run/checkpoint.json", checkpoint.substr(0, checkpoint.size() / 2));
-    expect_bad_input([&] { const RunDirectory cut(folder / "run", header(), RunDirectory::Mode::resume, counters); },
-                     {"checkpoint.json", "truncated"});
+    expect_bad_input([&] { (void)opened(folder / "run", Mode::resume); }, {"checkpoint.json", "truncated"});
     scratch::write(folder / "run/checkpoint.json", checkpoint);
     scratch::write(folder / "run/events.jsonl", "");
-    expect_bad_input([&] { const RunDirectory lost(folder / "run", header(), RunDirectory::Mode::resume, counters); },
-                     {"events.jsonl", "0 bytes"});
+    expect_bad_input([&] { (void)opened(folder / "run", Mode::resume); }, {"events.jsonl", "0 bytes"});
 }
 
 BOOST_AUTO_TEST_CASE(a_killed_run_has_no_summary_and_says_running) {
     const scratch::Folder folder;
-    BOOST_REQUIRE(!play(folder / "run", RunDirectory::Mode::fresh, 9, false));
+    BOOST_REQUIRE(!play(folder / "run", Mode::fresh, 9, false));
     BOOST_TEST(!fs::exists(folder / "run/summary.json"));
     BOOST_TEST(scratch::read(folder / "run/run.json").find("\"status\": \"running\"") != std::string::npos);
 }
@@ -318,9 +311,8 @@ BOOST_AUTO_TEST_CASE(a_run_that_was_killed_before_it_wrote_anything_is_begun_by_
     const scratch::Folder folder;
     scratch::write(folder / "lock", "");
     scratch::write(folder / "run.json.part", "{");
-    const RunCounters counters;
     {
-        const RunDirectory directory(folder.path(), header(), RunDirectory::Mode::resume, counters);
+        const RunDirectory directory = opened(folder.path(), Mode::resume);
         BOOST_TEST(directory.previous_status() == "killed before it began");
         BOOST_TEST(!directory.checkpoint().has_value());
         BOOST_TEST(!directory.start().has_value());
@@ -329,13 +321,11 @@ BOOST_AUTO_TEST_CASE(a_run_that_was_killed_before_it_wrote_anything_is_begun_by_
     const scratch::Folder other;
     scratch::write(other / "lock", "");
     scratch::write(other / "notes.txt", "mine");
-    BOOST_CHECK_THROW(RunDirectory(other.path(), header(), RunDirectory::Mode::resume, counters), Error);
+    BOOST_CHECK_THROW(opened(other.path(), Mode::resume), Error);
     const scratch::Folder empty;
     for (int again = 0; again < 2; ++again) { // a refusal leaves nothing that looks like a run
-        BOOST_CHECK_THROW(RunDirectory(empty.path(), header(), RunDirectory::Mode::resume, counters), Error);
+        BOOST_CHECK_THROW(opened(empty.path(), Mode::resume), Error);
         BOOST_TEST(fs::is_empty(empty.path()));
-        BOOST_CHECK_THROW(RunDirectory(empty / "none", header(), RunDirectory::Mode::resume, counters), Error);
+        BOOST_CHECK_THROW(opened(empty / "none", Mode::resume), Error);
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

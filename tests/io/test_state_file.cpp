@@ -56,8 +56,6 @@ void refuses_state(const std::string& text, const std::vector<std::string>& word
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(io)
-
 BOOST_AUTO_TEST_CASE(rows_of_disks_are_in_the_order_of_their_version) {
     const auto text = [](const std::string& version, const std::string& disks) {
         return R"({"format": "isostat-state", "version": )" + version + R"(, "length": [12, 11], "disks": [)" + disks +
@@ -425,5 +423,3 @@ BOOST_AUTO_TEST_CASE(lengths_beyond_the_range_of_the_arithmetic_are_refused) {
     expect_bad_input([&] { (void)parse_state(replaced(two_disk_text(), "[1.0,1.0,1.0]", "[-1e200,1.0,1.0]"), "FILE"); },
                      {"FILE", "x of disk 0", "1e+150"});
 }
-
-BOOST_AUTO_TEST_SUITE_END()

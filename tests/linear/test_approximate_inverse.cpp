@@ -1,14 +1,11 @@
 #include "linear/disturbed.hpp"
 #include "linear/factorisation.hpp"
 #include "support/regular.hpp"
-#include "support/test.hpp"
 #include "support/threads.hpp"
 
 #include <isostat/io/state_file.hpp>
 
 using namespace isostat;
-
-BOOST_AUTO_TEST_SUITE(linear)
 
 namespace {
 
@@ -179,8 +176,7 @@ BOOST_AUTO_TEST_CASE(renewed_factors_take_over_the_order_until_they_have_filled_
     }
     double before = entries_of_factors(inverse, h, dense);
     double most = 0;
-    int taken_over = 0;
-    int anew = 0;
+    int taken_over = 0, anew = 0;
     // Contacts between grains far from those that they replace, a few each time.
     int exchanges = 0;
     for (int slot = dense + 1; slot < h.cols && exchanges < 60; slot += 7) {
@@ -300,5 +296,3 @@ BOOST_AUTO_TEST_CASE(when_old_factors_give_up_after_questions_the_forces_are_tho
     }
     BOOST_TEST(gave_up_after_questions > 0);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -25,8 +25,6 @@ static_assert(!std::is_constructible_v<Statics, const Packing&, const Load&>);
 // A verdict is not a truth value.
 static_assert(!std::is_convertible_v<Verdict, bool>);
 
-BOOST_AUTO_TEST_SUITE(linear)
-
 BOOST_AUTO_TEST_CASE(several_right_hand_sides_are_solved_like_one_after_the_other) {
     const State state = three_disks(1, 1.2, 1.4, 1, 1);
     const auto proved = crafted::Regular::proved(state);
@@ -68,8 +66,7 @@ BOOST_AUTO_TEST_CASE(rattlers_move_in_a_block_of_their_own_and_the_rest_stays_at
         ++blocks;
         const std::vector<double>& quick = block->approximate().mechanism(slot);
         const std::vector<double>& slow = whole.approximate().mechanism(slot);
-        double size = 0;
-        double off = 0;
+        double size = 0, off = 0;
         for (std::size_t mu = 0; mu < quick.size(); ++mu) {
             size = std::max(size, std::abs(slow[mu]));
             off = std::max(off, std::abs(quick[mu] - slow[mu]));
@@ -155,8 +152,7 @@ BOOST_AUTO_TEST_CASE(factors_taken_over_from_another_structure_solve_as_well_as_
             std::vector<double> b = a;
             forces ? taken_over.solve_forces(a) : taken_over.solve_velocities(a);
             forces ? fresh.solve_forces(b) : fresh.solve_velocities(b);
-            double size = 0;
-            double difference = 0;
+            double size = 0, difference = 0;
             for (std::size_t i = 0; i < n; ++i) {
                 size = std::max(size, std::abs(b[i]));
                 difference = std::max(difference, std::abs(a[i] - b[i]));
@@ -209,8 +205,7 @@ BOOST_AUTO_TEST_CASE(factors_of_a_singular_or_overflowing_matrix_are_replaced_by
                 std::vector<double> b = a;
                 forces ? factorisation.solve_forces(a) : factorisation.solve_velocities(a);
                 forces ? fresh.solve_forces(b) : fresh.solve_velocities(b);
-                double off = 0;
-                double size = 0;
+                double off = 0, size = 0;
                 for (std::size_t i = 0; i < n; ++i) {
                     BOOST_TEST(std::isfinite(a[i]), "factor " << factor << " column " << column);
                     off = std::max(off, std::abs(a[i] - b[i]));
@@ -222,5 +217,3 @@ BOOST_AUTO_TEST_CASE(factors_of_a_singular_or_overflowing_matrix_are_replaced_by
         }
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -63,8 +63,6 @@ struct Rolling {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(motion)
-
 BOOST_AUTO_TEST_CASE(an_arc_ends_where_the_closed_form_says) {
     for (const double fraction : {0.5, 0.1, 0.003}) {
         Rolling rolling;
@@ -208,8 +206,7 @@ BOOST_AUTO_TEST_CASE(a_gap_that_stays_0_to_rounding_within_a_step_does_not_dip) 
     CandidateList candidates = find_candidates(at, candidate_fraction);
     const Contact opened = pair(0, 2);
     const Contact nothing{ContactKind::held, -1, 0}; // closes
-    constexpr double step = 0.05;
-    constexpr double noise = 1e-13;
+    constexpr double step = 0.05, noise = 1e-13;
     for (const double rate : {1e-14, 1e-4}) {
         EventScan scan(opened, ArcOptions(), candidates, {pair(0, 1)});
         const CurveCourse course{at, {0, 0, -rate, 0, 0, 1, 0, 0}, std::vector<double>(8, 0.0), 5};
@@ -311,5 +308,3 @@ BOOST_AUTO_TEST_CASE(a_motion_without_end_is_reported) {
     BOOST_TEST_REQUIRE(!arc.ok());
     BOOST_TEST((arc.failure().kind == FailureKind::unbounded));
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -85,8 +85,6 @@ bool proved(const ArcCertificate& certificate) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(motion)
-
 BOOST_AUTO_TEST_CASE(an_arc_between_two_known_contacts_is_certified) {
     CertifiedRolling rolling;
     const ArcCertificate certificate = rolling.certify();
@@ -283,5 +281,3 @@ BOOST_AUTO_TEST_CASE(an_arc_in_a_channel_is_certified_unless_a_pair_of_images_me
         }
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

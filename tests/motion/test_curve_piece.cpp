@@ -40,8 +40,6 @@ struct OnCircle {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(motion)
-
 BOOST_AUTO_TEST_CASE(the_true_curve_lies_in_the_tube_and_its_tangent_within_the_bound) {
     for (const double angle : {0.3, 0.8, 1.2, 2.5}) {
         OnCircle on(angle, 0);
@@ -245,8 +243,7 @@ BOOST_AUTO_TEST_CASE(a_gap_of_the_polynomial_within_the_tube_proves_nothing) {
 
 // Seen from a disk far away the curve goes one way, the polynomial the other.
 BOOST_AUTO_TEST_CASE(a_rate_of_the_polynomial_within_its_error_proves_nothing) {
-    constexpr double off = 1e-6;
-    constexpr double far = 1000;
+    constexpr double off = 1e-6, far = 1000;
     for (const double angle : {0.8, 1.1}) {
         const double x = (2 + off) * std::cos(angle);
         const double on_curve = std::acos(x / 2); // the angle of the point of the curve with the same x
@@ -382,5 +379,3 @@ BOOST_AUTO_TEST_CASE(the_true_curve_of_a_cell_lies_in_the_tube_of_a_shifted_poly
         }
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

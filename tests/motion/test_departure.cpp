@@ -1,5 +1,6 @@
 // What is known at the start of an arc, and what an arc hands on to the next.
 #include "motion/arc.hpp"
+#include "motion/chord.hpp"
 #include "support/test.hpp"
 
 #include <isostat/io/state_file.hpp>
@@ -41,9 +42,31 @@ std::vector<Contact> candidates_without(const CandidateList& candidates, const s
     return open;
 }
 
-} // namespace
+/// Iterations until x <- x + y(x), y = A (1 - x) with eigenvalues of 1 - A as given, is at its fixed point.
+int iterations(const std::vector<double>& rates, bool accelerated, double curvature = 0.01) {
+    std::vector<double> x(rates.size(), 0.0);
+    std::vector<double> y(rates.size());
+    Acceleration acceleration;
+    for (int k = 1; k < 1000; ++k) {
+        double size = 0;
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            y[i] = (1 - rates[i]) * (1 - x[i]) + curvature * (1 - x[i]) * (1 - x[i]);
+            size = std::max(size, std::abs(y[i]));
+        }
+        if (size < 1e-13) {
+            return k;
+        }
+        if (accelerated) {
+            acceleration.improve(y);
+        }
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            x[i] += y[i];
+        }
+    }
+    return 1000;
+}
 
-BOOST_AUTO_TEST_SUITE(motion)
+} // namespace
 
 BOOST_AUTO_TEST_CASE(an_arc_hands_on_the_candidates_that_are_open_at_its_end) {
     Start start;
@@ -82,8 +105,7 @@ BOOST_AUTO_TEST_CASE(open_candidates_at_hand_do_not_change_an_arc) {
 
 BOOST_AUTO_TEST_CASE(the_expected_end_is_mostly_the_end_and_never_decides_it) {
     Start start;
-    int right = 0;
-    int wrong = 0;
+    int right = 0, wrong = 0;
     for (std::size_t slot = 0; slot < start.state.contacts.size(); ++slot) {
         ArcDeparture departure = start.depart(slot);
         const auto expected = departure.expected();
@@ -96,8 +118,7 @@ BOOST_AUTO_TEST_CASE(the_expected_end_is_mostly_the_end_and_never_decides_it) {
             continue;
         }
         ++right;
-        double moved = 0;
-        double off = 0;
+        double moved = 0, off = 0;
         for (std::size_t k = 0; k < arc.value().end.q.size(); ++k) {
             moved = std::max(moved, std::abs(arc.value().end.q[k] - start.state.packing.q[k]));
             off = std::max(off, std::abs(arc.value().end.q[k] - expected->end.q[k]));
@@ -142,4 +163,32 @@ BOOST_AUTO_TEST_CASE(an_exchange_does_not_depend_on_the_guess_of_it) {
     BOOST_TEST(predicted > 10);
 }
 
-BOOST_AUTO_TEST_SUITE_END()
+BOOST_AUTO_TEST_CASE(few_slow_directions_cost_few_iterations_when_accelerated) {
+    std::vector<double> rates(200, 0.01);
+    rates[17] = 0.5;
+    rates[90] = -0.4;
+    const int plain = iterations(rates, false);
+    const int accelerated = iterations(rates, true);
+    BOOST_TEST(plain > 25);
+    BOOST_TEST(accelerated < plain / 2);
+}
+
+// Each change removes one of the rates, as each direction of a Krylov method does.
+BOOST_AUTO_TEST_CASE(a_linear_iteration_with_three_rates_ends_after_three_changes) {
+    for (const double slow : {0.3, 0.6, 0.9}) {
+        std::vector<double> rates(30, 0.01);
+        rates[3] = slow;
+        rates[20] = -0.7 * slow;
+        BOOST_TEST(iterations(rates, true, 0) <= 6, "rate " << slow << ": " << iterations(rates, true, 0));
+    }
+}
+
+BOOST_AUTO_TEST_CASE(changes_that_repeat_each_other_do_no_harm) {
+    for (std::size_t n = 1; n <= 7; ++n) {
+        for (int percent = 0; percent < 60; ++percent) { // all changes are parallel
+            const double rate = 0.01 * percent;
+            const int count = iterations(std::vector<double>(n, rate), true);
+            BOOST_TEST(count < 12, n << " numbers, rate " << rate << ": " << count);
+        }
+    }
+}

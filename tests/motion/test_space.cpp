@@ -62,8 +62,7 @@ double error_of_row(int dimension, oracle::Random& random) {
     const std::vector<Exact> q(at.packing.q.begin(), at.packing.q.end());
     const auto r = separation(at.packing.layout(), q, at.pair);
     const Exact length = sqrt(Exact(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]));
-    Exact exact = 0;
-    Exact absolute = 0;
+    Exact exact = 0, absolute = 0;
     Separation(at.pair, at.packing.layout()).for_each_coordinate([&](std::size_t k, std::size_t a, int multiple) {
         const Exact term = multiple * r[a] / length * Exact(v[k]);
         exact += term;
@@ -79,8 +78,7 @@ double error_of_sum(int dimension, int terms) {
     RoundedSum sum;
     Exact exact = 0;
     for (int k = 0; k < terms; ++k) {
-        PerAxis<double> x{};
-        PerAxis<double> y{};
+        PerAxis<double> x{}, y{};
         for (std::size_t a = 0; a < axes; ++a) {
             x[a] = k == 0 && a == 0 ? 1 + 3 * 0x1p-28 : 1 + 0x1p-20;
             y[a] = k == 0 && a == 0 ? x[a] : k == 0 || a == 0 ? roundoff::u : roundoff::u * 0x1p-20;
@@ -93,11 +91,8 @@ double error_of_sum(int dimension, int terms) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(motion)
-
 BOOST_AUTO_TEST_CASE(rows_of_spheres_through_images_lose_more_than_those_of_disks) {
-    double disks = 0;
-    double spheres = 0;
+    double disks = 0, spheres = 0;
     oracle::Random random(3);
     for (int trial = 0; trial < 300; ++trial) {
         disks = std::max(disks, error_of_row(2, random));
@@ -192,5 +187,3 @@ BOOST_AUTO_TEST_CASE(the_tube_holds_the_circle_of_a_sphere_in_a_groove) {
         }
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -50,8 +50,7 @@ class IntegerSystem {
         for (const mpq_class& f : force) {
             common = lcm(common, mpz_class(f.get_den()));
         }
-        fmpz_mat_t b;
-        fmpz_mat_t x;
+        fmpz_mat_t b, x;
         fmpz_t denominator;
         fmpz_mat_init(b, static_cast<slong>(rows_), 1);
         fmpz_mat_init(x, static_cast<slong>(cols_), 1);
@@ -62,8 +61,7 @@ class IntegerSystem {
         }
         std::vector<mpq_class> solution;
         if (fmpz_mat_solve(x, denominator, a_, b) != 0) {
-            mpz_class n;
-            mpz_class d;
+            mpz_class n, d;
             fmpz_get_mpz(d.get_mpz_t(), denominator);
             d *= common;
             for (std::size_t l = 0; l < cols_; ++l) {
@@ -95,8 +93,7 @@ class IntegerSystem {
     }
 
   private:
-    std::size_t rows_ = 0;
-    std::size_t cols_ = 0;
+    std::size_t rows_ = 0, cols_ = 0;
     fmpz_mat_t a_;
     std::vector<mpz_class> scale_;
     std::vector<mpq_class> square_;

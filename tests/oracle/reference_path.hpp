@@ -18,8 +18,7 @@ struct ReferenceArc {
     Packing start;
     std::vector<Contact> contacts; ///< at the start
     ContactId opened;
-    bool infinitesimal = false;
-    bool at_limit = false;
+    bool infinitesimal = false, at_limit = false;
     Load load;
     Contact closed;
     std::vector<Contact> end_contacts;
@@ -37,8 +36,7 @@ struct ReferencePath {
     std::vector<EquilibriumRecord> equilibria;
     std::vector<State> states;
     std::string stopped; ///< why it ends before the equilibria asked for
-    double worst_bound = 0;
-    double worst_limit_bound = 0;
+    double worst_bound = 0, worst_limit_bound = 0;
     double lowest_gap = 0; ///< smallest gap of a pair that is not a contact, at the true ends / smallest radius
     double lowest_force = 0;
     int certified = 0; ///< arcs certified by the program

@@ -132,19 +132,16 @@ inline VertexCertificate certify_vertex(const Packing& packing, const std::vecto
     constexpr double u = 0x1p-53;
     const auto& a = derivative.rounded;
     const Eigen::Index n = a.rows();
-    double rows_r = 0;
-    double rows_e = 0;
+    double rows_r = 0, rows_e = 0;
     Eigen::VectorXd columns_r = Eigen::VectorXd::Zero(n);
     Eigen::VectorXd columns_e = Eigen::VectorXd::Zero(n);
     const Eigen::SparseMatrix<double> transposed = a.transpose();
     const Eigen::SparseLU<Eigen::SparseMatrix<double>> lu(transposed);
     for (Eigen::Index i = 0; i < n; ++i) {
         const Eigen::VectorXd r = lu.solve(Eigen::VectorXd::Unit(n, i)); // row i of R
-        double row_r = 0;
-        double row_e = 0;
+        double row_r = 0, row_e = 0;
         for (Eigen::Index c = 0; c < n; ++c) {
-            double sum = 0;
-            double size = 0;
+            double sum = 0, size = 0;
             int terms = 4;
             for (Eigen::SparseMatrix<double>::InnerIterator e(a, c); e; ++e) {
                 sum += r[e.row()] * e.value();
@@ -244,8 +241,7 @@ inline LimitReference certified_limit(const Packing& packing, const std::vector<
     limit.stress = -f.fixed[l] / f.unit[l];
     const double sigma = std::abs(static_cast<double>(limit.stress));
     limit.bound = 1.01 * (fixed_bound + sigma * unit_bound) / (slope - unit_bound) + std::ldexp(sigma, -310);
-    Reference lowest = 0;
-    Reference largest = 0;
+    Reference lowest = 0, largest = 0;
     for (std::size_t k = 0; k < f.fixed.size(); ++k) {
         const Reference force = f.fixed[k] + limit.stress * f.unit[k];
         lowest = std::min(lowest, force);

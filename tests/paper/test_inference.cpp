@@ -26,8 +26,6 @@ double draw_power_law(oracle::Random& random, double a, double low, double high)
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(paper)
-
 BOOST_AUTO_TEST_CASE(means_have_the_interval_of_student) {
     const Estimate e = mean_with_t(std::vector<double>{1, 2, 3, 4}, level);
     BOOST_TEST(e.value == 2.5);
@@ -74,8 +72,7 @@ BOOST_AUTO_TEST_CASE(the_exponent_of_a_truncated_power_law_comes_back) {
 
 BOOST_AUTO_TEST_CASE(exponential_values_pass_and_others_do_not) {
     oracle::Random random(9);
-    std::vector<double> exponential;
-    std::vector<double> uniform;
+    std::vector<double> exponential, uniform;
     for (int i = 0; i < 300; ++i) {
         exponential.push_back(-3 * std::log1p(-random.real()));
         uniform.push_back(random.real());
@@ -152,5 +149,3 @@ BOOST_AUTO_TEST_CASE(bootstrap_draws_within_the_groups_and_repeats_itself) {
                               {3}, [](auto&) { return std::nan(""); }, 10, 4, level)
                               .low));
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -1,5 +1,6 @@
 // Periodic packings from random disks: proved vertices, and what may not change them.
-
+// Spheres from random starts: proved vertices in boxes and in cells of three kinds.
+#include "oracle/pairs.hpp"
 #include "preparation/soft.hpp"
 #include "support/prepared.hpp"
 
@@ -15,9 +16,77 @@ PreparationOptions periodic(int disks, std::uint64_t seed) {
     return {.disks = disks, .seed = seed, .cell = PreparedCell::rectangular};
 }
 
-} // namespace
+PreparationOptions spheres(int count, std::uint64_t seed, PreparedCell cell = PreparedCell::none) {
+    return {.dimension = 3, .disks = count, .seed = seed, .cell = cell};
+}
 
-BOOST_AUTO_TEST_SUITE(preparation)
+/// With overlaps everywhere.
+Packing pressed_a_little(Packing packing) {
+    for (double& x : packing.q) {
+        x *= 1 - 1e-6;
+    }
+    return packing;
+}
+
+/// Radii that are 1024 times as large give the same packing, 1024 times as large.
+void scales_with_its_radii(const State& one, PreparationOptions options) {
+    options.radii = one.packing.radius;
+    for (double& r : options.radii) {
+        r *= 1024;
+    }
+    const State scaled = prepared(options);
+    BOOST_TEST((scaled.contacts == one.contacts));
+    for (std::size_t k = 0; k < one.packing.q.size(); ++k) {
+        BOOST_TEST(scaled.packing.q[k] == 1024 * one.packing.q[k]);
+    }
+}
+
+/// A square or simple cubic lattice under the pressure of its overlaps, some of it beyond the cell: every grain is
+/// balanced, every contact there, through the sides, edges and corners of the cell too.
+void lattice_feels_its_images(int dimension, int side) {
+    constexpr std::array origin{0.3, -0.7, 5.0};
+    Packing packing;
+    packing.dimension = packing.cell.dimension = dimension;
+    packing.walls = Walls::none();
+    packing.cell.repeat();
+    packing.cell.move(true, false);
+    BOOST_TEST_INFO_SCOPE(dimension << " dimensions");
+    const int count = dimension == 2 ? side * side : side * side * side;
+    for (int k = 0; k < count; ++k) {
+        packing.radius.push_back(1);
+        int rest = k;
+        for (std::size_t a = 0; a < packing.axes(); ++a, rest /= side) {
+            packing.q.push_back(1.99 * (rest % side) + origin.at(a));
+        }
+    }
+    packing.q.insert(packing.q.end(), packing.axes(), side * 1.99);
+    packing.q.insert(packing.q.end(), dimension == 2 ? 1 : 3, 0);
+    isostat::preparation::SoftDynamics dynamics(packing, false, nullptr, [](double) {});
+    const auto measures = dynamics.relax(dimension == 2 ? 0.01 / 1.99 : 0.01 / (1.99 * 1.99), 1e-6, 0);
+    BOOST_TEST(measures.contacts == dimension * count);
+    BOOST_TEST(measures.residual < 1e-9);
+    BOOST_TEST(measures.pressure_error < 1e-9);
+    BOOST_TEST(std::abs(measures.overlap - 0.005) < 1e-12);
+}
+
+/// Contacts closed, all other pairs open, everything proved.
+void is_proved_vertex_of_spheres(const State& state, std::size_t dofs) {
+    const Packing& packing = state.packing;
+    BOOST_TEST(packing.dimension == 3);
+    BOOST_TEST(state.load.dimension == 3);
+    BOOST_TEST(state.load.loaded_axis == 2);
+    BOOST_TEST(state.contacts.size() == dofs);
+    BOOST_TEST(state.load.infinitesimal.size() == 3 * packing.radius.size());
+    const double rounding = 16 * grid_step(packing);
+    for (const Contact& pair : oracle::all_pairs(packing, 2)) {
+        const bool closed = std::binary_search(state.contacts.begin(), state.contacts.end(), pair);
+        BOOST_TEST((gap(packing, pair) <= rounding) == closed, to_string(pair));
+        BOOST_TEST(gap(packing, pair) > -rounding, to_string(pair));
+    }
+    BOOST_TEST((certify(state).verdict == Verdict::proved));
+}
+
+} // namespace
 
 BOOST_AUTO_TEST_CASE(periodic_packings_are_proved_equilibria) {
     for (const auto& [disks, seeds] : {std::pair{30, 5}, {100, 2}}) {
@@ -66,10 +135,7 @@ BOOST_AUTO_TEST_CASE(a_tilt_that_moves_bears_no_shear_and_has_its_contact) {
 // The vertex of the cell that is stored, found again with overlaps everywhere: all pairs across the sides count.
 BOOST_AUTO_TEST_CASE(a_vertex_is_found_again_in_its_cell) {
     const State state = prepared(periodic(30, 3));
-    Packing soft = state.packing;
-    for (double& x : soft.q) {
-        x *= 1 - 1e-6;
-    }
+    Packing soft = pressed_a_little(state.packing);
     PreparationOptions options = periodic(30, 3);
     PreparationReport report;
     const State again = vertex_near(soft, options);
@@ -80,10 +146,8 @@ BOOST_AUTO_TEST_CASE(a_vertex_is_found_again_in_its_cell) {
 }
 
 BOOST_AUTO_TEST_CASE(a_vertex_is_found_in_a_channel) {
-    Packing soft = read_any_state(std::string(ISOSTAT_TEST_DATA) + "/cells/channel_16.json").state.packing;
-    for (double& x : soft.q) {
-        x *= 1 - 1e-6;
-    }
+    Packing soft =
+        pressed_a_little(read_any_state(std::string(ISOSTAT_TEST_DATA) + "/cells/channel_16.json").state.packing);
     PreparationOptions options = periodic(16, 1);
     PreparationReport report;
     const State state = vertex_near(soft, options);
@@ -101,38 +165,14 @@ BOOST_AUTO_TEST_CASE(the_same_seed_gives_the_same_cell_and_units_do_not_matter) 
     const State one = prepared(periodic(30, 2));
     const State other = prepared(periodic(30, 2));
     BOOST_TEST(one.packing.q == other.packing.q, boost::test_tools::per_element());
-    PreparationOptions large = periodic(30, 2);
-    large.radii = one.packing.radius;
-    for (double& r : large.radii) {
-        r *= 1024;
-    }
-    const State scaled = prepared(large);
-    BOOST_TEST((scaled.contacts == one.contacts));
-    for (std::size_t k = 0; k < one.packing.q.size(); ++k) {
-        BOOST_TEST(scaled.packing.q[k] == 1024 * one.packing.q[k]);
-    }
+    scales_with_its_radii(one, periodic(30, 2));
 }
 
 // Where the disks are drawn must not matter for the forces: all pairs across the sides are there. A cell shifted by
 // half a period has other images, and relaxes to the same pressure and number of contacts.
-BOOST_AUTO_TEST_CASE(soft_disks_feel_their_images) {
-    Packing packing;
-    packing.walls = Walls::none();
-    packing.cell.periodic = packing.cell.period_moves = {true, true};
-    for (int y = 0; y < 6; ++y) {
-        for (int x = 0; x < 6; ++x) {
-            packing.radius.push_back(1);
-            packing.q.insert(packing.q.end(), {1.99 * x + 0.3, 1.99 * y - 0.7});
-        }
-    }
-    packing.q.insert(packing.q.end(), {6 * 1.99, 6 * 1.99, 0});
-    // A square lattice under the pressure of its overlaps, 0.01 / 1.99: every disk balanced, every contact there.
-    isostat::preparation::SoftDynamics dynamics(packing, false, nullptr, [](double) {});
-    const auto measures = dynamics.relax(0.01 / 1.99, 1e-6, 0);
-    BOOST_TEST(measures.contacts == 72);
-    BOOST_TEST(measures.residual < 1e-9);
-    BOOST_TEST(measures.pressure_error < 1e-9);
-    BOOST_TEST(std::abs(measures.overlap - 0.005) < 1e-12);
+BOOST_AUTO_TEST_CASE(soft_grains_feel_their_images) {
+    lattice_feels_its_images(2, 6);
+    lattice_feels_its_images(3, 4);
 }
 
 BOOST_AUTO_TEST_CASE(too_few_or_too_many_disks_are_refused) {
@@ -167,4 +207,63 @@ BOOST_AUTO_TEST_CASE(a_way_down_that_flattens_the_cell_ends_with_words) {
     BOOST_TEST(find_vertex(start, options, report).ok());
 }
 
-BOOST_AUTO_TEST_SUITE_END()
+BOOST_AUTO_TEST_CASE(spheres_in_a_box_are_a_proved_equilibrium) {
+    for (const std::uint64_t seed : {1, 2, 3}) {
+        const State state = prepared(spheres(20, seed));
+        is_proved_vertex_of_spheres(state, 3 * 20 + 3);
+        BOOST_TEST((state.packing.walls == Walls::box(3)));
+        BOOST_TEST((state.load.stress == PerAxis<double>{1, 1, 1}));
+        BOOST_TEST(state.load.reference_length[2] == state.packing.length(2));
+    }
+}
+
+BOOST_AUTO_TEST_CASE(spheres_in_cells_are_proved_equilibria) {
+    using enum PreparedCell;
+    for (const auto& [cell, more] : {std::pair{rectangular, 0}, {tilted, 3}, {isotropic, -2}}) {
+        const State state = prepared(spheres(16, 1, cell));
+        is_proved_vertex_of_spheres(state, static_cast<std::size_t>(3 * 16 + more));
+        BOOST_TEST(state.packing.cell.all());
+        for (std::size_t b = 1; b < 3; ++b) {
+            for (std::size_t a = 0; a < b; ++a) {
+                BOOST_TEST((state.packing.lattice(a, b) != 0) == (cell == tilted));
+            }
+        }
+        BOOST_TEST((state.load.shear == PerTilt<double>{}));
+    }
+}
+
+// Equal spheres at a wall are at one height: contacts along it bear nothing across it, whatever the load.
+BOOST_AUTO_TEST_CASE(equal_spheres_at_a_wall_are_prepared) {
+    for (const RadiiLaw law : {RadiiLaw::bidisperse, RadiiLaw::equal}) {
+        PreparationOptions options = spheres(30, 2);
+        options.diameters.kind = law;
+        options.jitter = law == RadiiLaw::equal ? 1e-3 : 0;
+        is_proved_vertex_of_spheres(prepared(options), 3 * 30 + 3);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(the_unit_of_spheres_does_not_matter) {
+    PreparationOptions options = spheres(12, 5, PreparedCell::tilted);
+    scales_with_its_radii(prepared(options), options);
+}
+
+BOOST_AUTO_TEST_CASE(a_vertex_of_spheres_is_found_again_and_another_under_another_stress) {
+    const State state = prepared(spheres(20, 4));
+    const Packing soft = pressed_a_little(state.packing);
+    PreparationOptions options = spheres(20, 4);
+    const State again = vertex_near(soft, options);
+    BOOST_TEST(std::abs(again.packing.length(2) - state.packing.length(2)) < 1e-11);
+    options.ratio = 4;
+    const State pressed = vertex_near(soft, options);
+    BOOST_TEST((pressed.load.stress == PerAxis<double>{1, 1, 4}));
+    BOOST_TEST(pressed.packing.length(2) < state.packing.length(2));
+    BOOST_TEST((certify(pressed).verdict == Verdict::proved));
+}
+
+BOOST_AUTO_TEST_CASE(four_dimensions_and_too_few_spheres_for_a_cell_are_refused) {
+    PreparationReport report;
+    PreparationOptions options = spheres(20, 1);
+    options.dimension = 4;
+    BOOST_CHECK_THROW((void)prepare(options, report), Error);
+    BOOST_CHECK_THROW((void)prepare(spheres(1, 1, PreparedCell::rectangular), report), Error);
+}

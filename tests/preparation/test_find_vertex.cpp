@@ -4,9 +4,7 @@
 #include "../../src/preparation/programme.hpp"
 #include "check.hpp"
 #include "support/prepared.hpp"
-#include "support/test.hpp"
 
-#include <isostat/certificate/certify.hpp>
 #include <isostat/core/error.hpp>
 
 namespace {
@@ -45,8 +43,6 @@ double smallest_gap(const Packing& packing) {
 }
 
 } // namespace
-
-BOOST_AUTO_TEST_SUITE(preparation)
 
 BOOST_AUTO_TEST_CASE(a_step_of_a_programme_never_makes_an_overlap) {
     for (unsigned long long seed = 1; seed <= 10; ++seed) {
@@ -250,5 +246,3 @@ BOOST_AUTO_TEST_CASE(other_walls_and_fixed_disks_are_bad_input) {
     start.q.back() = -1;
     BOOST_CHECK_THROW(find_vertex(start, PreparationOptions{}, report), Error);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

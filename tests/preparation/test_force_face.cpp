@@ -30,8 +30,6 @@ std::pair<std::vector<Contact>, std::vector<Contact>> split(std::vector<Contact>
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(preparation)
-
 /// Two equal disks side by side: top wall and floor share the load F2 = 4 between the columns, whoever is listed.
 BOOST_AUTO_TEST_CASE(two_columns_share_the_load_in_any_way) {
     const State state = equal_pair();
@@ -87,5 +85,3 @@ BOOST_AUTO_TEST_CASE(forces_that_only_pull_are_no_face) {
     BOOST_TEST_REQUIRE(!face.ok());
     BOOST_TEST((face.failure().kind == FailureKind::undecided));
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -4,8 +4,6 @@
 #include "support/bad_input.hpp"
 #include "support/prepared.hpp"
 
-#include <isostat/certificate/certify.hpp>
-#include <isostat/core/error.hpp>
 #include <isostat/core/machine.hpp>
 
 #include <atomic>
@@ -37,8 +35,6 @@ void must_be_vertex(const Outcome& outcome, double stress = 1) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(preparation)
-
 BOOST_AUTO_TEST_CASE(every_size_and_seed_ends_at_a_proved_vertex) {
     for (const auto& [disks, seeds] : {std::pair{1, 5}, {2, 30}, {3, 30}, {20, 20}, {100, 5}}) {
         for (int seed = 1; seed <= seeds; ++seed) {
@@ -65,8 +61,7 @@ BOOST_AUTO_TEST_CASE(one_disk_is_held_by_the_four_walls) {
 // Figures of an independent program: solid fraction 0.823 at n = 400, 5-7 % rattlers; one sample scatters by 0.005 and
 // by 2 %.
 BOOST_AUTO_TEST_CASE(solid_fraction_and_rattlers_are_those_of_random_packings) {
-    double fraction = 0;
-    double rattlers = 0;
+    double fraction = 0, rattlers = 0;
     constexpr int samples = 4;
     for (int seed = 1; seed <= samples; ++seed) {
         const Outcome outcome = run(400, static_cast<std::uint64_t>(seed));
@@ -85,8 +80,7 @@ BOOST_AUTO_TEST_CASE(solid_fraction_and_rattlers_are_those_of_random_packings) {
 
 // The way of large packings (pressed harder first, patches, interior points) on small ones: four to nine patches.
 BOOST_AUTO_TEST_CASE(the_way_of_large_packings_ends_at_proved_vertices_of_the_same_kind) {
-    double fraction = 0;
-    double rattlers = 0;
+    double fraction = 0, rattlers = 0;
     constexpr int samples = 3;
     for (int seed = 1; seed <= samples; ++seed) {
         const Outcome outcome = run({.disks = 1000, .seed = static_cast<std::uint64_t>(seed), .large_above = 100});
@@ -288,5 +282,3 @@ BOOST_AUTO_TEST_CASE(options_without_sense_are_named) {
     refused([](auto& o) { o.loose_fraction = 0.95; }, "loose fraction 0.95");
     refused([](auto& o) { o.softness = 0.1; }, "softness 0.1");
 }
-
-BOOST_AUTO_TEST_SUITE_END()

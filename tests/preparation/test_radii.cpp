@@ -41,8 +41,6 @@ double normal(double z) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(preparation)
-
 BOOST_AUTO_TEST_CASE(radii_follow_their_law) {
     DiameterLaw law;
     follows(law, [](double d) { return d - 1; });
@@ -123,5 +121,3 @@ BOOST_AUTO_TEST_CASE(laws_without_sense_are_named) {
     refused(RadiiLaw::power, [](auto& l) { l.exponent = HUGE_VAL; }, {"exponent is inf"});
     expect_bad_input([] { (void)draw_radii({}, 0, 1); }, {"number of disks is 0"});
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -1,7 +1,6 @@
 """Clumps: states with bars, proofs, runs, and what takes single grains only."""
 
 import pickle
-import unittest
 
 import numpy as np
 from common import Folder, project
@@ -137,7 +136,3 @@ class Bodies(Folder):
     def test_bars_are_drawn_as_no_contacts(self):
         axes = isostat.plot.packing(lying(), isostat.inspect(lying()).forces)
         self.assertTrue(axes.collections)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -185,7 +185,3 @@ class Clumps(unittest.TestCase):
                 answer = prepared("--from", str(path))
                 self.assertEqual((answer.returncode, answer.stdout), (1, ""))
                 self.assertIn(word, answer.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,7 +1,6 @@
 """snap and compare: soft grains of other programs."""
 
 import math
-import unittest
 
 import numpy as np
 from common import Folder, project
@@ -71,7 +70,3 @@ class Compare(Folder):
     def test_bad_input_names_the_file(self):
         with self.assertRaisesRegex(isostat.BadInput, "none.toml"):
             isostat.compare(self.folder / "none.toml")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -118,7 +118,3 @@ class Crafted(unittest.TestCase):
             # In the span of the exact ones: the residual of least squares vanishes to rounding.
             _, residual, _, _ = np.linalg.lstsq(exact.T, value, rcond=None)
             self.assertLess(residual.max(), 1e-20)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -186,7 +186,3 @@ class ExactCells(unittest.TestCase):
         for wrong in (lambda: isostat.exact_packing([(0, 0)]), lambda: isostat.exact_packing([(0, 0, 1)], moves=["x"])):
             with self.assertRaises(isostat.BadInput):
                 wrong()
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -8,7 +8,6 @@ import contextlib
 import io
 import json
 import os
-import unittest
 
 from matplotlib import pyplot
 
@@ -102,7 +101,3 @@ class Notebooks(Folder):
         seen = names["counterexample"].inspect()
         self.assertGreaterEqual(seen.h, 1)
         self.assertGreater(seen.k, seen.rigid_motions)
-
-
-if __name__ == "__main__":
-    unittest.main()

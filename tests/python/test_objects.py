@@ -2,7 +2,6 @@
 
 import copy
 import pickle
-import unittest
 
 import numpy as np
 from common import Folder, project, scene, two_disks
@@ -161,7 +160,3 @@ class Objects(Folder):
         self.assertGreater(isostat.Ensemble(folder).samples["status"][1:].min(), 2)  # not finished
         again = isostat.ensemble(sections, folder, samples=3, resume=True)
         self.assertLess(again.samples["status"].max(), 3)
-
-
-if __name__ == "__main__":
-    unittest.main()

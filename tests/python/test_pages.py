@@ -92,7 +92,3 @@ class Pages(unittest.TestCase):
             self.assertEqual(out.returncode, 0, out.stderr)
             self.assertIn("numpy", out.stdout)
             self.assertFalse((package / "_core.pyi").exists())
-
-
-if __name__ == "__main__":
-    unittest.main()

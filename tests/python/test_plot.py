@@ -86,7 +86,3 @@ class Pictures(unittest.TestCase):
         np.testing.assert_allclose(data.values, [0, 0, 1.6, 0, 0.8, 0, 1.6], rtol=1e-15)
         with self.assertRaises(isostat.Error):
             isostat.plot.force_distribution([0, 0])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -144,7 +144,3 @@ state = isostat.State.from_arrays(np.stack([i, j], 1) + 0.5, np.full(n * n, 0.5)
             self.assertIn("KeyboardInterrupt", errors)
             self.assertNotEqual(status, 0)
             self.assertLess(seconds, 5)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -2,7 +2,6 @@
 
 import json
 import shutil
-import unittest
 from pathlib import Path
 
 import numpy as np
@@ -193,7 +192,3 @@ states_every = 1
         row = isostat.load(out).equilibria
         self.assertEqual([row[name].dtype.kind for name in row.dtype.names], list("iiif"))
         self.assertEqual(row["touching"].tolist(), [2])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -2,7 +2,6 @@
 
 import signal
 import subprocess
-import unittest
 
 import numpy as np
 from common import Folder, scene, two_disks
@@ -142,7 +141,3 @@ except KeyboardInterrupt:
             out, errors = process.communicate(timeout=600)
             self.assertEqual(process.returncode, 0, errors)
             self.assertRegex(out.splitlines()[-1], "^interrupted [0-9]+$")
-
-
-if __name__ == "__main__":
-    unittest.main()

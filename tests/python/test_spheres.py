@@ -1,7 +1,5 @@
 """States of spheres: three columns, proofs, and what takes disks only."""
 
-import unittest
-
 import numpy as np
 from common import Folder, project
 
@@ -98,7 +96,3 @@ equilibria = 2
         with self.assertRaisesRegex(isostat.BadInput, "spheres"):
             isostat.plot.packing(state)
         self.assertEqual(isostat.ExactPacking.of_state(state).inspect().h, 0)
-
-
-if __name__ == "__main__":
-    unittest.main()

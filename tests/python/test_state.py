@@ -1,7 +1,6 @@
 """States: arrays, files, contact matrix, counting."""
 
 import gc
-import unittest
 
 import numpy as np
 from common import Folder, project, two_disks
@@ -88,7 +87,3 @@ class States(Folder):
         np.testing.assert_allclose(walls, disks[1], atol=1e-14)
         with self.assertRaises(ValueError):
             isostat.mechanism(state, (0, "top"))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -31,8 +31,6 @@ const State state = crafted::two_disks(1, 2, 1, 1);
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(report)
-
 BOOST_AUTO_TEST_CASE(a_picture_has_every_disk_wall_and_contact_once) {
     const std::string svg = force_picture(state, std::vector<double>{1, 2, 3, 4, 5, 6}, "a < b & c");
     BOOST_TEST(count(svg, "<circle") == 2);
@@ -145,8 +143,7 @@ BOOST_AUTO_TEST_CASE(displacements_are_vectors_of_the_disks) {
 BOOST_AUTO_TEST_CASE(vtk_counts_agree_with_its_lists) {
     const std::string vtk = vtk_text(state, std::vector<double>{0, 0, 0, 4, 5, 6}, "title");
     std::istringstream in(vtk);
-    std::string word;
-    std::string line;
+    std::string word, line;
     std::getline(in, line);
     BOOST_TEST(line == "# vtk DataFile Version 3.0");
     std::getline(in, line);
@@ -161,8 +158,7 @@ BOOST_AUTO_TEST_CASE(vtk_counts_agree_with_its_lists) {
             BOOST_TEST(c == state.packing.q[2]); // 17 digits: the same bits
         }
     }
-    int cells = 0;
-    int size = 0;
+    int cells = 0, size = 0;
     in >> word >> cells >> size;
     BOOST_TEST(word == "VERTICES");
     BOOST_TEST(cells == 2);
@@ -173,9 +169,7 @@ BOOST_AUTO_TEST_CASE(vtk_counts_agree_with_its_lists) {
     BOOST_TEST(word == "LINES");
     BOOST_TEST(cells == 6);
     for (int l = 0; l < cells; ++l) {
-        int two = 0;
-        int a = 0;
-        int b = 0;
+        int two = 0, a = 0, b = 0;
         in >> two >> a >> b;
         BOOST_TEST(two == 2);
         BOOST_TEST((a >= 0 && a < 2 && b > a && b < points));
@@ -185,5 +179,3 @@ BOOST_AUTO_TEST_CASE(vtk_counts_agree_with_its_lists) {
     BOOST_TEST(rest.find("SCALARS rattler int 1\nLOOKUP_TABLE default\n1\n0\n0\n") != std::string::npos);
     BOOST_TEST(rest.ends_with("CELL_DATA 8\nSCALARS force double 1\nLOOKUP_TABLE default\n0\n0\n0\n0\n0\n4\n5\n6\n"));
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -3,8 +3,6 @@
 #include "rigidity/rigid_group.hpp"
 #include "support/crafted.hpp"
 
-#include <isostat/contact/state.hpp>
-
 using namespace isostat;
 using namespace crafted;
 
@@ -45,8 +43,6 @@ template <class Case> void count_of_each_is_needed(Case full) {
 }
 
 } // namespace
-
-BOOST_AUTO_TEST_SUITE(rigidity)
 
 BOOST_AUTO_TEST_CASE(three_parallel_bars_between_two_bodies_and_none_that_is_missing) {
     count_of_each_is_needed(Wheels());
@@ -122,5 +118,3 @@ BOOST_AUTO_TEST_CASE(held_coordinates_fixed_disks_and_cells_are_no_linkages) {
     fixed.packing.walls.upper[0] = WallKind::fixed; // the right wall still only joins one side
     BOOST_TEST(moves_as_linkage(fixed.packing, fixed.among, fixed.last));
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -38,8 +38,6 @@ bool adds_nothing(State state, const Contact& last) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(rigidity)
-
 BOOST_AUTO_TEST_CASE(the_last_contact_of_a_hexagon_moves_with_the_others_and_not_when_one_is_missing) {
     State state = hexagon();
     const Contact last = pair(1, 6);
@@ -129,5 +127,3 @@ BOOST_AUTO_TEST_CASE(a_column_at_a_wall_carries_the_load_alone_and_not_when_a_co
     held.back() = {ContactKind::held, 2, 0};
     BOOST_TEST(!carries_alone(dofs, held, 1));
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -23,8 +23,6 @@ Failure end_of(const std::string& packing, const std::string& ties) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(scene)
-
 /// Ends that are nearly singular, to 1e-11: found with residuals in double-double.
 BOOST_AUTO_TEST_CASE(nearly_equal_disks_are_followed_past_ends_that_are_nearly_singular) {
     for (const char* const seed : {"seed = 5\n", "seed = 17\n"}) {
@@ -32,5 +30,3 @@ BOOST_AUTO_TEST_CASE(nearly_equal_disks_are_followed_past_ends_that_are_nearly_s
         BOOST_TEST((end.kind == FailureKind::cap_reached), seed << end.message());
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -28,8 +28,6 @@ void refuses(const std::string& text, const std::vector<std::string>& words) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(scene)
-
 BOOST_AUTO_TEST_CASE(a_segment_needs_an_end) {
     refuses(prepared_scene + step("do = \"up\""), {"s.toml:3:", "\"up\"", "no end", "equilibria", "to"});
     refuses(prepared_scene + step("do = \"to\""), {"s.toml:3:", "without a ratio"});
@@ -156,5 +154,3 @@ BOOST_AUTO_TEST_CASE(the_plan_says_how_packings_of_a_size_are_prepared) {
         }
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

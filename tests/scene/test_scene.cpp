@@ -27,8 +27,6 @@ std::string value_of(const Scene& scene, const std::string& section, const std::
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(scene)
-
 BOOST_AUTO_TEST_CASE(a_small_scene_gets_the_defaults_of_the_library) {
     const Scene scene = parse_scene_text(head);
     const PreparationOptions preparation;
@@ -355,5 +353,3 @@ BOOST_AUTO_TEST_CASE(sizes_beyond_the_range_of_the_arithmetic_are_refused) {
     expect_bad_input([] { (void)parse_scene("[packing]\nradii = [1.0, 1e-200]\n", "FILE", ""); },
                      {"FILE:2:", "radii[1]", "1e-140"});
 }
-
-BOOST_AUTO_TEST_SUITE_END()

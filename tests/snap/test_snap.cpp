@@ -55,8 +55,6 @@ Sample of_spheres(const std::string& name) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(snap_vertex)
-
 BOOST_AUTO_TEST_CASE(soft_spheres_snap_to_their_vertex_in_walls_slabs_and_cells) {
     for (const char* name : sphere_names) {
         BOOST_TEST_INFO_SCOPE(name);
@@ -329,5 +327,3 @@ BOOST_AUTO_TEST_CASE(soft_limits_approach_the_exact_one_as_one_over_the_stiffnes
         BOOST_TEST(std::abs(there->stress - exact.end()) / exact.end() == 1e-3, boost::test_tools::tolerance(0.3));
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -66,9 +66,7 @@ inline ExactPacking random_tower(int disks, std::uint64_t seed) {
     std::mt19937_64 random(seed);
     const std::array<std::array<int, 3>, 5> directions{{{3, 4, 5}, {-3, 4, 5}, {0, 1, 1}, {-20, 21, 29}, {20, 21, 29}}};
     ExactPacking packing = empty_box(0, 0);
-    Number x = 0;
-    Number y = 0;
-    Number r = 0;
+    Number x = 0, y = 0, r = 0;
     for (int k = 0; k < disks; ++k) {
         const Number next(1 + static_cast<long>(random() % 1000));
         if (k > 0) {

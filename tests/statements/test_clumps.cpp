@@ -2,10 +2,8 @@
 // search for a body that contacts alone keep in a minimum. T5 and T6: test_regular_edges.cpp.
 #include "families.hpp"
 #include "packing/bodies.hpp"
-#include "support/test.hpp"
 
 #include <isostat/certificate/certify.hpp>
-#include <isostat/crafted/exact_packing.hpp>
 #include <isostat/rigidity/counting.hpp>
 
 #include <eigen3/Eigen/Dense>
@@ -116,8 +114,6 @@ void judge(Family& f) {
 }
 
 } // namespace
-
-BOOST_AUTO_TEST_SUITE(statements)
 
 /// U7 (a), at the most special places: equal members, parallel contacts, members that overlap.
 BOOST_AUTO_TEST_CASE(radii_and_places_of_members_follow_every_gap_of_clumps) {
@@ -255,7 +251,5 @@ BOOST_AUTO_TEST_CASE(no_body_was_found_that_contacts_alone_keep_in_a_minimum) {
         BOOST_TEST(search(contacts, false) > 0.1); // where members overlap fixed disks it passes it
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()
 
 } // namespace statement_clumps

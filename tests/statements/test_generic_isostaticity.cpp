@@ -1,9 +1,6 @@
 // T7: attempts to find a packing where varying coordinates and radii cannot follow every change of the gaps, and what
 // happens when a hypothesis is dropped.
 #include "families.hpp"
-#include "support/test.hpp"
-
-#include <isostat/crafted/exact_packing.hpp>
 
 using namespace isostat;
 using namespace families;
@@ -23,8 +20,6 @@ void check_statement(const ExactPacking& packing, const std::string& name) {
 }
 
 } // namespace
-
-BOOST_AUTO_TEST_SUITE(statements)
 
 BOOST_AUTO_TEST_CASE(radii_and_coordinates_follow_every_gap_on_square_lattices) {
     for (int columns = 1; columns <= 7; ++columns) {
@@ -193,8 +188,7 @@ BOOST_AUTO_TEST_CASE(first_order_gaps_separate_every_tie_of_a_lattice) {
             }
             return sum;
         };
-        std::vector<Number> rho;
-        std::vector<Number> in_proportion;
+        std::vector<Number> rho, in_proportion;
         for (const Number& r : packing.radius) {
             rho.emplace_back(1 + static_cast<long>(random() % 1000003));
             in_proportion.push_back(r);
@@ -205,5 +199,3 @@ BOOST_AUTO_TEST_CASE(first_order_gaps_separate_every_tie_of_a_lattice) {
         }
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -3,7 +3,6 @@
 #include "contact/candidates.hpp"
 #include "contact/near_pairs.hpp"
 #include "families.hpp"
-#include "support/test.hpp"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Regular_triangulation_2.h>
@@ -99,11 +98,8 @@ std::vector<Disk> random_cluster(int count, double ratio, std::uint64_t seed) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(statements)
-
 BOOST_AUTO_TEST_CASE(pairs_below_their_bound_are_edges_in_random_clusters) {
-    int near_the_bound = 0;
-    int beyond_and_missing = 0;
+    int near_the_bound = 0, beyond_and_missing = 0;
     for (std::uint64_t seed = 1; seed <= 60; ++seed) {
         const double ratio = seed % 3 == 0 ? 100 : seed % 3 == 1 ? 1.0001 : 3;
         const auto disks = random_cluster(120, ratio, seed);
@@ -204,8 +200,7 @@ BOOST_AUTO_TEST_CASE(a_hidden_disk_overlaps_though_no_edge_does) {
 
 BOOST_AUTO_TEST_CASE(when_no_edge_overlaps_nothing_does) {
     // T5: disks thrown at random, many overlaps; whenever no vertex is hidden and some pair overlaps, some edge does.
-    int with_overlap = 0;
-    int without = 0;
+    int with_overlap = 0, without = 0;
     for (std::uint64_t seed = 1; seed <= 400; ++seed) {
         std::mt19937_64 random(seed);
         std::vector<Disk> disks;
@@ -217,8 +212,7 @@ BOOST_AUTO_TEST_CASE(when_no_edge_overlaps_nothing_does) {
         if (edges.hidden > 0) {
             continue;
         }
-        bool pair_overlaps = false;
-        bool edge_overlaps = false;
+        bool pair_overlaps = false, edge_overlaps = false;
         for (int i = 0; i < 12; ++i) {
             for (int j = i + 1; j < 12; ++j) {
                 if (gap(disks[static_cast<std::size_t>(i)], disks[static_cast<std::size_t>(j)]) < 0) {
@@ -268,5 +262,3 @@ BOOST_AUTO_TEST_CASE(bodies_may_overlap_where_no_edge_does) {
     packing.bars = {{1, 2, 0.1}}; // members of one body may overlap
     BOOST_TEST((isostat::certify_admissible(packing, 0).verdict == isostat::Verdict::proved));
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -4,9 +4,6 @@
 #include "families.hpp"
 #include "rigidity/isostatic.hpp"
 #include "support/prepared.hpp"
-#include "support/test.hpp"
-
-#include <isostat/preparation/preparation.hpp>
 
 #include <eigen3/Eigen/Dense>
 
@@ -113,8 +110,6 @@ LinearPacking linearised(const State& state) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(statements)
-
 BOOST_AUTO_TEST_CASE(linear_gaps_make_every_cycle_of_the_load_reversible) {
     int changes = 0;
     for (std::uint64_t seed = 1; seed <= 12; ++seed) {
@@ -182,5 +177,3 @@ BOOST_AUTO_TEST_CASE(a_cluster_between_two_walls_has_no_unique_displacement) {
     }
     BOOST_TEST(work.is_zero());
 }
-
-BOOST_AUTO_TEST_SUITE_END()

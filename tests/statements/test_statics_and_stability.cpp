@@ -3,11 +3,8 @@
 #include "families.hpp"
 #include "linear/factorisation.hpp"
 #include "support/prepared.hpp"
-#include "support/test.hpp"
 
-#include <isostat/crafted/exact_packing.hpp>
 #include <isostat/packing/load.hpp>
-#include <isostat/preparation/preparation.hpp>
 
 using namespace isostat;
 using exact::Number;
@@ -103,8 +100,6 @@ crafted::Inspection inspected(const std::string& name) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(statements)
-
 BOOST_AUTO_TEST_CASE(counting_and_orthogonality_hold_for_random_matrices) {
     std::mt19937_64 random(1);
     int deficient = 0;
@@ -118,8 +113,7 @@ BOOST_AUTO_TEST_CASE(counting_and_orthogonality_hold_for_random_matrices) {
         BOOST_TEST(dofs + static_cast<int>(stresses.basis.size()) == contacts + static_cast<int>(motions.basis.size()));
         deficient += !stresses.basis.empty() && !motions.basis.empty() ? 1 : 0;
         // Any approach velocities G v and any balanced load H f.
-        std::vector<Number> v;
-        std::vector<Number> f;
+        std::vector<Number> v, f;
         for (int i = 0; i < dofs; ++i) {
             v.emplace_back(static_cast<long>(random() % 19) - 9);
         }
@@ -151,8 +145,7 @@ BOOST_AUTO_TEST_CASE(the_power_of_every_opening_is_minus_the_force) {
             std::vector<double> v(force.size(), 0.0);
             v[l] = -1;
             factorisation.solve_velocities(v);
-            double power = 0;
-            double size = 0;
+            double power = 0, size = 0;
             for (std::size_t k = 0; k < v.size(); ++k) {
                 power += load[k] * v[k];
                 size += std::abs(load[k] * v[k]);
@@ -320,8 +313,7 @@ BOOST_AUTO_TEST_CASE(the_condition_of_kantorovich_is_exact_for_one_quadratic) {
 BOOST_AUTO_TEST_CASE(a_disk_on_two_others_exists_wherever_the_condition_holds) {
     // T9 and V4 (a): a free disk against two fixed ones; K = 2 sqrt(z) / D_min with z = 2.
     std::mt19937_64 random(11);
-    int held = 0;
-    int none = 0;
+    int held = 0, none = 0;
     for (int k = 0; k < 20000; ++k) {
         const double d1 = uniform_number(random, 0.5, 2);
         const double d2 = uniform_number(random, 0.5, 2);
@@ -367,5 +359,3 @@ BOOST_AUTO_TEST_CASE(a_force_may_vanish_by_geometry_without_being_structural) {
     const auto turned = required(crafted::inspect(packing));
     BOOST_TEST(!turned.forces[0].is_zero());
 }
-
-BOOST_AUTO_TEST_SUITE_END()

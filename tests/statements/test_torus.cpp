@@ -120,8 +120,6 @@ ExactCell strip_of_triangles(int columns, int rows) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(statements)
-
 BOOST_AUTO_TEST_CASE(radii_and_coordinates_follow_every_gap_in_cells_with_a_tilt_and_not_in_rectangles) {
     for (const auto& [columns, rows] : {std::pair(2, 2), {3, 2}, {3, 4}, {4, 4}, {5, 6}}) {
         BOOST_TEST_INFO_SCOPE(columns << " x " << rows);
@@ -199,5 +197,3 @@ BOOST_AUTO_TEST_CASE(angles_tell_radii_of_which_inversive_distances_are_given) {
     }
     BOOST_TEST(outside > 1000); // the radical centre need not be in the triangle
 }
-
-BOOST_AUTO_TEST_SUITE_END()

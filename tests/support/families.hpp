@@ -13,13 +13,6 @@
 
 #include <isostat/crafted/exact_packing.hpp>
 
-#include <algorithm>
-#include <functional>
-#include <limits>
-#include <string>
-#include <utility>
-#include <vector>
-
 namespace families {
 
 using namespace isostat;

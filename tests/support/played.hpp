@@ -18,10 +18,12 @@ using isostat::Segment;
 /// As run.json has them.
 inline std::string settings(const RunOptions& options) {
     isostat::json::Json run{{"rule", isostat::opening_rule_words[static_cast<std::size_t>(options.rule)]},
-                            {"rule_seed", options.rule_seed},
                             {"certify", isostat::to_string(options.certify)},
                             {"ties", isostat::tie_policy_words[static_cast<std::size_t>(options.ties)]},
                             {"ties_seed", options.ties_seed}};
+    if (options.rule == isostat::OpeningRule::random) { // nothing else reads it
+        run["rule_seed"] = options.rule_seed;
+    }
     if (options.max_choices < RunOptions().max_choices) {
         run["max_choices"] = options.max_choices;
     }
@@ -36,7 +38,9 @@ inline isostat::SegmentOutcome into(const std::filesystem::path& folder, isostat
     isostat::RunHeader header;
     header.program = "test";
     header.settings = settings(options);
+    header.programme.assign(segments.size(), "segment");
     header.witnesses = options.certify == isostat::CertifyLevel::arcs;
+    header.touching = options.at_first_order();
     header.states_every = 1;
     isostat::RunCounters counters;
     isostat::RunDirectory directory(folder, header, isostat::RunDirectory::Mode::fresh, counters);

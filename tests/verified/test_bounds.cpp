@@ -1,20 +1,30 @@
 // Proved bounds against the truth to 200 digits: the bound is never below the error, and it is not useless.
+// Enclosures of vertices with bars against the vertex to 200 digits.
+// Bounds for contact matrices with more columns than rows.
 #include "contact/candidates.hpp"
+#include "core/roundoff.hpp"
 #include "oracle/random.hpp"
 #include "oracle/truth.hpp"
 #include "statics/statics.hpp"
+#include "support/clumps.hpp"
 #include "support/crafted.hpp"
 #include "support/regular.hpp"
+#include "support/test.hpp"
 #include "verified/configuration.hpp"
 #include "verified/force_ladder.hpp"
+#include "verified/inverse_bound.hpp"
 #include "verified/to_vertex.hpp"
 #include "verified/vertex_bounds.hpp"
 
+#include <isostat/certificate/certify.hpp>
 #include <isostat/io/state_file.hpp>
 #include <isostat/preparation/preparation.hpp>
 
+#include <Eigen/Dense>
+
 using namespace isostat;
 using namespace crafted;
+using isostat::oracle::Real;
 
 namespace {
 
@@ -95,9 +105,22 @@ State nearly_collinear(double angle) {
     return state;
 }
 
-} // namespace
+isostat::sparse::Matrix<double> compressed(const Eigen::MatrixXd& dense) {
+    isostat::sparse::Matrix<double> out;
+    out.rows = static_cast<int>(dense.rows());
+    out.cols = static_cast<int>(dense.cols());
+    out.start.push_back(0);
+    for (Eigen::Index j = 0; j < dense.cols(); ++j) {
+        for (Eigen::Index i = 0; i < dense.rows(); ++i) {
+            out.row.push_back(static_cast<int>(i));
+            out.value.push_back(dense(i, j));
+        }
+        out.start.push_back(static_cast<int>(out.row.size()));
+    }
+    return out;
+}
 
-BOOST_AUTO_TEST_SUITE(verified)
+} // namespace
 
 BOOST_AUTO_TEST_CASE(bounds_hold_on_prepared_packings) {
     for (const int n : {1, 2, 5, 12}) {
@@ -303,4 +326,85 @@ BOOST_AUTO_TEST_CASE(no_vertex_is_proved_where_there_is_none) {
         (enclose_vertex(state.packing, at.structure, at.factorisation, at.inverse).verdict == Verdict::undecided));
 }
 
-BOOST_AUTO_TEST_SUITE_END()
+BOOST_AUTO_TEST_CASE(vertices_with_bars_lie_within_their_enclosures) {
+    for (const char* const name : {"dimer_20_1", "dimer2_20_2", "trimer_20_1"}) {
+        const State state = isostat::with_free_motions_held(isostat::test::clumps(name));
+        const crafted::Regular at(state);
+        const isostat::oracle::Truth truth(state);
+        BOOST_TEST_REQUIRE(truth.known);
+        for (const int way : {0, 1, 2}) {
+            const VertexEnclosure vertex =
+                way == 2   ? enclose_vertex_double_double(state.packing, at.structure, at.factorisation, at.inverse)
+                : way == 1 ? enclose_vertex(state.packing, at.structure, at.factorisation, at.inverse)
+                           : enclose_vertex(state.packing, at.structure, at.inverse);
+            BOOST_TEST_CONTEXT(name << ", way " << way) {
+                BOOST_TEST_REQUIRE((vertex.verdict == Verdict::proved));
+                Real square = 0;
+                for (std::size_t k = 0; k < state.packing.q.size(); ++k) {
+                    const Real place =
+                        Real(state.packing.q[k]) + (vertex.correction.empty() ? Real(0) : Real(vertex.correction[k]));
+                    square += (place - truth.q[k]) * (place - truth.q[k]);
+                }
+                BOOST_TEST(sqrt(square) <= Real(vertex.radius));
+                BOOST_TEST(vertex.radius < (way == 2 ? 1e-20 : 1e-9));
+            }
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(the_smallest_singular_value_of_independent_rows_is_bounded_from_below_and_not_by_much) {
+    std::mt19937_64 random(3);
+    for (const auto& [rows, columns] : {std::pair{1, 1}, {3, 5}, {8, 8}, {7, 30}, {20, 23}}) {
+        for (const double shrink : {1.0, 1e-2, 1e-4}) { // of one row
+            Eigen::MatrixXd h(rows, columns);
+            for (double& entry : h.reshaped()) {
+                entry = static_cast<double>(random() >> 11U) * 0x1p-53 - 0.5;
+            }
+            h.row(0) *= shrink;
+            const double truth = h.jacobiSvd().singularValues().tail(1)[0];
+            const double bound = isostat::smallest_row_singular_value(compressed(h), 2);
+            BOOST_TEST(bound <= std::min(truth, 1.0) * (1 + 1e-12));
+            BOOST_TEST(bound >= 0.4 * std::min(truth, 1.0));
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(rows_that_depend_on_each_other_have_no_bound) {
+    Eigen::MatrixXd h = Eigen::MatrixXd::Ones(3, 6);
+    h(0, 0) = 2;
+    BOOST_TEST(isostat::smallest_row_singular_value(compressed(h), 2) == 0);
+    BOOST_TEST(isostat::smallest_row_singular_value(compressed(h.leftCols(2)), 2) == 0); // and more rows than columns
+}
+
+BOOST_AUTO_TEST_CASE(the_residual_of_forces_is_bounded_in_every_unit_of_force) {
+    std::mt19937_64 random(5);
+    constexpr int n = 6;
+    const auto number = [&] { return static_cast<double>(random() >> 11U) * 0x1p-53 - 0.5; };
+    Eigen::MatrixXd h(n, n);
+    for (double& entry : h.reshaped()) {
+        entry = number();
+    }
+    Eigen::VectorXd z(n);
+    for (double& entry : z) {
+        entry = number();
+    }
+    const Eigen::VectorXd v = h * z;
+    const Eigen::Matrix<long double, n, 1> rest = v.cast<long double>() - h.cast<long double>() * z.cast<long double>();
+    BOOST_TEST_REQUIRE(rest.norm() > 0);
+    const auto bound = [&](double unit) {
+        std::vector<double> load(v.begin(), v.end()), force(z.begin(), z.end()), r(n), size(n);
+        for (std::vector<double>* numbers : {&load, &force}) {
+            for (double& entry : *numbers) {
+                entry *= unit;
+            }
+        }
+        std::vector<int> terms(n);
+        return isostat::residual_of_forces(compressed(h), load, force, r, size, terms) / unit;
+    };
+    BOOST_TEST(bound(1) >= static_cast<double>(rest.norm()));
+    BOOST_TEST(bound(1) < 1e-13);
+    for (const double unit : {0x1p-300, 0x1p-500, 0x1p-700, 0x1p-900}) { // squares vanish from 1e-162 on
+        BOOST_TEST(std::abs(bound(unit) / bound(1) - 1) < 1e-8, unit);
+    }
+    BOOST_TEST(bound(0x1p-1040) >= static_cast<double>(rest.norm())); // where products underflow
+}

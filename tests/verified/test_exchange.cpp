@@ -25,29 +25,30 @@ double smallest_singular_value(const IsostaticStructure& structure) {
     for (std::size_t k = 0; k < x.size(); ++k) {
         x[k] = std::sin(static_cast<double>(k * k));
     }
-    double size = 0;
+    const auto norm = [&] { return std::sqrt(std::inner_product(x.begin(), x.end(), x.begin(), 0.0)); };
     for (int iteration = 0; iteration < 200; ++iteration) {
-        size = 0;
-        for (const double c : x) {
-            size += c * c;
-        }
-        size = std::sqrt(size);
+        const double size = norm();
         for (double& c : x) {
             c /= size;
         }
         factorisation.solve_forces(x);
         factorisation.solve_velocities(x);
     }
-    double grown = 0;
-    for (const double c : x) {
-        grown += c * c;
+    return 1 / std::sqrt(norm());
+}
+
+/// The shifts beside the one at which the factorisation begins to fail.
+std::pair<double, double> bisected(BlockCholesky& cholesky, double low, double high, int steps) {
+    for (int k = 0; k < steps && std::nextafter(low, high) < high; ++k) {
+        const double middle = 0.5 * (low + high);
+        (cholesky.factorise(middle) ? low : high) = middle;
     }
-    return 1 / std::sqrt(std::sqrt(grown));
+    return {low, high};
 }
 
 /// A start, and one exchange of it along an arc.
 struct Exchange : Regular {
-    using Regular::Regular;
+    Exchange() : Regular(read_state(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state) {}
 
     Result<Arc> open(int contact) {
         CandidateList candidates = find_candidates(state.packing, candidate_fraction);
@@ -56,19 +57,13 @@ struct Exchange : Regular {
         const PowerLoad power{&none, false, false};
         return follow_arc({state.packing, structure, factorisation, ContactId(contact)}, power, candidates, {});
     }
-    [[nodiscard]] std::vector<double> on_dofs(const std::vector<double>& tangent) const {
-        return tangent; // box, nothing fixed: the numbering is the identity
-    }
 };
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(verified)
-
 BOOST_AUTO_TEST_CASE(bounds_after_an_exchange_lie_below_the_smallest_singular_value_and_near_it) {
-    Exchange from(read_state(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state);
-    int carried = 0;
-    int fresh = 0;
+    Exchange from;
+    int carried = 0, fresh = 0;
     for (int opened = 0; opened < from.structure.size(); opened += 7) {
         const auto arc = from.open(opened);
         if (!arc.ok()) {
@@ -86,8 +81,8 @@ BOOST_AUTO_TEST_CASE(bounds_after_an_exchange_lie_below_the_smallest_singular_va
             BOOST_TEST(by_cholesky->bound.sigma_min > 0.1 * sigma);
             ++fresh;
         }
-        const auto bound =
-            carry_bound(from.structure, from.inverse, *next, approximate, from.on_dofs(arc.value().tangent));
+        // In a box with nothing fixed the tangent has the numbering of the degrees of freedom.
+        const auto bound = carry_bound(from.structure, from.inverse, *next, approximate, arc.value().tangent);
         if (!bound) {
             continue;
         }
@@ -102,7 +97,7 @@ BOOST_AUTO_TEST_CASE(bounds_after_an_exchange_lie_below_the_smallest_singular_va
 }
 
 BOOST_AUTO_TEST_CASE(without_motion_a_bound_is_carried_with_little_loss_and_a_wrong_guess_costs_only_the_bound) {
-    Exchange from(read_state(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state);
+    Exchange from;
     // A held coordinate in place of a contact, the packing unmoved: the kept rows are the same.
     const std::vector<double> v = from.factorisation.approximate().mechanism(5);
     const auto fastest =
@@ -128,7 +123,7 @@ BOOST_AUTO_TEST_CASE(without_motion_a_bound_is_carried_with_little_loss_and_a_wr
 }
 
 BOOST_AUTO_TEST_CASE(a_shifted_cholesky_factorisation_ends_below_the_smallest_eigenvalue_and_not_above_it) {
-    Exchange from(read_state(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state);
+    Exchange from;
     const double sigma = smallest_singular_value(from.structure);
     const auto n = static_cast<std::size_t>(from.structure.size());
     FillOrder made;
@@ -158,13 +153,8 @@ BOOST_AUTO_TEST_CASE(a_shifted_cholesky_factorisation_ends_below_the_smallest_ei
     odd.value = {3, 1, 2, -1, 1, 2}; // H H^T = [[10, 3, 2], [3, 5, -2], [2, -2, 5]]
     FillOrder any;
     cholesky.set(odd, any);
-    double low = 0;
-    double high = 0.99; // the pivot of the row that is not there is 1 - s
     BOOST_TEST(cholesky.factorise(0.0));
-    for (int k = 0; k < 60; ++k) {
-        const double middle = 0.5 * (low + high);
-        (cholesky.factorise(middle) ? low : high) = middle;
-    }
+    double low = bisected(cholesky, 0, 0.99, 60).first; // the pivot of the row that is not there is 1 - s
     const auto det = [](double s) {
         const double a = 10 - s;
         const double b = 5 - s;
@@ -176,12 +166,7 @@ BOOST_AUTO_TEST_CASE(a_shifted_cholesky_factorisation_ends_below_the_smallest_ei
         c *= 0.25; // now the smallest eigenvalue is below 1
     }
     cholesky.set(odd, any);
-    low = 0;
-    high = 0.99;
-    for (int k = 0; k < 60; ++k) {
-        const double middle = 0.5 * (low + high);
-        (cholesky.factorise(middle) ? low : high) = middle;
-    }
+    low = bisected(cholesky, 0, 0.99, 60).first;
     BOOST_TEST(low < 0.9);
     BOOST_TEST(std::abs(det(16 * low)) < 1e-9);
     BOOST_TEST(det(15.9 * low) > 0);
@@ -213,12 +198,7 @@ BOOST_AUTO_TEST_CASE(the_rounding_of_a_cholesky_factorisation_is_within_its_boun
         FillOrder order;
         BlockCholesky cholesky;
         cholesky.set(h, order);
-        double low = 0.5 * smallest;
-        double high = 2 * smallest;
-        for (int k = 0; k < (n < 1000 ? 200 : 30) && std::nextafter(low, high) < high; ++k) {
-            const double middle = 0.5 * (low + high);
-            (cholesky.factorise(middle) ? low : high) = middle;
-        }
+        const auto [low, high] = bisected(cholesky, 0.5 * smallest, 2 * smallest, n < 1000 ? 200 : 30);
         BOOST_TEST_REQUIRE(cholesky.factorise(low));
         const double bound = cholesky.error_bound(low);
         BOOST_TEST(low - bound < smallest);
@@ -314,7 +294,7 @@ BOOST_AUTO_TEST_CASE(rows_of_walls_are_scaled_down_by_powers_of_two_and_no_other
 }
 
 BOOST_AUTO_TEST_CASE(rough_forces_lie_within_their_bound_and_the_first_climb_takes_them_to_rounding) {
-    Exchange from(read_state(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state);
+    Exchange from;
     int compared = 0;
     double worst = 0;
     for (int opened = 0; opened < from.structure.size(); opened += 9) {
@@ -369,7 +349,7 @@ BOOST_AUTO_TEST_CASE(rough_forces_lie_within_their_bound_and_the_first_climb_tak
 }
 
 BOOST_AUTO_TEST_CASE(a_structure_says_what_its_regularity_was_proved_with) {
-    Exchange from(read_state(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state);
+    Exchange from;
     BOOST_TEST((from.structure.evidence() == RegularityEvidence::elimination));
     const auto next =
         IsostaticStructure::exchange(from.structure, from.state.packing, ContactId(5), from.structure.contacts()[5]);
@@ -385,7 +365,7 @@ BOOST_AUTO_TEST_CASE(a_structure_says_what_its_regularity_was_proved_with) {
 }
 
 BOOST_AUTO_TEST_CASE(no_proof_is_made_for_a_singular_exchange) {
-    Exchange from(read_state(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state);
+    Exchange from;
     // Two of the same contact: singular whatever the coordinates are.
     const Contact twice = from.state.contacts[3];
     const auto next = IsostaticStructure::exchange(from.structure, from.state.packing, ContactId(40), twice);
@@ -400,7 +380,7 @@ BOOST_AUTO_TEST_CASE(no_proof_is_made_for_a_singular_exchange) {
 }
 
 BOOST_AUTO_TEST_CASE(nothing_is_carried_when_the_grains_moved_farther_than_the_bound_allows) {
-    Exchange from(read_state(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state);
+    Exchange from;
     Packing moved = from.state.packing;
     moved.q[20] += 0.5 * moved.min_radius();
     const auto next =
@@ -411,5 +391,3 @@ BOOST_AUTO_TEST_CASE(nothing_is_carried_when_the_grains_moved_farther_than_the_b
         !carry_bound(from.structure, from.inverse, *next, approximate, from.factorisation.approximate().mechanism(5))
              .has_value());
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -129,8 +129,6 @@ Real smaller_singular_value(const State& state) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(verified)
-
 BOOST_AUTO_TEST_CASE(norms_are_rounded_up_whatever_their_length_and_range) {
     oracle::Random random(3);
     for (const std::size_t size : {1U, 2U, 7U, 1000U, 100000U}) {
@@ -243,8 +241,7 @@ BOOST_AUTO_TEST_CASE(residuals_of_forces_are_counted_as_V3_says) {
     const std::vector<double> force = known.state.load.external_force(known.state.packing);
     const ForceSolution solution = solve_forces(known.structure, known.factorisation, known.inverse, force);
     const sparse::Matrix<double>& h = known.structure.matrix();
-    std::vector<Real> size;
-    std::vector<Real> residual;
+    std::vector<Real> size, residual;
     std::vector<int> terms(force.size(), 0);
     for (const double f : force) {
         size.push_back(abs(Real(f)));
@@ -306,8 +303,7 @@ BOOST_AUTO_TEST_CASE(what_a_newton_step_leaves_is_counted_as_V4_says) {
     BOOST_TEST_REQUIRE((vertex.verdict == Verdict::proved));
     const sparse::Matrix<double>& h = known.structure.matrix();
     Real worst = 0;
-    std::vector<Real> left;
-    std::vector<Real> step;
+    std::vector<Real> left, step;
     for (std::size_t l = 0; l < state.contacts.size(); ++l) {
         Real size = 0;
         for (auto e = static_cast<std::size_t>(h.start[l]); e < static_cast<std::size_t>(h.start[l + 1]); ++e) {
@@ -431,5 +427,3 @@ BOOST_AUTO_TEST_CASE(rates_of_gaps_turn_with_the_line_of_a_small_pair) {
     }
     BOOST_TEST(largest > 0.1);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

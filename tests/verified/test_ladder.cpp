@@ -5,7 +5,6 @@
 #include "oracle/structures.hpp"
 #include "oracle/truth.hpp"
 #include "support/regular.hpp"
-#include "support/test.hpp"
 #include "verified/force_ladder.hpp"
 #include "verified/inverse_bound.hpp"
 
@@ -17,8 +16,7 @@ namespace {
 constexpr unsigned bits = IntegerSystem::bits;
 
 struct Count {
-    int cases = 0;
-    int regular = 0;
+    int cases = 0, regular = 0;
     std::array<int, 3> inverse{}; ///< bounds of the inverse, by route
     int exact_only = 0;           ///< no bound of the inverse in the range of double
     std::map<std::string, int> settled;
@@ -151,8 +149,6 @@ void report(const char* what, const Count& count) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(verified)
-
 BOOST_AUTO_TEST_CASE(every_rung_agrees_with_exact_rationals_on_random_and_special_structures) {
     Random random(20240611);
     for (int place = 0; place < place_count; ++place) {
@@ -246,8 +242,7 @@ BOOST_AUTO_TEST_CASE(what_a_stress_lacks_to_a_limit_is_known_after_the_ladder_wa
     Random random(5);
     const Structure s = layers(3, 4, 0.5, random);
     const crafted::Regular at(s.packing, s.contacts);
-    std::vector<double> down;
-    std::vector<double> aside;
+    std::vector<double> down, aside;
     for (std::size_t i = 0; i < s.contacts.size(); ++i) {
         down.push_back(i % 2 == 0 ? 0 : -1);
         aside.push_back(i % 2 == 0 ? 0.3 : -0.1);
@@ -344,5 +339,3 @@ BOOST_AUTO_TEST_CASE(distances_to_a_limit_are_ordered_as_the_rationals_order_the
     }
     BOOST_TEST(settled_above_double > 100);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

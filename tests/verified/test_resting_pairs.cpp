@@ -42,8 +42,6 @@ bool is_zero(const Enclosure& e) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(verified)
-
 BOOST_AUTO_TEST_CASE(a_pair_within_a_body_rests_while_a_wall_lets_go_and_moves_when_the_body_opens) {
     const Vertex vertex(hexagon_in_a_box());
     const Contact last = pair(1, 6);
@@ -85,5 +83,3 @@ BOOST_AUTO_TEST_CASE(the_first_order_gap_of_a_pair_that_rests_is_the_same_wherev
     BOOST_TEST(!(a - b).decided());
     BOOST_TEST(std::abs(a.value - b.value) < 1e-12);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -192,8 +192,6 @@ bool bounds_hold(const State& state) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(verified)
-
 BOOST_AUTO_TEST_CASE(entries_of_spheres_lose_half_a_unit_more_than_those_of_disks) {
     const double disks = worst_entry(2);
     const double spheres = worst_entry(3);
@@ -273,5 +271,3 @@ BOOST_AUTO_TEST_CASE(bounds_of_inverse_and_forces_hold_for_spheres_off_the_grid_
         BOOST_TEST(longest == (cell ? GapGradient::most : 6U));
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

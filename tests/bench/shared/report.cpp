@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -49,7 +50,10 @@ struct InJson {
 struct InCsv {
     std::string operator()(std::monostate) const { return "nan"; }
     std::string operator()(long x) const { return fmt::to_string(x); }
-    std::string operator()(const std::string& x) const { return '"' + x + '"'; }
+    std::string operator()(std::string x) const {
+        std::replace(x.begin(), x.end(), ',', ';');
+        return x;
+    }
     std::string operator()(bool x) const { return x ? "1" : "0"; }
     std::string operator()(double x) const { return fmt::format("{:.6g}", x); }
     std::string operator()(const Sample& x) const { return fmt::format("{:.6g}", x.median()); }
@@ -146,14 +150,13 @@ void Program::words(const std::string& name, std::vector<std::string>& values, c
     implementation_->app.add_option(name, values, help)->capture_default_str();
 }
 
-std::optional<int> Program::parse(int argc, char** argv) {
+void Program::parse(int argc, char** argv) {
     implementation_->arguments.assign(argv + 1, argv + argc);
     try {
         implementation_->app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        return implementation_->app.exit(error) == 0 ? 0 : 64;
+        std::exit(implementation_->app.exit(error) == 0 ? 0 : 64);
     }
-    return std::nullopt;
 }
 
 void Program::show(const Table& table) {

@@ -33,10 +33,11 @@ class Table {
     Table(std::string name, std::string caption, std::vector<Column> columns);
     /// \throws std::logic_error when there are more or fewer cells than columns
     void add(std::vector<Cell> row);
-    [[nodiscard]] bool empty() const { return rows_.empty(); }
+    [[nodiscard]] const std::string& name() const { return name_; }
+    [[nodiscard]] const std::string& caption() const { return caption_; }
     /// Heads and rows; a sample is "median (low-high)".
     [[nodiscard]] std::string markdown() const;
-    /// Heads (keys) and rows; of a sample the median.
+    /// Heads (keys) and rows; of a sample the median; a comma in a word becomes a semicolon.
     void write_csv(const std::filesystem::path& file) const;
 
   private:
@@ -60,8 +61,8 @@ class Program {
     void option(const std::string& name, std::string& value, const std::string& help);
     void flag(const std::string& name, bool& value, const std::string& help);
     void words(const std::string& name, std::vector<std::string>& values, const std::string& help);
-    /// Exit status when there is nothing to do (--help, bad usage: 64).
-    [[nodiscard]] std::optional<int> parse(int argc, char** argv);
+    /// Ends the program where there is nothing to do (--help; bad usage: status 64).
+    void parse(int argc, char** argv);
 
     /// Prints the table, and keeps it.
     void show(const Table& table);

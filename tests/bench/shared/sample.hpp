@@ -41,18 +41,4 @@ template <class Work> Sample milliseconds(Work work, int repeats = 9) {
     return times;
 }
 
-/// Two kinds of work in turn, so that both see the same machine.
-struct Pair {
-    Sample first, second;
-    [[nodiscard]] Sample ratio() const { return first.over(second); }
-};
-template <class First, class Second> Pair in_turn(First first, Second second, int repeats = 9) {
-    Pair times;
-    for (int k = 0; k < repeats; ++k) {
-        times.first.add(milliseconds(first, 1).median());
-        times.second.add(milliseconds(second, 1).median());
-    }
-    return times;
-}
-
 } // namespace bench

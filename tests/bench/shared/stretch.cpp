@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdio>
-#include <cstdlib>
 
 using namespace isostat;
 
@@ -47,8 +46,7 @@ class Watcher final : public RunObserver {
         }
     }
     void on_equilibrium(const EquilibriumRecord&, const State& state, const std::vector<double>&) override {
-        const double begin = time();
-        const double process_begin = process_milliseconds();
+        const double begin = time(), process_begin = process_milliseconds();
         if (seen_++ % options_.reference_every == 0) {
             const auto matrix = matrix_of(state);
             klu.add(milliseconds([&] { bench::klu(matrix); }).median());

@@ -7,9 +7,7 @@
 #include <fmt/format.h>
 #include <qd/dd_real.h>
 
-#include <cmath>
 #include <functional>
-#include <limits>
 
 using namespace isostat;
 using oracle::Reference;
@@ -19,8 +17,6 @@ using oracle::ReferencePath;
 namespace work_precision {
 
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 template <class T> Reference raised(const T& x) {
     if constexpr (requires { x.x[0]; }) { // libqd
@@ -45,13 +41,7 @@ std::vector<double> velocity(const ReferenceArc& arc, const std::vector<double>&
 }
 
 double gap_rate(const Packing& packing, const Contact& contact, const std::vector<double>& v) {
-    const auto g = gap_gradient(packing, contact);
-    double sum = 0;
-    for (int e = 0; e < g.count; ++e) {
-        const auto k = static_cast<std::size_t>(e);
-        sum += g.value[k] * v[static_cast<std::size_t>(g.coordinate[k])];
-    }
-    return sum;
+    return gap_gradient(packing, contact).rate(v).value;
 }
 
 /// Where constant velocities close the contact that is known to close: what Newton starts from. Half of the way at most
@@ -69,15 +59,12 @@ std::vector<double> predicted_end(const ReferenceArc& arc) {
 
 /// Newton at one tolerance in one arithmetic, over all events.
 template <class T>
-bool at_tolerance(const std::string& arithmetic, int refinements, double tolerance, const ReferencePath& path, int n,
+void at_tolerance(const std::string& arithmetic, int refinements, double tolerance, const ReferencePath& path, int n,
                   Table& table) {
-    std::vector<double> position;
-    std::vector<double> stress;
-    std::vector<double> iterations;
-    double event_time = 0;
-    double limit_time = 0;
-    int elsewhere = 0;
-    int open = 0;
+    Sample position, stress;
+    double iterations = 0;
+    double event_time = 0, limit_time = 0;
+    int elsewhere = 0, open = 0;
     for (const ReferenceArc& arc : path.arcs) {
         const std::vector<double> guess = predicted_end(arc);
         std::vector<T> start;
@@ -96,8 +83,8 @@ bool at_tolerance(const std::string& arithmetic, int refinements, double toleran
             ++elsewhere;
             continue;
         }
-        iterations.push_back(polished.iterations);
-        position.push_back(error);
+        iterations += polished.iterations;
+        position.add(error);
         if (arc.limit >= 0) {
             const auto& limit = path.limits[static_cast<std::size_t>(arc.limit)];
             const auto fixed = arc.load.fixed_force(arc.start);
@@ -107,16 +94,14 @@ bool at_tolerance(const std::string& arithmetic, int refinements, double toleran
             const auto f = oracle::affine_forces(arc.start, polished.q, arc.end_contacts, fixed, unit, refinements);
             limit_time += cpu_seconds() - begin;
             const T sigma = -f.fixed[opened] / f.unit[opened];
-            stress.push_back(static_cast<double>(Reference(abs(raised(sigma) - limit.stress) / limit.stress)));
+            stress.add(static_cast<double>(Reference(abs(raised(sigma) - limit.stress) / limit.stress)));
         }
     }
-    const auto events = static_cast<double>(path.arcs.size());
-    table.add({std::to_string(n), arithmetic, number(tolerance), std::to_string(path.arcs.size()), std::to_string(open),
-               std::to_string(elsewhere), plain(mean(iterations)), plain(1e3 * event_time / events),
-               number(median(position)), number(largest(position)),
-               plain(1e3 * limit_time / static_cast<double>(stress.size())), number(median(stress)),
-               number(largest(stress))});
-    return true;
+    const auto events = static_cast<long>(path.arcs.size());
+    table.add({n, arithmetic, tolerance, events, open, elsewhere,
+               iterations / static_cast<double>(position.values().size()),
+               1e3 * event_time / static_cast<double>(events), position.median(), position.high(),
+               1e3 * limit_time / static_cast<double>(stress.values().size()), stress.median(), stress.high()});
 }
 
 void newton_tolerances(const ReferencePath& path, int n, Table& table) {
@@ -134,12 +119,10 @@ void newton_tolerances(const ReferencePath& path, int n, Table& table) {
 bool predictor_steps(const ReferencePath& path, int n, Table& table) {
     bool holds = true;
     for (const double fraction : {1.0, 0.3, 0.1, 0.03, 0.01, 0.003}) {
-        std::vector<double> error;
+        Sample error;
         double time = 0;
-        long steps = 0;
-        long factorisations = 0;
-        int wrong = 0;
-        int failed = 0;
+        long steps = 0, factorisations = 0;
+        int wrong = 0, failed = 0;
         for (const ReferenceArc& arc : path.arcs) {
             const auto structure = IsostaticStructure::prove(arc.start, arc.contacts);
             CandidateList candidates = find_candidates(arc.start, candidate_fraction);
@@ -161,14 +144,12 @@ bool predictor_steps(const ReferencePath& path, int n, Table& table) {
                 ++wrong; // the proved gaps at its end would send the run back
                 continue;
             }
-            error.push_back(distance(followed.value().end.q, arc));
+            error.add(distance(followed.value().end.q, arc));
         }
         const auto arcs = static_cast<double>(path.arcs.size());
-        table.add({std::to_string(n), plain(fraction), std::to_string(path.arcs.size()), std::to_string(failed),
-                   std::to_string(wrong), plain(static_cast<double>(steps) / arcs),
-                   plain(static_cast<double>(factorisations) / arcs), plain(1e3 * time / arcs), number(median(error)),
-                   number(largest(error))});
-        holds = holds && largest(error) < 1e-6;
+        table.add({n, fraction, static_cast<long>(path.arcs.size()), failed, wrong, static_cast<double>(steps) / arcs,
+                   static_cast<double>(factorisations) / arcs, 1e3 * time / arcs, error.median(), error.high()});
+        holds = holds && error.high() < 1e-6;
     }
     return holds;
 }
@@ -242,11 +223,10 @@ void integration(const ReferencePath& path, int n, bool quick, Table& table) {
     };
     for (const Scheme scheme : {Scheme::euler, Scheme::midpoint, Scheme::runge_kutta}) {
         for (const double step : {0.1, 0.03, 0.01, 0.003}) {
-            std::vector<double> error;
+            Sample error;
             double time = 0;
             long solves = 0;
-            int lost = 0;
-            int wrong = 0;
+            int lost = 0, wrong = 0;
             for (const ReferenceArc* arc : arcs) {
                 const double begin = cpu_seconds();
                 Packing here = arc->start;
@@ -290,7 +270,7 @@ void integration(const ReferencePath& path, int n, bool quick, Table& table) {
                     ++lost;
                     continue;
                 }
-                error.push_back(distance(here.q, *arc));
+                error.add(distance(here.q, *arc));
                 // Would it have stopped at another contact before?
                 for (const Contact& c : find_candidates(here, 0.3).contacts) {
                     if (gap(here, c) < -1e-12 &&
@@ -301,9 +281,8 @@ void integration(const ReferencePath& path, int n, bool quick, Table& table) {
                 }
             }
             const auto count = static_cast<double>(arcs.size());
-            table.add({std::to_string(n), name(scheme), plain(step), std::to_string(arcs.size()), std::to_string(lost),
-                       std::to_string(wrong), plain(static_cast<double>(solves) / count), plain(1e3 * time / count),
-                       number(median(error)), number(largest(error))});
+            table.add({n, name(scheme), step, static_cast<long>(arcs.size()), lost, wrong,
+                       static_cast<double>(solves) / count, 1e3 * time / count, error.median(), error.high()});
         }
     }
 }
@@ -312,7 +291,7 @@ void integration(const ReferencePath& path, int n, bool quick, Table& table) {
 /// and loads raised and halved until the limit is bracketed.
 bool stresses(const ReferencePath& path, int n, Table& table) {
     struct Sum {
-        std::vector<double> error, bound;
+        Sample error, bound;
         double time = 0;
         int solves = 0;
     };
@@ -369,8 +348,8 @@ bool stresses(const ReferencePath& path, int n, Table& table) {
                 const double sigma = static_cast<double>(limit.stress);
                 const double bound = (e0 + std::abs(sigma) * e1) / (slope - e1) / std::abs(sigma);
                 const double error = relative(-a / b);
-                sum.error.push_back(error);
-                sum.bound.push_back(bound);
+                sum.error.add(error);
+                sum.bound.add(bound);
                 sum.time += spent;
                 sum.solves = 2;
                 // The bound is of the true vertex; what the reference itself leaves open is added.
@@ -407,14 +386,14 @@ bool stresses(const ReferencePath& path, int n, Table& table) {
             Sum& sum = row(fmt::format("loads raised, then halved: {}", loads));
             sum.time += cpu_seconds() - begin;
             sum.solves = loads;
-            sum.error.push_back(relative(Reference(std::isfinite(high) ? 0.5 * (low + high) : low)));
-            sum.bound.push_back(nan);
+            sum.error.add(relative(Reference(std::isfinite(high) ? 0.5 * (low + high) : low)));
+            sum.bound.add(nan);
         }
     }
     for (const auto& [name, sum] : rows) {
-        table.add({std::to_string(n), name, std::to_string(sum.solves), std::to_string(sum.error.size()),
-                   plain(1e3 * sum.time / static_cast<double>(sum.error.size())), number(median(sum.error)),
-                   number(largest(sum.error)), number(largest(sum.bound))});
+        const auto count = static_cast<long>(sum.error.values().size());
+        table.add({n, name, sum.solves, count, 1e3 * sum.time / static_cast<double>(count), sum.error.median(),
+                   sum.error.high(), sum.bound.high()});
     }
     return holds;
 }
@@ -426,40 +405,41 @@ bool events_and_stresses(const Settings& settings) {
         "reference",
         "The trajectories that errors refer to (seed 1, loading): every event polished to 320 bits and certified "
         "(Newton-Kantorovich); distances in units of the smallest radius",
-        {"n", "equilibria", "arcs", "arcs certified by the program", "arcs left out (power turns)",
-         "largest bound of a position", "largest bound of a stress", "smallest other gap", "smallest force at a limit",
-         "CPU s"});
-    Table newton("events_tolerance",
-                 "End of an arc from constant velocities and Newton with fresh factors, against tolerance (largest gap "
-                 "/ smallest "
-                 "radius) and arithmetic; errors in units of the smallest radius, of the stress relative",
-                 {"n", "arithmetic", "tolerance", "events", "not converged", "elsewhere", "iterations", "ms per event",
-                  "position median", "position largest", "ms per stress", "stress median", "stress largest"});
+        columns({"n", "equilibria", "arcs", "arcs certified by the program", "arcs left out (power turns)",
+                 "~largest bound of a position", "~largest bound of a stress", "~smallest other gap",
+                 "~smallest force at a limit", "CPU s"}));
+    Table newton(
+        "events_tolerance",
+        "End of an arc from constant velocities and Newton with fresh factors, against tolerance (largest gap "
+        "/ smallest "
+        "radius) and arithmetic; errors in units of the smallest radius, of the stress relative",
+        columns({"n", "arithmetic", "~tolerance", "events", "not converged", "elsewhere", "iterations", "ms per event",
+                 "~position median", "~position largest", "ms per stress", "~stress median", "~stress largest"}));
     Table steps(
         "events_predictor",
         "The program's path follower against its longest predictor step (in smallest radii): factorisations and event "
         "solves included, proofs not",
-        {"n", "step", "arcs", "failed", "other contact", "steps per arc", "factorisations per arc", "ms per arc",
-         "position median", "position largest"});
+        columns({"n", "step", "arcs", "failed", "other contact", "steps per arc", "factorisations per arc",
+                 "ms per arc", "~position median", "~position largest"}));
     Table integrated(
         "events_integration",
         "Integration of the velocities without correction, on arcs of 0.01 to 0.5 smallest radii, event by the "
         "secant rule: error against step",
-        {"n", "scheme", "step", "arcs", "lost", "overlaps another", "factorisations per arc", "ms per arc",
-         "position median", "position largest"});
+        columns({"n", "scheme", "step", "arcs", "lost", "overlaps another", "factorisations per arc", "ms per arc",
+                 "~position median", "~position largest"}));
     Table stress(
         "stresses",
         "Load at which an equilibrium ends, from the factors on: the affine law (two right-hand sides) on every rung, "
         "and loads raised (steps of 0.1 %, doubled) until a force is negative, then halved",
-        {"n", "method", "right-hand sides", "stresses", "ms", "error median", "error largest", "largest proved bound"});
+        columns({"n", "method", "right-hand sides", "stresses", "ms", "~error median", "~error largest",
+                 "~largest proved bound"}));
     bool holds = true;
     for (const int n : settings.sizes) {
         const double begin = cpu_seconds();
         const ReferencePath path = oracle::reference_path(prepared(n, settings.seeds.front()), settings.equilibria);
-        reference.add({std::to_string(n), std::to_string(path.equilibria.size() - 1), std::to_string(path.arcs.size()),
-                       std::to_string(path.certified), std::to_string(path.skipped), number(path.worst_bound),
-                       number(path.worst_limit_bound), number(path.lowest_gap), number(path.lowest_force),
-                       plain(cpu_seconds() - begin)});
+        reference.add({n, static_cast<long>(path.equilibria.size()) - 1, static_cast<long>(path.arcs.size()),
+                       path.certified, path.skipped, path.worst_bound, path.worst_limit_bound, path.lowest_gap,
+                       path.lowest_force, cpu_seconds() - begin});
         if (!path.stopped.empty()) {
             fmt::print("n = {}: {}\n", n, path.stopped);
         }
@@ -471,7 +451,7 @@ bool events_and_stresses(const Settings& settings) {
         holds = stresses(path, n, stress) && holds;
     }
     for (const Table* table : {&reference, &newton, &steps, &integrated, &stress}) {
-        table->write(settings);
+        write(*table, settings);
     }
     const int n = settings.sizes.back();
     draw(

@@ -1,15 +1,21 @@
 #pragma once
-// What the parts of bench_work_precision share: settings, tables in Markdown and CSV, statistics of a few numbers.
+// What the parts of bench_work_precision share: settings, the heads and files of tables, starts, figures.
 
 #include "bench/shared/report.hpp"
 
 #include <isostat/contact/state.hpp>
 
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <vector>
 
 namespace work_precision {
+
+using bench::Sample;
+using bench::Table;
+
+inline constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 struct Settings {
     bench::Program* program = nullptr; ///< gets every table that is written
@@ -21,34 +27,15 @@ struct Settings {
     bool quick = false;
 };
 
-double cpu_seconds();
+inline double cpu_seconds() {
+    return 1e-3 * bench::cpu_milliseconds();
+}
 
-/// Column heads, then rows of the same length; `name` of the files.
-class Table {
-  public:
-    Table(std::string name, std::string caption, std::vector<std::string> heads)
-        : name_(std::move(name)), caption_(std::move(caption)), heads_(std::move(heads)) {}
-    void add(std::vector<std::string> row);
-    /// NAME.csv in the folder; the table in Markdown appended to `tables.md` and printed; handed to the program.
-    void write(const Settings& settings) const;
-    /// NAME.csv only: for figures.
-    void write_csv(const std::filesystem::path& folder) const;
+/// Columns whose heads are their keys. Behind a "~" an error: one digit and the power of ten; else three digits.
+std::vector<bench::Column> columns(const std::vector<std::string>& heads);
 
-  private:
-    std::string name_;
-    std::string caption_;
-    std::vector<std::string> heads_;
-    std::vector<std::vector<std::string>> rows_;
-};
-
-/// NaN for an empty list.
-double median(std::vector<double> x);
-double largest(const std::vector<double>& x);
-double mean(const std::vector<double>& x);
-/// "1.2e-07"; "–" for NaN.
-std::string number(double x);
-/// "12.3" with three significant digits; "–" for NaN.
-std::string plain(double x);
+/// NAME.csv in the folder; the table in Markdown appended to `tables.md` and printed; handed to the program.
+void write(const Table& table, const Settings& settings);
 
 isostat::State prepared(int disks, std::uint64_t seed);
 

@@ -5,8 +5,6 @@
 #include "support/segments.hpp"
 #include "support/shortcuts/small_displacements.hpp"
 
-#include <isostat/trajectory/trajectory.hpp>
-
 #include <fmt/format.h>
 
 #include <cmath>
@@ -42,20 +40,20 @@ bool small_displacements(const Settings& settings) {
                  "one, by length of "
                  "the arc (largest displacement / smallest radius); all "
                  "seeds; without factorisation and proofs, which both need",
-                 {"n", "length of the arc", "arcs", "wrong next contact", "position median", "position largest",
-                  "relative error of the length", "linear ms", "exact ms"});
+                 columns({"n", "length of the arc", "arcs", "wrong next contact", "~position median",
+                          "~position largest", "~relative error of the length", "linear ms", "exact ms"}));
     Table drift("small_drift",
                 "Whole trajectories with linear gaps, never corrected: *moved* takes new normals at every arc, "
                 "*frozen* keeps the "
                 "matrix of the start. Drift: largest true gap of a contact / smallest radius; first other "
                 "arc: that opens or closes another contact than the exact run",
-                {"n", "seed", "geometry", "arcs", "equilibria", "stopped", "first other arc", "its stress",
-                 "position error before", "drift after 100 arcs", "at the end", "strain", "exact strain", "ms per arc",
-                 "exact ms per arc, proofs included"});
+                columns({"n", "seed", "geometry", "arcs", "equilibria", "stopped", "first other arc", "its stress",
+                         "~position error before", "~drift after 100 arcs", "~at the end", "~strain", "~exact strain",
+                         "ms per arc", "exact ms per arc (proofs included)"}));
     Table growth(
         "small_growth",
         "Drift against the number of arcs (seed 1); distance from the exact path while the contacts are the same",
-        {"n", "geometry", "arcs", "drift", "position error"});
+        columns({"n", "geometry", "arcs", "~drift", "~position error"}));
     for (const int n : settings.sizes) {
         std::vector<Compared> compared; // over all seeds
         double linear_time[5] = {};
@@ -139,12 +137,13 @@ bool small_displacements(const Settings& settings) {
                 const auto run = load_with_linear_gaps(start, geometry, settings.drift_equilibria,
                                                        static_cast<long>(2 * exact.arcs.size() + 50));
                 std::size_t first = 0;
+                const char* const words = geometry == LinearGeometry::frozen ? "frozen" : "moved";
                 double before = 0;
                 std::vector<double> away;
                 while (first < run.arcs.size() && first < exact.arcs.size() &&
                        run.arcs[first].opened == exact.arcs[first].opened &&
                        run.arcs[first].closed == exact.arcs[first].closed) {
-                    away.push_back(std::numeric_limits<double>::quiet_NaN());
+                    away.push_back(nan);
                     if (!ends[first].empty()) {
                         before = largest_difference(run.coordinates[first], ends[first]) / start.packing.min_radius();
                         away.back() = before;
@@ -153,55 +152,48 @@ bool small_displacements(const Settings& settings) {
                 }
                 for (std::size_t k = 1; seed == settings.seeds.front() && k <= run.arcs.size();
                      k = std::max(k + 1, k * 5 / 4)) {
-                    growth.add({std::to_string(n), geometry == LinearGeometry::frozen ? "frozen" : "moved",
-                                std::to_string(k), number(run.arcs[k - 1].drift),
-                                k <= away.size() ? number(away[k - 1]) : std::string("–")});
+                    growth.add(
+                        {n, words, static_cast<long>(k), run.arcs[k - 1].drift, k <= away.size() ? away[k - 1] : nan});
                 }
                 const auto at = [&](std::size_t k) {
-                    return run.arcs.size() >= k ? number(run.arcs[k - 1].drift) : std::string("–");
+                    return k > 0 && run.arcs.size() >= k ? run.arcs[k - 1].drift : nan;
                 };
                 const bool diverged = first < run.arcs.size();
                 // At the same number of equilibria.
                 const std::size_t same = std::min(run.equilibria.size(), exact.equilibria.size());
                 const auto arcs = static_cast<double>(std::max<std::size_t>(1, run.arcs.size()));
-                drift.add({std::to_string(n), std::to_string(seed),
-                           geometry == LinearGeometry::frozen ? "frozen" : "moved", std::to_string(run.arcs.size()),
-                           std::to_string(run.equilibria.size() - 1),
+                drift.add({n, static_cast<long>(seed), words, static_cast<long>(run.arcs.size()),
+                           static_cast<long>(run.equilibria.size()) - 1,
                            run.stopped.empty() ? "no" : run.stopped.substr(0, 60),
-                           diverged ? std::to_string(first + 1) : "none",
-                           diverged ? fmt::format("{:.5g}", run.arcs[first].stress) : "–", number(before), at(100),
-                           number(run.arcs.empty() ? std::numeric_limits<double>::quiet_NaN() : run.arcs.back().drift),
-                           fmt::format("{:.3e}", run.equilibria[same - 1].strain),
-                           fmt::format("{:.3e}", exact.equilibria[same - 1].strain[1]), plain(1e3 * run.seconds / arcs),
-                           plain(1e3 * run_time / static_cast<double>(exact.arcs.size()))});
+                           diverged ? std::to_string(first + 1) : "none", diverged ? run.arcs[first].stress : nan,
+                           before, at(100), at(run.arcs.size()), run.equilibria[same - 1].strain,
+                           exact.equilibria[same - 1].strain[1], 1e3 * run.seconds / arcs,
+                           1e3 * run_time / static_cast<double>(exact.arcs.size())});
             }
         }
         const char* names[] = {"below 1e-4", "1e-4 to 1e-3", "1e-3 to 1e-2", "1e-2 to 1e-1", "above 1e-1"};
         for (std::size_t bin = 0; bin < 5; ++bin) {
-            std::vector<double> position;
-            std::vector<double> length;
-            int arcs = 0;
-            int wrong = 0;
+            Sample position, length;
+            int arcs = 0, wrong = 0;
             for (const Compared& c : compared) {
                 if (static_cast<std::size_t>(std::clamp(4 + std::floor(std::log10(c.length)) + 1, 0.0, 4.0)) == bin) {
                     ++arcs;
                     wrong += c.same ? 0 : 1;
                     if (c.same) {
-                        position.push_back(c.position);
-                        length.push_back(c.relative_length);
+                        position.add(c.position);
+                        length.add(c.relative_length);
                     }
                 }
             }
             if (arcs > 0) {
-                single.add({std::to_string(n), names[bin], std::to_string(arcs), std::to_string(wrong),
-                            number(median(position)), number(largest(position)), number(median(length)),
-                            plain(1e3 * linear_time[bin] / arcs), plain(1e3 * exact_time[bin] / arcs)});
+                single.add({n, names[bin], arcs, wrong, position.median(), position.high(), length.median(),
+                            1e3 * linear_time[bin] / arcs, 1e3 * exact_time[bin] / arcs});
             }
         }
     }
-    single.write(settings);
-    drift.write(settings);
-    growth.write_csv(settings.folder);
+    write(single, settings);
+    write(drift, settings);
+    growth.write_csv(settings.folder / "small_growth.csv");
     draw(settings.folder, "small",
          fmt::format(
              "set logscale xy\nset format '10^{{%T}}'\nset xlabel 'arcs'\nset ylabel 'largest gap of a contact / "

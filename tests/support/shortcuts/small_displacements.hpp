@@ -41,8 +41,7 @@ enum class LinearGeometry : unsigned char {
 struct LinearArc {
     int equilibrium = 0; ///< number of the equilibrium it started from (0: the start)
     double stress = 0;
-    Contact opened;
-    Contact closed;
+    Contact opened, closed;
     double drift = 0; ///< largest |true gap| of a contact at its end / smallest radius
 };
 

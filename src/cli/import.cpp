@@ -57,7 +57,7 @@ void keep_load(ImportArguments& a) {
 Load load_of(const ImportArguments& a, const Packing& packing) {
     Load load;
     load.dimension = packing.dimension;
-    load.kind = value_of<LoadKind>(a.load, load_kind_words).value_or(LoadKind::nominal);
+    load.kind = value_of(a.load, load_kind_words).value_or(LoadKind::nominal);
     load.stress = parse_stress(a.stress, packing.dimension);
     load.loaded_axis = packing.dimension - 1;
     load.refer_to(packing);

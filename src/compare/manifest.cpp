@@ -5,8 +5,6 @@
 #include "io/toml.hpp"
 #include "packing/words.hpp"
 
-#include <isostat/core/error.hpp>
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -160,7 +158,8 @@ Manifest read_manifest(const std::filesystem::path& path) {
     Section columns = section("columns");
     read_columns(columns, source, out);
     Section cell = section("cell");
-    out.tilted = cell.word("kind", false, std::array{"rectangular", "tilted"});
+    enum class Kind : unsigned char { rectangular, tilted };
+    out.tilted = cell.word("kind", Kind::rectangular, words_of<Kind>("rectangular", "tilted")) == Kind::tilted;
     cell.finish();
     if (out.periodic && out.series.wall_forces) {
         columns.refuse("wall_force", "wall_force and a [cell]: expected no walls");

@@ -1,4 +1,3 @@
-#include "core/words.hpp"
 #include "core/work.hpp"
 #include "io/descriptor.hpp"
 #include "io/equilibria.hpp"
@@ -9,6 +8,7 @@
 #include "io/record_text.hpp"
 
 #include <isostat/core/error.hpp>
+#include <isostat/core/words.hpp>
 #include <isostat/io/run_directory.hpp>
 #include <isostat/io/state_file.hpp>
 
@@ -54,7 +54,7 @@ std::string steering(const RunCounters& counters) {
 } // namespace
 
 const char* to_string(RunStatus status) {
-    static constexpr std::array words{"completed", "failed", "undecided", "interrupted"};
+    static constexpr auto words = words_of<RunStatus>("completed", "failed", "undecided", "interrupted");
     return word_of(status, words);
 }
 

@@ -14,7 +14,6 @@
 #include <gmpxx.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace isostat {
@@ -68,6 +67,8 @@ void read_disks(const Field& document, Packing& packing) {
     }
 }
 
+enum class Axis : unsigned char { periodic, walls };
+
 /// The names of the coordinates of a cell that move.
 void read_moves(const Field& moves, Packing& packing) {
     Cell& cell = packing.cell;
@@ -108,7 +109,7 @@ void read_cell(const Field& field, Packing& packing) {
     const Field axes = field.at("axes");
     axes.require_size(packing.axes(), "one word per axis");
     for (std::size_t a = 0; a < packing.axes(); ++a) {
-        cell.periodic[a] = axes.at(a).word<int>(std::array{"periodic", "walls"}) == 0;
+        cell.periodic[a] = axes.at(a).word(words_of<Axis>("periodic", "walls")) == Axis::periodic;
         if (cell.periodic[a]) {
             packing.walls.lower[a] = packing.walls.upper[a] = WallKind::absent;
         }
@@ -168,8 +169,8 @@ Packing packing_of(const Field& document) {
         walls.at("lower").require_size(packing.axes(), "one wall per axis");
         walls.at("upper").require_size(packing.axes(), "one wall per axis");
         for (std::size_t a = 0; a < packing.axes(); ++a) {
-            packing.walls.lower[a] = walls.at("lower").at(a).word<WallKind>(wall_kind_words);
-            packing.walls.upper[a] = walls.at("upper").at(a).word<WallKind>(wall_kind_words);
+            packing.walls.lower[a] = walls.at("lower").at(a).word(wall_kind_words);
+            packing.walls.upper[a] = walls.at("upper").at(a).word(wall_kind_words);
             if (packing.walls.lower[a] == WallKind::movable) {
                 walls.at("lower").at(a).fail("\"absent\" or \"fixed\": the lower walls are the origin");
             }
@@ -288,7 +289,7 @@ Load load_of(const Field& document, const Packing& packing) {
         const Field field = document.at("load");
         field.only({"kind", "stress", "loaded_axis", "path", "reference_length", "reference_tilt", "shear"});
         if (field.has("kind")) {
-            load.kind = field.at("kind").word<LoadKind>(load_kind_words);
+            load.kind = field.at("kind").word(load_kind_words);
             const auto& tilts = packing.cell.tilt_moves;
             if (load.kind == LoadKind::true_stress && std::find(tilts.begin(), tilts.end(), true) != tilts.end()) {
                 field.at("kind").fail("\"nominal\" where a tilt moves: true stresses have no potential there");

@@ -18,7 +18,7 @@ namespace isostat::python {
 namespace {
 
 WallKind wall_kind(const std::string& name) {
-    if (const auto kind = value_of<WallKind>(name, wall_kind_words)) {
+    if (const auto kind = value_of(name, wall_kind_words)) {
         return *kind;
     }
     throw Error(ErrorKind::bad_input, "wall is \"" + name + "\": expected absent, fixed or movable");

@@ -55,7 +55,7 @@ void play(const State& start, const std::vector<Segment>& segments, const fs::pa
     header.settings = Json{{"run",
                             {{"rule", "most_negative"},
                              {"certify", to_string(level)},
-                             {"ties", tie_policy_words[static_cast<std::size_t>(ties)]},
+                             {"ties", word_of(ties, tie_policy_words)},
                              {"ties_seed", 1}}}}
                           .dump();
     header.programme.assign(segments.size(), "segment");

@@ -17,10 +17,10 @@ using isostat::Segment;
 
 /// As run.json has them.
 inline std::string settings(const RunOptions& options) {
-    isostat::json::Json run{{"rule", isostat::opening_rule_words[static_cast<std::size_t>(options.rule)]},
+    isostat::json::Json run{{"rule", isostat::word_of(options.rule, isostat::opening_rule_words)},
                             {"rule_seed", options.rule_seed},
                             {"certify", isostat::to_string(options.certify)},
-                            {"ties", isostat::tie_policy_words[static_cast<std::size_t>(options.ties)]},
+                            {"ties", isostat::word_of(options.ties, isostat::tie_policy_words)},
                             {"ties_seed", options.ties_seed}};
     if (options.max_choices < RunOptions().max_choices) {
         run["max_choices"] = options.max_choices;

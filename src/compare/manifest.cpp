@@ -121,7 +121,7 @@ void read_load(Section& section, Manifest& out) {
 std::vector<std::string> Manifest::wall_names() const {
     std::vector<std::string> out;
     for (std::size_t w = 0; w < 2 * axes(); ++w) {
-        out.push_back(to_string(with_wall(0, w), series.dimension).substr(2));
+        out.push_back(wall_name(with_wall(0, w)));
     }
     return out;
 }

@@ -44,6 +44,9 @@ class Field {
     [[nodiscard]] std::size_t size() const;
     /// The same, and it must be `expected`.
     void require_size(std::size_t expected, const std::string& what) const;
+    /// The numbers of an array, and of one with `expected` elements.
+    [[nodiscard]] std::vector<double> numbers() const;
+    [[nodiscard]] std::vector<double> numbers(std::size_t expected, const std::string& what) const;
 
     /// A finite number, or a string with a hexadecimal float.
     [[nodiscard]] double number() const;

@@ -146,10 +146,8 @@ void RunDirectory::read_checkpoint() {
     StateFile state = parse_any_state(file.at("state").value().dump(), path, Dimensions::any_clumps);
     point.state = state.state;
     const bool tilts = point.state.packing.cell.shears();
-    file.at("strain").require_size(record_columns(point.state.load, tilts).measures.size(), "a strain for each axis");
-    for (std::size_t a = 0; a < file.at("strain").size(); ++a) {
-        last_strain_.push_back(file.at("strain").at(a).number());
-    }
+    last_strain_ =
+        file.at("strain").numbers(record_columns(point.state.load, tilts).measures.size(), "a strain for each axis");
     segment_ = point.segment;
     last_ = std::move(state.state);
     last_forces_ = std::move(state.forces);

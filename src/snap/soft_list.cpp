@@ -46,8 +46,7 @@ std::string walls_apart(const Packing& packing) {
             if (distance > 0 && !packing.cell.periodic[static_cast<std::size_t>(axis)]) {
                 out += fmt::format("; none with the {} wall, which is {:.3g} from {} {} (are digits of its position "
                                    "rounded?)",
-                                   to_string(Contact{kind, 0, axis}, packing.dimension).substr(2), distance,
-                                   grain_word(packing.dimension), disk);
+                                   wall_name({kind, 0, axis}), distance, grain_word(packing.dimension), disk);
             }
         }
     }
@@ -71,8 +70,8 @@ std::string far_wall(const Packing& packing) {
                 return fmt::format("no {} is near the {} wall, the nearest gap is {:.3g} ({} {}): expected the "
                                    "positions of the walls, --box XLO:XHI,YLO:YHI{} (bounds of a file often are not "
                                    "those)",
-                                   grain, to_string(Contact{kind, 0, axis}, packing.dimension).substr(2), distance,
-                                   grain, nearest, packing.dimension == plane ? "" : ",ZLO:ZHI");
+                                   grain, wall_name({kind, 0, axis}), distance, grain, nearest,
+                                   packing.dimension == plane ? "" : ",ZLO:ZHI");
             }
         }
     }

@@ -1,6 +1,7 @@
 #include "compare/manifest.hpp"
 
 #include "io/files.hpp"
+#include "io/lines.hpp"
 #include "io/section.hpp"
 #include "io/toml.hpp"
 #include "packing/words.hpp"

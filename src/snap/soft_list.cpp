@@ -2,10 +2,10 @@
 
 #include "contact/near_pairs.hpp"
 #include "contact/separation.hpp"
+#include "io/lines.hpp"
 #include "packing/words.hpp"
 #include "snap/backbone.hpp"
 
-#include <isostat/core/error.hpp>
 #include <isostat/snap/snap.hpp>
 
 #include <fmt/format.h>
@@ -54,10 +54,6 @@ std::string walls_apart(const Packing& packing) {
 }
 
 } // namespace
-
-void refuse(const std::string& file, const std::string& what) {
-    throw Error(ErrorKind::bad_input, file + ": " + what);
-}
 
 std::string far_wall(const Packing& packing) {
     for (const ContactKind kind : {ContactKind::lower_wall, ContactKind::upper_wall}) {

@@ -12,6 +12,7 @@
 #include <isostat/core/machine.hpp>
 #include <isostat/core/result.hpp>
 #include <isostat/core/verdict.hpp>
+#include <isostat/core/words.hpp>
 #include <isostat/crafted/exact_packing.hpp>
 #include <isostat/crafted/plateau.hpp>
 #include <isostat/exact/number.hpp>

@@ -3,11 +3,11 @@
 #include "answers/state.hpp"
 #include "contact/names.hpp"
 #include "core/decimal.hpp"
-#include "core/words.hpp"
 #include "io/text.hpp"
 #include "packing/bodies.hpp"
 #include "packing/words.hpp"
 #include "snap/soft_list.hpp"
+
 
 #include <fmt/format.h>
 

@@ -5,6 +5,7 @@
 #include "cli/terminal.hpp"
 #include "io/files.hpp"
 #include "io/json.hpp"
+#include "io/lines.hpp"
 #include "packing/bodies.hpp"
 #include "packing/load_faults.hpp"
 #include "packing/words.hpp"
@@ -43,8 +44,7 @@ struct Imported : compare::NearestVertex {
 void keep_load(ImportArguments& a) {
     const State state = read_any_state(a.file).state;
     if (!state.load.disk_force.empty() || state.load.loaded_axis != 1) {
-        compare::refuse(a.file,
-                        "has forces on disks or another loaded axis than 1: expected a load on the walls alone");
+        refuse(a.file, "has forces on disks or another loaded axis than 1: expected a load on the walls alone");
     }
     if (a.stress.empty()) {
         a.stress = fmt::format("{},{}", state.load.stress[0], state.load.stress[1]);
@@ -57,7 +57,7 @@ void keep_load(ImportArguments& a) {
 Load load_of(const ImportArguments& a, const Packing& packing) {
     Load load;
     load.dimension = packing.dimension;
-    load.kind = value_of<LoadKind>(a.load, load_kind_words).value_or(LoadKind::nominal);
+    load.kind = value_of(a.load, load_kind_words).value_or(LoadKind::nominal);
     load.stress = parse_stress(a.stress, packing.dimension);
     load.loaded_axis = packing.dimension - 1;
     load.refer_to(packing);
@@ -182,7 +182,7 @@ ForeignPacking read_imported(ImportArguments& a, bool crafted, bool own) {
                     "a file, or --threshold");
     }
     if (own && spheres) {
-        compare::refuse(a.file, "is a state of spheres: expected one of disks, which --jitter takes only so far");
+        refuse(a.file, "is a state of spheres: expected one of disks, which --jitter takes only so far");
     }
     if (crafted && !a.cell.empty()) {
         throw Error(ErrorKind::usage,
@@ -204,9 +204,8 @@ ForeignPacking read_imported(ImportArguments& a, bool crafted, bool own) {
 Result<Imported> from_vertex_text(const ImportArguments& a) {
     if (!a.contacts.empty() || a.threshold || !a.stress.empty() || !a.load.empty() || !a.cell.empty() ||
         !a.foreign.walls.empty()) {
-        compare::refuse(a.file,
-                        "is a vertex text, which has its contacts, its walls and its load: expected no --contacts, "
-                        "--threshold, --stress, --load, --walls or --cell");
+        refuse(a.file, "is a vertex text, which has its contacts, its walls and its load: expected no --contacts, "
+                       "--threshold, --stress, --load, --walls or --cell");
     }
     Imported out;
     out.state = read_any_state(a.file).state;
@@ -283,9 +282,9 @@ void judge_moves(const ImportArguments& a, const Imported& found, const compare:
     }
     const std::string words = fmt::format("disk {} moved by {} of its radius", disk, rounded_up(radii, 3));
     if (radii > 1 && !a.far && std::isfinite(radii)) {
-        compare::refuse(
-            a.file, words + ": expected at most one on the way to the vertex (are the sizes wrong by a factor, or the "
-                            "box? --far takes it)");
+        refuse(a.file, words +
+                           ": expected at most one on the way to the vertex (are the sizes wrong by a factor, or the "
+                           "box? --far takes it)");
     }
     if (radii > far) {
         notes.push_back(words + ", more than a tenth: the vertex may not be that of the file");
@@ -436,14 +435,13 @@ std::string advice(const ImportArguments& a, bool crafted, const Packing& packin
 void require_importable(const ImportArguments& a, bool own, bool crafted) {
     if (own && a.jitter == 0) {
         (void)read_any_state(a.file); // reports what is wrong with a bad file
-        compare::refuse(a.file, "is a state of this program: expected a packing of another one, or --jitter");
+        refuse(a.file, "is a state of this program: expected a packing of another one, or --jitter");
     }
     if (crafted && a.jitter != 0) {
-        compare::refuse(
-            a.file,
-            fmt::format("is a crafted packing, whose contacts are those of its exact radii: expected no --jitter, "
-                        "it is {}",
-                        a.jitter));
+        refuse(a.file,
+               fmt::format("is a crafted packing, whose contacts are those of its exact radii: expected no --jitter, "
+                           "it is {}",
+                           a.jitter));
     }
 }
 

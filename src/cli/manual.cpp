@@ -84,14 +84,15 @@ std::string man_page(const CLI::App& app, const std::string& version) {
 
 namespace {
 
-/// "--output -o", each with a blank before it.
-std::string names_of(const CLI::Option& option) {
+/// " --output -o": each name behind the mark of long or of short ones.
+std::string names_of(const CLI::Option& option, const std::string& before_long = " --",
+                     const std::string& before_short = " -") {
     std::string names;
     for (const std::string& name : option.get_lnames()) {
-        names += " --" + name;
+        names += before_long + name;
     }
     for (const std::string& name : option.get_snames()) {
-        names += " -" + name;
+        names += before_short + name;
     }
     return names;
 }
@@ -144,13 +145,7 @@ std::string fish_completion(const CLI::App& app) {
         text += fmt::format("complete -c isostat -n __fish_use_subcommand -a {} -d {}\n", command->get_name(),
                             quoted(command->get_description()));
         for (const CLI::Option* option : options_of(*command)) {
-            std::string names;
-            for (const std::string& name : option->get_lnames()) {
-                names += " -l " + name;
-            }
-            for (const std::string& name : option->get_snames()) {
-                names += " -s " + name;
-            }
+            const std::string names = names_of(*option, " -l ", " -s ");
             const std::string values = values_of(*option);
             text += names.empty() ? ""
                                   : fmt::format("complete -c isostat -n '__fish_seen_subcommand_from {}'{}{} -d {}\n",

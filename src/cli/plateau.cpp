@@ -4,11 +4,11 @@
 #include "cli/common.hpp"
 #include "cli/read_packing.hpp"
 #include "cli/terminal.hpp"
-#include "core/words.hpp"
 #include "io/files.hpp"
 #include "snap/soft_list.hpp"
 
 #include <isostat/core/error.hpp>
+#include <isostat/core/words.hpp>
 
 #include <fmt/format.h>
 
@@ -75,7 +75,7 @@ int plateau(const PlateauArguments& a) {
     ForeignArguments foreign = a.foreign;
     foreign.cells = foreign.spheres = foreign.fixes = foreign.clumps = true;
     ForeignPacking file = read_any_packing(a.file, foreign);
-    const Strain strain = value_of<Strain>(a.strain, std::array{"fixed", "isotropic", "diagonal", "full"}).value();
+    const Strain strain = value_of(a.strain, words_of<Strain>("fixed", "isotropic", "diagonal", "full")).value();
     const crafted::Plateau result = counts_of(file, a, strain, thresholds);
     const crafted::Told told = crafted::told_of(result);
     note_walls(a, result, file);

@@ -1,13 +1,13 @@
 #include "cli/read_packing.hpp"
 
 #include "cli/ranges.hpp"
-#include "core/words.hpp"
 #include "io/files.hpp"
 #include "io/numbers.hpp"
 #include "io/vertex_text.hpp"
 #include "snap/untold.hpp"
 
 #include <isostat/core/error.hpp>
+#include <isostat/core/words.hpp>
 #include <isostat/crafted/exact_packing.hpp>
 #include <isostat/foreign/foreign.hpp>
 #include <isostat/io/state_file.hpp>
@@ -91,7 +91,7 @@ ForeignOptions options_of(const ForeignArguments& a) {
         out.size = size_of(a.radius.empty() ? "--diameter" : "--radius", a.radius.empty() ? a.diameter : a.radius,
                            a.radius.empty() ? SizeMeaning::diameter : SizeMeaning::radius);
     }
-    out.walls = value_of<ForeignWalls>(a.walls, foreign_walls_words).value_or(ForeignWalls::none);
+    out.walls = value_of(a.walls, foreign_walls_words).value_or(ForeignWalls::none);
     if (!a.box.empty()) {
         const auto axes = parse_list(a.box);
         if (axes.size() != 2 && axes.size() != most_axes) {

@@ -17,9 +17,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 
 namespace isostat::cli {
 
@@ -72,7 +70,7 @@ Read from_foreign(const SnapArguments& a) {
     out.rounding = file.rounding;
     out.soft.packing = file.packing;
     out.soft.contacts = std::move(list.contacts);
-    out.soft.load.kind = value_of<LoadKind>(a.load, load_kind_words).value_or(LoadKind::nominal);
+    out.soft.load.kind = value_of(a.load, load_kind_words).value_or(LoadKind::nominal);
     const int dimension = file.packing.dimension;
     out.soft.load.dimension = dimension;
     out.soft.load.loaded_axis = dimension - 1;

@@ -1,10 +1,8 @@
 #include "compare/path.hpp"
 #include "core/parallel.hpp"
-#include "core/words.hpp"
 #include "packing/words.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/core/machine.hpp>
 
 #include <fmt/format.h>
 
@@ -188,12 +186,6 @@ int status_of(const std::vector<FrameResult>& frames) {
 }
 
 } // namespace
-
-const char* to_string(FrameStatus status) {
-    static constexpr std::array words{"same",   "early", "late",    "other",    "soft",
-                                      "moving", "file",  "refuted", "undecided"};
-    return word_of(status, words);
-}
 
 Comparison compare(SeriesReader& reader, const CompareOptions& options) {
     const Series& series = reader.series();

@@ -1,11 +1,10 @@
 #include "compare/manifest.hpp"
 
 #include "io/files.hpp"
+#include "io/lines.hpp"
 #include "io/section.hpp"
 #include "io/toml.hpp"
 #include "packing/words.hpp"
-
-#include <isostat/core/error.hpp>
 
 #include <fmt/format.h>
 
@@ -123,7 +122,7 @@ void read_load(Section& section, Manifest& out) {
 std::vector<std::string> Manifest::wall_names() const {
     std::vector<std::string> out;
     for (std::size_t w = 0; w < 2 * axes(); ++w) {
-        out.push_back(to_string(with_wall(0, w), series.dimension).substr(2));
+        out.push_back(wall_name(with_wall(0, w)));
     }
     return out;
 }
@@ -160,7 +159,8 @@ Manifest read_manifest(const std::filesystem::path& path) {
     Section columns = section("columns");
     read_columns(columns, source, out);
     Section cell = section("cell");
-    out.tilted = cell.word("kind", false, std::array{"rectangular", "tilted"});
+    enum class Kind : unsigned char { rectangular, tilted };
+    out.tilted = cell.word("kind", Kind::rectangular, words_of<Kind>("rectangular", "tilted")) == Kind::tilted;
     cell.finish();
     if (out.periodic && out.series.wall_forces) {
         columns.refuse("wall_force", "wall_force and a [cell]: expected no walls");

@@ -80,9 +80,6 @@ class Reader {
         return fmt::format("{} {} and the {} wall", grain(), id(c.i), wall_name(c));
     }
     [[nodiscard]] const char* grain() const { return grain_word(frame_.packing.dimension); }
-    [[nodiscard]] std::string wall_name(const Contact& c) const {
-        return to_string(Contact{c.kind, 0, c.j}, frame_.packing.dimension).substr(2);
-    }
     [[nodiscard]] std::string at(const Contact& c) const {
         const auto row = row_.find(c);
         const std::string where = row == row_.end() ? frame_.row : row->second;
@@ -267,10 +264,8 @@ class Reader {
     void check_load(const Left& left, double blur) {
         for (std::size_t axis = 0; axis < frame_.packing.axes(); ++axis) {
             if (left.walls[axis] > series_.rest * out_.mean + blur && left.disks < wall_alone * left.walls[axis]) {
-                const std::string wall =
-                    frame_.packing.cell.any()
-                        ? fmt::format("period along {}", axis_names[axis])
-                        : wall_name({ContactKind::upper_wall, 0, static_cast<int>(axis)}) + " wall";
+                const std::string wall = frame_.packing.cell.any() ? fmt::format("period along {}", axis_names[axis])
+                                                                   : fmt::format("{} wall", upper_wall_names[axis]);
                 out_.other_load = fmt::format("{}: the forces on the {} and its load differ by {:.6g}, those on every "
                                               "{} balance to {:.2g} (the load of another frame?)",
                                               frame_.row, wall, left.walls[axis], grain(), left.disks);

@@ -120,7 +120,7 @@ std::vector<Column<BundleNode>> of_nodes(int dimension) {
 
 std::vector<Column<BundleMember>> of_members() {
     using M = BundleMember;
-    return {{"rule", [](const M& m) { return opening_rule_words[static_cast<std::size_t>(m.rule)]; }},
+    return {{"rule", [](const M& m) { return word_of(m.rule, opening_rule_words); }},
             {"seed", [](const M& m) { return m.seed; }},
             {"rattlers", [](const M& m) { return m.rest; }},
             {"nodes", [](const M& m) { return numbers(m.nodes); }},

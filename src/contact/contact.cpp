@@ -13,9 +13,6 @@ namespace isostat {
 
 namespace {
 
-constexpr std::array<const char*, 3> lower_name{"left", "bottom", "back"};
-constexpr std::array<const char*, 3> upper_name{"right", "top", "front"};
-
 double plain_norm(const PerAxis<double>& d) {
     double square = 0;
     for (const double c : d) {
@@ -73,13 +70,12 @@ PerAxis<double> direction(PerAxis<double> d) {
 }
 
 std::string to_string(const Contact& contact, int dimension) {
-    const auto axis = static_cast<std::size_t>(contact.of_disks() ? 0 : contact.j);
     switch (contact.kind) {
     case ContactKind::bar: return fmt::format("bar {}-{}", contact.i, contact.j);
     case ContactKind::disk_disk:
         return fmt::format("{}-{}{}", contact.i, contact.j, image_text(contact.image, dimension));
-    case ContactKind::lower_wall: return fmt::format("{}-{}", contact.i, lower_name[axis]);
-    case ContactKind::upper_wall: return fmt::format("{}-{}", contact.i, upper_name[axis]);
+    case ContactKind::lower_wall:
+    case ContactKind::upper_wall: return fmt::format("{}-{}", contact.i, wall_name(contact));
     case ContactKind::held:
         return fmt::format("held {} of grain {}", axis_names[static_cast<std::size_t>(contact.i % dimension)],
                            contact.i / dimension);

@@ -1,6 +1,5 @@
-#include "core/words.hpp"
-
 #include <isostat/core/result.hpp>
+#include <isostat/core/words.hpp>
 
 #include <stdexcept>
 #include <utility>
@@ -8,9 +7,9 @@
 namespace isostat {
 
 const char* to_string(FailureKind kind) {
-    static constexpr std::array words{"not isostatic", "overlap",       "tie",        "undecided",
-                                      "no limit",      "flows",         "unbounded",  "not converged",
-                                      "cap reached",   "contradiction", "interrupted"};
+    static constexpr auto words =
+        words_of<FailureKind>("not isostatic", "overlap", "tie", "undecided", "no limit", "flows", "unbounded",
+                              "not converged", "cap reached", "contradiction", "interrupted");
     return word_of(kind, words);
 }
 

@@ -1,7 +1,5 @@
 #include "core/work.hpp"
 
-#include "core/words.hpp"
-
 #include <atomic>
 #include <utility>
 
@@ -15,14 +13,6 @@ std::array<std::atomic<long>, work_kinds> counters{};
 thread_local std::array<long, work_kinds>* elsewhere = nullptr;
 
 } // namespace
-
-const char* to_string(Work kind) {
-    static constexpr std::array words{
-        "dynamics_steps", "linear_programmes", "candidate_searches", "overlap_proofs", "rank_proofs",
-        "factorisations", "inverse_bounds",    "double_double",      "multiprecision", "exact_solutions",
-        "states_written", "checkpoints",       "pictures",           "charts",         "vtk_files"};
-    return word_of(kind, words);
-}
 
 void count_work(Work kind, long amount) {
     if (elsewhere != nullptr) {

@@ -2,6 +2,8 @@
 /// \file
 /// Counts of the work that the program did: the evidence that a scene pays only for what it needs.
 
+#include <isostat/core/words.hpp>
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -24,14 +26,18 @@ enum class Work : std::uint8_t {
     checkpoints,        ///< checkpoint.json replaced
     pictures,           ///< force pictures drawn
     charts,             ///< gnuplot started
-    vtk_files,          ///< ParaView files
-    count               ///< number of kinds
+    vtk_files           ///< ParaView files
 };
 
-inline constexpr std::size_t work_kinds = static_cast<std::size_t>(Work::count);
-
-/// "dynamics_steps", ...: the word used in records.
-const char* to_string(Work kind);
+/// The words used in records.
+inline constexpr auto work_words =
+    words_of<Work>("dynamics_steps", "linear_programmes", "candidate_searches", "overlap_proofs", "rank_proofs",
+                   "factorisations", "inverse_bounds", "double_double", "multiprecision", "exact_solutions",
+                   "states_written", "checkpoints", "pictures", "charts", "vtk_files");
+constexpr const char* to_string(Work kind) {
+    return word_of(kind, work_words);
+}
+inline constexpr std::size_t work_kinds = work_words.size();
 
 /// Adds to the counter of this process. Cost: one relaxed atomic addition; no computation reads the counters, so
 /// results cannot depend on them.

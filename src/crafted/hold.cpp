@@ -2,7 +2,6 @@
 #include "crafted/able.hpp"
 #include "crafted/inspection_parts.hpp"
 
-#include <utility>
 
 namespace isostat::crafted {
 
@@ -53,7 +52,7 @@ void exclude_contacts(const std::vector<std::vector<ContactDirection>>& arms, In
             }
             std::vector<ContactDirection> left = arms[i];
             std::erase_if(left, [&](const ContactDirection& arm) { return inspection.carrying[arm.contact] == 0; });
-            const std::vector<ContactDirection> stay = able(left, ExactSigns{});
+            const std::vector<ContactDirection> stay = able(left, ExactSigns{}, dimension == plane);
             for (const ContactDirection& arm : left) {
                 inspection.carrying[arm.contact] = 0;
             }

@@ -1,9 +1,9 @@
 #include "contact/names.hpp"
-#include "core/words.hpp"
 #include "packing/bodies.hpp"
 #include "packing/words.hpp"
 
 #include <isostat/core/error.hpp>
+#include <isostat/core/words.hpp>
 #include <isostat/crafted/exact_packing.hpp>
 
 #include <fmt/format.h>
@@ -58,22 +58,23 @@ std::string number_list(const std::vector<int>& numbers) {
 } // namespace
 
 const char* to_string(DiskHold hold) {
-    static constexpr std::array words{"held", "bridge", "rattler", "fixed", "loaded", "member"};
+    static constexpr auto words = words_of<DiskHold>("held", "bridge", "rattler", "fixed", "loaded", "member");
     return word_of(hold, words);
 }
 
 const char* to_string(Support support) {
-    static constexpr std::array words{"positive", "with zeros", "none", "unbalanced", "undecided", "no load"};
+    static constexpr auto words =
+        words_of<Support>("positive", "with zeros", "none", "unbalanced", "undecided", "no load");
     return word_of(support, words);
 }
 
 const char* to_string(SecondOrder answer) {
-    static constexpr std::array words{"no mechanism", "rigid", "flexes", "undecided"};
+    static constexpr auto words = words_of<SecondOrder>("no mechanism", "rigid", "flexes", "undecided");
     return word_of(answer, words);
 }
 
 const char* to_string(exact::OneSign sign) {
-    static constexpr std::array words{"strict", "partial", "none"};
+    static constexpr auto words = words_of<exact::OneSign>("strict", "partial", "none");
     return word_of(sign, words);
 }
 

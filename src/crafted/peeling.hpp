@@ -15,14 +15,11 @@ struct Peeling {
     std::vector<int> disk_from;    ///< disk i is no rattler exactly when m >= disk_from[i]; 0 for fixed disks
 };
 
-/// Removes the contacts from the last to the first; each removal compares only the two neighbours in angle. Every sign
-/// is decided. Throws `Error(bad_input)` when two disks of a contact have the same centre. Cost O(N log N) without
-/// near-parallel normals, which are decided in rationals. For spheres and clumps: `peel_in_space`.
+/// Removes the contacts from the last to the first. A grain loses its contacts off a line, in space off a plane,
+/// through its centre that leaves every contact on one side (`able`); each sign is decided by intervals or in
+/// rationals. Bodies are peeled as wholes: in the plane forces and torques are to balance, in space the forces. Throws
+/// `Error(bad_input)` when two grains of a contact have the same centre. Cost: for a grain with z contacts O(z^2)
+/// signs, in space and of bodies O(z^3), for every contact that it loses.
 Peeling peel(const Packing& packing, const std::vector<Contact>& contacts);
-
-/// Peels spheres by planes through a centre that leave every contact of the sphere on one side, each sign decided by
-/// intervals or in rationals. Bodies are peeled as wholes: in the plane forces and torques are to balance, in space
-/// the forces. Cost: for a grain with z contacts O(z^3) signs for every contact that it loses.
-Peeling peel_in_space(const Packing& packing, const std::vector<Contact>& contacts);
 
 } // namespace isostat::crafted

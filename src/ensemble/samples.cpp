@@ -1,10 +1,10 @@
-#include "core/words.hpp"
 #include "ensemble/ensemble.hpp"
 #include "io/files.hpp"
 #include "io/json.hpp"
 #include "scene/seed.hpp"
 
 #include <isostat/core/error.hpp>
+#include <isostat/core/words.hpp>
 
 #include <fmt/format.h>
 
@@ -16,14 +16,15 @@ using json::Json;
 
 namespace {
 
-constexpr std::array status_words{"completed", "failed", "undecided", "interrupted", "crashed", "refused", "missing"};
+constexpr auto status_words =
+    words_of<SampleStatus>("completed", "failed", "undecided", "interrupted", "crashed", "refused", "missing");
 
 /// Reads "failed: the reason" of a run.json.
 void read_status(Sample& sample, const std::string& words) {
     const std::size_t colon = words.find(": ");
     const std::string word = words.substr(0, colon);
     sample.reason = colon == std::string::npos ? "" : words.substr(colon + 2);
-    sample.status = value_of<SampleStatus>(word, status_words).value_or(SampleStatus::crashed);
+    sample.status = value_of(word, status_words).value_or(SampleStatus::crashed);
     if (word == "running") {
         sample.status = SampleStatus::interrupted;
         sample.reason = "the program ended without saying how";

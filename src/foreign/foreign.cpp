@@ -3,7 +3,6 @@
 #include "io/numbers.hpp"
 #include "packing/words.hpp"
 
-#include <isostat/core/error.hpp>
 #include <isostat/foreign/foreign.hpp>
 #include <isostat/io/state_file.hpp>
 
@@ -22,10 +21,6 @@ namespace {
 
 using foreign::Boundary;
 using foreign::Raw;
-
-[[noreturn]] void refuse(const std::string& source, const std::string& message) {
-    throw Error(ErrorKind::bad_input, source + ": " + message);
-}
 
 /// Permutes the axes so that the plane of the disks is that of x and y.
 void take_plane(Raw& raw, const std::string& plane, const std::string& source) {
@@ -163,8 +158,7 @@ int dimension_of(Raw& raw, const std::string& source, const ForeignOptions& opti
         rounding = off(farthest) * off(farthest) / radius; // two disks differ by up to 2 off
     }
     if (dimension == 2 && raw.leaves_the_plane()) {
-        throw Error(ErrorKind::bad_input, fmt::format("{}: expected a cell in the plane of the disks",
-                                                      raw.place.empty() ? source : raw.place));
+        refuse(raw.place.empty() ? source : raw.place, "expected a cell in the plane of the disks");
     }
     for (std::size_t a = 0; dimension == 3 && !stated && a < 2; ++a) {
         if (std::all_of(raw.centre.begin(), raw.centre.end(),

@@ -2,8 +2,6 @@
 #include "foreign/source.hpp"
 #include "io/numbers.hpp"
 
-#include <isostat/core/error.hpp>
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -262,8 +260,7 @@ Raw read_lammps_dump(const std::string& text, const std::string& source, const F
     const FrameHeader& header = frame.header;
     const std::string where = fmt::format("{}:{}", source, header.line);
     if (header.rows == 0) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{}: frame {} has 0 atoms: expected at least 1", where, frame.number));
+        refuse(where, fmt::format("frame {} has 0 atoms: expected at least 1", frame.number));
     }
     Columns columns = find_columns(header.names, options, where, raw);
     frame.read(std::move(columns), raw);

@@ -87,9 +87,8 @@ void find_coordinates(Columns& columns, const std::vector<std::string>& names, c
             return;
         }
     }
-    throw Error(ErrorKind::bad_input,
-                fmt::format("{}: no coordinates: expected columns x y, pos (of XYZ), xu yu, xs ys or xsu ysu; {}",
-                            where, seen_columns(names)));
+    refuse(where, fmt::format("no coordinates: expected columns x y, pos (of XYZ), xu yu, xs ys or xsu ysu; {}",
+                              seen_columns(names)));
 }
 
 /// The column named in a statement. \p what: the quantity of the column.
@@ -97,8 +96,7 @@ int stated_column(const std::vector<std::string>& names, const std::string& colu
                   const std::string& where) {
     const int at = find_column(names, column);
     if (at < 0) {
-        throw Error(ErrorKind::bad_input, fmt::format("{}: no column '{}' {}: expected one of those; {}", where, column,
-                                                      what, seen_columns(names)));
+        refuse(where, fmt::format("no column '{}' {}: expected one of those; {}", column, what, seen_columns(names)));
     }
     return at;
 }
@@ -129,10 +127,9 @@ void find_size(Columns& columns, const ForeignOptions& options, const std::strin
                 continue;
             }
             if (columns.size >= 0) {
-                throw Error(ErrorKind::bad_input,
-                            fmt::format("{}: columns '{}' and '{}' both state the size of the disks: expected one, or "
-                                        "the choice with --radius COLUMN or --diameter COLUMN",
-                                        where, columns.size_name, name));
+                refuse(where, fmt::format("columns '{}' and '{}' both state the size of the disks: expected one, or "
+                                          "the choice with --radius COLUMN or --diameter COLUMN",
+                                          columns.size_name, name));
             }
             columns.size = column;
             columns.size_name = name;
@@ -140,11 +137,10 @@ void find_size(Columns& columns, const ForeignOptions& options, const std::strin
         }
     }
     if (columns.size < 0) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{}: no column states the size of the disks: expected radius or diameter, or the "
-                                "statement --radius COLUMN|NUMBER or --diameter COLUMN|NUMBER, or of types --radius "
-                                "type:1=1,2=1.4; {}",
-                                where, seen_columns(names)));
+        refuse(where, fmt::format("no column states the size of the disks: expected radius or diameter, or the "
+                                  "statement --radius COLUMN|NUMBER or --diameter COLUMN|NUMBER, or of types --radius "
+                                  "type:1=1,2=1.4; {}",
+                                  seen_columns(names)));
     }
     raw.notes.push_back(fmt::format("{} from column '{}'", word(raw.meaning), columns.size_name));
 }
@@ -190,8 +186,8 @@ std::string lower(std::string_view text) {
 
 void refuse_twice(const std::vector<std::string>& names, const std::string& where) {
     if (const auto twice = columns_twice(names); !twice.empty()) {
-        throw Error(ErrorKind::bad_input, fmt::format("{}: column '{}' is given twice: expected it once", where,
-                                                      names[static_cast<std::size_t>(twice.front().first)]));
+        refuse(where, fmt::format("column '{}' is given twice: expected it once",
+                                  names[static_cast<std::size_t>(twice.front().first)]));
     }
 }
 
@@ -312,9 +308,8 @@ double Rows::size_of_word(const TextLine& line, const std::string& name) const {
 
 void Rows::finish(Raw& raw) {
     if (columns_.select >= 0 && seen_ > 0 && raw.centre.empty()) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{}: no row has '{}' in the column that selects disks: expected one at least", source_,
-                                fmt::join(columns_.selected, "' or '")));
+        refuse(source_, fmt::format("no row has '{}' in the column that selects disks: expected one at least",
+                                    fmt::join(columns_.selected, "' or '")));
     }
     if (columns_.fix >= 0) {
         raw.notes.push_back(

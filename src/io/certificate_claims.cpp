@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -101,10 +100,6 @@ template <class Claim, class... More> Json or_absent(const std::optional<Claim>&
     return value ? claim(*value, more...) : Json(nullptr);
 }
 
-/// The rungs that can settle a claim, by their words.
-constexpr std::array<Rung, 5> settling_rungs{Rung::combinatorial, Rung::double_bound, Rung::double_double,
-                                             Rung::multiprecision, Rung::exact};
-
 double number_or_infinity(const Field& field) {
     if (field.value() == "inf") {
         return std::numeric_limits<double>::infinity();
@@ -133,13 +128,13 @@ std::vector<Interval> intervals_of(const Field& field, std::size_t count, const 
     return intervals;
 }
 
+/// The rung that settled a claim.
 Rung rung_of(const Field& field) {
-    for (const Rung rung : settling_rungs) {
-        if (field.string() == to_string(rung)) {
-            return rung;
-        }
+    const auto rung = value_of(field.string(), rung_words);
+    if (!rung || *rung == Rung::none) {
+        field.fail("\"combinatorial\", \"double\", \"double-double\", \"mpfr\" or \"exact\"");
     }
-    field.fail("\"combinatorial\", \"double\", \"double-double\", \"mpfr\" or \"exact\"");
+    return *rung;
 }
 
 int count_of(const Field& field) {
@@ -267,23 +262,17 @@ std::string claims_text(const CertificateClaims& claims, int dimension) {
 
 CertificateClaims claims_of(const Field& field, const State& state) {
     field.only({"counting", "vertex", "forces", "gaps", "load_interval", "stable", "minimum", "undecided"});
-    const auto given = [&field](const char* name) { return !field.at(name).value().is_null(); };
+    const auto take = [&field](auto& claim, const char* name, const auto& claim_of, const auto&... more) {
+        if (const Field given = field.at(name); !given.value().is_null()) {
+            claim = claim_of(given, more...);
+        }
+    };
     CertificateClaims claims;
-    if (given("counting")) {
-        claims.counting = counting_of(field.at("counting"));
-    }
-    if (given("vertex")) {
-        claims.vertex = vertex_of(field.at("vertex"));
-    }
-    if (given("forces")) {
-        claims.forces = forces_of(field.at("forces"), state.contacts.size());
-    }
-    if (given("gaps")) {
-        claims.gaps = gaps_of(field.at("gaps"), state.packing);
-    }
-    if (given("load_interval")) {
-        claims.load_interval = load_interval_of(field.at("load_interval"), state);
-    }
+    take(claims.counting, "counting", counting_of);
+    take(claims.vertex, "vertex", vertex_of);
+    take(claims.forces, "forces", forces_of, state.contacts.size());
+    take(claims.gaps, "gaps", gaps_of, state.packing);
+    take(claims.load_interval, "load_interval", load_interval_of, state);
     claims.stable = field.at("stable").boolean();
     if (field.has("minimum")) {
         claims.minimum = minimum_of(field.at("minimum"), state.packing);

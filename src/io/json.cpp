@@ -127,6 +127,20 @@ void Field::require_size(std::size_t expected, const std::string& what) const {
     }
 }
 
+std::vector<double> Field::numbers() const {
+    std::vector<double> all;
+    all.reserve(size());
+    for (std::size_t k = 0; k < size(); ++k) {
+        all.push_back(at(k).number());
+    }
+    return all;
+}
+
+std::vector<double> Field::numbers(std::size_t expected, const std::string& what) const {
+    require_size(expected, what);
+    return numbers();
+}
+
 double Field::number() const {
     if (value_->is_number()) {
         const double number = value_->get<double>();

@@ -3,9 +3,8 @@
 /// JSON with messages that name file and field. The only place, with the .cpp files that include it, that knows the
 /// JSON library.
 
-#include "core/words.hpp"
-
 #include <isostat/contact/state.hpp>
+#include <isostat/core/words.hpp>
 
 #include <nlohmann/json.hpp>
 
@@ -45,6 +44,9 @@ class Field {
     [[nodiscard]] std::size_t size() const;
     /// The same, and it must be `expected`.
     void require_size(std::size_t expected, const std::string& what) const;
+    /// The numbers of an array, and of one with `expected` elements.
+    [[nodiscard]] std::vector<double> numbers() const;
+    [[nodiscard]] std::vector<double> numbers(std::size_t expected, const std::string& what) const;
 
     /// A finite number, or a string with a hexadecimal float.
     [[nodiscard]] double number() const;
@@ -54,8 +56,8 @@ class Field {
     [[nodiscard]] bool boolean() const;
     [[nodiscard]] const std::string& string() const;
     /// A value by its word.
-    template <class Enum, std::size_t N> [[nodiscard]] Enum word(const EnumWords<N>& words) const {
-        const std::optional<Enum> value = value_of<Enum>(string(), words);
+    template <class Enum, std::size_t N> [[nodiscard]] Enum word(const EnumWords<Enum, N>& words) const {
+        const std::optional<Enum> value = value_of(string(), words);
         if (!value) {
             fail(listed(words));
         }

@@ -22,6 +22,10 @@ std::string_view unquoted(std::string_view text) {
 
 } // namespace
 
+void refuse(const std::string& where, const std::string& what) {
+    throw Error(ErrorKind::bad_input, where + ": " + what);
+}
+
 TextLine::TextLine(std::string_view text, int number, const std::string* source, char separator)
     : text_(text), number_(number), source_(source) {
     const bool commas = separator == blanks_or_commas;

@@ -8,6 +8,9 @@
 
 namespace isostat {
 
+/// Throws `Error(bad_input)`: "WHERE: WHAT".
+[[noreturn]] void refuse(const std::string& where, const std::string& what);
+
 /// A separator of fields that stands for blanks, tabs and commas.
 inline constexpr char blanks_or_commas = '\0';
 

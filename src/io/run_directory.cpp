@@ -1,4 +1,3 @@
-#include "core/words.hpp"
 #include "core/work.hpp"
 #include "io/descriptor.hpp"
 #include "io/equilibria.hpp"
@@ -9,6 +8,7 @@
 #include "io/record_text.hpp"
 
 #include <isostat/core/error.hpp>
+#include <isostat/core/words.hpp>
 #include <isostat/io/run_directory.hpp>
 #include <isostat/io/state_file.hpp>
 
@@ -54,7 +54,7 @@ std::string steering(const RunCounters& counters) {
 } // namespace
 
 const char* to_string(RunStatus status) {
-    static constexpr std::array words{"completed", "failed", "undecided", "interrupted"};
+    static constexpr auto words = words_of<RunStatus>("completed", "failed", "undecided", "interrupted");
     return word_of(status, words);
 }
 
@@ -146,10 +146,8 @@ void RunDirectory::read_checkpoint() {
     StateFile state = parse_any_state(file.at("state").value().dump(), path, Dimensions::any_clumps);
     point.state = state.state;
     const bool tilts = point.state.packing.cell.shears();
-    file.at("strain").require_size(record_columns(point.state.load, tilts).measures.size(), "a strain for each axis");
-    for (std::size_t a = 0; a < file.at("strain").size(); ++a) {
-        last_strain_.push_back(file.at("strain").at(a).number());
-    }
+    last_strain_ =
+        file.at("strain").numbers(record_columns(point.state.load, tilts).measures.size(), "a strain for each axis");
     segment_ = point.segment;
     last_ = std::move(state.state);
     last_forces_ = std::move(state.forces);

@@ -3,7 +3,7 @@
 /// One table of a TOML file, and files that are named in other files. A key becomes known when it is read; a key of the
 /// file that was never read is an error. So the list of known keys cannot disagree with what is read.
 
-#include "core/words.hpp"
+#include <isostat/core/words.hpp>
 
 #include <toml++/toml.h>
 
@@ -41,7 +41,8 @@ class Section {
     std::optional<std::filesystem::path> file(const std::string& key, const std::filesystem::path& folder);
     std::optional<std::vector<double>> numbers(const std::string& key);
     /// The value of a word, `fallback` when the key is absent.
-    template <class Enum, std::size_t N> Enum word(const std::string& key, Enum fallback, const EnumWords<N>& words) {
+    template <class Enum, std::size_t N>
+    Enum word(const std::string& key, Enum fallback, const EnumWords<Enum, N>& words) {
         return static_cast<Enum>(place(key, static_cast<std::size_t>(fallback), {words.begin(), words.end()}));
     }
     /// A table in this one, an array, a value of any type; null when it is absent.

@@ -14,7 +14,6 @@
 #include <gmpxx.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace isostat {
@@ -33,11 +32,8 @@ std::vector<double> vectors(const Field& document, const char* name, const Layou
     list.require_size(static_cast<std::size_t>(layout.disks), "one row per disk");
     values.reserve(layout.of_length(0));
     for (std::size_t i = 0; i < list.size(); ++i) {
-        const Field row = list.at(i);
-        row.require_size(layout.axes(), "one number per axis");
-        for (std::size_t a = 0; a < layout.axes(); ++a) {
-            values.push_back(row.at(a).number());
-        }
+        const std::vector<double> row = list.at(i).numbers(layout.axes(), "one number per axis");
+        values.insert(values.end(), row.begin(), row.end());
     }
     return values;
 }
@@ -67,6 +63,8 @@ void read_disks(const Field& document, Packing& packing) {
         }
     }
 }
+
+enum class Axis : unsigned char { periodic, walls };
 
 /// The names of the coordinates of a cell that move.
 void read_moves(const Field& moves, Packing& packing) {
@@ -108,7 +106,7 @@ void read_cell(const Field& field, Packing& packing) {
     const Field axes = field.at("axes");
     axes.require_size(packing.axes(), "one word per axis");
     for (std::size_t a = 0; a < packing.axes(); ++a) {
-        cell.periodic[a] = axes.at(a).word<int>(std::array{"periodic", "walls"}) == 0;
+        cell.periodic[a] = axes.at(a).word(words_of<Axis>("periodic", "walls")) == Axis::periodic;
         if (cell.periodic[a]) {
             packing.walls.lower[a] = packing.walls.upper[a] = WallKind::absent;
         }
@@ -117,12 +115,10 @@ void read_cell(const Field& field, Packing& packing) {
         axes.fail("a periodic axis; a box has no \"cell\"");
     }
     read_moves(field.at("moves"), packing);
-    if (field.has("tilt")) {
-        field.at("tilt").require_size(packing.tilts(), "one tilt per pair of axes");
-    }
-    for (std::size_t t = 0; t < packing.tilts(); ++t) {
-        packing.q.push_back(field.has("tilt") ? field.at("tilt").at(t).number() : 0);
-    }
+    const std::vector<double> tilt = field.has("tilt")
+                                         ? field.at("tilt").numbers(packing.tilts(), "one tilt per pair of axes")
+                                         : std::vector<double>(packing.tilts(), 0);
+    packing.q.insert(packing.q.end(), tilt.begin(), tilt.end());
     if (field.has("pin")) {
         cell.pin = field.at("pin").integer(0, packing.disk_count() - 1);
     }
@@ -154,11 +150,8 @@ Packing packing_of(const Field& document) {
         packing.walls = Walls::box(packing.dimension);
     }
     read_disks(document, packing);
-    const Field length = document.at("length");
-    length.require_size(packing.axes(), "one length per axis");
-    for (std::size_t a = 0; a < packing.axes(); ++a) {
-        packing.q.push_back(length.at(a).number());
-    }
+    const std::vector<double> length = document.at("length").numbers(packing.axes(), "one length per axis");
+    packing.q.insert(packing.q.end(), length.begin(), length.end());
     if (document.has("cell")) {
         read_cell(document.at("cell"), packing);
     }
@@ -168,8 +161,8 @@ Packing packing_of(const Field& document) {
         walls.at("lower").require_size(packing.axes(), "one wall per axis");
         walls.at("upper").require_size(packing.axes(), "one wall per axis");
         for (std::size_t a = 0; a < packing.axes(); ++a) {
-            packing.walls.lower[a] = walls.at("lower").at(a).word<WallKind>(wall_kind_words);
-            packing.walls.upper[a] = walls.at("upper").at(a).word<WallKind>(wall_kind_words);
+            packing.walls.lower[a] = walls.at("lower").at(a).word(wall_kind_words);
+            packing.walls.upper[a] = walls.at("upper").at(a).word(wall_kind_words);
             if (packing.walls.lower[a] == WallKind::movable) {
                 walls.at("lower").at(a).fail("\"absent\" or \"fixed\": the lower walls are the origin");
             }
@@ -230,11 +223,10 @@ void read_tilts(const Field& field, const Packing& packing, Load& load) {
         }
     }
     if (field.has("reference_tilt")) {
-        const Field tilt = field.at("reference_tilt");
-        tilt.require_size(packing.cell.any() ? packing.tilts() : 0, "one number per tilt of a periodic cell");
-        for (std::size_t t = 0; t < tilt.size(); ++t) {
-            load.reference_tilt[t] = tilt.at(t).number();
-        }
+        const std::vector<double> tilt =
+            field.at("reference_tilt")
+                .numbers(packing.cell.any() ? packing.tilts() : 0, "one number per tilt of a periodic cell");
+        std::copy(tilt.begin(), tilt.end(), load.reference_tilt.begin());
     } else if (field.has("reference_length")) {
         load.reference_tilt.fill(0); // a rectangle
     }
@@ -244,22 +236,17 @@ void read_tilts(const Field& field, const Packing& packing, Load& load) {
 void read_path(const Field& field, const Packing& packing, Load& load) {
     const Field path = field.at("path");
     path.only({"stress", "direction", "t"});
-    std::vector<double> rates;
-    for (std::size_t k = 0; k < path.at("direction").size(); ++k) {
-        rates.push_back(path.at("direction").at(k).number());
-    }
+    const std::vector<double> rates = path.at("direction").numbers();
     if (const std::string fault = fault_of_path(packing, rates); !fault.empty()) {
         throw Error(ErrorKind::bad_input,
                     fmt::format("{}: a direction in the space of stresses, {}", path.at("direction").where(), fault));
     }
     const Field stress = path.at("stress");
-    stress.require_size(rates.size(), "as many numbers as direction has");
+    const std::vector<double> start = stress.numbers(rates.size(), "as many numbers as direction has");
     const Load said = load;
     StressPath& along = load.path.emplace();
-    for (std::size_t k = 0; k < rates.size(); ++k) {
-        along.rate[k] = rates[k];
-        along.at[k] = stress.at(k).number();
-    }
+    std::copy(rates.begin(), rates.end(), along.rate.begin());
+    std::copy(start.begin(), start.end(), along.at.begin());
     const double t = path.at("t").number();
     constexpr double farthest = 1e200; // the parts of a product with a rate are doubles then (`exact_stress`)
     if (t != 0 && !(std::abs(t) >= 1 / farthest && std::abs(t) <= farthest)) {
@@ -288,7 +275,7 @@ Load load_of(const Field& document, const Packing& packing) {
         const Field field = document.at("load");
         field.only({"kind", "stress", "loaded_axis", "path", "reference_length", "reference_tilt", "shear"});
         if (field.has("kind")) {
-            load.kind = field.at("kind").word<LoadKind>(load_kind_words);
+            load.kind = field.at("kind").word(load_kind_words);
             const auto& tilts = packing.cell.tilt_moves;
             if (load.kind == LoadKind::true_stress && std::find(tilts.begin(), tilts.end(), true) != tilts.end()) {
                 field.at("kind").fail("\"nominal\" where a tilt moves: true stresses have no potential there");
@@ -381,11 +368,7 @@ StateFile json::state_from_json(const Field& document, const std::string& source
         state.perturbation = json::perturbation_from_json(document.at("perturbation"), state.packing);
     }
     if (document.has("forces")) {
-        const Field forces = document.at("forces");
-        forces.require_size(state.contacts.size(), "one force per contact");
-        for (std::size_t l = 0; l < forces.size(); ++l) {
-            file.forces.push_back(forces.at(l).number());
-        }
+        file.forces = document.at("forces").numbers(state.contacts.size(), "one force per contact");
     }
     return file;
 }

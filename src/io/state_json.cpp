@@ -1,21 +1,18 @@
 #include "io/state_json.hpp"
 
 #include "contact/images.hpp"
+#include "packing/words.hpp"
 
 #include <isostat/core/error.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 namespace isostat::json {
 
 namespace {
-
-constexpr std::array<const char*, 3> lower_name{"left", "bottom", "back"};
-constexpr std::array<const char*, 3> upper_name{"right", "top", "front"};
 
 int disk_index(const Field& field, int disks) {
     const long i = field.integer();
@@ -58,7 +55,6 @@ Contact pair_from_json(const Field& field, int i, int j, const Packing& packing)
 } // namespace
 
 Json contact_to_json(const Contact& contact, int dimension) {
-    const auto axis = static_cast<std::size_t>(contact.j);
     switch (contact.kind) {
     case ContactKind::disk_disk: {
         Json pair = Json::array({contact.i, contact.j});
@@ -70,8 +66,8 @@ Json contact_to_json(const Contact& contact, int dimension) {
         }
         return pair;
     }
-    case ContactKind::lower_wall: return Json::array({contact.i, lower_name[axis]});
-    case ContactKind::upper_wall: return Json::array({contact.i, upper_name[axis]});
+    case ContactKind::lower_wall:
+    case ContactKind::upper_wall: return Json::array({contact.i, wall_name(contact)});
     case ContactKind::bar: return Json::array({"bar", contact.i, contact.j});
     case ContactKind::held: return Json::array({"held", contact.i});
     }
@@ -111,8 +107,8 @@ Contact contact_of(const Field& field, const Packing& packing) {
     }
     field.require_size(2, "[disk, \"wall\"]");
     for (std::size_t a = 0; a < packing.axes(); ++a) {
-        const bool lower = second.string() == lower_name[a];
-        if (!lower && second.string() != upper_name[a]) {
+        const bool lower = second.string() == lower_wall_names[a];
+        if (!lower && second.string() != upper_wall_names[a]) {
             continue;
         }
         if ((lower ? packing.walls.lower[a] : packing.walls.upper[a]) == WallKind::absent) {
@@ -203,11 +199,7 @@ RadiusPerturbation perturbation_from_json(const Field& field, const Packing& pac
         field.at("seed").fail("an integer from 0 to 2^64 - 1");
     }
     perturbation.seed = field.at("seed").value().get<std::uint64_t>();
-    const Field rho = field.at("rho");
-    rho.require_size(packing.radius.size(), "one number per disk");
-    for (std::size_t i = 0; i < rho.size(); ++i) {
-        perturbation.rho.push_back(rho.at(i).number());
-    }
+    perturbation.rho = field.at("rho").numbers(packing.radius.size(), "one number per disk");
     if (field.has("load_zero")) {
         perturbation.load_zero = contact_from_json(field.at("load_zero"), packing);
         const Field rate = field.at("stress_rate");

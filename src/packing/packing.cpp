@@ -16,8 +16,6 @@ namespace isostat {
 
 namespace {
 
-constexpr std::array<const char*, 3> upper_name{"right wall", "top wall", "front wall"};
-
 /// -1: nothing has to be pinned.
 int pinned_grain(const Packing& packing) {
     int pin = packing.cell.any() ? packing.cell.pin : -1;
@@ -111,7 +109,7 @@ std::string DofMap::name(int dof) const {
     const std::size_t axis = coordinate - layout_.of_length(0);
     return axis >= d         ? fmt::format("tilt {}", tilt_names[axis - d])
            : periodic_[axis] ? fmt::format("period along {}", axis_names[axis])
-                             : std::string(upper_name[axis]);
+                             : fmt::format("{} wall", upper_wall_names[axis]);
 }
 
 namespace {
@@ -263,8 +261,8 @@ void validate(const Packing& packing, const std::string& source) {
         }
         const double length = packing.length(static_cast<int>(a));
         if (!(std::abs(length) <= longest_length) || (packing.walls.lower[a] != WallKind::absent && !(length > 0))) {
-            bad(fmt::format("position of the {} is {}: expected a positive finite number of at most {}", upper_name[a],
-                            length, longest_length));
+            bad(fmt::format("position of the {} wall is {}: expected a positive finite number of at most {}",
+                            upper_wall_names[a], length, longest_length));
         }
         if (packing.walls.lower[a] == WallKind::absent) {
             continue;

@@ -1,12 +1,12 @@
 // Binds snap and compare, for soft grains of other programs.
 #include "compare/report.hpp"
 #include "convert.hpp"
-#include "core/words.hpp"
 #include "snap/force_split.hpp"
 #include "snap/soft_list.hpp"
 
 #include <isostat/compare/compare.hpp>
 #include <isostat/core/error.hpp>
+#include <isostat/core/words.hpp>
 
 #include <atomic>
 

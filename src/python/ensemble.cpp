@@ -2,10 +2,10 @@
 #include "ensemble/ensemble.hpp"
 
 #include "convert.hpp"
-#include "core/words.hpp"
 #include "ensemble/members.hpp"
 
 #include <isostat/core/error.hpp>
+#include <isostat/core/words.hpp>
 #include <isostat/scene/scene.hpp>
 
 namespace isostat::python {
@@ -29,8 +29,8 @@ std::unique_ptr<EnsembleDirectory> ensemble_folder(const std::string& text, cons
     header.scene_text = text;
     header.first_seed = seed;
     header.samples = samples;
-    return std::make_unique<EnsembleDirectory>(
-        output, header, value_of<FolderMode>(mode, folder_mode_words).value_or(FolderMode::fresh));
+    return std::make_unique<EnsembleDirectory>(output, header,
+                                               value_of(mode, folder_mode_words).value_or(FolderMode::fresh));
 }
 
 } // namespace

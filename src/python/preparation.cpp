@@ -1,8 +1,8 @@
 // Binds packings to begin with: prepared ones, and those of other programs.
 #include "convert.hpp"
-#include "core/words.hpp"
 
 #include <isostat/core/error.hpp>
+#include <isostat/core/words.hpp>
 #include <isostat/crafted/plateau.hpp>
 #include <isostat/foreign/foreign.hpp>
 #include <isostat/preparation/preparation.hpp>
@@ -71,7 +71,7 @@ Packing read_any(const std::filesystem::path& path, const std::string& walls,
                  std::optional<int> dimension, const std::string& bodies) {
     ForeignOptions options;
     options.bodies = bodies;
-    const auto known = value_of<ForeignWalls>(walls, foreign_walls_words);
+    const auto known = value_of(walls, foreign_walls_words);
     if (!known || *known == ForeignWalls::square) {
         throw Error(ErrorKind::bad_input, "walls is '" + walls + "': expected \"box\", \"fixed\" or \"none\"");
     }

@@ -147,17 +147,16 @@ void bind_certificate(py::module_& module) {
             "write",
             [](const Certified& self, const std::filesystem::path& path) { write_certificate(path, self.certificate); },
             py::arg("path"), "Writes the certificate file in one step. Raises CannotWrite.");
+    constexpr const char* words_of_certify =
+        "Certificate of a State or of a state file. Cost: about one factorisation of the contact matrix more "
+        "than an inspection.";
     module.def(
         "certify",
         [](const std::filesystem::path& file) { return interruptible([file] { return certify_file(file); }); },
-        py::arg("file"),
-        "Certificate of a State or of a state file. Cost: about one factorisation of the contact matrix more "
-        "than an inspection.");
+        py::arg("file"), words_of_certify);
     module.def(
         "certify", [](const PyState& state) { return interruptible([state] { return certify_state(state); }); },
-        py::arg("state"),
-        "Certificate of a State or of a state file. Cost: about one factorisation of the contact matrix more "
-        "than an inspection.");
+        py::arg("state"), words_of_certify);
 }
 
 void bind_inspect(py::module_& module) {

@@ -1,9 +1,9 @@
 // Runs a scene from Python, with functions that are called for each arc and each equilibrium.
 #include "convert.hpp"
-#include "core/words.hpp"
 #include "report/run_walk.hpp"
 
 #include <isostat/core/error.hpp>
+#include <isostat/core/words.hpp>
 #include <isostat/io/run_directory.hpp>
 #include <isostat/preparation/preparation.hpp>
 #include <isostat/scene/scene.hpp>
@@ -121,7 +121,7 @@ class Run {
         }
         RunCounters counters;
         RunDirectory directory(output_, header_of(scene_, program, command),
-                               value_of<FolderMode>(mode, folder_mode_words).value_or(FolderMode::fresh), counters);
+                               value_of(mode, folder_mode_words).value_or(FolderMode::fresh), counters);
         SceneEnding ending;
         if (const Result<State> start = start_in(directory, watcher); start.ok()) {
             ending = play_scene(scene_, start.value(), directory, program, counters, stop_, watcher);

@@ -18,7 +18,7 @@ namespace isostat::python {
 namespace {
 
 WallKind wall_kind(const std::string& name) {
-    if (const auto kind = value_of<WallKind>(name, wall_kind_words)) {
+    if (const auto kind = value_of(name, wall_kind_words)) {
         return *kind;
     }
     throw Error(ErrorKind::bad_input, "wall is \"" + name + "\": expected absent, fixed or movable");
@@ -451,11 +451,12 @@ void bind_state(py::module_& module) {
                    ", contacts=" + std::to_string(self.contact_count) + ", rank=" + std::to_string(self.rank) +
                    ", h=" + std::to_string(self.hyperstaticity) + ", k=" + std::to_string(self.mechanisms) + ")";
         });
+    constexpr const char* words_of_count =
+        "Counting of the exact contact matrix of stored coordinates: count(state), or count(packing, contacts). An "
+        "elimination mod p; the rank is exact where `rank_exact` is proved.";
     module.def(
         "count", [](const PyState& state) { return count_contacts(state.state.packing, state.state.contacts); },
-        py::arg("state"), py::call_guard<py::gil_scoped_release>(),
-        "Counting of the exact contact matrix of stored coordinates: count(state), or count(packing, contacts). An "
-        "elimination mod p; the rank is exact where `rank_exact` is proved.");
+        py::arg("state"), py::call_guard<py::gil_scoped_release>(), words_of_count);
     module.def(
         "count",
         [](const Packing& packing, const std::vector<std::pair<int, int>>& contacts) {
@@ -470,9 +471,7 @@ void bind_state(py::module_& module) {
             }
             return count_contacts(packing, list);
         },
-        py::arg("packing"), py::arg("contacts"), py::call_guard<py::gil_scoped_release>(),
-        "Counting of the exact contact matrix of stored coordinates: count(state), or count(packing, contacts). An "
-        "elimination mod p; the rank is exact where `rank_exact` is proved.");
+        py::arg("packing"), py::arg("contacts"), py::call_guard<py::gil_scoped_release>(), words_of_count);
 }
 
 } // namespace isostat::python

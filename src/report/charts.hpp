@@ -22,11 +22,11 @@ std::string chart_script(const std::string& name, int width, int height, const s
 
 /// Staircase of the main path, cycles, distributions, as far as they have data. `names`: names of the segments.
 std::vector<Chart> make_charts(const std::vector<EquilibriumRow>& rows, const std::vector<std::string>& names,
-                               const LoadWords& words = biaxial_words, bool pdf = false);
+                               const LoadWords& words = load_words({}), bool pdf = false);
 
 /// Segments, increments, arcs, checks. `names`: names of the segments; `status`: status in run.json.
 std::string run_tables(const std::vector<EquilibriumRow>& rows, const std::vector<std::string>& names,
-                       const std::string& status, const LoadWords& words = biaxial_words);
+                       const std::string& status, const LoadWords& words = load_words({}));
 
 /// Runs `gnuplot SCRIPT` in a folder (no shell). Empty on success, otherwise why there is no chart: gnuplot is missing,
 /// or its status. The output of gnuplot goes to NAME.log beside the script, which is removed on success.

@@ -11,10 +11,8 @@
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <cstdint>
 #include <iterator>
 #include <numbers>
-#include <optional>
 #include <vector>
 
 namespace isostat {
@@ -29,8 +27,8 @@ Point centre(const State& state, int disk) {
     return {state.packing.coordinate(DiskId(disk), 0), state.packing.coordinate(DiskId(disk), 1)};
 }
 
-/// Foot of the normal on the wall. \pre the contact is with a wall
-Point foot(const State& state, const Contact& contact) {
+/// End of the line of a contact: `end_of`.
+Point end_point(const State& state, const Contact& contact) {
     const PerAxis<double> at = end_of(state.packing, contact);
     return {at[0], at[1]};
 }
@@ -46,12 +44,6 @@ Point operator+(Point a, Point b) {
 
 Point operator-(Point a, Point b) {
     return {a.x - b.x, a.y - b.y};
-}
-
-/// Centre of the image of the second disk of a contact. \pre the contact is of two disks
-Point second_centre(const State& state, const Contact& contact) {
-    const Point j = centre(state, contact.j);
-    return contact.image.is_here() ? j : j + periods(state.packing, contact.image.m[0], contact.image.m[1]);
 }
 
 /// Corners of the cell, in order. Along an axis with walls the cell extends from wall to wall.
@@ -266,7 +258,7 @@ void draw_contacts(Canvas& canvas, const State& state, std::span<const double> f
         if (contact.kind == ContactKind::bar && arcs.angles(contact.i)) {
             continue;
         }
-        Point end = pair ? second_centre(state, contact) : foot(state, contact);
+        Point end = end_point(state, contact);
         Point start = centre(state, contact.i);
         if (const double shift = arc_depth(state.packing, arcs, contact.i); shift > 0) {
             start = towards(start, end, shift);

@@ -160,13 +160,13 @@ class Writer {
 
 /// Counts of decisions by kind and by the rung that decided.
 std::string decision_table(const json::Field& decisions) {
-    constexpr auto rungs = rung_words;
-    std::string text = fmt::format("\n{:<20} {:>13} {:>9} {:>13} {:>7} {:>7} {:>15}\n", "decisions", rungs[0], rungs[1],
-                                   rungs[2], rungs[3], rungs[4], "smallest margin");
+    const auto rung = [](std::size_t k) { return rung_words.at(k); };
+    std::string text = fmt::format("\n{:<20} {:>13} {:>9} {:>13} {:>7} {:>7} {:>15}\n", "decisions", rung(0), rung(1),
+                                   rung(2), rung(3), rung(4), "smallest margin");
     const auto row = [&](const std::string& name, const json::Field& counts) {
-        text += fmt::format("{:<20} {:>13} {:>9} {:>13} {:>7} {:>7} {:>15.3g}\n", name, counts.at(rungs[0]).integer(),
-                            counts.at(rungs[1]).integer(), counts.at(rungs[2]).integer(), counts.at(rungs[3]).integer(),
-                            counts.at(rungs[4]).integer(), counts.at("smallest_margin").number());
+        text += fmt::format("{:<20} {:>13} {:>9} {:>13} {:>7} {:>7} {:>15.3g}\n", name, counts.at(rung(0)).integer(),
+                            counts.at(rung(1)).integer(), counts.at(rung(2)).integer(), counts.at(rung(3)).integer(),
+                            counts.at(rung(4)).integer(), counts.at("smallest_margin").number());
     };
     for (const char* kind : decision_kind_words) {
         row(kind, decisions.at("kinds").at(kind));

@@ -23,31 +23,6 @@ struct LoadWords {
     std::string stress_sign;
 };
 
-inline const LoadWords biaxial_words{"sigma2/sigma1",
-                                     "eps2",
-                                     "loading",
-                                     "unloading",
-                                     "stress ratio σ_2/σ_1",
-                                     "axial strain ε_2",
-                                     "increment of the stress ratio Δσ_2/σ_1",
-                                     "strain increment Δε_2",
-                                     "σ₂/σ₁",
-                                     "ε₂",
-                                     "ε₁",
-                                     "σ₂"};
-inline const LoadWords shear_words{"shear/sigma2",
-                                   "shear strain",
-                                   "shear up",
-                                   "shear down",
-                                   "shear stress over normal stress τ/σ_2",
-                                   "shear strain γ",
-                                   "increment of the shear stress Δτ/σ_2",
-                                   "increment of the shear strain Δγ",
-                                   "τ/σ₂",
-                                   "γ",
-                                   "strain of the height",
-                                   "τ"};
-
 /// The words for a load; in space they name the loaded axis or tilt.
 LoadWords load_words(const Load& load);
 

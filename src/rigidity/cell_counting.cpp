@@ -1,9 +1,9 @@
 #include "contact/contact_set.hpp"
 #include "contact/separation.hpp"
-#include "core/words.hpp"
 #include "exact/rank.hpp"
 #include "rigidity/strained_matrix.hpp"
 
+#include <isostat/core/words.hpp>
 #include <isostat/exact/number.hpp>
 #include <isostat/rigidity/counting.hpp>
 
@@ -111,7 +111,7 @@ Counting settled(Counting counting, const std::function<exact::NumberMatrix()>& 
 } // namespace
 
 const char* to_string(Strain strain) {
-    static constexpr std::array words{"fixed cell", "isotropic", "diagonal", "full strain"};
+    static constexpr auto words = words_of<Strain>("fixed cell", "isotropic", "diagonal", "full strain");
     return word_of(strain, words);
 }
 

@@ -1,13 +1,12 @@
 #include "core/roundoff.hpp"
-#include "core/words.hpp"
 
 #include <isostat/core/error.hpp>
+#include <isostat/core/words.hpp>
 #include <isostat/scene/scene.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 #include <set>
 
 namespace isostat {

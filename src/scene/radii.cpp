@@ -16,7 +16,7 @@ namespace {
 
 using enum RadiiLaw;
 
-constexpr std::array law_words{"uniform", "equal", "bidisperse", "lognormal", "normal", "power"};
+constexpr auto law_words = words_of<RadiiLaw>("uniform", "equal", "bidisperse", "lognormal", "normal", "power");
 
 struct LawKey {
     const char* name;

@@ -26,7 +26,8 @@ class SceneSection : public Section {
     bool boolean(const std::string& key, bool fallback);
     /// Index of the word in `words`.
     std::size_t word(const std::string& key, std::size_t fallback, const std::vector<std::string>& words);
-    template <class Enum, std::size_t N> Enum word(const std::string& key, Enum fallback, const EnumWords<N>& words) {
+    template <class Enum, std::size_t N>
+    Enum word(const std::string& key, Enum fallback, const EnumWords<Enum, N>& words) {
         return static_cast<Enum>(word(key, static_cast<std::size_t>(fallback), {words.begin(), words.end()}));
     }
 

@@ -1,12 +1,12 @@
 #include "certificate/subject.hpp"
 #include "contact/candidates.hpp"
 #include "contact/contact_set.hpp"
-#include "core/words.hpp"
 #include "crafted/peeling.hpp"
 #include "rigidity/isostatic.hpp"
 #include "snap/backbone.hpp"
 #include "verified/to_vertex.hpp"
 
+#include <isostat/core/words.hpp>
 #include <isostat/snap/snap.hpp>
 
 #include <fmt/format.h>
@@ -146,7 +146,7 @@ Packing of_disks(const Packing& packing, const std::vector<int>& disks) {
 }
 
 const char* to_string(SnapOutcome outcome) {
-    static constexpr std::array words{"vertex", "hyperstatic", "moving", "refuted", "undecided"};
+    static constexpr auto words = words_of<SnapOutcome>("vertex", "hyperstatic", "moving", "refuted", "undecided");
     return word_of(outcome, words);
 }
 

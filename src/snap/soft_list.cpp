@@ -2,10 +2,10 @@
 
 #include "contact/near_pairs.hpp"
 #include "contact/separation.hpp"
+#include "io/lines.hpp"
 #include "packing/words.hpp"
 #include "snap/backbone.hpp"
 
-#include <isostat/core/error.hpp>
 #include <isostat/snap/snap.hpp>
 
 #include <fmt/format.h>
@@ -46,8 +46,7 @@ std::string walls_apart(const Packing& packing) {
             if (distance > 0 && !packing.cell.periodic[static_cast<std::size_t>(axis)]) {
                 out += fmt::format("; none with the {} wall, which is {:.3g} from {} {} (are digits of its position "
                                    "rounded?)",
-                                   to_string(Contact{kind, 0, axis}, packing.dimension).substr(2), distance,
-                                   grain_word(packing.dimension), disk);
+                                   wall_name({kind, 0, axis}), distance, grain_word(packing.dimension), disk);
             }
         }
     }
@@ -55,10 +54,6 @@ std::string walls_apart(const Packing& packing) {
 }
 
 } // namespace
-
-void refuse(const std::string& file, const std::string& what) {
-    throw Error(ErrorKind::bad_input, file + ": " + what);
-}
 
 std::string far_wall(const Packing& packing) {
     for (const ContactKind kind : {ContactKind::lower_wall, ContactKind::upper_wall}) {
@@ -71,8 +66,8 @@ std::string far_wall(const Packing& packing) {
                 return fmt::format("no {} is near the {} wall, the nearest gap is {:.3g} ({} {}): expected the "
                                    "positions of the walls, --box XLO:XHI,YLO:YHI{} (bounds of a file often are not "
                                    "those)",
-                                   grain, to_string(Contact{kind, 0, axis}, packing.dimension).substr(2), distance,
-                                   grain, nearest, packing.dimension == plane ? "" : ",ZLO:ZHI");
+                                   grain, wall_name({kind, 0, axis}), distance, grain, nearest,
+                                   packing.dimension == plane ? "" : ",ZLO:ZHI");
             }
         }
     }

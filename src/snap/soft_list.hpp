@@ -19,9 +19,6 @@ namespace isostat::compare {
 /// The largest overlap, and the largest gap at a wall, of a packing close to touching, in smallest radii.
 inline constexpr double nearly_touching = 0.1;
 
-/// Throws `Error(bad_input)` about a file.
-[[noreturn]] void refuse(const std::string& file, const std::string& what);
-
 /// Words on a wall without a near disk; empty: every wall has one.
 std::string far_wall(const Packing& packing);
 

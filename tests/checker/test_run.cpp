@@ -323,8 +323,7 @@ BOOST_AUTO_TEST_CASE(runs_in_periodic_cells_are_replayed_whichever_disk_is_pinne
     for (const char* name : {"tilt_16", "rect_16", "channel_16"}) {
         for (const int pin : {0, 8, 9}) { // 8 and 9 become rattlers, or are
             for (const TiePolicy ties : {TiePolicy::stop, TiePolicy::choose}) {
-                BOOST_TEST_INFO_SCOPE(name << ", disk " << pin << " pinned, ties "
-                                           << tie_policy_words[static_cast<std::size_t>(ties)]);
+                BOOST_TEST_INFO_SCOPE(name << ", disk " << pin << " pinned, ties " << word_of(ties, tie_policy_words));
                 const scratch::Folder folder;
                 play_and_store(of_cell(name, pin), {3}, folder / "run", OpeningRule::most_negative, ties);
                 const RunVerification run = verify_run(folder / "run");

@@ -27,8 +27,8 @@ struct RandomRun {
 
     [[nodiscard]] std::string text() const {
         return fmt::format("{} disks, rule {}, level {}, ties {}{}, {} segments, states_every {}, killed at {}",
-                           start.packing.disk_count(), opening_rule_words[static_cast<std::size_t>(options.rule)],
-                           to_string(options.certify), tie_policy_words[static_cast<std::size_t>(options.ties)],
+                           start.packing.disk_count(), word_of(options.rule, opening_rule_words),
+                           to_string(options.certify), word_of(options.ties, tie_policy_words),
                            options.chooses() || !options.at_first_order() ? "" : " nothing", segments.size(),
                            states_every, killed_at);
     }
@@ -155,11 +155,10 @@ class Keeper final : public RunObserver {
 inline RunHeader header_of(const RandomRun& run) {
     RunHeader header;
     header.program = "test";
-    header.settings =
-        fmt::format(R"({{"run":{{"rule":"{}","rule_seed":{},"certify":"{}","ties":"{}","max_choices":{}}}}})",
-                    opening_rule_words[static_cast<std::size_t>(run.options.rule)], run.options.rule_seed,
-                    to_string(run.options.certify), tie_policy_words[static_cast<std::size_t>(run.options.ties)],
-                    run.options.max_choices);
+    header.settings = fmt::format(
+        R"({{"run":{{"rule":"{}","rule_seed":{},"certify":"{}","ties":"{}","max_choices":{}}}}})",
+        word_of(run.options.rule, opening_rule_words), run.options.rule_seed, to_string(run.options.certify),
+        word_of(run.options.ties, tie_policy_words), run.options.max_choices);
     header.touching = run.options.at_first_order();
     header.programme.assign(run.segments.size(), "a segment");
     header.states_every = run.states_every;

@@ -328,7 +328,7 @@ BOOST_AUTO_TEST_CASE(contacts_of_a_sphere_carry_where_exact_linear_programming_s
         for (std::size_t k = 0; k < places.size(); ++k) {
             contacts.emplace_back(ContactKind::disk_disk, 0, static_cast<int>(k + 1));
         }
-        const auto peeled = isostat::crafted::peel_in_space(star(places), contacts);
+        const auto peeled = isostat::crafted::peel(star(places), contacts);
         for (std::size_t m = 1; m <= places.size(); ++m) {
             bool any = false;
             for (std::size_t l = 0; l < m; ++l) {
@@ -365,5 +365,5 @@ BOOST_AUTO_TEST_CASE(a_packing_of_another_program_is_isostatic_in_its_widest_ran
 BOOST_AUTO_TEST_CASE(two_spheres_at_one_place_are_refused) {
     const Packing packing = star({{{1, 0, 0}}, {{1, 0, 0}}});
     const std::vector<Contact> contacts{{ContactKind::disk_disk, 1, 2}};
-    BOOST_CHECK_THROW(isostat::crafted::peel_in_space(packing, contacts), isostat::Error);
+    BOOST_CHECK_THROW(isostat::crafted::peel(packing, contacts), isostat::Error);
 }

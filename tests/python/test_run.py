@@ -113,6 +113,15 @@ class Runs(Folder):
         self.assertEqual(caught.exception.id, "no_limit")
         self.assertEqual(run.status, "failed")
 
+    def test_a_shear_that_flows_is_a_failure_of_its_own(self):
+        start = isostat.State.from_arrays(
+            [[0.25, 0.5]], [1.0], [2, np.sqrt(3)], [(0, 0, (1, 0)), (0, 0, (0, 1)), (0, 0, (1, -1))],
+            periodic=(True, True), moves=("x", "y", "xy"), tilt=1.0, shear=0.5,
+        )
+        with self.assertRaises(isostat.Flows) as caught:
+            isostat.Run({"programme": [{"do": "down", "to": 0.1}]}, start=start).play()
+        self.assertEqual(caught.exception.id, "flows")
+
     def test_bad_scenes_and_taken_folders(self):
         with self.assertRaisesRegex(isostat.BadInput, "no_such_key"):
             isostat.Run({"packing": {"disks": 10, "no_such_key": 1}, "programme": []})

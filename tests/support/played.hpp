@@ -17,9 +17,9 @@ using isostat::Segment;
 
 /// As run.json has them.
 inline std::string settings(const RunOptions& options) {
-    isostat::json::Json run{{"rule", isostat::opening_rule_words[static_cast<std::size_t>(options.rule)]},
+    isostat::json::Json run{{"rule", isostat::word_of(options.rule, isostat::opening_rule_words)},
                             {"certify", isostat::to_string(options.certify)},
-                            {"ties", isostat::tie_policy_words[static_cast<std::size_t>(options.ties)]},
+                            {"ties", isostat::word_of(options.ties, isostat::tie_policy_words)},
                             {"ties_seed", options.ties_seed}};
     if (options.rule == isostat::OpeningRule::random) { // nothing else reads it
         run["rule_seed"] = options.rule_seed;

@@ -96,8 +96,12 @@ class SeriesReader {
 /// - refuted: the true vertex of the list has a negative force or an overlap, proved, and no vertex was found downhill;
 /// - undecided: none of these was shown.
 enum class FrameStatus : unsigned char { same, early, late, other, soft, moving, file, refuted, undecided };
-inline constexpr int frame_statuses = 9;
-const char* to_string(FrameStatus status);
+inline constexpr auto frame_status_words =
+    words_of<FrameStatus>("same", "early", "late", "other", "soft", "moving", "file", "refuted", "undecided");
+constexpr const char* to_string(FrameStatus status) {
+    return word_of(status, frame_status_words);
+}
+inline constexpr int frame_statuses = frame_status_words.size();
 
 /// One frame. Numbers that were not found are NaN, missing numbers of equilibria -1.
 struct FrameResult {

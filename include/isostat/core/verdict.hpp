@@ -4,8 +4,8 @@
 /// type keeps callers from using the third as one of the others.
 
 #include <isostat/core/machine.hpp>
+#include <isostat/core/words.hpp>
 
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -21,9 +21,9 @@ namespace isostat {
 enum class Verdict : std::uint8_t { proved, refuted, undecided };
 
 /// The words used in records and messages.
-inline constexpr std::array verdict_words{"proved", "refuted", "undecided"};
+inline constexpr auto verdict_words = words_of<Verdict>("proved", "refuted", "undecided");
 constexpr std::string_view to_string(Verdict verdict) {
-    return verdict_words[static_cast<std::size_t>(verdict)];
+    return word_of(verdict, verdict_words);
 }
 
 /// The arithmetic that settled a decision, in the order in which it is tried.
@@ -34,9 +34,9 @@ constexpr std::string_view to_string(Verdict verdict) {
 enum class Rung : std::uint8_t { combinatorial, double_bound, double_double, multiprecision, exact, none };
 
 /// The words used in records and messages.
-inline constexpr std::array rung_words{"combinatorial", "double", "double-double", "mpfr", "exact", "none"};
+inline constexpr auto rung_words = words_of<Rung>("combinatorial", "double", "double-double", "mpfr", "exact", "none");
 constexpr std::string_view to_string(Rung rung) {
-    return rung_words[static_cast<std::size_t>(rung)];
+    return word_of(rung, rung_words);
 }
 
 /// The exact value lies in [value - radius, value + radius]. With a NaN nothing is known.

@@ -3,9 +3,9 @@
 /// Packings of disks and of spheres written by other programs.
 
 #include <isostat/contact/state.hpp>
+#include <isostat/core/words.hpp>
 #include <isostat/packing/packing.hpp>
 
-#include <array>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -38,7 +38,7 @@ struct RowsWith {
 /// the last upper wall: where all forces are positive, this changes all by one factor
 /// and changes no N_f, h or k (as `Cell::keeps_shape`); - `fixed`: all walls are fixed.
 enum class ForeignWalls { none, box, square, fixed };
-inline constexpr std::array foreign_walls_words{"none", "box", "square", "fixed"};
+inline constexpr auto foreign_walls_words = words_of<ForeignWalls>("none", "box", "square", "fixed");
 
 /// What the file does not say, stated by the user. The reader guesses none of these.
 struct ForeignOptions {

@@ -2,9 +2,9 @@
 /// \file
 /// The folder of a run: at every instant it holds all records up to the last one, complete.
 
+#include <isostat/core/words.hpp>
 #include <isostat/trajectory/trajectory.hpp>
 
-#include <array>
 #include <chrono>
 #include <filesystem>
 #include <map>
@@ -61,7 +61,7 @@ enum class FolderMode {
     force, ///< also one of the same kind: files with the fixed names of such a folder are removed first
     resume ///< goes on; `Error(bad_input)` when the folder holds nothing of this kind
 };
-inline constexpr std::array folder_mode_words{"fresh", "force", "resume"};
+inline constexpr auto folder_mode_words = words_of<FolderMode>("fresh", "force", "resume");
 
 /// Receives the records of a run and writes them immediately. Files (all of them JSON except equilibria.csv):
 /// - run.json: what was asked, by which program, and the status ("running" until `finish`);

@@ -6,8 +6,8 @@
 #include <isostat/certificate/certify.hpp>
 #include <isostat/contact/state.hpp>
 #include <isostat/core/result.hpp>
+#include <isostat/core/words.hpp>
 
-#include <array>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -19,7 +19,7 @@ namespace isostat::compare {
 /// - linear: force = stiffness x overlap; - hertz: stiffness x overlap^(3/2) x sqrt(R_i R_j / (R_i + R_j)), at a wall
 ///   sqrt(R_i); - none: the law is not stated, forces are taken as they are.
 enum class ForceLaw : unsigned char { linear, hertz, none };
-inline constexpr std::array force_law_words{"linear", "hertz", "none"};
+inline constexpr auto force_law_words = words_of<ForceLaw>("linear", "hertz", "none");
 
 /// Largest |force - stiffness overlap|, in mean forces, at which forces count as agreeing with the law.
 inline constexpr double force_agreement = 1e-3;

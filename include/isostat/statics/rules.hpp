@@ -5,8 +5,8 @@
 
 #include <isostat/contact/state.hpp>
 #include <isostat/core/verdict.hpp>
+#include <isostat/core/words.hpp>
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -21,7 +21,8 @@ namespace isostat {
 /// decide only when no finite force is negative.
 enum class OpeningRule : std::uint8_t { most_negative, random, least_negative, least_index };
 /// The words of scenes, in the order of `OpeningRule`.
-inline constexpr std::array opening_rule_words{"most_negative", "random", "least_negative", "least_index"};
+inline constexpr auto opening_rule_words =
+    words_of<OpeningRule>("most_negative", "random", "least_negative", "least_index");
 
 /// What a decision was based on when first-order terms do not decide, under `ties = "choose"` (statement C1).
 enum class TieChoice : unsigned char {
@@ -31,9 +32,9 @@ enum class TieChoice : unsigned char {
     zero,   ///< what vanishes in the base counts as 0: such a force opens nothing, such a gap stays watched
     watched ///< a gap of 0 stays watched though radii R + eps rho would have closed it on the way
 };
-inline constexpr std::array tie_choice_words{"none", "infinitesimal loads", "names", "zero", "watched"};
+inline constexpr auto tie_choice_words = words_of<TieChoice>("none", "infinitesimal loads", "names", "zero", "watched");
 constexpr const char* to_string(TieChoice choice) {
-    return tie_choice_words[static_cast<std::size_t>(choice)];
+    return word_of(choice, tie_choice_words);
 }
 
 /// One decision that a first-order comparison settled: the quantities cannot be told apart in the base, but their

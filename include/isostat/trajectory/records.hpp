@@ -5,6 +5,7 @@
 #include <isostat/contact/state.hpp>
 #include <isostat/core/result.hpp>
 #include <isostat/core/verdict.hpp>
+#include <isostat/core/words.hpp>
 #include <isostat/motion/arc_certificate.hpp>
 #include <isostat/statics/rules.hpp>
 
@@ -21,9 +22,9 @@ namespace isostat {
 /// How an arc begins: the first arc of a rearrangement, at the limit load; a contact with a negative force opens; one
 /// with a negative force under the infinitesimal loads alone (only rattlers move); a held coordinate is released.
 enum class ArcKind { limit, tension, rattler, release };
-inline constexpr std::array arc_kind_words{"limit", "tension", "rattler", "release"};
+inline constexpr auto arc_kind_words = words_of<ArcKind>("limit", "tension", "rattler", "release");
 constexpr std::string_view to_string(ArcKind kind) {
-    return arc_kind_words[static_cast<std::size_t>(kind)];
+    return word_of(kind, arc_kind_words);
 }
 
 /// One arc: a contact opens, the grains follow the mechanism until a contact closes or the power of the load vanishes.
@@ -111,10 +112,10 @@ enum class DecisionKind : unsigned char {
     opening,    ///< which contact opens: an arc was started with this contact
     equilibrium ///< whether every force is positive, both ends of the supported interval, what opens there
 };
-inline constexpr std::array decision_kind_words{"gaps", "power", "opening", "equilibrium"};
+inline constexpr auto decision_kind_words = words_of<DecisionKind>("gaps", "power", "opening", "equilibrium");
 inline constexpr int decision_kinds = decision_kind_words.size();
 constexpr std::string_view to_string(DecisionKind kind) {
-    return decision_kind_words[static_cast<std::size_t>(kind)];
+    return word_of(kind, decision_kind_words);
 }
 
 /// How much of a run is proved.
@@ -124,9 +125,9 @@ constexpr std::string_view to_string(DecisionKind kind) {
 /// - arcs: in addition each arc is enclosed between its events (`certify_arc`). An arc that is not certified does not
 ///   stop the run: it is counted and its record says why.
 enum class CertifyLevel : unsigned char { decisions, states, arcs };
-inline constexpr std::array certify_level_words{"decisions", "states", "arcs"};
+inline constexpr auto certify_level_words = words_of<CertifyLevel>("decisions", "states", "arcs");
 constexpr const char* to_string(CertifyLevel level) {
-    return certify_level_words[static_cast<std::size_t>(level)];
+    return word_of(level, certify_level_words);
 }
 
 /// Equilibria counted by the verdict of their certificates (from level `states` on).

@@ -5,11 +5,11 @@
 
 #include <isostat/contact/state.hpp>
 #include <isostat/core/result.hpp>
+#include <isostat/core/words.hpp>
 #include <isostat/rigidity/counting.hpp>
 #include <isostat/statics/rules.hpp>
 #include <isostat/trajectory/records.hpp>
 
-#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -40,7 +40,7 @@ struct Segment {
 ///   recorded. The path is then one of several possible paths of the packing as it is, eps = 0.
 enum class TiePolicy : unsigned char { stop, choose };
 /// The words of scenes, in the order of `TiePolicy`.
-inline constexpr std::array tie_policy_words{"stop", "choose"};
+inline constexpr auto tie_policy_words = words_of<TiePolicy>("stop", "choose");
 
 /// Caps and choices of a run.
 struct RunOptions {
@@ -111,7 +111,7 @@ Result<std::vector<double>> mechanism(const State& state, const Contact& opened)
 /// What a segment of the programme does to the stress ratio sigma_2 / sigma_1 (shear / sigma_2 where the tilt is
 /// loaded, t / p_0 on a path).
 enum class Action { up, down, to };
-inline constexpr std::array action_words{"up", "down", "to"};
+inline constexpr auto action_words = words_of<Action>("up", "down", "to");
 
 /// One segment as a scene names it ([[programme]] entry): its goal is a ratio instead of a stress.
 struct ProgrammeStep {

@@ -70,6 +70,7 @@ from ._words import (
     Contradiction,
     Error,
     Failure,
+    Flows,
     InternalError,
     Interrupted,
     NoLimit,

@@ -30,10 +30,6 @@ def _quoted(value: Any) -> str:
 
 
 def _row(values: Iterable[Any]) -> str:
-    return "[" + ", ".join(_quoted(value) for value in values) + "]"
-
-
-def _row_or_none(values: Iterable[Any]) -> str:
     return "[" + ", ".join('"none"' if value is None else _quoted(value) for value in values) + "]"
 
 
@@ -88,10 +84,6 @@ def exact_packing(
     disk_force : rows (disk, Fx, Fy), of spheres (disk, Fx, Fy, Fz)
         External forces on grains.
 
-    Returns
-    -------
-    ExactPacking
-
     Raises
     ------
     BadInput
@@ -112,11 +104,11 @@ def exact_packing(
             lines.append("fixed = true")
     if length is not None:
         free = [value is None for value in length]  # an axis that repeats, or has no walls
-        lines += ["[box]", f"length = {_row_or_none(length)}"]
+        lines += ["[box]", f"length = {_row(length)}"]
         lines.append(f"lower = {_words(lower or ['absent' if none else 'fixed' for none in free])}")
         lines.append(f"upper = {_words(upper or ['absent' if none else 'movable' for none in free])}")
     if period is not None:
-        lines += ["[cell]", f"period = {_row_or_none(period)}", f"tilt = {_one_or_row(tilt, axes)}"]
+        lines += ["[cell]", f"period = {_row(period)}", f"tilt = {_one_or_row(tilt, axes)}"]
         lines += [f"moves = {_words(moves)}", f"pin = {pin}"]
     elif moves or tilt_force is not None:
         raise BadInput("moves and tilt_force belong to a cell: expected `period` too")

@@ -318,10 +318,6 @@ def load(path: str | os.PathLike[str]) -> Records:
     ----------
     path : folder
 
-    Returns
-    -------
-    Records
-
     Raises
     ------
     BadInput

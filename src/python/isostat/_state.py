@@ -101,10 +101,6 @@ def from_arrays(
     tilt, shear : of a cell, x of the second period and the shear stress on it; of spheres three, xy, xz, yz
     pin : of a cell, the grain that stays where it is
 
-    Returns
-    -------
-    State
-
     Raises
     ------
     BadInput

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import enum
+import re
 
 
 class Verdict(enum.Enum):
@@ -29,106 +30,85 @@ class Error(Exception):
     Attributes
     ----------
     id : str
-        The library's word for the reason: ``"bad_input"``, ``"tie"``, ...
+        The library's word for the reason, that of the class: ``"bad_input"``, ``"tie"``, ...
     """
 
     id = "error"
+
+    def __init_subclass__(cls) -> None:
+        word = re.sub("(?<=[a-z])(?=[A-Z])", "_", cls.__name__.removesuffix("Error")).lower()
+        cls.id = vars(cls).get("id", word)
 
 
 class UsageError(Error):
     """Something was asked for that cannot be: a folder holds a run already."""
 
-    id = "usage"
-
 
 class BadInput(Error, ValueError):
     """Bad input; the message names file, line or field, the value, and what was expected."""
-
-    id = "bad_input"
 
 
 class NotStored(BadInput, KeyError):
     """The state of an equilibrium is not in the folder of its run."""
 
+    id = BadInput.id
     __str__ = BadInput.__str__
 
 
 class InternalError(Error, RuntimeError):
     """A defect of the program or of this computer. Says nothing of the input."""
 
-    id = "internal"
-
 
 class CannotWrite(Error, OSError):
     """A file cannot be written."""
-
-    id = "cannot_write"
 
 
 class Failure(Error):
     """An outcome of the mechanics or of the arithmetic, with the numbers that were measured."""
 
-    id = "failure"
-
 
 class NotIsostatic(Failure):
     """N != N_f, or the rank is smaller."""
-
-    id = "not_isostatic"
 
 
 class Overlap(Failure):
     """Two grains overlap."""
 
-    id = "overlap"
-
 
 class Tie(Failure):
     """Two candidates could not be ordered: several contacts at once."""
-
-    id = "tie"
 
 
 class Undecided(Failure):
     """A sign could not be decided with the arithmetic that was allowed."""
 
-    id = "undecided"
-
 
 class NoLimit(Failure):
     """The load can grow for ever: nothing opens."""
 
-    id = "no_limit"
+
+class Flows(Failure):
+    """A dead shear force moves the tilt of a cell without end."""
 
 
 class Unbounded(Failure):
     """A motion finds no new contact, or a linear programme is unbounded."""
 
-    id = "unbounded"
-
 
 class NotConverged(Failure):
     """An iteration stopped short."""
-
-    id = "not_converged"
 
 
 class CapReached(Failure):
     """A cap on arcs or strain: the sample fails at this load."""
 
-    id = "cap_reached"
-
 
 class Contradiction(Failure):
     """What was proved in one way is refuted in another: a defect of the program."""
 
-    id = "contradiction"
-
 
 class Interrupted(Failure):
     """Stopped on request."""
-
-    id = "interrupted"
 
 
 _errors = {64: UsageError, 65: BadInput, 70: InternalError, 74: CannotWrite}

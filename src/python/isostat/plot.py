@@ -1,4 +1,7 @@
-"""Pictures with matplotlib: packings with forces and mechanisms, staircases, increments."""
+"""Pictures with matplotlib: packings with forces and mechanisms, staircases, increments.
+
+Each draws in the axes `ax`, or in those of a new figure, and returns them.
+"""
 
 from __future__ import annotations
 
@@ -140,11 +143,6 @@ def packing(
     mechanism : (N_f,) float, optional
         Velocities of the degrees of freedom (`isostat.mechanism`); the longest arrow has the mean radius. In a cell
         those of the disks themselves: images also move with the periods.
-    ax : matplotlib axes, optional
-
-    Returns
-    -------
-    matplotlib axes
     """
     if state.positions.shape[1] != 2:
         raise BadInput("a packing of spheres: expected disks (isostat export writes ParaView files of spheres)")
@@ -215,11 +213,6 @@ def comparison(compared, ax: Optional[Axes] = None) -> Axes:
     ----------
     compared : Comparison
         From `isostat.compare`.
-    ax : matplotlib axes, optional
-
-    Returns
-    -------
-    matplotlib axes
     """
     ax = _axes(ax)
     path, frames = compared.path, compared.frames
@@ -275,11 +268,6 @@ def staircase(run: Records, ax: Optional[Axes] = None) -> Axes:
     ----------
     run : Records
         From `isostat.load`. Each segment of the programme has a line style of its own.
-    ax : matplotlib axes, optional
-
-    Returns
-    -------
-    matplotlib axes
     """
     ax = _axes(ax)
     strains, ratios, names = _curve(run)
@@ -312,11 +300,6 @@ def increments(run: Records, quantity: str = "strain", ax: Optional[Axes] = None
     quantity : "strain" or "stress"
         |eps_2' - eps_2| of each rearrangement; or |sigma_2' - sigma_2| / sigma_1 between the rearrangements of a
         segment (the first one of a segment has none).
-    ax : matplotlib axes, optional
-
-    Returns
-    -------
-    matplotlib axes
     """
     ax = _axes(ax)
     values = np.sort(increment_values(run, quantity))
@@ -337,11 +320,6 @@ def force_distribution(*forces: np.ndarray, ax: Optional[Axes] = None) -> Axes:
     *forces : arrays
         One for each packing (`isostat.inspect(state).forces`); each is divided by its own mean. Numbers that are 0 or
         below, of contacts without force, are left out.
-    ax : matplotlib axes, optional
-
-    Returns
-    -------
-    matplotlib axes
     """
     ax = _axes(ax)
     carrying = [np.asarray(of, float)[np.asarray(of) > 0] for of in forces]

@@ -69,12 +69,14 @@ for (let e = 0; e < events?.equilibrium.length; ++e) {
 const relisted = new Map(); // of an equilibrium: the list in the order of its state
 const listCache = new Map();
 
+const openedBy = (event) => [events.opened[2 * event], events.opened[2 * event + 1]];
+const closedBy = (event) => [events.closed[2 * event], events.closed[2 * event + 1]];
+
 function exchange(list, event) {
-  const [i, j] = [events.opened[2 * event], events.opened[2 * event + 1]];
+  const [i, j] = openedBy(event);
   for (let l = 0; l < list.length; l += 2) {
     if (list[l] === i && list[l + 1] === j) {
-      list[l] = events.closed[2 * event];
-      list[l + 1] = events.closed[2 * event + 1];
+      [list[l], list[l + 1]] = closedBy(event);
       return;
     }
   }
@@ -123,7 +125,7 @@ const pairOf = (number) => [Math.floor(number / most), number % most - 9];
 /// What opened and closed to come here: in the arc, or in the whole rearrangement.
 function changesAt(frame) {
   const number = recorded.equilibrium[frame], event = recorded.event[frame];
-  if (number < 0) return { opened: [[events.opened[2 * event], events.opened[2 * event + 1]]], closed: [[events.closed[2 * event], events.closed[2 * event + 1]]] };
+  if (number < 0) return { opened: [openedBy(event)], closed: [closedBy(event)] };
   const before = rows.previous[number] >= 0 ? contactsOf(rows.previous[number]) : null, after = contactsOf(number);
   if (!before || !after || relisted.has(number)) return { opened: [], closed: [] };
   const was = new Set(pairs(before)), is = new Set(pairs(after));
@@ -246,6 +248,19 @@ function placed(canvas, q) {
   return { pen, frame, scale, x: (u) => left + scale * u, y: (v) => low - scale * v, width, height };
 }
 
+function addLines(pen, lines) {
+  for (const [a, b, c, d] of lines) {
+    pen.moveTo(a, b);
+    pen.lineTo(c, d);
+  }
+}
+
+function strokeLines(pen, lines) {
+  pen.beginPath();
+  addLines(pen, lines);
+  pen.stroke();
+}
+
 /// Draws many small shapes, some at a time: long paths are slow.
 function inParts(count, pen, add, finish) {
   const part = 100;
@@ -316,13 +331,7 @@ function drawContacts(at, place, list, forces) {
   for (const [width, members] of groups) {
     at.pen.strokeStyle = width > 0 ? colour.force : colour.contact;
     at.pen.lineWidth = width > 0 ? Math.max(0.3, mean * width / recorded.parts) : 0.4;
-    const add = (k) => {
-      const l = members[k];
-      for (const [a, b, c, d] of segments(at, place, list[2 * l], list[2 * l + 1])) {
-        at.pen.moveTo(a, b);
-        at.pen.lineTo(c, d);
-      }
-    };
+    const add = (k) => addLines(at.pen, segments(at, place, list[2 * members[k]], list[2 * members[k] + 1]));
     inParts(members.length, at.pen, add, () => at.pen.stroke());
   }
 }
@@ -330,16 +339,11 @@ function drawContacts(at, place, list, forces) {
 function drawChange(at, place, [i, j], style, dash) {
   if (i < 0 || j === -9) return;
   for (const [ink, width] of [["#fff", 7], [style, 4]]) {
-    at.pen.beginPath();
-    for (const [a, b, c, d] of segments(at, place, i, j)) {
-      at.pen.moveTo(a, b);
-      at.pen.lineTo(c, d);
-    }
     at.pen.setLineDash(ink === "#fff" ? [] : dash);
     at.pen.lineCap = "butt";
     at.pen.strokeStyle = ink;
     at.pen.lineWidth = width;
-    at.pen.stroke();
+    strokeLines(at.pen, segments(at, place, i, j));
   }
   at.pen.setLineDash([]);
 }
@@ -371,12 +375,9 @@ function drawWalls(at, q) {
   const sides = [[lower[0], 0, down, 0, up], [lower[1], left, 0, right, 0], [upper[0], w, down, w, up], [upper[1], left, h, right, h]];
   for (const [kind, a, b, c, d] of sides) {
     if (kind === "absent") continue;
-    at.pen.beginPath();
-    at.pen.moveTo(at.x(a), at.y(b));
-    at.pen.lineTo(at.x(c), at.y(d));
     at.pen.strokeStyle = kind === "fixed" ? "#222" : "#8f8f8f";
     at.pen.lineWidth = 3;
-    at.pen.stroke();
+    strokeLines(at.pen, [[at.x(a), at.y(b), at.x(c), at.y(d)]]);
   }
   const corners = cornersOf(q);
   at.pen.setLineDash([8, 5]);
@@ -385,10 +386,7 @@ function drawWalls(at, q) {
   for (let side = 0; side < 4; ++side) { // sides 0 and 2 are along x: they repeat along y
     if (!periodic[(side + 1) % 2]) continue;
     const [[a, b], [c, d]] = [corners[side], corners[(side + 1) % 4]];
-    at.pen.beginPath();
-    at.pen.moveTo(at.x(a), at.y(b));
-    at.pen.lineTo(at.x(c), at.y(d));
-    at.pen.stroke();
+    strokeLines(at.pen, [[at.x(a), at.y(b), at.x(c), at.y(d)]]);
   }
   at.pen.setLineDash([]);
 }
@@ -448,12 +446,12 @@ function drawAxes(pen, width, height) {
   const across = niceTicks(chart.x0 / unit, chart.x1 / unit, Math.max(2, width / 110)), up = niceTicks(chart.y0, chart.y1, Math.max(2, height / 60));
   pen.textAlign = "center";
   for (const t of across.ticks) {
-    pen.beginPath(); pen.moveTo(chart.x(t * unit), chart.top); pen.lineTo(chart.x(t * unit), height - chart.low); pen.stroke();
+    strokeLines(pen, [[chart.x(t * unit), chart.top, chart.x(t * unit), height - chart.low]]);
     pen.fillText(t.toFixed(across.digits), chart.x(t * unit), height - chart.low + 15);
   }
   pen.textAlign = "right";
   for (const t of up.ticks) {
-    pen.beginPath(); pen.moveTo(chart.left, chart.y(t)); pen.lineTo(width - chart.right, chart.y(t)); pen.stroke();
+    strokeLines(pen, [[chart.left, chart.y(t), width - chart.right, chart.y(t)]]);
     pen.fillText(t.toFixed(up.digits), chart.left - 6, chart.y(t) + 4);
   }
   pen.fillText(`strain ${run.words.strain}` + (unit === 1 ? "" : ` (10${[...String(power)].map((c) => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(c)]).join("")})`), width - chart.right, height - 5);
@@ -547,7 +545,7 @@ function fillArcs(k) {
   const begin = end - first > mostArcs ? Math.max(first, Math.min(chosen - mostArcs / 2, end - mostArcs)) : first, stop = Math.min(end, begin + mostArcs);
   const lines = [];
   for (let e = begin; e < stop; ++e) {
-    const line = row([events.arc[e], events.kind[e], contactName([events.opened[2 * e], events.opened[2 * e + 1]]), contactName([events.closed[2 * e], events.closed[2 * e + 1]]), sci(events.eps2[e], 6), short(events.displacement[e], 3)], [1]);
+    const line = row([events.arc[e], events.kind[e], contactName(openedBy(e)), contactName(closedBy(e)), sci(events.eps2[e], 6), short(events.displacement[e], 3)], [1]);
     if (e === chosen) line.className = "here";
     const frame = recorded.event.indexOf(e);
     line.addEventListener("click", () => frame >= 0 && show(frame));
@@ -564,7 +562,7 @@ function describe() {
   const longest = arrows >= 0 ? ` Longest arrow: ${short(recorded.longest[arrows], 3)}.` : "";
   if (number >= 0) return `Equilibrium ${number}: ${run.words.ratio} = ${short(rows.ratio[number], 9)}, ${run.words.strain} = ${short(rows.eps2[number], 6)}, ${rows.arcs[number] === 1 ? "1 arc" : rows.arcs[number] + " arcs"} led here.` + longest;
   const [first, end] = eventsOf.get(events.equilibrium[event]);
-  return `Towards equilibrium ${events.equilibrium[event]}, end of arc ${events.arc[event]} of ${end - first}: ${contactName([events.opened[2 * event], events.opened[2 * event + 1]])} opened, ${contactName([events.closed[2 * event], events.closed[2 * event + 1]])} closed, ${run.words.strain} = ${short(events.eps2[event], 6)}.` + longest;
+  return `Towards equilibrium ${events.equilibrium[event]}, end of arc ${events.arc[event]} of ${end - first}: ${contactName(openedBy(event))} opened, ${contactName(closedBy(event))} closed, ${run.words.strain} = ${short(events.eps2[event], 6)}.` + longest;
 }
 
 // --- going about -----------------------------------------------------------------------------------------------------

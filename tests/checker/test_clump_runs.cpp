@@ -80,6 +80,17 @@ BOOST_AUTO_TEST_CASE(closed_forms_of_dimers_run_and_are_proved) {
     }
 }
 
+/// The last equilibrium supports every load, though by their patterns most forces could change with it.
+BOOST_AUTO_TEST_CASE(a_run_of_dimers_is_proved_up_to_the_column_that_supports_every_load) {
+    const scratch::Folder folder;
+    const SegmentOutcome outcome = played::into(folder / "run", at_the_start(test::clumps("dimer_20_2")), {towards(30)},
+                                                {.max_strain = 1e9}, true);
+    BOOST_TEST_REQUIRE(outcome.failure.has_value());
+    BOOST_TEST((outcome.failure->kind == FailureKind::no_limit), outcome.failure->message());
+    const RunVerification run = played::proved(folder / "run");
+    BOOST_TEST(run.equilibria_proved > 10);
+}
+
 /// What differs in the body makes another run: of a state file the bars are compared with those of the replay.
 BOOST_AUTO_TEST_CASE(a_stored_state_with_another_bar_is_refuted) {
     const scratch::Folder folder;

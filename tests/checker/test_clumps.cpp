@@ -44,6 +44,14 @@ Certificate with_a_vague_form(const Certificate& certificate) {
 
 BOOST_AUTO_TEST_SUITE(checker)
 
+/// A side wall that one body touches bears what the other one does, whatever presses on the top.
+BOOST_AUTO_TEST_CASE(an_end_without_limit_is_proved_where_only_the_balance_of_the_whole_keeps_a_force) {
+    const Certificate certificate = of_clumps(notch(1, 2));
+    BOOST_TEST_REQUIRE(certificate.claims.load_interval.has_value());
+    BOOST_TEST(certificate.claims.load_interval->high.unbounded);
+    BOOST_TEST((verdict_on(read_and_verified(certificate), "load_interval") == Verdict::proved));
+}
+
 BOOST_AUTO_TEST_CASE(what_is_certified_of_clumps_verifies) {
     for (const char* const name : {"dimer_20_1", "dimer2_20_2", "trimer_20_1", "trimer_20_3"}) {
         BOOST_TEST_CONTEXT(name) {

@@ -51,4 +51,33 @@ BOOST_AUTO_TEST_CASE(what_vanishes_is_told_by_indices_and_by_equal_radii_on_one_
     BOOST_TEST(bottom_of_second(side_by_side(1, 1), true));
 }
 
+/// Two disks at the right wall, one on the other, and the lower one at the left wall: all but the left wall may bear
+/// what the top wall does, by the entries of the matrix.
+BOOST_AUTO_TEST_CASE(sums_along_an_axis_show_that_a_wall_with_one_contact_bears_the_load_of_the_other_wall) {
+    const State state = in_box({{1, 1, 1}, {0.75, 1.25, 2.75}}, 2, 3.5, 1, 1,
+                               {left(0), bottom(0), pair(0, 1), right(0), right(1), top(1)});
+    const auto structure = crafted::Regular::proved(state);
+    const DofMap& dofs = structure.dofs();
+    const ContactPattern pattern(state.packing, structure);
+    std::vector<double> guess;
+    std::vector<unsigned char> all_but_the_left;
+    std::vector<unsigned char> all_but_the_top;
+    for (const Contact& c : state.contacts) {
+        guess.push_back(c == pair(0, 1) ? 1 : 0.5);
+        all_but_the_left.push_back(c == left(0) ? 0 : 1);
+        all_but_the_top.push_back(c == top(1) ? 0 : 1);
+    }
+    const std::vector<int> top_wall{dofs.dof_of(5)};
+    const std::vector<int> right_wall{dofs.dof_of(4)};
+    BOOST_TEST(pattern.carrying(top_wall) == std::vector<unsigned char>(6, 1));
+    BOOST_TEST(pattern.carrying_by_sums(dofs, top_wall, guess) == all_but_the_left);
+    // Under the load of the right wall the top has no other contact, as the bottom has none.
+    BOOST_TEST(pattern.carrying(right_wall) == all_but_the_top);
+    all_but_the_top[1] = 0;
+    BOOST_TEST((state.contacts[1] == bottom(0)));
+    const std::vector<unsigned char> level = pattern.carrying_by_sums(dofs, right_wall, guess);
+    BOOST_TEST(level[0] == 1);
+    BOOST_TEST(level[1] == 0);
+}
+
 BOOST_AUTO_TEST_SUITE_END()

@@ -52,6 +52,17 @@ inline State lying_dimer(double f1, double f2) {
                                  f1, f2));
 }
 
+/// A disk in the notch of a dimer that lies between the side walls, 3-4-5. It bears 5 F_2 / 8 at both members, which
+/// bear F_2 / 2 at the bottom. The side walls bear F_1, whatever F_2 is: the left one by the balance of the whole
+/// alone.
+inline State notch(double f1, double f2) {
+    return clumps_of(fmt::format(R"({{"format": "isostat-state", "version": 2, "length": [5, 4.5],
+        "load": {{"stress": [{}, {}], "reference_length": [1, 1]}}, "bars": [[0, 1, 3]],
+        "disks": [[1, 1, 1], [4, 1, 1], [2.5, 3, 1.5]],
+        "contacts": [[0, "left"], [0, "bottom"], [1, "bottom"], [1, "right"], [0, 2], [1, 2], [2, "top"]]}})",
+                                 f1, f2));
+}
+
 /// A disk between four walls with a member inside that touches nothing: it turns about the centre of the disk.
 inline State disk_with_a_dangling_member() {
     return clumps_of(R"({"format": "isostat-state", "version": 2, "length": [2, 2],

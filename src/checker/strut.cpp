@@ -179,14 +179,9 @@ bool same_at_turn(const Place& place, std::size_t a, std::size_t b) {
 
 namespace {
 
-/// S4 is for the plane, and for single grains.
-bool has_struts(const Packing& packing) {
-    return packing.dimension == plane && packing.bars.empty();
-}
-
 std::vector<bool> without_force(const Place& place, const std::vector<int>& loose) {
     const State& state = *place.state;
-    if (!has_struts(state.packing)) {
+    if (state.packing.dimension != plane) {
         return std::vector<bool>(state.contacts.size(), false);
     }
     const Bare bare(place, loose);
@@ -255,7 +250,7 @@ std::optional<int> strut_order(const Place& place, std::size_t a, std::size_t b)
     const State& state = *place.state;
     const Contact& first = state.contacts[a];
     const Contact& second = state.contacts[b];
-    if (first.kind == ContactKind::held || second.kind == ContactKind::held || !has_struts(state.packing)) {
+    if (first.kind == ContactKind::held || second.kind == ContactKind::held || state.packing.dimension != plane) {
         return std::nullopt;
     }
     const Bare bare(place, {});

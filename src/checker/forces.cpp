@@ -264,20 +264,20 @@ int free_of_others(const Problem& problem, const std::vector<int>& contacts, con
                            [&listed](int l) { return listed[static_cast<std::size_t>(l)]; });
     };
     int count = 0;
-    std::array<int, most_axes> free_along{};
+    std::array<bool, most_axes> some_left{}; // per axis: of its degrees of freedom some do not count
     std::array<bool, most_axes> loaded_along{};
     for (std::size_t j = 0; j < problem.acting_on.size(); ++j) {
         const bool loaded = load[j].lower != 0 || load[j].upper != 0;
         const bool counts = !loaded && free(problem.acting_on[j]);
         count += counts ? 1 : 0;
-        if (const int a = problem.axis_of(j); a >= 0) {
-            free_along[static_cast<std::size_t>(a)] += counts ? 1 : 0;
-            loaded_along[static_cast<std::size_t>(a)] = loaded_along[static_cast<std::size_t>(a)] || loaded;
+        if (const int axis = problem.axis_of(j); axis >= 0) {
+            const auto a = static_cast<std::size_t>(axis);
+            some_left[a] = some_left[a] || !counts;
+            loaded_along[a] = loaded_along[a] || loaded;
         }
     }
-    for (std::size_t a = 0; a < problem.immovable.size(); ++a) { // independent unless all others of the axis count
-        const Problem::Immovable& along = problem.immovable[a];
-        count += !loaded_along[a] && free(along.acting) && free_along[a] < along.movable ? 1 : 0;
+    for (std::size_t a = 0; a < problem.immovable.size(); ++a) { // the sum of all others of the axis
+        count += some_left[a] && !loaded_along[a] && free(problem.immovable[a].acting) ? 1 : 0;
     }
     return count;
 }

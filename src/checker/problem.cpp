@@ -359,15 +359,10 @@ int Problem::axis_of(std::size_t dof) const {
 
 void Problem::find_immovable(const State& state) {
     for (std::size_t a = 0; a < layout.axes(); ++a) {
-        immovable.push_back({state.packing.cell.periodic[a], 0, {}});
+        immovable.push_back({state.packing.cell.periodic[a], {}});
     }
     if (state.packing.cell.any()) {
         most_touched = most_touched_of(state.contacts, layout.disks);
-    }
-    for (std::size_t j = 0; j < coordinate_of.size(); ++j) {
-        if (const int a = axis_of(j); a >= 0) {
-            ++immovable[static_cast<std::size_t>(a)].movable;
-        }
     }
     for (std::size_t l = 0; l < rows.size(); ++l) {
         std::array<int, most_axes> sum{}; // along an axis all entries of a row are one number, up to a sign

@@ -117,7 +117,6 @@ class Problem : public Structure {
     /// coordinates. Its balance is minus the sum of all that can (K7).
     struct Immovable {
         bool periodic = false;
-        int movable = 0;         ///< degrees of freedom of disks and of a wall along the axis
         std::vector<int> acting; ///< contacts with what cannot move
     };
     std::vector<Immovable> immovable;

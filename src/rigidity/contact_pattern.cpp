@@ -14,8 +14,6 @@ namespace isostat {
 
 namespace {
 
-using roundoff::infinity;
-
 /// A coordinate that a disk has at every true vertex: `value`, or for `upper` that much below the upper wall. Two
 /// disks with equal levels have the same coordinate along `axis`.
 struct Level {
@@ -214,9 +212,9 @@ std::vector<unsigned char> ContactPattern::carrying_by_sums(const DofMap& dofs, 
                                                             std::span<const double> sizes) const {
     const View pattern = for_load(rows);
     std::array<int, most_axes + 1> replaced{-1, -1, -1, -1};
-    std::array<double, most_axes + 1> largest{-1, -1, -1, infinity};
+    std::array<double, most_axes + 1> largest{-1, -1, -1, roundoff::infinity};
     for (const int row : rows) {
-        largest[axis_of(dofs, row)] = infinity; // the sum is loaded too: nothing is gained
+        largest[axis_of(dofs, row)] = roundoff::infinity; // the sum is loaded too: nothing is gained
     }
     const auto for_each_entry = [&](std::size_t l, const auto& visit) {
         for (int k = pattern.start[l]; k < pattern.start[l + 1]; ++k) {

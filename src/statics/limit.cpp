@@ -159,7 +159,7 @@ Result<std::optional<std::size_t>> LimitContest::stand(std::size_t best) {
     limit_.tie_class.clear();
     in_class_.assign(contacts_.size(), 0);
     add_to_class(first);
-    for (const EqualForce& equal : equal_in_edge(statics_, first)) {
+    for (const EqualForce& equal : equal_by_place(statics_, first)) {
         add_to_class(equal.contact);
     }
     return std::optional(best);

@@ -92,6 +92,7 @@ class Statics {
     /// max |H f - F| as computed for the finite part at sigma.
     [[nodiscard]] double residual(double sigma) const;
 
+    [[nodiscard]] const Packing& packing() const { return *packing_; }
     [[nodiscard]] const IsostaticStructure& structure() const { return *structure_; }
     [[nodiscard]] const Factorisation& factorisation() const { return *factorisation_; }
     [[nodiscard]] const InverseBound& inverse() const { return *inverse_; }

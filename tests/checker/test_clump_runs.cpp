@@ -7,6 +7,8 @@
 #include <isostat/certificate/certify.hpp>
 #include <isostat/checker/verify.hpp>
 
+#include <utility>
+
 using namespace isostat;
 using json::Json;
 
@@ -89,6 +91,20 @@ BOOST_AUTO_TEST_CASE(a_run_of_dimers_is_proved_up_to_the_column_that_supports_ev
     BOOST_TEST((outcome.failure->kind == FailureKind::no_limit), outcome.failure->message());
     const RunVerification run = played::proved(folder / "run");
     BOOST_TEST(run.equilibria_proved > 10);
+}
+
+/// Of two contacts that bear one force the infinitesimal loads take one: of a body between them at a power turn (S4),
+/// and of the members of a dimer that lies level (S7). The checker finds the same order.
+BOOST_AUTO_TEST_CASE(runs_are_proved_where_two_contacts_of_a_body_bear_one_force) {
+    for (const auto& [name, equilibria] : {std::pair("dimer2_20_8", 1), std::pair("dimer_20_5", 7)}) {
+        BOOST_TEST_CONTEXT(name) {
+            const scratch::Folder folder;
+            const SegmentOutcome outcome = played::into(folder / "run", at_the_start(test::clumps(name)),
+                                                        {towards(equilibria)}, {.max_strain = 1e9}, true);
+            BOOST_REQUIRE_MESSAGE(outcome.completed, (outcome.failure ? outcome.failure->message() : ""));
+            (void)played::proved(folder / "run");
+        }
+    }
 }
 
 /// What differs in the body makes another run: of a state file the bars are compared with those of the replay.

@@ -1,5 +1,6 @@
 // Decisions of the statics: classes, ties, rules, and the ladder of precision.
 #include "statics/decisions.hpp"
+#include "statics/equal_forces.hpp"
 #include "support/clumps.hpp"
 #include "support/crafted.hpp"
 #include "support/loaded.hpp"
@@ -215,6 +216,38 @@ BOOST_AUTO_TEST_CASE(a_force_that_the_balance_of_the_whole_keeps_constant_gives_
     const auto up = find_limit(notch.statics, 2, +1);
     BOOST_TEST_REQUIRE(up.ok(), (up.ok() ? "" : up.failure().message()));
     BOOST_TEST(up.value().unbounded);
+}
+
+/// A dimer of equal members that lies level hands on what presses at both, in equal parts: a tie for the digits.
+BOOST_AUTO_TEST_CASE(two_members_that_lie_level_bear_one_force_and_the_infinitesimal_loads_order_them) {
+    const auto mates = [](const State& state) {
+        AtVertex at(state);
+        const auto found = std::find(at.state.contacts.begin(), at.state.contacts.end(), pair(0, 2));
+        std::vector<Contact> equal;
+        for (const EqualForce& e :
+             equal_by_place(at.statics, ContactId(static_cast<std::size_t>(found - at.state.contacts.begin())))) {
+            equal.push_back(at.contact(e.contact));
+        }
+        return equal;
+    };
+    const State perch = isostat::test::perch(1, 1, 3);
+    BOOST_TEST((mates(perch) == std::vector<Contact>{pair(1, 2)}));
+    BOOST_TEST(mates(isostat::test::notch(1, 1)).empty()); // the side walls press on the dimer
+    State unequal = perch;
+    unequal.packing.radius[1] += 0x1p-53;
+    BOOST_TEST(mates(unequal).empty());
+    State pushed = perch;
+    pushed.load.disk_force[2] = 0x1p-40;
+    BOOST_TEST(mates(pushed).empty());
+    for (const double pull : {-1.0, 1.0}) { // on the dimer: the member that the load presses to the disk stays
+        State state = perch;
+        state.load.infinitesimal = {pull, 0, 0, 0, 0, 0};
+        AtVertex at(state);
+        const OpeningDecision opens = required(decide_opening(at.statics, 1, OpeningRule::most_negative, {}, 0));
+        BOOST_TEST_REQUIRE(opens.opening.has_value());
+        BOOST_TEST(opens.opening->equal_forces);
+        BOOST_TEST((at.contact(opens.opening->contact) == pair(pull < 0 ? 0 : 1, 2)));
+    }
 }
 
 /// Random lists of contacts, at random places: disks, of which one may be fixed, one contact at the left wall, and

@@ -63,6 +63,16 @@ inline State notch(double f1, double f2) {
                                  f1, f2));
 }
 
+/// A disk between side walls and top, that stands on a dimer of equal members, 5-12-13: it bears 13 (F_2 - lift) / 24
+/// at both, as nothing else presses on the dimer along the bottom.
+inline State perch(double f1, double f2, double lift) {
+    return clumps_of(fmt::format(R"({{"format": "isostat-state", "version": 2, "length": [5.5, 6.25],
+        "load": {{"stress": [{}, {}], "reference_length": [1, 1]}}, "bars": [[0, 1, 2.5]],
+        "disks": [[1.5, 0.5, 0.5], [4, 0.5, 0.5], [2.75, 3.5, 2.75]], "disk_force": [[0, 0], [0, 0], [0, {}]],
+        "contacts": [[2, "left"], [2, "right"], [2, "top"], [0, 2], [1, 2], [0, "bottom"], [1, "bottom"]]}})",
+                                 f1, f2, lift));
+}
+
 /// A disk between four walls with a member inside that touches nothing: it turns about the centre of the disk.
 inline State disk_with_a_dangling_member() {
     return clumps_of(R"({"format": "isostat-state", "version": 2, "length": [2, 2],

@@ -52,15 +52,15 @@ inline State lying_dimer(double f1, double f2) {
                                  f1, f2));
 }
 
-/// A disk in the notch of a dimer that lies between the side walls, 3-4-5. It bears 5 F_2 / 8 at both members, which
-/// bear F_2 / 2 at the bottom. The side walls bear F_1, whatever F_2 is: the left one by the balance of the whole
-/// alone.
+/// A disk in the notch of a dimer that lies between the side walls: radii 5/4 and 1, at a distance of 3/2 to either
+/// side and sqrt(45)/4 above. The side walls bear F_1, whatever F_2 is: the left one by the balance of the whole alone.
 inline State notch(double f1, double f2) {
-    return clumps_of(fmt::format(R"({{"format": "isostat-state", "version": 2, "length": [5, 4.5],
+    const double above = std::sqrt(45.0) / 4;
+    return clumps_of(fmt::format(R"({{"format": "isostat-state", "version": 2, "length": [5, {:.17g}],
         "load": {{"stress": [{}, {}], "reference_length": [1, 1]}}, "bars": [[0, 1, 3]],
-        "disks": [[1, 1, 1], [4, 1, 1], [2.5, 3, 1.5]],
+        "disks": [[1, 1, 1], [4, 1, 1], [2.5, {:.17g}, 1.25]],
         "contacts": [[0, "left"], [0, "bottom"], [1, "bottom"], [1, "right"], [0, 2], [1, 2], [2, "top"]]}})",
-                                 f1, f2));
+                                 2.25 + above, f1, f2, 1 + above));
 }
 
 /// A disk between side walls and top, that stands on a dimer of equal members, 5-12-13: it bears 13 (F_2 - lift) / 24

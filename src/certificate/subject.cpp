@@ -2,26 +2,15 @@
 
 namespace isostat {
 
-namespace {
-
-std::vector<unsigned char> zeros(const ContactPattern& pattern, const std::vector<int>& loaded) {
-    std::vector<unsigned char> zero = pattern.carrying(loaded);
-    for (unsigned char& z : zero) {
-        z = z == 0 ? 1 : 0;
-    }
-    return zero;
-}
-
-} // namespace
-
 Subject::Subject(const State& s, const IsostaticStructure& structure)
     : state(s), dofs(structure.dofs()), pattern(s.packing, structure), loaded_rows(s.load.loaded_rows(s.packing, dofs)),
       changing_rows(s.load.changing_rows(s.packing, dofs)) {
     std::vector<int> all = loaded_rows;
     all.insert(all.end(), changing_rows.begin(), changing_rows.end()); // also when their stress is 0 now
-    zero = zeros(pattern, all);
-    zero_slope =
-        changing_rows.empty() ? std::vector<unsigned char>(s.contacts.size(), 1) : zeros(pattern, changing_rows);
+    zero = pattern.carrying(all);
+    for (unsigned char& z : zero) {
+        z = z == 0 ? 1 : 0;
+    }
 }
 
 std::vector<int> Subject::vanish_with(int opens) const {

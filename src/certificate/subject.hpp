@@ -18,10 +18,9 @@ class Subject {
     const State& state;
     const DofMap& dofs;
     ContactPattern pattern;
-    std::vector<int> loaded_rows;          ///< that carry a finite load whatever the loaded stress is
-    std::vector<int> changing_rows;        ///< that the loaded stress presses on
-    std::vector<unsigned char> zero;       ///< per contact: the finite force is a structural zero
-    std::vector<unsigned char> zero_slope; ///< per contact: the slope is one
+    std::vector<int> loaded_rows;    ///< that carry a finite load whatever the loaded stress is
+    std::vector<int> changing_rows;  ///< that the loaded stress presses on
+    std::vector<unsigned char> zero; ///< per contact: the finite force is a structural zero
 
     [[nodiscard]] int size() const { return static_cast<int>(state.contacts.size()); }
     /// Contacts whose finite force vanishes at the same load as that of `opens`, for structural reasons (D3). `opens`

@@ -81,6 +81,8 @@ template <class T> class TrueVertexAt final : public TrueVertex {
     [[nodiscard]] bool limits(int l) const { return subject_.state.contacts[index(l)].is_unilateral(); }
     /// Of the force in contact l when the load goes in the direction.
     double rate(int l, int direction) { return direction * A::rounded(unit_load().value[index(l)]); }
+    /// That rate is exactly 0.
+    bool steady(int l);
     std::string open_rate(int l);
     LoadEndAnswer without_end(int direction);
     std::string vanishes_before(int first, const std::vector<int>& members, const T& t, double error);
@@ -96,6 +98,7 @@ template <class T> class TrueVertexAt final : public TrueVertex {
     double claimed_radius_ = infinity;
     double claimed_unique_radius_ = 0;
     std::optional<Solution> present_, unit_, infinitesimal_;
+    std::vector<unsigned char> sloped_; ///< of contacts, on first use: by the pattern, the force depends on the load
 };
 
 template <class T> void TrueVertexAt<T>::claim_radii() {
@@ -258,6 +261,17 @@ template <class T> std::vector<Interval> TrueVertexAt<T>::infinitesimal() {
     return around(infinitesimal_solution());
 }
 
+template <class T> bool TrueVertexAt<T>::steady(int l) {
+    if (sloped_.empty()) {
+        std::vector<double> slopes;
+        for (const T& slope : unit_load().value) {
+            slopes.push_back(A::rounded(slope));
+        }
+        sloped_ = subject_.pattern.carrying_by_sums(subject_.dofs, subject_.changing_rows, slopes);
+    }
+    return sloped_[index(l)] == 0;
+}
+
 template <class T> std::string TrueVertexAt<T>::open_rate(int l) {
     return fmt::format("the force in contact {} changes with the load at a rate of {:.3g}, proved to {:.3g}", name(l),
                        rate(l, +1), unit_load().bound);
@@ -266,7 +280,7 @@ template <class T> std::string TrueVertexAt<T>::open_rate(int l) {
 template <class T> LoadEndAnswer TrueVertexAt<T>::without_end(int direction) {
     const double bound = unit_load().bound;
     for (int l = 0; l < subject_.size(); ++l) {
-        if (limits(l) && subject_.zero_slope[index(l)] == 0 && !(rate(l, direction) > bound * (1 + 4 * u))) {
+        if (limits(l) && !steady(l) && !(rate(l, direction) > bound * (1 + 4 * u))) {
             return {{}, open_rate(l)};
         }
     }
@@ -288,7 +302,7 @@ std::string TrueVertexAt<T>::vanishes_before(int first, const std::vector<int>& 
         skip[index(l)] = 1;
     }
     for (int l = 0; l < subject_.size(); ++l) {
-        if (skip[index(l)] != 0 || subject_.zero_slope[index(l)] != 0 || !limits(l)) {
+        if (skip[index(l)] != 0 || steady(l) || !limits(l)) {
             continue;
         }
         const T product = slope.value[index(l)] * t;
@@ -328,7 +342,7 @@ template <class T> LoadEndAnswer TrueVertexAt<T>::load_end(int direction) {
         force.value.size(), [&](std::size_t l) { return A::rounded(force.value[l]); },
         [&](std::size_t l) {
             const int of = static_cast<int>(l);
-            return limits(of) && subject_.zero_slope[l] == 0 ? rate(of, direction) : 0.0;
+            return limits(of) && !steady(of) ? rate(of, direction) : 0.0;
         });
     if (!vanishing) {
         return without_end(direction);

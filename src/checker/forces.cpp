@@ -264,21 +264,20 @@ int free_of_others(const Problem& problem, const std::vector<int>& contacts, con
                            [&listed](int l) { return listed[static_cast<std::size_t>(l)]; });
     };
     int count = 0;
-    std::array<int, most_axes> free_disks{}; // per axis
-    bool on_disks = false;
+    std::array<bool, most_axes> some_left{}; // per axis: of its degrees of freedom some do not count
+    std::array<bool, most_axes> loaded_along{};
     for (std::size_t j = 0; j < problem.acting_on.size(); ++j) {
         const bool loaded = load[j].lower != 0 || load[j].upper != 0;
-        const int coordinate = problem.coordinate_of[j];
-        const bool of_disk = problem.of_disk(coordinate);
-        on_disks = on_disks || (loaded && of_disk);
-        if (!loaded && free(problem.acting_on[j])) {
-            ++count;
-            free_disks[at(coordinate) % problem.layout.axes()] += of_disk ? 1 : 0;
+        const bool counts = !loaded && free(problem.acting_on[j]);
+        count += counts ? 1 : 0;
+        if (const int axis = problem.axis_of(j); axis >= 0) {
+            const auto a = static_cast<std::size_t>(axis);
+            some_left[a] = some_left[a] || !counts;
+            loaded_along[a] = loaded_along[a] || loaded;
         }
     }
-    // The balance of the pinned disk follows from the others; any one of all those of an axis does (C1 in cells.md).
-    for (const Problem::Pinned& along : problem.pinned) {
-        count += !on_disks && free(along.acting) && free_disks[along.axis] + 1 < problem.layout.disks ? 1 : 0;
+    for (std::size_t a = 0; a < problem.immovable.size(); ++a) { // the sum of all others of the axis
+        count += some_left[a] && !loaded_along[a] && free(problem.immovable[a].acting) ? 1 : 0;
     }
     return count;
 }

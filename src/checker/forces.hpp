@@ -23,8 +23,8 @@ Forces infinitesimal_load(const Problem& problem, const State& state);
 std::vector<Range> contact_forces(const Problem& problem, const Solver& solver, const InverseBound& inverse,
                                   const TrueVertex& vertex, const Forces& load);
 
-/// The number of degrees of freedom without load that no contact outside a set touches. In a cell whose disks carry no
-/// load the pinned disk counts too, as long as its balance is independent of the counted ones.
+/// The number of degrees of freedom without load that no contact outside a set touches. Along an axis without loads
+/// what cannot move counts too, as long as its balance is independent of the counted ones.
 int free_of_others(const Problem& problem, const std::vector<int>& contacts, const Forces& load);
 
 /// The forces of these contacts are exactly 0 under the load (K7). False proves nothing.

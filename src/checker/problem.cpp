@@ -326,7 +326,7 @@ void Problem::find_contacts_of(const State& state) {
             change[j] += row.quadratic ? static_cast<unsigned long>(std::abs(row.sign[k]) * spread[row.axis[k]]) : 0UL;
         }
     }
-    find_pinned(state);
+    find_immovable(state);
     column_curvature_ = change.empty() ? 0 : *std::max_element(change.begin(), change.end());
 }
 
@@ -348,21 +348,33 @@ int most_touched_of(const std::vector<Contact>& contacts, int disks) {
 
 } // namespace
 
-void Problem::find_pinned(const State& state) {
-    const Cell& cell = state.packing.cell;
+int Problem::axis_of(std::size_t dof) const {
+    const auto coordinate = static_cast<std::size_t>(coordinate_of[dof]);
+    if (coordinate < layout.of_length(0)) {
+        return static_cast<int>(coordinate % layout.axes());
+    }
+    const std::size_t axis = coordinate - layout.of_length(0);
+    return axis < layout.axes() && !immovable[axis].periodic ? static_cast<int>(axis) : -1;
+}
+
+void Problem::find_immovable(const State& state) {
     for (std::size_t a = 0; a < layout.axes(); ++a) {
-        if (!cell.periodic[a]) {
-            continue;
+        immovable.push_back({state.packing.cell.periodic[a], {}});
+    }
+    if (state.packing.cell.any()) {
+        most_touched = most_touched_of(state.contacts, layout.disks);
+    }
+    for (std::size_t l = 0; l < rows.size(); ++l) {
+        std::array<int, most_axes> sum{}; // along an axis all entries of a row are one number, up to a sign
+        for (std::size_t k = 0; k < static_cast<std::size_t>(rows[l].count); ++k) {
+            const int dof = dof_of[static_cast<std::size_t>(rows[l].coordinate[k])];
+            if (const int a = dof < 0 ? -1 : axis_of(static_cast<std::size_t>(dof)); a >= 0) {
+                sum[static_cast<std::size_t>(a)] += rows[l].sign[k];
+            }
         }
-        most_touched = most_touched < 0 ? most_touched_of(state.contacts, layout.disks) : most_touched;
-        Pinned& along = pinned.emplace_back(Pinned{a, {}});
-        for (std::size_t l = 0; l < rows.size(); ++l) {
-            const Contact& c = state.contacts[l];
-            const bool on = c.i == cell.pin || (c.of_disks() && c.j == cell.pin);
-            const bool holds =
-                c.kind == ContactKind::held && of_disk(c.i) && static_cast<std::size_t>(c.i) % layout.axes() == a;
-            if (holds || (on && c.of_disks() && c.i != c.j)) {
-                along.acting.push_back(static_cast<int>(l));
+        for (std::size_t a = 0; a < layout.axes(); ++a) {
+            if (sum[a] != 0) {
+                immovable[a].acting.push_back(static_cast<int>(l));
             }
         }
     }

@@ -113,14 +113,16 @@ class Problem : public Structure {
     /// The same without those whose entry is 0 at every true vertex: two disks that walls, holds or being fixed keep at
     /// one coordinate (proofs/definition.md).
     std::vector<std::vector<int>> acting_on;
-    /// In a cell: the same per coordinate of the pinned disk along a periodic axis. Coordinates of disks are held
-    /// relative to that disk, which bears what holds them.
-    struct Pinned {
-        std::size_t axis;
-        std::vector<int> acting;
+    /// Per axis: what cannot move along it, that is walls, fixed disks, or in a cell the pinned disk; and what holds
+    /// coordinates. Its balance is minus the sum of all that can (K7).
+    struct Immovable {
+        bool periodic = false;
+        std::vector<int> acting; ///< contacts with what cannot move
     };
-    std::vector<Pinned> pinned;
-    int most_touched = -1; ///< there: the disk with the most contacts, the first of them (C9 in proofs/cells.md)
+    std::vector<Immovable> immovable;
+    /// The axis along which a degree of freedom moves a disk or a wall; -1: a period or a tilt.
+    [[nodiscard]] int axis_of(std::size_t dof) const;
+    int most_touched = -1; ///< in a cell: the disk with the most contacts, the first of them (C9 in proofs/cells.md)
     long fine = 0;
     long spare = 0;
     int digits;           ///< bits beyond the stored ones in which the true vertex is sought
@@ -152,7 +154,7 @@ class Problem : public Structure {
 
   private:
     void find_contacts_of(const State& state);
-    void find_pinned(const State& state);
+    void find_immovable(const State& state);
     unsigned long row_curvature_ = 0;
     unsigned long column_curvature_ = 0;
 };

@@ -131,8 +131,8 @@ Objections check_order(const Place& place, const std::string& kind, std::size_t 
     } else if (kind != "rattler" && same_at_turn(place, opened, other)) {
         // Finite forces only show how the turn was rounded.
         sign = strut_order(place, other, opened).value_or(0);
-    } else if (kind != "rattler" && equal_in_edge(e, e.finite_load, place.zeros, other, opened)) {
-        const Range excess = e.infinitesimal()[other] - e.infinitesimal()[opened]; // S6
+    } else if (kind != "rattler" && equal_by_place(e, e.finite_load, place.zeros, other, opened)) {
+        const Range excess = e.infinitesimal()[other] - e.infinitesimal()[opened]; // S6, S7
         sign = excess.negative() ? -1 : excess.positive() ? 1 : 0;
         at_first_order = false;
     }

@@ -46,10 +46,10 @@ class Matching {
 /// The pattern with the disk of most contacts pinned: its degrees of freedom become those of the pinned disk (C9).
 std::vector<std::vector<int>> with_another_pin(const Problem& problem) {
     std::vector<std::vector<int>> contacts_of = problem.contacts_of;
-    for (const Problem::Pinned& along : problem.pinned) {
-        const int dof = problem.dof_of[problem.layout.of_disk(problem.most_touched) + along.axis];
-        if (dof >= 0) { // else it is the pinned disk
-            contacts_of[static_cast<std::size_t>(dof)] = along.acting;
+    for (std::size_t a = 0; a < problem.immovable.size(); ++a) {
+        const int dof = problem.dof_of[problem.layout.of_disk(problem.most_touched) + a];
+        if (problem.immovable[a].periodic && dof >= 0) { // else it is the pinned disk
+            contacts_of[static_cast<std::size_t>(dof)] = problem.immovable[a].acting;
         }
     }
     return contacts_of;
@@ -107,7 +107,7 @@ std::optional<std::vector<int>> zeros_of(const std::vector<std::vector<int>>& co
 
 std::optional<std::vector<int>> structural_zeros(const Problem& problem, const Forces& load) {
     std::optional<std::vector<int>> zeros;
-    if (!problem.pinned.empty() && !acts_on_disks(problem, load)) {
+    if (problem.most_touched >= 0 && !acts_on_disks(problem, load)) {
         zeros = zeros_of(with_another_pin(problem), problem.rows.size(), load);
     }
     return zeros ? zeros : zeros_of(problem.contacts_of, problem.rows.size(), load);

@@ -179,14 +179,9 @@ bool same_at_turn(const Place& place, std::size_t a, std::size_t b) {
 
 namespace {
 
-/// S4 is for the plane, and for single grains.
-bool has_struts(const Packing& packing) {
-    return packing.dimension == plane && packing.bars.empty();
-}
-
 std::vector<bool> without_force(const Place& place, const std::vector<int>& loose) {
     const State& state = *place.state;
-    if (!has_struts(state.packing)) {
+    if (state.packing.dimension != plane) {
         return std::vector<bool>(state.contacts.size(), false);
     }
     const Bare bare(place, loose);
@@ -255,7 +250,7 @@ std::optional<int> strut_order(const Place& place, std::size_t a, std::size_t b)
     const State& state = *place.state;
     const Contact& first = state.contacts[a];
     const Contact& second = state.contacts[b];
-    if (first.kind == ContactKind::held || second.kind == ContactKind::held || !has_struts(state.packing)) {
+    if (first.kind == ContactKind::held || second.kind == ContactKind::held || state.packing.dimension != plane) {
         return std::nullopt;
     }
     const Bare bare(place, {});
@@ -308,8 +303,6 @@ bool with_a_sphere_there(const std::vector<Contact>& contacts, const Contact& c,
     return c.of_disks() && touches(wall) && touches(other);
 }
 
-} // namespace
-
 bool equal_in_edge(const Evidence& evidence, const Forces& load, const std::vector<int>& zeros, std::size_t a,
                    std::size_t b) {
     const std::vector<Contact>& contacts = evidence.state.contacts;
@@ -337,6 +330,51 @@ bool equal_in_edge(const Evidence& evidence, const Forces& load, const std::vect
     return true;
 }
 
+bool equal_in_notch(const Evidence& evidence, const Forces& load, const std::vector<int>& zeros, std::size_t a,
+                    std::size_t b) {
+    const std::vector<Contact>& contacts = evidence.state.contacts;
+    const Packing& packing = evidence.state.packing;
+    const auto radius = [&](int m) { return packing.radius[static_cast<std::size_t>(m)]; };
+    for (const Bar& bar : packing.bars) {
+        const int grain = contacts[a].i == bar.i || contacts[a].i == bar.j ? contacts[a].j : contacts[a].i;
+        const Contact one = pair_of(bar.i, grain);
+        const Contact other = pair_of(bar.j, grain);
+        if (packing.dimension != plane || radius(bar.i) != radius(bar.j) ||
+            !((contacts[a] == one && contacts[b] == other) || (contacts[a] == other && contacts[b] == one))) {
+            continue;
+        }
+        const auto stands = [&](int member, const Contact& at) {
+            const Contact wall{at.kind, member, at.j};
+            return is_wall(at) && std::find(contacts.begin(), contacts.end(), wall) != contacts.end();
+        };
+        const auto alone = [&](int member, int axis) { // nothing else acts on it along the axis
+            const int dof = evidence.problem.dof_of[static_cast<std::size_t>(plane * member + axis)];
+            const auto row = static_cast<std::size_t>(dof);
+            const auto acts = [&](int l) {
+                const auto k = static_cast<std::size_t>(l);
+                return k != a && k != b && contacts[k] != Contact{ContactKind::bar, bar.i, bar.j} &&
+                       !contains(zeros, k);
+            };
+            return dof >= 0 && load[row].lower == 0 && load[row].upper == 0 &&
+                   std::none_of(evidence.problem.contacts_of[row].begin(), evidence.problem.contacts_of[row].end(),
+                                acts);
+        };
+        if (std::any_of(contacts.begin(), contacts.end(), [&](const Contact& at) {
+                return stands(bar.i, at) && stands(bar.j, at) && alone(bar.i, 1 - at.j) && alone(bar.j, 1 - at.j);
+            })) {
+            return true;
+        }
+    }
+    return false;
+}
+
+} // namespace
+
+bool equal_by_place(const Evidence& evidence, const Forces& load, const std::vector<int>& zeros, std::size_t a,
+                    std::size_t b) {
+    return equal_in_edge(evidence, load, zeros, a, b) || equal_in_notch(evidence, load, zeros, a, b);
+}
+
 bool vanish_with(const Evidence& evidence, const Forces& load, const std::vector<int>& contacts, std::size_t one) {
     const auto vary = [&](const std::vector<int>& some) {
         return some.size() == 1 || vary_together(evidence.problem, some, load);
@@ -348,7 +386,7 @@ bool vanish_with(const Evidence& evidence, const Forces& load, const std::vector
     std::vector<int> rest = contacts;
     return zeros &&
            std::erase_if(
-               rest, [&](int l) { return equal_in_edge(evidence, load, *zeros, one, static_cast<std::size_t>(l)); }) >
+               rest, [&](int l) { return equal_by_place(evidence, load, *zeros, one, static_cast<std::size_t>(l)); }) >
                0 &&
            vary(rest);
 }

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Ends of a straight strut at a power turn, and two walls that bear the same force in an edge of a box (statements S4
-/// and S6, proofs/stability.md).
+/// Ends of a straight strut at a power turn, and two walls that bear the same force in an edge of a box (statements S4,
+/// S6 and S7, proofs/stability.md).
 
 #include "checker/evidence.hpp"
 #include "checker/replay.hpp"
@@ -31,15 +31,16 @@ bool holds_may_explain(const Place& place, std::size_t a, std::size_t b);
 /// `turn_tolerance`. Nothing: the two do not cut off such a group.
 std::optional<int> strut_order(const Place& place, std::size_t a, std::size_t b);
 
-/// Whether the forces of two contacts are equal at the true vertex for every load that vanishes where `load` does: the
-/// two are walls of different axes at one movable sphere without load, and each other contact of the sphere that may
-/// bear a force is with a sphere at both of these walls, or does not press along either axis. `zeros`: contacts whose
-/// forces are 0 under that load.
-bool equal_in_edge(const Evidence& evidence, const Forces& load, const std::vector<int>& zeros, std::size_t a,
-                   std::size_t b);
+/// Whether the forces of two contacts are equal at the true vertex for every load that vanishes where `load` does. In
+/// an edge (S6): walls of different axes at one movable sphere without load, where each other contact of the sphere
+/// that may bear a force is with a sphere at both of these walls, or does not press along either axis. In a notch (S7):
+/// contacts of one grain with the members of a dimer of equal ones, level at a wall, where nothing else presses on the
+/// dimer along that wall. `zeros`: contacts whose forces are 0 under that load.
+bool equal_by_place(const Evidence& evidence, const Forces& load, const std::vector<int>& zeros, std::size_t a,
+                    std::size_t b);
 
 /// Whether the forces of all these contacts vanish together with that of `one`, which is one of them: they are
-/// multiples of each other by counting (K8), with or without the contacts in the edge of `one`.
+/// multiples of each other by counting (K8), with or without the contacts whose forces equal that of `one`.
 bool vanish_with(const Evidence& evidence, const Forces& load, const std::vector<int>& contacts, std::size_t one);
 
 } // namespace isostat::checker

@@ -2,8 +2,12 @@
 
 #include "contact/contact_set.hpp"
 #include "contact/separation.hpp"
+#include "core/roundoff.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
 #include <tuple>
 
 namespace isostat {
@@ -108,6 +112,15 @@ class Repinned {
     int is_ = -1;
 };
 
+/// The axis along which a degree of freedom moves a disk or a wall; `most_axes`: it moves a period or a tilt.
+std::size_t axis_of(const DofMap& dofs, int row) {
+    const Layout& layout = dofs.layout();
+    const auto coordinate = static_cast<std::size_t>(dofs.coordinate_of(row));
+    const std::size_t axis = coordinate % layout.axes();
+    const bool wall = coordinate >= layout.of_length(0);
+    return wall && (coordinate >= layout.of_length(layout.axes()) || dofs.is_periodic(axis)) ? most_axes : axis;
+}
+
 } // namespace
 
 std::vector<int> touched_rows(const DofMap& dofs, const Contact& contact) {
@@ -193,6 +206,53 @@ std::vector<unsigned char> ContactPattern::carrying_without(ContactId opens, std
         sparse::repaired_matching(pattern.matched, replaced_start, replaced_row, static_cast<int>(opens.index()));
     return repaired.empty() ? std::vector<unsigned char>(size, 1)
                             : sparse::structural_nonzeros(replaced_start, replaced_row, repaired, other_rows);
+}
+
+std::vector<unsigned char> ContactPattern::carrying_by_sums(const DofMap& dofs, std::span<const int> rows,
+                                                            std::span<const double> sizes) const {
+    const View pattern = for_load(rows);
+    std::array<int, most_axes + 1> replaced{-1, -1, -1, -1};
+    std::array<double, most_axes + 1> largest{-1, -1, -1, roundoff::infinity};
+    for (const int row : rows) {
+        largest[axis_of(dofs, row)] = roundoff::infinity; // the sum is loaded too: nothing is gained
+    }
+    const auto for_each_entry = [&](std::size_t l, const auto& visit) {
+        for (int k = pattern.start[l]; k < pattern.start[l + 1]; ++k) {
+            const int row = pattern.row[static_cast<std::size_t>(k)];
+            visit(row, axis_of(dofs, row));
+        }
+    };
+    for (std::size_t l = 0; l < sizes.size(); ++l) {
+        for_each_entry(l, [&](int row, std::size_t axis) {
+            if (std::abs(sizes[l]) > largest[axis]) {
+                largest[axis] = std::abs(sizes[l]);
+                replaced[axis] = row;
+            }
+        });
+    }
+    Parts sums;
+    for (std::size_t l = 0; l < sizes.size(); ++l) {
+        std::array<int, most_axes + 1> entries{};
+        for_each_entry(l, [&](int row, std::size_t axis) {
+            ++entries[axis];
+            if (row != replaced[axis]) {
+                sums.row.push_back(row);
+            }
+        });
+        for (std::size_t axis = 0; axis < most_axes; ++axis) {
+            if (entries[axis] == 1 && replaced[axis] >= 0) { // two entries are opposite, and cancel in the sum
+                sums.row.push_back(replaced[axis]);
+            }
+        }
+        sums.start.push_back(static_cast<int>(sums.row.size()));
+    }
+    sums.matched = sparse::perfect_matching(static_cast<int>(sizes.size()), sums.start, sums.row);
+    std::vector<unsigned char> nonzero = carrying(rows);
+    if (!sums.matched.empty()) {
+        const auto by_sums = sparse::structural_nonzeros(sums.start, sums.row, sums.matched, rows);
+        std::transform(by_sums.begin(), by_sums.end(), nonzero.begin(), nonzero.begin(), std::bit_and<>());
+    }
+    return nonzero;
 }
 
 } // namespace isostat

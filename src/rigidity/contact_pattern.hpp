@@ -40,6 +40,11 @@ class ContactPattern {
     /// that both forces vanish together (D3). All 1 when `opens` does not depend on that load.
     [[nodiscard]] std::vector<unsigned char> carrying_without(ContactId opens, std::span<const int> rows,
                                                               std::span<const int> other_rows) const;
+    /// `carrying` with one balance more along each axis that `rows` do not load: that of what cannot move, the sum of
+    /// all others of the axis (T11 (d)). A row of the axis makes room for this balance: of the contact with the largest
+    /// of `sizes`, guesses of the forces. A poor guess shows fewer zeros.
+    [[nodiscard]] std::vector<unsigned char> carrying_by_sums(const DofMap& dofs, std::span<const int> rows,
+                                                              std::span<const double> sizes) const;
 
   private:
     struct Parts {

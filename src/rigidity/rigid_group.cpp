@@ -78,16 +78,6 @@ bool moves_as_one(const DofMap& dofs, int disks, const std::vector<Contact>& amo
     return static_cast<int>(among.size()) == motions_to_hold(dofs, Group(disks, all));
 }
 
-bool carries_alone(const DofMap& dofs, const std::vector<Contact>& carrying, int axis) {
-    if (axis < 0 || axis >= plane || !unwound(dofs.disk_count(), carrying)) {
-        return false;
-    }
-    const Group group(dofs.disk_count(), carrying);
-    const auto a = static_cast<std::size_t>(axis);
-    return group.lower[a] && group.upper[a] && // excludes a translation along the load, and a rotation
-           static_cast<int>(carrying.size()) == motions_to_hold(dofs, group);
-}
-
 namespace {
 
 using Periods = std::array<int, 3>;

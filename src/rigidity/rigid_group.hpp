@@ -17,13 +17,6 @@ namespace isostat {
 /// \pre `pair` is not in `among`, and no pair occurs twice. Cost O(contacts + grains).
 bool moves_as_one(const DofMap& dofs, int disks, const std::vector<Contact>& among, const Contact& pair);
 
-/// The contacts `carrying` alone carry a load along `axis` on the upper wall of that axis: they join that wall to a
-/// fixed wall, and are as many as the degrees of freedom of the grains that they join, minus the motions that change
-/// none of their gaps, none of which moves the load (R3).
-/// If true, and the rows of a regular list that contains `carrying` are independent: the forces that balance the load
-/// vanish on all other contacts. False proves nothing. \pre no contact is in `carrying` twice. Cost as above.
-bool carries_alone(const DofMap& dofs, const std::vector<Contact>& carrying, int axis);
-
 /// The same contacts after every disk is replaced by one of its images so that no contact goes to another image: a
 /// change of coordinates x_i + A k_i. Nothing where a cycle of contacts winds around the cell, or where a contact is a
 /// held coordinate. Cost O(contacts + disks); without images O(contacts).

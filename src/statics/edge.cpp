@@ -1,6 +1,7 @@
 #include "statics/equal_forces.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace isostat {
 
@@ -51,14 +52,67 @@ bool moves_without_load(const Statics& statics, int sphere) {
     return moves && std::none_of(rows.begin(), rows.end(), of_sphere);
 }
 
-} // namespace
+/// Two members of one size, which are a whole body, and their contacts with one grain.
+struct Notch {
+    const Statics& statics;
+    int i, j;
+    ContactId one, other;
+
+    [[nodiscard]] bool is_member(int m) const { return m == i || m == j; }
+    /// Both touch a wall of the other axis; along this one they move without load, and only the two contacts press.
+    [[nodiscard]] bool lies_level(int axis) const {
+        const std::vector<Contact>& contacts = statics.structure().contacts();
+        const DofMap& dofs = statics.structure().dofs();
+        bool level = false;
+        for (std::size_t l = 0; l < contacts.size(); ++l) {
+            const Contact& c = contacts[l];
+            const ContactId id(l);
+            Contact mirror = c;
+            mirror.i = j;
+            level = level || (is_wall(c) && c.i == i && c.j != axis &&
+                              std::find(contacts.begin(), contacts.end(), mirror) != contacts.end());
+            const bool along = is_wall(c) ? c.j == axis : c.kind != ContactKind::held || c.i % plane == axis;
+            const bool first = is_member(c.kind == ContactKind::held ? c.i / plane : c.i);
+            const bool second = c.of_disks() && is_member(c.j);
+            const bool own = c.kind == ContactKind::bar && first && second;
+            if ((first || second) && along && !own && id != one && id != other && !statics.is_structural_zero(id)) {
+                return false;
+            }
+        }
+        const auto moves = [&](int m) { return dofs.dof_of(static_cast<std::size_t>(plane * m + axis)) >= 0; };
+        return level && moves(i) && moves(j) && moves_without_load(statics, i) && moves_without_load(statics, j);
+    }
+};
+
+std::vector<EqualForce> equal_in_notch(const Statics& statics, ContactId of) {
+    const std::vector<Contact>& contacts = statics.structure().contacts();
+    const std::vector<double>& radius = statics.packing().radius;
+    const Contact& c = contacts[of.index()];
+    std::vector<EqualForce> equal;
+    for (const Bar& bar : statics.packing().bars) {
+        for (const auto& [i, j] : {std::pair(bar.i, bar.j), std::pair(bar.j, bar.i)}) {
+            const int k = c.i == i ? c.j : c.i;
+            if (c != pair_of(i, k) || statics.is_structural_zero(of) ||
+                radius[static_cast<std::size_t>(i)] != radius[static_cast<std::size_t>(j)]) {
+                continue;
+            }
+            const auto found = std::find(contacts.begin(), contacts.end(), pair_of(j, k));
+            const ContactId mate(static_cast<std::size_t>(found - contacts.begin()));
+            const Notch notch{statics, i, j, of, mate};
+            if (found != contacts.end() && (notch.lies_level(0) || notch.lies_level(1))) {
+                equal.push_back({mate, statics.infinitesimal(mate) - statics.infinitesimal(of)});
+            }
+        }
+    }
+    return equal;
+}
 
 std::vector<EqualForce> equal_in_edge(const Statics& statics, ContactId of) {
     const std::vector<Contact>& contacts = statics.structure().contacts();
     const int dimension = statics.structure().dofs().layout().dimension;
     const Contact& one = contacts[of.index()];
     std::vector<EqualForce> equal;
-    if (dimension == plane || !is_wall(one) || statics.is_structural_zero(of) || !moves_without_load(statics, one.i)) {
+    if (!is_wall(one) || statics.is_structural_zero(of) || !moves_without_load(statics, one.i)) {
         return equal;
     }
     for (std::size_t k = 0; k < contacts.size(); ++k) {
@@ -77,6 +131,12 @@ std::vector<EqualForce> equal_in_edge(const Statics& statics, ContactId of) {
         }
     }
     return equal;
+}
+
+} // namespace
+
+std::vector<EqualForce> equal_by_place(const Statics& statics, ContactId of) {
+    return statics.packing().dimension == plane ? equal_in_notch(statics, of) : equal_in_edge(statics, of);
 }
 
 } // namespace isostat

@@ -1,6 +1,6 @@
 #pragma once
-// Contacts that carry the same force: two walls in an edge of a box (statement S6, proofs/stability.md), and the
-// contacts of a strut whose disks are in a straight line at a power turn (S4).
+// Contacts that carry the same force: two walls in an edge of a box (statement S6, proofs/stability.md), two members of
+// one body that lie level (S7), and the contacts of a strut whose disks are in a straight line at a power turn (S4).
 
 #include "statics/decisions.hpp"
 #include "statics/statics.hpp"
@@ -16,10 +16,10 @@ struct EqualForce {
     Enclosure excess; ///< its force minus the other one, per unit of the infinitesimal loads
 };
 
-/// The wall of another axis whose force on the same sphere is that of `of` at the true vertex, for every load and all
-/// radii (S6); at most two. Empty in the plane, and when the force of `of` is a structural zero. Cost: O(N), O(1)
-/// when `of` is no wall.
-[[nodiscard]] std::vector<EqualForce> equal_in_edge(const Statics& statics, ContactId of);
+/// Contacts whose forces are that of `of` at the true vertex, for every load. In space the wall of another axis at the
+/// same sphere (S6), for all radii, at most two. In the plane the contact of one grain with the other member of a dimer
+/// of equal ones that lies level at a wall (S7). Empty when the force of `of` is a structural zero. Cost: O(N).
+[[nodiscard]] std::vector<EqualForce> equal_by_place(const Statics& statics, ContactId of);
 
 /// A vertex where coordinates are held without a finite force. Uses the graph of the contacts and their normals; the
 /// only forces used are the infinitesimal ones of `zero.others`. Cost: two depth-first searches, O(N), and as much

@@ -1,5 +1,4 @@
 #include "core/roundoff.hpp"
-#include "rigidity/rigid_group.hpp"
 #include "statics/contender.hpp"
 #include "statics/first_to_vanish.hpp"
 
@@ -52,7 +51,6 @@ class LimitContest final : public Contest {
   private:
     /// Proved sign of the rate of a force in the direction: from the enclosure, or from the ladder.
     Order rate_sign(ContactId l);
-    [[nodiscard]] bool carried_by_others(const Enclosure& slope) const;
     [[nodiscard]] Failure open_rate(ContactId l, const Order& order) const;
     [[nodiscard]] Named name_of(ContactId l) const { return name(statics_, l); }
     /// Largest slope, the scale for zero slopes.
@@ -80,31 +78,11 @@ Order LimitContest::rate_sign(ContactId l) {
     }
     Order order{true, slope.positive() ? 1 : -1, slope.margin(), statics_.rung(), statics_.bits()};
     if (!slope.decided()) {
-        order = carried_by_others(slope) ? Order{true, 0, infinity, Rung::combinatorial, 0}
-                                         : statics_.sign(statics_.slope_expression(l));
+        order = statics_.slope_cancels(l) ? Order{true, 0, infinity, Rung::combinatorial, 0}
+                                          : statics_.sign(statics_.slope_expression(l));
     }
     order.sign *= direction_;
     return order;
-}
-
-/// Whether the contacts that carry the whole change of the load, as doubles separate them, pass the count (R3).
-bool LimitContest::carried_by_others(const Enclosure& slope) const {
-    constexpr double nothing = 1e-15; // of the largest: a guess; a wrong selection makes the count fail
-    const double least = nothing * slope_size();
-    if (!(slope.radius < least)) {
-        return false;
-    }
-    std::vector<Contact> carrying;
-    for (std::size_t l = 0; l < contacts_.size(); ++l) {
-        if (std::abs(statics_.slope(ContactId(l)).value) > least) {
-            carrying.push_back(contacts_[l]);
-        }
-    }
-    const DofMap& dofs = statics_.structure().dofs();
-    const std::vector<int>& rows = statics_.changing_rows();
-    return rows.size() == 1 &&
-           carries_alone(dofs, carrying,
-                         dofs.coordinate_of(rows.front()) - dofs.layout().dimension * dofs.disk_count());
 }
 
 Failure LimitContest::open_rate(ContactId l, const Order& order) const {
@@ -181,7 +159,7 @@ Result<std::optional<std::size_t>> LimitContest::stand(std::size_t best) {
     limit_.tie_class.clear();
     in_class_.assign(contacts_.size(), 0);
     add_to_class(first);
-    for (const EqualForce& equal : equal_in_edge(statics_, first)) {
+    for (const EqualForce& equal : equal_by_place(statics_, first)) {
         add_to_class(equal.contact);
     }
     return std::optional(best);

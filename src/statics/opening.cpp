@@ -41,11 +41,9 @@ class Stage {
     }
 
   private:
-    /// Struts exist in the plane, for single grains (S4).
+    /// Struts exist in the plane (S4).
     void ask_struts() {
-        const bool clumps = std::any_of(contacts_.begin(), contacts_.end(),
-                                        [](const Contact& c) { return c.kind == ContactKind::bar; });
-        if (statics_.structure().dofs().layout().dimension == plane && !clumps) {
+        if (statics_.structure().dofs().layout().dimension == plane) {
             turn_.emplace(statics_, zero_);
         }
     }

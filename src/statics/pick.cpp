@@ -26,7 +26,7 @@ class OpeningContest final : public Contest {
     Result<std::optional<std::size_t>> stand(std::size_t best) override {
         equal_met_ = false;
         const ContactId of = contenders_[best].contact;
-        equal_ = equal_in_edge(statics_, of);
+        equal_ = equal_by_place(statics_, of);
         if (choice_.turn != nullptr) {
             const std::vector<EqualForce> ends = choice_.turn->mates(of);
             equal_.insert(equal_.end(), ends.begin(), ends.end());
@@ -52,8 +52,8 @@ class OpeningContest final : public Contest {
     }
 
   private:
-    /// The two ends of a strut that a power turn leaves straight (S4), and two walls of an edge (S6), bear one force:
-    /// the infinitesimal loads order them, not the digits of the located turn or vertex.
+    /// The two ends of a strut that a power turn leaves straight (S4), two walls of an edge (S6), and two members that
+    /// lie level (S7) bear one force: the infinitesimal loads order them, not the digits of the located turn or vertex.
     Comparison by_loads(const Enclosure& excess, const Contender& other) {
         equal_met_ = true;
         Order order{excess.decided(), excess.positive() == least_ ? -1 : 1, excess.margin(), Rung::combinatorial};
@@ -61,7 +61,7 @@ class OpeningContest final : public Contest {
             return words("; {} (f = {:.17g}): {} bear one force, which the infinitesimal loads do not order: {:.3g}, "
                          "known to {:.3g}",
                          name(statics_, other.contact), other.force.value,
-                         choice_.turn != nullptr ? "the two ends of a straight strut" : "two walls of an edge",
+                         choice_.turn != nullptr ? "the ends of a straight strut" : "contacts of an edge or notch",
                          excess.value, excess.radius);
         });
     }

@@ -148,6 +148,13 @@ Enclosure Statics::slope(ContactId contact) const {
     return {b.value[l], b.bound + (b.low.empty() ? 0.0 : std::abs(b.low[l]) * (1 + 2 * u))};
 }
 
+bool Statics::slope_cancels(ContactId contact) {
+    if (sloped_by_sums_.empty()) {
+        sloped_by_sums_ = pattern_.carrying_by_sums(structure_->dofs(), changing_rows_, ladder_.solution(unit).value);
+    }
+    return sloped_by_sums_[contact.index()] == 0;
+}
+
 Enclosure Statics::infinitesimal(ContactId contact) const {
     const ForceSolution& g = ladder_.solution(infinitesimal_part);
     const std::size_t l = contact.index();

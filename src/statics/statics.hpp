@@ -50,6 +50,8 @@ class Statics {
     [[nodiscard]] bool is_structural_zero(ContactId contact) const { return backbone_[contact.index()] == 0; }
     /// The slope vanishes exactly, so this force does not depend on sigma.
     [[nodiscard]] bool slope_is_zero(ContactId contact) const { return sloped_[contact.index()] == 0; }
+    /// The same by the balance of all along an axis besides (T11 (d)): costs a matching, once.
+    [[nodiscard]] bool slope_cancels(ContactId contact);
     /// The contacts whose finite forces are no structural zeros.
     [[nodiscard]] std::vector<Contact> carrying() const;
 
@@ -90,6 +92,7 @@ class Statics {
     /// max |H f - F| as computed for the finite part at sigma.
     [[nodiscard]] double residual(double sigma) const;
 
+    [[nodiscard]] const Packing& packing() const { return *packing_; }
     [[nodiscard]] const IsostaticStructure& structure() const { return *structure_; }
     [[nodiscard]] const Factorisation& factorisation() const { return *factorisation_; }
     [[nodiscard]] const InverseBound& inverse() const { return *inverse_; }
@@ -118,6 +121,7 @@ class Statics {
     std::shared_ptr<const LoadShift> shift_;
     double shift_bound_ = 0;
     std::vector<unsigned char> sloped_; ///< forces that depend on the loaded stress, by the pattern
+    std::vector<unsigned char> sloped_by_sums_;
 };
 
 } // namespace isostat

@@ -9,6 +9,8 @@
 
 #include <isostat/certificate/certify.hpp>
 
+#include <utility>
+
 using namespace isostat;
 using json::Json;
 
@@ -102,6 +104,31 @@ BOOST_AUTO_TEST_CASE(closed_forms_of_dimers_run_and_are_proved) {
         const scratch::Folder folder;
         const RunVerification run = proved_run(state, {towards(-1)}, every_level, folder / "run");
         BOOST_TEST(run.ways_proved == run.arcs);
+    }
+}
+
+/// The last equilibrium supports every load, though by their patterns most forces could change with it.
+BOOST_AUTO_TEST_CASE(a_run_of_dimers_is_proved_up_to_the_column_that_supports_every_load) {
+    const scratch::Folder folder;
+    const SegmentOutcome outcome = played::into(folder / "run", at_the_start(test::clumps("dimer_20_2")), {towards(30)},
+                                                {.max_strain = 1e9}, true);
+    BOOST_TEST_REQUIRE(outcome.failure.has_value());
+    BOOST_TEST((outcome.failure->kind == FailureKind::no_limit), outcome.failure->message());
+    const RunVerification run = played::proved(folder / "run");
+    BOOST_TEST(run.equilibria_proved > 10);
+}
+
+/// Of two contacts that bear one force the infinitesimal loads take one: of a body between them at a power turn (S4),
+/// and of the members of a dimer that lies level (S7). The checker finds the same order.
+BOOST_AUTO_TEST_CASE(runs_are_proved_where_two_contacts_of_a_body_bear_one_force) {
+    for (const auto& [name, equilibria] : {std::pair("dimer2_20_8", 1), std::pair("dimer_20_5", 7)}) {
+        BOOST_TEST_CONTEXT(name) {
+            const scratch::Folder folder;
+            const SegmentOutcome outcome = played::into(folder / "run", at_the_start(test::clumps(name)),
+                                                        {towards(equilibria)}, {.max_strain = 1e9}, true);
+            BOOST_REQUIRE_MESSAGE(outcome.completed, (outcome.failure ? outcome.failure->message() : ""));
+            (void)played::proved(folder / "run");
+        }
     }
 }
 

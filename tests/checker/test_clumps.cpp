@@ -2,6 +2,7 @@
 #include "checker/claims.hpp"
 #include "checker/evidence.hpp"
 #include "checker/gaps.hpp"
+#include "checker/strut.hpp"
 #include "support/bad_input.hpp"
 #include "support/clumps.hpp"
 #include "support/forger.hpp"
@@ -36,6 +37,33 @@ Certificate with_a_vague_form(const Certificate& certificate) {
 }
 
 } // namespace
+
+BOOST_AUTO_TEST_CASE(members_that_lie_level_bear_one_force_where_nothing_else_presses_on_them) {
+    const auto equal = [](const State& state) {
+        const isostat::checker::Evidence evidence(state, CheckerArithmetic::automatic);
+        const auto at = [&state](int member) {
+            return static_cast<std::size_t>(
+                std::find(state.contacts.begin(), state.contacts.end(), pair_of(member, 2)) - state.contacts.begin());
+        };
+        return isostat::checker::equal_by_place(evidence, evidence.finite_load, {}, at(0), at(1));
+    };
+    BOOST_TEST(equal(perch(1, 1, 3)));
+    BOOST_TEST(!equal(notch(1, 1))); // the side walls press on the dimer
+    State unequal = perch(1, 1, 3);
+    unequal.packing.radius[1] += 0x1p-53;
+    BOOST_TEST(!equal(unequal));
+    State pushed = perch(1, 1, 3);
+    pushed.load.disk_force[2] = 0x1p-40;
+    BOOST_TEST(!equal(pushed));
+}
+
+/// A side wall that one body touches bears what the other one does, whatever presses on the top.
+BOOST_AUTO_TEST_CASE(an_end_without_limit_is_proved_where_only_the_balance_of_the_whole_keeps_a_force) {
+    const Certificate certificate = of_clumps(notch(1, 2));
+    BOOST_TEST_REQUIRE(certificate.claims.load_interval.has_value());
+    BOOST_TEST(certificate.claims.load_interval->high.unbounded);
+    BOOST_TEST((verdict_on(read_and_verified(certificate), "load_interval") == Verdict::proved));
+}
 
 BOOST_AUTO_TEST_CASE(what_is_certified_of_clumps_verifies) {
     for (const char* const name : {"dimer_20_1", "dimer2_20_2", "trimer_20_1", "trimer_20_3"}) {

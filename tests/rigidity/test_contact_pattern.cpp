@@ -82,3 +82,29 @@ BOOST_AUTO_TEST_CASE(an_ordering_is_made_once_for_all_copies_whatever_thread_ask
         BOOST_TEST(structure.ordering().column_order() == proved.ordering().column_order());
     }
 }
+
+/// Two disks at the right wall, one on the other, and the lower one at the left wall: all but the left wall may bear
+/// what the top wall does, by the entries of the matrix.
+BOOST_AUTO_TEST_CASE(sums_along_an_axis_show_that_a_wall_with_one_contact_bears_the_load_of_the_other_wall) {
+    const State state = in_box({{1, 1, 1}, {0.75, 1.25, 2.75}}, 2, 3.5, 1, 1,
+                               {left(0), bottom(0), pair(0, 1), right(0), right(1), top(1)});
+    const auto structure = crafted::Regular::proved(state);
+    const DofMap& dofs = structure.dofs();
+    const ContactPattern pattern(state.packing, structure);
+    std::vector<double> guess;
+    std::vector<unsigned char> all_but_the_left;
+    std::vector<unsigned char> at_the_sides; // of the lower disk
+    for (const Contact& c : state.contacts) {
+        guess.push_back(c == pair(0, 1) ? 1 : 0.5);
+        all_but_the_left.push_back(c == left(0) ? 0 : 1);
+        at_the_sides.push_back(c == left(0) || c == right(0) ? 1 : 0);
+    }
+    const std::vector<int> top_wall{dofs.dof_of(5)};
+    const std::vector<int> right_wall{dofs.dof_of(4)};
+    BOOST_TEST(pattern.carrying(top_wall) == std::vector<unsigned char>(6, 1));
+    BOOST_TEST(pattern.carrying_by_sums(dofs, top_wall, guess) == all_but_the_left);
+    // The load on the right wall is in the sum along x, and by the top and the upper disk nothing else bears it.
+    BOOST_TEST(pattern.carrying(right_wall) == at_the_sides);
+    BOOST_TEST(pattern.carrying_by_sums(dofs, right_wall, guess) == at_the_sides);
+}
+

@@ -111,19 +111,3 @@ BOOST_AUTO_TEST_CASE(a_held_coordinate_belongs_to_no_body) {
     BOOST_TEST(!counts(state, state.contacts, {ContactKind::held, 0, 0}));
 }
 
-/// A column at the right wall carries the load of the top wall, whatever leans on it from the left.
-BOOST_AUTO_TEST_CASE(a_column_at_a_wall_carries_the_load_alone_and_not_when_a_contact_is_missing) {
-    const State state = equal_pair(); // disks 0 and 1: here one above the other, as far as contacts tell
-    const DofMap dofs(state.packing);
-    const std::vector<Contact> column{bottom(0), pair(0, 1), top(1), right(0), right(1)};
-    BOOST_TEST(carries_alone(dofs, column, 1));
-    BOOST_TEST(!carries_alone(dofs, column, 0)); // the column yields along the other axis
-    for (std::size_t l = 0; l < column.size(); ++l) {
-        std::vector<Contact> open = column;
-        open.erase(open.begin() + static_cast<std::ptrdiff_t>(l));
-        BOOST_TEST(!carries_alone(dofs, open, 1));
-    }
-    std::vector<Contact> held = column;
-    held.back() = {ContactKind::held, 2, 0};
-    BOOST_TEST(!carries_alone(dofs, held, 1));
-}

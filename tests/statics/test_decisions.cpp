@@ -1,8 +1,13 @@
 // Decisions of the statics: classes, ties, rules, and the ladder of precision.
 #include "statics/decisions.hpp"
+#include "statics/equal_forces.hpp"
+#include "support/clumps.hpp"
 #include "support/crafted.hpp"
 #include "support/loaded.hpp"
 #include "support/prepared.hpp"
+
+#include <algorithm>
+#include <random>
 
 using namespace isostat;
 using namespace crafted;
@@ -198,6 +203,98 @@ BOOST_AUTO_TEST_CASE(a_load_that_no_force_limits_is_unbounded_and_says_so) {
     BOOST_TEST(!down.unbounded);
     BOOST_TEST(down.stress == 0.0);
     BOOST_TEST(down.tie_class.size() == 2U);
+}
+
+/// The slope is 0 to all digits, and no pattern of the matrix says so. Exact numbers would: they are left out.
+BOOST_AUTO_TEST_CASE(a_force_that_the_balance_of_the_whole_keeps_constant_gives_no_limit) {
+    AtVertex notch(isostat::test::notch(1, 2), true, {.exact_size = 0});
+    const std::vector<Contact>& contacts = notch.state.contacts;
+    const ContactId at_left(
+        static_cast<std::size_t>(std::find(contacts.begin(), contacts.end(), left(0)) - contacts.begin()));
+    BOOST_TEST(!notch.statics.slope_is_zero(at_left));
+    BOOST_TEST(notch.statics.slope_cancels(at_left));
+    const auto up = find_limit(notch.statics, 2, +1);
+    BOOST_TEST_REQUIRE(up.ok(), (up.ok() ? "" : up.failure().message()));
+    BOOST_TEST(up.value().unbounded);
+}
+
+/// A dimer of equal members that lies level hands on what presses at both, in equal parts: a tie for the digits.
+BOOST_AUTO_TEST_CASE(two_members_that_lie_level_bear_one_force_and_the_infinitesimal_loads_order_them) {
+    const auto mates = [](const State& state) {
+        AtVertex at(state);
+        const auto found = std::find(at.state.contacts.begin(), at.state.contacts.end(), pair(0, 2));
+        std::vector<Contact> equal;
+        for (const EqualForce& e :
+             equal_by_place(at.statics, ContactId(static_cast<std::size_t>(found - at.state.contacts.begin())))) {
+            equal.push_back(at.contact(e.contact));
+        }
+        return equal;
+    };
+    const State perch = isostat::test::perch(1, 1, 3);
+    BOOST_TEST((mates(perch) == std::vector<Contact>{pair(1, 2)}));
+    BOOST_TEST(mates(isostat::test::notch(1, 1)).empty()); // the side walls press on the dimer
+    State unequal = perch;
+    unequal.packing.radius[1] += 0x1p-53;
+    BOOST_TEST(mates(unequal).empty());
+    State pushed = perch;
+    pushed.load.disk_force[2] = 0x1p-40;
+    BOOST_TEST(mates(pushed).empty());
+    for (const double pull : {-1.0, 1.0}) { // on the dimer: the member that the load presses to the disk stays
+        State state = perch;
+        state.load.infinitesimal = {pull, 0, 0, 0, 0, 0};
+        AtVertex at(state);
+        const OpeningDecision opens = required(decide_opening(at.statics, 1, OpeningRule::most_negative, {}, 0));
+        BOOST_TEST_REQUIRE(opens.opening.has_value());
+        BOOST_TEST(opens.opening->equal_forces);
+        BOOST_TEST((at.contact(opens.opening->contact) == pair(pull < 0 ? 0 : 1, 2)));
+    }
+}
+
+/// Random lists of contacts, at random places: disks, of which one may be fixed, one contact at the left wall, and
+/// coordinates that are held. What sums show to be constant has a slope that is not told from 0.
+BOOST_AUTO_TEST_CASE(slopes_that_sums_show_to_vanish_do) {
+    std::mt19937_64 random(1);
+    const auto uniform = [&] { return 1 + 8 * (static_cast<double>(random() >> 11) * 0x1p-53); };
+    int regular = 0;
+    int shown = 0;
+    for (int attempt = 0; attempt < 20000 && regular < 300; ++attempt) {
+        const int disks = 3 + attempt % 3;
+        std::vector<DiskAt> places;
+        std::vector<Contact> list{left(attempt % disks)};
+        std::vector<Contact> others;
+        for (int i = 0; i < disks; ++i) {
+            places.push_back({0.5, uniform(), uniform()});
+            for (const Contact& c : {bottom(i), right(i), top(i), Contact{ContactKind::held, 2 * i, 0}}) {
+                others.push_back(c);
+            }
+            for (int j = i + 1; j < disks; ++j) {
+                others.push_back(pair(i, j));
+            }
+        }
+        State state = in_box(places, 10, 10, 1, 1, {});
+        state.packing.fixed.assign(static_cast<std::size_t>(disks), 0);
+        state.packing.fixed[0] = attempt % 4 == 0 ? 1 : 0;
+        std::shuffle(others.begin(), others.end(), random);
+        const DofMap dofs(state.packing);
+        list.insert(list.end(), others.begin(), others.begin() + dofs.dof_count() - 1);
+        std::sort(list.begin(), list.end());
+        state.contacts = list;
+        if (!IsostaticStructure::prove(state.packing, list).ok()) {
+            continue;
+        }
+        ++regular;
+        Loaded loaded(state);
+        for (std::size_t l = 0; l < list.size(); ++l) {
+            if (loaded.statics.slope_cancels(ContactId(l))) {
+                BOOST_TEST(!loaded.statics.slope(ContactId(l)).decided());
+                shown += loaded.statics.slope_is_zero(ContactId(l)) ? 0 : 1;
+            } else {
+                BOOST_TEST(!loaded.statics.slope_is_zero(ContactId(l)));
+            }
+        }
+    }
+    BOOST_TEST(regular == 300);
+    BOOST_TEST(shown > 10);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

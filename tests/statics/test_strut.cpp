@@ -192,6 +192,25 @@ BOOST_AUTO_TEST_CASE(the_end_of_a_straight_strut_that_its_own_load_pulls_at_open
     }
 }
 
+/// A member that touches nothing, 3-4, turns about the other one, and its height is held without a finite force.
+BOOST_AUTO_TEST_CASE(a_body_that_two_contacts_hold_is_a_strut_with_the_loads_of_all_its_members) {
+    for (const double g : {1.0, -1.0}) {
+        State state = row_under_traction(1);
+        state.packing.radius.push_back(0.25);
+        state.packing.q.insert(state.packing.q.begin() + 4, {1.375, 1.5});
+        state.packing.bars = {{0, 2, 0.625}};
+        state.contacts.insert(state.contacts.end(), {{ContactKind::bar, 0, 2}, held(5)});
+        state.load.infinitesimal = {-2 * g, 0, 0, 0, 3 * g, 0};
+        AtVertex v(state);
+        const ContactId fresh = find(state, held(1));
+        const auto decision = decide_opening(v.statics, v.sigma(), OpeningRule::most_negative, {fresh, {}}, 0);
+        BOOST_TEST_REQUIRE(decision.ok(), why(decision));
+        BOOST_TEST_REQUIRE(decision.value().opening.has_value());
+        BOOST_TEST((v.contact(decision.value().opening->contact) == (g > 0 ? left(0) : right(0))), "g = " << g);
+        BOOST_TEST(decision.value().opening->equal_forces);
+    }
+}
+
 BOOST_AUTO_TEST_CASE(a_turn_at_which_every_force_is_positive_is_no_equilibrium) {
     // One disk upright on another: a maximum of the potential, which no arc that lowers it reaches (S3).
     const auto on_top = [](double x) {

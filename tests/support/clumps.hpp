@@ -52,6 +52,27 @@ inline State lying_dimer(double f1, double f2) {
                                  f1, f2));
 }
 
+/// A disk in the notch of a dimer that lies between the side walls: radii 5/4 and 1, at a distance of 3/2 to either
+/// side and sqrt(45)/4 above. The side walls bear F_1, whatever F_2 is: the left one by the balance of the whole alone.
+inline State notch(double f1, double f2) {
+    const double above = std::sqrt(45.0) / 4;
+    return clumps_of(fmt::format(R"({{"format": "isostat-state", "version": 2, "length": [5, {:.17g}],
+        "load": {{"stress": [{}, {}], "reference_length": [1, 1]}}, "bars": [[0, 1, 3]],
+        "disks": [[1, 1, 1], [4, 1, 1], [2.5, {:.17g}, 1.25]],
+        "contacts": [[0, "left"], [0, "bottom"], [1, "bottom"], [1, "right"], [0, 2], [1, 2], [2, "top"]]}})",
+                                 2.25 + above, f1, f2, 1 + above));
+}
+
+/// A disk between side walls and top, that stands on a dimer of equal members, 5-12-13: it bears 13 (F_2 - lift) / 24
+/// at both, as nothing else presses on the dimer along the bottom.
+inline State perch(double f1, double f2, double lift) {
+    return clumps_of(fmt::format(R"({{"format": "isostat-state", "version": 2, "length": [5.5, 6.25],
+        "load": {{"stress": [{}, {}], "reference_length": [1, 1]}}, "bars": [[0, 1, 2.5]],
+        "disks": [[1.5, 0.5, 0.5], [4, 0.5, 0.5], [2.75, 3.5, 2.75]], "disk_force": [[0, 0], [0, 0], [0, {}]],
+        "contacts": [[2, "left"], [2, "right"], [2, "top"], [0, 2], [1, 2], [0, "bottom"], [1, "bottom"]]}})",
+                                 f1, f2, lift));
+}
+
 /// A disk between four walls with a member inside that touches nothing: it turns about the centre of the disk.
 inline State disk_with_a_dangling_member() {
     return clumps_of(R"({"format": "isostat-state", "version": 2, "length": [2, 2],

@@ -81,6 +81,19 @@ BOOST_AUTO_TEST_CASE(trimers_run_through_ten_equilibria_that_certify_as_states) 
     }
 }
 
+/// A column of bodies carries all of the load there: no other force changes with it, by the balance of the whole.
+BOOST_AUTO_TEST_CASE(dimers_are_loaded_until_they_support_every_load) {
+    State state = with_infinitesimal(isostat::with_free_motions_held(isostat::test::clumps("dimer_20_2")));
+    state.load.refer_to(state.packing);
+    (void)isostat::snap_to_grid(state.packing);
+    RunCounters counters;
+    crafted::Recorder run;
+    const auto outcome = isostat::run_segment(state, towards(30), 0, whatever_the_strain(), counters, run);
+    BOOST_TEST_REQUIRE(outcome.failure.has_value());
+    BOOST_TEST((outcome.failure->kind == FailureKind::no_limit), outcome.failure->message());
+    BOOST_TEST(run.equilibria.size() > 10U);
+}
+
 /// What is held competes with the tractions: a run that begins where it bears a torque lets it go, and ends elsewhere.
 BOOST_AUTO_TEST_CASE(a_held_angle_that_bears_a_torque_is_released) {
     for (const State& place : isostat::test::held_angles()) {

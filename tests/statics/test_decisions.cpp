@@ -21,8 +21,6 @@ struct Loaded : AtVertex {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(statics)
-
 BOOST_AUTO_TEST_CASE(forces_that_share_one_support_vanish_as_a_structural_class) {
     Loaded loaded(three_disks(1, 1, 1.5, 1, 1));
     const auto limit = required(find_limit(loaded.statics, loaded.sigma(), -1));
@@ -296,5 +294,3 @@ BOOST_AUTO_TEST_CASE(slopes_that_sums_show_to_vanish_do) {
     BOOST_TEST(regular == 300);
     BOOST_TEST(shown > 10);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -108,8 +108,6 @@ std::vector<Contact> other_pairs(const State& state) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(statics)
-
 BOOST_AUTO_TEST_CASE(gaps_and_forces_of_changed_radii_in_cells_are_those_of_packings_that_are_made,
                      *boost::unit_test::label("slow")) {
     for (const std::string name : {"tilt_16", "rect_16", "channel_16"}) {
@@ -184,5 +182,3 @@ BOOST_AUTO_TEST_CASE(rates_and_second_derivatives_of_pairs_that_touch_through_im
     BOOST_TEST(images > 5);
     BOOST_TEST(bent > 10);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

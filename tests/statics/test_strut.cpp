@@ -169,8 +169,6 @@ struct SlowTurn {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(statics)
-
 BOOST_AUTO_TEST_CASE(the_end_of_a_straight_strut_that_its_own_load_pulls_at_opens) {
     for (const double g : {1.0, -1.0, 1e-9, -1e-9}) {
         State state = row_under_traction(1);
@@ -361,5 +359,3 @@ BOOST_AUTO_TEST_CASE(the_contacts_of_a_strut_are_those_of_the_definition) {
     BOOST_TEST(nothing > 10);
     BOOST_TEST(found > 10);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -14,8 +14,6 @@ template <class T> std::string reason(const Result<T>& result) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(statics)
-
 BOOST_AUTO_TEST_CASE(an_exact_tie_of_two_tractions_is_named) {
     AtVertex tie(stack(2, 1, 0));
     const auto decision = decide_opening(tie.statics, 1, OpeningRule::most_negative, {}, 0);
@@ -139,5 +137,3 @@ BOOST_AUTO_TEST_CASE(a_candidate_that_touches_at_the_vertex_is_told_from_one_tha
     const Order overlap = sign(over, pair(2, 3));
     BOOST_TEST((overlap.decided && overlap.sign == -1));
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -4,8 +4,6 @@
 using namespace isostat;
 using crafted::Played;
 
-BOOST_AUTO_TEST_SUITE(trajectory_cells)
-
 BOOST_AUTO_TEST_CASE(two_disks_in_a_channel_go_round_a_loop) {
     for (const auto& [large, small] : {std::pair(2.0, 1.0), {1.5, 0.8}, {1.0, 0.75}}) {
         BOOST_TEST_INFO_SCOPE("radii " << large << ", " << small);
@@ -24,5 +22,3 @@ BOOST_AUTO_TEST_CASE(two_disks_in_a_channel_go_round_a_loop) {
         }
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

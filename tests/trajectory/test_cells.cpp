@@ -90,8 +90,6 @@ State with_forces(State state) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(trajectory_cells)
-
 BOOST_AUTO_TEST_CASE(sequences_of_an_independent_program) {
     for (const std::string& name : names) {
         const Json& sequence = sequences().at(name);
@@ -335,5 +333,3 @@ BOOST_AUTO_TEST_CASE(what_is_not_followed_is_refused) {
     state.load.infinitesimal[0] += 1;
     refuses(state, "expected 0 exactly");
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -72,8 +72,6 @@ std::string why(const Course& course) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(trajectory)
-
 BOOST_AUTO_TEST_CASE(what_first_order_leaves_tied_is_chosen_by_loads_then_names_and_recorded) {
     const State state = alike(mirror_forces());
     const Course open = follow_load(state, -1, 1, Ties::first_order);
@@ -209,5 +207,3 @@ BOOST_AUTO_TEST_CASE(a_small_force_at_a_limit_is_told_from_0_with_more_digits, *
     const Course course = equal_disks(100, 4, 12);
     BOOST_TEST(course.end() == "completed", why(course));
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -20,8 +20,6 @@ double force_of(const Inspection& inspection, const State& state, const Contact&
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(trajectory)
-
 BOOST_AUTO_TEST_CASE(one_disk_carries_the_wall_forces_and_supports_every_load) {
     const State state = one_disk(1.5, 0.25);
     const auto inspection = required(inspect_vertex(state));
@@ -166,5 +164,3 @@ BOOST_AUTO_TEST_CASE(the_square_lattice_is_refused_because_h_is_positive) {
     BOOST_TEST((played.outcome.failure->kind == FailureKind::not_isostatic));
     BOOST_TEST(played.records.equilibria.empty());
 }
-
-BOOST_AUTO_TEST_SUITE_END()

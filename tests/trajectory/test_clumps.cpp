@@ -21,8 +21,6 @@ RunOptions whatever_the_strain() {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(trajectory)
-
 /// With tan phi = 5/12 the lying dimer rises where sigma_2 = F_1 tan phi = 5, stands as the mirror image of what it
 /// was, and falls back where sigma_2 = F_1 / tan phi = 28.8.
 BOOST_AUTO_TEST_CASE(a_dimer_in_a_box_runs_through_a_loop_between_the_tangent_and_the_cotangent) {
@@ -122,5 +120,3 @@ BOOST_AUTO_TEST_CASE(ties_of_clumps_are_not_chosen) {
     options.ties = isostat::TiePolicy::choose;
     BOOST_CHECK_THROW((void)isostat::run_segment(state, towards(-1), 0, options, counters, run), isostat::Error);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -96,8 +96,6 @@ double last_yield_of(const State& patch, int columns, int rows) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(trajectory)
-
 BOOST_AUTO_TEST_CASE(rows_on_a_wall_spread_at_the_known_load_and_come_back) {
     for (const int columns : {8, 9}) {
         const PileLoads loads(columns);
@@ -227,5 +225,3 @@ BOOST_AUTO_TEST_CASE(lattices_in_cells_stretch_from_a_ratio_of_3_on_until_the_ro
         }
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

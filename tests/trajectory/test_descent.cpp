@@ -39,8 +39,6 @@ struct Objector : Recorder {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(trajectory)
-
 BOOST_AUTO_TEST_CASE(the_decrease_of_the_potential_is_enclosed_for_dead_loads_and_true_stresses) {
     for (const double shrink : {0.5, 0x1p-20, 0x1p-46, -0x1p-30}) {
         const auto from = vertex_of(corner(1));
@@ -186,5 +184,3 @@ BOOST_AUTO_TEST_CASE(an_equilibrium_at_another_load_keeps_the_smallest_gap_of_it
     BOOST_TEST(std::isinf(alone.min_gap));
     BOOST_TEST(alone.min_gap_contact.i == -1);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

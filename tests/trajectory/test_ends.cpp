@@ -6,8 +6,6 @@
 
 using namespace isostat;
 
-BOOST_AUTO_TEST_SUITE(trajectory)
-
 /// Exit status 2, not 1: nothing is refuted.
 BOOST_AUTO_TEST_CASE(what_an_iteration_or_a_rank_did_not_show_of_an_arc_is_undecided) {
     for (const FailureKind kind : {FailureKind::not_converged, FailureKind::not_isostatic}) {
@@ -53,5 +51,3 @@ BOOST_AUTO_TEST_CASE(an_end_that_was_steered_badly_is_put_at_its_true_vertex_whe
     }
     BOOST_TEST(arcs > 5);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -29,8 +29,6 @@ auto of_double(Answer (*ask)(double)) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(trajectory)
-
 BOOST_AUTO_TEST_CASE(two_tractions_are_told_apart_by_the_lowest_rung_that_can) {
     using isostat::Rung;
     for (int decade = 1; decade <= 300; decade += decade < 30 ? 1 : 30) {
@@ -107,5 +105,3 @@ BOOST_AUTO_TEST_CASE(three_disks_with_equal_bases_end_in_the_tie_that_symmetry_a
         }
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -7,8 +7,6 @@
 using namespace isostat;
 using namespace ::crafted;
 
-BOOST_AUTO_TEST_SUITE(trajectory)
-
 BOOST_AUTO_TEST_CASE(the_mechanism_of_two_disks_keeps_all_contacts_but_one_closed) {
     const State state = two_disks(1, 2, 1, 1);
     const auto found = required(mechanism(state, bottom(1)));
@@ -46,5 +44,3 @@ BOOST_AUTO_TEST_CASE(one_arc_of_two_disks_ends_at_the_wall) {
     BOOST_REQUIRE(!up.ok());
     BOOST_TEST((up.failure().kind == FailureKind::no_limit));
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -21,8 +21,6 @@ struct Base {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(trajectory)
-
 BOOST_FIXTURE_TEST_CASE(the_sequence_does_not_depend_on_the_predictor_step, Base) {
     BOOST_TEST(played.records.arcs.size() > 20);
     for (const double fraction : {0.4, 0.01}) {
@@ -216,5 +214,3 @@ BOOST_AUTO_TEST_CASE(a_stop_request_ends_the_run_with_the_last_equilibrium) {
     BOOST_TEST((run.outcome.failure->kind == FailureKind::interrupted));
     BOOST_TEST(run.records.equilibria.size() == 1U);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

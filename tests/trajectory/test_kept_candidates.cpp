@@ -6,8 +6,6 @@
 
 using namespace isostat;
 
-BOOST_AUTO_TEST_SUITE(trajectory)
-
 BOOST_AUTO_TEST_CASE(flags_of_kept_candidates_follow_exchanges_moves_within_the_list_and_new_lists) {
     oracle::Random random(3);
     constexpr int disks = 30;
@@ -58,5 +56,3 @@ BOOST_AUTO_TEST_CASE(flags_of_kept_candidates_follow_exchanges_moves_within_the_
         }
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -14,8 +14,6 @@ const RunOptions with_arcs{.certify = CertifyLevel::arcs};
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(trajectory)
-
 BOOST_AUTO_TEST_CASE(every_arc_of_a_run_is_certified_with_its_power) {
     for (const std::uint64_t seed : {2U, 5U, 7U}) {
         const Played run = play(prepared(60, seed), +1, 8, {}, with_arcs);
@@ -171,5 +169,3 @@ BOOST_AUTO_TEST_CASE(a_power_that_turns_within_the_first_step_is_found_whatever_
         }));
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -7,8 +7,6 @@
 
 using namespace isostat;
 
-BOOST_AUTO_TEST_SUITE(trajectory)
-
 BOOST_AUTO_TEST_CASE(tasks_are_done_in_order_up_to_the_first_without_a_result, *boost::unit_test::label("threads")) {
     for (const int count : {1, 2, 3}) {
         const Threads threads(count);
@@ -95,5 +93,3 @@ BOOST_AUTO_TEST_CASE(tasks_that_are_dropped_are_not_begun_afterwards, *boost::un
         BOOST_TEST(done <= 100);
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

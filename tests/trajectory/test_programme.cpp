@@ -47,8 +47,6 @@ ProgrammeOutcome played(ProgrammeCourse& course, const std::vector<ProgrammeStep
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(trajectory)
-
 BOOST_AUTO_TEST_CASE(a_programme_goes_on_from_the_last_equilibrium_or_from_an_earlier_one) {
     ProgrammeStep again = up(2);
     again.from = 2;
@@ -85,5 +83,3 @@ BOOST_AUTO_TEST_CASE(a_segment_that_cannot_begin_says_why_in_words) {
     BOOST_TEST(outcome.impossible.starts_with("here:7: segment \"behind\": sigma2/sigma1 is 1.0"), outcome.impossible);
     BOOST_TEST(other.stresses.size() == 2U);
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -33,8 +33,6 @@ void compare(const char* name, double shown, double bound, const Real& truth, do
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(trajectory)
-
 BOOST_AUTO_TEST_CASE(recorded_numbers_hold_in_every_digit_at_the_true_vertex) {
     const Played run = play(prepared(20, 3), +1, 4);
     BOOST_TEST_REQUIRE(run.records.equilibria.size() == 5U, run.why());
@@ -74,5 +72,3 @@ BOOST_AUTO_TEST_CASE(recorded_numbers_hold_in_every_digit_at_the_true_vertex) {
         }
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

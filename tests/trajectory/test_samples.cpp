@@ -74,8 +74,6 @@ void compare(const std::string& disks) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(trajectory)
-
 BOOST_AUTO_TEST_CASE(the_sample_of_100_disks_reaches_the_same_14_equilibria_and_goes_back_another_way) {
     compare("100");
 }
@@ -100,5 +98,3 @@ BOOST_AUTO_TEST_CASE(the_sample_of_1936_disks_is_an_equilibrium_and_makes_ten_mo
     }
     same_events("1936", {&run});
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -49,8 +49,6 @@ void ends_at_the_fixed_disk(const Course& course, double accuracy) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(trajectory)
-
 BOOST_AUTO_TEST_CASE(a_pair_that_would_overlap_at_second_order_enters_the_list) {
     const Course course = follow_load(two_crests(true), -1, 1, Ties::choose);
     ends_at_the_fixed_disk(course, 1e-12);
@@ -88,5 +86,3 @@ BOOST_AUTO_TEST_CASE(radii_that_are_really_changed_end_at_the_same_place) {
         ends_at_the_fixed_disk(follow_load(changed, -1, 1, Ties::stop), 20 * eps);
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -46,8 +46,6 @@ Contact contact_or_held(const nlohmann::json& c) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(trajectory)
-
 BOOST_AUTO_TEST_CASE(two_spheres_go_round_a_loop) {
     const double dx = std::sqrt(7.0); // radii 1 and 2
     const State start = start_of_spheres("closed_two", {1, 1.5, 1});
@@ -190,5 +188,3 @@ BOOST_AUTO_TEST_CASE(every_arc_of_spheres_is_certified_with_its_power_and_none_i
         }
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -27,8 +27,6 @@ std::size_t strut_opening(const std::vector<ArcRecord>& arcs) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(trajectory)
-
 BOOST_AUTO_TEST_CASE(a_straight_strut_lets_go_at_the_same_end_for_all_labels_sides_and_axes) {
     for (const auto& [disks, seed] : samples) {
         const State start = prepared(disks, seed);
@@ -88,5 +86,3 @@ BOOST_AUTO_TEST_CASE(the_weakest_traction_is_never_that_of_a_grain_that_carries_
     BOOST_TEST(after_turns > 30);
     BOOST_TEST_MESSAGE(after_turns << " choices after power turns");
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -7,8 +7,6 @@
 using namespace isostat;
 using namespace ::crafted;
 
-BOOST_AUTO_TEST_SUITE(trajectory)
-
 BOOST_AUTO_TEST_CASE(a_tie_of_two_forces_stops_the_run_and_names_them) {
     const Course course = follow_load(mirror_forces(), -1, 1, Ties::stop);
     BOOST_TEST(course.end() == "tie");
@@ -163,5 +161,3 @@ BOOST_AUTO_TEST_CASE(without_ties_perturb_changes_nothing) {
         BOOST_TEST(count == 0);
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

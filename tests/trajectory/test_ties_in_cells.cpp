@@ -18,8 +18,6 @@ State hyperstatic_three() {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(trajectory)
-
 BOOST_AUTO_TEST_CASE(a_tie_in_a_cell_stops_the_run_and_names_the_contacts) {
     const Course course = follow_load(cells::mirror_pairs(), +1, 1, Ties::stop);
     BOOST_TEST(course.end() == "tie");
@@ -65,5 +63,3 @@ BOOST_AUTO_TEST_CASE(lattices_in_cells_are_followed_where_ties_are_chosen) {
         }
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -21,8 +21,6 @@ void goes_up_and_down(int disks, std::initializer_list<std::uint64_t> seeds) {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(trajectory)
-
 BOOST_AUTO_TEST_CASE(weak_samples_of_100_disks_go_through) {
     goes_up_and_down(100, {217, 294, 296});
 }
@@ -31,5 +29,3 @@ BOOST_AUTO_TEST_CASE(weak_samples_of_225_and_484_disks_go_through, *boost::unit_
     goes_up_and_down(225, {9, 56, 63, 72, 73, 97, 139});
     goes_up_and_down(484, {3, 22});
 }
-
-BOOST_AUTO_TEST_SUITE_END()

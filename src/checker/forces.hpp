@@ -8,8 +8,65 @@
 
 namespace isostat::checker {
 
-/// External forces per degree of freedom at the true vertex.
-using Forces = std::vector<Range>;
+/// External forces per degree of freedom at the true vertex, most of which are 0.
+class Forces {
+  public:
+    Forces() = default;
+    explicit Forces(std::size_t size) : place_(size, -1) {}
+    [[nodiscard]] std::size_t size() const { return place_.size(); }
+    [[nodiscard]] const Range& operator[](std::size_t dof) const {
+        static const Range none{Rational(0)};
+        return place_[dof] < 0 ? none : set_[static_cast<std::size_t>(place_[dof])];
+    }
+    [[nodiscard]] bool acts(std::size_t dof) const {
+        const Range& force = (*this)[dof];
+        return force.lower != 0 || force.upper != 0;
+    }
+    void set(std::size_t dof, Range force) {
+        if (place_[dof] < 0) {
+            place_[dof] = static_cast<int>(set_.size());
+            set_.emplace_back();
+        }
+        set_[static_cast<std::size_t>(place_[dof])] = std::move(force);
+    }
+    /// Those that were set.
+    [[nodiscard]] const std::vector<Range>& listed() const { return set_; }
+
+  private:
+    std::vector<int> place_; ///< of each degree of freedom in `set_`; -1: none
+    std::vector<Range> set_;
+};
+
+/// Ranges of the forces of all contacts. They are made when they are asked for, where they are integers of 128 bits
+/// with one bound.
+class ContactForces {
+  public:
+    ContactForces() = default;
+    ContactForces(std::vector<Range> ranges) : ranges_(std::move(ranges)) {} // NOLINT: the same ranges
+    /// Force l is (middle_l +- around) times the length `force_units` of the problem, which must outlive it, times
+    /// 2^exponent.
+    ContactForces(const Problem& problem, std::vector<Wide> middle, Wide around, long exponent)
+        : problem_(&problem), middle_(std::move(middle)), around_(around), exponent_(exponent) {}
+    operator std::vector<Range>() const; // NOLINT
+    [[nodiscard]] std::size_t size() const { return middle_.size() + ranges_.size(); }
+    [[nodiscard]] bool empty() const { return size() == 0; }
+    [[nodiscard]] Range operator[](std::size_t contact) const;
+    [[nodiscard]] bool positive(std::size_t l) const {
+        return middle_.empty() ? ranges_[l].positive() : middle_[l] > around_;
+    }
+    [[nodiscard]] bool has_zero(std::size_t l) const {
+        return middle_.empty() ? ranges_[l].has_zero() : middle_[l] <= around_ && middle_[l] >= -around_;
+    }
+    /// About the largest magnitude of an end of force l.
+    [[nodiscard]] double about(std::size_t l) const;
+
+  private:
+    const Problem* problem_ = nullptr;
+    std::vector<Wide> middle_;
+    Wide around_ = 0;
+    long exponent_ = 0;
+    std::vector<Range> ranges_; ///< where those are empty
+};
 
 /// A stress of an axis or tilt, as an exact number: on a path `at` + t `rate`.
 Rational stress_of(const Load& load, std::size_t place);
@@ -20,8 +77,8 @@ Forces unit_load(const Problem& problem, const State& state, const TrueVertex& v
 Forces infinitesimal_load(const Problem& problem, const State& state);
 
 /// Ranges of all contact forces (compressive positive) under a load.
-std::vector<Range> contact_forces(const Problem& problem, const Solver& solver, const InverseBound& inverse,
-                                  const TrueVertex& vertex, const Forces& load);
+ContactForces contact_forces(const Problem& problem, const Solver& solver, const InverseBound& inverse,
+                             const TrueVertex& vertex, const Forces& load);
 
 /// The number of degrees of freedom without load that no contact outside a set touches. In a cell whose disks carry no
 /// load the pinned disk counts too, as long as its balance is independent of the counted ones.

@@ -170,7 +170,7 @@ bool same_at_turn(const Place& place, std::size_t a, std::size_t b) {
     if (place.fresh < 0) {
         return false;
     }
-    const std::vector<Range>& force = place.evidence->forces;
+    const ContactForces& force = place.evidence->forces;
     const Range& multiplier = force[static_cast<std::size_t>(place.fresh)];
     const Rational room = std::max<Rational>(abs(multiplier.lower), abs(multiplier.upper));
     const Range difference = force[a] - force[b];
@@ -208,7 +208,7 @@ std::vector<bool> without_force(const Place& place, const std::vector<int>& loos
 /// Earlier held coordinates whose multipliers are within the accuracy
 /// of their turns: after a release they may be held again at once.
 std::vector<int> that_may_rest(const Place& place) {
-    const std::vector<Range>& force = place.evidence->forces;
+    const ContactForces& force = place.evidence->forces;
     const auto size = [&](std::size_t l) { return std::max<Rational>(abs(force[l].lower), abs(force[l].upper)); };
     Rational largest = 0;
     for (std::size_t l = 0; l < force.size(); ++l) {
@@ -240,7 +240,7 @@ bool holds_may_explain(const Place& place, std::size_t a, std::size_t b) {
     if (rows.empty()) {
         return false;
     }
-    const std::vector<Range>& force = place.evidence->forces;
+    const ContactForces& force = place.evidence->forces;
     Rational room = 0;
     for (const int row : rows) {
         const Range& m = force[static_cast<std::size_t>(row)];

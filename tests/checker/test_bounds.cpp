@@ -155,10 +155,12 @@ BOOST_AUTO_TEST_CASE(forces_hold_at_every_point_of_the_enclosure) {
     for (int sample = 0; sample < testing::scaled(200); ++sample) {
         isostat::checker::TrueVertex point = vertex;
         point.radius = 0;
+        std::vector<isostat::checker::Integer> middle = point.middle;
         for (const int k : problem.coordinate_of) {
             const int sign = random() % 2 == 0 ? 1 : -1;
-            point.middle[static_cast<std::size_t>(k)] += sign * isostat::checker::floor_of(radius, -problem.fine);
+            middle[static_cast<std::size_t>(k)] += sign * isostat::checker::floor_of(radius, -problem.fine);
         }
+        point.middle = std::move(middle);
         const std::vector<isostat::checker::Range> there = forces_at(point);
         for (std::size_t l = 0; l < there.size(); ++l) {
             BOOST_REQUIRE((there[l].lower >= enclosed[l].lower && there[l].upper <= enclosed[l].upper));
@@ -187,11 +189,12 @@ BOOST_AUTO_TEST_CASE(motions_hold_at_every_point_of_the_enclosure) {
     for (std::size_t l = 0; l < state.contacts.size(); ++l) {
         const isostat::checker::Velocities::Solution enclosed = isostat::checker::Velocities(wide).opening(l, 1);
         for (int sample = 0; sample < testing::scaled(20); ++sample) {
+            std::vector<isostat::checker::Integer> q = middle;
             for (const int k : point.problem.coordinate_of) {
-                const auto c = static_cast<std::size_t>(k);
                 const int sign = random() % 2 == 0 ? 1 : -1;
-                point.vertex.middle[c] = middle[c] + sign * isostat::checker::floor_of(radius, -point.problem.fine);
+                q[static_cast<std::size_t>(k)] += sign * isostat::checker::floor_of(radius, -point.problem.fine);
             }
+            point.vertex.middle = std::move(q);
             point.vertex.row_residual = wide.vertex.row_residual;
             const isostat::checker::Velocities::Solution there = isostat::checker::Velocities(point).opening(l, 1);
             for (std::size_t c = 0; c < middle.size(); ++c) {

@@ -351,14 +351,13 @@ class Walk {
             q[i] += part * (next[i] - q[i]);
         }
         return end_near(std::move(q), [](System& end, std::vector<double>& at) {
-            if (!end.newton(at, {}, 0x1p-38)) {
-                return false;
-            }
+            constexpr double rounding = 0x1p-44; // the vertex that is proved is found from there
+            const std::optional<double> step = end.newton(at, {}, 0x1p-46);
             std::vector<double> better = at;
-            if (end.newton_in_quadruple(better)) { // double may be too rough
+            if (step && *step > rounding && end.newton_in_quadruple(better)) { // double is too rough
                 at = std::move(better);
             }
-            return true;
+            return step.has_value();
         });
     }
 

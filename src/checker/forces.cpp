@@ -88,19 +88,22 @@ template <class Number> class Balance {
     bool begin(const Problem& problem, const TrueVertex& vertex, const Forces& load, long shift) {
         problem_ = &problem;
         const Integer blur = ceiling_of(2 * vertex.radius, -problem.fine);
+        constexpr bool narrow = std::is_same_v<Number, Wide>;
+        if (narrow && bits(blur) > 100) {
+            return false;
+        }
         blur_ = number<Number>(blur);
         sought_.assign(problem.rows.size(), 0);
         target_.assign(load.size(), Sum());
         unknown_.assign(load.size(), Sum());
-        long load_bits = 0;
-        for (std::size_t j = 0; j < load.size(); ++j) {
-            if (load.acts(j)) {
-                const Integer lower = floor_of(-load[j].upper, shift - problem.fine);
-                const Integer width = ceiling_of(-load[j].lower, shift - problem.fine) - lower;
-                load_bits = std::max({load_bits, bits(lower), bits(width)});
-                target_[j] = number<Sum>(lower);
-                unknown_[j] = number<Sum>(width);
+        for (const auto& [dof, force] : load.acting()) {
+            const Integer lower = floor_of(-force.upper, shift - problem.fine);
+            const Integer width = ceiling_of(-force.lower, shift - problem.fine) - lower;
+            if (narrow && std::max(bits(lower), bits(width)) > 250) {
+                return false;
             }
+            target_[dof] = number<Sum>(lower);
+            unknown_[dof] = number<Sum>(width);
         }
         const std::size_t axes = problem.layout.axes();
         difference_.resize(axes * sought_.size());
@@ -110,7 +113,7 @@ template <class Number> class Balance {
             for (std::size_t a = 0; a < axes; ++a) {
                 difference_[axes * l + a] = 0;
                 if (row.quadratic) {
-                    row.separate(as_numbers(vertex.middle), a, difference_[axes * l + a]);
+                    row.separate(vertex.middle.in<Number>(), a, difference_[axes * l + a]);
                     times = std::max(times, (row.spread(a) * row.spread(a) + 1) / 2);
                 }
             }
@@ -124,10 +127,8 @@ template <class Number> class Balance {
         const long terms = std::bit_width(touching * static_cast<std::size_t>(times));
         largest_ = std::min(125 - terms, 250 - terms - std::max(entry_bits, problem.weight_bits + 1));
         find_residual();
-        return std::is_same_v<Number, Integer> || (bits(blur) <= 100 && load_bits <= 250 && largest_ > 0);
+        return !narrow || largest_ > 0;
     }
-    /// \pre `Number` is `Wide`; the memory is gone.
-    [[nodiscard]] std::vector<Number> take_sought() { return std::move(sought_); }
     [[nodiscard]] const std::vector<Number>& sought() const { return sought_; }
 
     /// Refines until the residual stops falling, or is the rounding of g. False: g is too large.
@@ -186,36 +187,25 @@ template <class Number> class Balance {
   private:
     static constexpr int most_refinements = 60;
 
-    static const auto& as_numbers(const Lengths& lengths) {
-        if constexpr (std::is_same_v<Number, Wide>) {
-            return lengths.in<Wide>();
-        } else {
-            return lengths; // of either kind
-        }
-    }
-
     /// -load - A^T g at the middle of the vertex and the lower end of -load.
     void find_residual() {
         residual_ = target_;
         const std::size_t axes = problem_->layout.axes();
         std::array<Sum, most_axes> products;
+        const auto weight = number<Number>(problem_->weight());
         for (std::size_t l = 0; l < sought_.size(); ++l) {
             const Row& row = problem_->rows[l];
             for (std::size_t a = 0; row.quadratic && a < axes; ++a) {
                 multiply(products[a], difference_[axes * l + a], sought_[l]);
             }
             if (!row.quadratic) {
-                shift_left(products[row.axis[0]], sought_[l], problem_->weight_bits);
+                multiply(products[row.axis[0]], sought_[l], weight);
             }
             for (std::size_t k = 0; k < at(row.count); ++k) {
                 if (const int dof = problem_->dof_of[at(row.coordinate[k])]; dof >= 0) {
-                    const Sum& product = products[row.axis[k]];
-                    if (row.sign[k] == 1) {
-                        residual_[at(dof)] -= product;
-                    } else if (row.sign[k] == -1) {
-                        residual_[at(dof)] += product;
-                    } else {
-                        residual_[at(dof)] += -row.sign[k] * product;
+                    for (int times = std::abs(row.sign[k]); times > 0; --times) { // seldom more than 1
+                        Sum& sum = residual_[at(dof)];
+                        row.sign[k] > 0 ? sum -= products[row.axis[k]] : sum += products[row.axis[k]];
                     }
                 }
             }
@@ -235,7 +225,7 @@ template <class Number> class Balance {
 /// Bits before the binary point of the largest magnitude in a load; nothing: the load is 0.
 std::optional<long> size_of(const Forces& load) {
     Rational largest = 0;
-    for (const Range& force : load.listed()) {
+    for (const auto& [dof, force] : load.acting()) {
         largest = std::max<Rational>(largest, std::max<Rational>(abs(force.upper), abs(force.lower)));
     }
     if (largest == 0) {
@@ -268,7 +258,7 @@ std::optional<ContactForces> forces_in(const Problem& problem, const Solver& sol
     Integer around = around_by(inverse.column_sum_max);
     if constexpr (std::is_same_v<Number, Wide>) {
         if (inverse.column_sum.empty() && bits(around) <= 125) {
-            return ContactForces(problem, balance.take_sought(), number<Wide>(around), problem.fine - shift);
+            return ContactForces(problem, balance.sought(), number<Wide>(around), problem.fine - shift);
         }
     }
     std::vector<Range> forces(problem.rows.size());
@@ -306,7 +296,8 @@ double ContactForces::about(std::size_t l) const {
     if (!middle_.empty()) {
         const double unit = problem_->rows[l].quadratic ? problem_->sum.near(l, problem_->fine)
                                                         : std::ldexp(1.0, problem_->wall_exponent);
-        return approximate(static_cast<Wide>(magnitude(middle_[l])) + around_, exponent_ - problem_->fine) * unit;
+        const Wide size = static_cast<Wide>(magnitude(middle_[l])) + around_;
+        return approximate(Broad(size), exponent_ - problem_->fine) * unit;
     }
     const auto size = [](const Rational& value) {
         const long unit = bits(value.get_den()); // neither of the two numbers need be within the range of double
@@ -329,7 +320,9 @@ ContactForces contact_forces(const Problem& problem, const Solver& solver, const
         forces = forces_in<Wide>(problem, solver, inverse, vertex, load, shift);
     }
     if (!forces) {
-        forces = forces_in<Integer>(problem, solver, inverse, vertex, load, shift);
+        TrueVertex of_any_size = vertex;
+        of_any_size.middle = std::vector<Integer>(vertex.middle);
+        forces = forces_in<Integer>(problem, solver, inverse, of_any_size, load, shift);
     }
     return *std::move(forces);
 }

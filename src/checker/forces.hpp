@@ -6,35 +6,29 @@
 
 #include <isostat/packing/load.hpp>
 
+#include <map>
+
 namespace isostat::checker {
 
 /// External forces per degree of freedom at the true vertex, most of which are 0.
 class Forces {
   public:
-    Forces() = default;
-    explicit Forces(std::size_t size) : place_(size, -1) {}
-    [[nodiscard]] std::size_t size() const { return place_.size(); }
-    [[nodiscard]] const Range& operator[](std::size_t dof) const {
-        static const Range none{Rational(0)};
-        return place_[dof] < 0 ? none : set_[static_cast<std::size_t>(place_[dof])];
-    }
-    [[nodiscard]] bool acts(std::size_t dof) const {
-        const Range& force = (*this)[dof];
-        return force.lower != 0 || force.upper != 0;
-    }
-    void set(std::size_t dof, Range force) {
-        if (place_[dof] < 0) {
-            place_[dof] = static_cast<int>(set_.size());
-            set_.emplace_back();
+    explicit Forces(std::size_t size = 0) : size_(size) {}
+    [[nodiscard]] std::size_t size() const { return size_; }
+    [[nodiscard]] bool acts(std::size_t dof) const { return acting_.count(dof) > 0; }
+    [[nodiscard]] Range operator[](std::size_t dof) const { return acts(dof) ? acting_.at(dof) : Range(); }
+    void set(std::size_t dof, const Range& force) {
+        acting_.erase(dof);
+        if (force.lower != 0 || force.upper != 0) {
+            acting_.emplace(dof, force);
         }
-        set_[static_cast<std::size_t>(place_[dof])] = std::move(force);
     }
-    /// Those that were set.
-    [[nodiscard]] const std::vector<Range>& listed() const { return set_; }
+    /// Those that are not 0.
+    [[nodiscard]] const std::map<std::size_t, Range>& acting() const { return acting_; }
 
   private:
-    std::vector<int> place_; ///< of each degree of freedom in `set_`; -1: none
-    std::vector<Range> set_;
+    std::size_t size_;
+    std::map<std::size_t, Range> acting_;
 };
 
 /// Ranges of the forces of all contacts. They are made when they are asked for, where they are integers of 128 bits

@@ -278,10 +278,9 @@ Problem::Problem(const State& state, bool held_allowed, int asked)
     for (const Row& row : rows) {
         spread = std::max(spread, row.spread());
     }
-    // A separation is the sum of so many lengths, each of which may double on the way to the vertex; and what is
-    // multiplied by the weight and by 2.
+    // A separation is the sum of so many lengths, each of which may double on the way to the vertex (K26).
     const long largest = length_bits + 1 + std::bit_width(static_cast<unsigned>(spread));
-    largest <= 125 && largest + weight_bits + 1 <= 253 ? find_lengths<Wide>(state) : find_lengths<Integer>(state);
+    largest <= 125 && weight_bits + 1 < 125 ? find_lengths<Wide>(state) : find_lengths<Integer>(state);
     find_contacts_of(state);
 }
 
@@ -405,6 +404,7 @@ std::vector<Product<Number>> Problem::twice_residuals(const std::vector<Number>&
     const std::vector<Number>& closed = sum.in<Number>();
     Number difference;
     Product<Number> square;
+    const auto twice_weight = number<Number>(shifted_left(1, weight_bits + 1));
     for (std::size_t l = 0; l < rows.size(); ++l) {
         const Row& row = rows[l];
         Product<Number>& value = residuals[l];
@@ -423,7 +423,7 @@ std::vector<Product<Number>> Problem::twice_residuals(const std::vector<Number>&
         for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
             difference += row.sign[k] * q[static_cast<std::size_t>(row.coordinate[k])];
         }
-        shift_left(value, difference, weight_bits + 1);
+        multiply(value, difference, twice_weight);
     }
     return residuals;
 }

@@ -47,13 +47,10 @@ Range strain_of(const Place& place, int axis) {
 Range work(const Place& from, const Place& to, const Forces& load, double& size) {
     Range sum(Rational(0));
     size = 0;
-    for (std::size_t j = 0; j < load.size(); ++j) {
-        if (load[j].lower == 0 && load[j].upper == 0) {
-            continue;
-        }
-        const auto k = static_cast<std::size_t>(from.evidence->problem.coordinate_of[j]);
-        sum = sum + load[j] * (to.coordinate(k) - from.coordinate(k));
-        size += std::abs(load[j].lower.get_d() * to.coordinate(k).lower.get_d());
+    for (const auto& [dof, force] : load.acting()) {
+        const auto k = static_cast<std::size_t>(from.evidence->problem.coordinate_of[dof]);
+        sum = sum + force * (to.coordinate(k) - from.coordinate(k));
+        size += std::abs(force.lower.get_d() * to.coordinate(k).lower.get_d());
     }
     return sum;
 }
@@ -368,12 +365,10 @@ Range potential_of(const Place& place, double& size) {
     const Evidence& e = *place.evidence;
     Range potential(Rational(0));
     size = 0;
-    for (std::size_t j = 0; j < e.finite_load.size(); ++j) {
-        const auto k = static_cast<std::size_t>(e.problem.coordinate_of[j]);
-        if (e.finite_load.acts(j)) {
-            potential = potential - e.finite_load[j] * place.coordinate(k);
-            size += std::abs(e.finite_load[j].lower.get_d() * place.coordinate(k).lower.get_d());
-        }
+    for (const auto& [dof, force] : e.finite_load.acting()) {
+        const auto k = static_cast<std::size_t>(e.problem.coordinate_of[dof]);
+        potential = potential - force * place.coordinate(k);
+        size += std::abs(force.lower.get_d() * place.coordinate(k).lower.get_d());
     }
     return potential;
 }

@@ -163,7 +163,9 @@ class Factor {
         for (int i = 0; at(i) < n_; ++i) {
             for (const int k : columns_of(i)) {
                 ++count[at(k)];
+                column_.push_back(k);
             }
+            first_.push_back(column_.size());
         }
         start_.resize(n_ + 1, 0);
         std::partial_sum(count.begin(), count.end(), start_.begin() + 1);
@@ -175,7 +177,6 @@ class Factor {
     bool compute(Wide shift) {
         std::fill(row_sum_.begin(), row_sum_.end(), 0);
         std::fill(x_.begin(), x_.end(), 0);
-        std::fill(met_.begin(), met_.end(), -1);
         end_.assign(start_.begin(), start_.end() - 1);
         for (int i = 0; at(i) < n_; ++i) {
             if (!compute_row(i, shift)) {
@@ -186,7 +187,9 @@ class Factor {
     }
 
     /// Largest row sum of magnitudes of B - L L^T - shift I, times 2^(2 point).
-    [[nodiscard]] Integer residual_norm() const { return integer_of(*std::ranges::max_element(row_sum_)); }
+    [[nodiscard]] Integer residual_norm() const {
+        return integer_of(static_cast<Wide>(*std::ranges::max_element(row_sum_)));
+    }
 
     /// An estimate of the smallest eigenvalue of L L^T by some inverse iterations, seldom much above it.
     [[nodiscard]] double smallest_eigenvalue() const {
@@ -252,7 +255,8 @@ class Factor {
             x_[at(b_.column[p])] = b_.value[p];
         }
         Wide square = std::exchange(x_[at(i)], 0) - shift; // of the diagonal entry, in the end
-        for (const int k : columns_of(i)) {
+        for (std::size_t c = first_[at(i)]; c < first_[at(i) + 1]; ++c) {
+            const int k = column_[c];
             const Wide sought = std::exchange(x_[at(k)], 0);
             const double quotient = as_double(sought) / static_cast<double>(diagonal_[at(k)]);
             if (!(std::abs(quotient) < 0x1p62)) {
@@ -305,6 +309,8 @@ class Factor {
     bool leads_ = true;       ///< all paths along parents that were gone led to their row
     std::vector<int> met_;    ///< the last row whose columns were sought
     std::vector<int> reach_;
+    std::vector<std::size_t> first_{0}; ///< of row i in the list of columns, each before its parent
+    std::vector<int> column_;
     std::vector<std::size_t> start_, end_; ///< of the columns below the diagonal: rows ascend
     std::vector<int> row_;
     std::vector<std::int64_t> value_;
@@ -320,7 +326,7 @@ std::optional<Rational> bound_of(const Problem& problem, const Normal& normal, F
         return std::nullopt;
     }
     // sigma^2 of the rounded matrix in units of 2^-(2 point), and the rounding of each entry of A.
-    const Integer square = integer_of(magnitude(exact_shift)) - factor.residual_norm();
+    const Integer square = integer_of(exact_shift) - factor.residual_norm();
     if (square <= 0) {
         return std::nullopt;
     }

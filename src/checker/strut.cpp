@@ -322,7 +322,7 @@ bool equal_in_edge(const Evidence& evidence, const Forces& load, const std::vect
     for (const int axis : {one.j, other.j}) {
         const int dof = problem.dof_of[problem.layout.of_disk(one.i) + static_cast<std::size_t>(axis)];
         const auto row = static_cast<std::size_t>(dof);
-        if (dof < 0 || load[row].lower != 0 || load[row].upper != 0) {
+        if (dof < 0 || load.acts(row)) {
             return false;
         }
         const std::vector<int>& acting = problem.acting_on[row];

@@ -12,14 +12,12 @@ struct Guess {
 
     template <class Number>
     Guess(const Problem& problem, const std::vector<Number>& at, const std::vector<Product<Number>>& residual)
-        : q(at), largest(integer_of(largest_of(residual))) {
-        const std::vector<Number>& stored = problem.stored.in<Number>();
-        Number most = 0;
+        : q(at), largest(largest_of(residual)) {
+        std::vector<Number> way = at;
         for (std::size_t k = 0; k < at.size(); ++k) {
-            const Number move = magnitude(Number(at[k] - stored[k]));
-            most = move > most ? move : most;
+            way[k] -= problem.stored.in<Number>()[k];
         }
-        moved = integer_of(most);
+        moved = largest_of(way);
     }
 };
 

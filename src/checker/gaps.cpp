@@ -223,26 +223,18 @@ bool is_free_pair(const State& state, const Contact& pair) {
 
 namespace {
 
-/// All pairs, one of each being in the cell itself. Sweep along x: a pair whose centres are further apart along one
-/// axis alone cannot be nearer.
-void sweep(std::vector<Placed> places, const Approximation& at, double widest, Collector& collector) {
-    std::sort(places.begin(), places.end(), [](const Placed& a, const Placed& b) {
-        return a.at[0] < b.at[0] ||
-               (a.at[0] == b.at[0] && (a.disk < b.disk || (a.disk == b.disk && a.image < b.image)));
-    });
-    for (std::size_t p = 0; p < places.size(); ++p) {
-        const Placed& one = places[p];
-        for (std::size_t k = p + 1; k < places.size(); ++k) {
-            const Placed& two = places[k];
-            const double farthest = widest + collector.limit() + at.error;
-            if (two.at[0] - one.at[0] > farthest) {
-                break;
-            }
-            if ((one.central || two.central) && std::abs(two.at[1] - one.at[1]) <= farthest &&
-                std::abs(two.at[2] - one.at[2]) <= farthest) {
+/// All pairs, one of each being in the cell itself. A pair whose centres are further apart along one axis alone cannot
+/// be nearer.
+void sweep(const std::vector<Placed>& places, const Approximation& at, double widest, Collector& collector) {
+    const auto reach = [&] { return widest + collector.limit() + at.error; };
+    double height = 0;
+    for (double needed = std::min(1.25 * widest, reach()); height < needed; needed = reach()) {
+        height = needed; // again when a pair farther away could be as near as the nearest found
+        for_each_near(places, height, reach, [&](const Placed& one, const Placed& two) {
+            if ((one.central || two.central) && std::abs(two.at[2] - one.at[2]) <= reach()) {
                 collector.offer(pair_between(one, two));
             }
-        }
+        });
     }
 }
 
@@ -266,7 +258,7 @@ std::optional<std::vector<Contact>> nearest_pairs(const Problem& problem, const 
         }
         Collector collector(state, at);
         sweep_walls(problem, collector);
-        sweep(std::move(places), at, widest, collector);
+        sweep(places, at, widest, collector);
         return collector.nearest();
     }
     const CellImages images(state.packing, at.q);

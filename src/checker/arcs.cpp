@@ -32,7 +32,7 @@ class Directions {
         : problem_(problem), vertex_(vertex), off_(ceiling_of(2 * vertex.radius, -problem.fine)) {}
 
     [[nodiscard]] Direction between(int from, int to) const {
-        const auto at = [&](int disk, std::size_t a) -> const Integer& {
+        const auto at = [&](int disk, std::size_t a) -> Integer {
             return vertex_.middle[problem_.layout.of_disk(disk) + a];
         };
         return {at(to, 0) - at(from, 0), at(to, 1) - at(from, 1)};
@@ -108,7 +108,10 @@ std::string unfit_arcs(const Problem& problem, const State& state, const TrueVer
     const Directions at(problem, vertex);
     std::vector<std::array<int, 2>> joints(packing.radius.size(), {-1, -1}); // neighbours before and after
     const double thinnest = packing.min_radius();
-    const double largest = approximate(largest_of(vertex.middle), problem.fine);
+    double largest = 0;
+    for (const double x : vertex.middle.near(problem.fine)) {
+        largest = std::max(largest, std::abs(x));
+    }
     for (const std::vector<int>& ring : packing.arcs) {
         if (std::string why = not_convex(state, at, ring); !why.empty()) {
             return why;
@@ -137,7 +140,7 @@ std::string unfit_arcs(const Problem& problem, const State& state, const TrueVer
         Direction n = c.of_disks() ? at.between(c.i, c.j) : Direction{c.j == 0 ? 1 : 0, c.j == 0 ? 0 : 1};
         if (!c.of_disks()) { // as long as the box: its direction is known, and `left` takes it as well as others
             const Integer along =
-                shifted_left(1, bits(largest_of(vertex.middle))) * (c.kind == ContactKind::upper_wall ? 1 : -1);
+                shifted_left(1, vertex.middle.most_bits()) * (c.kind == ContactKind::upper_wall ? 1 : -1);
             n = {n.x * along, n.y * along};
         }
         if (!inside(c.i, n) || (c.of_disks() && !inside(c.j, {-n.x, -n.y}))) {

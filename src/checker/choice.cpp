@@ -53,6 +53,9 @@ const TieRecord* recorded_choice(const std::vector<TieRecord>& ties, const std::
 
 Objections check_choice(const Place& place, const std::vector<TieRecord>& ties, std::size_t chosen,
                         const ChoiceRule& rule) {
+    if (ties.empty()) {
+        return {};
+    }
     const Evidence& e = *place.evidence;
     std::vector<std::size_t> members{chosen};
     bool by_name = false;

@@ -77,18 +77,18 @@ const Forces& Evidence::unit_load() const {
     return *unit_load_;
 }
 
-const std::vector<Range>& Evidence::slopes() const {
+const ContactForces& Evidence::slopes() const {
     if (!slopes_) {
-        slopes_ = vertex.found ? contact_forces(problem, *solver, inverse, vertex, unit_load()) : std::vector<Range>();
+        slopes_ = vertex.found ? contact_forces(problem, *solver, inverse, vertex, unit_load()) : ContactForces();
     }
     return *slopes_;
 }
 
-const std::vector<Range>& Evidence::infinitesimal() const {
+const ContactForces& Evidence::infinitesimal() const {
     if (!infinitesimal_) {
         infinitesimal_ = vertex.found
                              ? contact_forces(problem, *solver, inverse, vertex, infinitesimal_load(problem, state))
-                             : std::vector<Range>();
+                             : ContactForces();
     }
     return *infinitesimal_;
 }
@@ -109,10 +109,10 @@ std::string Evidence::why_no_vertex() const {
     return inverse.found ? "the gaps of the contacts are too large for the bound of the inverse" : why_no_inverse();
 }
 
-std::vector<int> having_zero(const std::vector<Range>& ranges) {
+std::vector<int> having_zero(const ContactForces& ranges) {
     std::vector<int> positions;
     for (std::size_t l = 0; l < ranges.size(); ++l) {
-        if (ranges[l].has_zero()) {
+        if (ranges.has_zero(l)) {
             positions.push_back(static_cast<int>(l));
         }
     }

@@ -19,6 +19,8 @@ struct Evidence {
     /// values of the held coordinates which, to first order, move no coordinate farther than that (K28).
     Evidence(const State& checked, CheckerArithmetic arithmetic, bool held_allowed = false,
              const std::shared_ptr<const Solver>& near = {}, int digits = usual_digits, const Rational& around = 0);
+    Evidence(const Evidence&) = delete; // the forces refer to the problem
+    Evidence& operator=(const Evidence&) = delete;
 
     const State& state;
     Problem problem;
@@ -28,12 +30,12 @@ struct Evidence {
     TrueVertex vertex;
     // At the true vertex, if it was found:
     Forces finite_load;
-    std::vector<Range> forces; ///< under the load of the state
+    ContactForces forces; ///< under the load of the state
     /// The load per unit of the loaded stress, forces per that unit, and per unit of eps: computed on first use, by one
     /// thread.
     [[nodiscard]] const Forces& unit_load() const;
-    [[nodiscard]] const std::vector<Range>& slopes() const;
-    [[nodiscard]] const std::vector<Range>& infinitesimal() const;
+    [[nodiscard]] const ContactForces& slopes() const;
+    [[nodiscard]] const ContactForces& infinitesimal() const;
     std::shared_ptr<const Solver> solver; ///< filled when the matrix is square
 
     [[nodiscard]] std::string name(std::size_t contact) const { return named(state.contacts[contact]); }
@@ -52,12 +54,12 @@ struct Evidence {
 
   private:
     mutable std::optional<Forces> unit_load_;
-    mutable std::optional<std::vector<Range>> slopes_;
-    mutable std::optional<std::vector<Range>> infinitesimal_;
+    mutable std::optional<ContactForces> slopes_;
+    mutable std::optional<ContactForces> infinitesimal_;
 };
 
 /// Positions of the ranges that contain 0.
-std::vector<int> having_zero(const std::vector<Range>& ranges);
+std::vector<int> having_zero(const ContactForces& ranges);
 
 /// The verdict on two statements together: refuted before undecided, undecided before proved.
 Verdict both(Verdict a, Verdict b);

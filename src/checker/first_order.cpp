@@ -29,7 +29,7 @@ namespace {
 /// A v = b at the middle of the vertex in integers: v in multiples of 2^-shift, b of 2^(fine - shift).
 struct FirstMotion {
     const Problem& problem;
-    const std::vector<Integer>& at;
+    const Lengths& at;
     std::vector<Integer> target;
     std::vector<Integer> v; ///< per coordinate; 0 where it does not move
 
@@ -195,11 +195,11 @@ Range FirstOrder::gap(const Contact& pair) const {
 }
 
 std::vector<Range> FirstOrder::forces(const std::vector<Range>& f0) const {
-    Forces load(static_cast<std::size_t>(e_.problem.dofs()), Range(Rational(0)));
+    Forces load(static_cast<std::size_t>(e_.problem.dofs()));
     const auto add = [&](std::size_t coordinate, const Range& value) {
         const int dof = e_.problem.dof_of[coordinate];
         if (dof >= 0) {
-            load[static_cast<std::size_t>(dof)] = load[static_cast<std::size_t>(dof)] + value;
+            load.set(static_cast<std::size_t>(dof), load[static_cast<std::size_t>(dof)] + value);
         }
     };
     for (std::size_t l = 0; l < e_.state.contacts.size(); ++l) {

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
 #include <optional>
 #include <set>
 
@@ -88,23 +87,22 @@ std::optional<std::vector<Contact>> near_pairs(const Packing& packing, const std
     const auto n = packing.radius.size();
     const std::size_t axes = packing.axes();
     const auto fixed = [&](std::size_t i) { return !packing.fixed.empty() && packing.fixed[i] != 0; };
-    std::vector<std::size_t> order(n);
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return q[axes * i] < q[axes * j]; });
     const double margin = 2 * per_coordinate(packing) * reach;
     const double widest = 2 * packing.max_radius() + margin;
-    for (std::size_t p = 0; p < n; ++p) {
-        const std::size_t i = order[p];
-        for (std::size_t k = p + 1; !cell && k < n && q[axes * order[k]] - q[axes * i] < widest; ++k) {
-            const std::size_t j = order[k];
-            if (std::abs(q[axes * i + 1] - q[axes * j + 1]) >= widest) {
-                continue;
-            }
-            const Contact pair = pair_of(static_cast<int>(i), static_cast<int>(j));
-            if (gap_at(packing, q, pair) < margin && !(fixed(i) && fixed(j))) {
+    std::vector<Placed> places;
+    for (std::size_t i = 0; i < n && !cell; ++i) {
+        std::copy_n(&q[axes * i], axes, places.emplace_back(Placed{static_cast<int>(i)}).at.begin());
+    }
+    for_each_near(
+        places, widest, [widest] { return widest; },
+        [&](const Placed& one, const Placed& two) {
+            const Contact pair = pair_of(one.disk, two.disk);
+            const bool both = fixed(static_cast<std::size_t>(one.disk)) && fixed(static_cast<std::size_t>(two.disk));
+            if (gap_at(packing, q, pair) < margin && !both) {
                 pairs.push_back(pair);
             }
-        }
+        });
+    for (std::size_t i = 0; i < n; ++i) {
         for (std::size_t a = 0; a < axes && !fixed(i); ++a) {
             for (const ContactKind side : {ContactKind::lower_wall, ContactKind::upper_wall}) {
                 const auto& walls = side == ContactKind::lower_wall ? packing.walls.lower : packing.walls.upper;
@@ -351,14 +349,13 @@ class Walk {
             q[i] += part * (next[i] - q[i]);
         }
         return end_near(std::move(q), [](System& end, std::vector<double>& at) {
-            if (!end.newton(at, {}, 0x1p-38)) {
-                return false;
-            }
+            constexpr double rounding = 0x1p-44; // the vertex that is proved is found from there
+            const std::optional<double> step = end.newton(at, {}, 0x1p-46);
             std::vector<double> better = at;
-            if (end.newton_in_quadruple(better)) { // double may be too rough
+            if (step && *step > rounding && end.newton_in_quadruple(better)) { // double is too rough
                 at = std::move(better);
             }
-            return true;
+            return step.has_value();
         });
     }
 

@@ -2,6 +2,7 @@
 
 #include "checker/index.hpp"
 
+#include <bit>
 #include <optional>
 
 namespace isostat::checker {
@@ -35,7 +36,7 @@ Forces disk_loads(const Problem& problem, const std::vector<double>& per_coordin
     for (std::size_t j = 0; j < load.size(); ++j) {
         const auto coordinate = static_cast<std::size_t>(problem.coordinate_of[j]);
         if (coordinate < per_coordinate.size() && per_coordinate[coordinate] != 0) {
-            load[j] = Range(Rational(per_coordinate[coordinate]));
+            load.set(j, Range(Rational(per_coordinate[coordinate])));
         }
     }
     return load;
@@ -53,7 +54,7 @@ Forces finite_load(const Problem& problem, const State& state, const TrueVertex&
     const std::size_t walls = problem.layout.of_length(0);
     for (std::size_t place = 0; walls + place < problem.dof_of.size(); ++place) {
         if (const int dof = problem.dof_of[walls + place]; dof >= 0) {
-            load[at(dof)] = Range(stress_of(state.load, place)) * force_per_stress(problem, state, vertex, place);
+            load.set(at(dof), Range(stress_of(state.load, place)) * force_per_stress(problem, state, vertex, place));
         }
     }
     return load;
@@ -65,7 +66,7 @@ Forces unit_load(const Problem& problem, const State& state, const TrueVertex& v
     for (std::size_t place = 0; walls + place < problem.dof_of.size(); ++place) { // tilts follow the lengths
         const int dof = problem.dof_of[walls + place];
         if (const double rate = state.load.rate_of(place); dof >= 0 && rate != 0) {
-            load[at(dof)] = Range(Rational(rate)) * force_per_stress(problem, state, vertex, place);
+            load.set(at(dof), Range(Rational(rate)) * force_per_stress(problem, state, vertex, place));
         }
     }
     return load;
@@ -77,56 +78,62 @@ Forces infinitesimal_load(const Problem& problem, const State& state) {
 
 namespace {
 
-/// target += times * value; times is seldom other than +-1.
-void add_multiple(Integer& target, int times, const Integer& value) {
-    if (times == 1) {
-        target += value;
-    } else if (times == -1) {
-        target -= value;
-    } else {
-        target += times * value;
-    }
-}
-
 /// The balance A^T g = -load in integers: g in multiples of 2^-shift per unit of length, forces of 2^(fine - shift).
-/// Thousands of numbers, whose memory serves one vertex after the other.
-class Balance {
+/// Thousands of numbers, whose memory serves one vertex after the other. `Number`: that of the lengths.
+template <class Number> class Balance {
   public:
-    void begin(const Problem& problem, const TrueVertex& vertex, const Forces& load, long shift) {
+    using Sum = Product<Number>;
+
+    /// False: the numbers may be too large.
+    bool begin(const Problem& problem, const TrueVertex& vertex, const Forces& load, long shift) {
         problem_ = &problem;
-        blur_ = ceiling_of(2 * vertex.radius, -problem.fine);
-        rounding_ = 0;
-        sought_.resize(problem.rows.size());
-        std::fill(sought_.begin(), sought_.end(), 0);
-        target_.resize(load.size());
-        unknown_.resize(load.size());
-        for (std::size_t j = 0; j < load.size(); ++j) {
-            target_[j] = unknown_[j] = 0;
-            if (const auto& [lower, upper] = load[j]; lower != 0 || upper != 0) {
-                target_[j] = floor_of(-upper, shift - problem.fine);
-                unknown_[j] = ceiling_of(-lower, shift - problem.fine) - target_[j];
+        const Integer blur = ceiling_of(2 * vertex.radius, -problem.fine);
+        constexpr bool narrow = std::is_same_v<Number, Wide>;
+        if (narrow && bits(blur) > 100) {
+            return false;
+        }
+        blur_ = number<Number>(blur);
+        sought_.assign(problem.rows.size(), 0);
+        target_.assign(load.size(), Sum());
+        unknown_.assign(load.size(), Sum());
+        for (const auto& [dof, force] : load.acting()) {
+            const Integer lower = floor_of(-force.upper, shift - problem.fine);
+            const Integer width = ceiling_of(-force.lower, shift - problem.fine) - lower;
+            if (narrow && std::max(bits(lower), bits(width)) > 250) {
+                return false;
             }
+            target_[dof] = number<Sum>(lower);
+            unknown_[dof] = number<Sum>(width);
         }
         const std::size_t axes = problem.layout.axes();
         difference_.resize(axes * sought_.size());
+        int times = 1; // of one contact in one sum
         for (std::size_t l = 0; l < sought_.size(); ++l) {
+            const Row& row = problem.rows[l];
             for (std::size_t a = 0; a < axes; ++a) {
                 difference_[axes * l + a] = 0;
-                if (problem.rows[l].quadratic) {
-                    problem.rows[l].separate(vertex.middle, a, difference_[axes * l + a]);
+                if (row.quadratic) {
+                    row.separate(vertex.middle.in<Number>(), a, difference_[axes * l + a]);
+                    times = std::max(times, (row.spread(a) * row.spread(a) + 1) / 2);
                 }
             }
         }
-        find_residual();
-        for (const Integer& entry : difference_) {
-            rounding_ = std::max(rounding_, bits(entry) + 3);
+        const long entry_bits = most_bits(difference_);
+        rounding_ = entry_bits + 3;
+        std::size_t touching = 1;
+        for (const std::vector<int>& contacts : problem.contacts_of) {
+            touching = std::max(touching, contacts.size());
         }
+        const long terms = std::bit_width(touching * static_cast<std::size_t>(times));
+        largest_ = std::min(125 - terms, 250 - terms - std::max(entry_bits, problem.weight_bits + 1));
+        find_residual();
+        return !narrow || largest_ > 0;
     }
-    [[nodiscard]] const std::vector<Integer>& sought() const { return sought_; }
+    [[nodiscard]] const std::vector<Number>& sought() const { return sought_; }
 
-    /// Refines until the residual stops falling, or is the rounding of g.
-    void refine(const Solver& solver) {
-        long size = bits(largest_of(residual_));
+    /// Refines until the residual stops falling, or is the rounding of g. False: g is too large.
+    bool refine(const Solver& solver) {
+        long size = most_bits(residual_);
         for (int step = 0; step < most_refinements && size > rounding_; ++step) {
             Eigen::MatrixXd b(problem_->dofs(), 1);
             for (int j = 0; j < problem_->dofs(); ++j) {
@@ -134,43 +141,47 @@ class Balance {
             }
             const Eigen::MatrixXd x = solver.solve_transposed(b);
             for (std::size_t l = 0; l < sought_.size(); ++l) {
-                add_scaled(sought_[l], x(static_cast<Eigen::Index>(l), 0), size - solver.scale(*problem_));
+                if (!add_scaled(sought_[l], x(static_cast<Eigen::Index>(l), 0), size - solver.scale(*problem_),
+                                largest_)) {
+                    return false;
+                }
             }
             find_residual();
-            const long now = bits(largest_of(residual_));
+            const long now = most_bits(residual_);
             if (now >= size) {
-                return;
+                return true;
             }
             size = now;
         }
+        return true;
     }
 
     /// Upper bound of the residual at the true vertex (K6): entries of contacts of two disks differ by twice the
     /// radius, or more through periods.
     [[nodiscard]] Integer residual_at_vertex() {
-        unsure_.resize(residual_.size());
-        std::fill(unsure_.begin(), unsure_.end(), 0);
-        Integer size;
+        unsure_.assign(residual_.size(), 0);
         for (std::size_t l = 0; l < sought_.size(); ++l) {
             const Row& row = problem_->rows[l];
-            size = abs(sought_[l]);
+            const Number size = magnitude(sought_[l]);
             for (std::size_t k = 0; row.quadratic && k < at(row.count); ++k) {
                 if (const int dof = problem_->dof_of[at(row.coordinate[k])]; dof >= 0) {
-                    const int weight = (std::abs(row.sign[k]) * row.spread(row.axis[k]) + 1) / 2; // of twice the radius
-                    add_multiple(unsure_[at(dof)], weight, size);
+                    // of twice the radius
+                    unsure_[at(dof)] += (std::abs(row.sign[k]) * row.spread(row.axis[k]) + 1) / 2 * size;
                 }
             }
         }
-        Integer worst = 0;
+        Sum worst = Sum();
+        Sum blurred;
         for (std::size_t j = 0; j < residual_.size(); ++j) {
-            size = abs(residual_[j]);
+            Sum size = magnitude(residual_[j]);
             size += unknown_[j];
-            mpz_addmul(size.get_mpz_t(), blur_.get_mpz_t(), unsure_[j].get_mpz_t());
-            if (size > worst) {
+            multiply(blurred, blur_, unsure_[j]);
+            size += blurred;
+            if (worst < size) {
                 std::swap(size, worst);
             }
         }
-        return worst;
+        return integer_of(worst);
     }
 
   private:
@@ -180,35 +191,41 @@ class Balance {
     void find_residual() {
         residual_ = target_;
         const std::size_t axes = problem_->layout.axes();
-        std::array<Integer, most_axes> products;
+        std::array<Sum, most_axes> products;
+        const auto weight = number<Number>(problem_->weight());
         for (std::size_t l = 0; l < sought_.size(); ++l) {
             const Row& row = problem_->rows[l];
             for (std::size_t a = 0; row.quadratic && a < axes; ++a) {
-                products[a] = difference_[axes * l + a] * sought_[l];
+                multiply(products[a], difference_[axes * l + a], sought_[l]);
             }
             if (!row.quadratic) {
-                products[row.axis[0]] = shifted_left(sought_[l], problem_->weight_bits);
+                multiply(products[row.axis[0]], sought_[l], weight);
             }
             for (std::size_t k = 0; k < at(row.count); ++k) {
                 if (const int dof = problem_->dof_of[at(row.coordinate[k])]; dof >= 0) {
-                    add_multiple(residual_[at(dof)], -row.sign[k], products[row.axis[k]]);
+                    for (int times = std::abs(row.sign[k]); times > 0; --times) { // seldom more than 1
+                        Sum& sum = residual_[at(dof)];
+                        row.sign[k] > 0 ? sum -= products[row.axis[k]] : sum += products[row.axis[k]];
+                    }
                 }
             }
         }
     }
 
     const Problem* problem_ = nullptr;
-    std::vector<Integer> sought_, target_, residual_, unsure_;
-    std::vector<Integer> unknown_;    ///< width of the load
-    std::vector<Integer> difference_; ///< entries of the contacts of two disks, axis by axis
-    Integer blur_;
+    std::vector<Number> sought_, unsure_;
+    std::vector<Sum> target_, residual_;
+    std::vector<Sum> unknown_;       ///< width of the load
+    std::vector<Number> difference_; ///< entries of the contacts of two disks, axis by axis
+    Number blur_ = 0;
     long rounding_ = 0; ///< bits of a residual from the rounding of g
+    long largest_ = 0;  ///< bits that g may have
 };
 
 /// Bits before the binary point of the largest magnitude in a load; nothing: the load is 0.
 std::optional<long> size_of(const Forces& load) {
     Rational largest = 0;
-    for (const Range& force : load) {
+    for (const auto& [dof, force] : load.acting()) {
         largest = std::max<Rational>(largest, std::max<Rational>(abs(force.upper), abs(force.lower)));
     }
     if (largest == 0) {
@@ -217,41 +234,97 @@ std::optional<long> size_of(const Forces& load) {
     return bits(largest.get_num()) - bits(largest.get_den());
 }
 
-} // namespace
+/// A dyadic range in place: there are thousands.
+void set_range(Range& range, const Integer& middle, const Integer& around, const Integer& factor, long exponent) {
+    const auto set = [&](Rational& end, const Integer& units) {
+        mpz_mul(end.get_num_mpz_t(), units.get_mpz_t(), factor.get_mpz_t());
+        scale(end, exponent);
+    };
+    set(range.lower, middle - around);
+    set(range.upper, middle + around);
+}
 
-std::vector<Range> contact_forces(const Problem& problem, const Solver& solver, const InverseBound& inverse,
-                                  const TrueVertex& vertex, const Forces& load) {
-    std::vector<Range> forces(problem.rows.size());
-    const std::optional<long> size = size_of(load);
-    if (!size) {
-        return forces;
-    }
-    // Entries of A are below 2^(scale + fine), so forces per length are above the largest load / that. 40 bits more
-    // than the vertex has are kept below.
-    const long shift = problem.digits + 40 + solver.scale(problem) + problem.fine - *size;
-    static thread_local Balance balance;
-    balance.begin(problem, vertex, load, shift);
-    if (solver.usable()) {
-        balance.refine(solver);
+/// Nothing: the numbers may be too large.
+template <class Number>
+std::optional<ContactForces> forces_in(const Problem& problem, const Solver& solver, const InverseBound& inverse,
+                                       const TrueVertex& vertex, const Forces& load, long shift) {
+    static thread_local Balance<Number> balance;
+    if (!balance.begin(problem, vertex, load, shift) || (solver.usable() && !balance.refine(solver))) {
+        return {};
     }
     const Rational error =
         Rational(balance.residual_at_vertex()) / (1 - vertex.column_residual) * power_of_two(problem.fine);
     const auto around_by = [&error](const Rational& column_sum) { return ceiling_of(error * column_sum); };
     Integer around = around_by(inverse.column_sum_max);
-    Integer end;
+    if constexpr (std::is_same_v<Number, Wide>) {
+        if (inverse.column_sum.empty() && bits(around) <= 125) {
+            return ContactForces(problem, balance.sought(), number<Wide>(around), problem.fine - shift);
+        }
+    }
+    std::vector<Range> forces(problem.rows.size());
     for (std::size_t l = 0; l < forces.size(); ++l) {
         if (!inverse.column_sum.empty()) {
             around = around_by(inverse.column_sum[l]);
         }
-        const Integer factor = problem.force_units(static_cast<int>(l));
-        const auto set = [&](Rational& force, const Integer& per_length) { // in place: there are thousands
-            mpz_mul(force.get_num_mpz_t(), per_length.get_mpz_t(), factor.get_mpz_t());
-            scale(force, problem.fine - shift);
-        };
-        set(forces[l].lower, end = balance.sought()[l] - around);
-        set(forces[l].upper, end = balance.sought()[l] + around);
+        set_range(forces[l], integer_of(balance.sought()[l]), around, problem.force_units(static_cast<int>(l)),
+                  problem.fine - shift);
     }
     return forces;
+}
+
+} // namespace
+
+ContactForces::operator std::vector<Range>() const {
+    std::vector<Range> all;
+    for (std::size_t l = 0; l < size(); ++l) {
+        all.push_back((*this)[l]);
+    }
+    return all;
+}
+
+Range ContactForces::operator[](std::size_t contact) const {
+    if (middle_.empty()) {
+        return ranges_[contact];
+    }
+    Range range;
+    set_range(range, integer_of(middle_[contact]), integer_of(around_),
+              problem_->force_units(static_cast<int>(contact)), exponent_);
+    return range;
+}
+
+double ContactForces::about(std::size_t l) const {
+    if (!middle_.empty()) {
+        const double unit = problem_->rows[l].quadratic ? problem_->sum.near(l, problem_->fine)
+                                                        : std::ldexp(1.0, problem_->wall_exponent);
+        const Wide size = static_cast<Wide>(magnitude(middle_[l])) + around_;
+        return approximate(Broad(size), exponent_ - problem_->fine) * unit;
+    }
+    const auto size = [](const Rational& value) {
+        const long unit = bits(value.get_den()); // neither of the two numbers need be within the range of double
+        return std::abs(approximate(value.get_num(), -unit) / approximate(value.get_den(), -unit));
+    };
+    return std::max(size(ranges_[l].lower), size(ranges_[l].upper));
+}
+
+ContactForces contact_forces(const Problem& problem, const Solver& solver, const InverseBound& inverse,
+                             const TrueVertex& vertex, const Forces& load) {
+    const std::optional<long> size = size_of(load);
+    if (!size) {
+        return std::vector<Range>(problem.rows.size());
+    }
+    // Entries of A are below 2^(scale + fine), so forces per length are above the largest load / that. 40 bits more
+    // than the vertex has are kept below.
+    const long shift = problem.digits + 40 + solver.scale(problem) + problem.fine - *size;
+    std::optional<ContactForces> forces;
+    if (vertex.middle.narrow()) {
+        forces = forces_in<Wide>(problem, solver, inverse, vertex, load, shift);
+    }
+    if (!forces) {
+        TrueVertex of_any_size = vertex;
+        of_any_size.middle = std::vector<Integer>(vertex.middle);
+        forces = forces_in<Integer>(problem, solver, inverse, of_any_size, load, shift);
+    }
+    return *std::move(forces);
 }
 
 int free_of_others(const Problem& problem, const std::vector<int>& contacts, const Forces& load) {
@@ -267,7 +340,7 @@ int free_of_others(const Problem& problem, const std::vector<int>& contacts, con
     std::array<bool, most_axes> some_left{}; // per axis: of its degrees of freedom some do not count
     std::array<bool, most_axes> loaded_along{};
     for (std::size_t j = 0; j < problem.acting_on.size(); ++j) {
-        const bool loaded = load[j].lower != 0 || load[j].upper != 0;
+        const bool loaded = load.acts(j);
         const bool counts = !loaded && free(problem.acting_on[j]);
         count += counts ? 1 : 0;
         if (const int axis = problem.axis_of(j); axis >= 0) {

@@ -53,19 +53,9 @@ struct Approximation {
     double error = 0;
 
     Approximation(const Problem& problem, const TrueVertex& vertex) {
-        long largest = 1;
-        for (const Integer& x : vertex.middle) {
-            largest = std::max(largest, bits(x));
-        }
-        for (const Integer& r : problem.radius) {
-            largest = std::max(largest, bits(r));
-        }
-        for (const Integer& x : vertex.middle) {
-            q.push_back(approximate(x, -largest));
-        }
-        for (const Integer& r : problem.radius) {
-            radius.push_back(approximate(r, -largest));
-        }
+        const long largest = std::max({1L, vertex.middle.most_bits(), problem.radius.most_bits()});
+        q = vertex.middle.near(-largest);
+        radius = problem.radius.near(-largest);
         // K9: 64 roundings of numbers up to 1, and four radii of the enclosure.
         error = 0x1p-47 + 4 * rounded_up(vertex.radius * power_of_two(-largest - problem.fine));
     }
@@ -94,7 +84,7 @@ struct Approximation {
 Range exact_gap(const Problem& problem, const TrueVertex& vertex, const Contact& pair, const Rational& open) {
     const auto i = static_cast<std::size_t>(pair.i);
     const auto j = static_cast<std::size_t>(pair.j);
-    const std::vector<Integer>& q = vertex.middle;
+    const Lengths& q = vertex.middle;
     const Row row(pair, problem.layout);
     const Range blur = Range::around(0, 2 * std::max(2, row.spread()) * vertex.radius + open);
     if (pair.of_disks()) {
@@ -102,7 +92,7 @@ Range exact_gap(const Problem& problem, const TrueVertex& vertex, const Contact&
         const Integer distance = problem.radius[i] + problem.radius[j];
         return Range(problem.length(root - distance), problem.length(root + 1 - distance)) + blur;
     }
-    const Integer& x = q[problem.layout.of_disk(pair.i) + j];
+    const Integer x = q[problem.layout.of_disk(pair.i) + j];
     const Integer wall = pair.kind == ContactKind::lower_wall ? Integer(0) : q[problem.layout.of_length(j)];
     const Integer gap = (pair.kind == ContactKind::lower_wall ? x : Integer(wall - x)) - problem.radius[i];
     return Range(problem.length(gap)) + blur;
@@ -156,14 +146,11 @@ namespace {
 
 /// An own image that cannot move, nearer than a diameter: the largest disk has one if any has.
 std::optional<Contact> overlapping_image(const Problem& problem, const State& state) {
-    const auto widest = std::max_element(problem.radius.begin(), problem.radius.end());
-    const auto disk = static_cast<int>(widest - problem.radius.begin());
-    std::vector<double> q;
-    for (const Integer& x : problem.stored) {
-        q.push_back(approximate(x, problem.fine));
-    }
-    const CellImages images(state.packing, q);
-    const auto range = images.range(2.5 * approximate(*widest, problem.fine));
+    const std::vector<double>& r = state.packing.radius;
+    const auto disk = static_cast<int>(std::max_element(r.begin(), r.end()) - r.begin());
+    const Integer widest = problem.radius[static_cast<std::size_t>(disk)];
+    const CellImages images(state.packing, state.packing.q);
+    const auto range = images.range(2.5 * approximate(widest, problem.fine));
     if (!images.usable() || !range) {
         return Contact{ContactKind::disk_disk, -1, -1};
     }
@@ -172,7 +159,7 @@ std::optional<Contact> overlapping_image(const Problem& problem, const State& st
         const auto times = [&m](std::size_t a) { return static_cast<std::int8_t>(m[a]); };
         const Contact pair = pair_of(disk, disk, {{times(0), times(1), times(2)}});
         if (!pair.image.is_here() && !own_image_moves(state.packing, pair) &&
-            Row(pair, problem.layout).square(problem.stored, problem.layout.axes()) < 4 * *widest * *widest) {
+            Row(pair, problem.layout).square(problem.stored, problem.layout.axes()) < 4 * widest * widest) {
             overlap = pair;
         }
     });
@@ -191,7 +178,7 @@ std::optional<Contact> fixed_overlap(const Problem& problem, const State& state)
             fixed.push_back(i);
         }
     }
-    const std::vector<Integer>& q = problem.stored;
+    const Lengths& q = problem.stored;
     const Layout& layout = problem.layout;
     const auto coordinate = [&](int i, std::size_t a) { return q[layout.of_disk(i) + a]; };
     const auto radius = [&problem](int i) { return problem.radius[static_cast<std::size_t>(i)]; };
@@ -236,26 +223,18 @@ bool is_free_pair(const State& state, const Contact& pair) {
 
 namespace {
 
-/// All pairs, one of each being in the cell itself. Sweep along x: a pair whose centres are further apart along one
-/// axis alone cannot be nearer.
-void sweep(std::vector<Placed> places, const Approximation& at, double widest, Collector& collector) {
-    std::sort(places.begin(), places.end(), [](const Placed& a, const Placed& b) {
-        return a.at[0] < b.at[0] ||
-               (a.at[0] == b.at[0] && (a.disk < b.disk || (a.disk == b.disk && a.image < b.image)));
-    });
-    for (std::size_t p = 0; p < places.size(); ++p) {
-        const Placed& one = places[p];
-        for (std::size_t k = p + 1; k < places.size(); ++k) {
-            const Placed& two = places[k];
-            const double farthest = widest + collector.limit() + at.error;
-            if (two.at[0] - one.at[0] > farthest) {
-                break;
-            }
-            if ((one.central || two.central) && std::abs(two.at[1] - one.at[1]) <= farthest &&
-                std::abs(two.at[2] - one.at[2]) <= farthest) {
+/// All pairs, one of each being in the cell itself. A pair whose centres are further apart along one axis alone cannot
+/// be nearer.
+void sweep(const std::vector<Placed>& places, const Approximation& at, double widest, Collector& collector) {
+    const auto reach = [&] { return widest + collector.limit() + at.error; };
+    double height = 0;
+    for (double needed = std::min(1.25 * widest, reach()); height < needed; needed = reach()) {
+        height = needed; // again when a pair farther away could be as near as the nearest found
+        for_each_near(places, height, reach, [&](const Placed& one, const Placed& two) {
+            if ((one.central || two.central) && std::abs(two.at[2] - one.at[2]) <= reach()) {
                 collector.offer(pair_between(one, two));
             }
-        }
+        });
     }
 }
 
@@ -279,7 +258,7 @@ std::optional<std::vector<Contact>> nearest_pairs(const Problem& problem, const 
         }
         Collector collector(state, at);
         sweep_walls(problem, collector);
-        sweep(std::move(places), at, widest, collector);
+        sweep(places, at, widest, collector);
         return collector.nearest();
     }
     const CellImages images(state.packing, at.q);

@@ -4,7 +4,9 @@
 
 #include <isostat/contact/state.hpp>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -30,6 +32,44 @@ struct Placed {
     bool central = true; ///< the place in the cell itself: in every pair, up to common periods, one place is central
     PerAxis<double> at{};
 };
+
+/// All pairs of places that are within `reach` of each other along the first two axes, by strips across the second and
+/// a sweep along the first. `reach` is asked again and again, and may fall. \pre in the end it is at most `height`.
+template <class Reach, class Visit>
+void for_each_near(const std::vector<Placed>& places, double height, const Reach& reach, const Visit& visit) {
+    if (places.empty()) {
+        return;
+    }
+    const auto [lowest, highest] = std::ranges::minmax(places, {}, [](const Placed& place) { return place.at[1]; });
+    const double extent = highest.at[1] - lowest.at[1];
+    height = std::max(height, extent / static_cast<double>(places.size()));
+    height *= 1 + 0x1p-20; // for the rounding of quotients, which are at most the number of places
+    std::vector<std::vector<Placed>> strips(static_cast<std::size_t>(extent / height) + 2);
+    for (const Placed& place : places) {
+        strips[static_cast<std::size_t>((place.at[1] - lowest.at[1]) / height)].push_back(place);
+    }
+    for (std::vector<Placed>& strip : strips) {
+        std::ranges::sort(strip, {}, [](const Placed& place) { return place.at[0]; });
+    }
+    for (std::size_t s = 0; s + 1 < strips.size(); ++s) {
+        std::size_t first = 0; // in the next strip
+        for (std::size_t p = 0; p < strips[s].size(); ++p) {
+            const Placed& one = strips[s][p];
+            const auto pass = [&](const std::vector<Placed>& strip, std::size_t k) {
+                for (; k < strip.size() && strip[k].at[0] - one.at[0] <= reach(); ++k) {
+                    if (std::abs(strip[k].at[1] - one.at[1]) <= reach()) {
+                        visit(one, strip[k]);
+                    }
+                }
+            };
+            pass(strips[s], p + 1);
+            while (first < strips[s + 1].size() && one.at[0] - strips[s + 1][first].at[0] > reach()) {
+                ++first;
+            }
+            pass(strips[s + 1], first);
+        }
+    }
+}
 
 /// The pair of two places.
 Contact pair_between(const Placed& one, const Placed& two);

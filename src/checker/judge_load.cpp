@@ -22,7 +22,7 @@ struct End {
     }
 
     Verdict judge_unbounded() {
-        const std::vector<Range>& slopes = evidence.slopes();
+        const ContactForces& slopes = evidence.slopes();
         std::vector<int> unclear;
         for (std::size_t l = 0; l < slopes.size(); ++l) {
             const ContactKind kind = evidence.state.contacts[l].kind;
@@ -89,8 +89,8 @@ struct End {
         // Exactly 0 there: forces that vanish at every stress, and multiples of the named one.
         Forces any_load = evidence.finite_load;
         for (std::size_t j = 0; j < any_load.size(); ++j) {
-            if (evidence.unit_load()[j].lower != 0 || evidence.unit_load()[j].upper != 0) {
-                any_load[j] = evidence.unit_load()[j];
+            if (evidence.unit_load().acts(j)) {
+                any_load.set(j, evidence.unit_load()[j]);
             }
         }
         if (vanish_with(evidence, any_load, unclear, opens)) {

@@ -111,7 +111,7 @@ bool Limit::is_class(const std::vector<int>& together) const {
     all.insert(all.end(), place.zeros.begin(), place.zeros.end());
     Forces loaded = e.finite_load;
     for (std::size_t j = 0; j < loaded.size(); ++j) {
-        loaded[j] = Range(abs(loaded[j].lower) + abs(e.unit_load()[j].lower));
+        loaded.set(j, Range(abs(loaded[j].lower) + abs(e.unit_load()[j].lower)));
     }
     return vanish_with(e, loaded, all, opened);
 }

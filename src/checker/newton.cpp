@@ -132,7 +132,7 @@ bool System::motion(const std::vector<double>& q, std::size_t opened, Eigen::Vec
     return false;
 }
 
-bool System::newton(std::vector<double>& q, const std::optional<Way>& way, double accuracy) {
+std::optional<double> System::newton(std::vector<double>& q, const std::optional<Way>& way, double accuracy) {
     const double scale = packing_.max_radius();
     if (!solver_) {
         renew(q);
@@ -143,7 +143,7 @@ bool System::newton(std::vector<double>& q, const std::optional<Way>& way, doubl
         const Eigen::VectorXd x = step_at(q, way);
         const double size = x.lpNorm<Eigen::Infinity>();
         if (!std::isfinite(size)) {
-            return false;
+            return {};
         }
         const bool rounded = size <= 0x1p-38 * scale; // rounding: new factors would not help
         const bool smaller = size < (rounded ? 1 : slow) * last;
@@ -154,18 +154,18 @@ bool System::newton(std::vector<double>& q, const std::optional<Way>& way, doubl
             }
         }
         if (ends) {
-            return true;
+            return size / scale;
         }
         if (smaller) {
             last = size;
         } else if (++renewals > 20) {
-            return false;
+            return {};
         } else {
             renew(q);
             last = std::numeric_limits<double>::infinity();
         }
     }
-    return false;
+    return {};
 }
 
 bool System::newton_in_quadruple(std::vector<double>& q, const std::optional<Way>& way) {

@@ -36,12 +36,13 @@ class System {
     /// A(q) v = e_opened; on entry v is a guess, or empty.
     bool motion(const std::vector<double>& q, std::size_t opened, Eigen::VectorXd& v);
     /// Newton to a zero of all F except that of contact `left_out`, with a degree of freedom kept in place; the
-    /// iteration ends at steps of the largest radius times `accuracy`.
+    /// iteration ends at steps of the largest radius times `accuracy`, or where rounding lets them fall no more. The
+    /// last step, in largest radii; nothing: it does not converge.
     struct Way {
         std::size_t left_out;
         Eigen::Index kept;
     };
-    bool newton(std::vector<double>& q, const std::optional<Way>& way, double accuracy);
+    std::optional<double> newton(std::vector<double>& q, const std::optional<Way>& way, double accuracy);
     /// Newton to a zero of all F where the contacts may be nearly
     /// singular: F in quadruple precision, new factors where the last ones do not serve.
     bool newton_in_quadruple(std::vector<double>& q, const std::optional<Way>& way = {});

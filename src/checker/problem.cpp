@@ -22,16 +22,16 @@ long granularity(double value, long if_zero) {
     return exponent - 53 + std::countr_zero(static_cast<std::uint64_t>(mantissa));
 }
 
-/// A double as an integer multiple of 2^unit. \pre it is one.
-Integer in_units(double value, long unit) {
+/// A double as an integer multiple of 2^unit. \pre it is one, and fits.
+template <class Number> Number in_units(double value, long unit) {
     int exponent = 0;
     const double fraction = std::frexp(value, &exponent);
-    Integer result(static_cast<long>(std::ldexp(fraction, 53))); // exact: at most 53 bits
+    Number result(static_cast<long>(std::ldexp(fraction, 53))); // exact: at most 53 bits
     const long shift = exponent - 53 - unit;
     if (shift >= 0) {
-        mpz_mul_2exp(result.get_mpz_t(), result.get_mpz_t(), static_cast<mp_bitcnt_t>(shift));
+        result <<= static_cast<unsigned long>(shift);
     } else {
-        mpz_tdiv_q_2exp(result.get_mpz_t(), result.get_mpz_t(), static_cast<mp_bitcnt_t>(-shift));
+        result >>= static_cast<unsigned long>(-shift); // of zeros
     }
     return result;
 }
@@ -43,8 +43,7 @@ struct Known {
 };
 
 /// Disks on walls, held and fixed coordinates. Of clumps what is held may move freely, and is at no known place (U2).
-std::vector<Known> known_coordinates(const State& state, const std::vector<Integer>& stored,
-                                     const std::vector<Integer>& radius) {
+std::vector<Known> known_coordinates(const State& state, const Lengths& stored, const Lengths& radius) {
     std::vector<Known> known(stored.size());
     const auto at = [](int index) { return static_cast<std::size_t>(index); };
     const Layout layout = state.packing.layout();
@@ -253,44 +252,63 @@ Problem::Problem(const State& state, bool held_allowed, int asked)
         }
     }
 
+    double longest = 0;
+    const auto add = [&longest](long& unit, double length) {
+        unit = std::min(unit, granularity(length, unit));
+        longest = std::max(longest, std::abs(length));
+    };
     long coordinate_unit = wall_exponent;
     for (const double x : packing.q) {
-        coordinate_unit = std::min(coordinate_unit, granularity(x, coordinate_unit));
+        add(coordinate_unit, x);
     }
     long unit = coordinate_unit;
     for (const double r : packing.radius) {
-        unit = std::min(unit, granularity(r, unit));
+        add(unit, r);
     }
     for (const Bar& bar : packing.bars) {
-        unit = std::min(unit, granularity(bar.length, unit));
+        add(unit, bar.length);
     }
     fine = unit - digits;
     spare = coordinate_unit - fine;
     weight_bits = wall_exponent - fine;
-    stored.reserve(packing.q.size());
-    for (const double x : packing.q) {
-        stored.push_back(in_units(x, fine));
+    int exponent = 0;
+    std::frexp(longest, &exponent);
+    length_bits = exponent - fine;
+    int spread = 2;
+    for (const Row& row : rows) {
+        spread = std::max(spread, row.spread());
     }
-    sum.reserve(rows.size());
-    sum_square.reserve(rows.size());
-    for (const double r : packing.radius) {
-        radius.push_back(in_units(r, fine));
-    }
-
+    // A separation is the sum of so many lengths, each of which may double on the way to the vertex (K26).
+    const long largest = length_bits + 1 + std::bit_width(static_cast<unsigned>(spread));
+    largest <= 125 && weight_bits + 1 < 125 ? find_lengths<Wide>(state) : find_lengths<Integer>(state);
     find_contacts_of(state);
+}
+
+template <class Number> void Problem::find_lengths(const State& state) {
+    const Packing& packing = state.packing;
+    const auto in = [this](double value) { return in_units<Number>(value, fine); };
+    std::vector<Number> q;
+    std::vector<Number> r;
+    std::vector<Number> together;
+    q.reserve(packing.q.size());
+    r.reserve(packing.radius.size());
+    together.reserve(rows.size());
+    std::ranges::transform(packing.q, std::back_inserter(q), in);
+    std::ranges::transform(packing.radius, std::back_inserter(r), in);
     for (const Contact& contact : state.contacts) {
-        const Row& row = rows[sum.size()];
         const auto i = static_cast<std::size_t>(contact.i);
         if (contact.kind == ContactKind::held) {
-            sum.push_back(stored[i]);
+            together.push_back(q[i]);
         } else if (contact.kind == ContactKind::disk_disk) {
-            sum.emplace_back(radius[i] + radius[static_cast<std::size_t>(contact.j)]);
+            together.push_back(r[i] + r[static_cast<std::size_t>(contact.j)]);
         } else {
             const auto [one, other] = closed_at(packing, contact);
-            sum.emplace_back(in_units(one, fine) + in_units(other, fine));
+            together.push_back(in(one) + in(other));
         }
-        sum_square.push_back(row.quadratic ? Integer(sum.back() * sum.back()) : Integer(0));
     }
+    stored = std::move(q);
+    radius = std::move(r);
+    sum = std::move(together);
 }
 
 void Problem::find_contacts_of(const State& state) {
@@ -380,7 +398,7 @@ void Problem::find_immovable(const State& state) {
     }
 }
 
-Integer Problem::entry(int contact, int k, const std::vector<Integer>& q) const {
+Integer Problem::entry(int contact, int k, const Lengths& q) const {
     const Row& row = rows[static_cast<std::size_t>(contact)];
     const auto slot = static_cast<std::size_t>(k);
     if (!row.quadratic) {
@@ -391,29 +409,39 @@ Integer Problem::entry(int contact, int k, const std::vector<Integer>& q) const 
     return row.sign[slot] * d;
 }
 
-std::vector<Integer> Problem::twice_residuals(const std::vector<Integer>& q, std::vector<Integer> residuals) const {
+template <class Number>
+std::vector<Product<Number>> Problem::twice_residuals(const std::vector<Number>& q,
+                                                      std::vector<Product<Number>> residuals) const {
     residuals.resize(rows.size());
-    Integer difference;
+    const std::vector<Number>& closed = sum.in<Number>();
+    Number difference;
+    Product<Number> square;
+    const auto twice_weight = number<Number>(shifted_left(1, weight_bits + 1));
     for (std::size_t l = 0; l < rows.size(); ++l) {
         const Row& row = rows[l];
-        Integer& value = residuals[l];
+        Product<Number>& value = residuals[l];
         if (row.quadratic) {
-            mpz_neg(value.get_mpz_t(), sum_square[l].get_mpz_t());
+            multiply(square, closed[l], closed[l]);
+            value = Product<Number>();
+            value -= square;
             for (std::size_t a = 0; a < layout.axes(); ++a) {
                 row.separate(q, a, difference);
-                mpz_addmul(value.get_mpz_t(), difference.get_mpz_t(), difference.get_mpz_t());
+                multiply(square, difference, difference);
+                value += square;
             }
             continue;
         }
-        value = -sum[l];
-        for (int k = 0; k < row.count; ++k) {
-            const auto slot = static_cast<std::size_t>(k);
-            value += row.sign[slot] * q[static_cast<std::size_t>(row.coordinate[slot])];
+        difference = -closed[l];
+        for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
+            difference += row.sign[k] * q[static_cast<std::size_t>(row.coordinate[k])];
         }
-        value = shifted_left(value, weight_bits + 1);
+        multiply(value, difference, twice_weight);
     }
     return residuals;
 }
+
+template std::vector<Broad> Problem::twice_residuals(const std::vector<Wide>&, std::vector<Broad>) const;
+template std::vector<Integer> Problem::twice_residuals(const std::vector<Integer>&, std::vector<Integer>) const;
 
 Integer Problem::force_units(int contact) const {
     const auto l = static_cast<std::size_t>(contact);

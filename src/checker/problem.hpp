@@ -2,7 +2,7 @@
 /// \file
 /// A state as a square polynomial system with integer data (proofs/checker.md, notation and K1).
 
-#include "checker/rational.hpp"
+#include "checker/wide.hpp"
 
 #include <isostat/contact/state.hpp>
 
@@ -28,13 +28,13 @@ struct Row {
 
     Row(const Contact& contact, const Layout& layout);
     /// d_a of anything that has one number per coordinate. \pre quadratic
-    template <class Number> void separate(const std::vector<Number>& of, std::size_t a, Number& d) const {
+    template <class Numbers, class Number> void separate(const Numbers& of, std::size_t a, Number& d) const {
         d = 0;
         for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
             if (axis[k] != a) {
                 continue;
             }
-            const Number& x = of[static_cast<std::size_t>(coordinate[k])];
+            const auto& x = of[static_cast<std::size_t>(coordinate[k])];
             if (sign[k] == 1) {
                 d += x;
             } else if (sign[k] == -1) {
@@ -54,7 +54,8 @@ struct Row {
     }
     [[nodiscard]] int spread() const { return std::max({spread(0), spread(1), spread(2)}); }
     /// |d|^2: of anything as `separate`.
-    template <class Number> [[nodiscard]] Number square(const std::vector<Number>& of, std::size_t axes) const {
+    template <class Numbers> [[nodiscard]] auto square(const Numbers& of, std::size_t axes) const {
+        using Number = std::decay_t<decltype(of[0])>;
         Number sum = 0;
         Number d;
         for (std::size_t a = 0; a < axes; ++a) {
@@ -105,10 +106,9 @@ class Problem : public Structure {
 
     /// Empty, or why this state is outside what the checker handles.
     std::string unsupported;
-    std::vector<Integer> sum;        ///< per contact: R_i + R_j, R of the disk at a wall, the length of a bar
-    std::vector<Integer> sum_square; ///< of two disks
-    std::vector<Integer> stored;     ///< coordinates
-    std::vector<Integer> radius;
+    Lengths sum;    ///< per contact: R_i + R_j, R of the disk at a wall, the length of a bar
+    Lengths stored; ///< coordinates
+    Lengths radius;
     std::vector<std::vector<int>> contacts_of; ///< per degree of freedom: the contacts that touch it
     /// The same without those whose entry is 0 at every true vertex: two disks that walls, holds or being fixed keep at
     /// one coordinate (proofs/definition.md).
@@ -127,6 +127,7 @@ class Problem : public Structure {
     long spare = 0;
     int digits;           ///< bits beyond the stored ones in which the true vertex is sought
     long weight_bits = 0; ///< the weight of walls is 2^weight_bits units
+    long length_bits = 0; ///< of the largest length
 
     [[nodiscard]] bool of_disk(int coordinate) const {
         return static_cast<std::size_t>(coordinate) < layout.of_length(0);
@@ -141,11 +142,12 @@ class Problem : public Structure {
     [[nodiscard]] unsigned long column_curvature() const { return column_curvature_; }
     [[nodiscard]] Integer weight() const { return shifted_left(1, weight_bits); }
     /// Entry k of row l of A at a configuration, k < row.count.
-    [[nodiscard]] Integer entry(int contact, int k, const std::vector<Integer>& q) const;
+    [[nodiscard]] Integer entry(int contact, int k, const Lengths& q) const;
     /// 2 F_l in squares of the unit: |x_i - x_j|^2 - (R_i + R_j)^2, or 2 weight gap; of all contacts. The memory of
-    /// `residuals` is used again.
-    [[nodiscard]] std::vector<Integer> twice_residuals(const std::vector<Integer>& q,
-                                                       std::vector<Integer> residuals = {}) const;
+    /// `residuals` is used again. `Number`: that of the lengths.
+    template <class Number>
+    [[nodiscard]] std::vector<Product<Number>> twice_residuals(const std::vector<Number>& q,
+                                                               std::vector<Product<Number>> residuals = {}) const;
     /// A force per length g_l as a force: times R_i + R_j at the true vertex, times the weight at a wall.
     [[nodiscard]] Rational force_factor(int contact) const { return length(force_units(contact)); }
     [[nodiscard]] Integer force_units(int contact) const;
@@ -153,6 +155,8 @@ class Problem : public Structure {
     [[nodiscard]] Rational length(const Integer& units) const { return Rational(units) * power_of_two(fine); }
 
   private:
+    /// \pre `fine` is known.
+    template <class Number> void find_lengths(const State& state);
     void find_contacts_of(const State& state);
     void find_immovable(const State& state);
     unsigned long row_curvature_ = 0;

@@ -56,14 +56,6 @@ inline long bits(const Integer& value) {
     return value == 0 ? 0 : static_cast<long>(mpz_sizeinbase(value.get_mpz_t(), 2));
 }
 
-/// The largest magnitude.
-inline Integer largest_of(const std::vector<Integer>& values) {
-    const auto largest = std::max_element(values.begin(), values.end(), [](const Integer& a, const Integer& b) {
-        return mpz_cmpabs(a.get_mpz_t(), b.get_mpz_t()) < 0;
-    });
-    return largest == values.end() ? Integer(0) : Integer(abs(*largest));
-}
-
 /// 2^exponent.
 inline Rational power_of_two(long exponent) {
     return dyadic(1, exponent);

@@ -34,9 +34,13 @@ Objections negative_ones(const Place& place, bool finite, Decision& decision, bo
         if (finite && contains(place.ties, l) && place.chooses && !place.is_held(l)) {
             continue; // left at 0, so it opens nothing
         }
-        const Range& force = contains(place.ties, l) && finite ? place.first_force[l]
-                             : finite                          ? e.forces[l]
-                                                               : e.infinitesimal()[l];
+        const ContactForces& stage = finite ? e.forces : e.infinitesimal();
+        if (!contains(place.ties, l) && stage.positive(l) && !place.is_held(l)) {
+            continue;
+        }
+        const Range force = contains(place.ties, l) && finite ? place.first_force[l]
+                            : finite                          ? e.forces[l]
+                                                              : e.infinitesimal()[l];
         // A held coordinate competes with minus its magnitude.
         if (force.negative() || (force.positive() && place.is_held(l))) {
             negative.push_back(static_cast<int>(l));
@@ -78,14 +82,10 @@ void add_first_order(Place& place) {
 
 } // namespace
 
-double largest_force(const std::vector<Range>& forces) {
-    const auto size = [](const Rational& value) {
-        const long unit = bits(value.get_den()); // neither of the two numbers need be within the range of double
-        return std::abs(approximate(value.get_num(), -unit) / approximate(value.get_den(), -unit));
-    };
+double largest_force(const ContactForces& forces) {
     double largest = 0;
-    for (const Range& force : forces) {
-        largest = std::max({largest, size(force.lower), size(force.upper)});
+    for (std::size_t l = 0; l < forces.size(); ++l) {
+        largest = std::max(largest, forces.about(l));
     }
     return largest;
 }
@@ -124,9 +124,11 @@ Objections place_with(int digits, State state, Place& place, const ExactLoad& lo
         return Objection{false, "no true vertex is proved: " + e.why_no_vertex()};
     }
     if (load.shift.lower != 0 || load.shift.upper != 0) {
-        for (std::size_t l = 0; l < e.forces.size(); ++l) {
-            e.forces[l] = e.forces[l] + load.shift * e.slopes()[l];
+        std::vector<Range> forces(e.forces.size());
+        for (std::size_t l = 0; l < forces.size(); ++l) {
+            forces[l] = e.forces[l] + load.shift * e.slopes()[l];
         }
+        e.forces = std::move(forces);
     }
     place.zeros = having_zero(e.forces);
     std::erase(place.zeros, fresh);

@@ -51,7 +51,7 @@ Objections compare(const std::string& name, const Bounded& said, const Range& fo
 Objections check_said(const std::string& what, const Bounded& said, const Range& found);
 
 /// The largest magnitude.
-double largest_force(const std::vector<Range>& forces);
+double largest_force(const ContactForces& forces);
 
 /// As `compare`, for a number that may be recorded without a bound (NaN): then undecided.
 Objections compare_if_bounded(const std::string& name, const Bounded& said, const Range& found, double loosest);

@@ -47,13 +47,10 @@ Range strain_of(const Place& place, int axis) {
 Range work(const Place& from, const Place& to, const Forces& load, double& size) {
     Range sum(Rational(0));
     size = 0;
-    for (std::size_t j = 0; j < load.size(); ++j) {
-        if (load[j].lower == 0 && load[j].upper == 0) {
-            continue;
-        }
-        const auto k = static_cast<std::size_t>(from.evidence->problem.coordinate_of[j]);
-        sum = sum + load[j] * (to.coordinate(k) - from.coordinate(k));
-        size += std::abs(load[j].lower.get_d() * to.coordinate(k).lower.get_d());
+    for (const auto& [dof, force] : load.acting()) {
+        const auto k = static_cast<std::size_t>(from.evidence->problem.coordinate_of[dof]);
+        sum = sum + force * (to.coordinate(k) - from.coordinate(k));
+        size += std::abs(force.lower.get_d() * to.coordinate(k).lower.get_d());
     }
     return sum;
 }
@@ -243,7 +240,7 @@ Objections check_power_at_contact(const Place& to, const EventRecord& event, boo
     const auto& contacts = to.state->contacts;
     const auto slot = std::find(contacts.begin(), contacts.end(), *contact_named(event.closed, to.state->packing));
     const auto l = static_cast<std::size_t>(slot - contacts.begin());
-    const std::vector<Range>& forces = rattles ? to.evidence->infinitesimal() : to.evidence->forces;
+    const ContactForces& forces = rattles ? to.evidence->infinitesimal() : to.evidence->forces;
     const bool zero = !rattles && contains(to.zeros, l);
     const Range power = zero ? Range(Rational(0)) : forces[l];
     if (!zero && !power.positive() && !(to.first && power.has_zero())) {
@@ -315,7 +312,7 @@ Objections check_forces(const Place& place) {
         return {};
     }
     const Evidence& e = *place.evidence;
-    const std::vector<Range>& forces = decision.kind == "rattler" ? e.infinitesimal() : e.forces;
+    const ContactForces& forces = decision.kind == "rattler" ? e.infinitesimal() : e.forces;
     // A negative force that is told from 0 here refutes the row. A force that cannot be told from 0 does not, because
     // the run may have decided its sign with more digits.
     const auto told = [&](int l) { return !forces[static_cast<std::size_t>(l)].has_zero(); };
@@ -368,12 +365,10 @@ Range potential_of(const Place& place, double& size) {
     const Evidence& e = *place.evidence;
     Range potential(Rational(0));
     size = 0;
-    for (std::size_t j = 0; j < e.finite_load.size(); ++j) {
-        const auto k = static_cast<std::size_t>(e.problem.coordinate_of[j]);
-        if (e.finite_load[j].lower != 0 || e.finite_load[j].upper != 0) {
-            potential = potential - e.finite_load[j] * place.coordinate(k);
-            size += std::abs(e.finite_load[j].lower.get_d() * place.coordinate(k).lower.get_d());
-        }
+    for (const auto& [dof, force] : e.finite_load.acting()) {
+        const auto k = static_cast<std::size_t>(e.problem.coordinate_of[dof]);
+        potential = potential - force * place.coordinate(k);
+        size += std::abs(force.lower.get_d() * place.coordinate(k).lower.get_d());
     }
     return potential;
 }

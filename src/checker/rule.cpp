@@ -27,7 +27,7 @@ bool grains_bear_force(const Place& place, std::size_t contact) {
 Objections check_turn(const Place& place, const EventRecord& event, bool rattles) {
     const Evidence& e = *place.evidence;
     const auto held = static_cast<std::size_t>(place.fresh);
-    const std::vector<Range>& forces = rattles ? e.infinitesimal() : e.forces;
+    const ContactForces& forces = rattles ? e.infinitesimal() : e.forces;
     const Rational room = Rational(turn_tolerance) * Rational(largest_force(forces));
     if (forces[held].lower > room || forces[held].upper < -room) {
         return Objection{true,
@@ -108,7 +108,7 @@ bool turns_back_at_once(const Place& place, std::size_t contact, bool finite) {
 
 /// The lower bound of one force is above the upper bound of that of the opening contact, whatever its sign. A held
 /// coordinate competes with minus its magnitude.
-bool is_less_negative(const Place& place, const std::vector<Range>& forces, std::size_t one, std::size_t opened) {
+bool is_less_negative(const Place& place, const ContactForces& forces, std::size_t one, std::size_t opened) {
     const Range& f = forces[one];
     const Range& first = forces[opened];
     const Rational least = place.is_held(one) ? std::min<Rational>(f.lower, -f.upper) : f.lower;
@@ -120,7 +120,7 @@ bool is_less_negative(const Place& place, const std::vector<Range>& forces, std:
 Objections check_order(const Place& place, const std::string& kind, std::size_t opened, std::size_t other,
                        const std::string& rule) {
     const Evidence& e = *place.evidence;
-    const std::vector<Range>& forces = kind == "rattler" ? e.infinitesimal() : e.forces;
+    const ContactForces& forces = kind == "rattler" ? e.infinitesimal() : e.forces;
     const bool most = rule == "most_negative";
     const bool by_name = rule == "least_index";
     bool at_first_order = false; // a run may have more digits to tell the forces apart
@@ -202,7 +202,7 @@ Objections check_rule(const Place& place, const EventRecord& event, std::size_t 
                                            decision.kind == "rattler" ? "infinitesimal " : "",
                                            e.name(static_cast<std::size_t>(decision.candidates[0])))};
     }
-    const std::vector<Range>& forces = decision.kind == "rattler" ? e.infinitesimal() : e.forces;
+    const ContactForces& forces = decision.kind == "rattler" ? e.infinitesimal() : e.forces;
     if (Objections wrong = check_choice(place, place.said, opened, opening_choice(place, opened, rule))) {
         return wrong;
     }

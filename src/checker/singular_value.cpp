@@ -24,16 +24,22 @@ constexpr double largest_square = 0x1p16;
 constexpr long residual_bits = 100;
 constexpr int most_rows = 1 << 24;
 
-/// To some units: this is three times as fast as the conversion of the compiler's library.
-double as_double(Wide value) {
-    const auto low = static_cast<std::int64_t>(static_cast<std::uint64_t>(value) >> 1U);
-    return 0x1p64 * static_cast<double>(static_cast<std::int64_t>(value >> 64U)) + 2 * static_cast<double>(low);
+/// value * 2^shift, rounded towards zero. \pre it fits.
+std::int64_t whole_part(const Integer& value, long shift) {
+    Integer result;
+    if (shift >= 0) {
+        mpz_mul_2exp(result.get_mpz_t(), value.get_mpz_t(), static_cast<mp_bitcnt_t>(shift));
+    } else {
+        mpz_tdiv_q_2exp(result.get_mpz_t(), value.get_mpz_t(), static_cast<mp_bitcnt_t>(-shift));
+    }
+    return result.get_si();
 }
-
-Integer integer_of(WideMagnitude value) {
-    constexpr unsigned half = 64;
-    return shifted_left(Integer(static_cast<unsigned long>(value >> half)), half) +
-           Integer(static_cast<unsigned long>(value & ~std::uint64_t{0}));
+std::int64_t whole_part(Wide value, long shift) {
+    if (shift >= 0) {
+        return static_cast<std::int64_t>(value << static_cast<unsigned long>(shift));
+    }
+    const auto size = static_cast<std::int64_t>(magnitude(value) >> static_cast<unsigned long>(-shift));
+    return value < 0 ? -size : size;
 }
 
 /// A rounded to fixed point, and B = A^T A of what is left, in a given order of the degrees of freedom.
@@ -51,7 +57,7 @@ struct Normal {
         for (std::size_t k = 0; k < order.size(); ++k) {
             place_[at(order[k])] = static_cast<int>(k);
         }
-        if (problem.dofs() > most_rows || !round(problem)) {
+        if (problem.dofs() > most_rows || !(problem.stored.narrow() ? round<Wide>(problem) : round<Integer>(problem))) {
             return;
         }
         for (const std::vector<int>& contacts : problem.contacts_of) {
@@ -82,35 +88,34 @@ struct Normal {
 
     /// Entries of A, rounded towards zero by less than `most_periods`. False: a separation is above twice the length at
     /// which some contact is closed.
-    bool round(const Problem& problem) {
+    template <class Number> bool round(const Problem& problem) {
         scale = problem.weight_bits + 1;
+        entries_.reserve(4 * problem.rows.size());
+        first_.reserve(problem.rows.size() + 1);
+        const std::vector<Number>& sum = problem.sum.in<Number>();
+        const std::vector<Number>& stored = problem.stored.in<Number>();
         for (std::size_t l = 0; l < problem.rows.size(); ++l) {
             const Row& contact = problem.rows[l];
-            scale = std::max(scale, contact.quadratic ? bits(problem.sum[l]) + 1 : 0);
+            scale = std::max(scale, contact.quadratic ? bits(sum[l]) + 1 : 0);
             for (std::size_t k = 0; k < static_cast<std::size_t>(contact.count); ++k) {
                 most_periods = std::max(most_periods, std::abs(contact.sign[k]));
             }
         }
         const long factors = std::bit_width(static_cast<unsigned>(most_periods - 1));
         scale += factors;
-        Integer entry;
+        Number entry;
         for (const Row& contact : problem.rows) {
             std::array<std::int64_t, most_axes> separation{};
-            for (std::size_t a = 0; a < most_axes; ++a) {
+            for (std::size_t a = 0; a < problem.layout.axes(); ++a) {
                 if (contact.quadratic) {
-                    contact.separate(problem.stored, a, entry);
+                    contact.separate(stored, a, entry);
                 } else {
-                    entry = problem.weight();
+                    entry = number<Number>(problem.weight());
                 }
                 if (bits(entry) > scale - factors) {
                     return false;
                 }
-                if (scale <= point) {
-                    mpz_mul_2exp(entry.get_mpz_t(), entry.get_mpz_t(), static_cast<mp_bitcnt_t>(point - scale));
-                } else {
-                    mpz_tdiv_q_2exp(entry.get_mpz_t(), entry.get_mpz_t(), static_cast<mp_bitcnt_t>(scale - point));
-                }
-                separation[a] = entry.get_si();
+                separation[a] = whole_part(entry, point - scale);
             }
             for (std::size_t k = 0; k < static_cast<std::size_t>(contact.count); ++k) {
                 if (const int dof = problem.dof_of[at(contact.coordinate[k])]; dof >= 0) {
@@ -158,7 +163,9 @@ class Factor {
         for (int i = 0; at(i) < n_; ++i) {
             for (const int k : columns_of(i)) {
                 ++count[at(k)];
+                column_.push_back(k);
             }
+            first_.push_back(column_.size());
         }
         start_.resize(n_ + 1, 0);
         std::partial_sum(count.begin(), count.end(), start_.begin() + 1);
@@ -170,7 +177,6 @@ class Factor {
     bool compute(Wide shift) {
         std::fill(row_sum_.begin(), row_sum_.end(), 0);
         std::fill(x_.begin(), x_.end(), 0);
-        std::fill(met_.begin(), met_.end(), -1);
         end_.assign(start_.begin(), start_.end() - 1);
         for (int i = 0; at(i) < n_; ++i) {
             if (!compute_row(i, shift)) {
@@ -181,7 +187,9 @@ class Factor {
     }
 
     /// Largest row sum of magnitudes of B - L L^T - shift I, times 2^(2 point).
-    [[nodiscard]] Integer residual_norm() const { return integer_of(*std::ranges::max_element(row_sum_)); }
+    [[nodiscard]] Integer residual_norm() const {
+        return integer_of(static_cast<Wide>(*std::ranges::max_element(row_sum_)));
+    }
 
     /// An estimate of the smallest eigenvalue of L L^T by some inverse iterations, seldom much above it.
     [[nodiscard]] double smallest_eigenvalue() const {
@@ -247,7 +255,8 @@ class Factor {
             x_[at(b_.column[p])] = b_.value[p];
         }
         Wide square = std::exchange(x_[at(i)], 0) - shift; // of the diagonal entry, in the end
-        for (const int k : columns_of(i)) {
+        for (std::size_t c = first_[at(i)]; c < first_[at(i) + 1]; ++c) {
+            const int k = column_[c];
             const Wide sought = std::exchange(x_[at(k)], 0);
             const double quotient = as_double(sought) / static_cast<double>(diagonal_[at(k)]);
             if (!(std::abs(quotient) < 0x1p62)) {
@@ -300,6 +309,8 @@ class Factor {
     bool leads_ = true;       ///< all paths along parents that were gone led to their row
     std::vector<int> met_;    ///< the last row whose columns were sought
     std::vector<int> reach_;
+    std::vector<std::size_t> first_{0}; ///< of row i in the list of columns, each before its parent
+    std::vector<int> column_;
     std::vector<std::size_t> start_, end_; ///< of the columns below the diagonal: rows ascend
     std::vector<int> row_;
     std::vector<std::int64_t> value_;
@@ -315,7 +326,7 @@ std::optional<Rational> bound_of(const Problem& problem, const Normal& normal, F
         return std::nullopt;
     }
     // sigma^2 of the rounded matrix in units of 2^-(2 point), and the rounding of each entry of A.
-    const Integer square = integer_of(magnitude(exact_shift)) - factor.residual_norm();
+    const Integer square = integer_of(exact_shift) - factor.residual_norm();
     if (square <= 0) {
         return std::nullopt;
     }

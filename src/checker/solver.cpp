@@ -90,19 +90,7 @@ Eigen::MatrixXd Solver::solve_transposed(Eigen::MatrixXd b) const {
     return factors_->solved(std::move(b), [](auto... arguments) { klu_tsolve(arguments...); });
 }
 
-namespace {
-
-std::vector<double> as_doubles(const Problem& problem) {
-    std::vector<double> q;
-    for (const Integer& x : problem.stored) {
-        q.push_back(approximate(x, problem.fine));
-    }
-    return q;
-}
-
-} // namespace
-
-Solver::Solver(const Problem& problem, const Solver* like) : Solver(problem, as_doubles(problem), like) {}
+Solver::Solver(const Problem& problem, const Solver* like) : Solver(problem, problem.stored.near(problem.fine), like) {}
 
 Solver::Solver(const Structure& structure, const std::vector<double>& q, const Solver* like) {
     std::vector<Eigen::Triplet<double>> entries;

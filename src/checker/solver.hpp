@@ -38,5 +38,18 @@ class Solver {
 
 /// target += value * 2^shift, rounded towards zero; nothing is added for infinity and NaN.
 void add_scaled(Integer& target, double value, long shift);
+/// The same. False: the sum has more than `most` bits, or that step. \pre most < 126
+inline bool add_scaled(Wide& target, double value, long shift, long most) {
+    const double step = std::ldexp(value, static_cast<int>(shift));
+    if (!(std::abs(step) < std::ldexp(1.0, static_cast<int>(most)))) {
+        return false;
+    }
+    target += static_cast<Wide>(step);
+    return bits(target) <= most;
+}
+inline bool add_scaled(Integer& target, double value, long shift, long) {
+    add_scaled(target, value, shift);
+    return true;
+}
 
 } // namespace isostat::checker

@@ -57,7 +57,7 @@ std::vector<std::vector<int>> with_another_pin(const Problem& problem) {
 
 bool acts_on_disks(const Problem& problem, const Forces& load) {
     for (std::size_t j = 0; j < load.size(); ++j) {
-        if (problem.of_disk(problem.coordinate_of[j]) && (load[j].lower != 0 || load[j].upper != 0)) {
+        if (problem.of_disk(problem.coordinate_of[j]) && load.acts(j)) {
             return true;
         }
     }
@@ -78,7 +78,7 @@ std::optional<std::vector<int>> zeros_of(const std::vector<std::vector<int>>& co
         for (const int l : contacts_of[j]) {
             touched[static_cast<std::size_t>(l)].push_back(j);
         }
-        if (load[j].lower != 0 || load[j].upper != 0) {
+        if (load.acts(j)) {
             loaded[j] = true;
             reached.push_back(j);
         }

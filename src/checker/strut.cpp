@@ -170,7 +170,7 @@ bool same_at_turn(const Place& place, std::size_t a, std::size_t b) {
     if (place.fresh < 0) {
         return false;
     }
-    const std::vector<Range>& force = place.evidence->forces;
+    const ContactForces& force = place.evidence->forces;
     const Range& multiplier = force[static_cast<std::size_t>(place.fresh)];
     const Rational room = std::max<Rational>(abs(multiplier.lower), abs(multiplier.upper));
     const Range difference = force[a] - force[b];
@@ -203,7 +203,7 @@ std::vector<bool> without_force(const Place& place, const std::vector<int>& loos
 /// Earlier held coordinates whose multipliers are within the accuracy
 /// of their turns: after a release they may be held again at once.
 std::vector<int> that_may_rest(const Place& place) {
-    const std::vector<Range>& force = place.evidence->forces;
+    const ContactForces& force = place.evidence->forces;
     const auto size = [&](std::size_t l) { return std::max<Rational>(abs(force[l].lower), abs(force[l].upper)); };
     Rational largest = 0;
     for (std::size_t l = 0; l < force.size(); ++l) {
@@ -235,7 +235,7 @@ bool holds_may_explain(const Place& place, std::size_t a, std::size_t b) {
     if (rows.empty()) {
         return false;
     }
-    const std::vector<Range>& force = place.evidence->forces;
+    const ContactForces& force = place.evidence->forces;
     Rational room = 0;
     for (const int row : rows) {
         const Range& m = force[static_cast<std::size_t>(row)];
@@ -315,7 +315,7 @@ bool equal_in_edge(const Evidence& evidence, const Forces& load, const std::vect
     for (const int axis : {one.j, other.j}) {
         const int dof = problem.dof_of[problem.layout.of_disk(one.i) + static_cast<std::size_t>(axis)];
         const auto row = static_cast<std::size_t>(dof);
-        if (dof < 0 || load[row].lower != 0 || load[row].upper != 0) {
+        if (dof < 0 || load.acts(row)) {
             return false;
         }
         const std::vector<int>& acting = problem.acting_on[row];

@@ -4,22 +4,41 @@ namespace isostat::checker {
 
 namespace {
 
-/// Newton steps with the factorisation at the stored configuration and exact residuals. `largest`: of those at the end.
-std::vector<Integer> improved(const Problem& problem, const Solver& solver, Integer& largest) {
-    std::vector<Integer> q = problem.stored;
-    long size = -1;
-    long rounding = 0; // bits of the residual where a coordinate is off by some units
-    for (const Integer& length : problem.sum) {
-        rounding = std::max(rounding, bits(length) + 3);
+/// A configuration, and the largest magnitude of its `twice_residuals`.
+struct Guess {
+    Lengths q;
+    Integer largest;
+    Integer moved; ///< the largest magnitude of what coordinates are from the stored ones
+
+    template <class Number>
+    Guess(const Problem& problem, const std::vector<Number>& at, const std::vector<Product<Number>>& residual)
+        : q(at), largest(largest_of(residual)) {
+        std::vector<Number> way = at;
+        for (std::size_t k = 0; k < at.size(); ++k) {
+            way[k] -= problem.stored.in<Number>()[k];
+        }
+        moved = largest_of(way);
     }
-    static thread_local std::vector<Integer> residual; // memory that serves one vertex after the other
+};
+
+template <class Number> Guess as_stored(const Problem& problem) {
+    const std::vector<Number>& q = problem.stored.in<Number>();
+    return {problem, q, problem.twice_residuals(q)};
+}
+
+/// Newton steps with the factorisation at the stored configuration and exact residuals. Nothing: the way is too long.
+template <class Number> std::optional<Guess> improved(const Problem& problem, const Solver& solver) {
+    constexpr int most_steps = 40;
+    std::vector<Number> q = problem.stored.in<Number>();
+    long size = -1;
+    const long rounding = problem.sum.most_bits() + 3; // bits of the residual where a coordinate is off by some units
+    static thread_local std::vector<Product<Number>> residual; // memory that serves one vertex after the other
     for (int step = 0;; ++step) {
         Eigen::MatrixXd b(problem.contacts(), 1);
         residual = problem.twice_residuals(q, std::move(residual));
-        largest = largest_of(residual);
-        const long now = bits(largest);
-        if (step == 40 || now <= rounding || (size >= 0 && now >= size)) {
-            return q;
+        const long now = most_bits(residual);
+        if (step == most_steps || now <= rounding || (size >= 0 && now >= size)) {
+            return Guess(problem, q, residual);
         }
         size = now;
         for (int l = 0; l < problem.contacts(); ++l) {
@@ -28,22 +47,12 @@ std::vector<Integer> improved(const Problem& problem, const Solver& solver, Inte
         // F = residual / 2, A = 2^scale times the factorised matrix.
         const Eigen::MatrixXd x = solver.solve(b);
         for (int k = 0; k < problem.dofs(); ++k) {
-            add_scaled(q[static_cast<std::size_t>(problem.coordinate_of[static_cast<std::size_t>(k)])], -x(k, 0),
-                       now - 1 - solver.scale(problem));
+            if (!add_scaled(q[static_cast<std::size_t>(problem.coordinate_of[static_cast<std::size_t>(k)])], -x(k, 0),
+                            now - 1 - solver.scale(problem), problem.length_bits + 1)) {
+                return {};
+            }
         }
     }
-}
-
-Integer largest_move(const Problem& problem, const std::vector<Integer>& q) {
-    Integer most = 0;
-    Integer move;
-    for (std::size_t k = 0; k < q.size(); ++k) {
-        move = q[k] - problem.stored[k];
-        if (mpz_cmpabs(move.get_mpz_t(), most.get_mpz_t()) > 0) {
-            most = move;
-        }
-    }
-    return abs(most);
 }
 
 } // namespace
@@ -62,10 +71,15 @@ TrueVertex find_vertex(const Problem& problem, const Solver& solver, const Inver
         if (!at_stored && !solver.usable()) {
             continue;
         }
-        Integer residual;
-        std::vector<Integer> start = at_stored ? problem.stored : improved(problem, solver, residual);
-        const Rational largest(at_stored ? largest_of(problem.twice_residuals(start)) : residual);
-        const Rational moved = problem.length(largest_move(problem, start));
+        const bool narrow = problem.stored.narrow();
+        std::optional<Guess> start = at_stored ? narrow ? as_stored<Wide>(problem) : as_stored<Integer>(problem)
+                                     : narrow ? improved<Wide>(problem, solver)
+                                               : improved<Integer>(problem, solver);
+        if (!start) {
+            continue;
+        }
+        const Rational largest(start->largest);
+        const Rational moved = problem.length(start->moved);
         const Rational error = inverse.residual_row + slope * moved;
         const Rational step =
             inverse.row_sum * largest * power_of_two(2 * problem.fine - 1) + (1 + around_error) * around;
@@ -73,7 +87,7 @@ TrueVertex find_vertex(const Problem& problem, const Solver& solver, const Inver
         if (room <= 0) {
             continue;
         }
-        vertex.middle = std::move(start);
+        vertex.middle = std::move(start->q);
         vertex.radius = short_above(2 * step / room);
         vertex.moved_least = std::max<Rational>(0, moved - vertex.radius);
         vertex.moved_most = moved + vertex.radius;

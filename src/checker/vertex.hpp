@@ -10,7 +10,7 @@ namespace isostat::checker {
 /// configuration. Lengths are real.
 struct TrueVertex {
     bool found = false;
-    std::vector<Integer> middle; ///< in units of the problem
+    Lengths middle; ///< in units of the problem
     Rational radius;
     Rational moved_least; ///< bounds of the largest |q*_k - stored q_k|
     Rational moved_most;

@@ -253,10 +253,12 @@ BOOST_AUTO_TEST_CASE(forces_in_a_cell_hold_at_every_point_of_the_enclosure) {
         for (int sample = 0; sample < testing::scaled(50); ++sample) {
             checker::TrueVertex point = vertex;
             point.radius = 0;
+            std::vector<checker::Integer> middle = point.middle;
             for (const int k : problem.coordinate_of) {
                 const int sign = random() % 2 == 0 ? 1 : -1;
-                point.middle[static_cast<std::size_t>(k)] += sign * checker::floor_of(radius, -problem.fine);
+                middle[static_cast<std::size_t>(k)] += sign * checker::floor_of(radius, -problem.fine);
             }
+            point.middle = std::move(middle);
             const std::vector<checker::Range> there = forces_at(point);
             for (std::size_t l = 0; l < there.size(); ++l) {
                 BOOST_REQUIRE((there[l].lower >= enclosed[l].lower && there[l].upper <= enclosed[l].upper));

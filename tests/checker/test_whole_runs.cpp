@@ -163,7 +163,7 @@ BOOST_AUTO_TEST_CASE(under_true_stresses_an_arc_on_which_phi_grows_is_refuted) {
         BOOST_TEST_REQUIRE(place[k].evidence->vertex.found);
     }
     const auto phi_falls = [&](const Place& from, const Place& to) {
-        const auto& forces = to.evidence->forces;
+        const std::vector<Range> forces = to.evidence->forces;
         const auto l = static_cast<std::size_t>(
             std::max_element(forces.begin(), forces.end(),
                              [](const Range& a, const Range& b) { return a.lower < b.lower; }) -

@@ -1,0 +1,66 @@
+// Integers of fixed length against GMP, and what is proved with them against what is proved without.
+#include "checker/forces.hpp"
+#include "checker/small_states.hpp"
+#include "checker/wide.hpp"
+
+#include <random>
+
+using namespace isostat::checker;
+using isostat::State;
+
+BOOST_AUTO_TEST_SUITE(checker)
+
+BOOST_AUTO_TEST_CASE(wide_and_broad_integers_agree_with_GMP) {
+    std::mt19937_64 random(1);
+    const auto any = [&random] { // below 2^125
+        const auto all = static_cast<Wide>(static_cast<WideMagnitude>(random()) << 64U | random());
+        return all >> (3 + random() % 125);
+    };
+    for (int sample = 0; sample < 20000; ++sample) {
+        const Wide a = any();
+        const Wide b = any();
+        const Integer exact_a = integer_of(a);
+        BOOST_REQUIRE(number<Wide>(exact_a) == a);
+        BOOST_REQUIRE(bits(a) == bits(exact_a));
+        Broad p;
+        Broad q;
+        multiply(p, a, b);
+        multiply(q, any(), any());
+        const Integer exact_p = exact_a * integer_of(b);
+        const Integer exact_q = integer_of(q);
+        BOOST_REQUIRE((integer_of(p) == exact_p));
+        BOOST_REQUIRE((integer_of(number<Broad>(exact_q)) == exact_q));
+        BOOST_REQUIRE((integer_of(Broad(p) += q) == exact_p + exact_q));
+        BOOST_REQUIRE((integer_of(Broad(p) -= q) == exact_p - exact_q));
+        BOOST_REQUIRE((p < q) == (exact_p < exact_q));
+        BOOST_REQUIRE((integer_of(magnitude(p)) == abs(exact_p)));
+        BOOST_REQUIRE(bits(p) == bits(exact_p));
+        BOOST_REQUIRE(std::abs(approximate(p, -bits(p)) - approximate(exact_p, -bits(p))) < 0x1p-50);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(forces_in_128_bits_agree_with_those_of_GMP) {
+    const State state = ::crafted::three_disks(1, 1.1, 1.3, 1, 1.5);
+    const Problem problem(state, false, few_digits);
+    BOOST_REQUIRE(problem.stored.narrow());
+    BOOST_REQUIRE(!Problem(state, false, more_digits).stored.narrow());
+    const Solver solver(problem);
+    const InverseBound inverse = bound_inverse(problem, solver, isostat::CheckerArithmetic::singular_value);
+    TrueVertex vertex = find_vertex(problem, solver, inverse);
+    BOOST_REQUIRE(vertex.found);
+    const auto forces = [&] {
+        return contact_forces(problem, solver, inverse, vertex, finite_load(problem, state, vertex));
+    };
+    const ContactForces narrow = forces();
+    vertex.middle = std::vector<Integer>(vertex.middle);
+    const ContactForces any = forces();
+    for (std::size_t l = 0; l < any.size(); ++l) {
+        BOOST_TEST(narrow.positive(l) == any[l].positive());
+        BOOST_TEST(narrow.has_zero(l) == any[l].has_zero());
+        BOOST_TEST((narrow[l].lower <= any[l].upper && any[l].lower <= narrow[l].upper)); // of the same number
+        BOOST_TEST((narrow[l].upper - narrow[l].lower <= 2 * (any[l].upper - any[l].lower)));
+        BOOST_TEST(std::abs(narrow.about(l) / any.about(l) - 1) < 1e-14);
+    }
+}
+
+BOOST_AUTO_TEST_SUITE_END()

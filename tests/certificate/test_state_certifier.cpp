@@ -1,10 +1,15 @@
 // Level `states`: a certificate that refutes an equilibrium ends the run.
 #include "certificate/state_certifier.hpp"
+#include "core/work.hpp"
 #include "support/crafted.hpp"
+#include "support/prepared.hpp"
 #include "support/scratch.hpp"
+#include "support/segments.hpp"
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/io/state_file.hpp>
+
+#include <cmath>
 
 using namespace isostat;
 
@@ -28,9 +33,47 @@ struct Claimed {
     }
 };
 
+/// Certifies each equilibrium with the structure that the run passes on, without it, and the one after with it too.
+struct Twice final : RunObserver {
+    const ProvedStructure* proved = nullptr;
+    State before;
+    int equilibria = 0;
+    void on_structure(const ProvedStructure& structure) override { proved = &structure; }
+    void on_equilibrium(const EquilibriumRecord&, const State& state, const std::vector<double>&) override {
+        const auto text = [&](const State& of, const ProvedStructure* given, long rank_proofs) {
+            const auto kind = static_cast<std::size_t>(Work::rank_proofs);
+            const long done = work_done()[kind];
+            const Certification truth = certify(of, {}, given);
+            BOOST_TEST((truth.verdict == Verdict::proved));
+            BOOST_TEST(work_done()[kind] - done == rank_proofs);
+            Certificate certificate;
+            certificate.state = of;
+            certificate.claims = truth.claims;
+            return certificate_text(certificate);
+        };
+        BOOST_TEST(text(state, proved, 0) == text(state, nullptr, 1));
+        if (equilibria++ > 0) {
+            BOOST_TEST(text(before, proved, 1) == text(before, nullptr, 1));
+        }
+        State moved = state; // by less than a rounding of the claims, with the same contacts
+        moved.packing.q[0] = std::nextafter(moved.packing.q[0], 0.0);
+        BOOST_TEST(text(moved, proved, 1) == text(moved, nullptr, 1));
+        before = state;
+        proved = nullptr;
+    }
+};
+
 } // namespace
 
 BOOST_AUTO_TEST_SUITE(certificate)
+
+BOOST_AUTO_TEST_CASE(the_structure_that_a_run_has_proved_serves_its_certificate_and_no_other) {
+    State state = prepared(60, 2);
+    RunCounters counters;
+    Twice observer;
+    BOOST_TEST(run_segment(state, towards(4), 0, {}, counters, observer).completed);
+    BOOST_TEST(observer.equilibria == 5);
+}
 
 // What a run left at 0 it calls an equilibrium of the finite loads: what the infinitesimal ones do there is no
 // refutation.

@@ -34,7 +34,9 @@ struct SignFailures {
 /// Makes the claims one after the other; what one needs of those before it is checked where it is used.
 class Prover {
   public:
-    Prover(const State& state, const CertifyOptions& options) : state_(state), options_(options) {}
+    Prover(const State& state, const CertifyOptions& options, const ProvedStructure* proved = nullptr)
+        : state_(state), options_(options),
+          proved_(proved != nullptr && proved->is_of(state.packing, state.contacts) ? proved : nullptr) {}
 
     Certification run() {
         result_.dimension = state_.packing.dimension;
@@ -130,6 +132,7 @@ class Prover {
 
     const State& state_;
     CertifyOptions options_;
+    const ProvedStructure* proved_; ///< null: nothing was proved before
     Certification result_;
     std::unique_ptr<Centre> stored_; ///< at the stored coordinates; in a cell, these on the grid
     double rounded_away_ = 0;        ///< what that changed of a gap, at most
@@ -165,6 +168,10 @@ bool Prover::prove_counting() {
     if (count == 0 && dof_count == 0) {
         claim_that_nothing_moves();
         return false;
+    }
+    if (proved_ != nullptr) {
+        stored_ = Centre::of(*proved_);
+        return claim_regular(count);
     }
     if (dof_count == count) {
         auto made = Centre::make(state_.packing, state_.contacts);
@@ -551,9 +558,9 @@ void Prover::prove_stability(bool forces, bool gaps) {
 
 } // namespace
 
-Certification certify(const State& state, const CertifyOptions& options) {
+Certification certify(const State& state, const CertifyOptions& options, const ProvedStructure* proved) {
     require_floating_point();
-    return Prover(state, options).run();
+    return Prover(state, options, proved).run();
 }
 
 std::vector<std::vector<Interval>> finite_forces(State state, std::span<const PerAxis<double>> stresses) {

@@ -11,6 +11,7 @@
 #include <fmt/ranges.h>
 
 #include <chrono>
+#include <utility>
 
 namespace isostat {
 
@@ -30,7 +31,7 @@ void StateCertifier::on_equilibrium(const EquilibriumRecord& record, const State
     certificate.state.provenance.clear();
     const std::string text = state_text(certificate.state);
     certificate.input_hash = sha256(text);
-    const Certification result = certify(certificate.state);
+    const Certification result = certify(certificate.state, {}, std::exchange(proved_, nullptr));
     certificate.claims = result.claims;
     write_output(folder_ / fmt::format("eq_{:06}.json", record.number), json::certificate_text(certificate, text),
                  "\"isostat-certificate\"");

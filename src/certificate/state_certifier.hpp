@@ -21,6 +21,7 @@ class StateCertifier final : public RunObserver {
         next_.on_segment(number, goal, made, from);
     }
     void on_arc(const ArcRecord& arc) override { next_.on_arc(arc); }
+    void on_structure(const ProvedStructure& proved) override { proved_ = &proved; }
     void on_equilibrium(const EquilibriumRecord& record, const State& state,
                         const std::vector<double>& forces) override;
     [[nodiscard]] std::optional<Failure> objection() const override { return objection_; }
@@ -30,6 +31,7 @@ class StateCertifier final : public RunObserver {
     std::string program_;
     RunCounters& counters_;
     RunObserver& next_;
+    const ProvedStructure* proved_ = nullptr; ///< of the next equilibrium
     std::optional<Failure> objection_;
 };
 

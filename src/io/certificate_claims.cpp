@@ -59,11 +59,29 @@ Json claim(const VertexClaim& vertex) {
             {"rung", to_string(vertex.rung)}};
 }
 
-Json claim(const ForcesClaim& forces) {
-    return {{"finite", intervals(forces.finite, "forces.finite")},
-            {"structural_zeros", forces.structural_zeros},
-            {"infinitesimal", intervals(forces.infinitesimal, "forces.infinitesimal")},
-            {"rung", to_string(forces.rung)}};
+/// As `intervals(...).dump()`, of as many as there are contacts.
+std::string intervals_text(const std::vector<Interval>& values, const char* field) {
+    std::string text = "[";
+    for (const Interval& value : values) {
+        text += text.size() == 1 ? "[" : ",[";
+        if (std::isfinite(value.lower) && std::isfinite(value.upper) && value.lower <= value.upper) {
+            append_number(text, value.lower);
+            text += ',';
+            append_number(text, value.upper);
+            text += ']';
+        } else {
+            text.pop_back();
+            text += interval(value, field).dump();
+        }
+    }
+    return text + "]";
+}
+
+std::string forces_line(const ForcesClaim& forces) {
+    return fmt::format(R"("forces": {{"finite":{},"structural_zeros":{},"infinitesimal":{},"rung":{}}})",
+                       intervals_text(forces.finite, "forces.finite"), Json(forces.structural_zeros).dump(),
+                       intervals_text(forces.infinitesimal, "forces.infinitesimal"),
+                       Json(to_string(forces.rung)).dump());
 }
 
 Json claim(const GapsClaim& gaps, int dimension) {
@@ -249,7 +267,7 @@ std::string claims_text(const CertificateClaims& claims, int dimension) {
     std::string text = "\"claims\": {\n";
     text += "  " + member_line("counting", or_absent(claims.counting)) + ",\n";
     text += "  " + member_line("vertex", or_absent(claims.vertex)) + ",\n";
-    text += "  " + member_line("forces", or_absent(claims.forces)) + ",\n";
+    text += "  " + (claims.forces ? forces_line(*claims.forces) : member_line("forces", nullptr)) + ",\n";
     text += "  " + member_line("gaps", or_absent(claims.gaps, dimension)) + ",\n";
     text += "  " + member_line("load_interval", or_absent(claims.load_interval, dimension)) + ",\n";
     text += "  " + member_line("stable", claims.stable) + ",\n";

@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 #include <nettle/sha2.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <map>
@@ -42,7 +43,7 @@ class SortedCopy {
             }
             copy += take(1);
         } else {
-            copy += first == '"' ? take(rest_.find('"', 1) + 1) : take(rest_.find_first_of(" \n,]}"));
+            copy += first == '"' ? take(rest_.find('"', 1) + 1) : take(length_of_word());
         }
     }
 
@@ -50,6 +51,11 @@ class SortedCopy {
     char next() {
         rest_.remove_prefix(rest_.find_first_not_of(" \n"));
         return rest_.front();
+    }
+    /// Of a number, true, false or null.
+    [[nodiscard]] std::size_t length_of_word() const {
+        const auto ends = [](char c) { return c == ',' || c == ']' || c == ' ' || c == '\n' || c == '}'; };
+        return static_cast<std::size_t>(std::find_if(rest_.begin(), rest_.end(), ends) - rest_.begin());
     }
     std::string_view take(std::size_t size) {
         const std::string_view taken = rest_.substr(0, size);

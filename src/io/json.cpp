@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -195,13 +196,9 @@ Json or_null(double value) {
     return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
-void append_rows(std::string& text, const char* name, const std::vector<Json>& rows) {
-    text += fmt::format("  \"{}\": [", name);
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-        text += i == 0 ? "\n    " : ",\n    ";
-        text += rows[i].dump();
-    }
-    text += rows.empty() ? "]" : "\n  ]";
+void append_number(std::string& text, double value) {
+    std::array<char, 64> digits{};
+    text.append(digits.data(), nlohmann::detail::to_chars(digits.data(), digits.data() + digits.size(), value));
 }
 
 } // namespace isostat::json

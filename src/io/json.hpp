@@ -77,7 +77,18 @@ std::string dumped(const Json& document, int indent = -1);
 /// A number for a record: infinities and NaN, which JSON does not have, become null.
 Json or_null(double value);
 
-/// Appends "name": [ rows ] with one row per line, so that a state can be read and compared by people.
-void append_rows(std::string& text, const char* name, const std::vector<Json>& rows);
+/// Appends a finite number as `Json(value).dump()` writes it, without a document between.
+void append_number(std::string& text, double value);
+
+/// Appends "name": [ rows ] with one row per line, so that a state can be read and compared by people; `row(text, i)`
+/// appends row i.
+template <class Row> void append_rows(std::string& text, const char* name, std::size_t count, Row row) {
+    text.append("  \"").append(name).append("\": [");
+    for (std::size_t i = 0; i < count; ++i) {
+        text += i == 0 ? "\n    " : ",\n    ";
+        row(text, i);
+    }
+    text += count == 0 ? "]" : "\n  ]";
+}
 
 } // namespace isostat::json

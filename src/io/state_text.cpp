@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <iterator>
 
 namespace isostat {
 
@@ -33,13 +34,11 @@ template <class Range> Json numbers(const Range& values, const char* field) {
     return list;
 }
 
-/// d numbers per disk, one row each.
-std::vector<Json> vectors(const std::vector<double>& values, std::size_t axes, const char* field) {
-    std::vector<Json> rows;
-    for (std::size_t k = 0; k + axes <= values.size(); k += axes) {
-        rows.push_back(numbers(std::span(values).subspan(k, axes), field));
+void append_numbers(std::string& text, std::span<const double> values, const char* field) {
+    for (std::size_t k = 0; k < values.size(); ++k) {
+        text += k == 0 ? '[' : ',';
+        json::append_number(text, finite(values[k], field));
     }
-    return rows;
 }
 
 /// The member "cell", or nothing in a box.
@@ -70,17 +69,13 @@ std::string cell_text(const Packing& packing) {
 void append_disks(std::string& text, const Packing& packing) {
     text += fmt::format("  \"length\": {},\n",
                         numbers(std::span(packing.q).subspan(packing.length_at(0), packing.axes()), "length").dump());
-
-    std::vector<Json> rows;
-    for (std::size_t i = 0; i < packing.radius.size(); ++i) {
-        Json row = Json::array();
-        for (std::size_t a = 0; a < packing.axes(); ++a) {
-            row.push_back(finite(packing.q[packing.axes() * i + a], "disks (position)"));
-        }
-        row.push_back(finite(packing.radius[i], "disks (radius)"));
-        rows.push_back(std::move(row));
-    }
-    json::append_rows(text, "disks", rows);
+    const std::size_t axes = packing.axes();
+    json::append_rows(text, "disks", packing.radius.size(), [&](std::string& to, std::size_t i) {
+        append_numbers(to, std::span(packing.q).subspan(axes * i, axes), "disks (position)");
+        to += ',';
+        json::append_number(to, finite(packing.radius[i], "disks (radius)"));
+        to += ']';
+    });
 }
 
 /// The member "load", without the forces on disks.
@@ -119,10 +114,29 @@ std::string walls_text(const Packing& packing) {
 }
 
 /// A further member, unless it has no rows.
-void append_member(std::string& text, const char* name, const std::vector<Json>& rows) {
-    if (!rows.empty()) {
+template <class Row> void append_member(std::string& text, const char* name, std::size_t count, Row row) {
+    if (count > 0) {
         text += ",\n";
-        json::append_rows(text, name, rows);
+        json::append_rows(text, name, count, row);
+    }
+}
+void append_member(std::string& text, const char* name, const std::vector<Json>& rows) {
+    append_member(text, name, rows.size(), [&](std::string& to, std::size_t i) { to += rows[i].dump(); });
+}
+
+/// d numbers per disk, one row each.
+void append_vectors(std::string& text, const char* name, const std::vector<double>& values, std::size_t axes) {
+    append_member(text, name, values.size() / axes, [&](std::string& to, std::size_t i) {
+        append_numbers(to, std::span(values).subspan(axes * i, axes), name);
+        to += ']';
+    });
+}
+
+void append_contact(std::string& text, const Contact& contact, int dimension) {
+    if (contact.kind == ContactKind::disk_disk && contact.image.is_here()) { // most contacts are such
+        fmt::format_to(std::back_inserter(text), "[{},{}]", contact.i, contact.j);
+    } else {
+        text += json::contact_to_json(contact, dimension).dump();
     }
 }
 
@@ -152,23 +166,18 @@ std::string state_text(const State& state, std::span<const double> forces) {
     }
     append_member(text, "bars", rows);
     append_member(text, "arcs", {packing.arcs.begin(), packing.arcs.end()});
-    append_member(text, "disk_force", vectors(state.load.disk_force, packing.axes(), "disk_force"));
-    append_member(text, "infinitesimal", vectors(state.load.infinitesimal, packing.axes(), "infinitesimal"));
+    append_vectors(text, "disk_force", state.load.disk_force, packing.axes());
+    append_vectors(text, "infinitesimal", state.load.infinitesimal, packing.axes());
     if (state.perturbation) {
         text += fmt::format(",\n  \"perturbation\": {}",
                             json::perturbation_to_json(*state.perturbation, packing.dimension).dump());
     }
-    rows.clear();
-    for (const Contact& contact : state.contacts) {
-        rows.push_back(json::contact_to_json(contact, packing.dimension));
-    }
     text += ",\n";
-    json::append_rows(text, "contacts", rows);
-    rows.clear();
-    for (const double f : forces) {
-        rows.emplace_back(finite(f, "forces"));
-    }
-    append_member(text, "forces", rows);
+    json::append_rows(text, "contacts", state.contacts.size(), [&](std::string& to, std::size_t l) {
+        append_contact(to, state.contacts[l], packing.dimension);
+    });
+    append_member(text, "forces", forces.size(),
+                  [&](std::string& to, std::size_t l) { json::append_number(to, finite(forces[l], "forces")); });
     return text + "\n}\n";
 }
 

@@ -243,7 +243,7 @@ Factorisation::Factorisation(const IsostaticStructure& structure)
 Factorisation::Factorisation(const IsostaticStructure& structure, ApproximateInverse inverse)
     : implementation_(new Implementation{structure.shared_matrix(), std::move(inverse), false, 0, {}, {}}) {}
 
-std::optional<Factorisation> Factorisation::of_moving_block(const IsostaticStructure& structure, int slot) {
+std::vector<unsigned char> Factorisation::moving(const IsostaticStructure& structure, int slot) {
     // The pattern of G where only contact `slot` has a velocity: the unknown velocities that are not structural zeros.
     const sparse::Matrix<double>& h = structure.matrix();
     const auto n = static_cast<std::size_t>(h.rows);
@@ -263,7 +263,13 @@ std::optional<Factorisation> Factorisation::of_moving_block(const IsostaticStruc
     for (std::size_t mu = 0; mu < n; ++mu) {
         matched[static_cast<std::size_t>(structure.matching()[mu])] = static_cast<int>(mu);
     }
-    const auto moves = sparse::structural_nonzeros(start, contact, matched, {&slot, 1});
+    return sparse::structural_nonzeros(start, contact, matched, {&slot, 1});
+}
+
+std::optional<Factorisation> Factorisation::of_moving_block(const IsostaticStructure& structure, int slot) {
+    const sparse::Matrix<double>& h = structure.matrix();
+    const auto n = static_cast<std::size_t>(h.rows);
+    const std::vector<unsigned char> moves = moving(structure, slot);
     std::vector<int> rows;
     std::vector<int> columns;
     for (std::size_t mu = 0; mu < n; ++mu) {
@@ -284,6 +290,19 @@ std::optional<Factorisation> Factorisation::of_moving_block(const IsostaticStruc
                                                    {},
                                                    {}});
     return block;
+}
+
+Factorisation Factorisation::of(const IsostaticStructure& structure, ApproximateInverse factors) {
+    assert(factors.exchanges() == 0);
+    Factorisation fresh(structure, std::move(factors));
+    fresh.implementation_->fresh = true;
+    return fresh;
+}
+
+Factorisation Factorisation::shared() const {
+    Factorisation copy;
+    copy.implementation_ = std::make_unique<Implementation>(*implementation_);
+    return copy;
 }
 
 Factorisation::~Factorisation() = default;

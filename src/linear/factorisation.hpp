@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 namespace isostat {
 
@@ -24,9 +25,15 @@ class Factorisation {
     explicit Factorisation(const IsostaticStructure& structure);
     /// Uses an operator close to the inverse of the structure's matrix.
     Factorisation(const IsostaticStructure& structure, ApproximateInverse inverse);
+    /// One flag per degree of freedom: 0 where the motion that opens contact `slot` is a structural zero.
+    static std::vector<unsigned char> moving(const IsostaticStructure& structure, int slot);
     /// For the grains that move when contact `slot` opens, when they are few (rattlers): for such motions one pass is a
     /// solve; forces are those of the block. Nothing when more than a quarter of the degrees of freedom move.
     static std::optional<Factorisation> of_moving_block(const IsostaticStructure& structure, int slot);
+    /// From factors of exactly this matrix, as `renewed` makes them: one pass is a solve.
+    static Factorisation of(const IsostaticStructure& structure, ApproximateInverse factors);
+    /// The same factors for another owner, whose passes count there.
+    [[nodiscard]] Factorisation shared() const;
     ~Factorisation();
     Factorisation(Factorisation&&) noexcept;
     Factorisation& operator=(Factorisation&&) noexcept;

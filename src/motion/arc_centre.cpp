@@ -18,6 +18,29 @@ std::unique_ptr<ArcCentre> ArcCentre::make(Packing packing, std::vector<Contact>
     return centre;
 }
 
+std::unique_ptr<ArcCentre> ArcCentre::near(const ArcVertex& vertex, std::size_t slot, Packing packing,
+                                           const Contact& contact, InverseBoundCache& cache) {
+    std::vector<Contact> list = vertex.structure.contacts();
+    list[slot] = contact;
+    auto exchange = IsostaticStructure::exchange(vertex.structure, packing, ContactId(slot), contact);
+    if (!exchange) {
+        return nullptr; // structurally singular
+    }
+    ApproximateInverse factors = vertex.factorisation.approximate()
+                                     .exchanged(static_cast<int>(slot), exchange->matrix())
+                                     .renewed(exchange->matrix());
+    const auto proved = bound_exchanged(*exchange, factors, cache);
+    if (!proved) {
+        return make(std::move(packing), std::move(list), cache);
+    }
+    auto centre = std::make_unique<ArcCentre>();
+    centre->packing_ = std::move(packing);
+    centre->own_ = std::make_unique<FactorisedStructure>(
+        IsostaticStructure::exchanged(std::move(*exchange), proved->proof), std::move(factors));
+    centre->sigma_min_ = proved->bound.sigma_min;
+    return centre;
+}
+
 std::unique_ptr<ArcCentre> ArcCentre::of(const ArcVertex& vertex) {
     auto centre = std::make_unique<ArcCentre>();
     centre->packing_ = vertex.packing;

@@ -14,6 +14,11 @@ class ArcCentre {
   public:
     /// Null when a step fails.
     static std::unique_ptr<ArcCentre> make(Packing packing, std::vector<Contact> contacts, InverseBoundCache& cache);
+    /// The same of the list of a vertex with another contact in a slot. Regularity follows from the bound of the
+    /// inverse (V1), and the factors keep the order of those of the vertex; where no bound is found in doubles, as
+    /// `make`.
+    static std::unique_ptr<ArcCentre> near(const ArcVertex& vertex, std::size_t slot, Packing packing,
+                                           const Contact& contact, InverseBoundCache& cache);
     /// The vertex itself as a centre; only its coordinates are copied.
     static std::unique_ptr<ArcCentre> of(const ArcVertex& vertex);
 

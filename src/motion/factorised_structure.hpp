@@ -11,6 +11,8 @@ namespace isostat {
 /// Not movable because the factors refer to the structure.
 struct FactorisedStructure {
     explicit FactorisedStructure(IsostaticStructure s) : structure(std::move(s)), factorisation(structure) {}
+    FactorisedStructure(IsostaticStructure s, ApproximateInverse factors)
+        : structure(std::move(s)), factorisation(Factorisation::of(structure, std::move(factors))) {}
     FactorisedStructure(const FactorisedStructure&) = delete;
     FactorisedStructure& operator=(const FactorisedStructure&) = delete;
     IsostaticStructure structure;

@@ -12,11 +12,7 @@ namespace isostat {
 MovingPart::MovingPart(const ArcVertex& start, const ArcVertex& end, std::size_t slot, double start_uncertainty,
                        double end_uncertainty)
     : start_(start), end_(end), slot_(slot), start_packing_(start.packing), end_packing_(end.packing) {
-    const auto n = static_cast<std::size_t>(start.structure.size());
-    std::vector<double> mechanism(n, 0.0);
-    mechanism[slot] = 1;
-    start.factorisation.solve_velocities(mechanism);
-    whole_ = !restrict_to(mechanism);
+    whole_ = !restrict_to(Factorisation::moving(start.structure, static_cast<int>(slot)));
     if (whole_) {
         disk_moves_.assign(start_packing_.radius.size(), 1);
         wall_moves_.assign(start_packing_.coordinate_count() - start_packing_.length_at(0), 1);
@@ -92,7 +88,7 @@ std::vector<Contact> MovingPart::with_row(const Contact& row) const {
     return list;
 }
 
-bool MovingPart::restrict_to(const std::vector<double>& mechanism) {
+bool MovingPart::restrict_to(const std::vector<unsigned char>& mechanism) {
     const DofMap& dofs = start_.structure.dofs();
     const std::size_t disks = start_packing_.radius.size();
     disk_moves_.assign(disks, 0);
@@ -194,7 +190,9 @@ std::unique_ptr<ArcCentre> MovingPart::at_end(InverseBoundCache& cache) const {
 }
 
 std::unique_ptr<ArcCentre> MovingPart::centre(Packing packing, int held, InverseBoundCache& cache) const {
-    return ArcCentre::make(std::move(packing), with_row(Contact{ContactKind::held, held, 0}), cache);
+    const Contact row{ContactKind::held, held, 0};
+    return whole_ ? ArcCentre::near(start_, slot_, std::move(packing), row, cache)
+                  : ArcCentre::make(std::move(packing), with_row(row), cache);
 }
 
 std::unique_ptr<ArcCentre> MovingPart::with_fastest(const ArcCentre& vertex, double& rate,

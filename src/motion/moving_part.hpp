@@ -48,7 +48,7 @@ class MovingPart {
     [[nodiscard]] bool coordinate_moves(std::size_t coordinate) const;
     [[nodiscard]] bool moves(const Contact& contact) const;
     [[nodiscard]] std::vector<Contact> with_row(const Contact& row) const;
-    bool restrict_to(const std::vector<double>& mechanism);
+    bool restrict_to(const std::vector<unsigned char>& mechanism);
     void let_rest();
     [[nodiscard]] bool moves_pin_or_cell() const;
     void check_rest(double uncertainty);

@@ -408,12 +408,16 @@ std::optional<Failure> Prover::power(ArcProof& proof, const Opening& opening, do
 /// Level `arcs`: the certificate does not depend on how the arc was found, and an arc without one stays in the run.
 void Prover::certify(ArcProof& proof, const Vertex& from, const Opening& opening, const Load& load) {
     const auto begin = std::chrono::steady_clock::now();
-    // New factors: those of the run count their passes, and only fresh ones give exactly 0 for what does not move.
+    // Fresh factors, whose passes do not count in the run; those of the end keep the order of those of the start.
     const Vertex& to = *proof.vertex;
     const std::shared_ptr<const Vertex> start = std::exchange(certified_end_, proof.vertex); // the factors refer to it
-    const std::unique_ptr<const Factorisation> first =
-        start.get() == &from ? std::move(factors_there_) : std::make_unique<const Factorisation>(from.structure);
-    factors_there_ = std::make_unique<const Factorisation>(to.structure);
+    const std::optional<Factorisation> first = start.get() == &from            ? std::exchange(factors_there_, {})
+                                               : from.factorisation.is_fresh() ? from.factorisation.shared()
+                                                                               : Factorisation(from.structure);
+    factors_there_ =
+        Factorisation::of(to.structure, first->approximate()
+                                            .exchanged(static_cast<int>(opening.contact.index()), to.structure.matrix())
+                                            .renewed(to.structure.matrix()));
     const auto vertex = [](const Vertex& v, const Factorisation& factorisation) {
         return ArcVertex{v.packing, v.structure, factorisation, v.inverse, v.enclosure};
     };

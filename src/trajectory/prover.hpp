@@ -124,7 +124,7 @@ class Prover {
     InverseBoundCache bounds_;
     /// The end of the last certified arc, where the next one mostly starts, with new factors.
     std::shared_ptr<const Vertex> certified_end_;
-    std::unique_ptr<const Factorisation> factors_there_;
+    std::optional<Factorisation> factors_there_;
 };
 
 /// Proofs of successive arcs, each from the end of the previous arc. The first arc that is not proved ends the chain.

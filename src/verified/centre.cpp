@@ -7,11 +7,18 @@
 
 namespace isostat {
 
-Centre::Centre(Packing p, IsostaticStructure s)
-    : packing(std::move(p)), structure(std::move(s)), factorisation(structure) {
+bool ProvedStructure::is_of(const Packing& other, const std::vector<Contact>& contacts) const {
+    return structure.evidence() == RegularityEvidence::elimination && factorisation.is_fresh() &&
+           inverse.route != InverseBound::Route::carried && inverse.route != InverseBound::Route::multiprecision &&
+           structure.contacts() == contacts && packing == other;
+}
+
+Centre::Centre(Packing p, IsostaticStructure s, const ProvedStructure* proved)
+    : packing(std::move(p)), structure(std::move(s)),
+      factorisation(proved != nullptr ? proved->factorisation.shared() : Factorisation(structure)) {
     using roundoff::u;
     InverseBoundCache cache;
-    inverse = bound_inverse(structure, factorisation, cache);
+    inverse = proved != nullptr ? proved->inverse : bound_inverse(structure, factorisation, cache);
     for (const Contact& contact : structure.contacts()) {
         const double h = std::abs(gap(packing, contact));
         const double length = target(packing, contact);
@@ -26,7 +33,11 @@ Result<std::unique_ptr<Centre>> Centre::make(Packing packing, std::vector<Contac
     if (!proved.ok()) {
         return proved.failure();
     }
-    return std::unique_ptr<Centre>(new Centre(std::move(packing), std::move(proved.value())));
+    return std::unique_ptr<Centre>(new Centre(std::move(packing), std::move(proved.value()), nullptr));
+}
+
+std::unique_ptr<Centre> Centre::of(const ProvedStructure& proved) {
+    return std::unique_ptr<Centre>(new Centre(proved.packing, proved.structure, &proved));
 }
 
 } // namespace isostat

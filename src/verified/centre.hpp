@@ -11,11 +11,25 @@
 
 namespace isostat {
 
+/// What was proved of the structure of a packing: regular by elimination, with fresh factors and a bound of the
+/// inverse.
+struct ProvedStructure {
+    const Packing& packing;
+    const IsostaticStructure& structure;
+    const Factorisation& factorisation;
+    const InverseBound& inverse;
+
+    /// It is of this list at these coordinates, proved as `Centre::make` would prove it.
+    [[nodiscard]] bool is_of(const Packing& other, const std::vector<Contact>& contacts) const;
+};
+
 /// The place around which a true vertex is enclosed. Not movable because its parts may refer to each other.
 class Centre {
   public:
     /// Proves the rank, factorises, bounds the inverse (which may stay undecided). Failure: `not_isostatic`.
     static Result<std::unique_ptr<Centre>> make(Packing packing, std::vector<Contact> contacts);
+    /// The same from these proofs.
+    static std::unique_ptr<Centre> of(const ProvedStructure& proved);
     Centre(const Centre&) = delete;
     Centre& operator=(const Centre&) = delete;
 
@@ -28,7 +42,7 @@ class Centre {
     Neighbourhood neighbourhood;
 
   private:
-    Centre(Packing p, IsostaticStructure s);
+    Centre(Packing p, IsostaticStructure s, const ProvedStructure* proved);
 };
 
 } // namespace isostat

@@ -3,11 +3,14 @@
 // Level `states`: a certificate that refutes an equilibrium ends the run.
 #include "certificate/state_certifier.hpp"
 #include "checker/claims.hpp"
+#include "core/work.hpp"
 #include "linear/factorisation.hpp"
 #include "statics/decisions.hpp"
 #include "support/crafted.hpp"
+#include "support/prepared.hpp"
 #include "support/regular.hpp"
 #include "support/scratch.hpp"
+#include "support/segments.hpp"
 #include "verified/configuration.hpp"
 
 #include <isostat/certificate/certify.hpp>
@@ -76,6 +79,36 @@ struct Claimed {
         StateCertifier certifier(folder.path(), "test", counters, next);
         certifier.on_equilibrium(record, state, std::vector<double>(state.contacts.size(), 1.0));
         return certifier.objection();
+    }
+};
+
+/// Certifies each equilibrium with the structure that the run passes on, without it, and the one after with it too.
+struct Twice final : RunObserver {
+    const ProvedStructure* proved = nullptr;
+    State before;
+    int equilibria = 0;
+    void on_structure(const ProvedStructure& structure) override { proved = &structure; }
+    void on_equilibrium(const EquilibriumRecord&, const State& state, const std::vector<double>&) override {
+        const auto text = [&](const State& of, const ProvedStructure* given, long rank_proofs) {
+            const auto kind = static_cast<std::size_t>(Work::rank_proofs);
+            const long done = work_done()[kind];
+            const Certification truth = certify(of, {}, given);
+            BOOST_TEST((truth.verdict == Verdict::proved));
+            BOOST_TEST(work_done()[kind] - done == rank_proofs);
+            Certificate certificate;
+            certificate.state = of;
+            certificate.claims = truth.claims;
+            return certificate_text(certificate);
+        };
+        BOOST_TEST(text(state, proved, 0) == text(state, nullptr, 1));
+        if (equilibria++ > 0) {
+            BOOST_TEST(text(before, proved, 1) == text(before, nullptr, 1));
+        }
+        State moved = state; // by less than a rounding of the claims, with the same contacts
+        moved.packing.q[0] = std::nextafter(moved.packing.q[0], 0.0);
+        BOOST_TEST(text(moved, proved, 1) == text(moved, nullptr, 1));
+        before = state;
+        proved = nullptr;
     }
 };
 
@@ -190,6 +223,14 @@ BOOST_AUTO_TEST_CASE(where_nothing_can_move_there_is_no_equilibrium) {
     State sunk = state;
     sunk.packing.q[0] = 0.5;
     BOOST_TEST(certify(sunk).refuted.size() == 2U); // and it overlaps
+}
+
+BOOST_AUTO_TEST_CASE(the_structure_that_a_run_has_proved_serves_its_certificate_and_no_other) {
+    State state = prepared(60, 2);
+    RunCounters counters;
+    Twice observer;
+    BOOST_TEST(run_segment(state, towards(4), 0, {}, counters, observer).completed);
+    BOOST_TEST(observer.equilibria == 5);
 }
 
 // What a run left at 0 it calls an equilibrium of the finite loads: what the infinitesimal ones do there is no

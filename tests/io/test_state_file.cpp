@@ -1,4 +1,5 @@
 #include "io/files.hpp"
+#include "io/json.hpp"
 #include "support/bad_input.hpp"
 #include "support/crafted.hpp"
 #include "support/scratch.hpp"
@@ -11,7 +12,9 @@
 #include <sys/stat.h>
 
 #include <bit>
+#include <cmath>
 #include <csignal>
+#include <random>
 
 using namespace isostat;
 using scratch::replaced;
@@ -55,6 +58,20 @@ void refuses_state(const std::string& text, const std::vector<std::string>& word
 }
 
 } // namespace
+
+BOOST_AUTO_TEST_CASE(a_number_of_a_row_is_written_as_a_document_writes_it) {
+    std::mt19937_64 random(1);
+    std::vector<double> values{0.0, -0.0, 1.0, -1e15, 1e16, 1e300, 5e-324, 0.1, 123456789.0};
+    while (values.size() < 20000) {
+        const double any = std::bit_cast<double>(random());
+        values.push_back(std::isfinite(any) ? any : std::ldexp(static_cast<double>(random() >> 11), -50));
+    }
+    for (const double value : values) {
+        std::string text;
+        json::append_number(text, value);
+        BOOST_TEST_REQUIRE(text == json::Json(value).dump());
+    }
+}
 
 BOOST_AUTO_TEST_CASE(rows_of_disks_are_in_the_order_of_their_version) {
     const auto text = [](const std::string& version, const std::string& disks) {

@@ -37,6 +37,28 @@ BOOST_AUTO_TEST_CASE(every_arc_of_a_run_is_certified_with_its_power) {
     }
 }
 
+BOOST_AUTO_TEST_CASE(centres_of_arcs_are_proved_regular_by_their_bounds_without_another_elimination) {
+    const State start = prepared(60, 2);
+    const auto done = [&](const RunOptions& options) {
+        const auto before = work_done();
+        const Played run = play(start, +1, 8, {}, options);
+        auto work = work_done();
+        for (std::size_t k = 0; k < work_kinds; ++k) {
+            work[k] -= before[k];
+        }
+        return std::pair(run, work[static_cast<std::size_t>(Work::rank_proofs)]);
+    };
+    const auto [plain, eliminations] = done({});
+    const auto [proved, all] = done(with_arcs);
+    long whole = 0;
+    long parts = 0;
+    for (const ArcRecord& arc : proved.records.arcs) {
+        (arc.certificate->witness.whole ? whole : parts) += arc.certificate->factorisations + 2; // and the ends
+    }
+    BOOST_TEST(whole > 20);
+    BOOST_TEST(all - eliminations <= parts);
+}
+
 BOOST_AUTO_TEST_CASE(the_level_changes_no_bit_of_the_run) {
     const State start = prepared(50, 3);
     const Played plain = play(start, +1, 6);

@@ -77,7 +77,10 @@ struct Certification {
 /// held where the load acts on none of them, by the pattern: k is their number, each is a free motion (a rattler, or a
 /// body that turns about the one member through which it is held), and all claims hold for the place where they are
 /// held; the minimum is strict but for these motions (proofs/clumps.md).
-Certification certify(const State& state, const CertifyOptions& options = {});
+///
+/// `proved`: the structure as a run has proved it, which saves this proof, the factors and the bound of the inverse;
+/// used where it is of this state, by the same proofs, so that the answer is the same without it.
+Certification certify(const State& state, const CertifyOptions& options = {}, const ProvedStructure* proved = nullptr);
 
 /// Holds coordinates of a packing with bars until no mechanism is left, when its list holds none and has too few
 /// contacts (h = 0). Other states are returned unchanged. Cost: a rank.

@@ -148,6 +148,7 @@ struct Packing {
     [[nodiscard]] double solid_fraction() const;
     /// The same without some grains: rattlers.
     [[nodiscard]] double solid_fraction_without(std::span<const int> grains) const;
+    friend bool operator==(const Packing&, const Packing&) = default;
 };
 
 /// Which coordinates of a packing are degrees of freedom, numbered 0 .. N_f-1 in the order of q.

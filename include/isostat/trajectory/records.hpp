@@ -174,6 +174,7 @@ struct Tally {
 };
 
 struct Segment;
+struct ProvedStructure;
 
 /// Receives the records of a run as they are made. Each call returns before the run goes on, so a killed run has
 /// written everything that it had found. After each equilibrium the run asks for an objection, which ends the run.
@@ -185,6 +186,8 @@ class RunObserver {
     /// (after a resume), and the state that it starts from.
     virtual void on_segment(int /*number*/, const Segment& /*goal*/, int /*made*/, const State& /*from*/) {}
     virtual void on_arc(const ArcRecord& /*arc*/) {}
+    /// Before each equilibrium: what is proved of its structure, until `on_equilibrium` returns.
+    virtual void on_structure(const ProvedStructure& /*proved*/) {}
     virtual void on_equilibrium(const EquilibriumRecord& /*record*/, const State& /*state*/,
                                 const std::vector<double>& /*forces, one per contact of the state*/) {}
     /// Why the run must not go on after the equilibrium that it has just passed on; nothing: it goes on.

@@ -8,8 +8,6 @@
 using namespace isostat::checker;
 using isostat::State;
 
-BOOST_AUTO_TEST_SUITE(checker)
-
 BOOST_AUTO_TEST_CASE(wide_and_broad_integers_agree_with_GMP) {
     std::mt19937_64 random(1);
     const auto any = [&random] { // below 2^125
@@ -62,5 +60,3 @@ BOOST_AUTO_TEST_CASE(forces_in_128_bits_agree_with_those_of_GMP) {
         BOOST_TEST(std::abs(narrow.about(l) / any.about(l) - 1) < 1e-14);
     }
 }
-
-BOOST_AUTO_TEST_SUITE_END()

@@ -350,9 +350,11 @@ class Walk {
         }
         return end_near(std::move(q), [](System& end, std::vector<double>& at) {
             constexpr double rounding = 0x1p-44; // the vertex that is proved is found from there
+            constexpr double singular = 0x1p18;  // its square times a rounding: the steps that Newton's method can take
             const std::optional<double> step = end.newton(at, {}, 0x1p-46);
             std::vector<double> better = at;
-            if (step && *step > rounding && end.newton_in_quadruple(better)) { // double is too rough
+            const bool rough = step && (*step > rounding || !(end.spread() < singular));
+            if (rough && end.newton_in_quadruple(better)) {
                 at = std::move(better);
             }
             return step.has_value();

@@ -168,6 +168,15 @@ std::optional<double> System::newton(std::vector<double>& q, const std::optional
     return {};
 }
 
+double System::spread() const {
+    const double scale = packing_.max_radius();
+    Eigen::VectorXd mixed(static_cast<Eigen::Index>(contacts_.size()));
+    for (Eigen::Index l = 0; l < mixed.size(); ++l) {
+        mixed(l) = (l * l + l / 3) % 7 < 3 ? -scale * scale : scale * scale;
+    }
+    return step(mixed).lpNorm<Eigen::Infinity>() / scale;
+}
+
 bool System::newton_in_quadruple(std::vector<double>& q, const std::optional<Way>& way) {
     constexpr int most = 60; // steps halve the distance to one of two nearby zeros
     const double scale = packing_.max_radius();

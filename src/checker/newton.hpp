@@ -43,6 +43,9 @@ class System {
         Eigen::Index kept;
     };
     std::optional<double> newton(std::vector<double>& q, const std::optional<Way>& way, double accuracy);
+    /// Largest component of A^-1 for a residual of a squared largest radius in every F, of mixed signs, in largest
+    /// radii: about how much Newton's method in double enlarges roundings. A solve.
+    [[nodiscard]] double spread() const;
     /// Newton to a zero of all F where the contacts may be nearly
     /// singular: F in quadruple precision, new factors where the last ones do not serve.
     bool newton_in_quadruple(std::vector<double>& q, const std::optional<Way>& way = {});

@@ -24,6 +24,7 @@ StateCertifier::StateCertifier(const std::filesystem::path& run, std::string pro
 void StateCertifier::on_equilibrium(const EquilibriumRecord& record, const State& state,
                                     const std::vector<double>& forces) {
     const auto begin = std::chrono::steady_clock::now();
+    const ProvedStructure* const proved = std::exchange(proved_, nullptr);
     Certificate certificate;
     certificate.input = fmt::format("equilibrium {}", record.number);
     certificate.program = program_;
@@ -31,7 +32,7 @@ void StateCertifier::on_equilibrium(const EquilibriumRecord& record, const State
     certificate.state.provenance.clear();
     const std::string text = state_text(certificate.state);
     certificate.input_hash = sha256(text);
-    const Certification result = certify(certificate.state, {}, std::exchange(proved_, nullptr));
+    const Certification result = certify(certificate.state, {}, proved);
     certificate.claims = result.claims;
     write_output(folder_ / fmt::format("eq_{:06}.json", record.number), json::certificate_text(certificate, text),
                  "\"isostat-certificate\"");

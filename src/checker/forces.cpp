@@ -297,13 +297,17 @@ double ContactForces::about(std::size_t l) const {
         const double unit = problem_->rows[l].quadratic ? problem_->sum.near(l, problem_->fine)
                                                         : std::ldexp(1.0, problem_->wall_exponent);
         const Wide size = static_cast<Wide>(magnitude(middle_[l])) + around_;
-        return approximate(Broad(size), exponent_ - problem_->fine) * unit;
+        const double per_length = approximate(Broad(size), exponent_ - problem_->fine);
+        if (std::isnormal(per_length) && std::isnormal(per_length * unit)) {
+            return per_length * unit;
+        }
     }
     const auto size = [](const Rational& value) {
         const long unit = bits(value.get_den()); // neither of the two numbers need be within the range of double
         return std::abs(approximate(value.get_num(), -unit) / approximate(value.get_den(), -unit));
     };
-    return std::max(size(ranges_[l].lower), size(ranges_[l].upper));
+    const Range range = (*this)[l];
+    return std::min(std::max(size(range.lower), size(range.upper)), std::numeric_limits<double>::max());
 }
 
 ContactForces contact_forces(const Problem& problem, const Solver& solver, const InverseBound& inverse,

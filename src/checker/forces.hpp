@@ -51,7 +51,7 @@ class ContactForces {
     [[nodiscard]] bool has_zero(std::size_t l) const {
         return middle_.empty() ? ranges_[l].has_zero() : middle_[l] <= around_ && middle_[l] >= -around_;
     }
-    /// About the largest magnitude of an end of force l.
+    /// About the largest magnitude of an end of force l, or of a double if that is less.
     [[nodiscard]] double about(std::size_t l) const;
 
   private:

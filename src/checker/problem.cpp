@@ -27,7 +27,7 @@ template <class Number> Number in_units(double value, long unit) {
     int exponent = 0;
     const double fraction = std::frexp(value, &exponent);
     Number result(static_cast<long>(std::ldexp(fraction, 53))); // exact: at most 53 bits
-    const long shift = exponent - 53 - unit;
+    const long shift = value == 0 ? 0 : exponent - 53 - unit;
     if (shift >= 0) {
         result <<= static_cast<unsigned long>(shift);
     } else {

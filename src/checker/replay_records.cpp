@@ -16,7 +16,8 @@ namespace {
 
 /// Compares a recorded number with the found one, up to `record_tolerance` of `size`.
 Objections compare(const std::string& name, double recorded, const Range& found, double size) {
-    const Rational room = Rational(record_tolerance) * Rational(std::max(size, 1e-300));
+    const Rational room =
+        Rational(record_tolerance) * Rational(std::clamp(size, 1e-300, std::numeric_limits<double>::max()));
     if (std::isfinite(recorded) && Rational(recorded) >= found.lower - room &&
         Rational(recorded) <= found.upper + room) {
         return {};

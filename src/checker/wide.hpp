@@ -22,7 +22,7 @@ struct Broad {
 
     Broad() = default;
     explicit Broad(Wide value) : high(value < 0 ? -1 : 0), low(static_cast<WideMagnitude>(value)) {}
-    Broad& operator+=(const Broad& other) {
+    Broad& operator+=(Broad other) { // by value: of itself too
         low += other.low;
         high += other.high + (low < other.low ? 1 : 0);
         return *this;

@@ -97,7 +97,7 @@ class Peeler {
             const Direction direction{static_cast<int>(l), false, bodies_.of(contacts[l].i)};
             if (signs_.of<1>({direction}, [](const auto& x) { return dot(x[0], x[0]); }) == 0) {
                 throw Error(ErrorKind::bad_input,
-                            fmt::format("{}: the two {}s have the same centre",
+                            fmt::format("{}: the two {}s have the same centre: expected different ones",
                                         to_string(contacts[l], packing.dimension), grain_word(packing.dimension)));
             }
             around_[static_cast<std::size_t>(direction.about)].push_back(direction);

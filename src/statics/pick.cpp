@@ -61,7 +61,8 @@ class OpeningContest final : public Contest {
             return words("; {} (f = {:.17g}): {} bear one force, which the infinitesimal loads do not order: {:.3g}, "
                          "known to {:.3g}",
                          name(statics_, other.contact), other.force.value,
-                         choice_.turn != nullptr ? "the ends of a straight strut" : "contacts of an edge or notch",
+                         choice_.turn != nullptr ? "the ends of a straight strut, or contacts of an edge or notch"
+                                                 : "contacts of an edge or notch",
                          excess.value, excess.radius);
         });
     }

@@ -88,6 +88,7 @@ void Statics::find_backbone() {
 
 void Statics::perturb_radii() {
     pattern_ = ContactPattern(*packing_, *structure_, true);
+    sloped_by_sums_.clear();
     find_backbone();
 }
 

@@ -143,6 +143,7 @@ void Prover::start_at(const Packing& packing, const std::shared_ptr<const Regula
 }
 
 Result<std::shared_ptr<Vertex>> Prover::vertex(Packing packing, std::vector<Contact> contacts, const LimitLoad& at) {
+    bounds_.forget(); // the bound is that which `certify` finds of this state
     auto made = Vertex::make(std::move(packing), std::move(contacts), at.load, bounds_, ladder());
     if (!made.ok()) {
         return made.failure();

@@ -9,8 +9,8 @@ namespace isostat {
 
 bool ProvedStructure::is_of(const Packing& other, const std::vector<Contact>& contacts) const {
     return structure.evidence() == RegularityEvidence::elimination && factorisation.is_fresh() &&
-           inverse.route != InverseBound::Route::carried && inverse.route != InverseBound::Route::multiprecision &&
-           structure.contacts() == contacts && packing == other;
+           inverse.verdict == Verdict::proved && inverse.route != InverseBound::Route::carried &&
+           inverse.route != InverseBound::Route::multiprecision && structure.contacts() == contacts && packing == other;
 }
 
 Centre::Centre(Packing p, IsostaticStructure s, const ProvedStructure* proved)

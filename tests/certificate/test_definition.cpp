@@ -226,11 +226,13 @@ BOOST_AUTO_TEST_CASE(where_nothing_can_move_there_is_no_equilibrium) {
 }
 
 BOOST_AUTO_TEST_CASE(the_structure_that_a_run_has_proved_serves_its_certificate_and_no_other) {
-    State state = prepared(60, 2);
-    RunCounters counters;
-    Twice observer;
-    BOOST_TEST(run_segment(state, towards(4), 0, {}, counters, observer).completed);
-    BOOST_TEST(observer.equilibria == 5);
+    for (const TiePolicy ties : {TiePolicy::stop, TiePolicy::choose}) {
+        State state = prepared(60, 2);
+        RunCounters counters;
+        Twice observer;
+        BOOST_TEST(run_segment(state, towards(4), 0, {.ties = ties}, counters, observer).completed);
+        BOOST_TEST(observer.equilibria == 5);
+    }
 }
 
 // What a run left at 0 it calls an equilibrium of the finite loads: what the infinitesimal ones do there is no

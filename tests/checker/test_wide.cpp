@@ -1,4 +1,5 @@
 // Integers of fixed length against GMP, and what is proved with them against what is proved without.
+#include "checker/evidence.hpp"
 #include "checker/forces.hpp"
 #include "checker/small_states.hpp"
 #include "checker/wide.hpp"
@@ -34,6 +35,25 @@ BOOST_AUTO_TEST_CASE(wide_and_broad_integers_agree_with_GMP) {
         BOOST_REQUIRE((integer_of(magnitude(p)) == abs(exact_p)));
         BOOST_REQUIRE(bits(p) == bits(exact_p));
         BOOST_REQUIRE(std::abs(approximate(p, -bits(p)) - approximate(exact_p, -bits(p))) < 0x1p-50);
+    }
+}
+
+// Also where a force is in the range of double and not the force per length, and where both are beyond this range.
+BOOST_AUTO_TEST_CASE(sizes_of_forces_are_within_the_range_of_double) {
+    for (const auto& [length, force] : {std::pair(-40, 1000), {40, -1000}, {0, 1023}}) {
+        State state = ::crafted::one_disk(std::ldexp(1, force), std::ldexp(1, force));
+        for (auto* const lengths : {&state.packing.q, &state.packing.radius}) {
+            std::transform(lengths->begin(), lengths->end(), lengths->begin(),
+                           [by = length](double x) { return std::ldexp(x, by); });
+        }
+        const double more = force == 1023 ? 4 : 1; // the product of stress and length is beyond double
+        state.load.reference_length[0] *= more;
+        state.load.reference_length[1] *= more;
+        const Evidence evidence(state, isostat::CheckerArithmetic::automatic);
+        const double expected = force == 1023 ? std::numeric_limits<double>::max() : std::ldexp(1, force);
+        for (std::size_t l = 0; l < evidence.forces.size(); ++l) {
+            BOOST_TEST(evidence.forces.about(l) == expected, boost::test_tools::tolerance(1e-9));
+        }
     }
 }
 

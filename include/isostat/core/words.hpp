@@ -33,7 +33,8 @@ template <class Enum, std::size_t N> class EnumWords {
     std::array<const char*, N> words_;
 };
 
-/// `words` in the order of the enumerators; another number of words than of enumerators does not compile.
+/// `words` in the order of the enumerators, which have no gaps; another number of words than of enumerators does not
+/// compile.
 template <class Enum, class... Word> constexpr EnumWords<Enum, sizeof...(Word)> words_of(Word... words) {
     return EnumWords<Enum, sizeof...(Word)>({words...});
 }

@@ -36,8 +36,9 @@ class Error(Exception):
     id = "error"
 
     def __init_subclass__(cls) -> None:
-        word = re.sub("(?<=[a-z])(?=[A-Z])", "_", cls.__name__.removesuffix("Error")).lower()
-        cls.id = vars(cls).get("id", word)
+        if cls.__module__ == __name__: # a user's class keeps the id of its base
+            word = re.sub("(?<=[a-z])(?=[A-Z])", "_", cls.__name__.removesuffix("Error")).lower()
+            cls.id = vars(cls).get("id", word)
 
 
 class UsageError(Error):

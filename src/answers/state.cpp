@@ -147,9 +147,11 @@ void print_yielding(std::string& out, const Inspection& inspection, const Load& 
     }
     say(out, "yields                   {} per unit of {}\n", rates, load.stress_name());
     for (const auto& [where, event] : {std::pair{"rising", &y.up}, {"falling", &y.down}}) {
-        if (event->contact.i >= 0) {
-            say(out, "  under {:<7}          at these rates {} {} first, near {:.6g} (not proved)\n", where,
-                to_string(event->contact, inspection.truth.dimension), event->opens ? "opens" : "closes",
+        if (event->contact.i >= 0 || event->flattens) {
+            const std::string what = event->flattens ? "W'' vanishes along a mechanism"
+                                                     : to_string(event->contact, inspection.truth.dimension) +
+                                                           (event->opens ? " opens" : " closes");
+            say(out, "  under {:<7}          at these rates {} first, near {:.6g} (not proved)\n", where, what,
                 event->stress);
         }
     }
@@ -222,6 +224,9 @@ Json counting_json(const std::string& file, const State& state, const Counting& 
 
 void add_yielding(Json& object, const Yielding& y, int dimension) {
     const auto event = [dimension](const Yielding::Event& e) {
+        if (e.flattens) {
+            return Json{{"contact", nullptr}, {"what", "flattens"}, {"stress", or_null(e.stress)}};
+        }
         return e.contact.i < 0 ? Json()
                                : Json{{"contact", to_string(e.contact, dimension)},
                                       {"what", e.opens ? "opens" : "closes"},

@@ -446,6 +446,69 @@ std::vector<double> turning_of(const Vertex& vertex, const Load& load, const std
     return turning;
 }
 
+/// A value, its rate, and the sum of the terms of this rate in magnitude.
+struct Flattening {
+    double value = 0;
+    double rate = 0;
+    double terms = 0;
+};
+
+/// Of the least eigenvalue of the form of a minimum, while the configuration moves at `velocity` and the
+/// forces change at `rates`: x^T M' x, M' from v' = - G^-1 of what the rows of the motion v change by.
+Flattening flattening(const Vertex& vertex, const Load& load, const HeldMinimum& minimum,
+                      const std::vector<std::size_t>& acting, const std::vector<double>& velocity,
+                      const std::vector<double>& rates) {
+    const auto k = static_cast<Eigen::Index>(acting.size());
+    Eigen::MatrixXd form(k, k);
+    auto entry = minimum.form.begin();
+    for (Eigen::Index i = 0; i < k; ++i) {
+        for (Eigen::Index j = i; j < k; ++j, ++entry) {
+            form(i, j) = form(j, i) = entry->lower + (entry->upper - entry->lower) / 2;
+        }
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(form);
+    std::vector<double> v(velocity.size(), 0.0);
+    for (std::size_t i = 0; i < acting.size(); ++i) {
+        const HeldMotion motion = motion_of(vertex, acting[i]);
+        for (std::size_t c = 0; c < v.size(); ++c) {
+            v[c] += solver.eigenvectors()(static_cast<Eigen::Index>(i), 0) * motion.v[c];
+        }
+    }
+    const auto& contacts = vertex.structure.contacts();
+    const auto& dofs = vertex.structure.dofs();
+    const auto apart = [&](const std::vector<double>& rate, const Contact& contact) {
+        const auto along = separation(vertex.packing.layout(), rate, contact);
+        return Eigen::Vector3d(along[0], along[1], along[2]);
+    };
+    std::vector<double> turned(contacts.size(), 0.0);
+    for (std::size_t l = 0; l < contacts.size(); ++l) {
+        if (contacts[l].of_disks()) {
+            turned[l] =
+                apart(velocity, contacts[l]).dot(apart(v, contacts[l])) / zero_distance(vertex.packing, contacts[l]);
+        }
+    }
+    vertex.factorisation.solve_velocities(turned);
+    std::vector<double> changes(v.size(), 0.0); // of v
+    for (std::size_t mu = 0; mu < turned.size(); ++mu) {
+        changes[dofs.coordinate_of(mu)] = turned[mu];
+    }
+    Flattening least{solver.eigenvalues()(0)};
+    const auto add = [&least](double term) {
+        least.rate += term;
+        least.terms += std::abs(term);
+    };
+    for (std::size_t l = 0; l < contacts.size(); ++l) {
+        if (contacts[l].of_disks()) {
+            const Eigen::Vector3d of_v = apart(v, contacts[l]);
+            const double d = zero_distance(vertex.packing, contacts[l]);
+            add(-rates[l] * of_v.squaredNorm() / d);
+            add(-2 * vertex.statics.force(ContactId(l), load.loaded_stress()).value *
+                of_v.dot(apart(changes, contacts[l])) / d);
+        }
+    }
+    return least;
+}
+
 } // namespace
 
 double force_norm(const Vertex& vertex, double sigma) {
@@ -469,6 +532,11 @@ Yielding yielding_at(const Vertex& vertex, const Load& load, const std::vector<s
         }
     }
     const std::vector<double> turning = turning_of(vertex, load, velocity);
+    std::vector<double> rates;
+    for (std::size_t l = 0; l < contacts.size(); ++l) {
+        rates.push_back(vertex.statics.slope(ContactId(l)).value + turning[l]);
+    }
+    const Flattening least = flattening(vertex, load, minimum, acting, velocity, rates);
     Yielding yielding;
     yielding.length_rate = minimum.length_rate;
     yielding.second_variation = minimum.second_variation;
@@ -478,7 +546,7 @@ Yielding yielding_at(const Vertex& vertex, const Load& load, const std::vector<s
         const auto look = [&](const Contact& contact, bool opens, double value, double rate, double terms) {
             if (const double way = way_to_zero(value, rate, terms, direction); way < nearest) {
                 nearest = way;
-                event = {contact, opens, sigma + direction * way};
+                event = {contact, opens, false, sigma + direction * way};
             }
         };
         for (std::size_t l = 0; l < contacts.size(); ++l) {
@@ -491,6 +559,10 @@ Yielding yielding_at(const Vertex& vertex, const Load& load, const std::vector<s
         for (const Contact& pair : candidates) {
             const auto rate = gap_gradient(vertex.packing, pair).rate(velocity);
             look(pair, false, gap(vertex.packing, pair), rate.value, rate.terms);
+        }
+        const bool dead = load.kind != LoadKind::true_stress; // else the lengths have terms of their own
+        if (const double way = way_to_zero(least.value, least.rate, least.terms, direction); dead && way < nearest) {
+            event = {Yielding::Event().contact, false, true, sigma + direction * way};
         }
     }
     return yielding;

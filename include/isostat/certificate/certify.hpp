@@ -94,11 +94,13 @@ struct Yielding {
     /// bodies in (X, Y, angle), X and Y of the mean of the centres of their members, along periodic axes without the
     /// mean of all bodies, and lengths and tilt. Empty above 256 mechanisms, in space, and where no bound was proved.
     std::vector<Enclosure> second_variation;
-    /// Where the stress rises, and where it falls: what happens first if forces and gaps went on changing at the rates
-    /// that they have, in double. Not proved, and not where it will happen. Contact i = -1: nothing.
+    /// Where the stress rises, and where it falls: what happens first if forces, gaps and the least eigenvalue of d2W
+    /// on the held coordinates went on changing at the rates that they have, in double. Not proved, and not where it
+    /// will happen. Contact i = -1: none, and nothing unless the minimum flattens.
     struct Event {
         Contact contact{ContactKind::disk_disk, -1, -1};
-        bool opens = false; ///< the force vanishes; else the gap closes
+        bool opens = false;    ///< the force vanishes; else the gap closes
+        bool flattens = false; ///< d2W vanishes along a mechanism; looked at under dead loads
         double stress = 0;
     };
     Event up, down;

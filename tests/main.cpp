@@ -1,4 +1,4 @@
-// One main for the tests of every room, each of which is the suite of its program; the cases are in test_*.cpp beside it.
+// One main for the tests of every room, each the suite of its program; the cases are in test_*.cpp beside it.
 #include <boost/test/unit_test.hpp>
 
 #include <filesystem>

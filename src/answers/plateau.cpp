@@ -8,7 +8,6 @@
 #include "packing/words.hpp"
 #include "snap/soft_list.hpp"
 
-
 #include <fmt/format.h>
 
 #include <algorithm>

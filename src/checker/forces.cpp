@@ -124,7 +124,7 @@ template <class Number> class Balance {
         for (const std::vector<int>& contacts : problem.contacts_of) {
             touching = std::max(touching, contacts.size());
         }
-        const long terms = std::bit_width(touching * static_cast<std::size_t>(times));
+        const auto terms = static_cast<long>(std::bit_width(touching * static_cast<std::size_t>(times)));
         largest_ = std::min(125 - terms, 250 - terms - std::max(entry_bits, problem.weight_bits + 1));
         find_residual();
         return !narrow || largest_ > 0;
@@ -162,7 +162,7 @@ template <class Number> class Balance {
         unsure_.assign(residual_.size(), 0);
         for (std::size_t l = 0; l < sought_.size(); ++l) {
             const Row& row = problem_->rows[l];
-            const Number size = magnitude(sought_[l]);
+            const auto size = static_cast<Number>(magnitude(sought_[l]));
             for (std::size_t k = 0; row.quadratic && k < at(row.count); ++k) {
                 if (const int dof = problem_->dof_of[at(row.coordinate[k])]; dof >= 0) {
                     // of twice the radius

@@ -51,7 +51,7 @@ inline Integer magnitude(const Integer& value) {
 inline long bits(Wide value) {
     const WideMagnitude size = magnitude(value);
     const auto high = static_cast<std::uint64_t>(size >> 64U);
-    return high != 0 ? 64 + std::bit_width(high) : std::bit_width(static_cast<std::uint64_t>(size));
+    return static_cast<long>(high != 0 ? 64 + std::bit_width(high) : std::bit_width(static_cast<std::uint64_t>(size)));
 }
 inline long bits(const Broad& value) {
     const Broad size = magnitude(value);
@@ -135,7 +135,7 @@ inline Integer integer_of(Wide value) {
 template <class Number> Integer largest_of(const std::vector<Number>& values) {
     Number largest = Number();
     for (const Number& value : values) {
-        const Number size = magnitude(value);
+        const auto size = static_cast<Number>(magnitude(value));
         largest = largest < size ? size : largest;
     }
     return integer_of(largest);

@@ -2,7 +2,6 @@
 #include "crafted/able.hpp"
 #include "crafted/inspection_parts.hpp"
 
-
 namespace isostat::crafted {
 
 namespace {

@@ -107,4 +107,3 @@ BOOST_AUTO_TEST_CASE(sums_along_an_axis_show_that_a_wall_with_one_contact_bears_
     BOOST_TEST(pattern.carrying(right_wall) == at_the_sides);
     BOOST_TEST(pattern.carrying_by_sums(dofs, right_wall, guess) == at_the_sides);
 }
-

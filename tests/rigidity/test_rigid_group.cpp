@@ -110,4 +110,3 @@ BOOST_AUTO_TEST_CASE(a_held_coordinate_belongs_to_no_body) {
     BOOST_TEST(!counts(state, among, pair(1, 6)));
     BOOST_TEST(!counts(state, state.contacts, {ContactKind::held, 0, 0}));
 }
-

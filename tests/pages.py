@@ -82,7 +82,7 @@ def mutants():
     found = rows("tests/mutants/README.md", "| mutant | result |")
     killed = sum(row[1].startswith("killed") for row in found)
     expect(len(json.loads(read("tests/mutants/table.json"))) == len(found), f"tests/mutants: {len(found)} rows, and another number in table.json")
-    expected = f"Of {len(found)} [breakages on purpose](tests/mutants/README.md) the tests notice {killed}; {len(found) - killed} no test can notice"
+    expected = f"Of {len(found)} [breakages on purpose](tests/mutants/README.md) the tests notice {killed}; {len(found) - killed} no test notices"
     expect(expected in read("README.md"), f"README: expected '{expected}'")
 
 

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace isostat {
 
@@ -446,6 +447,16 @@ std::vector<double> turning_of(const Vertex& vertex, const Load& load, const std
     return turning;
 }
 
+std::vector<double> combined(const std::vector<HeldMotion>& motions, std::span<const double> shares) {
+    std::vector<double> sum(motions.front().v.size(), 0.0);
+    for (std::size_t i = 0; i < motions.size(); ++i) {
+        for (std::size_t c = 0; c < sum.size(); ++c) {
+            sum[c] += shares[i] * motions[i].v[c];
+        }
+    }
+    return sum;
+}
+
 /// A value, its rate, and the sum of the terms of this rate in magnitude.
 struct Flattening {
     double value = 0;
@@ -456,9 +467,9 @@ struct Flattening {
 /// Of the least eigenvalue of the form of a minimum, while the configuration moves at `velocity` and the
 /// forces change at `rates`: x^T M' x, M' from v' = - G^-1 of what the rows of the motion v change by.
 Flattening flattening(const Vertex& vertex, const Load& load, const HeldMinimum& minimum,
-                      const std::vector<std::size_t>& acting, const std::vector<double>& velocity,
+                      const std::vector<HeldMotion>& motions, const std::vector<double>& velocity,
                       const std::vector<double>& rates) {
-    const auto k = static_cast<Eigen::Index>(acting.size());
+    const auto k = static_cast<Eigen::Index>(motions.size());
     Eigen::MatrixXd form(k, k);
     auto entry = minimum.form.begin();
     for (Eigen::Index i = 0; i < k; ++i) {
@@ -467,13 +478,7 @@ Flattening flattening(const Vertex& vertex, const Load& load, const HeldMinimum&
         }
     }
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(form);
-    std::vector<double> v(velocity.size(), 0.0);
-    for (std::size_t i = 0; i < acting.size(); ++i) {
-        const HeldMotion motion = motion_of(vertex, acting[i]);
-        for (std::size_t c = 0; c < v.size(); ++c) {
-            v[c] += solver.eigenvectors()(static_cast<Eigen::Index>(i), 0) * motion.v[c];
-        }
-    }
+    const std::vector<double> v = combined(motions, {solver.eigenvectors().data(), motions.size()}); // the first column
     const auto& contacts = vertex.structure.contacts();
     const auto& dofs = vertex.structure.dofs();
     const auto apart = [&](const std::vector<double>& rate, const Contact& contact) {
@@ -524,19 +529,20 @@ Yielding yielding_at(const Vertex& vertex, const Load& load, const std::vector<s
                      const HeldMinimum& minimum, const std::vector<Contact>& candidates) {
     const double sigma = load.loaded_stress();
     const auto& contacts = vertex.structure.contacts();
-    std::vector<double> velocity(vertex.packing.q.size(), 0.0);
-    for (std::size_t i = 0; i < acting.size(); ++i) {
-        const HeldMotion motion = motion_of(vertex, acting[i]);
-        for (std::size_t k = 0; k < velocity.size(); ++k) {
-            velocity[k] += minimum.rate[i] * motion.v[k];
-        }
+    std::vector<HeldMotion> motions;
+    for (const std::size_t slot : acting) {
+        motions.push_back(motion_of(vertex, slot));
     }
+    const std::vector<double> velocity = combined(motions, minimum.rate);
     const std::vector<double> turning = turning_of(vertex, load, velocity);
     std::vector<double> rates;
     for (std::size_t l = 0; l < contacts.size(); ++l) {
         rates.push_back(vertex.statics.slope(ContactId(l)).value + turning[l]);
     }
-    const Flattening least = flattening(vertex, load, minimum, acting, velocity, rates);
+    Flattening least; // under true stresses the lengths have terms of their own: not asked
+    if (load.kind != LoadKind::true_stress) {
+        least = flattening(vertex, load, minimum, motions, velocity, rates);
+    }
     Yielding yielding;
     yielding.length_rate = minimum.length_rate;
     yielding.second_variation = minimum.second_variation;
@@ -551,17 +557,15 @@ Yielding yielding_at(const Vertex& vertex, const Load& load, const std::vector<s
         };
         for (std::size_t l = 0; l < contacts.size(); ++l) {
             if (contacts[l].is_unilateral() && !vertex.statics.is_structural_zero(ContactId(l))) {
-                const double slope = vertex.statics.slope(ContactId(l)).value;
-                look(contacts[l], true, vertex.statics.force(ContactId(l), sigma).value, slope + turning[l],
-                     std::abs(slope) + std::abs(turning[l]));
+                look(contacts[l], true, vertex.statics.force(ContactId(l), sigma).value, rates[l],
+                     std::abs(vertex.statics.slope(ContactId(l)).value) + std::abs(turning[l]));
             }
         }
         for (const Contact& pair : candidates) {
             const auto rate = gap_gradient(vertex.packing, pair).rate(velocity);
             look(pair, false, gap(vertex.packing, pair), rate.value, rate.terms);
         }
-        const bool dead = load.kind != LoadKind::true_stress; // else the lengths have terms of their own
-        if (const double way = way_to_zero(least.value, least.rate, least.terms, direction); dead && way < nearest) {
+        if (const double way = way_to_zero(least.value, least.rate, least.terms, direction); way < nearest) {
             event = {Yielding::Event().contact, false, true, sigma + direction * way};
         }
     }

@@ -350,7 +350,7 @@ class Walk {
         }
         return end_near(std::move(q), [](System& end, std::vector<double>& at) {
             constexpr double rounding = 0x1p-44; // the vertex that is proved is found from there
-            constexpr double singular = 0x1p18;  // its square times a rounding: the steps that Newton's method can take
+            constexpr double singular = 0x1p18;  // roundings that grow more may end too far from it for its proof
             const std::optional<double> step = end.newton(at, {}, 0x1p-46);
             std::vector<double> better = at;
             const bool rough = step && (*step > rounding || !(end.spread() < singular));

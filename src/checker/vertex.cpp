@@ -21,11 +21,6 @@ struct Guess {
     }
 };
 
-template <class Number> Guess as_stored(const Problem& problem) {
-    const std::vector<Number>& q = problem.stored.in<Number>();
-    return {problem, q, problem.twice_residuals(q)};
-}
-
 /// Newton steps with the factorisation at the stored configuration and exact residuals. Nothing: the way is too long.
 template <class Number> std::optional<Guess> improved(const Problem& problem, const Solver& solver) {
     constexpr int most_steps = 40;
@@ -55,6 +50,14 @@ template <class Number> std::optional<Guess> improved(const Problem& problem, co
     }
 }
 
+template <class Number> std::optional<Guess> guess(const Problem& problem, const Solver& solver, bool at_stored) {
+    if (!at_stored) {
+        return improved<Number>(problem, solver);
+    }
+    const std::vector<Number>& q = problem.stored.in<Number>();
+    return Guess(problem, q, problem.twice_residuals(q));
+}
+
 } // namespace
 
 namespace {
@@ -71,10 +74,8 @@ TrueVertex find_vertex(const Problem& problem, const Solver& solver, const Inver
         if (!at_stored && !solver.usable()) {
             continue;
         }
-        const bool narrow = problem.stored.narrow();
-        std::optional<Guess> start = at_stored ? narrow ? as_stored<Wide>(problem) : as_stored<Integer>(problem)
-                                     : narrow ? improved<Wide>(problem, solver)
-                                               : improved<Integer>(problem, solver);
+        std::optional<Guess> start = problem.stored.narrow() ? guess<Wide>(problem, solver, at_stored)
+                                                             : guess<Integer>(problem, solver, at_stored);
         if (!start) {
             continue;
         }

@@ -167,6 +167,14 @@ struct SlowTurn {
     }
 };
 
+/// What opens where coordinate 1 has just been held.
+Opening opening_at_turn(AtVertex& v, OpeningRule rule = OpeningRule::most_negative) {
+    const auto decision = decide_opening(v.statics, v.sigma(), rule, {find(v.state, held(1)), {}}, 0);
+    BOOST_TEST_REQUIRE(decision.ok(), why(decision));
+    BOOST_TEST_REQUIRE(decision.value().opening.has_value());
+    return *decision.value().opening;
+}
+
 } // namespace
 
 BOOST_AUTO_TEST_CASE(the_end_of_a_straight_strut_that_its_own_load_pulls_at_opens) {
@@ -174,19 +182,15 @@ BOOST_AUTO_TEST_CASE(the_end_of_a_straight_strut_that_its_own_load_pulls_at_open
         State state = row_under_traction(1);
         state.load.infinitesimal[0] = g; // x of the strut
         AtVertex v(state);
-        const ContactId fresh = find(state, held(1));
-        const auto decision = decide_opening(v.statics, v.sigma(), OpeningRule::most_negative, {fresh, {}}, 0);
-        BOOST_TEST_REQUIRE(decision.ok(), why(decision));
-        BOOST_TEST_REQUIRE(decision.value().opening.has_value());
+        const Opening opening = opening_at_turn(v);
         // Pressed to the right it stays at the right wall.
-        BOOST_TEST((v.contact(decision.value().opening->contact) == (g > 0 ? left(0) : right(0))), "g = " << g);
-        BOOST_TEST(decision.value().opening->equal_forces);
-        BOOST_TEST(decision.value().opening->margin > 1);
+        BOOST_TEST((v.contact(opening.contact) == (g > 0 ? left(0) : right(0))), "g = " << g);
+        BOOST_TEST(opening.equal_forces);
+        BOOST_TEST(opening.margin > 1);
         BOOST_TEST((v.statics.rung() == Rung::double_bound));
         // The rule that opens the weakest traction has the opposite order.
-        const auto least = decide_opening(v.statics, v.sigma(), OpeningRule::least_negative, {fresh, {}}, 0);
-        BOOST_TEST_REQUIRE(least.ok(), why(least));
-        BOOST_TEST((v.contact(least.value().opening->contact) == (g > 0 ? right(0) : left(0))), "g = " << g);
+        const ContactId least = opening_at_turn(v, OpeningRule::least_negative).contact;
+        BOOST_TEST((v.contact(least) == (g > 0 ? right(0) : left(0))), "g = " << g);
     }
 }
 
@@ -200,12 +204,9 @@ BOOST_AUTO_TEST_CASE(a_body_that_two_contacts_hold_is_a_strut_with_the_loads_of_
         state.contacts.insert(state.contacts.end(), {{ContactKind::bar, 0, 2}, held(5)});
         state.load.infinitesimal = {-2 * g, 0, 0, 0, 3 * g, 0};
         AtVertex v(state);
-        const ContactId fresh = find(state, held(1));
-        const auto decision = decide_opening(v.statics, v.sigma(), OpeningRule::most_negative, {fresh, {}}, 0);
-        BOOST_TEST_REQUIRE(decision.ok(), why(decision));
-        BOOST_TEST_REQUIRE(decision.value().opening.has_value());
-        BOOST_TEST((v.contact(decision.value().opening->contact) == (g > 0 ? left(0) : right(0))), "g = " << g);
-        BOOST_TEST(decision.value().opening->equal_forces);
+        const Opening opening = opening_at_turn(v);
+        BOOST_TEST((v.contact(opening.contact) == (g > 0 ? left(0) : right(0))), "g = " << g);
+        BOOST_TEST(opening.equal_forces);
     }
 }
 

@@ -288,6 +288,15 @@ BOOST_AUTO_TEST_CASE(nor_are_those_undecided_that_were_once) {
     BOOST_TEST(results.wrong == 0);
 }
 
+// Steps of the checker that lead elsewhere at first, to an overlap or other lengths.
+BOOST_AUTO_TEST_CASE(nor_those_in_which_an_arc_is_begun_again) {
+    Results results;
+    for (const long number : {247, 372}) {
+        BOOST_TEST(try_run(number, false, Draw::all, results));
+    }
+    BOOST_TEST(results.wrong == 0);
+}
+
 // Two vertices of one contact list, mirror images to 3e-4 of a radius and with the same box: the checker's steps lead
 // to the other one, in which a pair overlaps.
 BOOST_AUTO_TEST_CASE(a_run_past_two_vertices_that_mirror_each_other_is_not_refuted) {

@@ -89,7 +89,7 @@ std::optional<Contact> fixed_overlap(const Packing& packing) {
     };
     if (packing.cell.any() || std::find(packing.fixed.begin(), packing.fixed.end(), 1) != packing.fixed.end()) {
         for (const Contact& pair :
-             near_pairs(packing, 0.5 * packing.min_radius()).pairs) { // any positive reach will do
+             pairs_within(packing, 0.5 * packing.min_radius())) { // any positive reach will do
             look(pair);
         }
         for_each_wall_contact(packing, look);
@@ -132,16 +132,13 @@ bool CandidateList::covers(const Packing& packing, double radius) const {
     return true;
 }
 
-CandidateList find_candidates(const Packing& packing, double fraction,
-                              const std::shared_ptr<const RegularTriangulation>& from) {
+CandidateList find_candidates(const Packing& packing, double fraction) {
     assert(fraction > 0 && fraction <= largest_candidate_fraction);
     count_work(Work::candidate_searches);
     CandidateList list;
     list.reach = fraction * packing.min_radius();
     list.reference = packing.q;
-    NearPairs near = near_pairs(packing, list.reach, from);
-    list.contacts = std::move(near.pairs);
-    list.triangulation = std::move(near.triangulation);
+    list.contacts = pairs_within(packing, list.reach);
     if (!packing.fixed.empty() || packing.cell.any()) {
         std::erase_if(list.contacts, [&](const Contact& contact) { return !can_move(packing, contact); });
     }
@@ -186,8 +183,7 @@ Admissibility certify_admissible(const Packing& packing, double allowance, const
             }
         }
     } else {
-        const auto from = known != nullptr ? known->triangulation : nullptr;
-        for (const Contact& contact : near_pairs(packing, 0.5 * packing.min_radius(), from).pairs) {
+        for (const Contact& contact : pairs_within(packing, 0.5 * packing.min_radius())) {
             look(contact);
         }
     }

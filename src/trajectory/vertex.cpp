@@ -1,5 +1,6 @@
 #include "trajectory/vertex.hpp"
 
+#include "contact/contact_set.hpp"
 #include "contact/images.hpp"
 #include "contact/words.hpp"
 #include "trajectory/steering.hpp"
@@ -169,14 +170,14 @@ std::optional<Failure> too_far(const Packing& packing, const std::vector<Contact
 
 } // namespace
 
-Result<Vertex::Gaps> Vertex::check_gaps(CandidateList& candidates, KeptCandidates& kept, const ZeroGaps* known) {
+Result<Vertex::Gaps> Vertex::check_gaps(CandidateList& candidates, const ZeroGaps* known) {
     if (!candidates.covers(packing, 1.001 * enclosure.distance())) {
-        candidates = find_candidates(packing, candidate_fraction, candidates.triangulation);
+        candidates = find_candidates(packing, candidate_fraction);
     }
     if (auto far = too_far(packing, candidates.contacts)) {
         return *far;
     }
-    const std::vector<unsigned char>& is_kept = kept.of(candidates.contacts, structure.contacts());
+    const ContactSet kept(structure.contacts(), packing.disk_count());
     Gaps gaps;
     gaps.margin = std::numeric_limits<double>::infinity();
     std::vector<Contact> doubtful;
@@ -190,9 +191,9 @@ Result<Vertex::Gaps> Vertex::check_gaps(CandidateList& candidates, KeptCandidate
         }
         gaps.margin = std::min(gaps.margin, h.margin());
     };
-    for (std::size_t k = 0; k < is_kept.size(); ++k) {
-        if (is_kept[k] == 0) {
-            look(candidates.contacts[k]);
+    for (const Contact& candidate : candidates.contacts) {
+        if (!kept.contains(candidate)) {
+            look(candidate);
         }
     }
     if (!doubtful.empty()) {

@@ -2,7 +2,7 @@
 
 #include "io/files.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 
 #include <algorithm>
 #include <regex>

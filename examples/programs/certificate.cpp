@@ -1,7 +1,7 @@
 // What is proved of a stored state: a true equilibrium nearby, its forces and gaps, the loads that it supports.
 // Usage: example_certificate [STATE.json]
 #include <isostat/certificate/certify.hpp>
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/io/state_file.hpp>
 
 #include <cmath>

@@ -3,7 +3,7 @@
 // equilibrium_certificate [CERTIFICATE.json | DISKS [SEED]] > file.v; without a file a random packing is prepared.
 // Nothing here has to be right: Coq checks every number, and proofs/coq/compare.py compares them with the file.
 #include <isostat/certificate/certify.hpp>
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/exact/number.hpp>
 #include <isostat/io/state_file.hpp>
 #include <isostat/preparation/preparation.hpp>

@@ -4,7 +4,7 @@
 #include "exact/rank.hpp"
 #include "rigidity/isostatic.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/exact/number.hpp>
 #include <isostat/io/state_file.hpp>
 #include <isostat/preparation/preparation.hpp>

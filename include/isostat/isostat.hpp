@@ -8,11 +8,9 @@
 #include <isostat/compare/compare.hpp>
 #include <isostat/contact/state.hpp>
 #include <isostat/core/contact.hpp>
-#include <isostat/core/error.hpp>
 #include <isostat/core/machine.hpp>
 #include <isostat/core/result.hpp>
 #include <isostat/core/verdict.hpp>
-#include <isostat/core/words.hpp>
 #include <isostat/crafted/exact_packing.hpp>
 #include <isostat/crafted/plateau.hpp>
 #include <isostat/exact/number.hpp>

@@ -7,7 +7,7 @@
 #include "packing/bodies.hpp"
 #include "packing/words.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/crafted/exact_packing.hpp>
 #include <isostat/io/state_file.hpp>
 

@@ -6,7 +6,7 @@
 #include "io/record_digests.hpp"
 
 #include <isostat/checker/verify.hpp>
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/io/state_file.hpp>
 
 #include <fmt/format.h>

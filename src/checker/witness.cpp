@@ -2,7 +2,7 @@
 
 #include "io/json.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 #include "cli/verify.hpp"
 #include "io/text.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 
 #include <fmt/format.h>
 

@@ -6,7 +6,7 @@
 #include "cli/terminal.hpp"
 #include "io/json.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/io/state_file.hpp>
 
 #include <fmt/format.h>

@@ -10,7 +10,7 @@
 #include "io/folders.hpp"
 
 #include <isostat/compare/compare.hpp>
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/io/state_file.hpp>
 
 #include <fmt/format.h>

@@ -11,7 +11,7 @@
 #include "ensemble/processes.hpp"
 #include "io/files.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 
 #include <fmt/format.h>
 

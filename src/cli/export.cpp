@@ -7,7 +7,7 @@
 #include "report/picture.hpp"
 
 #include <isostat/certificate/certify.hpp>
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/foreign/foreign.hpp>
 #include <isostat/io/state_file.hpp>
 

@@ -6,7 +6,7 @@
 #include "crafted/enclosed_bases.hpp"
 #include "io/files.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/crafted/exact_packing.hpp>
 #include <isostat/io/state_file.hpp>
 

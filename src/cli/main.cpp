@@ -9,8 +9,8 @@
 #include "ensemble/ensemble.hpp"
 #include "io/text.hpp"
 
-#include <isostat/core/error.hpp>
 #include <isostat/core/machine.hpp>
+#include <isostat/core/result.hpp>
 
 #include <CLI/CLI.hpp>
 #include <fcntl.h>

@@ -7,8 +7,8 @@
 #include "io/files.hpp"
 #include "snap/soft_list.hpp"
 
-#include <isostat/core/error.hpp>
-#include <isostat/core/words.hpp>
+#include <isostat/core/result.hpp>
+#include <isostat/core/verdict.hpp>
 
 #include <fmt/format.h>
 

@@ -4,7 +4,7 @@
 #include "cli/terminal.hpp"
 #include "io/files.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/io/state_file.hpp>
 
 #include <fmt/format.h>

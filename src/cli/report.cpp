@@ -8,7 +8,7 @@
 #include "ensemble/members.hpp"
 #include "report/run_report.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/io/run_directory.hpp>
 
 #include <fmt/format.h>

@@ -9,7 +9,7 @@
 #include "snap/force_split.hpp"
 #include "snap/soft_list.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/foreign/foreign.hpp>
 #include <isostat/io/state_file.hpp>
 #include <isostat/snap/snap.hpp>

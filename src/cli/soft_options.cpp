@@ -1,7 +1,7 @@
 #include "cli/ranges.hpp"
 #include "cli/read_packing.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 
 #include <fmt/format.h>
 

@@ -5,7 +5,7 @@
 #include "ensemble/members.hpp"
 #include "io/files.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 #include "core/parallel.hpp"
 #include "packing/words.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 
 #include <fmt/format.h>
 

@@ -6,7 +6,7 @@
 #include "snap/frame_file.hpp"
 #include "snap/soft_list.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

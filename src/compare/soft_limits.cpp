@@ -2,7 +2,7 @@
 #include "io/files.hpp"
 #include "snap/backbone.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/io/run_directory.hpp>
 #include <isostat/io/state_file.hpp>
 #include <isostat/snap/snap.hpp>

@@ -88,8 +88,7 @@ std::optional<Contact> fixed_overlap(const Packing& packing) {
         }
     };
     if (packing.cell.any() || std::find(packing.fixed.begin(), packing.fixed.end(), 1) != packing.fixed.end()) {
-        for (const Contact& pair :
-             pairs_within(packing, 0.5 * packing.min_radius())) { // any positive reach will do
+        for (const Contact& pair : pairs_within(packing, 0.5 * packing.min_radius())) { // any positive reach will do
             look(pair);
         }
         for_each_wall_contact(packing, look);

@@ -1,6 +1,6 @@
 #pragma once
-// Every pair of grains that is nearly in contact: from a grid of cells, which allows overlaps, so that soft packings have
-// complete lists too.
+// Every pair of grains that is nearly in contact: from a grid of cells, which allows overlaps, so that soft packings
+// have complete lists too.
 
 #include <isostat/contact/state.hpp>
 

@@ -1,7 +1,7 @@
 #include "contact/near_pairs.hpp"
 #include "contact/separation.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 
 #include <fmt/format.h>
 

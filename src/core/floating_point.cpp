@@ -1,5 +1,5 @@
-#include <isostat/core/error.hpp>
 #include <isostat/core/machine.hpp>
+#include <isostat/core/result.hpp>
 
 #include <cfenv>
 #include <string>

@@ -1,6 +1,6 @@
 #include "core/memory.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 
 #include <gmp.h>
 #include <malloc.h>

@@ -13,9 +13,9 @@ namespace isostat {
 
 /// work(0), ..., work(pieces - 1), each exactly once, in any order and on any thread; returns when all are done. The
 /// pieces must not touch each other's results. An exception of a piece is thrown again here, after the others have
-/// ended (that of the lowest piece that threw; later pieces may not have been begun). A call from within a piece, or
-/// while another thread's call is under way, does all the work itself. Cost beyond the work: none with one thread or
-/// one piece, else about a microsecond; threads wait busily for some 50 microseconds after a call, then sleep.
+/// ended (that of the lowest piece that threw; later pieces may not have been begun). A call from within a piece or a
+/// task does all the work itself. Cost beyond the work: none with one thread or one piece, else about a microsecond;
+/// threads wait busily for some 50 microseconds after a task, then sleep.
 void parallel_pieces(std::size_t pieces, const std::function<void(std::size_t)>& work);
 
 /// One piece of work that may run while the caller continues. An idle thread begins it; if no thread did, `finish` does
@@ -24,7 +24,8 @@ void parallel_pieces(std::size_t pieces, const std::function<void(std::size_t)>&
 class Task {
   public:
     Task() = default; ///< no work
-    explicit Task(std::function<void()> work);
+    /// `first`: before the tasks that no thread has begun.
+    explicit Task(std::function<void()> work, bool first = false);
     Task(Task&&) noexcept;
     /// Ends the present task as its destructor does.
     Task& operator=(Task&&) noexcept;

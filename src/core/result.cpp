@@ -1,5 +1,5 @@
 #include <isostat/core/result.hpp>
-#include <isostat/core/words.hpp>
+#include <isostat/core/verdict.hpp>
 
 #include <stdexcept>
 #include <utility>

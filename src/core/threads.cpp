@@ -65,8 +65,13 @@ constexpr long longest_spin = 1000; // a pause is some 40 ns
 
 } // namespace
 
-/// Workers that take pieces of one job at a time. The job number and the pieces left share one word, so a worker that
-/// comes late cannot take a piece of a job that it has not seen.
+namespace {
+
+thread_local bool inside = false; // a piece or a task is being worked on by this thread
+
+} // namespace
+
+/// Workers that take tasks.
 class Pool {
   public:
     /// Fewer workers where the system gives no more. The last ones took what memory was left for their stacks: half of
@@ -81,77 +86,30 @@ class Pool {
     Pool& operator=(const Pool&) = delete;
     ~Pool() { end(); }
 
-    /// \pre as for `run`: one thread at a time
-    void send(std::shared_ptr<Task::State> task) {
+    /// `first`: before all that wait.
+    void send(std::shared_ptr<Task::State> task, bool first) {
         {
-            const std::scoped_lock lock(tasks_guard_);
-            tasks_.push_back(std::move(task));
+            const std::scoped_lock lock(guard_);
+            tasks_.insert(first ? tasks_.begin() : tasks_.end(), std::move(task));
         }
-        tasks_waiting_.fetch_add(1, std::memory_order_release);
-        ticket_.fetch_add(next_job, std::memory_order_release);
-        ticket_.notify_all();
-    }
-
-    void run(std::size_t pieces, const std::function<void(std::size_t)>& work) {
-        assert(pieces < next_job);
-        work_ = &work;
-        done_.store(0, std::memory_order_relaxed);
-        const std::uint64_t job = (ticket_.load(std::memory_order_relaxed) / next_job + 1) * next_job;
-        ticket_.store(job + pieces, std::memory_order_release);
-        ticket_.notify_all();
-        while (take_one()) {
-        }
-        // Only pieces that a worker has begun are left.
-        for (long spins = 0; done_.load(std::memory_order_acquire) != pieces; ++spins) {
-            if (spins < longest_spin) {
-                pause_briefly();
-            } else {
-                std::this_thread::yield();
-            }
-        }
-        if (failure_) {
-            std::rethrow_exception(std::exchange(failure_, nullptr));
-        }
+        waiting_.fetch_add(1, std::memory_order_release);
+        waiting_.notify_one();
     }
 
   private:
-    static constexpr std::uint64_t next_job = std::uint64_t{1} << 32U;
-
-    bool take_one() {
-        std::uint64_t ticket = ticket_.load(std::memory_order_acquire);
-        while (ticket % next_job != 0) {
-            if (ticket_.compare_exchange_weak(ticket, ticket - 1, std::memory_order_acq_rel)) {
-                const auto piece = static_cast<std::size_t>(ticket % next_job - 1);
-                try {
-                    require_floating_point();
-                    (*work_)(piece);
-                } catch (...) {
-                    const std::scoped_lock lock(failure_guard_);
-                    if (!failure_ || piece < failed_piece_) {
-                        failure_ = std::current_exception();
-                        failed_piece_ = piece;
-                    }
-                }
-                done_.fetch_add(1, std::memory_order_release);
-                return true;
-            }
-        }
-        return false;
-    }
-
     /// Does one task that nobody has begun, if there is one.
-    bool take_task() {
-        while (tasks_waiting_.load(std::memory_order_acquire) > 0) {
+    bool take() {
+        while (waiting_.load(std::memory_order_acquire) > 0) {
             std::shared_ptr<Task::State> task;
             {
-                const std::scoped_lock lock(tasks_guard_);
+                const std::scoped_lock lock(guard_);
                 if (tasks_.empty()) {
                     return false;
                 }
                 task = std::move(tasks_.front());
                 tasks_.pop_front();
             }
-            tasks_waiting_.fetch_sub(1, std::memory_order_relaxed);
+            waiting_.fetch_sub(1, std::memory_order_relaxed);
             if (task->claim()) {
                 task->perform();
                 return true;
@@ -159,8 +117,20 @@ class Pool {
         }
         return false;
     }
-
-    void serve();
+    void serve() {
+        inside = true;
+        for (long spins = 0; !ending_.load(std::memory_order_relaxed);) {
+            if (take()) {
+                spins = 0;
+            } else if (++spins < longest_spin) {
+                pause_briefly();
+            } else {
+                waiting_.wait(0, std::memory_order_acquire);
+                spins = 0;
+            }
+        }
+        mpfr_free_cache2(MPFR_FREE_LOCAL_CACHE); // constants that MPFR keeps for each thread, and leaves behind
+    }
 
     /// How many there are then.
     std::size_t start(std::size_t count) {
@@ -177,52 +147,21 @@ class Pool {
     }
     void end() {
         ending_.store(true, std::memory_order_relaxed);
-        ticket_.fetch_add(next_job, std::memory_order_release);
-        ticket_.notify_all();
+        waiting_.fetch_add(1, std::memory_order_release); // no worker sleeps any more
+        waiting_.notify_all();
         for (std::thread& worker : workers_) {
             worker.join();
         }
+        waiting_.fetch_sub(1, std::memory_order_relaxed);
         workers_.clear();
     }
 
-    const std::function<void(std::size_t)>* work_ = nullptr;
-    alignas(64) std::atomic<std::uint64_t> ticket_{0};
-    alignas(64) std::atomic<std::size_t> done_{0};
-    std::atomic<bool> ending_{false};
-    std::mutex failure_guard_;
-    std::exception_ptr failure_;
-    std::size_t failed_piece_ = 0;
-    std::mutex tasks_guard_;
+    std::mutex guard_;
     std::deque<std::shared_ptr<Task::State>> tasks_;
-    std::atomic<int> tasks_waiting_{0};
+    alignas(64) std::atomic<int> waiting_{0}; ///< number of `tasks_`
+    std::atomic<bool> ending_{false};
     std::vector<std::thread> workers_; ///< last: they use the rest
 };
-
-namespace {
-
-thread_local bool inside = false; // a piece or a task is being worked on by this thread
-
-} // namespace
-
-void Pool::serve() {
-    inside = true;
-    long spins = 0;
-    while (!ending_.load(std::memory_order_relaxed)) {
-        if (take_one() || take_task()) {
-            spins = 0;
-        } else if (++spins < longest_spin) {
-            pause_briefly();
-        } else {
-            const std::uint64_t seen = ticket_.load(std::memory_order_acquire);
-            if (seen % next_job == 0 && tasks_waiting_.load(std::memory_order_relaxed) == 0 &&
-                !ending_.load(std::memory_order_relaxed)) {
-                ticket_.wait(seen, std::memory_order_acquire);
-            }
-            spins = 0;
-        }
-    }
-    mpfr_free_cache2(MPFR_FREE_LOCAL_CACHE); // constants that MPFR keeps for each thread, and leaves behind
-}
 
 namespace {
 
@@ -264,35 +203,60 @@ int available_cores() {
 }
 
 void parallel_pieces(std::size_t pieces, const std::function<void(std::size_t)>& work) {
-    SharedPool& shared = shared_pool();
-    std::unique_lock lock(shared.in_use, std::defer_lock);
-    if (pieces < 2 || inside || shared.wanted < 2 || !lock.try_lock()) {
+    const std::size_t others =
+        inside ? 0 : std::min(pieces, static_cast<std::size_t>(threads())) - (pieces > 0 ? 1 : 0);
+    if (others == 0) {
         for (std::size_t piece = 0; piece < pieces; ++piece) {
             work(piece);
         }
         return;
     }
-    if (!shared.pool) {
-        shared.pool = std::make_unique<Pool>(static_cast<std::size_t>(shared.wanted - 1));
+    std::atomic<std::size_t> next{0};
+    std::mutex guard;
+    std::exception_ptr failure;
+    std::size_t failed = pieces;
+    const auto take = [&] {
+        for (std::size_t piece = next.fetch_add(1); piece < pieces; piece = next.fetch_add(1)) {
+            try {
+                work(piece);
+            } catch (...) {
+                const std::scoped_lock lock(guard);
+                if (piece < failed) {
+                    failure = std::current_exception();
+                    failed = piece;
+                }
+            }
+        }
+    };
+    std::vector<Task> tasks;
+    for (std::size_t k = 0; k < others; ++k) {
+        tasks.emplace_back(take, true);
     }
     inside = true;
     const struct Outside {
         ~Outside() { inside = false; }
     } outside;
-    shared.pool->run(pieces, work);
+    require_floating_point();
+    take();
+    for (Task& task : tasks) {
+        task.finish();
+    }
+    if (failure) {
+        std::rethrow_exception(failure);
+    }
 }
 
-Task::Task(std::function<void()> work) : state_(std::make_shared<State>(std::move(work))) {
+Task::Task(std::function<void()> work, bool first) : state_(std::make_shared<State>(std::move(work))) {
     SharedPool& shared = shared_pool();
-    std::unique_lock lock(shared.in_use, std::defer_lock);
-    if (inside || shared.wanted < 2 || !lock.try_lock()) {
+    if (inside || shared.wanted < 2) {
         return;
     }
+    const std::scoped_lock lock(shared.in_use);
     if (!shared.pool) {
         shared.pool = std::make_unique<Pool>(static_cast<std::size_t>(shared.wanted - 1));
     }
     state_->sent = true;
-    shared.pool->send(state_);
+    shared.pool->send(state_, first);
 }
 
 Task::Task(Task&&) noexcept = default;

@@ -2,7 +2,7 @@
 /// \file
 /// Counts of the work that the program did: the evidence that a scene pays only for what it needs.
 
-#include <isostat/core/words.hpp>
+#include <isostat/core/verdict.hpp>
 
 #include <array>
 #include <cstddef>

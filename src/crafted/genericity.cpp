@@ -5,8 +5,8 @@
 #include "packing/bodies.hpp"
 
 #include <isostat/certificate/certify.hpp>
-#include <isostat/core/error.hpp>
 #include <isostat/core/machine.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/preparation/preparation.hpp>
 #include <isostat/rigidity/counting.hpp>
 

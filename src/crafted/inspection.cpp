@@ -4,8 +4,8 @@
 #include "crafted/rigid_motions.hpp"
 #include "rigidity/strained_matrix.hpp"
 
-#include <isostat/core/error.hpp>
 #include <isostat/core/machine.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/crafted/exact_packing.hpp>
 
 #include <algorithm>

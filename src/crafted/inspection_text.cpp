@@ -2,8 +2,8 @@
 #include "packing/bodies.hpp"
 #include "packing/words.hpp"
 
-#include <isostat/core/error.hpp>
-#include <isostat/core/words.hpp>
+#include <isostat/core/result.hpp>
+#include <isostat/core/verdict.hpp>
 #include <isostat/crafted/exact_packing.hpp>
 
 #include <fmt/format.h>

@@ -6,7 +6,7 @@
 #include "packing/load_faults.hpp"
 #include "packing/words.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/crafted/exact_packing.hpp>
 
 #include <fmt/format.h>

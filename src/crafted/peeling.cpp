@@ -5,7 +5,7 @@
 #include "packing/bodies.hpp"
 #include "packing/words.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 
 #include <CGAL/Exact_rational.h>
 #include <CGAL/Interval_nt.h>

@@ -9,8 +9,8 @@
 #include "rigidity/isostatic.hpp"
 #include "rigidity/strained_matrix.hpp"
 
-#include <isostat/core/error.hpp>
 #include <isostat/core/machine.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/crafted/plateau.hpp>
 
 #include <fmt/format.h>

@@ -5,7 +5,7 @@
 #include "io/json.hpp"
 #include "report/statistics.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 
 #include <fmt/format.h>
 

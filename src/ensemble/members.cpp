@@ -6,7 +6,7 @@
 #include "io/json.hpp"
 #include "io/numbers.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 
 namespace isostat {
 

@@ -3,8 +3,8 @@
 #include "io/json.hpp"
 #include "scene/seed.hpp"
 
-#include <isostat/core/error.hpp>
-#include <isostat/core/words.hpp>
+#include <isostat/core/result.hpp>
+#include <isostat/core/verdict.hpp>
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #include "exact/terms.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 
 #include <algorithm>
 #include <cassert>

@@ -3,7 +3,7 @@
 #include "io/numbers.hpp"
 #include "packing/words.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -2,7 +2,7 @@
 #include "foreign/source.hpp"
 #include "io/numbers.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 
 #include <fmt/format.h>
 

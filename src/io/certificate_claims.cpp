@@ -1,7 +1,7 @@
 // The claims of a certificate as text, both ways.
 #include "io/state_json.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #include "io/descriptor.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -5,7 +5,7 @@
 #include "io/lines.hpp"
 #include "io/numbers.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

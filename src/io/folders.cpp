@@ -4,7 +4,7 @@
 #include "io/json.hpp"
 #include "io/record_digests.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/io/run_directory.hpp>
 
 #include <fcntl.h>

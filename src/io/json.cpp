@@ -1,7 +1,7 @@
 #include "io/json.hpp"
 
-#include <isostat/core/error.hpp>
 #include <isostat/core/machine.hpp>
+#include <isostat/core/result.hpp>
 
 #include <fmt/format.h>
 

@@ -4,7 +4,7 @@
 /// JSON library.
 
 #include <isostat/contact/state.hpp>
-#include <isostat/core/words.hpp>
+#include <isostat/core/verdict.hpp>
 
 #include <nlohmann/json.hpp>
 

@@ -3,8 +3,8 @@
 #include "io/files.hpp"
 #include "io/numbers.hpp"
 
-#include <isostat/core/error.hpp>
 #include <isostat/core/machine.hpp>
+#include <isostat/core/result.hpp>
 
 #include <fmt/format.h>
 

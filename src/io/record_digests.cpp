@@ -3,7 +3,7 @@
 #include "io/files.hpp"
 #include "io/folders.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/io/state_file.hpp>
 
 #include <fmt/format.h>

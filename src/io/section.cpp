@@ -1,6 +1,6 @@
 #include "io/section.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 
 #include <fmt/format.h>
 

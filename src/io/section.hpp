@@ -3,7 +3,7 @@
 /// One table of a TOML file, and files that are named in other files. A key becomes known when it is read; a key of the
 /// file that was never read is an error. So the list of known keys cannot disagree with what is read.
 
-#include <isostat/core/words.hpp>
+#include <isostat/core/verdict.hpp>
 
 #include <toml++/toml.h>
 

@@ -7,7 +7,7 @@
 #include "packing/load_faults.hpp"
 #include "packing/words.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/io/state_file.hpp>
 
 #include <fmt/format.h>

@@ -4,7 +4,7 @@
 #include "io/lines.hpp"
 #include "io/state_json.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 
 #include <fmt/format.h>
 

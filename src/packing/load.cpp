@@ -1,7 +1,7 @@
 #include "core/dot.hpp"
 #include "packing/words.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/packing/load.hpp>
 
 #include <fmt/format.h>

@@ -10,8 +10,8 @@
 #include "preparation/stage.hpp"
 #include "verified/to_vertex.hpp"
 
-#include <isostat/core/error.hpp>
 #include <isostat/core/machine.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/preparation/preparation.hpp>
 
 #include <fmt/format.h>

@@ -5,8 +5,8 @@
 #include "preparation/soft_newton.hpp"
 #include "preparation/stage.hpp"
 
-#include <isostat/core/error.hpp>
 #include <isostat/core/machine.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/preparation/preparation.hpp>
 
 #include <fmt/format.h>

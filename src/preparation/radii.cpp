@@ -1,6 +1,6 @@
 #include "preparation/random.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/preparation/preparation.hpp>
 
 #include <boost/multiprecision/mpfr.hpp>

@@ -6,7 +6,7 @@
 #include "preparation/pair_forces.hpp"
 #include "preparation/scale.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 
 #include <fmt/format.h>
 

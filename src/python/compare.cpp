@@ -5,8 +5,8 @@
 #include "snap/soft_list.hpp"
 
 #include <isostat/compare/compare.hpp>
-#include <isostat/core/error.hpp>
-#include <isostat/core/words.hpp>
+#include <isostat/core/result.hpp>
+#include <isostat/core/verdict.hpp>
 
 #include <atomic>
 

@@ -4,8 +4,8 @@
 #include "convert.hpp"
 #include "ensemble/members.hpp"
 
-#include <isostat/core/error.hpp>
-#include <isostat/core/words.hpp>
+#include <isostat/core/result.hpp>
+#include <isostat/core/verdict.hpp>
 #include <isostat/scene/scene.hpp>
 
 namespace isostat::python {

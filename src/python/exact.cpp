@@ -4,7 +4,7 @@
 #include "crafted/genericity.hpp"
 #include "io/files.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/crafted/exact_packing.hpp>
 #include <isostat/exact/number.hpp>
 

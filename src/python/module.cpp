@@ -2,8 +2,8 @@
 #include "io/equilibria.hpp"
 #include "io/text.hpp"
 
-#include <isostat/core/error.hpp>
 #include <isostat/core/machine.hpp>
+#include <isostat/core/result.hpp>
 
 #include <unistd.h>
 

@@ -1,8 +1,8 @@
 // Binds packings to begin with: prepared ones, and those of other programs.
 #include "convert.hpp"
 
-#include <isostat/core/error.hpp>
-#include <isostat/core/words.hpp>
+#include <isostat/core/result.hpp>
+#include <isostat/core/verdict.hpp>
 #include <isostat/crafted/plateau.hpp>
 #include <isostat/foreign/foreign.hpp>
 #include <isostat/preparation/preparation.hpp>

@@ -6,7 +6,7 @@
 #include "rigidity/isostatic.hpp"
 
 #include <isostat/certificate/certify.hpp>
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/rigidity/counting.hpp>
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 #include "report/page.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 
 #include <fmt/format.h>
 #include <nettle/base64.h>

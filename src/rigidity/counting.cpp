@@ -3,8 +3,8 @@
 #include "rigidity/isostatic.hpp"
 #include "rigidity/strained_matrix.hpp"
 
-#include <isostat/core/error.hpp>
 #include <isostat/core/machine.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/rigidity/counting.hpp>
 
 #include <fmt/format.h>

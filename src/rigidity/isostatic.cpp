@@ -5,8 +5,8 @@
 #include "core/work.hpp"
 #include "exact/rank.hpp"
 
-#include <isostat/core/error.hpp>
 #include <isostat/core/machine.hpp>
+#include <isostat/core/result.hpp>
 
 #include <fmt/format.h>
 

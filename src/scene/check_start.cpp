@@ -3,7 +3,7 @@
 #include "linear/factorisation.hpp"
 #include "packing/load_faults.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/rigidity/counting.hpp>
 #include <isostat/scene/scene.hpp>
 

@@ -5,7 +5,7 @@
 #include "scene/radii.hpp"
 #include "scene/settings.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/io/state_file.hpp>
 #include <isostat/scene/scene.hpp>
 

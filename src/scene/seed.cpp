@@ -4,7 +4,7 @@
 #include "io/toml.hpp"
 #include "scene/settings.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/scene/scene.hpp>
 
 #include <fmt/format.h>

@@ -3,7 +3,7 @@
 #include "io/files.hpp"
 #include "io/numbers.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

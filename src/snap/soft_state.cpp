@@ -2,7 +2,7 @@
 #include "snap/backbone.hpp"
 #include "snap/soft_list.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 
 #include <fmt/format.h>
 

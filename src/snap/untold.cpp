@@ -8,7 +8,7 @@
 #include "rigidity/isostatic.hpp"
 #include "snap/backbone.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/snap/snap.hpp>
 
 #include <fmt/format.h>

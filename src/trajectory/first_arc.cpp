@@ -2,7 +2,7 @@
 #include "linear/factorisation.hpp"
 #include "rigidity/isostatic.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/trajectory/trajectory.hpp>
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 
 #include "packing/load_faults.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/trajectory/trajectory.hpp>
 
 #include <fmt/format.h>

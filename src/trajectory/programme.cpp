@@ -1,4 +1,4 @@
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/trajectory/trajectory.hpp>
 
 #include <fmt/format.h>

@@ -5,8 +5,8 @@
 #include "trajectory/steering.hpp"
 #include "verified/centre.hpp"
 
-#include <isostat/core/error.hpp>
 #include <isostat/core/machine.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/trajectory/trajectory.hpp>
 
 #include <fmt/format.h>

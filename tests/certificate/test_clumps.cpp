@@ -6,7 +6,7 @@
 #include "support/test.hpp"
 
 #include <isostat/certificate/certify.hpp>
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 
 using namespace isostat;
 using namespace isostat::test;

@@ -5,7 +5,7 @@
 #include "checker/run_records.hpp"
 #include "support/forger.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 
 namespace altered_run {
 

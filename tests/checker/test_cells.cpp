@@ -11,7 +11,7 @@
 #include "support/cells.hpp"
 #include "support/scale.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 
 using namespace claims;
 

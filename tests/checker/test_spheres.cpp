@@ -11,7 +11,7 @@
 #include "oracle/pairs.hpp"
 #include "support/spheres.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 
 #include <Eigen/SVD>
 

@@ -7,7 +7,7 @@
 #include "support/cells.hpp"
 #include "support/test.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 
 using isostat::Contact;
 using isostat::Packing;

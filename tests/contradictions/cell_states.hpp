@@ -3,7 +3,7 @@
 
 #include "contradictions/cells.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 
 namespace contradictions::detail {
 

@@ -10,7 +10,7 @@
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/checker/verify.hpp>
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/crafted/exact_packing.hpp>
 #include <isostat/crafted/plateau.hpp>
 #include <isostat/foreign/foreign.hpp>

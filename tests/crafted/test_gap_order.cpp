@@ -3,7 +3,7 @@
 #include "carrying_by_angles.hpp"
 #include "support/scale.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/exact/number.hpp>
 
 #include <crafted/gap_order.hpp>

@@ -3,7 +3,7 @@
 #include "crafted/genericity.hpp"
 #include "examples.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 
 namespace {
 

@@ -5,7 +5,7 @@
 #include "support/spheres.hpp"
 #include "support/test.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/crafted/exact_packing.hpp>
 #include <isostat/crafted/plateau.hpp>
 #include <isostat/exact/number.hpp>

@@ -6,7 +6,7 @@
 #include "ensemble/processes.hpp"
 #include "support/scratch.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 
 #include <csignal>
 

@@ -5,7 +5,7 @@
 #include "fuzz/mutation.hpp"
 
 #include <isostat/contact/state.hpp>
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 
 #include <ctime>
 

@@ -7,7 +7,7 @@
 #include "support/scratch.hpp"
 #include "support/test.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/crafted/plateau.hpp>
 #include <isostat/foreign/foreign.hpp>
 #include <isostat/io/state_file.hpp>

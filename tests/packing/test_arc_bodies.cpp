@@ -5,7 +5,7 @@
 #include "support/clumps.hpp"
 #include "support/test.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 
 using namespace isostat;
 using isostat::Bodies;

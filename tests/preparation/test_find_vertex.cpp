@@ -5,7 +5,7 @@
 #include "check.hpp"
 #include "support/prepared.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include "support/clumps.hpp"
 #include "support/test.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 
 using namespace program;
 using namespace isostat;

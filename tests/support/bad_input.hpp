@@ -3,7 +3,7 @@
 
 #include "support/test.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 
 template <class Work> void expect_error(Work&& work, isostat::ErrorKind kind, const std::vector<std::string>& words) {
     try {

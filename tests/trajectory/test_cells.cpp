@@ -4,7 +4,7 @@
 #include "support/scratch.hpp"
 #include "support/segments.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/io/state_file.hpp>
 
 #include <nlohmann/json.hpp>

@@ -5,7 +5,7 @@
 #include "support/test.hpp"
 
 #include <isostat/certificate/certify.hpp>
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 
 #include <algorithm>
 #include <cmath>

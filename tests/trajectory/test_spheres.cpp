@@ -3,7 +3,7 @@
 #include "support/crafted.hpp"
 #include "support/spheres.hpp"
 
-#include <isostat/core/error.hpp>
+#include <isostat/core/result.hpp>
 
 using namespace isostat;
 using ::crafted::Played;

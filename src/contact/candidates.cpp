@@ -104,31 +104,23 @@ bool CandidateList::covers(const Packing& packing, double radius) const {
         const CellDrift drift = cell_drift(*this, packing);
         return drift.used + drift.rate * radius < 0.5 * reach * (1 - 1e-14);
     }
-    // 1e-14 covers the rounding of the differences and of the norm; a NaN gives false.
-    const double limit = (0.5 * reach - radius) * (1 - 1e-14);
-    if (limit > 0x1p-450 && limit < 0x1p500) { // no square that matters under- or overflows
-        const double square_limit = limit * limit;
-        bool within = true;
-        for (std::size_t k = 0; k < reference.size(); k += packing.axes()) {
-            double square = 0;
-            for (std::size_t a = 0; a < packing.axes(); ++a) {
-                const double d = packing.q[k + a] - reference[k + a];
-                square += d * d;
-            }
-            within = within && square < square_limit;
-        }
-        return within;
-    }
-    for (std::size_t k = 0; k < reference.size(); k += packing.axes()) {
-        double farthest = 0;
+    // 1e-14 covers the rounding of the differences and of the norm.
+    return reach * moved_in_box(packing) + radius < 0.5 * reach * (1 - 1e-14) &&
+           std::none_of(packing.q.begin(), packing.q.end(), [](double x) { return std::isnan(x); });
+}
+
+double CandidateList::moved_in_box(const Packing& packing) const {
+    const double unit = 1 / reach; // squares then neither under- nor overflow in any unit
+    double most = 0;
+    for (std::size_t k = 0; k + packing.axes() <= reference.size(); k += packing.axes()) {
+        double square = 0;
         for (std::size_t a = 0; a < packing.axes(); ++a) {
-            farthest = std::hypot(farthest, packing.q[k + a] - reference[k + a]);
+            const double d = unit * (packing.q[k + a] - reference[k + a]);
+            square += d * d;
         }
-        if (!(farthest < limit)) {
-            return false;
-        }
+        most = std::max(most, square);
     }
-    return true;
+    return std::sqrt(most);
 }
 
 CandidateList find_candidates(const Packing& packing, double fraction) {

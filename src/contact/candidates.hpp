@@ -27,6 +27,8 @@ struct CandidateList {
     /// With `radius` > 0: complete in every configuration within that distance (2-norm) of `packing`. In a cell
     /// displacements are those from the affine motion of the cell (proofs/cells.md, C8).
     [[nodiscard]] bool covers(const Packing& packing, double radius = 0) const;
+    /// In a box: the largest displacement since `reference`, in units of the reach. \pre as many coordinates
+    [[nodiscard]] double moved_in_box(const Packing& packing) const;
 };
 
 /// Whether the two grains of a pair can move relative to each other at all: not two fixed disks, nor a fixed disk and a

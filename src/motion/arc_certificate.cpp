@@ -233,7 +233,6 @@ ArcCertificate Certifier::attempt(bool fresh_ends) {
         power.conclude(certificate_, closed().kind == ContactKind::held);
     }
     certificate_.gap_margin = watch_.margin();
-    certificate_.gap_tests = watch_.tests();
     return certificate_;
 }
 

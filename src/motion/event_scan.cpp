@@ -93,17 +93,7 @@ double reach_left(const CandidateList& candidates, const Packing& at) {
     if (at.cell.any()) {
         return 0.5 * candidates.reach - cell_drift(candidates, at).used;
     }
-    const double unit = 1 / candidates.reach; // squares then neither under- nor overflow in any unit
-    double moved = 0;
-    for (std::size_t k = 0; k + at.axes() <= at.q.size(); k += at.axes()) {
-        double square = 0;
-        for (std::size_t a = 0; a < at.axes(); ++a) {
-            const double d = unit * (at.q[k + a] - candidates.reference[k + a]);
-            square += d * d;
-        }
-        moved = std::max(moved, square);
-    }
-    return candidates.reach * (0.5 - std::sqrt(moved));
+    return candidates.reach * (0.5 - candidates.moved_in_box(at));
 }
 
 double longest_step(const CandidateList& candidates, const Packing& at) {

@@ -124,7 +124,6 @@ struct GapWatch::Motion {
 };
 
 bool GapWatch::walk(const Motion& motion, double from, double to, int depth, GapTrend& last, bool& only_falls) {
-    ++tests_;
     const auto view = motion.view(from, to);
     if (view.gap_low > 0) {
         last = GapTrend::above;

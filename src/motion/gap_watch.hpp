@@ -35,7 +35,6 @@ class GapWatch {
     /// Smallest |quantity| / (its uncertainty from the tube and from rounding) over all that was proved.
     [[nodiscard]] double margin() const { return margin_; }
     [[nodiscard]] double where() const { return where_; }
-    [[nodiscard]] long tests() const { return tests_; }
 
   private:
     struct Motion;
@@ -45,7 +44,6 @@ class GapWatch {
     std::set<Contact> fell_;
     double margin_ = 1e308;
     double where_ = 0;
-    long tests_ = 0;
 };
 
 } // namespace isostat

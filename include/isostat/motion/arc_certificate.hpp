@@ -39,7 +39,6 @@ struct ArcCertificate {
     int factorisations = 0; ///< fresh centres: rank proof, factorisation and bound of the inverse, each once
     int moving = 0;         ///< number of coordinates that take part
     bool turning = false;   ///< the gap of the opened contact is proved to fall at the end, after it grew
-    long gap_tests = 0;     ///< stretches on which a gap was bounded
     double tube = 0;        ///< largest radius of a tube (2-norm over all coordinates)
     double tube_margin = 0; ///< smallest (1/4) / (beta^2 K rho) of Kantorovich's test
     double gap_margin = 0;  ///< smallest |gap or rate| / (uncertainty from the tube) over the stretches

@@ -1,5 +1,6 @@
 #include "crafted/gap_order.hpp"
 
+#include "contact/gap_sign.hpp"
 #include "contact/images.hpp"
 #include "contact/separation.hpp"
 #include "core/roundoff.hpp"
@@ -69,23 +70,22 @@ int root_sign(const Integer& a, const Integer& b, const Integer& c) {
 struct GapOrder::Exact {
     int exponent = 0; ///< every coordinate and radius is an integer multiple of 2^exponent
 
-    [[nodiscard]] Integer integer(double x, int unit) const {
+    [[nodiscard]] Integer integer(double x) const {
         int e = 0;
         const auto mantissa = static_cast<long long>(std::ldexp(std::frexp(x, &e), mantissa_bits));
-        e -= mantissa_bits + unit;
+        e -= mantissa_bits + exponent;
         Integer out = mantissa;
         return e >= 0 ? out << e : out >> -e; // the right shift drops only zeros
     }
 
-    [[nodiscard]] Root root(const Packing& packing, const Contact& contact, int unit) const {
+    [[nodiscard]] Root root(const Packing& packing, const Contact& contact) const {
         const Separation separation(contact, packing.layout());
-        const auto at = [&](std::size_t k) { return integer(packing.q[k], unit); };
+        const auto at = [&](std::size_t k) { return integer(packing.q[k]); };
         const auto minus = [](const Integer& a, const Integer& b) -> Integer { return a - b; };
-        const Integer r = integer(packing.radius[static_cast<std::size_t>(contact.i)], unit);
+        const Integer r = integer(packing.radius[static_cast<std::size_t>(contact.i)]);
         if (contact.of_disks()) {
             const auto [dx, dy, dz] = separation.of_disks(at, minus);
-            return {dx * dx + dy * dy + dz * dz,
-                    r + integer(packing.radius[static_cast<std::size_t>(contact.j)], unit)};
+            return {dx * dx + dy * dy + dz * dz, r + integer(packing.radius[static_cast<std::size_t>(contact.j)])};
         }
         return {0, r - separation.of_wall(at, minus)};
     }
@@ -124,8 +124,8 @@ int GapOrder::compare(const Item& a, const Item& b) const {
     if (std::abs(difference) > a.error + b.error) {
         return difference > 0 ? 1 : -1;
     }
-    const Root s = exact_->root(*packing_, a.contact, exact_->exponent);
-    const Root t = exact_->root(*packing_, b.contact, exact_->exponent);
+    const Root s = exact_->root(*packing_, a.contact);
+    const Root t = exact_->root(*packing_, b.contact);
     return root_sign(s.square, t.square, s.sum - t.sum);
 }
 
@@ -134,9 +134,7 @@ int GapOrder::compare(const Item& a, double threshold) const {
     if (std::abs(difference) > a.error + relative_bound * std::abs(threshold)) {
         return difference > 0 ? 1 : -1;
     }
-    const int unit = std::min(exact_->exponent, lowest_exponent(threshold));
-    const Root s = exact_->root(*packing_, a.contact, unit);
-    return root_sign(s.square, 0, s.sum + exact_->integer(threshold, unit));
+    return gap_sign(*packing_, a.contact, -threshold);
 }
 
 double GapOrder::threshold_of(const Item& a) const {

@@ -2,6 +2,8 @@
 /// \file
 /// The subcommands of `isostat`: arguments as parsed, exit status as returned.
 
+#include <isostat/foreign/foreign.hpp>
+
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -92,18 +94,12 @@ int verify(const VerifyArguments& arguments);
 
 /// What the user states about a packing of another program, as typed.
 struct ForeignArguments {
-    std::string format, radius, diameter, walls, box, lattice, columns, select, fixed, style, bodies;
-    std::string plane = "xy";
-    std::int64_t skip = 0;
-    std::optional<std::int64_t> ids; ///< id of the first row
+    ForeignOptions options; ///< what needs no reading
+    std::string radius, diameter, walls, box, lattice, columns, select, fixed;
     std::string frame = "last";
-    std::optional<int> dimension;
     bool spheres = false; ///< the command takes spheres
     bool fixes = false;   ///< the command takes disks that cannot move
     bool clumps = false;  ///< the command takes clumps
-    bool periodic = false, not_periodic = false;
-    bool walls_unless_periodic = false; ///< the user did not state `walls`
-    bool cells = false;                 ///< the command takes periodic cells
 };
 
 struct PlateauArguments {

@@ -165,9 +165,9 @@ void set_cell(ImportArguments& a, bool own, Packing& packing) {
 ForeignPacking read_imported(ImportArguments& a, bool crafted, bool own) {
     if (!crafted && !own && a.foreign.walls.empty()) {
         a.foreign.walls = "box";
-        a.foreign.walls_unless_periodic = true;
+        a.foreign.options.walls_unless_periodic = true;
     }
-    a.foreign.cells = !crafted;
+    a.foreign.options.cells = !crafted;
     a.foreign.spheres = true;
     a.foreign.clumps = !own;
     ForeignPacking file = read_any_packing(a.file, a.foreign);
@@ -452,7 +452,7 @@ int import(const ImportArguments& arguments) {
     check_output(a.output, "\"isostat-state\"", {a.file, a.contacts});
     check_output(a.moved, moves_mark, {a.file, a.contacts});
     const std::string text = read_text(a.file);
-    const std::string format = a.foreign.format.empty() ? recognise_format(text) : a.foreign.format;
+    const std::string format = a.foreign.options.format.empty() ? recognise_format(text) : a.foreign.options.format;
     const bool listed = format == "vertex" && a.jitter == 0;
     const bool own = !listed && (format == "state" || format == "vertex");
     const bool crafted = format == "packing";

@@ -323,7 +323,7 @@ Examples: isostat verify certificate.json --input state.json
                "the cell of a file without bounds: periods and tilt (spheres: LX,LY,LZ,XY,XZ,YZ), or the entries of "
                "the period vectors",
                "LX,LY,TILT");
-        option(command, "--dimension", a.dimension,
+        option(command, "--dimension", a.options.dimension,
                "2: disks; 3: spheres (default: spheres where the file has a z that is not the same for all)",
                CLI::IsMember({2, 3}));
         option(command, "--frame", a.frame, "of a file with several, from 0 (default: last)", "NUMBER|last");
@@ -331,11 +331,13 @@ Examples: isostat verify certificate.json --input state.json
                "names of the columns, in place of those of the file; - leaves one out (LAMMPS data: of the section "
                "Atoms)",
                "x,y,r");
-        option(command, "--skip", a.skip, "lines before the rows of a table that are passed over (with --columns)",
+        option(command, "--skip", a.options.skip,
+               "lines before the rows of a table that are passed over (with --columns)",
                ranges::integer(0, 1'000'000'000));
-        option(command, "--style", a.style, "atom style of a LAMMPS data file that does not name it", "STYLE");
-        option(command, "--plane", a.plane, "of disks: xy (default), xz, yz", CLI::IsMember({"xy", "xz", "yz"}));
-        option(command, "--ids", a.ids,
+        option(command, "--style", a.options.style, "atom style of a LAMMPS data file that does not name it", "STYLE");
+        option(command, "--plane", a.options.plane, "of disks: xy (default), xz, yz",
+               CLI::IsMember({"xy", "xz", "yz"}));
+        option(command, "--ids", a.options.first_id,
                "the rows have the ids from this one on, in their order, for files of contacts that count rows",
                ranges::integer(0, 1'000'000'000), "FIRST");
         option(command, "--select", a.select, "rows with one of these values in this column are the disks, e.g. type=1",
@@ -343,16 +345,16 @@ Examples: isostat verify certificate.json --input state.json
         option(command, "--fixed", a.fixed, "disks with one of these values in this column cannot move",
                "COLUMN=VALUE,...");
         option(
-            command, "--bodies", a.bodies,
+            command, "--bodies", a.options.bodies,
             "import: the column whose rows with the same number above 0 are one rigid body, e.g. mol; none (default: "
             "body, clump or clumpId where there is one)",
             "COLUMN|none");
-        option(command, "--format", a.format,
+        option(command, "--format", a.options.format,
                "lammps-data, lammps-dump, xyz, table, braces, centres (default: from the content)");
-        command.add_flag("--not-periodic", a.not_periodic,
+        command.add_flag("--not-periodic", a.options.not_periodic,
                          "take periodic boundaries for open ones: contacts across them are not looked for");
         command
-            .add_flag("--periodic", a.periodic,
+            .add_flag("--periodic", a.options.periodic,
                       "boundaries that the file leaves open are periodic (LAMMPS data files say nothing of them)")
             ->excludes("--not-periodic");
     }

@@ -73,7 +73,7 @@ int plateau(const PlateauArguments& a) {
         thresholds = parse_range(a.thresholds, "--thresholds");
     }
     ForeignArguments foreign = a.foreign;
-    foreign.cells = foreign.spheres = foreign.fixes = foreign.clumps = true;
+    foreign.options.cells = foreign.spheres = foreign.fixes = foreign.clumps = true;
     ForeignPacking file = read_any_packing(a.file, foreign);
     const Strain strain = value_of(a.strain, words_of<Strain>("fixed", "isotropic", "diagonal", "full")).value();
     const crafted::Plateau result = counts_of(file, a, strain, thresholds);

@@ -80,13 +80,11 @@ std::optional<RowsWith> rows_of(const std::string& option, const std::string& te
 }
 
 ForeignOptions options_of(const ForeignArguments& a) {
-    ForeignOptions out;
-    out.format = a.format;
+    ForeignOptions out = a.options;
     const std::vector<std::string>& formats = foreign_formats();
-    if (!a.format.empty() && std::find(formats.begin(), formats.end(), a.format) == formats.end()) {
-        usage("--format", a.format, fmt::format("one of {}", fmt::join(formats, ", ")));
+    if (!out.format.empty() && std::find(formats.begin(), formats.end(), out.format) == formats.end()) {
+        usage("--format", out.format, fmt::format("one of {}", fmt::join(formats, ", ")));
     }
-    out.dimension = a.dimension;
     if (!a.radius.empty() || !a.diameter.empty()) {
         out.size = size_of(a.radius.empty() ? "--diameter" : "--radius", a.radius.empty() ? a.diameter : a.radius,
                            a.radius.empty() ? SizeMeaning::diameter : SizeMeaning::radius);
@@ -101,7 +99,7 @@ ForeignOptions options_of(const ForeignArguments& a) {
             const auto range = parse_range(axis, "--box");
             out.box.insert(out.box.end(), range.begin(), range.end());
         }
-        if (out.walls == ForeignWalls::none && !a.periodic) {
+        if (out.walls == ForeignWalls::none && !out.periodic) {
             usage("--box", a.box, "--walls box or --walls fixed beside it, or --periodic (a tilted cell: --lattice)");
         }
     }
@@ -119,18 +117,9 @@ ForeignOptions options_of(const ForeignArguments& a) {
     if (out.fixed && !a.fixes) {
         usage("--fixed", a.fixed, "none: only isostat plateau takes disks that cannot move");
     }
-    out.bodies = a.bodies;
-    out.skip = a.skip;
-    out.style = a.style;
-    out.plane = a.plane;
-    out.first_id = a.ids;
     for (const std::string& word : a.lattice.empty() ? std::vector<std::string>() : parse_list(a.lattice)) {
         out.lattice.push_back(number_of("--lattice", a.lattice, word, "numbers LX,LY,TILT"));
     }
-    out.not_periodic = a.not_periodic;
-    out.periodic = a.periodic;
-    out.cells = a.cells;
-    out.walls_unless_periodic = a.walls_unless_periodic;
     return out;
 }
 
@@ -206,7 +195,7 @@ ForeignPacking read_any_packing(const std::string& file, const ForeignArguments&
     }
     const Dimensions dimensions = arguments.clumps ? Dimensions::any_clumps : Dimensions::any;
     const State state = format != "state" ? parse_vertex_text(text, file)
-                        : arguments.cells ? parse_any_state(text, file, dimensions).state
+                        : options.cells   ? parse_any_state(text, file, dimensions).state
                                           : parse_state(text, file).state;
     ForeignPacking out{
         state.packing, format, {}, std::max(rounding_of(state.packing), compare::imported_rounding(state)), {}};

@@ -49,8 +49,8 @@ Read from_foreign(const SnapArguments& a) {
                             parse_list(a.reference_length).size() == 3 ? 3 : 2);
     }
     ForeignArguments foreign = a.foreign;
-    foreign.walls_unless_periodic = foreign.walls.empty();
-    foreign.cells = foreign.spheres = true;
+    foreign.options.walls_unless_periodic = foreign.walls.empty();
+    foreign.options.cells = foreign.spheres = true;
     foreign.walls = foreign.walls.empty() ? "box" : foreign.walls;
     if (foreign.walls != "box") {
         throw Error(ErrorKind::usage,
@@ -179,7 +179,7 @@ void print(const SnapArguments& a, const Read& read, const compare::Snap& snap, 
 int snap(const SnapArguments& a) {
     check_output(a.output, "\"isostat-state\"", {a.file, a.contacts});
     const std::string text = read_text(a.file);
-    const std::string format = a.foreign.format.empty() ? recognise_format(text) : a.foreign.format;
+    const std::string format = a.foreign.options.format.empty() ? recognise_format(text) : a.foreign.options.format;
     Read read = format == "state" || format == "vertex" ? from_state(a) : from_foreign(a);
     if (a.stiffness > 0) {
         compare::add_law(read, {a.law == "hertz" ? compare::ForceLaw::hertz : compare::ForceLaw::linear, a.stiffness});

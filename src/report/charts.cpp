@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <set>
+#include <utility>
 
 namespace isostat {
 
@@ -19,8 +19,6 @@ std::size_t dash(std::size_t k) {
     constexpr std::size_t dashes = 5; // of gnuplot
     return k % dashes + 1;
 }
-
-constexpr std::array<const char*, 6> colours{"#1f4e79", "#c55a11", "#548235", "#7b3f99", "#997300", "#a61c3c"};
 
 void append_points(std::string& data, const std::string& title, const std::vector<std::pair<double, double>>& points) {
     data += fmt::format("# {}\n", text::shown(title));
@@ -42,40 +40,16 @@ std::vector<std::pair<double, double>> stairs(const std::vector<EquilibriumRow>&
     return points;
 }
 
-/// The rows of one segment, with the equilibrium that it starts from.
-std::vector<EquilibriumRow> segment_path(const std::vector<EquilibriumRow>& rows, int segment) {
-    std::vector<EquilibriumRow> path;
-    for (const EquilibriumRow& row : rows) {
-        if (row.segment != segment) {
-            continue;
-        }
-        if (path.empty() && row.previous >= 0) {
-            const auto before =
-                std::find_if(rows.begin(), rows.end(), [&](const auto& r) { return r.number == row.previous; });
-            if (before != rows.end()) {
-                path.push_back(*before);
-            }
-        }
-        path.push_back(row);
-    }
-    return path;
-}
-
-struct Curve {
-    std::string title;
-    std::vector<EquilibriumRow> path;
-};
-
-Chart stairs_chart(const std::string& name, const std::vector<Curve>& curves, const LoadWords& words, bool pdf) {
+Chart stairs_chart(const std::string& name, const std::vector<SegmentPath>& curves, const LoadWords& words, bool pdf) {
     Chart chart;
     chart.name = name;
     std::string plot;
     for (std::size_t k = 0; k < curves.size(); ++k) {
         append_points(chart.data, fmt::format("{} {}: {}", words.strain, words.ratio, curves[k].title),
-                      stairs(curves[k].path));
+                      stairs(curves[k].rows));
         plot += fmt::format("{} {} index {} with lines lw 1.5 dt {} lc rgb {} title {} noenhanced",
                             k == 0 ? "plot" : ",\\\n    ", text::gnuplot(name + ".dat"), k, dash(k),
-                            text::gnuplot(colours[k % colours.size()]), text::gnuplot(curves[k].title));
+                            text::gnuplot(chart_hues[k % chart_hues.size()]), text::gnuplot(curves[k].title));
     }
     chart.script = chart_script(
         name, 800, 560,
@@ -97,33 +71,27 @@ bool branches(const std::vector<EquilibriumRow>& rows, const std::vector<Equilib
 
 void add_stairs(std::vector<Chart>& charts, const std::vector<EquilibriumRow>& rows,
                 const std::vector<std::string>& names, const LoadWords& words, bool pdf) {
-    std::vector<Curve> main_path;
-    std::vector<Curve> cycles;
+    std::vector<SegmentPath> main_path;
+    std::vector<SegmentPath> cycles;
     int highest_branch = -1;
-    std::set<int> segments;
-    for (const EquilibriumRow& row : rows) {
-        segments.insert(row.segment);
-    }
-    for (const int s : segments) {
-        std::vector<EquilibriumRow> path = segment_path(rows, s);
-        if (path.size() < 2) {
+    for (auto& [segment, path] : segment_paths(rows, names)) {
+        if (path.rows.size() < 2) {
             continue;
         }
-        const std::string title = static_cast<std::size_t>(s) < names.size() ? names[static_cast<std::size_t>(s)]
-                                                                             : fmt::format("segment {}", s);
+        const int start = path.rows.front().number;
         const bool branch =
-            branches(rows, path) || (!cycles.empty() && main_path.back().path.back().number != path.front().number);
+            branches(rows, path.rows) || (!cycles.empty() && main_path.back().rows.back().number != start);
         if (branch) {
-            highest_branch = std::max(highest_branch, path.front().number);
+            highest_branch = std::max(highest_branch, start);
         }
-        (branch ? cycles : main_path).push_back({title, std::move(path)});
+        (branch ? cycles : main_path).push_back(std::move(path));
     }
     if (!main_path.empty()) {
         charts.push_back(stairs_chart("staircase", main_path, words, pdf));
     }
     if (!cycles.empty()) {
         cycles.insert(cycles.begin(),
-                      Curve{fmt::format("path to equilibrium {}", highest_branch), path_to(rows, highest_branch)});
+                      {fmt::format("path to equilibrium {}", highest_branch), path_to(rows, highest_branch)});
         charts.push_back(stairs_chart("cycles", cycles, words, pdf));
     }
 }
@@ -186,13 +154,13 @@ void add_distribution(std::vector<Chart>& charts, const Distribution& of, const 
         const auto curve = [&](std::string& plot, int block, const char* style) {
             plot += fmt::format("{} {} index {} with {} lw 1.5 dt {} lc rgb {} title {}",
                                 plot.empty() ? "plot" : ",\\\n    ", text::gnuplot(name + ".dat"), block, style,
-                                2 * k + 1, text::gnuplot(colours[k]), text::gnuplot(title));
+                                2 * k + 1, text::gnuplot(chart_hues[k]), text::gnuplot(title));
         };
         curve(left, index, "histeps");
         curve(right, index + 1, "fsteps");
         if (!power_law) {
             right += fmt::format(",\\\n     exp(-x/{}) dt 2 lc rgb {} title \"exponential of the same mean\"", average,
-                                 text::gnuplot(colours[k]));
+                                 text::gnuplot(chart_hues[k]));
         }
         index += 2;
     }

@@ -6,6 +6,7 @@
 
 #include <isostat/io/run_directory.hpp>
 
+#include <array>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -16,6 +17,10 @@ namespace isostat {
 struct Chart {
     std::string name, data, script;
 };
+
+/// Colours of the curves, in turn.
+inline constexpr std::array<const char*, 6> chart_hues{"#1f4e79", "#c55a11", "#548235",
+                                                       "#7b3f99", "#997300", "#a61c3c"};
 
 /// The gnuplot script that draws `body` to NAME.svg and NAME.png of this size in pixels; with `pdf` also to NAME.pdf.
 std::string chart_script(const std::string& name, int width, int height, const std::string& body, bool pdf = false);

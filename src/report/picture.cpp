@@ -3,6 +3,7 @@
 #include "io/text.hpp"
 #include "packing/arc_bodies.hpp"
 #include "packing/bodies.hpp"
+#include "packing/cell_wrap.hpp"
 #include "report/places.hpp"
 
 #include <fmt/format.h>
@@ -19,41 +20,16 @@ namespace isostat {
 
 namespace {
 
-struct Point {
-    double x = 0, y = 0;
-};
+using Point = PerAxis<double>;
 
-Point centre(const State& state, int disk) {
-    return {state.packing.coordinate(DiskId(disk), 0), state.packing.coordinate(DiskId(disk), 1)};
-}
-
-/// End of the line of a contact: `end_of`.
-Point end_point(const State& state, const Contact& contact) {
-    const PerAxis<double> at = end_of(state.packing, contact);
-    return {at[0], at[1]};
-}
-
-/// The vector of m_x and m_y periods of a cell. \pre there are periodic axes
-Point periods(const Packing& packing, double mx, double my) {
-    return {mx * packing.lattice(0, 0) + my * packing.lattice(0, 1), my * packing.lattice(1, 1)};
-}
-
-Point operator+(Point a, Point b) {
-    return {a.x + b.x, a.y + b.y};
-}
-
-Point operator-(Point a, Point b) {
-    return {a.x - b.x, a.y - b.y};
-}
-
-/// Corners of the cell, in order. Along an axis with walls the cell extends from wall to wall.
+/// Corners of the cell, in order.
 std::array<Point, 4> corners(const Packing& packing) {
-    return {periods(packing, 0, 0), periods(packing, 1, 0), periods(packing, 1, 1), periods(packing, 0, 1)};
+    return {corner(packing, 0), corner(packing, 1), corner(packing, 3), corner(packing, 2)};
 }
 
 /// The drawn area: the box, or the cell with space for images.
 struct Frame {
-    Point low, high;
+    Point low{}, high{};
 };
 
 /// The largest coordinate of what a disk shows: of an arc at its ends, or where its normal is along the axis.
@@ -80,8 +56,8 @@ Frame frame_of(const State& state) {
                          periodic[1] ? radii * state.packing.max_radius() : 0};
         frame = {{HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL}};
         for (const Point& p : corners(state.packing)) {
-            frame.low = {std::min(frame.low.x, p.x - room.x), std::min(frame.low.y, p.y - room.y)};
-            frame.high = {std::max(frame.high.x, p.x + room.x), std::max(frame.high.y, p.y + room.y)};
+            frame.low = {std::min(frame.low[0], p[0] - room[0]), std::min(frame.low[1], p[1] - room[1])};
+            frame.high = {std::max(frame.high[0], p[0] + room[0]), std::max(frame.high[1], p[1] + room[1])};
         }
         return frame;
     }
@@ -102,16 +78,16 @@ Frame frame_of(const State& state) {
 /// Writes shapes in picture units: 1000 units across the drawn area, y downwards.
 class Canvas {
   public:
-    explicit Canvas(const State& state) : frame_(frame_of(state)), scale_(1000 / (frame_.high.x - frame_.low.x)) {}
+    explicit Canvas(const State& state) : frame_(frame_of(state)), scale_(1000 / (frame_.high[0] - frame_.low[0])) {}
 
     [[nodiscard]] double scale() const { return scale_; }
-    [[nodiscard]] double height() const { return (frame_.high.y - frame_.low.y) * scale_; }
+    [[nodiscard]] double height() const { return (frame_.high[1] - frame_.low[1]) * scale_; }
     [[nodiscard]] Point low() const { return frame_.low; }
     /// Whether most of a disk is in the drawn area.
     [[nodiscard]] bool shows(Point at, double radius) const {
         const double in = radius / 2;
-        return at.x >= frame_.low.x + in && at.x <= frame_.high.x - in && at.y >= frame_.low.y + in &&
-               at.y <= frame_.high.y - in;
+        return at[0] >= frame_.low[0] + in && at[0] <= frame_.high[0] - in && at[1] >= frame_.low[1] + in &&
+               at[1] <= frame_.high[1] - in;
     }
     void circle(Point at, double radius, const char* style) {
         add(R"(<circle cx="{:.3f}" cy="{:.3f}" r="{:.3f}" class="{}"/>)", x(at), y(at), radius * scale_, style);
@@ -132,8 +108,8 @@ class Canvas {
     std::string take() { return std::move(text_); }
 
   private:
-    [[nodiscard]] double x(Point p) const { return (p.x - frame_.low.x) * scale_; }
-    [[nodiscard]] double y(Point p) const { return (frame_.high.y - p.y) * scale_; }
+    [[nodiscard]] double x(Point p) const { return (p[0] - frame_.low[0]) * scale_; }
+    [[nodiscard]] double y(Point p) const { return (frame_.high[1] - p[1]) * scale_; }
     template <class... Values> void add(fmt::format_string<Values...> format, Values&&... values) {
         fmt::format_to(std::back_inserter(text_), format, std::forward<Values>(values)...);
         text_ += '\n';
@@ -184,7 +160,8 @@ void draw_disks(Canvas& canvas, const State& state, const std::vector<unsigned c
     for (const std::vector<int>& ring : packing.arcs) {
         const auto point = [&](int member, double angle) {
             const double r = packing.radius[static_cast<std::size_t>(member)];
-            return centre(state, member) + Point{r * std::cos(angle), r * std::sin(angle)};
+            const Point at = centre_of(packing, member);
+            return Point{at[0] + r * std::cos(angle), at[1] + r * std::sin(angle)};
         };
         canvas.begin(point(ring.front(), (*arcs.angles(ring.front()))[0]));
         for (const int member : ring) {
@@ -201,7 +178,10 @@ void draw_disks(Canvas& canvas, const State& state, const std::vector<unsigned c
             for (int p = -around; p <= around; ++p) {
                 const bool here = m == 0 && p == 0;
                 const bool there = (m == 0 || packing.cell.periodic[0]) && (p == 0 || packing.cell.periodic[1]);
-                const Point at = here || !there ? centre(state, i) : centre(state, i) + periods(packing, m, p);
+                Point at = centre_of(packing, i);
+                if (there) {
+                    add_periods(at, packing, std::array{m, p});
+                }
                 if (here) {
                     canvas.circle(at, packing.radius[s], rattler[s] != 0 ? "rattler" : "disk");
                 } else if (there && canvas.shows(at, packing.radius[s])) {
@@ -240,8 +220,8 @@ double width_of_force(const Canvas& canvas, const State& state, std::span<const 
 }
 
 Point towards(Point from, Point to, double length) {
-    const double distance = std::hypot(to.x - from.x, to.y - from.y);
-    return {from.x + (to.x - from.x) * length / distance, from.y + (to.y - from.y) * length / distance};
+    const double distance = std::hypot(to[0] - from[0], to[1] - from[1]);
+    return {from[0] + (to[0] - from[0]) * length / distance, from[1] + (to[1] - from[1]) * length / distance};
 }
 
 void draw_contacts(Canvas& canvas, const State& state, std::span<const double> forces) {
@@ -258,8 +238,8 @@ void draw_contacts(Canvas& canvas, const State& state, std::span<const double> f
         if (contact.kind == ContactKind::bar && arcs.angles(contact.i)) {
             continue;
         }
-        Point end = end_point(state, contact);
-        Point start = centre(state, contact.i);
+        Point end = end_of(state.packing, contact);
+        Point start = centre_of(state.packing, contact.i);
         if (const double shift = arc_depth(state.packing, arcs, contact.i); shift > 0) {
             start = towards(start, end, shift);
         }
@@ -270,8 +250,9 @@ void draw_contacts(Canvas& canvas, const State& state, std::span<const double> f
         const double width = force == 0 ? hairline : std::abs(force) * unit;
         canvas.line(start, end, width, style);
         if (!contact.image.is_here()) { // from the other side too
-            canvas.line(centre(state, contact.i) - (end - centre(state, contact.j)), centre(state, contact.j), width,
-                        style);
+            const Point first = centre_of(state.packing, contact.i);
+            const Point other = centre_of(state.packing, contact.j);
+            canvas.line({first[0] - (end[0] - other[0]), first[1] - (end[1] - other[1])}, other, width, style);
         }
     }
 }
@@ -290,7 +271,7 @@ void draw_stresses(Canvas& canvas, const State& state) {
         const double out = state.load.stress[a] > 0 ? 1 : -1; // a traction pulls
         const auto at = [&](double along, double beyond) {
             const Point p{along, state.packing.length(axis) + beyond * unit};
-            return axis == 1 ? p : Point{p.y, p.x};
+            return axis == 1 ? p : Point{p[1], p[0]};
         };
         for (const double part : {0.2, 0.5, 0.8}) {
             const double along = part * state.packing.length(1 - axis);
@@ -309,9 +290,9 @@ void draw_stresses(Canvas& canvas, const State& state) {
 void draw_scale(Canvas& canvas, const State& state, std::span<const double> forces) {
     const double unit = width_of_force(canvas, state, forces);
     const double mean = mean_force(forces);
-    double at = canvas.low().x;
+    double at = canvas.low()[0];
     for (const double times : {1.0, 3.0}) {
-        const double low = canvas.low().y - 34 / canvas.scale();
+        const double low = canvas.low()[1] - 34 / canvas.scale();
         canvas.line({at, low}, {at + 60 / canvas.scale(), low}, times * mean * unit, "force scale");
         at += 70 / canvas.scale();
         const std::string name = times == 1 ? "mean force" : "3 times";

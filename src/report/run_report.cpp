@@ -268,7 +268,7 @@ ReportResult report_run(const fs::path& directory, const fs::path& output, const
                 writer.chart(chart);
             }
             if (triaxial) {
-                writer.chart(triaxial_chart(triaxial_points(rows, load), names, options.pdf));
+                writer.chart(triaxial_chart(triaxial_branches(rows, load, names), options.pdf));
             }
         }
         for (const fs::path& path : states) {
@@ -279,8 +279,7 @@ ReportResult report_run(const fs::path& directory, const fs::path& output, const
     if (options.html && load.dimension != plane) {
         const std::string title =
             fmt::format("{} spheres: {}", first.packing.disk_count(), header.at("status").string());
-        const std::vector<TriaxialPoint> points = triaxial_points(rows, load);
-        writer.write("trajectory.html", page_of_spheres(states, title, {triaxial, points, rows, names, words}, writer));
+        writer.write("trajectory.html", page_of_spheres(states, title, {triaxial, rows, load, names}, writer));
     } else if (options.html) {
         writer.write("trajectory.html", page_of_disks(directory, options, writer));
     }

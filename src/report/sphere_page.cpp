@@ -52,7 +52,7 @@ class Plot {
             }
             text += fmt::format("<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.5\"><title>{}"
                                 "</title></polyline>\n",
-                                line, triaxial_hues[k % triaxial_hues.size()], text::markup(curves_[k].first));
+                                line, chart_hues[k % chart_hues.size()], text::markup(curves_[k].first));
         }
         return text + label(left + across / 2, height - 6, "middle", x_label) + label(left, top - 8, "start", y_label) +
                "</svg>\n";
@@ -74,14 +74,15 @@ std::string table_of(const SphereRun& run) {
         fmt::format("<table><thead><tr><th>equilibrium</th><th>segment</th><th>{}</th><th>p</th><th>q</th>"
                     "<th>q/p</th><th>axial strain</th><th>volumetric strain</th><th>solid fraction</th>"
                     "<th>arcs</th><th>rattlers</th><th>h</th><th>proved</th></tr></thead><tbody>\n",
-                    run.words.ratio_sign);
-    for (std::size_t k = 0; k < run.points.size(); ++k) {
-        const TriaxialPoint& at = run.points[k];
+                    load_words(run.load).ratio_sign);
+    const std::vector<TriaxialPoint> points = triaxial_points(run.rows, run.load);
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        const TriaxialPoint& at = points[k];
         const EquilibriumRow& row = run.rows[k];
         text += fmt::format("<tr><td>{}</td><td>{}</td><td>{:.9g}</td><td>{:.6g}</td><td>{:.6g}</td><td>{:.6f}</td>"
                             "<td>{:.5e}</td><td>{:.5e}</td><td>{:.6f}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td>"
                             "</tr>\n",
-                            at.number, at.segment + 1, row.ratio, at.p, at.q, at.q / at.p, at.axial, at.volumetric,
+                            at.number, row.segment + 1, row.ratio, at.p, at.q, at.q / at.p, at.axial, at.volumetric,
                             row.solid_fraction, row.arcs, row.rattlers, row.hyperstaticity, row.proved ? "yes" : "no");
     }
     return text + "</tbody></table>\n";
@@ -106,7 +107,7 @@ std::string sphere_page(const std::string& title, const json::Json& states, cons
     if (run.triaxial) {
         Plot ratio;
         Plot volume;
-        for (const TriaxialBranch& branch : triaxial_branches(run.points, run.names)) {
+        for (const TriaxialBranch& branch : triaxial_branches(run.rows, run.load, run.names)) {
             ratio.add(branch.stairs(), branch.title);
             volume.add(branch.volume(), branch.title);
         }
@@ -115,7 +116,7 @@ std::string sphere_page(const std::string& title, const json::Json& states, cons
     }
     return filled(spheres_template, {{"@TITLE@", text::markup(title)},
                                      {"@PLOTS@", plots},
-                                     {"@TABLE@", run.points.empty() ? "" : table_of(run)},
+                                     {"@TABLE@", run.rows.empty() ? "" : table_of(run)},
                                      {"@DATA@", text::in_script(json::dumped(states))}});
 }
 

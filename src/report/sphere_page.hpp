@@ -4,9 +4,7 @@
 
 #include "io/json.hpp"
 #include "report/triaxial.hpp"
-#include "report/words.hpp"
 
-#include <span>
 #include <string>
 #include <vector>
 
@@ -15,10 +13,9 @@ namespace isostat {
 /// Further data on the page of a run.
 struct SphereRun {
     bool triaxial = false; ///< the length of an axis is loaded: q/p is drawn against the axial strain
-    std::span<const TriaxialPoint> points;
-    std::span<const EquilibriumRow> rows; ///< rows of the points
-    std::vector<std::string> names;       ///< names of the segments
-    LoadWords words;
+    std::vector<EquilibriumRow> rows{};
+    Load load{};                      ///< of any state of the run
+    std::vector<std::string> names{}; ///< names of the segments
 };
 
 /// A page with a rotating view of the packings, one stored state at a time, with its forces; for a run also q/p and the

@@ -1,8 +1,9 @@
 #include "report/statistics.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numeric>
 
 namespace isostat {
@@ -112,6 +113,26 @@ std::vector<EquilibriumRow> path_to(const std::vector<EquilibriumRow>& rows, int
     }
     std::reverse(path.begin(), path.end());
     return path;
+}
+
+std::map<int, SegmentPath> segment_paths(const std::vector<EquilibriumRow>& rows,
+                                         const std::vector<std::string>& names) {
+    const Index index = by_number(rows);
+    std::map<int, SegmentPath> paths;
+    for (const EquilibriumRow& row : rows) {
+        const auto [at, is_new] = paths.try_emplace(row.segment);
+        SegmentPath& path = at->second;
+        if (is_new) {
+            const auto s = static_cast<std::size_t>(row.segment);
+            path.title = s < names.size() ? names[s] : fmt::format("segment {}", s + 1);
+            if (const EquilibriumRow* before = find(index, row.previous)) {
+                path.rows.push_back(*before);
+                path.has_start = true;
+            }
+        }
+        path.rows.push_back(row);
+    }
+    return paths;
 }
 
 double mean(const std::vector<double>& values) {

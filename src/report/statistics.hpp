@@ -4,6 +4,7 @@
 
 #include <isostat/io/run_directory.hpp>
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -49,6 +50,16 @@ std::vector<std::pair<double, double>> histogram(const std::vector<double>& valu
 
 /// The path from the start to equilibrium `number`, both included, in order.
 std::vector<EquilibriumRow> path_to(const std::vector<EquilibriumRow>& rows, int number);
+
+/// The path of a segment of the programme: the equilibrium that it starts from, then its own.
+struct SegmentPath {
+    std::string title;
+    std::vector<EquilibriumRow> rows;
+    bool has_start = false; ///< the first row is of another segment
+};
+/// By their numbers, those without an equilibrium left out. `names`: names of the segments.
+std::map<int, SegmentPath> segment_paths(const std::vector<EquilibriumRow>& rows,
+                                         const std::vector<std::string>& names);
 
 double mean(const std::vector<double>& values);
 

@@ -14,30 +14,25 @@ namespace {
 void add_segments(std::string& text, const std::vector<EquilibriumRow>& rows, const std::vector<std::string>& names) {
     text += fmt::format("\n{:>3} {:<36} {:>6} {:>6} {:>12} {:>12} {:>12} {:>12} {:>6}\n", "seg", "name", "from", "made",
                         "ratio from", "to", "strain from", "to", "arcs");
+    const std::map<int, SegmentPath> paths = segment_paths(rows, names);
     for (std::size_t s = 0; s < names.size(); ++s) {
-        const EquilibriumRow* first = nullptr;
-        const EquilibriumRow* last = nullptr;
-        int made = 0;
-        long arcs = 0;
-        for (const EquilibriumRow& row : rows) {
-            if (row.segment != static_cast<int>(s)) {
-                continue;
-            }
-            first = first == nullptr ? &row : first;
-            last = &row;
-            made += row.number != 0 ? 1 : 0;
-            arcs += row.arcs;
-        }
-        if (first == nullptr) {
+        const auto found = paths.find(static_cast<int>(s));
+        if (found == paths.end()) {
             text += fmt::format("{:>3} {:<36} not run\n", s + 1, text::shown(names[s]));
             continue;
         }
-        const auto before = std::find_if(rows.begin(), rows.end(),
-                                         [&](const EquilibriumRow& r) { return r.number == first->previous; });
-        const EquilibriumRow& start = before == rows.end() ? *first : *before;
+        const std::vector<EquilibriumRow>& path = found->second.rows;
+        int made = 0;
+        long arcs = 0;
+        for (auto row = path.begin() + (found->second.has_start ? 1 : 0); row != path.end(); ++row) {
+            made += row->number != 0 ? 1 : 0;
+            arcs += row->arcs;
+        }
+        const EquilibriumRow& start = path.front();
+        const EquilibriumRow& last = path.back();
         text += fmt::format("{:>3} {:<36} {:>6} {:>6} {:>12.8f} {:>12.8f} {:>12.5e} {:>12.5e} {:>6}\n", s + 1,
-                            text::shown(names[s]), start.number, made, start.ratio, last->ratio, start.strain2,
-                            last->strain2, arcs);
+                            text::shown(names[s]), start.number, made, start.ratio, last.ratio, start.strain2,
+                            last.strain2, arcs);
     }
 }
 

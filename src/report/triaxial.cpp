@@ -1,10 +1,10 @@
 #include "report/triaxial.hpp"
 
 #include "io/text.hpp"
+#include "report/statistics.hpp"
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 namespace isostat {
@@ -28,22 +28,11 @@ std::vector<std::pair<double, double>> TriaxialBranch::volume() const {
     return all;
 }
 
-std::vector<TriaxialBranch> triaxial_branches(std::span<const TriaxialPoint> points,
+std::vector<TriaxialBranch> triaxial_branches(const std::vector<EquilibriumRow>& rows, const Load& load,
                                               const std::vector<std::string>& names) {
     std::vector<TriaxialBranch> all;
-    int segment = -1;
-    for (const TriaxialPoint& at : points) {
-        if (at.segment != segment) {
-            segment = at.segment;
-            const auto s = static_cast<std::size_t>(segment);
-            all.push_back({s < names.size() ? names[s] : fmt::format("segment {}", segment + 1), {}});
-            const auto before = std::find_if(points.begin(), points.end(),
-                                             [&](const TriaxialPoint& other) { return other.number == at.previous; });
-            if (before != points.end()) {
-                all.back().points.push_back(*before);
-            }
-        }
-        all.back().points.push_back(at);
+    for (const auto& [segment, path] : segment_paths(rows, names)) {
+        all.push_back({path.title, triaxial_points(path.rows, load)});
     }
     return all;
 }
@@ -52,7 +41,7 @@ std::vector<TriaxialPoint> triaxial_points(std::span<const EquilibriumRow> rows,
     std::vector<TriaxialPoint> points;
     for (const EquilibriumRow& row : rows) {
         load.set_loaded_stress(row.stress);
-        TriaxialPoint at{row.number, row.segment, row.previous, 0, 0, load.mean_stress(), load.deviator()};
+        TriaxialPoint at{row.number, 0, 0, load.mean_stress(), load.deviator()};
         for (std::size_t a = 0; a < row.length.size(); ++a) {
             at.axial = std::log(load.reference_length[a] / row.length[a]); // the value of the last axis remains
             at.volumetric += at.axial;
@@ -62,12 +51,11 @@ std::vector<TriaxialPoint> triaxial_points(std::span<const EquilibriumRow> rows,
     return points;
 }
 
-Chart triaxial_chart(std::span<const TriaxialPoint> points, const std::vector<std::string>& names, bool pdf) {
+Chart triaxial_chart(const std::vector<TriaxialBranch>& branches, bool pdf) {
     Chart chart;
     chart.name = "triaxial";
     std::string ratio;
     std::string volume;
-    const std::vector<TriaxialBranch> branches = triaxial_branches(points, names);
     for (std::size_t k = 0; k < branches.size(); ++k) {
         chart.data += fmt::format("# {}\n# number axial_strain volumetric_strain p q q/p sin_phi\n",
                                   text::shown(branches[k].title));
@@ -80,7 +68,7 @@ Chart triaxial_chart(std::span<const TriaxialPoint> points, const std::vector<st
         const auto curve = [&](std::string& plot, const char* columns, const char* style) {
             plot += fmt::format("{} {} index {} using {} with {} lw 1.5 dt {} lc rgb {} title {} noenhanced",
                                 plot.empty() ? "plot" : ",\\\n    ", text::gnuplot("triaxial.dat"), k, columns, style,
-                                k % 5 + 1, text::gnuplot(triaxial_hues[k % triaxial_hues.size()]),
+                                k % 5 + 1, text::gnuplot(chart_hues[k % chart_hues.size()]),
                                 text::gnuplot(branches[k].title));
         };
         curve(ratio, "2:6", "fsteps");

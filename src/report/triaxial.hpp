@@ -6,7 +6,6 @@
 
 #include <isostat/contact/state.hpp>
 
-#include <array>
 #include <span>
 #include <string>
 #include <utility>
@@ -17,15 +16,12 @@ namespace isostat {
 /// An equilibrium: logarithmic strains since the reference lengths, positive in compression; mean stress p, and q, the
 /// axial stress minus the mean of the other two.
 struct TriaxialPoint {
-    int number = 0, segment = 0, previous = -1;
+    int number = 0;
     double axial = 0, volumetric = 0, p = 0, q = 0;
 };
 
 /// `load`: load of any state of the run. \pre rows of spheres
 std::vector<TriaxialPoint> triaxial_points(std::span<const EquilibriumRow> rows, Load load);
-
-/// q/p and the volumetric strain against the axial strain; the data file is the table of the points.
-Chart triaxial_chart(std::span<const TriaxialPoint> points, const std::vector<std::string>& names, bool pdf);
 
 /// A segment of the programme: the point at its start, and its own points. At constant structure the stress changes, at
 /// constant stress the strain jumps.
@@ -35,10 +31,11 @@ struct TriaxialBranch {
     [[nodiscard]] std::vector<std::pair<double, double>> stairs() const; ///< axial strain, q/p, both ends of a jump
     [[nodiscard]] std::vector<std::pair<double, double>> volume() const; ///< axial, volumetric strain
 };
-std::vector<TriaxialBranch> triaxial_branches(std::span<const TriaxialPoint> points,
+/// `names`: names of the segments. \pre as above
+std::vector<TriaxialBranch> triaxial_branches(const std::vector<EquilibriumRow>& rows, const Load& load,
                                               const std::vector<std::string>& names);
 
-/// Colours of the branches, in turn.
-inline constexpr std::array<const char*, 4> triaxial_hues{"#1f4e79", "#c55a11", "#548235", "#7b3f99"};
+/// q/p and the volumetric strain against the axial strain; the data file is the table of the points.
+Chart triaxial_chart(const std::vector<TriaxialBranch>& branches, bool pdf);
 
 } // namespace isostat

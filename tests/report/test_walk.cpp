@@ -215,11 +215,10 @@ BOOST_AUTO_TEST_CASE(a_triaxial_test_has_logarithmic_strains_and_q_over_p) {
     load.follow({1, 0, 0}); // one axis: its stress is what the rows have
     points = triaxial_points(two, load);
     BOOST_TEST(points[1].q == 1 - (0.25 + 1) / 2);
-    const Chart chart = triaxial_chart(points, {"up"}, false);
+    const Chart chart = triaxial_chart(triaxial_branches(two, load, {"up"}), false);
     BOOST_TEST((chart.data.find("# up\n# number axial_strain volumetric_strain p q q/p sin_phi\n0 0 0 ") == 0),
                chart.data);
-    const std::string page =
-        sphere_page("a & @TABLE@", json::Json::array(), {true, points, two, {"<up>"}, load_words(load)});
+    const std::string page = sphere_page("a & @TABLE@", json::Json::array(), {true, two, load, {"<up>"}});
     BOOST_TEST((page.find("<title>&lt;up&gt;</title>") != std::string::npos));
     BOOST_TEST((page.find("a &amp; @TABLE@") != std::string::npos));
 }

@@ -30,7 +30,10 @@ Snapped snapped(const PyState& file, double stiffness, const std::string& law) {
     require_single_grains(file.state.packing, "state", "snap");
     Snapped out;
     compare::SoftForces grains = compare::soft_grains(file, "state");
-    if (finite(stiffness, "stiffness") > 0) {
+    if (finite(stiffness, "stiffness") < 0) {
+        throw Error(ErrorKind::bad_input, "stiffness is " + std::to_string(stiffness) + ": expected a positive number");
+    }
+    if (stiffness > 0) {
         compare::add_law(grains, {*known, stiffness});
     }
     out.snap = compare::snap(grains.soft);

@@ -58,12 +58,11 @@ template <class Class, class T> auto vector_of(std::vector<T> Class::*member) {
     return [member](const py::object& self) { return view(self.cast<const Class&>().*member, self); };
 }
 
-/// (N, 2) integers: as in equilibria.csv, j = -1 left, -2 bottom, -3 right, -4 top wall, -9 held coordinate i.
+/// (N, 2) integers: as in equilibria.csv, j = -1 left, -2 bottom, -3 right, -4 top wall, of spheres -5 back, -6 front,
+/// -9 held coordinate i.
 py::array_t<int> contact_array(const std::vector<Contact>& contacts);
 /// The pair of one contact; None for no contact (i = -1).
 py::object contact_pair(const Contact& contact);
-/// The contact of a pair. Throws `Error(bad_input)`.
-Contact contact_of(std::pair<int, int> pair);
 /// Returns the number. Throws `Error(bad_input)` when it is not finite.
 double finite(double value, const char* name);
 /// The ends of intervals, (n, 2).
@@ -167,10 +166,7 @@ template <> struct type_caster<isostat::Interval> {
 /// A contact is a pair of integers, or None.
 template <> struct type_caster<isostat::Contact> {
     PYBIND11_TYPE_CASTER(isostat::Contact, const_name("Optional[Tuple[int, int]]"));
-    bool load(handle source, bool) {
-        value = isostat::python::contact_of(source.cast<std::pair<int, int>>());
-        return true;
-    }
+    bool load(handle, bool) { return false; }
     static handle cast(const isostat::Contact& contact, return_value_policy, handle) {
         return isostat::python::contact_pair(contact).release();
     }

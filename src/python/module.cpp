@@ -38,25 +38,6 @@ py::object contact_pair(const Contact& contact) {
     return contact.i < 0 ? py::object(py::none()) : py::cast(contact_columns(contact));
 }
 
-Contact contact_of(std::pair<int, int> pair) {
-    const auto [i, j] = pair;
-    if (i >= 0 && j >= 0 && i != j) {
-        return {ContactKind::disk_disk, std::min(i, j), std::max(i, j)};
-    }
-    if (i >= 0 && j <= -1 && j >= -4) {
-        return j >= -2 ? Contact{ContactKind::lower_wall, i, -1 - j} : Contact{ContactKind::upper_wall, i, -3 - j};
-    }
-    if (i >= 0 && j <= first_bar) {
-        return {ContactKind::bar, i, first_bar - j};
-    }
-    if (i >= 0 && j == no_contact) {
-        return {ContactKind::held, i, 0};
-    }
-    throw Error(ErrorKind::bad_input, "contact (" + std::to_string(i) + ", " + std::to_string(j) +
-                                          "): expected (i, j) of two disks, or (i, -1) left, (i, -2) bottom, (i, -3) "
-                                          "right, (i, -4) top wall, (i, -9) held coordinate, (i, -10 - j) bar");
-}
-
 double finite(double value, const char* name) {
     if (!std::isfinite(value)) {
         throw Error(ErrorKind::bad_input,
@@ -136,8 +117,16 @@ PYBIND11_MODULE(_core, module) {
     module.doc() = "Compiled part of isostat.";
     module.attr("version") = ISOSTAT_VERSION;
     module.attr("_integer_columns") = pybind11::frozenset(pybind11::cast(isostat::integer_columns()));
-    module.def("set_threads", &isostat::set_threads, py::arg("count"),
-               "Threads of this process: they change times and never a bit of a result.");
+    module.def(
+        "set_threads",
+        [](int count) {
+            if (count < 1) {
+                throw isostat::Error(isostat::ErrorKind::bad_input,
+                                     "count is " + std::to_string(count) + ": expected at least 1");
+            }
+            isostat::set_threads(count);
+        },
+        py::arg("count"), "Threads of this process: they change times and never a bit of a result.");
     module.def("available_cores", &isostat::available_cores, "Cores that this process may use.");
     bind_errors(module);
     bind_state(module);

@@ -7,6 +7,8 @@
 #include <isostat/foreign/foreign.hpp>
 #include <isostat/preparation/preparation.hpp>
 
+#include <fmt/format.h>
+
 namespace isostat::python {
 
 namespace {
@@ -129,7 +131,12 @@ void bind_plateau(py::module_& module) {
     module.def(
         "plateau",
         [](const Packing& packing, double first, double last, int rows) {
-            return crafted::plateau(packing, finite(first, "first"), finite(last, "last"), rows);
+            if (!(finite(first, "first") <= finite(last, "last")) || rows < 0) {
+                throw Error(ErrorKind::bad_input, fmt::format("plateau from {} to {}, {} rows: expected first <= last, "
+                                                              "and no negative number of rows",
+                                                              first, last, rows));
+            }
+            return crafted::plateau(packing, first, last, rows);
         },
         py::arg("packing"), py::arg("first"), py::arg("last"), py::arg("rows") = 0,
         py::call_guard<py::gil_scoped_release>(),

@@ -1,5 +1,7 @@
 // Runs a scene from Python, with functions that are called for each arc and each equilibrium.
+#include "checker/run_records.hpp"
 #include "convert.hpp"
+#include "io/equilibria.hpp"
 #include "report/run_walk.hpp"
 
 #include <isostat/core/result.hpp>
@@ -249,6 +251,18 @@ void bind_run(py::module_& module) {
             return interruptible([folder, number] { return walked_to(folder, number); });
         },
         py::arg("folder"), py::arg("number"));
+    module.def(
+        "_contact_spelt",
+        [](const std::string& name, int dimension) {
+            std::vector<int> row;
+            if (const auto contact = checker::contact_spelt(name, dimension)) {
+                const auto [i, j] = contact_columns(*contact);
+                row = {i, j};
+                row.insert(row.end(), contact->image.m.begin(), contact->image.m.begin() + dimension);
+            }
+            return row;
+        },
+        py::arg("name"), py::arg("dimension"), "i, j and the image of a contact in records; empty: it is none.");
     bind_arc(module);
     bind_equilibrium(module);
     py::class_<Run>(module, "_Run")

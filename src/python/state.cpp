@@ -1,7 +1,9 @@
 // Binds State and Packing, whose arrays view the library's memory.
 #include "certificate/contact_table.hpp"
+#include "checker/run_records.hpp"
 #include "contact/names.hpp"
 #include "convert.hpp"
+#include "io/equilibria.hpp"
 #include "packing/words.hpp"
 #include "rigidity/isostatic.hpp"
 
@@ -431,6 +433,28 @@ void bind_state_class(py::module_& module) {
             "The same state under other stresses, one per axis, and another shear stress on a tilt xy that moves.");
 }
 
+/// The contact of a pair, as `contact_array` writes it.
+Contact contact_of(std::pair<int, int> pair, const Packing& packing) {
+    const auto [i, j] = pair;
+    const int disks = packing.disk_count();
+    const auto on_surface = j < 0 ? checker::contact_of_columns(i, j, packing)
+                                  : checker::contact_of_columns(std::min(i, j), std::max(i, j), packing);
+    if (on_surface) {
+        return *on_surface;
+    }
+    if (j == no_contact && i >= 0 && i < static_cast<int>(packing.q.size())) {
+        return {ContactKind::held, i, 0};
+    }
+    if (i >= 0 && i < disks && j <= first_bar && first_bar - j < disks && i != first_bar - j) {
+        return {ContactKind::bar, i, first_bar - j};
+    }
+    throw Error(ErrorKind::bad_input,
+                fmt::format("contact ({}, {}): expected (i, j) of two of {} grains, or (i, -1) left, (i, -2) bottom, "
+                            "(i, -3) right, (i, -4) top wall, of spheres (i, -5) back, (i, -6) front, or (i, -9) held "
+                            "coordinate, (i, -10 - j) bar",
+                            i, j, disks));
+}
+
 } // namespace
 
 void bind_state(py::module_& module) {
@@ -467,7 +491,7 @@ void bind_state(py::module_& module) {
             }
             std::vector<Contact> list;
             for (const auto& pair : contacts) {
-                list.push_back(contact_of(pair));
+                list.push_back(contact_of(pair, packing));
             }
             return count_contacts(packing, list);
         },

@@ -54,6 +54,8 @@ class Compare(Folder):
         self.assertIs(isostat.certify(snap.state).verdict, isostat.Verdict.PROVED)
         with self.assertRaisesRegex(isostat.BadInput, "linear"):
             isostat.snap(grains, stiffness=1.0, law="cubic")
+        with self.assertRaisesRegex(isostat.BadInput, "stiffness is -1"):
+            isostat.snap(grains, stiffness=-1.0)
 
     def test_a_series_is_compared_as_by_the_program(self):
         compared = isostat.compare(series, bundle=0, local=True, output=self.folder / "out")

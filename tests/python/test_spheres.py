@@ -30,6 +30,7 @@ class Spheres(Folder):
         self.assertIn((0, -5), [tuple(c) for c in state.contacts])
         self.assertIn((2, -6), [tuple(c) for c in state.contacts])
         self.assertIn("2-front", state.contact_names)
+        self.assertEqual(repr(isostat.count(state.packing, state.contacts.tolist())), repr(isostat.count(state)))
         # H f = F with the forces of the closed form: stress 1 on faces of 5 x 5.
         forces = 25 * 0.25 * np.array([3, 3, 3, 2, 2, 1, 2, 1, 2, 1, 2, 2, 3, 3, 3])
         self.assertLess(np.abs(isostat.contact_matrix(state) @ forces - state.external_force).max(), 1e-15)

@@ -57,6 +57,11 @@ class States(Folder):
             ):
                 with self.assertRaisesRegex(isostat.BadInput, "State|finite"):
                     ask()
+        for first, last, rows in ((1, 0, 0), (0, 1, -1)):
+            with self.assertRaisesRegex(isostat.BadInput, "first <= last"):
+                isostat.plateau(state.packing, first, last, rows)
+        with self.assertRaisesRegex(isostat.BadInput, "count is 0"):
+            isostat.set_threads(0)
         arrays = state.positions, state.radii, state.length
         with self.assertRaises(isostat.BadInput):
             isostat.State.from_arrays(*arrays, [(0.5, 1)])
@@ -75,6 +80,9 @@ class States(Folder):
         self.assertIs(counting.rank_exact, isostat.Verdict.PROVED)
         fewer = isostat.count(state.packing, [(0, 1), (0, -1), (0, -2)])
         self.assertEqual((fewer.rank, fewer.h, fewer.k), (3, 0, 3))
+        for pair in ((0, 2), (2, -1), (0, -5), (0, 900_000_000), (-1, -1), (0, 0), (6, -9), (0, -12)):
+            with self.assertRaisesRegex(isostat.BadInput, "of two of 2 grains", msg=pair):
+                isostat.count(state.packing, [pair])
 
     def test_mechanism_opens_one_contact_and_keeps_the_others(self):
         state = two_disks()

@@ -13,10 +13,9 @@ from pathlib import Path
 
 import numpy as np
 
-from ._core import State, _integer_columns, _walked_to, forces_at
+from ._core import State, _contact_spelt, _integer_columns, _walked_to, forces_at
 from ._words import BadInput, NotStored, Verdict
 
-_walls = {"left": -1, "bottom": -2, "right": -3, "top": -4, "back": -5, "front": -6}
 _numbers = """force force_bound power power_bound work work_bound displacement margin held_at""".split()
 
 
@@ -58,18 +57,8 @@ def contact_of_name(name: str, dimension: int = 2) -> tuple[int, ...]:
 
     Walls are j = -1 to -4 (-6), held coordinates -9; the second disk is moved by m_x and m_y periods.
     """
-    here = (0,) * dimension
-    if match := re.fullmatch(r"(0|[1-9]\d*)-(0|[1-9]\d*)(?:\((-?\d+(?:,-?\d+)*)\))?", name, re.ASCII):
-        i, j = int(match[1]), int(match[2])
-        image = tuple(int(number) for number in match[3].split(",")) if match[3] else here
-        if len(image) == dimension and (i < j or (i == j and any(image))):
-            return i, j, *image
-    walls = "|".join(list(_walls)[: 2 * dimension])
-    if match := re.fullmatch(rf"(0|[1-9]\d*)-({walls})", name, re.ASCII):
-        return int(match[1]), _walls[match[2]], *here
-    axes = "xyz"[:dimension]
-    if match := re.fullmatch(rf"held ([{axes}]) of grain (0|[1-9]\d*)", name, re.ASCII):  # walls: after the last disk
-        return dimension * int(match[2]) + axes.index(match[1]), -9, *here
+    if contact := _contact_spelt(name, dimension):
+        return tuple(contact)
     raise BadInput(
         f"events.jsonl: contact '{name}': expected two disks i < j, as 3-7 or 3-8(1,0), a disk and a wall, or a held coordinate"
     )

@@ -153,7 +153,8 @@ Result<MechanismInspection> inspect_mechanism(const State& stored, const Countin
     const double sigma = state.load.loaded_stress();
     inspection.rattlers = rattlers(vertex);
     CandidateList candidates = find_candidates(state.packing, candidate_fraction);
-    auto gaps = vertex.check_gaps(candidates);
+    KeptCandidates kept;
+    auto gaps = vertex.check_gaps(candidates, kept);
     const auto joint = beyond_sectors(ArcBodies(state.packing), state.contacts, vertex.enclosure.distance());
     inspection.remark = joint ? *joint : overlap_of(state.packing, gaps);
     inspection.forces = finite_forces(vertex, state.load);

@@ -88,7 +88,8 @@ std::optional<Contact> fixed_overlap(const Packing& packing) {
         }
     };
     if (packing.cell.any() || std::find(packing.fixed.begin(), packing.fixed.end(), 1) != packing.fixed.end()) {
-        for (const Contact& pair : pairs_within(packing, 0.5 * packing.min_radius())) { // any positive reach will do
+        for (const Contact& pair :
+             near_pairs(packing, 0.5 * packing.min_radius()).pairs) { // any positive reach will do
             look(pair);
         }
         for_each_wall_contact(packing, look);
@@ -123,13 +124,16 @@ double CandidateList::moved_in_box(const Packing& packing) const {
     return std::sqrt(most);
 }
 
-CandidateList find_candidates(const Packing& packing, double fraction) {
+CandidateList find_candidates(const Packing& packing, double fraction,
+                              const std::shared_ptr<const RegularTriangulation>& from) {
     assert(fraction > 0 && fraction <= largest_candidate_fraction);
     count_work(Work::candidate_searches);
     CandidateList list;
     list.reach = fraction * packing.min_radius();
     list.reference = packing.q;
-    list.contacts = pairs_within(packing, list.reach);
+    NearPairs near = near_pairs(packing, list.reach, from);
+    list.contacts = std::move(near.pairs);
+    list.triangulation = std::move(near.triangulation);
     if (!packing.fixed.empty() || packing.cell.any()) {
         std::erase_if(list.contacts, [&](const Contact& contact) { return !can_move(packing, contact); });
     }
@@ -174,7 +178,8 @@ Admissibility certify_admissible(const Packing& packing, double allowance, const
             }
         }
     } else {
-        for (const Contact& contact : pairs_within(packing, 0.5 * packing.min_radius())) {
+        const auto from = known != nullptr ? known->triangulation : nullptr;
+        for (const Contact& contact : near_pairs(packing, 0.5 * packing.min_radius(), from).pairs) {
             look(contact);
         }
     }

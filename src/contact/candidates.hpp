@@ -11,7 +11,9 @@
 
 namespace isostat {
 
-/// Of the smallest radius: how far candidates are listed, and how far they are looked for where none may be near.
+class RegularTriangulation;
+
+/// Of the smallest radius: how far candidates are listed, and the most that statement T6 allows.
 inline constexpr double candidate_fraction = 0.8;
 inline constexpr double largest_candidate_fraction = 0.82;
 
@@ -20,6 +22,8 @@ struct CandidateList {
     std::vector<Contact> contacts; ///< sorted; all with gap < reach, and perhaps a few beyond by rounding
     double reach = 0; ///< delta: complete as long as twice the largest displacement since `reference` < delta
     std::vector<double> reference; ///< q at which the list was made
+    /// Whose edges the disk pairs are; null when they were found by the grid. Shared by copies, never changed.
+    std::shared_ptr<const RegularTriangulation> triangulation;
 
     /// True when the list is still complete at `packing`: 2 max_i |x_i - x_i^ref| < reach, (Lx, Ly) counted as one
     /// more point, roundings included. One-sided: false only means that the list must be rebuilt (also for NaN, or
@@ -42,9 +46,17 @@ std::optional<Contact> fixed_overlap(const Packing& packing);
 
 /// Candidates with gap < fraction * R_min, \pre 0 < fraction <= 0.82, every coordinate and radius finite. Pairs
 /// that cannot move relative to each other (two fixed disks, a fixed disk and a wall that is not movable) are left
-/// out. The list is complete without further condition: a grid finds the pairs (in a cell those with all images,
-/// proofs/cells.md, C3), a scan the walls. Cost: O(n) where the radii are comparable, else O(n^1.5) at most.
-CandidateList find_candidates(const Packing& packing, double fraction);
+/// out. The list is complete without further condition:
+/// - when the regular triangulation with weights R^2 shows that no two disks overlap by more than about 5e-4
+///   R_min^2 / R, its edges are complete (statements T5 and T6 with rounded weights, proofs/contact_candidates.md).
+///   It is made by CGAL, O(n log n), or carried along from an earlier list: `from`, a triangulation of the same disks
+///   at other places, is flipped until exact predicates prove every edge regular, O(n);
+/// - otherwise (deeper overlaps, size ratios above 1e5, lengths beyond 1e+-100) a grid finds them; O(n) where
+///   the radii are comparable, else O(n^1.5) at most.
+/// In a cell: pairs with all images (proofs/cells.md, C3), nothing carried along. Walls by a scan. `contacts` depends
+/// on the packing and the fraction alone, not on `from` nor on what found them.
+CandidateList find_candidates(const Packing& packing, double fraction,
+                              const std::shared_ptr<const RegularTriangulation>& from = nullptr);
 
 /// Result of `certify_admissible`.
 struct Admissibility {
@@ -60,7 +72,7 @@ struct Admissibility {
 /// admissible. \pre every coordinate and radius finite. It speaks of the stored packing, not of a true one near it.
 /// Cost: as `find_candidates`.
 /// `known`: a list to use when it was made at this very configuration (and no disk is fixed: it leaves out pairs that
-/// cannot move), so that the search is saved.
+/// cannot move), so that the search is saved; else its triangulation is carried here.
 Admissibility certify_admissible(const Packing& packing, double allowance, const CandidateList* known = nullptr);
 
 } // namespace isostat

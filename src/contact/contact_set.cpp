@@ -23,6 +23,14 @@ ContactSet::ContactSet(const std::vector<Contact>& contacts, int disk_count) {
     start_.pop_back();
 }
 
+std::vector<Contact> ContactSet::take_sorted() {
+    for (std::size_t i = 0; i + 1 < start_.size(); ++i) {
+        std::sort(members_.begin() + start_[i], members_.begin() + start_[i + 1]);
+    }
+    std::fill(start_.begin(), start_.end(), 0);
+    return std::move(members_);
+}
+
 std::vector<int> contacts_per_disk(int disks, const std::vector<Contact>& contacts) {
     std::vector<int> count(static_cast<std::size_t>(disks), 0);
     for (const Contact& contact : contacts) {

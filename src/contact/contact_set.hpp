@@ -23,6 +23,9 @@ class ContactSet {
         return false;
     }
 
+    /// All contacts in their order; each bucket is a few contacts long. The set is empty afterwards.
+    [[nodiscard]] std::vector<Contact> take_sorted();
+
   private:
     std::vector<int> start_;
     std::vector<Contact> members_;

@@ -1,6 +1,7 @@
 #include "contact/near_pairs.hpp"
 
 #include "contact/candidates.hpp"
+#include "contact/contact_set.hpp"
 #include "contact/images.hpp"
 #include "contact/separation.hpp"
 #include "packing/arc_bodies.hpp"
@@ -14,6 +15,13 @@
 namespace isostat {
 
 namespace {
+
+// Constants of proofs/contact_candidates.md, section "Rounded weights". Disks shrunk
+// by the common shift 0.002 R_min^2 of their weights have exactly the power diagram
+// of the rounded weights; an edge may overlap by half of what this shift allows.
+constexpr double edge_overlap = 0.0005; // times R_min^2 (1/R_i + 1/R_j)
+constexpr double largest_reach = 0.825; // times R_min; T6 allows 0.828, the rest is for rounding of images
+constexpr double largest_ratio = 1e5;   // beyond it the rounding of R_max^2 is not small compared with the shift
 
 /// Gaps with a bound of their rounding: 8 u times the lengths that enter, for any coordinates.
 class Gaps {
@@ -38,7 +46,46 @@ class Gaps {
     bool plain_;
 };
 
+/// `for_each_edge(visit)`: visit(i, j), i < j, of a regular triangulation.
+template <class Edges>
+std::optional<std::vector<Contact>> near_among(const Packing& packing, double reach, Edges for_each_edge) {
+    const Gaps gaps(packing);
+    const double smallest = packing.min_radius();
+    const auto share = [&](std::size_t i) { return smallest / packing.radius[i]; };
+    std::vector<Contact> pairs;
+    pairs.reserve(3 * packing.radius.size());
+    bool applies = true;
+    for_each_edge([&](int first, int second) {
+        const auto i = static_cast<std::size_t>(first);
+        const auto j = static_cast<std::size_t>(second);
+        const Contact pair{ContactKind::disk_disk, first, second};
+        const auto gap = gaps.of(pair);
+        applies = applies && (gap.value >= 0 || gap.value >= -edge_overlap * smallest * (share(i) + share(j)));
+        if (gap.may_be_below(reach)) {
+            pairs.push_back(pair);
+        }
+    });
+    if (!applies) {
+        return std::nullopt;
+    }
+    return ContactSet(pairs, packing.disk_count()).take_sorted();
+}
+
 } // namespace
+
+std::optional<std::vector<Contact>> near_edges(const Packing& packing, double reach,
+                                               const RegularTriangulation& triangulation) {
+    return near_among(packing, reach, [&](auto visit) { triangulation.for_each_edge(visit); });
+}
+
+std::optional<std::vector<Contact>> near_edges_in_space(const Packing& packing, double reach) {
+    const auto edges = regular_edges_in_space(packing);
+    return !edges ? std::nullopt : near_among(packing, reach, [&](auto visit) {
+        for (const auto& [i, j] : *edges) {
+            visit(i, j);
+        }
+    });
+}
 
 std::vector<Contact> pairs_within(const Packing& packing, double reach, int most_per_disk) {
     const bool repeats = packing.cell.any();
@@ -67,6 +114,33 @@ std::vector<Contact> pairs_within(const Packing& packing, double reach, int most
     return pairs;
 }
 
+namespace {
+
+NearPairs near_disks(const Packing& packing, double reach, const std::shared_ptr<const RegularTriangulation>& from) {
+    using Triangulation = RegularTriangulation;
+    const bool applies = !packing.cell.any() && reach <= largest_reach * packing.min_radius();
+    if (applies && packing.disk_count() > 0 && lengths_are_plain(packing.q, packing.radius) &&
+        packing.max_radius() <= largest_ratio * packing.min_radius()) {
+        if (packing.dimension > plane) {
+            auto pairs = near_edges_in_space(packing, reach);
+            return {pairs ? std::move(*pairs) : pairs_within(packing, reach), nullptr};
+        }
+        auto triangulation =
+            from && from->disk_count() == packing.disk_count() ? Triangulation::carry(from, packing) : nullptr;
+        if (!triangulation) {
+            triangulation = Triangulation::build(packing);
+        }
+        if (triangulation) {
+            if (auto pairs = near_edges(packing, reach, *triangulation)) {
+                return {std::move(*pairs), std::move(triangulation)};
+            }
+        }
+    }
+    return {pairs_within(packing, reach), nullptr};
+}
+
+} // namespace
+
 void without_hidden_pairs(std::vector<Contact>& pairs, const Packing& packing) {
     if (packing.bars.empty()) {
         return;
@@ -77,6 +151,12 @@ void without_hidden_pairs(std::vector<Contact>& pairs, const Packing& packing) {
         const bool own = pair.of_disks() && pair.image.is_here() && bodies.of(pair.i) == bodies.of(pair.j);
         return own || !arcs.is_nearest(pair);
     });
+}
+
+NearPairs near_pairs(const Packing& packing, double reach, const std::shared_ptr<const RegularTriangulation>& from) {
+    NearPairs near = near_disks(packing, reach, from);
+    without_hidden_pairs(near.pairs, packing);
+    return near;
 }
 
 std::vector<Contact> near_contacts(const Packing& packing, double reach, double upper_reach) {

@@ -1,18 +1,43 @@
 #pragma once
-// Every pair of grains that is nearly in contact: from a grid of cells, which allows overlaps, so that soft packings
-// have complete lists too.
+// Every pair of disks that is nearly in contact: from the regular triangulation where statements T5 and T6 apply, from
+// a grid of cells otherwise, which allows overlaps, so that soft packings have complete lists too.
+
+#include "contact/regular_triangulation.hpp"
 
 #include <isostat/contact/state.hpp>
 
 #include <limits>
+#include <memory>
+#include <optional>
 #include <vector>
 
 namespace isostat {
 
-/// Every pair of grains with gap < reach (of the real numbers; rounding may add a few pairs beyond), for any packing,
-/// sorted; members of one body are no pair, except through images. A function of the packing and the reach alone, and
-/// complete without any hypothesis. In a cell: every pair of a grain and an image, each once, found among finitely many
-/// images. Throws `Error(bad_input)` when there are more than `most_per_disk` for each disk.
+/// Sorted pairs, and the triangulation with these edges (null: the grid found the pairs).
+struct NearPairs {
+    std::vector<Contact> pairs;
+    std::shared_ptr<const RegularTriangulation> triangulation;
+};
+
+/// Every pair of disks with gap < reach (of the real numbers; rounding may add a few pairs
+/// beyond), for any packing; members of one body are no pair, except through images. The pairs
+/// are a function of the packing and the reach alone: neither the method nor `from`, an optional
+/// triangulation of the same disks elsewhere that is carried to these places, changes them. In a
+/// cell: every pair of a disk and an image, each once; found among finitely many images, without
+/// a triangulation that could be carried. \pre reach > 0; the grid finds pairs beyond 0.82 R_min
+NearPairs near_pairs(const Packing& packing, double reach,
+                     const std::shared_ptr<const RegularTriangulation>& from = nullptr);
+
+/// The pairs of `near_pairs` among the edges of the triangulation. Empty when an edge overlaps by more than about 5e-4
+/// R_min^2 / R, because the completeness theorem does not apply then.
+std::optional<std::vector<Contact>> near_edges(const Packing& packing, double reach,
+                                               const RegularTriangulation& triangulation);
+
+/// As `near_edges`, for spheres, with a triangulation made for this call. Empty also where a sphere is hidden.
+std::optional<std::vector<Contact>> near_edges_in_space(const Packing& packing, double reach);
+
+/// The same pairs from the grid: complete without any hypothesis. Throws `Error(bad_input)` when there are more than
+/// `most_per_disk` for each disk.
 std::vector<Contact> pairs_within(const Packing& packing, double reach,
                                   int most_per_disk = std::numeric_limits<int>::max());
 

@@ -56,7 +56,7 @@ OtherPairs other_pairs(const Packing& packing, const std::vector<Contact>& conta
         if (disk_beyond(packing, reach, farthest_disk)) {
             return {{}, candidates.reach};
         }
-        std::vector<Contact> images = pairs_within(packing, reach);
+        std::vector<Contact> images = near_pairs(packing, reach).pairs;
         std::erase_if(images, [&packing](const Contact& pair) { return !can_move(packing, pair); });
         images = without(std::move(images), contacts, packing.disk_count());
         if (!images.empty()) {
@@ -70,7 +70,7 @@ OtherPairs other_pairs(const Packing& packing, const std::vector<Contact>& conta
 std::vector<Contact> touching_own_images(const Packing& packing) {
     std::vector<Contact> out;
     if (packing.cell.any()) {
-        for (const Contact& pair : pairs_within(packing, 0.5 * packing.min_radius())) { // any positive reach serves
+        for (const Contact& pair : near_pairs(packing, 0.5 * packing.min_radius()).pairs) { // any positive reach serves
             if (pair.i == pair.j && !can_move(packing, pair) && gap_sign(packing, pair, 0) == 0) {
                 out.push_back(pair);
             }

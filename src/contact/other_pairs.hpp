@@ -22,7 +22,7 @@ struct OtherPairs {
 /// Those of a list that are not contacts.
 std::vector<Contact> without(std::vector<Contact> pairs, const std::vector<Contact>& contacts, int disk_count);
 
-/// Candidates without the contacts; when that leaves none, all pairs (O(n^2), in small
+/// Candidates of the triangulation (T5, T6) without the contacts; when that leaves none, all pairs (O(n^2), in small
 /// packings only), in a cell those of a longer and longer reach. Pairs that cannot move relative to each other do not
 /// count.
 OtherPairs other_pairs(const Packing& packing, const std::vector<Contact>& contacts);

@@ -14,7 +14,7 @@ namespace isostat {
 enum class Work : std::uint8_t {
     dynamics_steps,     ///< steps of the damped dynamics
     linear_programmes,  ///< linear programmes solved by Clp
-    candidate_searches, ///< searches for complete candidates
+    candidate_searches, ///< searches for complete candidates, by triangulation or sweep
     overlap_proofs,     ///< certificates of non-overlap
     rank_proofs,        ///< ranks computed in the prime field
     factorisations,     ///< KLU

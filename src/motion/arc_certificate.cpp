@@ -160,7 +160,7 @@ bool Certifier::finish(const Piece& piece, double from, double to) {
     certificate_.tube = std::max(certificate_.tube, piece.radius());
     certificate_.tube_margin = std::min(certificate_.tube_margin, piece.margin());
     if (!part_->complete(piece, std::max(std::abs(from), std::abs(to)), candidates_)) {
-        candidates_ = find_candidates(piece.centre(), candidate_fraction);
+        candidates_ = find_candidates(piece.centre(), candidate_fraction, candidates_.triangulation);
         if (!part_->complete(piece, std::max(std::abs(from), std::abs(to)), candidates_)) {
             return refuse("the motion within one piece leaves the reach of the candidate list");
         }
@@ -246,7 +246,7 @@ bool Certifier::begin() {
         return refuse(part_->trouble());
     }
     if (!candidates_.covers(start_.packing)) {
-        candidates_ = find_candidates(start_.packing, candidate_fraction);
+        candidates_ = find_candidates(start_.packing, candidate_fraction, candidates_.triangulation);
     }
     // Pairs at rest keep the gap that they have at the start.
     active_ = part_->all(candidates_);

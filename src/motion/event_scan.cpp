@@ -111,7 +111,7 @@ bool renew_candidates(CandidateList& candidates, const Packing& at) {
     if (reach_left(candidates, at) >= 0.25 * candidates.reach) {
         return false;
     }
-    candidates = find_candidates(at, candidate_fraction);
+    candidates = find_candidates(at, candidate_fraction, candidates.triangulation);
     return true;
 }
 

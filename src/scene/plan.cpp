@@ -87,7 +87,9 @@ void add_solvers(Plan& plan, const Scene& scene) {
     const bool runs = !scene.programme.empty();
     const bool nominal = scene.load_kind.value_or(LoadKind::nominal) == LoadKind::nominal;
     const bool random = scene.run.rule == OpeningRule::random;
-    plan.add("solver", "grid of cells", true, "complete contact candidates and the proof that nothing overlaps");
+    plan.add("solver", "regular triangulation (CGAL)", true,
+             "complete contact candidates and the proof that nothing overlaps: made once, then carried along with the "
+             "disks; where they overlap all pairs are swept");
     plan.add("solver", "elimination mod 2^61 - 1", true,
              "every contact matrix is proved regular before it is used in double precision");
     plan.add("solver", "sparse LU (KLU)", true, "forces and mechanisms");

@@ -186,7 +186,7 @@ void FloatingSteering::choose(ArcProposal& arc) {
     const auto chosen = arc.record.power_turn ? std::optional<Opening>() : here_->choose();
     if (!chosen) {
         const ContactId hold = arc.record.power_turn ? start_.opening.contact : ContactId();
-        arc.last = SteeredEnd{here_->packing, structure_->contacts(), {hold, {}}};
+        arc.last = SteeredEnd{here_->packing, structure_->contacts(), {hold, {}}, candidates_.triangulation};
         return;
     }
     start_.opening = *chosen;

@@ -135,9 +135,9 @@ void ArcProof::count(const Decision& decision) {
     record.decided_by = std::max(record.decided_by, decision.rung);
 }
 
-void Prover::start_at(const Packing& packing) {
+void Prover::start_at(const Packing& packing, const std::shared_ptr<const RegularTriangulation>& near) {
     if (candidates_.reference != packing.q || candidates_.contacts.empty()) { // otherwise the list would be the same
-        candidates_ = find_candidates(packing, candidate_fraction);
+        candidates_ = find_candidates(packing, candidate_fraction, near ? near : candidates_.triangulation);
     }
     bounds_.forget();
 }

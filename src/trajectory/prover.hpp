@@ -3,6 +3,7 @@
 /// Proves what steering proposes, and equilibria without data of earlier proofs: private to the room.
 
 #include "trajectory/counting.hpp"
+#include "trajectory/kept_candidates.hpp"
 #include "trajectory/record.hpp"
 #include "trajectory/steering.hpp"
 #include "trajectory/ties/second_order.hpp"
@@ -65,7 +66,7 @@ inline Failure not_proved(Failure failure) {
     return failure;
 }
 
-/// Owns the data that successive proofs share: candidates, bounds of the inverse. No
+/// Owns the data that successive proofs share: candidates, flags of those that are contacts, bounds of the inverse. No
 /// other object uses these, whatever thread the prover works on; only one thread at a time may use a prover.
 class Prover {
   public:
@@ -75,8 +76,8 @@ class Prover {
     [[nodiscard]] Prover another() const { return {*options_, *ties_}; }
 
     /// Drops earlier data except a list of candidates that is complete at the packing, so that what follows does not
-    /// depend on the past and a resumed run goes the same way.
-    void start_at(const Packing& packing);
+    /// depend on the past and a resumed run goes the same way. `near`: see `find_candidates`.
+    void start_at(const Packing& packing, const std::shared_ptr<const RegularTriangulation>& near = nullptr);
     /// The list for steering that starts from the vertices of this prover and runs on its thread.
     [[nodiscard]] CandidateList& candidates() { return candidates_; }
 
@@ -84,7 +85,7 @@ class Prover {
     Result<std::shared_ptr<Vertex>> vertex(Packing packing, std::vector<Contact> contacts, const LimitLoad& at);
     /// `known`: pairs that are already known to touch.
     Result<Vertex::Gaps> gaps(Vertex& vertex, const ZeroGaps& known = {}) {
-        return vertex.check_gaps(candidates_, ties_->settles() ? &known : nullptr);
+        return vertex.check_gaps(candidates_, kept_, ties_->settles() ? &known : nullptr);
     }
     /// Whether the arc from a vertex, along the motion that `opening` begins, ends where it is proposed to end, and
     /// what opens there: regularity, true vertex, order of the gaps, descent, power, next opening.
@@ -119,6 +120,7 @@ class Prover {
     const RunOptions* options_;
     const TieSettling* ties_;
     CandidateList candidates_;
+    KeptCandidates kept_; ///< flags of `candidates_`
     InverseBoundCache bounds_;
     /// The end of the last certified arc, where the next one mostly starts, with new factors.
     std::shared_ptr<const Vertex> certified_end_;

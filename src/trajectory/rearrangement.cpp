@@ -328,7 +328,7 @@ std::optional<Failure> Rearrangement::set_aside(const ArcRecord& record) {
 }
 
 SteeredEnd Rearrangement::at_here() const {
-    return {here_.vertex->packing, here_.vertex->structure.contacts(), here_.zero_holds()};
+    return {here_.vertex->packing, here_.vertex->structure.contacts(), here_.zero_holds(), {}};
 }
 
 /// The proof of the end uses no data of the arcs: full exact elimination, fresh factors and bound. A resumed run
@@ -338,7 +338,7 @@ EndProof Rearrangement::prove_end(Prover& prover, SteeredEnd end) {
     WorkCounts work{};
     {
         const CountingIn counting(&work);
-        Task listing([&prover, packing = end.packing] { prover.start_at(packing); });
+        Task listing([&prover, packing = end.packing, near = end.triangulation] { prover.start_at(packing, near); });
         auto begun = Vertex::begin(std::move(end.packing), std::move(end.contacts));
         listing.finish();
         if (begun.ok()) {

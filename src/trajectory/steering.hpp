@@ -39,7 +39,8 @@ inline PowerLoad power_load(const Load& load, const Opening& opening, ArcKind ki
 struct SteeredEnd {
     Packing packing;
     std::vector<Contact> contacts;
-    ZeroHolds zero; ///< holds whose multipliers are 0 at this end
+    ZeroHolds zero;                                            ///< holds whose multipliers are 0 at this end
+    std::shared_ptr<const RegularTriangulation> triangulation; ///< triangulation of a nearby configuration
 };
 
 /// An arc that was followed, and its end. Every part is a guess, which a prover proves or refutes.

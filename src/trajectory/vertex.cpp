@@ -1,6 +1,5 @@
 #include "trajectory/vertex.hpp"
 
-#include "contact/contact_set.hpp"
 #include "contact/images.hpp"
 #include "contact/words.hpp"
 #include "trajectory/steering.hpp"
@@ -170,14 +169,14 @@ std::optional<Failure> too_far(const Packing& packing, const std::vector<Contact
 
 } // namespace
 
-Result<Vertex::Gaps> Vertex::check_gaps(CandidateList& candidates, const ZeroGaps* known) {
+Result<Vertex::Gaps> Vertex::check_gaps(CandidateList& candidates, KeptCandidates& kept, const ZeroGaps* known) {
     if (!candidates.covers(packing, 1.001 * enclosure.distance())) {
-        candidates = find_candidates(packing, candidate_fraction);
+        candidates = find_candidates(packing, candidate_fraction, candidates.triangulation);
     }
     if (auto far = too_far(packing, candidates.contacts)) {
         return *far;
     }
-    const ContactSet kept(structure.contacts(), packing.disk_count());
+    const std::vector<unsigned char>& is_kept = kept.of(candidates.contacts, structure.contacts());
     Gaps gaps;
     gaps.margin = std::numeric_limits<double>::infinity();
     std::vector<Contact> doubtful;
@@ -191,9 +190,9 @@ Result<Vertex::Gaps> Vertex::check_gaps(CandidateList& candidates, const ZeroGap
         }
         gaps.margin = std::min(gaps.margin, h.margin());
     };
-    for (const Contact& candidate : candidates.contacts) {
-        if (!kept.contains(candidate)) {
-            look(candidate);
+    for (std::size_t k = 0; k < is_kept.size(); ++k) {
+        if (is_kept[k] == 0) {
+            look(candidates.contacts[k]);
         }
     }
     if (!doubtful.empty()) {

@@ -5,6 +5,7 @@
 #include "contact/candidates.hpp"
 #include "statics/decisions.hpp"
 #include "statics/perturbed.hpp"
+#include "trajectory/kept_candidates.hpp"
 #include "verified/configuration.hpp"
 
 #include <isostat/contact/state.hpp>
@@ -88,7 +89,7 @@ class Vertex {
     /// reached. With `known` these candidates are returned instead, or `undecided` when too
     /// few bits say that a gap is 0; pairs in `known` are taken to touch without a
     /// computation. `kept`: flags that serve the next vertices with the same list.
-    Result<Gaps> check_gaps(CandidateList& candidates, const ZeroGaps* known = nullptr);
+    Result<Gaps> check_gaps(CandidateList& candidates, KeptCandidates& kept, const ZeroGaps* known = nullptr);
 
     /// Filled under `ties = "choose"` only.
     std::unique_ptr<FirstOrderVertex> perturbed;

@@ -74,7 +74,7 @@ State state_of(const Lattice& lattice) {
         p.q.insert(p.q.end(), site.begin(), site.end());
     }
     p.q.insert(p.q.end(), {lattice.side, lattice.side, lattice.side, 0, 0, 0});
-    state.contacts = isostat::pairs_within(p, 0.05);
+    state.contacts = isostat::near_pairs(p, 0.05).pairs;
     state.load.loaded_axis = 2;
     state.load.stress.fill(1);
     state.load.refer_to(p);

@@ -10,7 +10,7 @@ BOOST_AUTO_TEST_CASE(what_plan_leaves_out_is_not_done, *boost::unit_test::label(
     const std::map<std::string, std::vector<std::string>> counters{
         {"damped dynamics", {"dynamics_steps"}},
         {"dual simplex (Clp)", {"linear_programmes"}},
-        {"grid of cells", {"candidate_searches"}},
+        {"regular triangulation (CGAL)", {"candidate_searches"}},
         {"elimination mod 2^61 - 1", {"rank_proofs"}},
         {"sparse LU (KLU)", {"factorisations", "inverse_bounds"}},
         {"figures/*.svg, *.png (gnuplot), force pictures", {"pictures", "charts"}},

@@ -104,11 +104,23 @@ Packing spheres_that_cling(Random& random, int axes) {
 
 } // namespace
 
-BOOST_AUTO_TEST_CASE(lists_of_spheres_are_complete) {
+BOOST_AUTO_TEST_CASE(edges_of_spheres_are_all_the_pairs_that_the_grid_finds) {
     Random random(31);
-    for (int trial = 0; trial < isostat::testing::scaled(40); ++trial) { // flat ones too
-        check_against_every_pair(spheres_that_cling(random, trial % 4 == 0 ? trial / 4 % 3 + 1 : 3), 0.82);
+    for (int trial = 0; trial < isostat::testing::scaled(40); ++trial) {
+        const Packing packing = spheres_that_cling(random, trial % 4 == 0 ? trial / 4 % 3 + 1 : 3); // flat ones too
+        const double reach = 0.82 * packing.min_radius();
+        const auto edges = near_edges_in_space(packing, reach);
+        BOOST_TEST_REQUIRE(edges.has_value());
+        BOOST_TEST((*edges == pairs_within(packing, reach)));
+        BOOST_TEST(edges->size() + 1 >= packing.radius.size() / 2);
     }
+    Packing octahedron = spheres_that_cling(random, 1);
+    const double s = std::sqrt(2.0); // of three diagonals with the gap of T6 one is an edge
+    octahedron.radius.assign(6, 1);
+    octahedron.q = {s, 0, 0, -s, 0, 0, 0, s, 0, 0, -s, 0, 0, 0, s, 0, 0, -s, 0, 0, 0};
+    BOOST_TEST(near_edges_in_space(octahedron, 0.825)->size() == 12U);
+    octahedron.q[0] = 0.5; // it overlaps others
+    BOOST_TEST(!near_edges_in_space(octahedron, 0.825));
 }
 
 BOOST_AUTO_TEST_CASE(lists_are_complete_in_random_clusters_at_any_size_ratio) {
@@ -119,6 +131,7 @@ BOOST_AUTO_TEST_CASE(lists_are_complete_in_random_clusters_at_any_size_ratio) {
                 // Tangent disks, and gaps up to the reach of the theorem and beyond.
                 const double widest = repeat % 3 == 0 ? 0 : repeat % 3 == 1 ? 0.9 : 3;
                 Packing packing = grown_cluster(n, ratio, random, [&] { return random.real(0, widest); });
+                BOOST_TEST((near_pairs(packing, 0.82 * packing.min_radius()).triangulation != nullptr));
                 check_against_every_pair(packing, 0.82);
                 if (n < 100) {
                     check_against_every_pair(packing, 0.1);
@@ -139,7 +152,7 @@ BOOST_AUTO_TEST_CASE(lists_are_complete_in_lattices_with_cocircular_squares) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(the_diagonals_of_four_disks_in_a_square_are_beyond_the_largest_fraction) {
+BOOST_AUTO_TEST_CASE(square_of_four_disks_is_the_limit_of_the_theorem) {
     // The diagonals of four tangent equal disks have gap 2 (sqrt 2 - 1) R = 0.8284 R: beyond the largest fraction.
     const CandidateList list = find_candidates(square_lattice(2, 2), 0.82);
     BOOST_TEST(list.contacts.size() == 4U);
@@ -175,7 +188,7 @@ BOOST_AUTO_TEST_CASE(one_two_and_collinear_disks) {
 }
 
 BOOST_AUTO_TEST_CASE(overlapping_packings_are_still_searched_completely) {
-    // Disks inside others, coincident centres.
+    // The theorem does not apply: hidden disks, disks inside others, coincident centres.
     Random random(7);
     for (int repeat = 0; repeat < testing::scaled(40); ++repeat) {
         Packing packing = empty_cluster();
@@ -223,7 +236,18 @@ BOOST_AUTO_TEST_CASE(the_pair_list_is_the_one_of_brute_force) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(lists_are_complete_in_extreme_units_and_at_extreme_size_ratios) {
+BOOST_AUTO_TEST_CASE(grid_and_triangulation_give_the_same_list) {
+    Random random(99);
+    for (const double ratio : {1.0, 3.0, 50.0}) {
+        const Packing packing = grown_cluster(300, ratio, random, [&] { return random.real(0, 0.5); });
+        const double reach = 0.82 * packing.min_radius();
+        const NearPairs by_triangulation = near_pairs(packing, reach);
+        BOOST_REQUIRE(by_triangulation.triangulation != nullptr);
+        BOOST_TEST((by_triangulation.pairs == pairs_within(packing, reach)));
+    }
+}
+
+BOOST_AUTO_TEST_CASE(extreme_units_and_size_ratios_fall_back_on_the_grid) {
     for (const double scale : {0x1p-1000, 0x1p-500, 0x1p-40, 1.0, 0x1p40, 0x1p500, 0x1p1000}) {
         Packing packing = square_lattice(4, 2.25 * scale);
         std::fill(packing.radius.begin(), packing.radius.end(), scale);
@@ -240,17 +264,19 @@ BOOST_AUTO_TEST_CASE(lists_are_complete_in_extreme_units_and_at_extreme_size_rat
     check_verdict(giant, 0);
 }
 
-BOOST_AUTO_TEST_CASE(a_disk_inside_another_is_found) {
-    // The small disk lies inside another one; the others are apart.
+BOOST_AUTO_TEST_CASE(a_disk_inside_another_is_found_though_no_edge_overlaps) {
+    // The small disk is hidden in the triangulation; the others are apart.
     Packing packing = square_lattice(4, 2.25);
     append(packing, 2.3, 2.2, 0.25);
+    BOOST_TEST((near_pairs(packing, 0.2).triangulation == nullptr));
     check_against_every_pair(packing, 0.82);
     check_verdict(packing, 0);
 }
 
-BOOST_AUTO_TEST_CASE(deep_overlaps_are_found) {
-    // Equal disks on a step far below their diameter.
+BOOST_AUTO_TEST_CASE(deep_overlaps_without_hidden_disk_are_found) {
+    // Equal disks on a step far below their diameter: no vertex is hidden, most overlapping pairs are no edges.
     Packing packing = square_lattice(6, 0.5);
+    BOOST_TEST((near_pairs(packing, 0.5).triangulation == nullptr));
     check_against_every_pair(packing, 0.82);
     check_verdict(packing, 0);
     check_verdict(packing, 1.5);

@@ -110,7 +110,7 @@ BOOST_AUTO_TEST_CASE(a_pair_many_periods_apart_is_listed_whatever_its_sums_lose)
     const Contact pair(isostat::ContactKind::disk_disk, 0, 1, cells::image(-57, -59));
     const double computed = isostat::gap(packing, pair);
     BOOST_TEST(computed == 0x1.6666666667584p+0 - 1);
-    const auto near = isostat::pairs_within(packing, computed - 8e-13);
+    const auto near = isostat::near_pairs(packing, computed - 8e-13).pairs;
     BOOST_TEST((std::find(near.begin(), near.end(), pair) != near.end()));
 }
 
@@ -124,7 +124,7 @@ BOOST_AUTO_TEST_CASE(pairs_are_all_found_in_cells_of_one_disk_and_more) {
             const Packing packing = random_cell(draw, random);
             const double reach = 0.82 * packing.min_radius();
             const auto wanted = by_definition(packing, reach);
-            const auto found = isostat::pairs_within(packing, reach);
+            const auto found = isostat::near_pairs(packing, reach).pairs;
             BOOST_TEST(all_there(wanted, found));
             BOOST_TEST(found.size() <= wanted.size() + 1); // one at the reach, by rounding
             seen += static_cast<int>(wanted.size());
@@ -136,7 +136,7 @@ BOOST_AUTO_TEST_CASE(pairs_are_all_found_in_cells_of_one_disk_and_more) {
 BOOST_AUTO_TEST_CASE(a_flat_cell_has_images_several_periods_away) {
     // The disk touches itself two periods back and one up.
     const State state = cells::in_cell({{1, 0, 0}}, {2, std::sqrt(3.0), 5}, true, 1, 1, {});
-    const auto found = isostat::pairs_within(state.packing, 0.5);
+    const auto found = isostat::near_pairs(state.packing, 0.5).pairs;
     const std::vector<Contact> wanted = by_definition(state.packing, 0.5);
     BOOST_TEST((found == wanted));
     BOOST_TEST((std::find(found.begin(), found.end(), cells::across(0, 0, -2, 1)) != found.end()));
@@ -166,7 +166,7 @@ BOOST_AUTO_TEST_CASE(a_disk_and_its_image_in_a_period_that_stays_are_no_candidat
 BOOST_AUTO_TEST_CASE(representatives_far_away_are_refused) {
     State state = cells::one_disk(1, 1);
     state.packing.q[0] = 70;
-    BOOST_CHECK_THROW(isostat::pairs_within(state.packing, 0.5), isostat::Error);
+    BOOST_CHECK_THROW(isostat::near_pairs(state.packing, 0.5), isostat::Error);
 }
 
 BOOST_AUTO_TEST_CASE(one_contact_has_one_name) {
@@ -215,7 +215,7 @@ BOOST_AUTO_TEST_CASE(pairs_of_clumps_are_all_but_those_of_one_body) {
                     }
                 }
             }
-            const auto found = isostat::pairs_within(p, reach);
+            const auto found = isostat::near_pairs(p, reach).pairs;
             BOOST_TEST((std::set<Contact>(found.begin(), found.end()) == expected), "seed " << seed);
         }
     }
@@ -229,7 +229,7 @@ BOOST_AUTO_TEST_CASE(a_member_and_the_image_of_another_are_a_pair) {
     p.radius = {1, 1};
     p.q = {5, 5, 6, 5, 3.1, 9, 0};
     p.bars = {{0, 1, 1}};
-    const std::vector<Contact> found = isostat::pairs_within(p, 0.3);
+    const std::vector<Contact> found = isostat::near_pairs(p, 0.3).pairs;
     BOOST_TEST((std::find(found.begin(), found.end(), isostat::pair_of(0, 1, {{-1, 0, 0}})) != found.end()));
     BOOST_TEST((std::find(found.begin(), found.end(), isostat::pair_of(0, 1)) == found.end()));
 }

@@ -241,7 +241,7 @@ BOOST_AUTO_TEST_CASE(a_near_pair_of_members_need_not_be_an_edge) {
     packing.q = {0, 0, 2.1, 0, 0.12, 0, 0, 9, 20, 20};
     packing.radius = {1, 1, 0.9, 1};
     packing.bars = {{0, 2, 0.12}};
-    const std::vector<isostat::Contact> found = isostat::pairs_within(packing, 0.2);
+    const std::vector<isostat::Contact> found = isostat::near_pairs(packing, 0.2).pairs;
     BOOST_TEST((found == std::vector{isostat::pair_of(0, 1), isostat::pair_of(1, 2)}));
 }
 

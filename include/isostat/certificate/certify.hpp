@@ -61,7 +61,7 @@ struct Certification {
 /// 3. the smallest singular value at the true vertex, from the same theorem (V5): its rank is N_f;
 /// 4. forces at the true vertex (V6): finite forces, structural zeros by the pattern of all entries that a contact can
 /// have (T11), and the infinitesimal forces of these zeros;
-/// 5. gaps of all other pairs at the true vertex, of a complete list; pairs that cannot move relative to each other
+/// 5. gaps of all other pairs at the true vertex, complete by T5 and T6; pairs that cannot move relative to each other
 ///    must not overlap either (exactly), but do not count among the gaps claimed;
 /// 6. ends of the supported interval at the true vertex (V7);
 /// 7. stability (T8): forces positive in the lexicographic order, no mechanism; dead loads, or true stresses without

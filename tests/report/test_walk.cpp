@@ -9,6 +9,10 @@
 
 #include <isostat/core/result.hpp>
 
+#include <iterator>
+#include <sstream>
+#include <tuple>
+
 using namespace program;
 using namespace isostat;
 namespace fs = std::filesystem;
@@ -221,6 +225,38 @@ BOOST_AUTO_TEST_CASE(a_triaxial_test_has_logarithmic_strains_and_q_over_p) {
     const std::string page = sphere_page("a & @TABLE@", json::Json::array(), {true, two, load, {"<up>"}});
     BOOST_TEST((page.find("<title>&lt;up&gt;</title>") != std::string::npos));
     BOOST_TEST((page.find("a &amp; @TABLE@") != std::string::npos));
+}
+
+BOOST_AUTO_TEST_CASE(a_segment_begins_at_the_equilibrium_that_it_starts_from) {
+    const std::vector<Chart> charts = make_charts(rows, {"up", "back"});
+    BOOST_TEST_REQUIRE(charts.size() >= 2U);
+    const auto has = [](const std::string& text, const std::string& part) {
+        return text.find(part) != std::string::npos;
+    };
+    BOOST_TEST(charts[0].name == "staircase");
+    BOOST_TEST(has(charts[0].data, ": up\n0 1\n0 1.25\n0.5 1.25\n0.5 1.75\n0.625 1.75\n\n\n"), charts[0].data);
+    BOOST_TEST(has(charts[0].data, ": back\n0.625 1.75\n0.625 1.5\n0.375 1.5\n0.375 1\n0.375 1\n\n\n"), charts[0].data);
+    BOOST_TEST(charts[1].name == "cycles");
+    BOOST_TEST(has(charts[1].data, ": path to equilibrium 1\n0 1\n0 1.25\n0.5 1.25\n\n\n"), charts[1].data);
+    BOOST_TEST(has(charts[1].data, ": segment 3\n0.5 1.25\n0.5 1.125\n0.25 1.125\n"), charts[1].data);
+    const std::string table = run_tables(rows, {"up", "back", "branch", "later"}, "completed");
+    const auto line = [&](const std::string& name) {
+        const std::size_t at = table.find(name + " ", table.find("ratio from"));
+        return table.substr(at, table.find('\n', at) - at);
+    };
+    const auto words = [](const std::string& text) {
+        std::istringstream stream(text);
+        return std::vector<std::string>{std::istream_iterator<std::string>(stream), {}};
+    };
+    const auto number = [&](const std::string& name, std::size_t k) { return std::stod(words(line(name)).at(k)); };
+    for (const auto& [name, from, made, arcs] :
+         {std::tuple{"up", 0, 2, 4}, std::tuple{"back", 2, 2, 2}, std::tuple{"branch", 1, 2, 5}}) {
+        BOOST_TEST(number(name, 1) == from, table);
+        BOOST_TEST(number(name, 2) == made, table);
+        BOOST_TEST(number(name, 7) == arcs, table);
+    }
+    BOOST_TEST(number("back", 3) == 1.75, table);
+    BOOST_TEST(has(line("later"), "not run"), table);
 }
 
 BOOST_AUTO_TEST_CASE(stress_increments_are_between_two_rearrangements_of_one_segment) {

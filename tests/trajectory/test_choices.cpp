@@ -172,10 +172,7 @@ BOOST_AUTO_TEST_CASE(a_run_chooses_as_often_as_it_may_and_then_ends_undecided) {
     BOOST_TEST_REQUIRE(most > 5);
     const auto capped = [&](long cap) {
         Course course;
-        CourseRecorder recorder(course);
-        State state = start;
-        RunOptions options{.ties = TiePolicy::choose, .ties_seed = 1, .max_choices = cap};
-        course.outcome = run_segment(state, towards(3), 0, options, course.counters, recorder);
+        course.follow(start, towards(3), {.ties = TiePolicy::choose, .ties_seed = 1, .max_choices = cap});
         return course;
     };
     const Course as_many = capped(most);

@@ -8,6 +8,7 @@
 #include "support/played.hpp"
 #include "support/prepared.hpp"
 #include "support/scratch.hpp"
+#include "support/spheres.hpp"
 
 #include <isostat/checker/verify.hpp>
 
@@ -122,6 +123,22 @@ BOOST_AUTO_TEST_CASE(a_run_from_a_state_stored_at_a_limit_is_replayed_at_the_loa
     write_state(folder / "second/states/eq_000000.json", elsewhere, {});
     forger::seal(folder / "second");
     BOOST_TEST((verify_run(folder / "second").verdict != Verdict::proved));
+}
+
+/// Where true stresses change together no end is proved: what contradicts the record may be another vertex.
+BOOST_AUTO_TEST_CASE(what_contradicts_an_end_that_is_not_proved_is_left_undecided) {
+    const scratch::Folder folder;
+    State start = test::on_its_lengths(test::state_of_spheres(test::read_spheres("box_uniform_30_1")));
+    start.load.kind = LoadKind::true_stress;
+    start.load.stress = {1, 1, 1};
+    start.load.follow({-1, -1, 2});
+    snap_to_grid(start.packing);
+    play_whole(start, 1, {}, folder / "run");
+    played::proved(folder / "run");
+    const RunVerification forged = with_a_larger(folder / "run", "power", true, 1.001);
+    BOOST_TEST((forged.verdict == Verdict::undecided), forged.wrong);
+    BOOST_TEST_REQUIRE(!forged.undecided.empty());
+    BOOST_TEST(forged.undecided.back().find("not provably") != std::string::npos, forged.undecided.back());
 }
 
 // Phi = sum sigma_a ln L_a falls from an equilibrium to the next one, and grows on the way back.

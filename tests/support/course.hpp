@@ -36,6 +36,14 @@ struct Course : Recorder {
     void follow(State state, const Segment& segment, const RunOptions& options) {
         outcome = run_segment(state, segment, 0, options, counters, *this);
     }
+    [[nodiscard]] std::string why() const { return outcome.failure ? outcome.failure->message() : "completed"; }
+    [[nodiscard]] std::vector<TieDecision> ties() const {
+        std::vector<TieDecision> all;
+        for (const ArcRecord& arc : arcs) {
+            all.insert(all.end(), arc.perturbed.begin(), arc.perturbed.end());
+        }
+        return all;
+    }
     [[nodiscard]] std::string end() const {
         return outcome.completed ? "completed" : isostat::to_string(outcome.failure->kind);
     }
@@ -55,14 +63,8 @@ inline bool mentions(const Course& course, const std::string& word) {
 }
 
 inline bool settled_as(const Course& course, const std::string& what) {
-    for (const ArcRecord& arc : course.arcs) {
-        for (const TieDecision& tie : arc.perturbed) {
-            if (tie.what == what) {
-                return true;
-            }
-        }
-    }
-    return false;
+    const std::vector<TieDecision> ties = course.ties();
+    return std::any_of(ties.begin(), ties.end(), [&](const TieDecision& tie) { return tie.what == what; });
 }
 
 } // namespace crafted

@@ -4,8 +4,8 @@
     /usr/bin/python3 tests/bench/asked.py FOLDER [--json FILE]
     /usr/bin/python3 tests/bench/asked.py --peak FILE COMMAND...      runs a command, writes its peak memory to FILE
 
-FOLDER: arc_cost.json, arc_cost_2.json (with --threads 2), growth.json (the same program, with 20 000 disks), state_cost.json and memory.json,
-as `bash tests/bench/run` makes them; what is not there is left out. Exit status 1 when a figure is not met.
+FOLDER: arc_cost.json, arc_cost_2.json (with --threads 2), growth.json (the same program, with 20 000 disks), state_cost.json, linear_programmes.json and
+memory.json, as `bash tests/bench/run` makes them; what is not there is left out. Exit status 1 when a figure is not met.
 """
 import argparse
 import json
@@ -23,6 +23,8 @@ ASKED = [
      {"n": 4900, "work": "exact rank, 31-bit prime (tried first)"}, "umfpack_factorisation", 0.5, "UMFPACK"),
     ("the same, 61-bit prime", "state_cost", "state_cost", {"n": 4900, "work": "exact rank, 61-bit prime"},
      "umfpack_factorisation", 0.5, "UMFPACK"),
+    ("linear programmes / HiGHS chain, n = 1936", "linear_programmes", "linear_programmes", {"n": 1936}, "ratio", 0.2,
+     "HiGHS"),
     ("peak memory, figure-2 run, n = 4900", "memory", "memory", {"n": 4900}, "megabytes", 400, "MB"),
 ]
 

@@ -59,7 +59,8 @@ Result<std::unique_ptr<Centre>> Centre::moved(Packing there, double farthest) co
     }
     const RegularityProof proof = RegularityProver::proof(same->matrix(), bound.sigma_min);
     IsostaticStructure proved = IsostaticStructure::exchanged(std::move(*same), proof);
-    Factorisation factors(proved, factorisation.approximate());
+    // One pass errs by K distance / sigma_min at most, and whoever solves here refines with residuals at this place.
+    Factorisation factors = Factorisation::of(proved, factorisation.approximate());
     return std::unique_ptr<Centre>(new Centre(std::move(there), std::move(proved), std::move(factors), bound));
 }
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Numbers that one page quotes from another, or from a table that a program wrote:  python3 -B tests/pages.py [PROJECT]
+"""Links of the pages, and numbers that one page quotes from another, or from a table that a program wrote:  python3 -B tests/pages.py [PROJECT]
 
 What a test of the program holds is not here: commands, keys, columns and what README's first run prints (tests/cli, tests/python)."""
 import collections
@@ -8,6 +8,8 @@ import json
 import pathlib
 import re
 import sys
+
+import static_site
 
 top = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else pathlib.Path(__file__).resolve().parent.parent)
 wrong = []
@@ -99,7 +101,23 @@ def headers():
     expect(f"{count} public headers" in read("CHANGELOG.md"), f"CHANGELOG: there are {count} public headers")
 
 
-for check in (lammps, biaxial, samples_of_the_paper, extremes, mutants, reference, headers):
+def links():
+    """They lead to files that are there, and to headings that these have."""
+    static_site.top, seen = top, 0
+    for page in static_site.pages():
+        for _, target, _ in static_site.link.findall(page.read_text()):
+            name, mark, anchor = target.partition("#")
+            there = page.parent / name if name else page
+            if "://" not in target:
+                seen += 1
+                expect(there.exists(), f"{page.relative_to(top)} links to {target}")
+                if mark and there.suffix == ".md" and there.exists():
+                    headings = re.findall(r"^#+ (.*)", re.sub(r"^```.*?^```", "", there.read_text(), flags=re.M | re.S), re.M)
+                    expect(anchor in map(static_site.slugify, headings), f"{page.relative_to(top)} links to {target}: no such heading")
+    expect(seen > 100, f"{seen} links")
+
+
+for check in (lammps, biaxial, samples_of_the_paper, extremes, mutants, reference, headers, links):
     check()
 print(*wrong, sep="\n", end="\n" if wrong else "")
 sys.exit(1 if wrong else 0)

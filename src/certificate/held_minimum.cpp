@@ -19,7 +19,7 @@ namespace {
 
 using roundoff::u;
 
-constexpr double up = 1 + 1e-9; // sums and products of fewer than 10^6 bounds, three deep
+constexpr double up = 1 + 1e-9; // sums over coordinates and products of bounds, three deep (B1)
 
 /// Velocities on which one held coordinate moves at the rate 1 and no other row changes.
 struct HeldMotion {

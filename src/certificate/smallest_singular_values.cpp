@@ -23,7 +23,10 @@ std::vector<double> smallest_singular_values(const IsostaticStructure& structure
         x = Eigen::HouseholderQR<Eigen::MatrixXd>(x).householderQ() * Eigen::MatrixXd::Identity(size, width);
         const std::span<double> columns(x.data(), static_cast<std::size_t>(x.size()));
         factors.solve_velocities(columns, width); // H^-T x: its singular values are those of H^-1 on this subspace
-        const Eigen::VectorXd inverse = Eigen::BDCSVD<Eigen::MatrixXd>(x).singularValues().head(wanted);
+        const Eigen::MatrixXd r =
+            Eigen::HouseholderQR<Eigen::MatrixXd>(x).matrixQR().topRows(width).triangularView<Eigen::Upper>();
+        const Eigen::VectorXd inverse =
+            Eigen::JacobiSVD<Eigen::MatrixXd, Eigen::NoQRPreconditioner>(r).singularValues().head(wanted);
         const Eigen::VectorXd now = inverse.cwiseInverse();
         const bool settled = ((now - values).cwiseAbs().array() <= 1e-4 * now.array()).all();
         values = now;

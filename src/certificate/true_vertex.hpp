@@ -18,6 +18,7 @@ namespace isostat {
 struct LoadEndAnswer {
     std::optional<LoadEndClaim> claim;
     std::string open_question;
+    int ties = 0; ///< forces of which it is not known whether they vanish earlier
 };
 
 /// The true vertex, enclosed around a centre (statement V5), with everything that is asked of it in intervals that

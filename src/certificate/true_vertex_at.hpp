@@ -85,7 +85,7 @@ template <class T> class TrueVertexAt final : public TrueVertex {
     bool steady(int l);
     std::string open_rate(int l);
     LoadEndAnswer without_end(int direction);
-    std::string vanishes_before(int first, const std::vector<int>& members, const T& t, double error);
+    LoadEndAnswer vanishes_before(int first, const std::vector<int>& members, const T& t, double error);
     int opens(int first, const std::vector<int>& members, int direction);
     Interval around(const T& value, double bound) const;
     std::vector<Interval> around(const Solution& solution) const;
@@ -289,10 +289,11 @@ template <class T> LoadEndAnswer TrueVertexAt<T>::without_end(int direction) {
     return {claim, {}};
 }
 
-/// Nothing when every force but that of `first` and those of `members` is positive at sigma - t, t known to `error`;
-/// else which one is not.
+/// No ties when every force but that of `first` and those of `members` is positive at sigma - t, t known to `error`;
+/// else the question names the first one that is not.
 template <class T>
-std::string TrueVertexAt<T>::vanishes_before(int first, const std::vector<int>& members, const T& t, double error) {
+LoadEndAnswer TrueVertexAt<T>::vanishes_before(int first, const std::vector<int>& members, const T& t, double error) {
+    LoadEndAnswer answer;
     const Solution& force = present();
     const Solution& slope = unit_load();
     const double size = std::abs(A::rounded(t));
@@ -312,13 +313,14 @@ std::string TrueVertexAt<T>::vanishes_before(int first, const std::vector<int>& 
                               4 * unit() * (std::abs(A::rounded(force.value[index(l)])) + b * size)) *
                                  (1 + 16 * u) +
                              2 * u * std::abs(value);
-        if (!(value > bound)) {
-            return fmt::format("the forces in contacts {} and {} vanish at loads that are not ordered: where the "
-                               "first is 0 the second is {:.3g}, proved to {:.3g}",
-                               name(first), name(l), value, bound);
+        if (!(value > bound) && answer.ties++ == 0) {
+            answer.open_question =
+                fmt::format("the forces in contacts {} and {} vanish at loads that are not ordered: where the "
+                            "first is 0 the second is {:.3g}, proved to {:.3g}",
+                            name(first), name(l), value, bound);
         }
     }
-    return {};
+    return answer;
 }
 
 /// Which of a class is named decides nothing; the infinitesimal loads say which one a run would open.
@@ -357,8 +359,8 @@ template <class T> LoadEndAnswer TrueVertexAt<T>::load_end(int direction) {
     const double size = std::abs(A::rounded(t));
     const double error = ((force.bound + size * slope.bound) / steepness + 4 * unit() * size) * (1 + 16 * u);
     const std::vector<int> members = subject_.vanish_with(first);
-    if (std::string open = vanishes_before(first, members, t, error); !open.empty()) {
-        return {{}, std::move(open)};
+    if (LoadEndAnswer open = vanishes_before(first, members, t, error); open.ties > 0) {
+        return open;
     }
     LoadEndClaim claim;
     const double sigma = subject_.state.load.loaded_stress();

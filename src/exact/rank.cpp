@@ -58,27 +58,6 @@ std::vector<int> colamd_order(const sparse::Matrix<std::uint64_t>& matrix) {
     return order;
 }
 
-/// Nested dissection of the columns that share a row; rows of very many entries, as those of a cell, are left out.
-std::vector<int> dissected(const sparse::Matrix<std::uint64_t>& matrix) {
-    const auto columns = static_cast<std::size_t>(matrix.cols);
-    std::vector<std::vector<int>> columns_of(static_cast<std::size_t>(matrix.rows));
-    for (std::size_t c = 0; c < columns; ++c) {
-        for (auto e = static_cast<std::size_t>(matrix.start[c]); e < static_cast<std::size_t>(matrix.start[c + 1]);
-             ++e) {
-            columns_of[static_cast<std::size_t>(matrix.row[e])].push_back(static_cast<int>(c));
-        }
-    }
-    std::vector<int> start{0};
-    std::vector<int> list;
-    for (const std::vector<int>& some : columns_of) {
-        if (some.size() * some.size() < 100 * columns) {
-            list.insert(list.end(), some.begin(), some.end());
-            start.push_back(static_cast<int>(list.size()));
-        }
-    }
-    return sparse::dissection_of_products(matrix.cols, start, list);
-}
-
 template <class Field>
 int rank_in_blocks(const sparse::Matrix<typename Field::Value>& matrix, const sparse::Ordering& ordering) {
     assert(ordering.structurally_regular() && ordering.row_order().size() == static_cast<std::size_t>(matrix.rows));
@@ -126,7 +105,8 @@ std::vector<int> ranks_of_first_rows(const sparse::Matrix<std::uint64_t>& matrix
     elimination.start(weight.size());
     constexpr int many = 2500; // A^T A has some 22 entries per column: at 1500 METIS takes the time that it saves
     const bool dissect = matrix.rows >= many && sparse::worth_dissection(matrix.rows, matrix.entries());
-    for (const int column : dissect ? dissected(matrix) : colamd_order(matrix)) {
+    for (const int column :
+         dissect ? sparse::dissection_of_columns(matrix.rows, matrix.start, matrix.row) : colamd_order(matrix)) {
         const auto begin = static_cast<std::size_t>(matrix.start[static_cast<std::size_t>(column)]);
         const auto count = static_cast<std::size_t>(matrix.start[static_cast<std::size_t>(column) + 1]) - begin;
         if (elimination.append({matrix.row.data() + begin, count}, {matrix.value.data() + begin, count}, -1, weight)) {

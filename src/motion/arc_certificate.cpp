@@ -169,6 +169,7 @@ bool Certifier::finish(const Piece& piece, double from, double to) {
     if (active_.empty()) {
         active_ = part_->watched(candidates_);
     }
+    watch_.begin(piece, from, to);
     for (const Contact& contact : active_) {
         if (!watch_.look(piece, contact, from, to)) {
             const double s = watch_.where();

@@ -95,15 +95,16 @@ void CurvePiece::bound_coefficients_of(std::size_t l) {
         return;
     }
     const PerAxis<double> line = separation(centre().layout(), centre().q, c);
+    const std::size_t axes = centre().axes();
     for (std::size_t k = 1; k <= 2 * order; ++k) {
         RoundedSum sum;
         for (std::size_t i = k > order ? k - order : 1; i <= std::min(order, k - 1); ++i) {
-            sum.add(d[i], d[k - i]);
+            sum.add(d[i], d[k - i], axes);
         }
         sum.value *= 0.5;
         sum.absolute *= 0.5;
         if (k <= order) {
-            sum.add(line, d[k]);
+            sum.add(line, d[k], axes);
         }
         bound[k] = (std::abs(sum.value) + (static_cast<double>(k) + 16) * u * sum.absolute) / length * (1 + 8 * u);
     }
@@ -239,7 +240,7 @@ std::vector<double> CurvePiece::away(const std::vector<double>& x, double s) con
 std::optional<double> CurvePiece::nearest(const std::vector<double>& x) const {
     double s = 0;
     for (int k = 0; k < 8; ++k) {
-        const double change = this->along_row(away(x, s)).value / this->along_row(this->slope(s)).value;
+        const double change = this->ahead_along_row(x, s);
         if (!std::isfinite(change) || std::abs(s + change) > 1.5 * proved_) {
             return std::nullopt;
         }

@@ -155,15 +155,27 @@ void CurvePolynomial::expand() {
     }
 }
 
+double CurvePolynomial::coordinate(std::size_t k, double s) const {
+    double sum = 0;
+    for (std::size_t order = a_.size(); order > 0; --order) {
+        sum = (sum + a_[order - 1][k]) * s;
+    }
+    return centre().q[k] + sum;
+}
+
+double CurvePolynomial::rate(std::size_t k, double s) const {
+    double v = 0;
+    for (std::size_t order = a_.size(); order > 0; --order) {
+        v = v * s + static_cast<double>(order) * a_[order - 1][k];
+    }
+    return v;
+}
+
 std::vector<double> CurvePolynomial::point(double s) const {
     std::vector<double> x = centre().q;
     for (std::size_t mu = 0; mu < static_cast<std::size_t>(structure().size()); ++mu) {
         const std::size_t k = structure().dofs().coordinate_of(mu);
-        double sum = 0;
-        for (std::size_t order = a_.size(); order > 0; --order) {
-            sum = (sum + a_[order - 1][k]) * s;
-        }
-        x[k] += sum;
+        x[k] = coordinate(k, s);
     }
     return x;
 }
@@ -172,9 +184,7 @@ std::vector<double> CurvePolynomial::slope(double s) const {
     std::vector<double> v(centre().q.size(), 0.0);
     for (std::size_t mu = 0; mu < static_cast<std::size_t>(structure().size()); ++mu) {
         const std::size_t k = structure().dofs().coordinate_of(mu);
-        for (std::size_t order = a_.size(); order > 0; --order) {
-            v[k] = v[k] * s + static_cast<double>(order) * a_[order - 1][k];
-        }
+        v[k] = rate(k, s);
     }
     return v;
 }
@@ -229,6 +239,16 @@ double CurvePolynomial::row_norm() const {
 
 double CurvePolynomial::row_terms() const {
     return 1 + cell_weight(structure().contacts()[curve_->slot]);
+}
+
+double CurvePolynomial::ahead_along_row(const std::vector<double>& x, double s) const {
+    RoundedSum way;
+    RoundedSum speed;
+    row_.for_each([&](std::size_t k, double value) {
+        way.add(value * (x[k] - coordinate(k, s)));
+        speed.add(value * rate(k, s));
+    });
+    return way.value / speed.value;
 }
 
 RoundedSum CurvePolynomial::along_row(const std::vector<double>& v) const {

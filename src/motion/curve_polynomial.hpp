@@ -34,6 +34,8 @@ class CurvePolynomial {
     [[nodiscard]] std::optional<Packing> corrected(double s) const;
     /// row . v, and the sum of the absolute values of its terms.
     [[nodiscard]] RoundedSum along_row(const std::vector<double>& v) const;
+    /// row . (x - p(s)) / row . p'(s), from the coordinates of the row alone.
+    [[nodiscard]] double ahead_along_row(const std::vector<double>& x, double s) const;
     /// At least the 2-norm of the row, and at least a fourth of the sum of its absolute values.
     [[nodiscard]] double row_norm() const;
     [[nodiscard]] double row_terms() const;
@@ -49,6 +51,9 @@ class CurvePolynomial {
     [[nodiscard]] const std::vector<double>& shift() const { return shift_; }
 
   private:
+    /// One coordinate of p(s) and of p'(s).
+    [[nodiscard]] double coordinate(std::size_t k, double s) const;
+    [[nodiscard]] double rate(std::size_t k, double s) const;
     [[nodiscard]] std::vector<double> solved(std::vector<double> rhs) const;
     void expand();
     void find_shift();

@@ -158,7 +158,48 @@ bool GapWatch::walk(const Motion& motion, double from, double to, int depth, Gap
            walk(motion, middle, to, depth + 1, last, only_falls);
 }
 
+void GapWatch::begin(const CurvePiece& piece, double from, double to) {
+    const double h = std::max(std::abs(from), std::abs(to));
+    const std::size_t axes = piece.centre().axes();
+    double power = h;
+    double order = 1;
+    moved_ = 0;
+    for (const std::vector<double>& a : piece.coefficients()) {
+        double longest = 0;
+        for (std::size_t k = 0; k < a.size(); k += axes) {
+            double square = 0;
+            for (std::size_t c = k; c < std::min(k + axes, a.size()); ++c) {
+                square += a[c] * a[c];
+            }
+            longest = std::max(longest, square);
+        }
+        moved_ += 2 * (1 + 0.5 * order * order) * power * std::sqrt(longest) * up;
+        power *= h;
+        order += 1;
+    }
+}
+
+/// The first stretch of `walk` proves the gap positive, and leaves the margin as it is: nothing else need be computed.
+bool GapWatch::is_far(const CurvePiece& piece, const Contact& contact) const {
+    const Packing& at = piece.centre();
+    const auto line = contact.image.is_here() ? centre_line(at, contact) : std::nullopt;
+    if (!line) {
+        return false;
+    }
+    const double target = touching_distance(at.radius, contact);
+    const double rounding = (2 * static_cast<double>(piece.coefficients().size()) + 26) * u;
+    const double open = separation_weight(contact) * (piece.radius() + piece.curve().rest_radius) * up +
+                        rounding * (line->length + moved_ + target);
+    return line->length - target - moved_ > 2 * margin_ * open; // the margin is above 1
+}
+
 bool GapWatch::look(const CurvePiece& piece, const Contact& contact, double from, double to) {
+    if (is_far(piece, contact)) {
+        ++tests_;
+        last_.erase(contact);
+        fell_.erase(contact);
+        return true;
+    }
     const Motion motion(piece, contact);
     const auto found = last_.find(contact);
     GapTrend last = found == last_.end() ? GapTrend::above : found->second;

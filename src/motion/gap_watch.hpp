@@ -20,8 +20,9 @@ class GapWatch {
   public:
     /// The gap of a contact (the opened one) is 0 at the start of the arc and has to rise there.
     void starts_at_zero(const Contact& contact) { last_[contact] = GapTrend::zero; }
-    /// Tests one candidate for s in [from, to] (within the reach of the piece). False: near `where()` neither the sign
-    /// of the gap nor that of its rate was proved.
+    /// Before the candidates of a piece are tested for s in [from, to], within its reach.
+    void begin(const CurvePiece& piece, double from, double to);
+    /// Tests one candidate there. False: near `where()` neither the sign of the gap nor that of its rate was proved.
     bool look(const CurvePiece& piece, const Contact& contact, double from, double to);
     /// Whether the gap of a contact falls on the last stretch: it must then be proved not negative at the right end.
     [[nodiscard]] bool falls(const Contact& contact) const {
@@ -38,11 +39,13 @@ class GapWatch {
 
   private:
     struct Motion;
+    [[nodiscard]] bool is_far(const CurvePiece& piece, const Contact& contact) const;
     bool walk(const Motion& motion, double from, double to, int depth, GapTrend& last, bool& only_falls);
 
     std::map<Contact, GapTrend> last_; ///< candidates that are not `above`
     std::set<Contact> fell_;
     double margin_ = 1e308;
+    double moved_ = 0; ///< bound of what `Motion::view` takes off a gap for the motion of two grains
     double where_ = 0;
 };
 

@@ -256,18 +256,19 @@ bool MovingPart::complete(const CurvePiece& piece, double h, const CandidateList
         }
         return used * up < 0.5 * list.reach;
     }
-    for (std::size_t k = 0; k < q.size(); k += piece.centre().axes()) {
-        double moved = 0;
-        for (std::size_t a = 0; a < piece.centre().axes(); ++a) {
-            moved = std::hypot(moved, q[k + a] - list.reference[k + a]);
-        }
+    const std::size_t axes = piece.centre().axes();
+    for (std::size_t k = 0; k < q.size(); k += axes) {
+        const auto length = [&](const auto& component) {
+            double square = 0;
+            for (std::size_t c = k; c < k + axes; ++c) {
+                square += component(c) * component(c);
+            }
+            return std::sqrt(square);
+        };
+        double moved = length([&](std::size_t c) { return q[c] - list.reference[c]; });
         double power = h;
         for (const auto& coefficient : piece.coefficients()) {
-            double size = 0;
-            for (std::size_t a = 0; a < piece.centre().axes(); ++a) {
-                size = std::hypot(size, coefficient[k + a]);
-            }
-            moved += power * size;
+            moved += power * length([&](std::size_t c) { return coefficient[c]; });
             power *= h;
         }
         if (!(2 * (moved + off) * up < list.reach)) {

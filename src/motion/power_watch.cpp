@@ -138,6 +138,7 @@ double PowerWatch::add_row(const CurvePiece& piece, double force, Power& power) 
 void PowerWatch::add_contact(const CurvePiece& piece, const Contact& contact, double force, Power& power) {
     const auto& a = piece.coefficients();
     const std::size_t order = a.size();
+    const std::size_t axes = piece.centre().axes();
     const auto count = static_cast<double>(piece.structure().size());
     const auto line = separation(piece.centre().layout(), piece.centre().q, contact);
     std::vector<PerAxis<double>> d(order + 1);
@@ -152,7 +153,7 @@ void PowerWatch::add_contact(const CurvePiece& piece, const Contact& contact, do
     for (std::size_t k = 2; k <= 2 * order; ++k) {
         RoundedSum sum;
         for (std::size_t p = k > order ? k - order : 1; p <= std::min(order, k - 1); ++p) {
-            for (std::size_t c = 0; c < most_axes; ++c) {
+            for (std::size_t c = 0; c < axes; ++c) {
                 sum.add(d[p][c] * d[k - p][c]);
             }
         }

@@ -10,7 +10,7 @@
 namespace isostat {
 
 using roundoff::u;
-/// Factor for sums of up to 10^6 terms, their roots, a few products: relative rounding below 1e-9 (proofs/bounds.md).
+/// Factor for sums over all coordinates, their roots, a few products: relative rounding below 1e-9 (B1).
 inline constexpr double up = 1 + 1e-9;
 using roundoff::root2;
 /// Relative error of a product with the exact row of a contact, in units of u: entries, products and their sum.
@@ -35,10 +35,12 @@ struct RoundedSum {
         value += term;
         absolute += std::abs(term);
     }
-    template <std::size_t size> void add(const std::array<double, size>& x, const std::array<double, size>& y) {
+    /// x . y, of which the components beyond `axes` are 0.
+    template <std::size_t size>
+    void add(const std::array<double, size>& x, const std::array<double, size>& y, std::size_t axes) {
         double sum = 0;
         double terms = 0;
-        for (std::size_t c = 0; c < size; ++c) {
+        for (std::size_t c = 0; c < axes; ++c) {
             sum += x[c] * y[c];
             terms += std::abs(x[c] * y[c]);
         }

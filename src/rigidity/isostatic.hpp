@@ -90,7 +90,7 @@ enum class RegularityEvidence : std::uint8_t {
 
 /// Largest number of coordinates of a packing, and so of contacts of a structure, because error bounds allow for sums
 /// of so many terms (statement B1).
-inline constexpr std::size_t most_coordinates = 1'000'000;
+inline constexpr std::size_t most_coordinates = 2'500'000;
 
 /// A configuration with N = N_f contacts (held coordinates count as contacts) whose contact matrix is proved regular,
 /// for the *stored* coordinates (dyadic rationals) without any rounding. So h = k = 0. `prove` and `exchanged` make one

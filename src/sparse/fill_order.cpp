@@ -3,6 +3,7 @@
 #include <cholmod.h>
 #include <klu.h>
 
+#include <algorithm>
 #include <array>
 #include <mutex>
 #include <new>
@@ -73,14 +74,43 @@ int dissection(int n, int* start, int* row, int* order, klu_common* /*common*/) 
     return half != nullptr && cholmod.dissect(*half, order) ? 1 : 0;
 }
 
+/// The same, of the columns that share a row.
+int columns(int n, int* start, int* row, int* order, klu_common* /*common*/) {
+    const auto size = static_cast<std::size_t>(n);
+    const std::vector<int> found =
+        dissection_of_columns(n, {start, size + 1}, {row, static_cast<std::size_t>(start[n])});
+    std::copy(found.begin(), found.end(), order);
+    return 1;
+}
+
 } // namespace
 
 void choose_order(klu_common& common, int rows, int entries) {
     constexpr int amd = 0;
     constexpr int colamd = 1;
     constexpr int by_function = 3;
-    common.ordering = worth_dissection(rows, entries) ? by_function : rows > 20000 ? colamd : amd;
-    common.user_order = dissection;
+    constexpr int many = 200'000; // rows
+    const bool spheres = worth_dissection(rows, entries);
+    common.ordering = spheres || rows >= many ? by_function : rows > 20000 ? colamd : amd;
+    common.user_order = spheres ? dissection : columns;
+}
+
+std::vector<int> dissection_of_columns(int rows, std::span<const int> start, std::span<const int> row) {
+    std::vector<std::vector<int>> columns_of(static_cast<std::size_t>(rows));
+    for (std::size_t c = 0; c + 1 < start.size(); ++c) {
+        for (int e = start[c]; e < start[c + 1]; ++e) {
+            columns_of[static_cast<std::size_t>(row[static_cast<std::size_t>(e)])].push_back(static_cast<int>(c));
+        }
+    }
+    std::vector<int> start_of_row{0};
+    std::vector<int> list;
+    for (const std::vector<int>& some : columns_of) {
+        if (some.size() * some.size() < 100 * (start.size() - 1)) {
+            list.insert(list.end(), some.begin(), some.end());
+            start_of_row.push_back(static_cast<int>(list.size()));
+        }
+    }
+    return dissection_of_products(static_cast<int>(start.size()) - 1, start_of_row, list);
 }
 
 std::vector<int> dissection_of_products(int rows, std::span<const int> start, std::span<const int> row) {

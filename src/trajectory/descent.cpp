@@ -1,5 +1,6 @@
 #include "trajectory/descent.hpp"
 
+#include "verified/norm.hpp"
 #include "verified/precise_vertex.hpp"
 
 #include <qd/dd_real.h>
@@ -14,7 +15,7 @@ namespace isostat {
 namespace {
 
 constexpr double dd_unit = 0x1p-98; // bounds one operation in double-double (proofs/bounds.md)
-constexpr double above = 1 + 1e-10; // for sums of at most 10^6 bounds
+constexpr double above = 1 + 1e-10; // for sums of a few bounds
 
 /// Enclosure of a true vertex: within `radius` (2-norm) of packing.q + correction.
 struct Place {
@@ -55,8 +56,8 @@ Enclosure work(const Vertex& start, const Place& from, const Place& to, const Lo
         sum.add(-stress_times(wall, wall.length) * wall.other, to[k] - from[k]);
         ++terms;
     }
-    const double radius =
-        (std::sqrt(sum.square) * (from.radius + to.radius) + (terms + 8) * dd_unit * sum.size) * above;
+    const double radius = (std::sqrt(sum.square) * (from.radius + to.radius) + (terms + 8) * dd_unit * sum.size) *
+                          sum_slack(start.packing.q.size());
     return {sum.value.x[0], radius + 0x1p-52 * std::abs(sum.value.x[0])};
 }
 

@@ -1,5 +1,7 @@
 #include "trajectory/kept_candidates.hpp"
 
+#include "contact/contact_set.hpp"
+
 #include <algorithm>
 
 namespace isostat {
@@ -12,14 +14,14 @@ void KeptCandidates::set(const Contact& contact, unsigned char flag) {
 }
 
 const std::vector<unsigned char>& KeptCandidates::of(const std::vector<Contact>& candidates,
-                                                     const std::vector<Contact>& contacts) {
+                                                     const std::vector<Contact>& contacts, int disks) {
     if (candidates_ != candidates || contacts_.size() != contacts.size()) {
+        const ContactSet list(contacts, disks);
         candidates_ = candidates;
-        kept_.assign(candidates.size(), 0);
         contacts_ = contacts;
-        for (const Contact& contact : contacts) {
-            set(contact, 1);
-        }
+        kept_.resize(candidates.size());
+        std::transform(candidates.begin(), candidates.end(), kept_.begin(),
+                       [&](const Contact& contact) { return list.contains(contact) ? 1 : 0; });
         return kept_;
     }
     std::vector<std::size_t> changed;

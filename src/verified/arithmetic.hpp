@@ -2,6 +2,7 @@
 // The number types of the rungs, with bounds of the errors of
 // their operations: private to the room and to the certificate.
 
+#include "verified/norm.hpp"
 #include "verified/upper_bound.hpp"
 
 #include <isostat/core/verdict.hpp>
@@ -101,8 +102,6 @@ template <> class Arithmetic<Real> {
     int bits_;
 };
 
-inline constexpr double sum_slack = 1 + 1e-10; ///< for sums of up to 10^6 non-negative terms and their roots (B1)
-
 /// Upper bound of the 2-norm of numbers >= 0; scaled, so that tiny
 /// numbers do not underflow. A NaN stays NaN, and proves nothing.
 template <class Bound> Bound norm_of_bounds(const std::vector<Bound>& x) {
@@ -113,7 +112,7 @@ template <class Bound> Bound norm_of_bounds(const std::vector<Bound>& x) {
         square += part * part;
     }
     using std::sqrt;
-    return largest <= 0 ? Bound(0) : largest * sqrt(square) * sum_slack;
+    return largest <= 0 ? Bound(0) : largest * sqrt(square) * sum_slack(x.size());
 }
 
 } // namespace isostat

@@ -1,11 +1,14 @@
 #include "verified/centre.hpp"
 
 #include "core/roundoff.hpp"
+#include "verified/regularity_prover.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace isostat {
+
+using roundoff::u;
 
 bool ProvedStructure::is_of(const Packing& other, const std::vector<Contact>& contacts) const {
     return structure.evidence() == RegularityEvidence::elimination && factorisation.is_fresh() &&
@@ -13,12 +16,8 @@ bool ProvedStructure::is_of(const Packing& other, const std::vector<Contact>& co
            inverse.route != InverseBound::Route::multiprecision && structure.contacts() == contacts && packing == other;
 }
 
-Centre::Centre(Packing p, IsostaticStructure s, const ProvedStructure* proved)
-    : packing(std::move(p)), structure(std::move(s)),
-      factorisation(proved != nullptr ? proved->factorisation.shared() : Factorisation(structure)) {
-    using roundoff::u;
-    InverseBoundCache cache;
-    inverse = proved != nullptr ? proved->inverse : bound_inverse(structure, factorisation, cache);
+Centre::Centre(Packing p, IsostaticStructure s, Factorisation factors, const InverseBound& bound)
+    : packing(std::move(p)), structure(std::move(s)), factorisation(std::move(factors)), inverse(bound) {
     for (const Contact& contact : structure.contacts()) {
         const double h = std::abs(gap(packing, contact));
         const double length = target(packing, contact);
@@ -33,11 +32,36 @@ Result<std::unique_ptr<Centre>> Centre::make(Packing packing, std::vector<Contac
     if (!proved.ok()) {
         return proved.failure();
     }
-    return std::unique_ptr<Centre>(new Centre(std::move(packing), std::move(proved.value()), nullptr));
+    InverseBoundCache cache;
+    Factorisation factors(proved.value());
+    const InverseBound bound = bound_inverse(proved.value(), factors, cache);
+    return std::unique_ptr<Centre>(
+        new Centre(std::move(packing), std::move(proved.value()), std::move(factors), bound));
 }
 
 std::unique_ptr<Centre> Centre::of(const ProvedStructure& proved) {
-    return std::unique_ptr<Centre>(new Centre(proved.packing, proved.structure, &proved));
+    return std::unique_ptr<Centre>(
+        new Centre(proved.packing, proved.structure, proved.factorisation.shared(), proved.inverse));
+}
+
+Result<std::unique_ptr<Centre>> Centre::moved(Packing there, double farthest) const {
+    const double distance = std::sqrt(static_cast<double>(there.q.size())) * farthest * (1 + 4 * u);
+    InverseBound bound = inverse;
+    bound.sigma_min -= normal_rate(neighbourhood.lipschitz) * distance * (1 + 4 * u);
+    bound.sigma_min *= 1 - 2 * u;
+    const bool near = relative_gap < 1e-3 && distance * neighbourhood.lipschitz < 1e-3; // then distance < D_min / 1000
+    const ContactId any(0);                                                             // nothing is exchanged
+    auto same = near && bound.sigma_min > inverse.sigma_min / 2
+                    ? IsostaticStructure::exchange(structure, there, any, structure.contacts().front())
+                    : std::nullopt;
+    if (!same) {
+        return make(std::move(there), structure.contacts());
+    }
+    const RegularityProof proof = RegularityProver::proof(same->matrix(), bound.sigma_min);
+    IsostaticStructure proved = IsostaticStructure::exchanged(std::move(*same), proof);
+    // One pass errs by K distance / sigma_min at most, and whoever solves here refines with residuals at this place.
+    Factorisation factors = Factorisation::of(proved, factorisation.approximate());
+    return std::unique_ptr<Centre>(new Centre(std::move(there), std::move(proved), std::move(factors), bound));
 }
 
 } // namespace isostat

@@ -124,7 +124,7 @@ template <class T> auto ContactSystem<T>::turned(const std::vector<T>& x, bool t
                 sum.add_turn(contact, above(a.about(x[l])) / target(packing_, contact));
             }
         }
-        return Bound(sum.largest()) * radius_ * sum_slack;
+        return Bound(sum.largest()) * radius_ * sum_slack(x.size());
     }
     std::vector<Bound> weight(packing_.radius.size(), Bound(0)); // sum of |f_l| / D_l at each disk
     for (std::size_t l = 0; l < x.size(); ++l) {
@@ -136,7 +136,7 @@ template <class T> auto ContactSystem<T>::turned(const std::vector<T>& x, bool t
         }
     }
     const Bound heaviest = weight.empty() ? Bound(0) : *std::max_element(weight.begin(), weight.end());
-    return 2 * heaviest * radius_ * sum_slack;
+    return 2 * heaviest * radius_ * sum_slack(x.size());
 }
 
 template <class T>

@@ -20,7 +20,7 @@ namespace {
 
 using roundoff::root2;
 using roundoff::u;
-constexpr double raise = 1 + 1e-10; ///< rounding of sums of non-negative terms
+constexpr double raise = 1 + 1e-10; ///< rounding of sums and products of a few bounds
 
 double length_of(const std::vector<double>& x) {
     std::vector<double> size(x.size());

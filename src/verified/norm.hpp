@@ -1,11 +1,17 @@
 #pragma once
-// Upper bounds of 2-norms over the whole range of double: private to the room.
+// Upper bounds of 2-norms over the whole range of double: private to the room, and to descent.cpp of trajectory.
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <span>
 
 namespace isostat {
+
+/// Raises a computed sum of at most so many terms >= 0, or its root, above the exact one (B1).
+constexpr double sum_slack(std::size_t terms) {
+    return 1 + std::max(1e-10, 2 * static_cast<double>(terms) * 0x1p-53);
+}
 
 /// A product or quotient that underflows errs by at most this (in truth 2^-1075).
 inline constexpr double underflow_unit = 0x1p-1074;
@@ -18,7 +24,7 @@ inline double norm_above(std::span<const double> x) {
         plain += c * c;
     }
     if (plain > 0x1p-900 && plain < 0x1p1000) { // the underflow is below 2^-1022 n
-        return std::sqrt(plain) * (1 + 1e-10);
+        return std::sqrt(plain) * sum_slack(x.size());
     }
     double largest = 0;
     for (const double entry : x) {
@@ -40,7 +46,7 @@ inline double norm_above(std::span<const double> x) {
         const double scaled = c * scale;
         sum += scaled * scaled; // the underflow here is below 2^-1022 n, and the largest term is then at least 1/4
     }
-    return std::ldexp(std::sqrt(sum) * (1 + 1e-10), exponent) + underflow_unit;
+    return std::ldexp(std::sqrt(sum) * sum_slack(x.size()), exponent) + underflow_unit;
 }
 
 } // namespace isostat

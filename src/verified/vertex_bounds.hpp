@@ -73,7 +73,7 @@ class HeaviestSum {
         const double w = cell_weight(contact);
         add(contact, part * (2 + w), part * w * (contact.i == contact.j ? w : 2 + w));
     }
-    /// The largest sum, including roundings of up to 10^6 terms.
+    /// The largest sum, including roundings of its terms (B1).
     [[nodiscard]] double largest() const {
         return std::max(cell_, *std::max_element(at_disk_.begin(), at_disk_.end())) * (1 + 1e-9);
     }

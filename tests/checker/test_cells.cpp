@@ -11,8 +11,6 @@
 #include "support/cells.hpp"
 #include "support/scale.hpp"
 
-#include <isostat/core/result.hpp>
-
 using namespace claims;
 
 namespace {
@@ -26,32 +24,7 @@ State sheared_rectangle() {
     return state;
 }
 
-State of_file(const std::string& name) {
-    return read_any_state(std::string(ISOSTAT_TEST_DATA) + "/cells/" + name + "_16.json").state;
-}
-
-std::vector<State> small_cells() {
-    return {cells::one_disk(2, 3), cells::one_tilted_disk(2, 1, 0.25), cells::channel_disk(),
-            cells::with_a_rattler(0.3)};
-}
-
-bool accepted(const Certificate& certificate) {
-    try {
-        return read_and_verified(certificate).verdict == Verdict::proved;
-    } catch (const Error&) {
-        return false;
-    }
-}
-
 } // namespace
-
-BOOST_AUTO_TEST_CASE(every_arithmetic_proves_small_cells) {
-    for (const State& state : small_cells()) {
-        for (const CheckerArithmetic arithmetic : every_arithmetic) {
-            are_proved(verify(maker::certificate(state), arithmetic));
-        }
-    }
-}
 
 BOOST_AUTO_TEST_CASE(ties_by_inversion_are_claimed_by_nobody) {
     const State state = sheared_rectangle();
@@ -68,9 +41,9 @@ BOOST_AUTO_TEST_CASE(ties_by_inversion_are_claimed_by_nobody) {
 }
 
 BOOST_AUTO_TEST_CASE(what_is_certified_in_a_cell_verifies) {
-    std::vector<State> states = small_cells();
-    for (const char* name : {"rect", "tilt", "channel"}) {
-        states.push_back(of_file(name));
+    std::vector<State> states = cells::small();
+    for (const char* name : {"rect_16", "tilt_16", "channel_16"}) {
+        states.push_back(cells::of_file(name));
         are_proved(verify(maker::certificate(states.back())));
     }
     for (const State& state : states) {
@@ -83,8 +56,8 @@ BOOST_AUTO_TEST_CASE(what_is_certified_in_a_cell_verifies) {
 }
 
 BOOST_AUTO_TEST_CASE(claims_do_not_depend_on_pin_or_representatives) {
-    for (const char* name : {"rect", "tilt", "channel"}) {
-        const State state = of_file(name);
+    for (const char* name : {"rect_16", "tilt_16", "channel_16"}) {
+        const State state = cells::of_file(name);
         State other = state;
         other.packing.cell.pin = 5;
         std::vector<Image> shift(state.packing.radius.size());
@@ -107,61 +80,8 @@ BOOST_AUTO_TEST_CASE(claims_do_not_depend_on_pin_or_representatives) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(forged_certificates_of_cells_do_not_verify) {
-    struct Forgery {
-        const char* name;
-        std::function<void(Certificate&)> forge;
-    };
-    const auto first_image = [](Certificate& c) -> Image& {
-        return std::find_if(c.state.contacts.begin(), c.state.contacts.end(),
-                            [](const Contact& l) { return l.i != l.j && !l.image.is_here(); })
-            ->image;
-    };
-    const std::vector<Forgery> forgeries{
-        {"an image changed", [](Certificate& c) { c.state.contacts[0].image.m[1] = 1; }},
-        {"an image left out", [&](Certificate& c) { first_image(c) = {}; }},
-        {"an image turned round", [&](Certificate& c) { first_image(c) = first_image(c).opposite(); }},
-        {"a contact left out", [](Certificate& c) { c.state.contacts.pop_back(); }},
-        {"a period longer", [](Certificate& c) { c.state.packing.length(0) *= 1 + 1e-9; }},
-        {"a tilt", [](Certificate& c) { c.state.packing.q.back() += 1e-9; }},
-        {"a period that moves no more", [](Certificate& c) { c.state.packing.cell.period_moves[0] = false; }},
-        {"a tilt that moves or not",
-         [](Certificate& c) { c.state.packing.cell.tilt_moves[0] = !c.state.packing.cell.tilt_moves[0]; }},
-        {"another stress", [](Certificate& c) { c.state.load.stress[0] *= 1 + 1e-9; }},
-        {"another reference length", [](Certificate& c) { c.state.load.reference_length[1] *= 1 + 1e-9; }},
-        {"walls instead of periods",
-         [](Certificate& c) {
-             c.state.packing.cell.periodic[0] = c.state.packing.cell.period_moves[0] = false;
-             c.state.packing.walls.upper[0] = WallKind::movable;
-         }},
-        {"loads that do not sum to zero", [](Certificate& c) { c.state.load.infinitesimal[0] += 1; }},
-        {"a larger gap", [](Certificate& c) { c.claims.gaps->smallest *= 1 + 1e-9; }},
-        {"the gap of another image", [](Certificate& c) { c.claims.gaps->where.image.m[0] += 1; }},
-        {"a force", [](Certificate& c) { c.claims.forces->finite[0] = c.claims.forces->finite[1]; }},
-        {"the other end", [](Certificate& c) { std::swap(c.claims.load_interval->low, c.claims.load_interval->high); }},
-        {"a degree of freedom more", [](Certificate& c) { ++c.claims.counting->dof_count; }}};
-    for (const char* name : {"rect", "tilt", "channel"}) {
-        const Certificate original = certified(of_file(name));
-        for (const Forgery& forgery : forgeries) {
-            Certificate forged = original;
-            forgery.forge(forged);
-            BOOST_TEST(!accepted(forged), name << ": " << forgery.name);
-        }
-    }
-    for (const char* name : {"rect", "tilt"}) { // where the lengths are those of reference it is the same load
-        State state = of_file(name);
-        state.load.reference_length[0] *= 1 + 0x1p-10;
-        Certificate forged = certified(state);
-        forged.state.load.kind = LoadKind::true_stress;
-        BOOST_TEST(!accepted(forged), name << ": true stresses");
-    }
-    Certificate sheared = certified(cells::one_tilted_disk(2, 1, 0.25));
-    sheared.state.load.shear[0] *= 1 + 1e-9;
-    BOOST_TEST((verify(sheared).verdict == Verdict::refuted));
-}
-
 BOOST_AUTO_TEST_CASE(another_pin_or_shear_is_another_state) {
-    const State state = of_file("tilt");
+    const State state = cells::of_file("tilt_16");
     State other = state;
     other.packing.cell.pin = 5;
     BOOST_TEST(state_difference(state, other) == "the cell");
@@ -231,26 +151,33 @@ BOOST_AUTO_TEST_CASE(the_sweep_finds_the_smallest_gap_among_images) {
     }
 }
 
-// The vertex may be anywhere in its enclosure, the cell too.
-BOOST_AUTO_TEST_CASE(forces_in_a_cell_hold_at_every_point_of_the_enclosure) {
-    for (const State& state : {cells::one_tilted_disk(2, 1, 0.25), sheared_rectangle(), of_file("tilt")}) {
+// The vertex may be anywhere in its enclosure, the cell too, so the ranges of the forces hold those of every point of
+// it; of three disks not a hundred times more.
+BOOST_AUTO_TEST_CASE(forces_hold_at_every_point_of_the_enclosure) {
+    const std::vector<std::pair<State, int>> all{{crafted::three_disks(1, 1.1, 1.3, 1, 1.5), -12},
+                                                 {cells::one_tilted_disk(2, 1, 0.25), -20},
+                                                 {sheared_rectangle(), -20},
+                                                 {cells::of_file("tilt_16"), -20}};
+    for (const auto& [state, exponent] : all) {
         const checker::Problem problem(state);
         const checker::Solver solver(problem);
         const checker::InverseBound inverse = checker::bound_inverse(problem, solver, CheckerArithmetic::fixed64);
         checker::TrueVertex vertex = checker::find_vertex(problem, solver, inverse);
         BOOST_REQUIRE(vertex.found);
-        const checker::Rational radius = checker::power_of_two(-20);
+        const checker::Rational radius = checker::power_of_two(exponent);
         vertex.moved_most += radius;
         vertex.column_residual = inverse.residual_column + inverse.column_sum_max *
                                                                checker::Rational(problem.column_curvature()) *
                                                                vertex.moved_most;
-        const auto forces_at = [&](const checker::TrueVertex& at) {
-            return checker::contact_forces(problem, solver, inverse, at, checker::finite_load(problem, state, at));
+        const auto forces_at = [&, &of = state](const checker::TrueVertex& at) {
+            return checker::contact_forces(problem, solver, inverse, at, checker::finite_load(problem, of, at));
         };
         vertex.radius = radius;
         const std::vector<checker::Range> enclosed = forces_at(vertex);
+        checker::Rational farthest = 0; // of the way to an end
         std::mt19937_64 random(1);
-        for (int sample = 0; sample < testing::scaled(50); ++sample) {
+        const bool in_box = !state.packing.cell.any();
+        for (int sample = 0; sample < testing::scaled(in_box ? 200 : 50); ++sample) {
             checker::TrueVertex point = vertex;
             point.radius = 0;
             std::vector<checker::Integer> middle = point.middle;
@@ -262,16 +189,20 @@ BOOST_AUTO_TEST_CASE(forces_in_a_cell_hold_at_every_point_of_the_enclosure) {
             const std::vector<checker::Range> there = forces_at(point);
             for (std::size_t l = 0; l < there.size(); ++l) {
                 BOOST_REQUIRE((there[l].lower >= enclosed[l].lower && there[l].upper <= enclosed[l].upper));
+                const checker::Rational centre = (enclosed[l].lower + enclosed[l].upper) / 2;
+                const checker::Rational way = abs(there[l].lower - centre) / (enclosed[l].upper - centre);
+                farthest = std::max(farthest, way);
             }
         }
+        BOOST_TEST((!in_box || farthest.get_d() > 0.01));
     }
 }
 
 // K1 (b) and K2: rows and columns of the derivative between two configurations.
 BOOST_AUTO_TEST_CASE(the_derivative_changes_by_at_most_its_curvature) {
     std::mt19937_64 random(5);
-    std::vector<State> states = small_cells();
-    states.push_back(of_file("tilt"));
+    std::vector<State> states = cells::small();
+    states.push_back(cells::of_file("tilt_16"));
     for (const State& state : states) {
         const checker::Problem problem(state);
         checker::Integer farthest_row = 0, farthest_column = 0;

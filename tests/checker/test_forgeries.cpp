@@ -2,6 +2,7 @@
 // be refused or left undecided, but for those that proofs/checker.md lists as not checked.
 #include "checker/altered_run.hpp"
 #include "support/bad_input.hpp"
+#include "support/cells.hpp"
 #include "support/clumps.hpp"
 #include "support/crafted.hpp"
 #include "support/mirror.hpp"
@@ -58,18 +59,12 @@ State swing(double x, double y) {
         .state;
 }
 
-std::vector<std::string> fields_of(const fs::path& run, std::size_t row) {
-    return scratch::split(scratch::lines_of(run / "equilibria.csv")[row], ',');
-}
-
-/// Writes into one field of equilibria.csv, `otherwise` when it says so already.
-void set_field(const fs::path& run, std::size_t row, std::size_t column, const std::string& value,
-               const std::string& otherwise) {
-    std::vector<std::string> text = scratch::lines_of(run / "equilibria.csv");
-    std::vector<std::string> fields = fields_of(run, row);
-    fields[column] = fields[column] == value ? otherwise : value;
-    text[row] = scratch::joined(fields, ',');
-    scratch::write(run / "equilibria.csv", scratch::joined(text, '\n') + "\n");
+/// Writes into a field of equilibria.csv; row 0 is that of equilibrium 0.
+void set_field(const fs::path& run, std::size_t row, const std::string& column, const std::string& value) {
+    const std::string csv = scratch::read(run / "equilibria.csv");
+    std::vector<std::string> lines = scratch::split(csv, '\n');
+    lines[row + 1] = forger::row_with(csv, row + 1, column, value);
+    scratch::write(run / "equilibria.csv", scratch::joined(lines, '\n') + "\n");
 }
 
 /// A run, the verdict of which is words, every alteration of it tried.
@@ -80,12 +75,6 @@ struct Sample {
 };
 
 std::vector<Sample> samples() {
-    const auto of_cell = [](const char* name, int pin) {
-        State state = read_any_state(scratch::data(std::string("cells/") + name)).state;
-        state.packing.cell.pin = pin;
-        snap_to_grid(state.packing);
-        return state;
-    };
     using L = CertifyLevel;
     const std::string arcs = "proved";
     const std::string looked_at = "ends proved, way looked at";
@@ -108,10 +97,12 @@ std::vector<Sample> samples() {
                   L::decisions);
          },
          looked_at},
-        {"a tilted cell", [=](const fs::path& f) { play(of_cell("tilt_16.json", 0), {towards(1)}, f, L::decisions); },
+        {"a tilted cell", [](const fs::path& f) { play(cells::of_file("tilt_16", 0), {towards(1)}, f, L::decisions); },
          looked_at},
         {"a rattler is pinned",
-         [=](const fs::path& f) { play(of_cell("rect_16.json", 9), {towards(1)}, f, L::decisions, TiePolicy::choose); },
+         [](const fs::path& f) {
+             play(cells::of_file("rect_16", 9), {towards(1)}, f, L::decisions, TiePolicy::choose);
+         },
          looked_at},
         {"a choice", [](const fs::path& f) { play(equal_forces(), {towards(-1)}, f, L::decisions, TiePolicy::choose); },
          looked_at},
@@ -294,11 +285,7 @@ BOOST_AUTO_TEST_CASE(files_that_no_record_names_are_noted_and_left_alone) {
 BOOST_AUTO_TEST_CASE(what_a_row_says_of_its_own_errors_is_checked, *boost::unit_test::label("slow")) {
     const scratch::Folder folder;
     play(prepared(8, 3), {towards(2)}, folder / "eight");
-    const std::vector<std::string> names = equilibria_columns();
-    const auto column = [&names](const std::string& name) {
-        return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
-    };
-    const std::vector<std::string> fields = fields_of(folder / "eight", 2);
+    const auto fields = scratch::row_of(folder / "eight/equilibria.csv", 1);
     const std::vector<std::pair<std::string, std::string>> pairs{{"eps1", "eps1_bound"},
                                                                  {"eps2", "eps2_bound"},
                                                                  {"L1", "L1_bound"},
@@ -309,16 +296,15 @@ BOOST_AUTO_TEST_CASE(what_a_row_says_of_its_own_errors_is_checked, *boost::unit_
                                                                  {"min_gap", "min_gap_bound"},
                                                                  {"min_force", "force_bound"}};
     for (const auto& [value, bound] : pairs) {
-        const auto said = [&, of = column(value), by = column(bound)](const std::string& number,
-                                                                      const std::string& error) {
+        const auto said = [&, &of = value, &by = bound](const std::string& number, const std::string& error) {
             const auto alter = [&](const fs::path& run) {
-                set_field(run, 2, of, number, number);
-                set_field(run, 2, by, error, error);
+                set_field(run, 1, of, number);
+                set_field(run, 1, by, error);
             };
             return said_of(folder / "eight", alter);
         };
-        const std::string number = fields[column(value)];
-        const std::string error = fields[column(bound)];
+        const std::string number = fields.at(value);
+        const std::string error = fields.at(bound);
         const double beside =
             std::max(std::stod(number) + 2 * std::stod(error), std::nextafter(std::stod(number), 1e9));
         BOOST_TEST_INFO_SCOPE(value << " is " << number << " +- " << error);
@@ -352,18 +338,14 @@ BOOST_AUTO_TEST_CASE(a_disk_that_passes_through_another_one_is_not_proved) {
             certify_again(run / "certificates" / name, file.state);
         }
     }
-    const std::vector<std::string> names = equilibria_columns();
-    const auto column = [&names](const char* name) {
-        return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
-    };
-    for (const std::size_t row : {1, 2}) {
-        const State state = read_state(run / ("states/eq_00000" + std::to_string(row - 1) + ".json")).state;
-        const std::vector<std::string> fields = fields_of(run, row);
-        const auto nearest = checker::contact_of_columns(std::stoi(fields[column("min_gap_i")]),
-                                                         std::stoi(fields[column("min_gap_j")]), state.packing);
+    for (const std::size_t row : {0, 1}) {
+        const State state = read_state(run / ("states/eq_00000" + std::to_string(row) + ".json")).state;
+        const auto fields = scratch::row_of(run / "equilibria.csv", row);
+        const auto nearest = checker::contact_of_columns(std::stoi(fields.at("min_gap_i")),
+                                                         std::stoi(fields.at("min_gap_j")), state.packing);
         BOOST_REQUIRE(nearest.has_value());
-        set_field(run, row, column("min_gap"), Json(gap(state.packing, *nearest)).dump(), "");
-        set_field(run, row, column("min_gap_bound"), "1e-12", "");
+        set_field(run, row, "min_gap", Json(gap(state.packing, *nearest)).dump());
+        set_field(run, row, "min_gap_bound", "1e-12");
     }
     forger::seal(run);
     const RunVerification forged = verify_run(run);

@@ -1,6 +1,7 @@
 // Runs re-checked from their records; altered records must be found, the first of them named.
 #include "checker/strut.hpp"
 #include "support/bad_input.hpp"
+#include "support/cells.hpp"
 #include "support/crafted.hpp"
 #include "support/played.hpp"
 #include "support/same_sequence.hpp"
@@ -35,23 +36,10 @@ struct Alteration {
 };
 
 /// "name":value of a JSON line, multiplied.
-Alteration scaled(const std::string& events, int line, const std::string& name, double factor) {
-    const std::string text = line_of(events, line);
-    const std::size_t at = text.find("\"" + name + "\":") + name.size() + 3;
-    const std::size_t end = text.find_first_of(",}", at);
-    const std::string old = text.substr(at, end - at);
-    const double value = std::strtod(old.c_str(), nullptr);
-    std::ostringstream changed;
-    changed.precision(17);
-    changed << value * factor;
-    return {"events.jsonl", line, "\"" + name + "\":" + old, "\"" + name + "\":" + changed.str(), ""};
-}
-
-State of_cell(const std::string& name, int pin) {
-    State state = read_any_state(scratch::data("cells/" + name + ".json")).state;
-    state.packing.cell.pin = pin;
-    snap_to_grid(state.packing);
-    return state;
+Alteration scaled(const std::string& events, int line, const std::string& name, double factor,
+                  const std::string& said) {
+    const std::string old = forger::value_of(line_of(events, line), name), key = "\"" + name + "\":";
+    return {"events.jsonl", line, key + old, key + forger::times(old, factor), said};
 }
 
 /// The answer of one thread, and of more.
@@ -84,24 +72,11 @@ void finds(const std::filesystem::path& folder, const Alteration& alteration) {
     }
 }
 
-/// Where the field of a column begins and ends in a line of equilibria.csv.
-std::pair<std::size_t, std::size_t> field_of(const std::string& csv, int line, const std::string& column) {
-    const std::vector<std::string> names = equilibria_columns(
-        {line_of(csv, 1).find(",L3,") != std::string::npos, line_of(csv, 1).find(",touching,") != std::string::npos});
-    const auto index = std::find(names.begin(), names.end(), column) - names.begin();
-    const std::string text = line_of(csv, line);
-    std::size_t begin = 0;
-    for (std::ptrdiff_t k = 0; k < index; ++k) {
-        begin = text.find(',', begin) + 1;
-    }
-    return {begin, std::min(text.find(',', begin), text.size())};
-}
-
 /// The fields of a row of equilibria.csv, with one replaced.
-Alteration in_row(const std::string& csv, int line, const std::string& column, const std::string& value) {
-    const auto [begin, end] = field_of(csv, line, column);
-    const std::string text = line_of(csv, line);
-    return {"equilibria.csv", line, text, text.substr(0, begin) + value + text.substr(end), ""};
+Alteration in_row(const std::string& csv, int line, const std::string& column, const std::string& value,
+                  const std::string& said = "") {
+    return {"equilibria.csv", line, line_of(csv, line),
+            forger::row_with(csv, static_cast<std::size_t>(line - 1), column, value), said};
 }
 
 /// checkpoint.json and summary.json of a run whose last row is that of equilibrium `last`, in its first segment.
@@ -261,30 +236,24 @@ BOOST_AUTO_TEST_CASE(a_run_of_a_hundred_disks_is_replayed_and_altered_records_ar
     BOOST_REQUIRE(tension > 0);
     for (const auto& [name, said] : std::vector<std::pair<std::string, std::string>>{
              {"eps2", "eps2"}, {"work", "work"}, {"force", "force"}, {"sigma2", "stress"}}) {
-        Alteration alteration = scaled(events, tension, name, 1 + 1e-6);
-        alteration.said = said;
-        finds(folder / "run", alteration);
+        finds(folder / "run", scaled(events, tension, name, 1 + 1e-6, said));
     }
-    Alteration power = scaled(events, tension, "power", -1);
-    power.said = "power";
-    finds(folder / "run", power);
+    finds(folder / "run", scaled(events, tension, "power", -1, "power"));
     finds(folder / "run", {"events.jsonl", tension, "\"tension\"", "\"rattler\"", "kind"});
     finds(folder / "run", {"events.jsonl", tension, "\"step\":", "\"step\":1", "step"});
     finds(folder / "run", {"events.jsonl", tension, "\"arc\":", "\"arc\":1", "arc"});
     // Another contact opens, or closes.
-    const auto name_in = [&](const std::string& key, int line) {
-        const std::string text = line_of(events, line);
-        const std::size_t at = text.find("\"" + key + "\":\"") + key.size() + 4;
-        return text.substr(at, text.find('"', at) - at);
+    const auto names = [&](const std::string& key, const std::string& by, int line, const std::string& said) {
+        const std::string name = "\"" + key + "\":";
+        finds(folder / "run",
+              {"events.jsonl", line, name + forger::value_of(line_of(events, line), key), name + '"' + by + '"', said});
     };
     const State first = read_state(folder / "run/states/eq_000000.json").state;
     const std::string kept = to_string(first.contacts[5]);
-    BOOST_REQUIRE(kept != name_in("opened", tension));
-    finds(folder / "run",
-          {"events.jsonl", tension, "\"opened\":\"" + name_in("opened", tension), "\"opened\":\"" + kept, ""});
-    finds(folder / "run", {"events.jsonl", tension, "\"closed\":\"" + name_in("closed", tension),
-                           "\"closed\":\"" + kept, "closed already"});
-    finds(folder / "run", {"events.jsonl", 1, "\"opened\":\"" + name_in("opened", 1), "\"opened\":\"" + kept, ""});
+    BOOST_REQUIRE(line_of(events, tension).find("\"opened\":\"" + kept + '"') == std::string::npos);
+    names("opened", kept, tension, "");
+    names("closed", kept, tension, "closed already");
+    names("opened", kept, 1, "");
 
     // Several forces are negative somewhere: the other rule takes another one of them.
     played::refuted(forger::altered(folder / "run", "run.json", "most_negative", "least_negative"),
@@ -325,7 +294,7 @@ BOOST_AUTO_TEST_CASE(runs_in_periodic_cells_are_replayed_whichever_disk_is_pinne
             for (const TiePolicy ties : {TiePolicy::stop, TiePolicy::choose}) {
                 BOOST_TEST_INFO_SCOPE(name << ", disk " << pin << " pinned, ties " << word_of(ties, tie_policy_words));
                 const scratch::Folder folder;
-                play_and_store(of_cell(name, pin), {3}, folder / "run", OpeningRule::most_negative, ties);
+                play_and_store(cells::of_file(name, pin), {3}, folder / "run", OpeningRule::most_negative, ties);
                 const RunVerification run = verify_run(folder / "run");
                 BOOST_TEST(run.wrong == "");
                 BOOST_TEST(run.undecided.size() == 0U, (run.undecided.empty() ? "" : run.undecided[0]));
@@ -334,10 +303,9 @@ BOOST_AUTO_TEST_CASE(runs_in_periodic_cells_are_replayed_whichever_disk_is_pinne
                 BOOST_TEST(run.equilibria_proved == 4);
                 same_with_threads(folder / "run", run);
                 for (const char* forged : {"32", "33"}) { // all of the contacts, in two of the cells
-                    Alteration all = in_row(scratch::read(folder / "run/equilibria.csv"), 3, "backbone", forged);
-                    all.said = "backbone";
                     if (pin == 9) {
-                        finds(folder / "run", all);
+                        finds(folder / "run",
+                              in_row(scratch::read(folder / "run/equilibria.csv"), 3, "backbone", forged, "backbone"));
                     }
                 }
             }
@@ -355,11 +323,11 @@ BOOST_AUTO_TEST_CASE(true_stresses_and_forces_on_disks_in_cells_are_replayed) {
         BOOST_TEST(run.arcs_proved == run.arcs);
     };
     for (const char* name : {"rect_16", "channel_16"}) {
-        State state = of_cell(name, 0);
+        State state = cells::of_file(name, 0);
         state.load.kind = LoadKind::true_stress;
         is_replayed(state);
     }
-    State state = of_cell("rect_16", 0);
+    State state = cells::of_file("rect_16", 0);
     state.load.disk_force.assign(32, 0.0);
     state.load.disk_force[4] = 0.125;
     state.load.disk_force[10] = -0.125;
@@ -368,14 +336,11 @@ BOOST_AUTO_TEST_CASE(true_stresses_and_forces_on_disks_in_cells_are_replayed) {
 
 BOOST_AUTO_TEST_CASE(altered_records_of_a_run_in_a_cell_are_named, *boost::unit_test::label("slow")) {
     const scratch::Folder run;
-    play_and_store(of_cell("tilt_16", 0), {2}, run);
+    play_and_store(cells::of_file("tilt_16", 0), {2}, run);
     const std::string events = scratch::read(run / "events.jsonl");
     const std::string csv = scratch::read(run / "equilibria.csv");
-    for (const auto& [name, said] :
-         std::vector<std::pair<std::string, std::string>>{{"eps2", "eps2"}, {"work", "work"}, {"power", "power"}}) {
-        Alteration alteration = scaled(events, 5, name, 1 + 1e-6);
-        alteration.said = said;
-        finds(run, alteration);
+    for (const char* name : {"eps2", "work", "power"}) {
+        finds(run, scaled(events, 5, name, 1 + 1e-6, name));
     }
     finds(run, {"events.jsonl", 2, "3-8(1,0)", "3-8", "no contact of the structure"});
     forger::unreadable(run, "events.jsonl", "3-8(1,0)", "3-8(1,0,0)", "opened is");

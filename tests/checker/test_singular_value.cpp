@@ -6,6 +6,7 @@
 #include "checker/small_states.hpp"
 #include "checker/vertex.hpp"
 #include "support/scratch.hpp"
+#include "support/spheres.hpp"
 
 #include <isostat/checker/verify.hpp>
 
@@ -64,6 +65,9 @@ BOOST_AUTO_TEST_CASE(the_singular_value_agrees_with_a_dense_one, *boost::unit_te
                                small_states::with_a_rattler(), small_states::with_a_fixed_disk(),
                                small_states::in_a_corner(), sample("vertex100.txt"), sample("vertex400.txt")}) {
         agrees_with_a_dense_one(state);
+    }
+    for (const char* name : {"closed_tetra", "box_uniform_30_1", "tri_uniform_30_1"}) { // rows of 6 and of 12 entries
+        agrees_with_a_dense_one(test::state_of_spheres(test::read_spheres(name)));
     }
 }
 

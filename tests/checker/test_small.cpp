@@ -2,6 +2,7 @@
 #include "checker/claims.hpp"
 #include "checker/maker.hpp"
 #include "checker/small_states.hpp"
+#include "support/cells.hpp"
 
 using namespace claims;
 
@@ -26,13 +27,22 @@ Interval neighbours(double value) {
 
 } // namespace
 
-BOOST_AUTO_TEST_CASE(every_arithmetic_proves_the_small_cases) {
-    for (const State& state :
-         {crafted::one_disk(1, 2), crafted::two_disks(1, 2, 1, 1), crafted::three_disks(1, 1.1, 1.3, 1, 1),
-          small_states::with_a_rattler(), small_states::with_a_fixed_disk(), small_states::in_a_corner()}) {
+BOOST_AUTO_TEST_CASE(every_arithmetic_proves_small_boxes_and_cells) {
+    std::vector<State> states{
+        crafted::one_disk(1, 2),        crafted::two_disks(1, 2, 1, 1),    crafted::three_disks(1, 1.1, 1.3, 1, 1),
+        small_states::with_a_rattler(), small_states::with_a_fixed_disk(), small_states::in_a_corner()};
+    const std::vector<State> in_cells = cells::small();
+    states.insert(states.end(), in_cells.begin(), in_cells.end());
+    for (const State& state : states) {
         for (const CheckerArithmetic arithmetic : every_arithmetic) {
             are_proved(verify(maker::certificate(state), arithmetic));
         }
+    }
+    // A sample of another program, with what it can be asked in some seconds.
+    const Certificate sample = maker::certificate(read_state(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state);
+    for (const CheckerArithmetic arithmetic :
+         {CheckerArithmetic::singular_value, CheckerArithmetic::fixed64, CheckerArithmetic::gmp}) {
+        are_proved(verify(sample, arithmetic));
     }
 }
 

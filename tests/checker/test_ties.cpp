@@ -7,6 +7,8 @@
 
 using namespace isostat;
 using crafted::Ties;
+using forger::times;
+using forger::value_of;
 namespace fs = std::filesystem;
 
 namespace {
@@ -36,26 +38,11 @@ bool finds(const fs::path& folder, const std::string& file, const std::string& f
     return run.verdict == Verdict::refuted;
 }
 
-/// The text of the number or list after "name": in the first line that has it.
-std::string value_of(const std::string& text, const std::string& name) {
-    const std::size_t at = text.find("\"" + name + "\":");
-    BOOST_REQUIRE(at != std::string::npos);
-    const std::size_t begin = at + name.size() + 3;
-    return text.substr(begin, text.find_first_of(",}]", begin) - begin);
-}
-
-std::string scaled(const std::string& number, double factor) {
-    std::ostringstream text;
-    text.precision(17);
-    text << std::strtod(number.c_str(), nullptr) * factor;
-    return text.str();
-}
-
 /// The number at the head of the first list of this name in the events, multiplied.
 void finds_head(const fs::path& folder, const std::string& name, double factor) {
     const std::string head = value_of(scratch::read(folder / "events.jsonl"), name).substr(1);
     const std::string key = "\"" + name + "\":[";
-    finds(folder, "events.jsonl", key + head, key + scaled(head, factor), "first-order");
+    finds(folder, "events.jsonl", key + head, key + times(head, factor), "first-order");
 }
 
 /// The first term of a list of equilibrium 1, multiplied; `name` ends with this in its contact.
@@ -66,7 +53,7 @@ void finds_term(const fs::path& folder, const std::string& list, const std::stri
     BOOST_REQUIRE(at != std::string::npos);
     const std::size_t begin = stored.find(name, at) + name.size();
     const std::string term = stored.substr(begin, stored.find(',', begin) - begin);
-    finds(folder, "states/eq_000001.json", name + term, name + scaled(term, factor), said);
+    finds(folder, "states/eq_000001.json", name + term, name + times(term, factor), said);
 }
 
 } // namespace
@@ -78,7 +65,7 @@ BOOST_AUTO_TEST_CASE(power_turn_held_coordinate_and_release_are_replayed_and_alt
     BOOST_TEST(verify_run(folder).turns_checked == 1);
     const std::string events = scratch::read(folder / "events.jsonl");
     const std::string held = value_of(events, "held_at");
-    finds(folder, "events.jsonl", "\"held_at\":" + held, "\"held_at\":" + scaled(held, 1 + 1e-3), "");
+    finds(folder, "events.jsonl", "\"held_at\":" + held, "\"held_at\":" + times(held, 1 + 1e-3), "");
     forger::unreadable(folder, "events.jsonl", "\"power_turn\":true", "\"power_turn\":false", "held_at is");
     finds(folder, "events.jsonl", "\"power_turn\":true,\"held_at\":" + held, "\"power_turn\":false", "power_turn");
     finds(folder, "events.jsonl", "\"closed\":\"held x of grain 1\"", "\"closed\":\"held x of grain 0\"", "");
@@ -88,7 +75,7 @@ BOOST_AUTO_TEST_CASE(power_turn_held_coordinate_and_release_are_replayed_and_alt
     // The multiplier of the release.
     const std::string release = events.substr(events.find("\"kind\":\"release\""));
     const std::string force = value_of(release, "force");
-    finds(folder, "events.jsonl", "\"force\":" + force, "\"force\":" + scaled(force, 1 + 1e-5), "force");
+    finds(folder, "events.jsonl", "\"force\":" + force, "\"force\":" + times(force, 1 + 1e-5), "force");
 }
 
 BOOST_AUTO_TEST_CASE(a_turning_arc_is_replayed) {
@@ -113,7 +100,7 @@ BOOST_AUTO_TEST_CASE(a_tie_of_two_forces_is_replayed_and_altered_first_order_ter
     // The direction of the radii, and the first-order force of the contact that stays at 0.
     const std::string stored = scratch::read(folder / "states/eq_000001.json");
     const std::string rho = value_of(stored, "rho").substr(1);
-    finds(folder, "states/eq_000001.json", "\"rho\":[" + rho, "\"rho\":[" + scaled(rho, 2), "direction of the radii");
+    finds(folder, "states/eq_000001.json", "\"rho\":[" + rho, "\"rho\":[" + times(rho, 2), "direction of the radii");
     finds_term(folder, "zero", "],", 1.001, "first-order force");
 }
 
@@ -175,7 +162,7 @@ BOOST_AUTO_TEST_CASE(a_hyperstatic_start_and_lattices_are_replayed) {
             const std::size_t begin = events.find(name, entry) + name.size();
             const std::string term = events.substr(begin, events.find(',', begin) - begin);
             altered += finds(folder, "events.jsonl", events.substr(entry, begin - entry) + term,
-                             events.substr(entry, begin - entry) + scaled(term, 1.001), "first-order")
+                             events.substr(entry, begin - entry) + times(term, 1.001), "first-order")
                            ? 1
                            : 0;
             kinds.insert(kind);

@@ -67,28 +67,6 @@ std::string table(const std::string& page, const std::string& head) {
     return page.substr(begin, page.find("\n\n", begin) - begin);
 }
 
-/// Names of headings as links have them: small letters, no marks, hyphens.
-std::set<std::string> anchors(const std::string& page) {
-    std::set<std::string> names;
-    bool code = false;
-    for (const std::string& line : lines(page)) {
-        code = line.starts_with("```") ? !code : code;
-        if (code || !line.starts_with("#")) {
-            continue;
-        }
-        std::string name;
-        for (const char c : line.substr(line.find_first_not_of("# "))) {
-            const auto u = static_cast<unsigned char>(c);
-            name += c == ' ' ? "-"
-                    : std::isalnum(u) || c == '-' || c == '_' || u >= 128
-                        ? std::string(1, static_cast<char>(std::tolower(u)))
-                        : "";
-        }
-        names.insert(name);
-    }
-    return names;
-}
-
 /// What a message about the unknown `no_such_key` lists behind "expected one of".
 std::set<std::string> expected_names(const Outcome& outcome, const std::string& where) {
     expect(outcome, 65, {"'no_such_key'" + where});
@@ -206,34 +184,6 @@ BOOST_AUTO_TEST_CASE(the_page_of_files_has_every_column_and_every_field) {
     const scratch::Folder folder;
     scratch::write(folder / "s.json", R"({"format": "isostat-state", "version": 2, "no_such_key": 1})");
     same(expected_names(run({"inspect", folder.at("s.json")}), ""), first_column(section(page, "## States")), "states");
-}
-
-BOOST_AUTO_TEST_CASE(links_of_the_pages_lead_somewhere) {
-    int links = 0;
-    for (auto at = fs::recursive_directory_iterator(project); at != fs::recursive_directory_iterator(); ++at) {
-        const std::string name = at->path().filename().string();
-        if (at->is_directory() && (name == "build" || name == "output" || name.starts_with("."))) {
-            at.disable_recursion_pending();
-        }
-        if (at->path().extension() != ".md") {
-            continue;
-        }
-        for (const std::string& target : matches(scratch::read(at->path()), R"(\]\(([^)\s]+)\))")) {
-            if (target.find("://") != std::string::npos) {
-                continue;
-            }
-            const std::size_t mark = target.find('#');
-            const std::string file = target.substr(0, mark);
-            const fs::path there = file.empty() ? at->path() : at->path().parent_path() / file;
-            BOOST_TEST(fs::exists(there), at->path() << " links to " << target);
-            if (mark != std::string::npos && fs::exists(there) && there.extension() == ".md") {
-                BOOST_TEST(anchors(scratch::read(there)).count(target.substr(mark + 1)) == 1U,
-                           at->path() << " links to " << target << ": no such heading");
-            }
-            ++links;
-        }
-    }
-    BOOST_TEST(links > 100);
 }
 
 BOOST_AUTO_TEST_CASE(the_page_of_files_has_every_key_of_a_manifest) {

@@ -3,7 +3,7 @@
 #include "compare/report.hpp"
 #include "compare/series_copy.hpp"
 #include "support/bad_input.hpp"
-#include "support/segments.hpp"
+#include "support/crafted.hpp"
 
 using namespace isostat;
 using compare::Comparison;
@@ -229,40 +229,32 @@ BOOST_AUTO_TEST_CASE(a_frame_in_motion_is_on_the_arc_of_the_exact_run_whose_cont
         BOOST_TEST((f.status == FrameStatus::moving) == !f.nearest_arc.empty());
     }
     // Of a run from the vertex of the first frame, told arc by arc: the frame that has the contacts of one of them.
-    struct Told final : RunObserver {
-        void on_equilibrium(const EquilibriumRecord& /*record*/, const State& state,
-                            const std::vector<double>& /*forces*/) override {
-            start = start ? start : std::optional(state);
-        }
-        void on_arc(const ArcRecord& arc) override { arcs.push_back(arc); }
-        std::optional<State> start;
-        std::vector<ArcRecord> arcs;
-    } told;
-    State state = result.path.front().state;
-    RunCounters counters;
-    BOOST_TEST(!run_segment(state, towards(4), 0, {}, counters, told).failure);
-    BOOST_TEST_REQUIRE(told.arcs.size() > 3);
-    std::vector<Contact> kept = compare::carrying(*told.start);
+    const crafted::Played told = crafted::play(result.path.front().state, +1, 4);
+    BOOST_TEST(told.outcome.completed, told.why());
+    const std::vector<ArcRecord>& arcs = told.records.arcs;
+    BOOST_TEST_REQUIRE(arcs.size() > 3);
+    const State& start = told.records.states.front();
+    std::vector<Contact> kept = compare::carrying(start);
     std::vector<compare::JudgedFrame> frames(3);
     for (std::size_t k = 0; k < 3; ++k) { // frame k is on arc 1, 2, 3: one contact each
-        std::erase(kept, told.arcs[k].opened);
+        std::erase(kept, arcs[k].opened);
         frames[k].result.status = FrameStatus::moving;
         frames[k].pressed = kept;
         std::sort(frames[k].pressed.begin(), frames[k].pressed.end());
-        kept.push_back(told.arcs[k].closed);
+        kept.push_back(arcs[k].closed);
     }
     const Contact first = frames[1].pressed.front();
     frames[1].pressed.erase(frames[1].pressed.begin());
     compare::NearestArcs nearest(frames);
-    nearest.start(*told.start);
-    for (std::size_t k = 0; k < told.arcs.size(); ++k) {
-        nearest.add(told.arcs[k], 7);
+    nearest.start(start);
+    for (std::size_t k = 0; k < arcs.size(); ++k) {
+        nearest.add(arcs[k], 7);
     }
     nearest.tell(frames, 2);
     BOOST_TEST(frames[0].result.nearest_arc ==
-               fmt::format("arc {} on the way to equilibrium 7, the same contacts", told.arcs[0].arc));
+               fmt::format("arc {} on the way to equilibrium 7, the same contacts", arcs[0].arc));
     BOOST_TEST(frames[1].result.nearest_arc == fmt::format("arc {} on the way to equilibrium 7, without{}, with none",
-                                                           told.arcs[1].arc, compare::names_of({first})));
+                                                           arcs[1].arc, compare::names_of({first})));
     BOOST_TEST(frames[2].result.nearest_arc ==
-               fmt::format("arc {} on the way to equilibrium 7, the same contacts", told.arcs[2].arc));
+               fmt::format("arc {} on the way to equilibrium 7, the same contacts", arcs[2].arc));
 }

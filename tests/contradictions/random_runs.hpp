@@ -1,16 +1,14 @@
 #pragma once
 // Runs drawn at random: the start, the programme, the settings, and where they are killed.
 
-#include "certificate/state_certifier.hpp"
 #include "contradictions/states.hpp"
+#include "support/played.hpp"
 #include "support/scratch.hpp"
 
 #include <isostat/core/result.hpp>
-#include <isostat/io/run_directory.hpp>
 #include <isostat/io/state_file.hpp>
 #include <isostat/preparation/preparation.hpp>
 #include <isostat/scene/scene.hpp>
-#include <isostat/trajectory/trajectory.hpp>
 
 namespace contradictions {
 
@@ -155,10 +153,7 @@ class Keeper final : public RunObserver {
 inline RunHeader header_of(const RandomRun& run) {
     RunHeader header;
     header.program = "test";
-    header.settings = fmt::format(
-        R"({{"run":{{"rule":"{}","rule_seed":{},"certify":"{}","ties":"{}","max_choices":{}}}}})",
-        word_of(run.options.rule, opening_rule_words), run.options.rule_seed, to_string(run.options.certify),
-        word_of(run.options.ties, tie_policy_words), run.options.max_choices);
+    header.settings = played::settings(run.options);
     header.touching = run.options.at_first_order();
     header.programme.assign(run.segments.size(), "a segment");
     header.states_every = run.states_every;

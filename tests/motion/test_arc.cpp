@@ -2,61 +2,26 @@
 #include "motion/arc.hpp"
 #include "motion/event_scan.hpp"
 #include "motion/precise_end.hpp"
-#include "support/crafted.hpp"
+#include "motion/rolling.hpp"
 
 using namespace isostat;
 using namespace crafted;
 
 namespace {
 
-constexpr double start_angle = 0.2;
+struct Rolling : RollingDisk {
+    std::vector<Contact> contacts{pair(0, 2), pair(1, 2)};
 
-/// Disk 0 fixed at the origin (radius 1), the free disk 2 (radius 1) on it at `start_angle`, held there by the fixed
-/// disk 1; further fixed disks are obstacles. No walls.
-struct Rolling {
-    State state;
-
-    Rolling() {
-        state.packing.walls = Walls::none();
-        const double x = 2 * std::cos(start_angle);
-        const double y = 2 * std::sin(start_angle);
-        state.packing.radius = {1, 1, 1};
-        state.packing.q = {0, 0, x + 2 * std::sin(start_angle), y - 2 * std::cos(start_angle), x, y, 0, 0};
-        state.packing.fixed = {1, 1, 0};
-        state.contacts = {pair(0, 2), pair(1, 2)};
-        state.load.disk_force.assign(6, 0.0);
-    }
-    /// A fixed disk that the rolling one touches (clearance 0), overlaps (< 0) or passes (> 0) when it is at `angle`.
-    void obstacle(double angle, double radius, double clearance) {
-        const double distance = 3 + radius + clearance;
-        auto& q = state.packing.q;
-        q.insert(q.end() - 2, {distance * std::cos(angle), distance * std::sin(angle)});
-        state.packing.radius.push_back(radius);
-        state.packing.fixed.push_back(1);
-        state.load.disk_force.insert(state.load.disk_force.end(), {0.0, 0.0});
-    }
-    /// A fixed disk of radius 1 that stops the rolling one at `angle`.
-    void stop(double angle) {
-        auto& q = state.packing.q;
-        q.insert(q.end() - 2, {2 * std::cos(angle) - 2 * std::sin(angle), 2 * std::sin(angle) + 2 * std::cos(angle)});
-        state.packing.radius.push_back(1);
-        state.packing.fixed.push_back(1);
-        state.load.disk_force.insert(state.load.disk_force.end(), {0.0, 0.0});
-    }
-    void push(double fx, double fy) {
-        state.load.disk_force[4] = fx;
-        state.load.disk_force[5] = fy;
-    }
     Result<Arc> roll(double step_fraction, bool precisely = false) {
-        snap_to_grid(state.packing);
-        const auto structure = required(IsostaticStructure::prove(state.packing, state.contacts));
+        snap_to_grid(packing);
+        const auto structure = required(IsostaticStructure::prove(packing, contacts));
         const Factorisation factorisation(structure);
-        CandidateList candidates = find_candidates(state.packing, candidate_fraction);
+        CandidateList candidates = find_candidates(packing, candidate_fraction);
         ArcOptions options;
         options.step_fraction = step_fraction;
         options.precisely = precisely;
-        return follow_arc(ArcOrigin{state.packing, structure, factorisation, ContactId(1)},
-                          PowerLoad{&state.load, false, false}, candidates, options);
+        return follow_arc(ArcOrigin{packing, structure, factorisation, ContactId(1)}, PowerLoad{&load, false, false},
+                          candidates, options);
     }
     static double angle(const Arc& arc) { return std::atan2(arc.end.q[5], arc.end.q[4]); }
 };
@@ -98,14 +63,14 @@ BOOST_AUTO_TEST_CASE(a_grazing_dip_counts_and_a_near_miss_does_not) {
 struct Grazing : Rolling {
     explicit Grazing(double overlap) {
         obstacle(std::numbers::pi / 2, 2, 0);
-        state.packing.q[6] = 0;
-        state.packing.q[7] = 5 - overlap;
+        packing.q[6] = 0;
+        packing.q[7] = 5 - overlap;
     }
     /// From a rough end on top of the fixed disk, rolling up to it (+1) or back (-1).
     [[nodiscard]] std::optional<Packing> end(double direction) {
-        snap_to_grid(state.packing);
-        const auto structure = required(IsostaticStructure::prove(state.packing, state.contacts));
-        Packing top = state.packing;
+        snap_to_grid(packing);
+        const auto structure = required(IsostaticStructure::prove(packing, contacts));
+        Packing top = packing;
         top.q[4] = 0;
         top.q[5] = 2;
         std::vector<double> tangent(top.q.size(), 0.0);
@@ -182,15 +147,15 @@ BOOST_AUTO_TEST_CASE(a_gap_that_grazes_where_an_arc_ends_does_not_keep_it_from_i
 BOOST_AUTO_TEST_CASE(a_gap_of_0_to_rounding_that_an_arc_does_not_move_is_no_event) {
     Rolling rolling;
     rolling.stop(2.0);
-    auto& q = rolling.state.packing.q;
+    auto& q = rolling.packing.q;
     q.insert(q.end() - 2, {20, 20, 22, 20, 21, 20 + std::sqrt(3), 23, 20 + std::sqrt(3)});
-    rolling.state.packing.radius.insert(rolling.state.packing.radius.end(), 4, 1.0);
-    rolling.state.packing.fixed.insert(rolling.state.packing.fixed.end(), {1, 1, 0, 1});
-    rolling.state.load.disk_force.insert(rolling.state.load.disk_force.end(), 8, 0.0);
-    rolling.state.contacts.insert(rolling.state.contacts.end(), {pair(4, 6), pair(5, 6)});
+    rolling.packing.radius.insert(rolling.packing.radius.end(), 4, 1.0);
+    rolling.packing.fixed.insert(rolling.packing.fixed.end(), {1, 1, 0, 1});
+    rolling.load.disk_force.insert(rolling.load.disk_force.end(), 8, 0.0);
+    rolling.contacts.insert(rolling.contacts.end(), {pair(4, 6), pair(5, 6)});
     rolling.push(-1, 0.1);
     const auto arc = rolling.roll(0.1);
-    BOOST_TEST(gap(rolling.state.packing, pair(6, 7)) <= 0);
+    BOOST_TEST(gap(rolling.packing, pair(6, 7)) <= 0);
     BOOST_TEST_REQUIRE(arc.ok(), (arc.ok() ? "" : arc.failure().message()));
     BOOST_TEST((arc.value().closed == pair(2, 3)));
     BOOST_TEST(Rolling::angle(arc.value()) == 2.0, boost::test_tools::tolerance(1e-14));
@@ -226,14 +191,13 @@ struct Squeezed : Rolling {
     explicit Squeezed(double slope) {
         constexpr double apart = 4 - 1e-14;
         stop(2.0);
-        Packing& packing = state.packing;
         first = packing.q.size() - 2;
         packing.q.insert(packing.q.end() - 2,
                          {-7, -7, -7 + apart * std::cos(slope), -7 + apart * std::sin(slope), 0, 0});
         packing.radius.insert(packing.radius.end(), 3, 1.0);
         packing.fixed.insert(packing.fixed.end(), {1, 1, 0});
-        state.load.disk_force.insert(state.load.disk_force.end(), 6, 0.0);
-        state.contacts.insert(state.contacts.end(), {pair(4, 6), pair(5, 6)});
+        load.disk_force.insert(load.disk_force.end(), 6, 0.0);
+        contacts.insert(contacts.end(), {pair(4, 6), pair(5, 6)});
         push(-1, 0.1);
         snap_to_grid(packing);
         double* const q = &packing.q[first];
@@ -256,7 +220,7 @@ BOOST_AUTO_TEST_CASE(contacts_that_are_nearly_singular_are_followed_with_residua
     for (int k = 0; k < 20; ++k) {
         Squeezed squeezed(0.3 + 0.05 * k);
         const auto moved = [&](const Arc& arc) {
-            const auto along = [&](std::size_t c) { return arc.end.q[c] - squeezed.state.packing.q[c]; };
+            const auto along = [&](std::size_t c) { return arc.end.q[c] - squeezed.packing.q[c]; };
             return std::hypot(along(squeezed.first + 4), along(squeezed.first + 5));
         };
         const auto in_double = squeezed.roll(0.1);
@@ -286,7 +250,7 @@ BOOST_AUTO_TEST_CASE(the_opened_contact_may_close_again_from_the_other_side) {
     BOOST_TEST_REQUIRE(arc.ok(), (arc.ok() ? "" : arc.failure().message()));
     BOOST_TEST((arc.value().closed == pair(1, 2)));
     // Mirror image of the start in the line through the centres of the two fixed disks.
-    const double line = std::atan2(rolling.state.packing.q[3], rolling.state.packing.q[2]);
+    const double line = std::atan2(rolling.packing.q[3], rolling.packing.q[2]);
     const double expected = 2 * line - start_angle + 2 * std::numbers::pi;
     const double reached = Rolling::angle(arc.value());
     BOOST_TEST(std::cos(reached - expected) == 1.0, boost::test_tools::tolerance(1e-12));
@@ -295,16 +259,16 @@ BOOST_AUTO_TEST_CASE(the_opened_contact_may_close_again_from_the_other_side) {
 
 BOOST_AUTO_TEST_CASE(a_motion_without_end_is_reported) {
     Rolling rolling;
-    rolling.state.packing.q[2] = 50; // the opened contact is far away and nothing else is there: rolls for ever
-    rolling.state.contacts = {pair(0, 2), {ContactKind::held, 5, 0}};
-    snap_to_grid(rolling.state.packing);
-    const auto structure = required(IsostaticStructure::prove(rolling.state.packing, rolling.state.contacts));
+    rolling.packing.q[2] = 50; // the opened contact is far away and nothing else is there: rolls for ever
+    rolling.contacts = {pair(0, 2), {ContactKind::held, 5, 0}};
+    snap_to_grid(rolling.packing);
+    const auto structure = required(IsostaticStructure::prove(rolling.packing, rolling.contacts));
     const Factorisation factorisation(structure);
-    CandidateList candidates = find_candidates(rolling.state.packing, candidate_fraction);
+    CandidateList candidates = find_candidates(rolling.packing, candidate_fraction);
     ArcOptions options;
     options.max_steps = 500;
-    const auto arc = follow_arc(ArcOrigin{rolling.state.packing, structure, factorisation, ContactId(1)},
-                                PowerLoad{&rolling.state.load, false, false}, candidates, options);
+    const auto arc = follow_arc(ArcOrigin{rolling.packing, structure, factorisation, ContactId(1)},
+                                PowerLoad{&rolling.load, false, false}, candidates, options);
     BOOST_TEST_REQUIRE(!arc.ok());
     BOOST_TEST((arc.failure().kind == FailureKind::unbounded));
 }

@@ -1,8 +1,8 @@
 // Certificates of arcs with known answers: a free disk rolls over a fixed one past obstacles.
 #include "motion/certify_arc.hpp"
 #include "motion/moving_part.hpp"
+#include "motion/rolling.hpp"
 #include "support/channel_roll.hpp"
-#include "support/crafted.hpp"
 
 using namespace isostat;
 using namespace crafted;
@@ -30,43 +30,16 @@ struct Known {
     [[nodiscard]] ArcVertex vertex() const { return {packing, structure, factorisation, inverse, enclosure}; }
 };
 
-constexpr double rolls_from = 0.2;
 constexpr double stop_angle = 2;
 
-/// Disk 0 fixed at the origin, disk 2 free on it, disk 1 fixed where disk 2 starts, disk 3 fixed where it stops; all of
-/// radius 1. Disk 4, if any, is an obstacle. No walls.
-struct CertifiedRolling {
-    Packing packing;
-    Load load;
-
+/// Disk 3 stops it; disk 4, if any, is an obstacle.
+struct CertifiedRolling : RollingDisk {
     explicit CertifiedRolling(double fx = -1, double fy = 0.1) {
-        packing.walls = Walls::none();
-        const auto touching = [](double angle, double side) {
-            return std::array{2 * std::cos(angle) + side * 2 * std::sin(angle),
-                              2 * std::sin(angle) - side * 2 * std::cos(angle)};
-        };
-        const auto first = touching(rolls_from, 1);
-        const auto second = touching(stop_angle, -1);
-        packing.radius = {1, 1, 1, 1};
-        packing.q = {0, 0, first[0], first[1], 0, 0, second[0], second[1], 0, 0};
-        packing.fixed = {1, 1, 0, 1};
-        load.disk_force = {0, 0, 0, 0, fx, fy, 0, 0};
-        put(rolls_from);
+        stop(stop_angle);
+        push(fx, fy);
     }
-    /// The rolling disk at `angle`.
-    void put(double angle) {
-        packing.q[4] = 2 * std::cos(angle);
-        packing.q[5] = 2 * std::sin(angle);
-    }
-    void obstacle(double angle, double radius, double clearance) {
-        const double distance = 3 + radius + clearance;
-        packing.q.insert(packing.q.end() - 2, {distance * std::cos(angle), distance * std::sin(angle)});
-        packing.radius.push_back(radius);
-        packing.fixed.push_back(1);
-        load.disk_force.insert(load.disk_force.end(), {0.0, 0.0});
-    }
-    [[nodiscard]] Known start() { return at(rolls_from, pair(1, 2)); }
-    [[nodiscard]] Known stop() { return at(stop_angle, pair(2, 3)); }
+    [[nodiscard]] Known start() { return at(start_angle, pair(1, 2)); }
+    [[nodiscard]] Known stopped() { return at(stop_angle, pair(2, 3)); }
     [[nodiscard]] Known at(double angle, const Contact& second) {
         put(angle);
         return Known::of(packing, {pair(0, 2), second});
@@ -76,7 +49,7 @@ struct CertifiedRolling {
         const CandidateList candidates = find_candidates(from.packing, candidate_fraction);
         return certify_arc(from.vertex(), ContactId(1), +1, end.vertex(), PowerLoad{&load, false, false}, candidates);
     }
-    ArcCertificate certify() { return certify(start(), stop()); }
+    ArcCertificate certify() { return certify(start(), stopped()); }
 };
 
 bool proved(const ArcCertificate& certificate) {
@@ -118,13 +91,9 @@ BOOST_AUTO_TEST_CASE(a_contact_that_was_missed_inside_an_arc_is_not_certified) {
 BOOST_AUTO_TEST_CASE(an_end_behind_the_first_contact_is_not_certified) {
     CertifiedRolling rolling; // past disk 3, to a contact with disk 4 that it would have met later
     const double later = 3.8;
-    auto& q = rolling.packing.q;
-    q.insert(q.end() - 2, {2 * std::cos(later) - 2 * std::sin(later), 2 * std::sin(later) + 2 * std::cos(later)});
-    rolling.packing.radius.push_back(1);
-    rolling.packing.fixed.push_back(1);
-    rolling.load.disk_force.insert(rolling.load.disk_force.end(), {0.0, 0.0});
+    rolling.stop(later);
     const Known start = rolling.start();
-    BOOST_TEST(proved(rolling.certify(start, rolling.stop())));
+    BOOST_TEST(proved(rolling.certify(start, rolling.stopped())));
     const ArcCertificate certificate = rolling.certify(start, rolling.at(later, pair(2, 4)));
     BOOST_TEST(!proved(certificate));
     BOOST_TEST(certificate.reason.find("2-3") != std::string::npos, certificate.reason);
@@ -146,7 +115,7 @@ BOOST_AUTO_TEST_CASE(an_end_on_another_curve_is_not_certified) {
 BOOST_AUTO_TEST_CASE(ends_that_are_not_proved_vertices_certify_nothing) {
     CertifiedRolling rolling;
     const Known start = rolling.start();
-    Known end = rolling.stop();
+    Known end = rolling.stopped();
     BOOST_TEST(proved(rolling.certify(start, end)));
     end.enclosure.verdict = Verdict::undecided;
     BOOST_TEST(!proved(rolling.certify(start, end)));
@@ -179,7 +148,7 @@ BOOST_AUTO_TEST_CASE(the_power_is_judged_apart_from_the_contacts) {
 BOOST_AUTO_TEST_CASE(a_released_coordinate_is_followed_to_the_side_to_which_it_goes) {
     CertifiedRolling rolling;
     const Known turn = rolling.at(1.2, Contact{ContactKind::held, 4, 0});
-    const Known stop = rolling.stop();
+    const Known stop = rolling.stopped();
     const CandidateList candidates = find_candidates(turn.packing, candidate_fraction);
     const PowerLoad power{&rolling.load, false, false};
     const auto down = certify_arc(turn.vertex(), ContactId(1), -1, stop.vertex(), power, candidates);
@@ -228,7 +197,7 @@ BOOST_AUTO_TEST_CASE(an_end_that_may_lie_behind_the_start_is_not_certified) {
 BOOST_AUTO_TEST_CASE(a_list_of_candidates_serves_half_of_its_reach) {
     CertifiedRolling rolling;
     const Known start = rolling.start();
-    const Known stop = rolling.stop();
+    const Known stop = rolling.stopped();
     const ArcVertex from = start.vertex();
     const ArcVertex to = stop.vertex();
     const MovingPart part(from, to, 1, 1e-15, 1e-15);
@@ -249,7 +218,7 @@ BOOST_AUTO_TEST_CASE(a_list_of_candidates_serves_half_of_its_reach) {
 BOOST_AUTO_TEST_CASE(the_opened_contact_may_close_again_after_a_whole_turn) {
     CertifiedRolling rolling;
     rolling.packing.q[6] = 40; // no stop
-    const double line = rolls_from - std::numbers::pi / 4;
+    const double line = start_angle - std::numbers::pi / 4;
     const double back = line - std::numbers::pi / 4 + 2 * std::numbers::pi; // on the other side of disk 1
     const Known start = rolling.start();
     const ArcCertificate certificate = rolling.certify(start, rolling.at(back, pair(1, 2)));

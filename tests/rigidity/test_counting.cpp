@@ -193,7 +193,7 @@ BOOST_AUTO_TEST_CASE(no_structure_is_made_of_more_coordinates_than_error_bounds_
     packing.radius.assign(most_coordinates / 2, 1.0);
     packing.q.assign(most_coordinates + 2, 1.0);
     expect_bad_input([&] { (void)IsostaticStructure::prove(packing, {}); },
-                     {"500000 disks have 1000002 coordinates", "at most 1000000 were expected"});
+                     {"1250000 disks have 2500002 coordinates", "at most 2500000 were expected"});
     packing.radius.pop_back();
     packing.q.resize(most_coordinates);
     BOOST_TEST((IsostaticStructure::prove(packing, {}).failure().kind == FailureKind::not_isostatic));

@@ -3,9 +3,7 @@
 #include "support/bad_input.hpp"
 #include "support/clumps.hpp"
 #include "support/crafted.hpp"
-#include "support/recorder.hpp"
 #include "support/scratch.hpp"
-#include "support/segments.hpp"
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/io/state_file.hpp>
@@ -135,13 +133,10 @@ BOOST_AUTO_TEST_CASE(bodies_that_turn_about_one_member_come_to_rest_before_a_run
 
 /// The place where the power turns is known to rounding: released, the body turns back, and stays where it is held.
 BOOST_AUTO_TEST_CASE(a_body_that_hangs_where_its_power_turned_stays_there) {
-    State state = isostat::start_from_file(scene_of("dimer_20_10", "do = \"down\"\nequilibria = 2\n"));
-    crafted::Recorder run;
-    isostat::RunCounters counters;
-    isostat::RunOptions options{.max_strain = 100};
-    const auto outcome = isostat::run_segment(state, towards(-2), 0, options, counters, run);
-    BOOST_TEST(outcome.completed, (outcome.failure ? outcome.failure->message() : ""));
-    BOOST_TEST_REQUIRE(run.equilibria.size() == 3U);
-    BOOST_TEST(run.equilibria[0].held == 1);
-    BOOST_TEST(run.equilibria[0].stress_low < run.equilibria[0].stress_high);
+    const State state = isostat::start_from_file(scene_of("dimer_20_10", "do = \"down\"\nequilibria = 2\n"));
+    const crafted::Played run = crafted::play(state, -1, 2);
+    BOOST_TEST(run.outcome.completed, run.why());
+    BOOST_TEST_REQUIRE(run.records.equilibria.size() == 3U);
+    BOOST_TEST(run.records.equilibria[0].held == 1);
+    BOOST_TEST(run.records.equilibria[0].stress_low < run.records.equilibria[0].stress_high);
 }

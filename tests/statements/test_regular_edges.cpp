@@ -3,6 +3,7 @@
 #include "contact/candidates.hpp"
 #include "contact/near_pairs.hpp"
 #include "families.hpp"
+#include "oracle/packings.hpp"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Regular_triangulation_2.h>
@@ -10,6 +11,8 @@
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 
 namespace {
+
+using isostat::oracle::Random;
 
 struct Disk {
     double x, y, r;
@@ -61,37 +64,13 @@ std::vector<Disk> squeezed_pair(double a, double b, double m, double g) {
     return {{0, 0, a}, {d, 0, b}, {x, y, m}, {x, -y, m}};
 }
 
-double uniform(std::mt19937_64& random, double low, double high) {
-    return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
-}
-
-/// Random disks without overlap: each new one tangent to two others where it fits, radii over the given ratio.
-std::vector<Disk> random_cluster(int count, double ratio, std::uint64_t seed) {
-    std::mt19937_64 random(seed);
-    std::vector<Disk> disks{{0, 0, uniform(random, 1, ratio)}};
-    for (int attempt = 0; attempt < 400 * count && static_cast<int>(disks.size()) < count; ++attempt) {
-        const double r = std::exp(uniform(random, 0, std::log(ratio)));
-        const Disk a = disks[random() % disks.size()];
-        const Disk b = disks[random() % disks.size()];
-        const double d = std::hypot(b.x - a.x, b.y - a.y);
-        Disk c{0, 0, r};
-        if (d == 0 || d > a.r + b.r + 2 * r) {
-            const double angle = uniform(random, 0, 6.283);
-            c.x = a.x + (a.r + r) * std::cos(angle);
-            c.y = a.y + (a.r + r) * std::sin(angle);
-        } else {
-            const double along = (d * d + (a.r + r) * (a.r + r) - (b.r + r) * (b.r + r)) / (2 * d);
-            const double across = std::sqrt(std::max(0.0, (a.r + r) * (a.r + r) - along * along));
-            c.x = a.x + (along * (b.x - a.x) - across * (b.y - a.y)) / d;
-            c.y = a.y + (along * (b.y - a.y) + across * (b.x - a.x)) / d;
-        }
-        bool fits = true;
-        for (const Disk& other : disks) {
-            fits = fits && gap(other, c) > -1e-9;
-        }
-        if (fits) {
-            disks.push_back(c);
-        }
+/// Without overlap: each new disk tangent to two others where it fits, radii over the given ratio.
+std::vector<Disk> random_cluster(double ratio, std::uint64_t seed) {
+    Random random(seed);
+    const isostat::Packing packing = isostat::oracle::grown_cluster(120, ratio, random, [] { return 0; });
+    std::vector<Disk> disks;
+    for (std::size_t i = 0; i < packing.radius.size(); ++i) {
+        disks.push_back({packing.q[2 * i], packing.q[2 * i + 1], packing.radius[i]});
     }
     return disks;
 }
@@ -102,7 +81,7 @@ BOOST_AUTO_TEST_CASE(pairs_below_their_bound_are_edges_in_random_clusters) {
     int near_the_bound = 0, beyond_and_missing = 0;
     for (std::uint64_t seed = 1; seed <= 60; ++seed) {
         const double ratio = seed % 3 == 0 ? 100 : seed % 3 == 1 ? 1.0001 : 3;
-        const auto disks = random_cluster(120, ratio, seed);
+        const auto disks = random_cluster(ratio, seed);
         const Edges edges = edges_of(disks);
         double smallest = disks[0].r;
         for (const Disk& disk : disks) {
@@ -129,12 +108,12 @@ BOOST_AUTO_TEST_CASE(pairs_below_their_bound_are_edges_in_random_clusters) {
 }
 
 BOOST_AUTO_TEST_CASE(the_pairwise_bound_is_attained_for_every_two_radii) {
-    std::mt19937_64 random(5);
+    Random random(5);
     int tried = 0;
     for (int k = 0; k < 400; ++k) {
         const double m = 1;
-        const double a = m * std::exp(uniform(random, 0, k % 2 == 0 ? 0.5 : 5));
-        const double b = m * std::exp(uniform(random, 0, k % 2 == 0 ? 0.5 : 5));
+        const double a = m * std::exp(random.real(0, k % 2 == 0 ? 0.5 : 5));
+        const double b = m * std::exp(random.real(0, k % 2 == 0 ? 0.5 : 5));
         const double bound = pair_bound(a + b, m);
         const auto below = squeezed_pair(a, b, m, bound * (1 - 1e-9));
         const auto above = squeezed_pair(a, b, m, bound * (1 + 1e-9));
@@ -202,11 +181,10 @@ BOOST_AUTO_TEST_CASE(when_no_edge_overlaps_nothing_does) {
     // T5: disks thrown at random, many overlaps; whenever no vertex is hidden and some pair overlaps, some edge does.
     int with_overlap = 0, without = 0;
     for (std::uint64_t seed = 1; seed <= 400; ++seed) {
-        std::mt19937_64 random(seed);
+        Random random(seed);
         std::vector<Disk> disks;
         for (int k = 0; k < 12; ++k) {
-            disks.push_back(
-                {uniform(random, 0, 12), uniform(random, 0, 12), uniform(random, 0.1, seed % 2 == 0 ? 1 : 2)});
+            disks.push_back({random.real(0, 12), random.real(0, 12), random.real(0.1, seed % 2 == 0 ? 1 : 2)});
         }
         const Edges edges = edges_of(disks);
         if (edges.hidden > 0) {

@@ -22,10 +22,8 @@ inline Agreement agree(const State& state, int direction, int equilibria, int se
             sum.settled += static_cast<int>(count);
         }
         sum.events += static_cast<int>(symbolic.events.size());
-        for (const ArcRecord& arc : symbolic.arcs) {
-            for (const TieDecision& tie : arc.perturbed) {
-                sum.kinds.insert(tie.what);
-            }
+        for (const TieDecision& tie : symbolic.ties()) {
+            sum.kinds.insert(tie.what);
         }
         const bool open = symbolic.end() == "undecided";
         sum.undecided += open ? 1 : 0;

@@ -5,6 +5,7 @@
 #include "support/crafted.hpp"
 
 #include <isostat/contact/state.hpp>
+#include <isostat/io/state_file.hpp>
 
 namespace cells {
 
@@ -93,6 +94,11 @@ inline State two_disks(bool tilts, double f1, double f2) {
                    {across(0, 1, 0, 0), across(0, 1, -1, 0), across(0, 1, 0, -1), across(0, 1, -1, -1)});
 }
 
+/// With closed forms, each certified and verified in every arithmetic.
+inline std::vector<State> small() {
+    return {one_disk(2, 3), one_tilted_disk(2, 1, 0.25), channel_disk(), with_a_rattler(0.3)};
+}
+
 /// m x m disks of diameter 1 in a square.
 inline State square_lattice(int m, bool tilts) {
     std::vector<DiskAt> disks;
@@ -128,6 +134,16 @@ inline State triangular_lattice(int a, int b, bool tilts) {
         }
     }
     return in_cell(disks, {static_cast<double>(a), height * rows, 0}, tilts, 1, 1, contacts);
+}
+
+/// A packing of an independent program (tests/data/cells), another disk pinned or not.
+inline State of_file(const std::string& name, std::optional<int> pin = {}) {
+    State state = isostat::read_any_state(std::string(ISOSTAT_TEST_DATA) + "/cells/" + name + ".json").state;
+    if (pin) {
+        state.packing.cell.pin = *pin;
+        snap_to_grid(state.packing);
+    }
+    return state;
 }
 
 /// Loads that balance, and coordinates on the grid: a run may start from it.

@@ -1,17 +1,14 @@
 #pragma once
 // A run of one segment, kept: events, arcs, equilibria, states, and how it ended.
 
+#include "support/recorder.hpp"
 #include "support/segments.hpp"
 #include "support/test.hpp"
-
-#include <isostat/trajectory/trajectory.hpp>
 
 namespace crafted {
 
 using isostat::ArcRecord;
-using isostat::EquilibriumRecord;
 using isostat::RunCounters;
-using isostat::RunObserver;
 using isostat::RunOptions;
 using isostat::Segment;
 using isostat::SegmentOutcome;
@@ -27,42 +24,37 @@ inline void settle(RunOptions& options, Ties ties) {
     options.max_choices = ties == Ties::first_order ? 0 : options.max_choices;
 }
 
-struct Course {
+struct Course : Recorder {
     std::vector<std::string> events;
-    std::vector<EquilibriumRecord> equilibria;
-    std::vector<State> states;
-    std::vector<ArcRecord> arcs;
     SegmentOutcome outcome;
     RunCounters counters;
+    void on_arc(const ArcRecord& arc) override {
+        events.push_back(
+            fmt::format("{}:{}>{}", arc.equilibrium, isostat::to_string(arc.opened), isostat::to_string(arc.closed)));
+        Recorder::on_arc(arc);
+    }
+    void follow(State state, const Segment& segment, const RunOptions& options) {
+        outcome = run_segment(state, segment, 0, options, counters, *this);
+    }
+    [[nodiscard]] std::string why() const { return outcome.failure ? outcome.failure->message() : "completed"; }
+    [[nodiscard]] std::vector<TieDecision> ties() const {
+        std::vector<TieDecision> all;
+        for (const ArcRecord& arc : arcs) {
+            all.insert(all.end(), arc.perturbed.begin(), arc.perturbed.end());
+        }
+        return all;
+    }
     [[nodiscard]] std::string end() const {
         return outcome.completed ? "completed" : isostat::to_string(outcome.failure->kind);
     }
 };
 
-class CourseRecorder : public RunObserver {
-  public:
-    explicit CourseRecorder(Course& course) : course_(course) {}
-    void on_arc(const ArcRecord& arc) override {
-        course_.events.push_back(
-            fmt::format("{}:{}>{}", arc.equilibrium, isostat::to_string(arc.opened), isostat::to_string(arc.closed)));
-        course_.arcs.push_back(arc);
-    }
-    void on_equilibrium(const EquilibriumRecord& record, const State& state, const std::vector<double>&) override {
-        course_.equilibria.push_back(record);
-        course_.states.push_back(state);
-    }
-
-  private:
-    Course& course_;
-};
-
-inline Course follow_load(State state, int direction, int equilibria, Ties ties, std::uint64_t seed = 1) {
+inline Course follow_load(const State& state, int direction, int equilibria, Ties ties, std::uint64_t seed = 1) {
     Course course;
-    CourseRecorder recorder(course);
     RunOptions options;
     settle(options, ties);
     options.ties_seed = seed;
-    course.outcome = run_segment(state, towards(direction * equilibria), 0, options, course.counters, recorder);
+    course.follow(state, towards(direction * equilibria), options);
     return course;
 }
 
@@ -71,14 +63,8 @@ inline bool mentions(const Course& course, const std::string& word) {
 }
 
 inline bool settled_as(const Course& course, const std::string& what) {
-    for (const ArcRecord& arc : course.arcs) {
-        for (const TieDecision& tie : arc.perturbed) {
-            if (tie.what == what) {
-                return true;
-            }
-        }
-    }
-    return false;
+    const std::vector<TieDecision> ties = course.ties();
+    return std::any_of(ties.begin(), ties.end(), [&](const TieDecision& tie) { return tie.what == what; });
 }
 
 } // namespace crafted

@@ -41,6 +41,29 @@ inline void seal(const std::filesystem::path& folder) {
     scratch::write(path, text + isostat::before_digest + '"' + isostat::sha256(text) + "\"}\n");
 }
 
+/// The text of the value of "name", or of the head of its list, in the first record that has it.
+inline std::string value_of(const std::string& text, const std::string& name) {
+    const std::size_t at = text.find("\"" + name + "\":");
+    BOOST_REQUIRE_MESSAGE(at != std::string::npos, name);
+    const std::size_t begin = at + name.size() + 3;
+    return text.substr(begin, text.find_first_of(",}]", begin) - begin);
+}
+
+/// A number in a record, multiplied.
+inline std::string times(const std::string& number, double factor) {
+    return fmt::format("{:.17g}", std::stod(number) * factor);
+}
+
+/// A line of equilibria.csv, of which line 0 has the names, with the field of a column replaced.
+inline std::string row_with(const std::string& csv, std::size_t line, const std::string& column,
+                            const std::string& value) {
+    const std::vector<std::string> lines = scratch::split(csv, '\n');
+    const std::vector<std::string> names = scratch::split(lines.at(0).substr(2), ',');
+    std::vector<std::string> fields = scratch::split(lines.at(line), ',');
+    fields.at(static_cast<std::size_t>(std::find(names.begin(), names.end(), column) - names.begin())) = value;
+    return scratch::joined(fields, ',');
+}
+
 /// One text in a file of a run in the place of another, with the digests of that; in the end the folder is as before.
 class Alteration {
   public:

@@ -30,8 +30,8 @@ inline std::string settings(const RunOptions& options) {
     return isostat::json::Json{{"run", run}}.dump();
 }
 
-/// Every state is stored, and the start where arcs may lead from it to equilibrium 0. The run counts as completed,
-/// whatever ended its last segment: that is returned.
+/// Every state is stored, and the start where arcs may lead from it to equilibrium 0. What ended the last segment is
+/// returned.
 inline isostat::SegmentOutcome into(const std::filesystem::path& folder, isostat::State state,
                                     const std::vector<Segment>& segments, const RunOptions& options = {},
                                     bool with_start = false) {
@@ -55,8 +55,9 @@ inline isostat::SegmentOutcome into(const std::filesystem::path& folder, isostat
         directory.begin_segment(static_cast<int>(k), segments[k], 0, counters.equilibria);
         outcome = run_segment(state, segments[k], static_cast<int>(k), options, counters, observer);
     }
-    directory.finish(isostat::RunStatus::completed, "");
-    BOOST_TEST_MESSAGE((outcome.failure ? outcome.failure->message() : "completed"));
+    const std::string end = outcome.completed ? "" : outcome.failure->message();
+    directory.finish(outcome.completed ? isostat::RunStatus::completed : isostat::RunStatus::failed, end);
+    BOOST_TEST_MESSAGE((outcome.completed ? "completed" : end));
     return outcome;
 }
 

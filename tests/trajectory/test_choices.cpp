@@ -40,14 +40,8 @@ State symmetric(State state) {
 }
 
 std::vector<TieDecision> choices(const Course& course) {
-    std::vector<TieDecision> list;
-    for (const ArcRecord& arc : course.arcs) {
-        for (const TieDecision& tie : arc.perturbed) {
-            if (tie.choice != TieChoice::none) {
-                list.push_back(tie);
-            }
-        }
-    }
+    std::vector<TieDecision> list = course.ties();
+    std::erase_if(list, [](const TieDecision& tie) { return tie.choice == TieChoice::none; });
     return list;
 }
 
@@ -66,10 +60,6 @@ Course equal_disks(int disks, std::uint64_t seed, int equilibria) {
     return follow_load(prepared_equal_disks(disks, seed), +1, equilibria, Ties::choose);
 }
 
-std::string why(const Course& course) {
-    return course.outcome.failure ? course.outcome.failure->message() : "completed";
-}
-
 } // namespace
 
 BOOST_AUTO_TEST_CASE(what_first_order_leaves_tied_is_chosen_by_loads_then_names_and_recorded) {
@@ -81,7 +71,7 @@ BOOST_AUTO_TEST_CASE(what_first_order_leaves_tied_is_chosen_by_loads_then_names_
     std::vector<Contact> opened;
     for (const State& start : {state, mirror_image(state)}) {
         const Course course = follow_load(start, -1, 1, Ties::choose);
-        BOOST_TEST(course.end() == "completed", why(course));
+        BOOST_TEST(course.end() == "completed", course.why());
         const auto found = choices(course);
         BOOST_TEST_REQUIRE(found.size() >= 1U);
         BOOST_TEST(found[0].what == "limit");
@@ -97,7 +87,7 @@ BOOST_AUTO_TEST_CASE(what_first_order_leaves_tied_is_chosen_by_loads_then_names_
 
     const Course by_name = follow_load(symmetric(state), -1, 1, Ties::choose);
     const auto found = choices(by_name);
-    BOOST_TEST_REQUIRE(found.size() >= 1U, why(by_name));
+    BOOST_TEST_REQUIRE(found.size() >= 1U, by_name.why());
     BOOST_TEST((found[0].choice == TieChoice::names));
     BOOST_TEST((found[0].chosen == bottom(1)));
     BOOST_TEST((found[0].against == bottom(2)));
@@ -108,7 +98,7 @@ BOOST_AUTO_TEST_CASE(of_gaps_that_close_together_one_enters_and_the_other_is_wat
     const Course open = follow_load(state, +1, 1, Ties::first_order);
     BOOST_TEST(open.end() == "undecided");
     const Course course = follow_load(state, +1, 1, Ties::choose);
-    BOOST_TEST(course.end() == "completed", why(course));
+    BOOST_TEST(course.end() == "completed", course.why());
     BOOST_TEST_REQUIRE(course.arcs.size() == 1U);
     const bool first = course.arcs[0].closed == bottom(1);
     BOOST_TEST((first || course.arcs[0].closed == bottom(2)));
@@ -159,7 +149,7 @@ BOOST_AUTO_TEST_CASE(a_square_of_disks_supports_every_load_and_pairs_that_only_b
     const Course open = follow_load(square(), +1, 3, Ties::first_order);
     BOOST_TEST(open.end() == "undecided");
     const Course course = follow_load(square(), +1, 3, Ties::choose);
-    BOOST_TEST(course.end() == "no limit", why(course));
+    BOOST_TEST(course.end() == "no limit", course.why());
     BOOST_TEST_REQUIRE(!course.equilibria.empty());
     const std::vector<double>& length = course.equilibria.back().length;
     BOOST_TEST(std::abs(length[1] - 4) < 1e-12); // the columns are straight still
@@ -172,10 +162,7 @@ BOOST_AUTO_TEST_CASE(a_run_chooses_as_often_as_it_may_and_then_ends_undecided) {
     BOOST_TEST_REQUIRE(most > 5);
     const auto capped = [&](long cap) {
         Course course;
-        CourseRecorder recorder(course);
-        State state = start;
-        RunOptions options{.ties = TiePolicy::choose, .ties_seed = 1, .max_choices = cap};
-        course.outcome = run_segment(state, towards(3), 0, options, course.counters, recorder);
+        course.follow(start, towards(3), {.ties = TiePolicy::choose, .ties_seed = 1, .max_choices = cap});
         return course;
     };
     const Course as_many = capped(most);
@@ -185,7 +172,7 @@ BOOST_AUTO_TEST_CASE(a_run_chooses_as_often_as_it_may_and_then_ends_undecided) {
         const Course fewer = capped(cap);
         const auto made = static_cast<long>(choices(fewer).size());
         BOOST_TEST(fewer.end() == "undecided");
-        BOOST_TEST((cap == 0 || mentions(fewer, "max_choices")), why(fewer));
+        BOOST_TEST((cap == 0 || mentions(fewer, "max_choices")), fewer.why());
         BOOST_TEST(made <= cap);
         BOOST_TEST(fewer.counters.tally.choices == made);
         BOOST_TEST_REQUIRE(fewer.events.size() < all.events.size());
@@ -197,7 +184,7 @@ BOOST_AUTO_TEST_CASE(a_run_chooses_as_often_as_it_may_and_then_ends_undecided) {
 BOOST_AUTO_TEST_CASE(patches_of_equal_disks_are_followed_past_gaps_that_graze_until_they_support_every_load) {
     for (const auto& [disks, seed] : {std::pair(36, 17), std::pair(20, 15)}) {
         const Course course = equal_disks(disks, static_cast<std::uint64_t>(seed), 30);
-        BOOST_TEST(mentions(course, "supports every load"), disks << " disks, seed " << seed << ": " << why(course));
+        BOOST_TEST(mentions(course, "supports every load"), disks << " disks, seed " << seed << ": " << course.why());
         BOOST_TEST(!course.equilibria.empty());
     }
 }
@@ -205,5 +192,5 @@ BOOST_AUTO_TEST_CASE(patches_of_equal_disks_are_followed_past_gaps_that_graze_un
 /// At the twelfth equilibrium the load is known in double to less than what tells the smallest force from 0.
 BOOST_AUTO_TEST_CASE(a_small_force_at_a_limit_is_told_from_0_with_more_digits, *boost::unit_test::label("slow")) {
     const Course course = equal_disks(100, 4, 12);
-    BOOST_TEST(course.end() == "completed", why(course));
+    BOOST_TEST(course.end() == "completed", course.why());
 }

@@ -25,15 +25,12 @@ Loop follow_loads(State state, const std::vector<double>& loads, Ties ties) {
     double stress = state.load.stress[1];
     for (const double load : loads) {
         Course& course = loop.courses.emplace_back();
-        CourseRecorder recorder(course);
         RunOptions options;
         settle(options, ties);
         options.max_strain = 1e9; // reference lengths of 1
-        course.outcome =
-            run_segment(state, until(load > stress ? +1 : -1, load), 0, options, course.counters, recorder);
+        course.outcome = run_segment(state, until(load > stress ? +1 : -1, load), 0, options, course.counters, course);
         stress = load;
-        BOOST_TEST(course.outcome.completed,
-                   (course.outcome.failure ? course.outcome.failure->message() : std::string()));
+        BOOST_TEST(course.outcome.completed, course.why());
         BOOST_TEST_REQUIRE(!course.states.empty());
     }
     return loop;

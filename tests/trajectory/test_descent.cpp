@@ -165,21 +165,16 @@ BOOST_AUTO_TEST_CASE(a_run_ends_with_the_objection_of_its_observer) {
 }
 
 BOOST_AUTO_TEST_CASE(an_equilibrium_at_another_load_keeps_the_smallest_gap_of_its_configuration) {
-    State state = two_disks(1, 2, 1, 1);
-    Recorder records;
-    RunCounters counters;
-    const Segment up = until(+1, 2);
-    BOOST_REQUIRE((run_segment(state, up, 0, {}, counters, records).completed));
-    const Segment down = until(-1, 1.5);
-    BOOST_REQUIRE((run_segment(state, down, 1, {}, counters, records).completed));
-    BOOST_REQUIRE(records.equilibria.size() == 3U);
-    for (const auto& record : records.equilibria) {
-        BOOST_TEST(record.min_gap == records.equilibria[0].min_gap);
-        BOOST_TEST((record.min_gap_contact == records.equilibria[0].min_gap_contact));
+    const Played up = play(two_disks(1, 2, 1, 1), +1, {}, 2), down = play(up.state, -1, {}, 1.5);
+    BOOST_REQUIRE((up.outcome.completed && down.outcome.completed));
+    const EquilibriumRecord& first = up.records.equilibria.front();
+    for (const EquilibriumRecord& record : {up.records.equilibria.back(), down.records.equilibria.back()}) {
+        BOOST_TEST(record.min_gap == first.min_gap);
+        BOOST_TEST((record.min_gap_contact == first.min_gap_contact));
     }
     // Further apart than any list of candidates reaches.
-    BOOST_TEST((records.equilibria[0].min_gap_contact == left(1)));
-    BOOST_TEST(std::abs(records.equilibria[0].min_gap - (2 * std::sqrt(2.0) - 1)) <= 1e-14);
+    BOOST_TEST((first.min_gap_contact == left(1)));
+    BOOST_TEST(std::abs(first.min_gap - (2 * std::sqrt(2.0) - 1)) <= 1e-14);
     const EquilibriumRecord alone = play(one_disk(1, 1), +1, 1).records.equilibria.front();
     BOOST_TEST(std::isinf(alone.min_gap));
     BOOST_TEST(alone.min_gap_contact.i == -1);

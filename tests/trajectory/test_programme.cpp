@@ -8,10 +8,8 @@ using namespace isostat;
 
 namespace {
 
-/// Stresses and states of equilibria, and which segments began where.
-struct ProgrammeCourse : RunObserver {
-    std::vector<State> states;
-    std::vector<double> stresses;
+/// With which segments began where.
+struct ProgrammeCourse : crafted::Recorder {
     std::vector<std::pair<int, int>> begun; ///< segment, equilibrium it starts from
     int direction = 0;                      ///< of the last segment
     void on_segment(int number, const Segment& goal, int made, const State& from) override {
@@ -20,10 +18,9 @@ struct ProgrammeCourse : RunObserver {
         direction = goal.direction;
     }
     void on_equilibrium(const EquilibriumRecord& record, const State& state,
-                        const std::vector<double>& /*forces*/) override {
+                        const std::vector<double>& forces) override {
         BOOST_TEST(record.number == static_cast<int>(states.size()));
-        states.push_back(state);
-        stresses.push_back(record.stress);
+        crafted::Recorder::on_equilibrium(record, state, forces);
     }
 };
 
@@ -60,9 +57,9 @@ BOOST_AUTO_TEST_CASE(a_programme_goes_on_from_the_last_equilibrium_or_from_an_ea
     BOOST_TEST((course.begun == std::vector<std::pair<int, int>>{{0, 0}, {1, 2}, {2, 2}, {3, 6}}));
     BOOST_TEST(course.direction == -1);
     // The third segment does again what the second one did, bit by bit.
-    BOOST_TEST_REQUIRE(course.stresses.size() > 7U);
-    BOOST_TEST(course.stresses[5] == course.stresses[3]);
-    BOOST_TEST(course.stresses[6] == course.stresses[4]);
+    BOOST_TEST_REQUIRE(course.equilibria.size() > 7U);
+    BOOST_TEST(course.equilibria[5].stress == course.equilibria[3].stress);
+    BOOST_TEST(course.equilibria[6].stress == course.equilibria[4].stress);
     BOOST_TEST((course.states[6].packing.q == course.states[4].packing.q));
     BOOST_TEST(course.states.back().load.stress[1] == course.states.back().load.stress[0]);
 }
@@ -81,5 +78,5 @@ BOOST_AUTO_TEST_CASE(a_segment_that_cannot_begin_says_why_in_words) {
     outcome = played(other, {up(1), behind});
     BOOST_TEST(outcome.segment == "behind");
     BOOST_TEST(outcome.impossible.starts_with("here:7: segment \"behind\": sigma2/sigma1 is 1.0"), outcome.impossible);
-    BOOST_TEST(other.stresses.size() == 2U);
+    BOOST_TEST(other.states.size() == 2U);
 }

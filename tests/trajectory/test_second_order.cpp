@@ -24,20 +24,13 @@ struct EndOfCrests {
 };
 
 std::vector<TieDecision> exchanges(const Course& course) {
-    std::vector<TieDecision> list;
-    for (const ArcRecord& arc : course.arcs) {
-        for (const TieDecision& tie : arc.perturbed) {
-            if (tie.what == "second order") {
-                list.push_back(tie);
-            }
-        }
-    }
+    std::vector<TieDecision> list = course.ties();
+    std::erase_if(list, [](const TieDecision& tie) { return tie.what != "second order"; });
     return list;
 }
 
 void ends_at_the_fixed_disk(const Course& course, double accuracy) {
-    BOOST_TEST(course.end() == "completed",
-               (course.outcome.failure ? course.outcome.failure->message() : std::string()));
+    BOOST_TEST(course.end() == "completed", course.why());
     BOOST_TEST_REQUIRE(!course.states.empty());
     const EndOfCrests end;
     const Packing& packing = course.states.back().packing;

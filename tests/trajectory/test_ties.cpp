@@ -113,13 +113,12 @@ BOOST_AUTO_TEST_CASE(the_same_contacts_open_and_close_when_the_radii_are_really_
 BOOST_AUTO_TEST_CASE(a_hyperstatic_start_is_followed_with_the_contacts_that_the_changed_radii_keep) {
     int first = 0;
     for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-        State state = equal_pair();
+        const State state = equal_pair();
         RunOptions options;
         settle(options, Ties::first_order);
         options.ties_seed = seed;
         Course course;
-        CourseRecorder recorder(course);
-        course.outcome = run_segment(state, until(-1, 0.5), 0, options, course.counters, recorder);
+        course.follow(state, until(-1, 0.5), options);
         BOOST_TEST(course.outcome.completed);
         const std::vector<double> rho = tie_direction(state.packing.radius, seed);
         // The larger one bears the top wall; the other is pressed to the bottom by a contact that is tilted O(eps).

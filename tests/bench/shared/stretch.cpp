@@ -47,7 +47,8 @@ class Watcher final : public RunObserver {
     }
     void on_equilibrium(const EquilibriumRecord&, const State& state, const std::vector<double>&) override {
         const double begin = time(), process_begin = process_milliseconds();
-        if (seen_++ % options_.reference_every == 0) {
+        constexpr int equilibria_between = 10; // one measurement of the units and the next
+        if (seen_++ % equilibria_between == 0) {
             const auto matrix = matrix_of(state);
             klu.add(milliseconds([&] { bench::klu(matrix); }).median());
             umfpack.add(milliseconds([&] { bench::umfpack(matrix, order_of(state)); }).median());
@@ -99,11 +100,6 @@ Stretch run_stretch(const State& from, const StretchOptions& options) {
         out.failure = outcome.failure->message();
     }
     return out;
-}
-
-bool same_events(const Stretch& a, const Stretch& b) {
-    return std::equal(a.arcs.begin(), a.arcs.end(), b.arcs.begin(), b.arcs.end(),
-                      [](const auto& x, const auto& y) { return x.opened == y.opened && x.closed == y.closed; });
 }
 
 Sample Stretches::per_arc() const {

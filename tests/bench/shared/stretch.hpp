@@ -20,9 +20,8 @@ std::optional<isostat::State> start(const std::string& source, int dimension = i
 struct StretchOptions {
     isostat::CertifyLevel level = isostat::CertifyLevel::decisions;
     int equilibria = 30;
-    long arcs = 0;            ///< ends after this many arcs, wherever that is; 0: at the last equilibrium
-    int threads = 1;          ///< one: CPU time of the thread; more: time on the wall
-    int reference_every = 10; ///< equilibria from one measurement of the units to the next
+    long arcs = 0;   ///< ends after this many arcs, wherever that is; 0: at the last equilibrium
+    int threads = 1; ///< one: CPU time of the thread; more: time on the wall
     /// Called at every equilibrium; its time is not the run's.
     std::function<void(const isostat::State&)> visit{};
 };
@@ -35,9 +34,6 @@ struct Stretch {
     double klu = 0, umfpack = 0;     ///< medians over the equilibria: one analysis + factorisation, milliseconds
     std::string failure;             ///< empty: completed
 };
-
-/// Whether the same contacts open and close, in the same order.
-bool same_events(const Stretch& a, const Stretch& b);
 
 /// The time that the units and `visit` take is not counted. With several threads the units are still those of one.
 Stretch run_stretch(const isostat::State& from, const StretchOptions& options);

@@ -23,7 +23,7 @@ double distance(const Packing& packing, const std::vector<double>& q, const Cont
             Row(c, layout).separate(q, a, d[a]);
         }
     }
-    return layout.dimension == plane ? std::hypot(d[0], d[1]) : std::hypot(d[0], d[1], d[2]);
+    return std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
 }
 
 /// The gap of a pair.
@@ -139,6 +139,9 @@ class Walk {
         if (Followed there = arrive_at_once(); there.end || motion_.displacement == 0) {
             return there;
         }
+        if (Followed there = arrive_on_parabola(); there.end) {
+            return there;
+        }
         const double parts = motion_.doublings > 0 ? 3.5 : 1.75; // the end lies within the last of four steps, or two
         double longest = std::min(motion_.displacement / parts, motion_.step * from_.packing.min_radius());
         auto steps = static_cast<long>(std::min(8 * motion_.displacement / longest + 16, 1e5)) + motion_.doublings;
@@ -185,6 +188,7 @@ class Walk {
     }
 
   private:
+    static constexpr double same = 1e-6; ///< of the recorded displacement: what an end that is taken at once is off by
     static constexpr double near = 1e-2; ///< of the recorded displacement: an end there may be the right one
     static constexpr int most_halvings = 10;
 
@@ -194,11 +198,45 @@ class Walk {
         return there.end && displacement(*there.end) <= tolerance_ ? there : Followed();
     }
 
-    /// The next point. Contact `opened` opens in the first step; later the motion continues in the same direction.
-    bool move(double step, std::vector<double>& next) {
-        constexpr double between = 0x1p-40; // accuracy of the points between the ends
-        if (!kept_.motion(q_, motion_.opened, opening_)) {
-            return false;
+    /// For an arc no longer than a step: its end from the parabola that has the first two derivatives of the curve,
+    /// where the power is seen to be positive at the start, nothing has closed in the middle, and the end is as far
+    /// away as recorded.
+    [[nodiscard]] Followed arrive_on_parabola() {
+        constexpr int enough = 24; // bits of the velocity of a guess
+        const bool leaves =
+            motion_.closed == from_.contacts[motion_.opened] ||
+            std::find(motion_.touching.begin(), motion_.touching.end(), motion_.closed) != motion_.touching.end();
+        const double length = motion_.displacement; // of the parameter: that is the fastest coordinate
+        if (turns_ || leaves || motion_.doublings > 0 || length > motion_.step * from_.packing.min_radius()) {
+            return {};
+        }
+        const std::optional<System::Way> way = aim(enough);
+        if (!way || !powered_) {
+            return {};
+        }
+        const Eigen::VectorXd bend = length * kept_.bend(velocity_, *way);
+        Followed there = arrive(from_here(length * (velocity_ + bend)), 1);
+        if (!there.end || std::abs(displacement(*there.end) - length) > same * length) {
+            return {};
+        }
+        const std::vector<double> middle = from_here(length / 2 * (velocity_ + bend / 2));
+        const bool on_the_way = power(middle, velocity_ + bend) > 0 && kept_.value(middle, motion_.closed) > 0;
+        return on_the_way && list_pairs(middle) && closed_before(middle).empty() ? there : Followed();
+    }
+
+    [[nodiscard]] std::vector<double> from_here(const Eigen::VectorXd& by) const {
+        std::vector<double> q = q_;
+        for (std::size_t d = 0; d < kept_.size(); ++d) {
+            q[kept_.coordinate(d)] += by(static_cast<Eigen::Index>(d));
+        }
+        return q;
+    }
+
+    /// Finds the velocity, and the power. Contact `opened` opens in the first step; later the motion continues in the
+    /// same direction. Which coordinate is the fastest; nothing: the motion could not be computed.
+    std::optional<System::Way> aim(int bits) {
+        if (!kept_.motion(q_, motion_.opened, opening_, bits)) {
+            return {};
         }
         Eigen::Index fastest = 0;
         Eigen::VectorXd v = motion_.direction * opening_ / opening_.cwiseAbs().maxCoeff(&fastest);
@@ -209,11 +247,18 @@ class Walk {
         power_size_ = {};
         power_ = power(q_, velocity_, &power_size_);
         powered_ = powered_ || power_ > 1e-9 * power_size_.terms;
-        next = q_;
-        for (std::size_t d = 0; d < kept_.size(); ++d) {
-            next[kept_.coordinate(d)] += step * v(static_cast<Eigen::Index>(d));
+        return System::Way{motion_.opened, fastest};
+    }
+
+    /// The next point.
+    bool move(double step, std::vector<double>& next) {
+        constexpr double between = 0x1p-40; // accuracy of the points between the ends
+        constexpr int most = 46;            // bits of the velocity
+        const std::optional<System::Way> way = aim(most);
+        if (!way) {
+            return false;
         }
-        const System::Way way{motion_.opened, fastest};
+        next = from_here(step * velocity_);
         std::vector<double> guess = next;
         if (kept_.newton(next, way, between)) {
             return true;
@@ -306,7 +351,7 @@ class Walk {
             return end.end ? std::abs(displacement(*end.end) - motion_.displacement)
                            : std::numeric_limits<double>::infinity();
         };
-        if (off(there) <= 1e-6 * motion_.displacement) {
+        if (off(there) <= same * motion_.displacement) {
             return there;
         }
         Followed other = arrive_slowly();

@@ -120,10 +120,7 @@ template <class Number> class Balance {
         }
         const long entry_bits = most_bits(difference_);
         rounding_ = entry_bits + 3;
-        std::size_t touching = 1;
-        for (const std::vector<int>& contacts : problem.contacts_of) {
-            touching = std::max(touching, contacts.size());
-        }
+        const std::size_t touching = std::max(problem.contacts_of.lengths().second, std::size_t{1});
         const auto terms = static_cast<long>(std::bit_width(touching * static_cast<std::size_t>(times)));
         largest_ = std::min(125 - terms, 250 - terms - std::max(entry_bits, problem.weight_bits + 1));
         find_residual();
@@ -131,15 +128,18 @@ template <class Number> class Balance {
     }
     [[nodiscard]] const std::vector<Number>& sought() const { return sought_; }
 
-    /// Refines until the residual stops falling, or is the rounding of g. False: g is too large.
+    /// Refines until the residual stops falling, is the rounding of g or less than an eighth of what the vertex leaves
+    /// open. False: g is too large.
     bool refine(const Solver& solver) {
         long size = most_bits(residual_);
-        for (int step = 0; step < most_refinements && size > rounding_; ++step) {
+        const auto open = [this] { return blur_ == 0 ? 0 : bits(blur_) + most_bits(sought_) - 4; };
+        for (int step = 0; step < most_refinements && size > std::max(rounding_, open()); ++step) {
             Eigen::MatrixXd b(problem_->dofs(), 1);
             for (int j = 0; j < problem_->dofs(); ++j) {
                 b(j, 0) = approximate(residual_[at(j)], -size);
             }
-            const Eigen::MatrixXd x = solver.solve_transposed(b);
+            // A residual in GMP's integers costs more than a second step.
+            const Eigen::MatrixXd x = solver.solve_transposed(b, std::is_same_v<Number, Wide> ? 1 : 2);
             for (std::size_t l = 0; l < sought_.size(); ++l) {
                 if (!add_scaled(sought_[l], x(static_cast<Eigen::Index>(l), 0), size - solver.scale(*problem_),
                                 largest_)) {
@@ -294,12 +294,10 @@ Range ContactForces::operator[](std::size_t contact) const {
 
 double ContactForces::about(std::size_t l) const {
     if (!middle_.empty()) {
-        const double unit = problem_->rows[l].quadratic ? problem_->sum.near(l, problem_->fine)
-                                                        : std::ldexp(1.0, problem_->wall_exponent);
-        const Wide size = static_cast<Wide>(magnitude(middle_[l])) + around_;
-        const double per_length = approximate(Broad(size), exponent_ - problem_->fine);
-        if (std::isnormal(per_length) && std::isnormal(per_length * unit)) {
-            return per_length * unit;
+        const Wide units = problem_->rows[l].quadratic ? problem_->sum.in<Wide>()[l] : Wide(1) << problem_->weight_bits;
+        const double product = as_double(static_cast<Wide>(magnitude(middle_[l])) + around_) * as_double(units);
+        if (const double size = times_power(product, exponent_); std::isnormal(size)) {
+            return size;
         }
     }
     const auto size = [](const Rational& value) {
@@ -336,7 +334,7 @@ int free_of_others(const Problem& problem, const std::vector<int>& contacts, con
     for (const int l : contacts) {
         listed[static_cast<std::size_t>(l)] = true;
     }
-    const auto free = [&listed](const std::vector<int>& touching) {
+    const auto free = [&listed](const auto& touching) {
         return std::all_of(touching.begin(), touching.end(),
                            [&listed](int l) { return listed[static_cast<std::size_t>(l)]; });
     };

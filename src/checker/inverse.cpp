@@ -326,7 +326,7 @@ Rational root(unsigned long value) {
 
 /// Bounds the inverse by the smallest singular value, when R is the inverse.
 InverseBound bound_by_singular_value(const Problem& problem, const Solver& solver, bool roughly) {
-    const std::optional<Rational> sigma = smallest_singular_value(problem, solver.order(), roughly ? 0x1p-20 : 0);
+    const std::optional<Rational> sigma = smallest_singular_value(problem, solver.order(), roughly ? 0x1p-18 : 0);
     if (!sigma) {
         return {};
     }

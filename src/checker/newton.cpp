@@ -47,7 +47,8 @@ template <class T> T System::value(const std::vector<T>& q, const Contact& c, co
 template double System::value(const std::vector<double>& q, const Contact& c, const Row& row) const;
 
 void System::renew(const std::vector<double>& q) {
-    solver_ = std::make_shared<Solver>(structure_, q, solver_ ? solver_.get() : like_.get());
+    const bool quick = !solver_; // else those that were quick to make may not be accurate enough
+    solver_ = std::make_shared<Solver>(structure_, q, solver_ ? solver_.get() : like_.get(), quick);
     kernel_.reset();
 }
 
@@ -55,23 +56,43 @@ Eigen::VectorXd System::step(const Eigen::VectorXd& residual) const {
     return solver_->solve(residual) * std::ldexp(1.0, -solver_->exponent());
 }
 
+const Eigen::VectorXd& System::kernel(std::size_t left_out) {
+    if (!kernel_ || kernel_->first != left_out) {
+        const auto n = static_cast<Eigen::Index>(contacts_.size());
+        kernel_ = {left_out, step(Eigen::VectorXd::Unit(n, static_cast<Eigen::Index>(left_out)))};
+    }
+    return kernel_->second;
+}
+
+/// The step that leaves one coordinate in place, and one F as it comes.
+Eigen::VectorXd System::step_along(Eigen::VectorXd residual, const Way& way) {
+    residual(static_cast<Eigen::Index>(way.left_out)) = 0;
+    Eigen::VectorXd x = step(residual);
+    const Eigen::VectorXd& free = kernel(way.left_out);
+    x -= x(way.kept) / free(way.kept) * free;
+    return x;
+}
+
+Eigen::VectorXd System::bend(const Eigen::VectorXd& v, const Way& way) {
+    std::vector<double> at(structure_.dof_of.size(), 0.0);
+    for (std::size_t d = 0; d < size(); ++d) {
+        at[coordinate(d)] = v(static_cast<Eigen::Index>(d));
+    }
+    Eigen::VectorXd residual(static_cast<Eigen::Index>(contacts_.size()));
+    for (std::size_t l = 0; l < contacts_.size(); ++l) {
+        const Row& row = structure_.rows[l];
+        residual(static_cast<Eigen::Index>(l)) = row.quadratic ? -row.square(at, packing_.axes()) / 2 : 0.0;
+    }
+    return step_along(std::move(residual), way);
+}
+
 /// Newton's step with the present factors.
 template <class T> Eigen::VectorXd System::step_at(const std::vector<T>& q, const std::optional<Way>& way) {
     Eigen::VectorXd residual(static_cast<Eigen::Index>(contacts_.size()));
     for (std::size_t l = 0; l < contacts_.size(); ++l) {
-        const bool free = way && way->left_out == l;
-        residual(static_cast<Eigen::Index>(l)) =
-            free ? 0.0 : static_cast<double>(-value(q, contacts_[l], structure_.rows[l]));
+        residual(static_cast<Eigen::Index>(l)) = static_cast<double>(-value(q, contacts_[l], structure_.rows[l]));
     }
-    Eigen::VectorXd x = step(residual);
-    if (way) {
-        if (!kernel_ || kernel_->first != way->left_out) {
-            kernel_ = {way->left_out,
-                       step(Eigen::VectorXd::Unit(residual.size(), static_cast<Eigen::Index>(way->left_out)))};
-        }
-        x -= x(way->kept) / kernel_->second(way->kept) * kernel_->second;
-    }
-    return x;
+    return way ? step_along(std::move(residual), *way) : step(residual);
 }
 
 Eigen::VectorXd System::product(const std::vector<double>& q, const Eigen::VectorXd& v) const {
@@ -103,21 +124,20 @@ Eigen::VectorXd System::product(const std::vector<double>& q, const Eigen::Vecto
     return result;
 }
 
-bool System::motion(const std::vector<double>& q, std::size_t opened, Eigen::VectorXd& v) {
-    const auto n = static_cast<Eigen::Index>(size());
-    if (v.size() != n) {
-        v = Eigen::VectorXd::Zero(n);
-    }
+bool System::motion(const std::vector<double>& q, std::size_t opened, Eigen::VectorXd& v, int bits) {
     for (const bool last_factors : {false, true}) {
         if (last_factors || !solver_) {
             renew(q);
+        }
+        if (solver_->usable() && (last_factors || v.size() == 0)) {
+            v = kernel(opened);
         }
         double size = std::numeric_limits<double>::infinity();
         for (int k = 0; k < 30 && solver_->usable(); ++k) {
             Eigen::VectorXd residual = -product(q, v);
             residual(static_cast<Eigen::Index>(opened)) += 1;
             const double now = residual.lpNorm<Eigen::Infinity>();
-            const double rounding = std::ldexp(1 + std::ldexp(v.lpNorm<Eigen::Infinity>(), solver_->exponent()), -46);
+            const double rounding = std::ldexp(1 + std::ldexp(v.lpNorm<Eigen::Infinity>(), solver_->exponent()), -bits);
             if (now <= rounding || (last_factors && now >= slow * size)) {
                 return v.allFinite();
             }
@@ -127,8 +147,8 @@ bool System::motion(const std::vector<double>& q, std::size_t opened, Eigen::Vec
             size = now;
             v += step(residual);
         }
-        v.setZero();
     }
+    v.resize(0);
     return false;
 }
 

@@ -33,8 +33,8 @@ class System {
     }
     [[nodiscard]] std::shared_ptr<const Solver> solver() const { return solver_; }
 
-    /// A(q) v = e_opened; on entry v is a guess, or empty.
-    bool motion(const std::vector<double>& q, std::size_t opened, Eigen::VectorXd& v);
+    /// A(q) v = e_opened, its residual rounded to so many bits; on entry v is a guess, or empty.
+    bool motion(const std::vector<double>& q, std::size_t opened, Eigen::VectorXd& v, int bits = 46);
     /// Newton to a zero of all F except that of contact `left_out`, with a degree of freedom kept in place; the
     /// iteration ends at steps of the largest radius times `accuracy`, or where rounding lets them fall no more. The
     /// last step, in largest radii; nothing: it does not converge.
@@ -43,6 +43,9 @@ class System {
         Eigen::Index kept;
     };
     std::optional<double> newton(std::vector<double>& q, const std::optional<Way>& way, double accuracy);
+    /// The second derivative, halved, of the curve through q with derivative v along which all F but that of `left_out`
+    /// stay 0 and the coordinate moves at a constant rate, with the present factors.
+    [[nodiscard]] Eigen::VectorXd bend(const Eigen::VectorXd& v, const Way& way);
     /// Largest component of A^-1 for a residual of a squared largest radius in every F, of mixed signs, in largest
     /// radii: about how much Newton's method in double enlarges roundings. A solve.
     [[nodiscard]] double spread() const;
@@ -55,6 +58,8 @@ class System {
     template <class T> [[nodiscard]] T value(const std::vector<T>& q, const Contact& c, const Row& row) const;
     [[nodiscard]] Eigen::VectorXd step(const Eigen::VectorXd& residual) const;
     template <class T> [[nodiscard]] Eigen::VectorXd step_at(const std::vector<T>& q, const std::optional<Way>& way);
+    [[nodiscard]] Eigen::VectorXd step_along(Eigen::VectorXd residual, const Way& way);
+    const Eigen::VectorXd& kernel(std::size_t left_out);
     [[nodiscard]] Eigen::VectorXd product(const std::vector<double>& q, const Eigen::VectorXd& v) const;
 
     const Packing& packing_;

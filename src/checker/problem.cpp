@@ -131,6 +131,7 @@ Row::Row(const Contact& contact, const Layout& layout) {
         return;
     }
     quadratic = true;
+    apart = static_cast<std::uint8_t>(contact.i != contact.j ? layout.axes() : 0);
     for (const int grain : {contact.i, contact.j}) {
         for (std::size_t a = 0; a < layout.axes() && contact.i != contact.j; ++a) {
             add(layout.of_disk(grain) + a, grain == contact.i ? 1 : -1, a);
@@ -144,6 +145,26 @@ Row::Row(const Contact& contact, const Layout& layout) {
             }
         }
     }
+}
+
+Lists::Lists(std::size_t lists, const std::vector<std::pair<int, int>>& entries)
+    : start_(lists + 2, 0), numbers_(entries.size()) {
+    for (const auto& [list, number] : entries) {
+        ++start_[static_cast<std::size_t>(list) + 2];
+    }
+    std::partial_sum(start_.begin(), start_.end(), start_.begin());
+    for (const auto& [list, number] : entries) {
+        numbers_[start_[static_cast<std::size_t>(list) + 1]++] = number;
+    }
+    start_.pop_back();
+}
+
+std::pair<std::size_t, std::size_t> Lists::lengths() const {
+    std::pair<std::size_t, std::size_t> found{numbers_.size(), 0};
+    for (std::size_t k = 0; k < size(); ++k) {
+        found = {std::min(found.first, (*this)[k].size()), std::max(found.second, (*this)[k].size())};
+    }
+    return found;
 }
 
 Structure::Structure(const Packing& packing, const std::vector<Contact>& contacts) : layout(packing.layout()) {
@@ -319,12 +340,8 @@ void Problem::find_contacts_of(const State& state) {
         return at_i.from != Known::nothing && at_i.from == at_j.from && at_i.value == at_j.value &&
                row.spread(a) == 2; // no period is in between
     };
-    contacts_of.resize(coordinate_of.size());
-    acting_on.resize(coordinate_of.size());
-    for (std::size_t j = 0; j < contacts_of.size(); ++j) {
-        contacts_of[j].reserve(4);
-        acting_on[j].reserve(4);
-    }
+    std::vector<std::pair<int, int>> touching;
+    std::vector<std::pair<int, int>> acting;
     std::vector<unsigned long> change(coordinate_of.size(), 0);
     for (std::size_t l = 0; l < rows.size(); ++l) {
         const Row& row = rows[l];
@@ -337,13 +354,15 @@ void Problem::find_contacts_of(const State& state) {
                 continue;
             }
             const auto j = static_cast<std::size_t>(dof);
-            contacts_of[j].push_back(static_cast<int>(l));
+            touching.emplace_back(dof, static_cast<int>(l));
             if (!row.quadratic || !level(state.contacts[l], row, row.axis[k])) {
-                acting_on[j].push_back(static_cast<int>(l));
+                acting.push_back(touching.back());
             }
             change[j] += row.quadratic ? static_cast<unsigned long>(std::abs(row.sign[k]) * spread[row.axis[k]]) : 0UL;
         }
     }
+    contacts_of = {coordinate_of.size(), touching};
+    acting_on = {coordinate_of.size(), acting};
     find_immovable(state);
     column_curvature_ = change.empty() ? 0 : *std::max_element(change.begin(), change.end());
 }

@@ -9,7 +9,9 @@
 #include <array>
 #include <cstdint>
 #include <cstdlib>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace isostat::checker {
@@ -21,6 +23,7 @@ struct Row {
     static constexpr std::size_t most =
         2 * most_axes + most_axes + most_tilts; ///< two grains and the entries of a cell
     bool quadratic = false;
+    std::uint8_t apart = 0; ///< of two disks: how many entries those of j come after those of i
     int count = 0;
     std::array<int, most> coordinate{}; ///< quadratic: those of i, of j, then the cell; of an own image the cell alone
     std::array<int, most> sign{};       ///< of the cell -m_b
@@ -29,25 +32,22 @@ struct Row {
     Row(const Contact& contact, const Layout& layout);
     /// d_a of anything that has one number per coordinate. \pre quadratic
     template <class Numbers, class Number> void separate(const Numbers& of, std::size_t a, Number& d) const {
+        const auto at = [this](std::size_t k) { return static_cast<std::size_t>(coordinate[k]); };
         d = 0;
-        for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
-            if (axis[k] != a) {
-                continue;
-            }
-            const auto& x = of[static_cast<std::size_t>(coordinate[k])];
-            if (sign[k] == 1) {
-                d += x;
-            } else if (sign[k] == -1) {
-                d -= x;
-            } else {
-                d += sign[k] * x;
+        if (apart > 0) {
+            d += of[at(a)];
+            d -= of[at(apart + a)];
+        }
+        for (std::size_t k = 2 * std::size_t{apart}; k < static_cast<std::size_t>(count); ++k) {
+            if (axis[k] == a) {
+                d += sign[k] * of[at(k)];
             }
         }
     }
     /// The most by which d_a changes when no coordinate does by more than 1.
     [[nodiscard]] int spread(std::size_t a) const {
-        int sum = 0;
-        for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
+        int sum = apart > 0 && a < apart ? 2 : 0;
+        for (std::size_t k = 2 * std::size_t{apart}; k < static_cast<std::size_t>(count); ++k) {
             sum += axis[k] == a ? std::abs(sign[k]) : 0;
         }
         return sum;
@@ -86,6 +86,24 @@ std::vector<int> bodies_of(const Packing& packing);
 /// Two members of one body, which may overlap. `body`: of `bodies_of`.
 bool are_members(const std::vector<int>& body, const Contact& pair);
 
+/// Lists of numbers in one piece of memory.
+class Lists {
+  public:
+    Lists() = default;
+    /// `entries`: the list and the number.
+    Lists(std::size_t lists, const std::vector<std::pair<int, int>>& entries);
+    [[nodiscard]] std::size_t size() const { return start_.size() - 1; }
+    [[nodiscard]] std::span<const int> operator[](std::size_t k) const {
+        return std::span(numbers_).subspan(start_[k], start_[k + 1] - start_[k]);
+    }
+    /// How many numbers the shortest and the longest have.
+    [[nodiscard]] std::pair<std::size_t, std::size_t> lengths() const;
+
+  private:
+    std::vector<std::size_t> start_{0};
+    std::vector<int> numbers_;
+};
+
 /// Which coordinates move, and what each contact depends on.
 struct Structure {
     Structure(const Packing& packing, const std::vector<Contact>& contacts);
@@ -109,10 +127,10 @@ class Problem : public Structure {
     Lengths sum;    ///< per contact: R_i + R_j, R of the disk at a wall, the length of a bar
     Lengths stored; ///< coordinates
     Lengths radius;
-    std::vector<std::vector<int>> contacts_of; ///< per degree of freedom: the contacts that touch it
+    Lists contacts_of; ///< per degree of freedom: the contacts that touch it
     /// The same without those whose entry is 0 at every true vertex: two disks that walls, holds or being fixed keep at
     /// one coordinate (proofs/definition.md).
-    std::vector<std::vector<int>> acting_on;
+    Lists acting_on;
     /// Per axis: what cannot move along it, that is walls, fixed disks, or in a cell the pinned disk; and what holds
     /// coordinates. Its balance is minus the sum of all that can (K7).
     struct Immovable {

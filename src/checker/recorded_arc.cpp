@@ -23,7 +23,7 @@ double multiplier(const State& state, const Solver& solver, std::size_t contact,
     for (std::size_t j = 0; j < structure.coordinate_of.size(); ++j) {
         b(static_cast<Eigen::Index>(j), 0) = -load[static_cast<std::size_t>(structure.coordinate_of[j])];
     }
-    const Eigen::MatrixXd forces = solver.solve_transposed(b);
+    const Eigen::MatrixXd forces = solver.solve_transposed(b, 2); // a multiplier may be 0
     largest = forces.lpNorm<Eigen::Infinity>();
     return forces(static_cast<Eigen::Index>(contact), 0);
 }

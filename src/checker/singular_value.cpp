@@ -1,6 +1,8 @@
 #include "checker/singular_value.hpp"
 
+#include "checker/bounds.hpp"
 #include "checker/index.hpp"
+#include "checker/normal_factor.hpp"
 #include "checker/wide.hpp"
 
 #include <Eigen/OrderingMethods>
@@ -42,113 +44,111 @@ std::int64_t whole_part(Wide value, long shift) {
     return value < 0 ? -size : size;
 }
 
-/// A rounded to fixed point, and B = A^T A of what is left, in a given order of the degrees of freedom.
-struct Normal {
+/// The entries of A, row by row, as they are read. `Value`: integers, or doubles.
+template <class Value> struct Entries : SparseRows<Value> {
+    using SparseRows<Value>::first, SparseRows<Value>::column, SparseRows<Value>::value;
     long scale = 0;           ///< A is below 2^scale units of the problem
     std::size_t touching = 1; ///< most entries in a column or row of A
     int most_periods = 1;     ///< the largest factor of an entry, which multiplies its rounding
-    bool usable = false;
-    /// The lower triangle of B row by row, columns in any order; times 2^(2 point).
-    std::vector<std::size_t> start{0};
-    std::vector<int> column;
-    std::vector<Wide> value;
 
-    Normal(const Problem& problem, const std::vector<int>& order) : place_(order.size()) {
-        for (std::size_t k = 0; k < order.size(); ++k) {
-            place_[at(order[k])] = static_cast<int>(k);
-        }
-        if (problem.dofs() > most_rows || !(problem.stored.narrow() ? round<Wide>(problem) : round<Integer>(problem))) {
-            return;
-        }
-        for (const std::vector<int>& contacts : problem.contacts_of) {
-            touching = std::max(touching, contacts.size());
-        }
-        usable = static_cast<double>(touching) <= largest_square && // an entry of B is at most that
-                 std::ranges::none_of(problem.contacts_of, &std::vector<int>::empty);
-        if (usable) {
-            multiply(problem, order);
-        }
-    }
-
-    /// What entries of a column or row of A are off by together, in units of 2^-point of the scale.
+    /// What entries of a column or row are off by together, in units of what one separation is.
     [[nodiscard]] unsigned long rounding() const { return touching * static_cast<unsigned long>(most_periods); }
 
-  private:
-    struct Entry {
-        int place;
-        std::int64_t value;
-    };
-    std::vector<int> place_;            ///< of each degree of freedom in the order
-    std::vector<Entry> entries_;        ///< row by row
-    std::vector<std::size_t> first_{0}; ///< of each row
-
-    [[nodiscard]] std::span<const Entry> entries_of(int contact) const {
-        return std::span(entries_).subspan(first_[at(contact)], first_[at(contact) + 1] - first_[at(contact)]);
-    }
-
-    /// Entries of A, rounded towards zero by less than `most_periods`. False: a separation is above twice the length at
-    /// which some contact is closed.
-    template <class Number> bool round(const Problem& problem) {
+    /// `places`: columns of the degrees of freedom, or empty. `rounded(separation, scale)`: as a number. False: a
+    /// separation is above twice the length at which some contact is closed.
+    template <class Number, class Rounded>
+    bool read(const Problem& problem, const std::vector<int>& places, const Rounded& rounded) {
         scale = problem.weight_bits + 1;
-        entries_.reserve(4 * problem.rows.size());
-        first_.reserve(problem.rows.size() + 1);
         const std::vector<Number>& sum = problem.sum.in<Number>();
-        const std::vector<Number>& stored = problem.stored.in<Number>();
         for (std::size_t l = 0; l < problem.rows.size(); ++l) {
             const Row& contact = problem.rows[l];
             scale = std::max(scale, contact.quadratic ? bits(sum[l]) + 1 : 0);
-            for (std::size_t k = 0; k < static_cast<std::size_t>(contact.count); ++k) {
+            for (std::size_t k = 0; k < at(contact.count); ++k) {
                 most_periods = std::max(most_periods, std::abs(contact.sign[k]));
             }
         }
         const long factors = std::bit_width(static_cast<unsigned>(most_periods - 1));
         scale += factors;
+        column.reserve(4 * problem.rows.size());
+        value.reserve(column.capacity());
+        touching = std::max(touching, problem.contacts_of.lengths().second);
         Number entry;
         for (const Row& contact : problem.rows) {
-            std::array<std::int64_t, most_axes> separation{};
+            std::array<Value, most_axes> separation{};
             for (std::size_t a = 0; a < problem.layout.axes(); ++a) {
                 if (contact.quadratic) {
-                    contact.separate(stored, a, entry);
+                    contact.separate(problem.stored.in<Number>(), a, entry);
                 } else {
                     entry = number<Number>(problem.weight());
                 }
                 if (bits(entry) > scale - factors) {
                     return false;
                 }
-                separation[a] = whole_part(entry, point - scale);
+                separation[a] = rounded(entry, scale);
             }
-            for (std::size_t k = 0; k < static_cast<std::size_t>(contact.count); ++k) {
+            for (std::size_t k = 0; k < at(contact.count); ++k) {
                 if (const int dof = problem.dof_of[at(contact.coordinate[k])]; dof >= 0) {
-                    entries_.push_back({place_[at(dof)], contact.sign[k] * separation[contact.axis[k]]});
+                    column.push_back(places.empty() ? dof : places[at(dof)]);
+                    value.push_back(contact.sign[k] * separation[contact.axis[k]]);
                 }
             }
-            touching = std::max(touching, entries_.size() - first_.back());
-            first_.push_back(entries_.size());
+            touching = std::max(touching, column.size() - first.back());
+            first.push_back(column.size());
         }
         return true;
     }
+};
 
+/// A rounded to fixed point, and B = A^T A of what is left, in a given order of the degrees of freedom.
+struct Normal : Entries<std::int64_t> {
+    bool usable = false;
+    /// The lower triangle of B row by row, its columns `below` in any order; times 2^(2 point).
+    std::vector<std::size_t> start{0};
+    std::vector<int> below;
+    std::vector<Wide> product;
+
+    Normal(const Problem& problem, const std::vector<int>& order) {
+        std::vector<int> places(order.size());
+        for (std::size_t k = 0; k < order.size(); ++k) {
+            places[at(order[k])] = static_cast<int>(k);
+        }
+        const auto whole = [](const auto& entry, long exponent) { return whole_part(entry, point - exponent); };
+        if (problem.dofs() > most_rows ||
+            !(problem.stored.narrow() ? read<Wide>(problem, places, whole) : read<Integer>(problem, places, whole))) {
+            return;
+        }
+        usable = static_cast<double>(touching) <= largest_square && // an entry of B is at most that
+                 problem.contacts_of.lengths().first > 0;
+        if (usable) {
+            multiply(problem, order);
+        }
+    }
+
+  private:
     void multiply(const Problem& problem, const std::vector<int>& order) {
         std::vector<Wide> sum(order.size(), 0);
         std::vector<int> last(order.size(), -1); // the row in which a column was met last
         for (int i = 0; at(i) < order.size(); ++i) {
             for (const int l : problem.contacts_of[at(order[at(i)])]) {
-                const auto entries = entries_of(l);
-                const Wide own = std::ranges::find(entries, i, &Entry::place)->value;
-                for (const Entry& e : entries) {
-                    if (e.place > i) {
+                std::size_t mine = first[at(l)];
+                while (column[mine] != i) {
+                    ++mine;
+                }
+                for (std::size_t e = first[at(l)]; e < first[at(l) + 1]; ++e) {
+                    const int k = column[e];
+                    if (k > i) {
                         continue;
                     }
-                    if (std::exchange(last[at(e.place)], i) != i) {
-                        column.push_back(e.place);
+                    if (std::exchange(last[at(k)], i) != i) {
+                        below.push_back(k);
                     }
-                    sum[at(e.place)] += own * e.value;
+                    sum[at(k)] += static_cast<Wide>(value[mine]) * value[e];
                 }
             }
-            for (std::size_t p = start.back(); p < column.size(); ++p) {
-                value.push_back(std::exchange(sum[at(column[p])], 0));
+            for (std::size_t p = start.back(); p < below.size(); ++p) {
+                product.push_back(std::exchange(sum[at(below[p])], 0));
             }
-            start.push_back(column.size());
+            start.push_back(below.size());
         }
     }
 };
@@ -157,27 +157,19 @@ struct Normal {
 class Factor {
   public:
     explicit Factor(const Normal& b)
-        : b_(b), n_(b.start.size() - 1), parent_(n_, -1), met_(n_, -1), diagonal_(n_), row_sum_(n_), x_(n_, 0) {
-        find_parents();
-        std::vector<std::size_t> count(n_, 0);
-        for (int i = 0; at(i) < n_; ++i) {
-            for (const int k : columns_of(i)) {
-                ++count[at(k)];
-                column_.push_back(k);
-            }
-            first_.push_back(column_.size());
-        }
-        start_.resize(n_ + 1, 0);
-        std::partial_sum(count.begin(), count.end(), start_.begin() + 1);
-        row_.resize(start_.back());
-        value_.resize(start_.back());
-    }
+        : b_(b), n_(b.start.size() - 1),
+          pattern_(n_,
+                   [&b](int i, const auto& visit) {
+                       std::for_each_n(b.below.begin() + static_cast<std::ptrdiff_t>(b.start[at(i)]),
+                                       b.start[at(i) + 1] - b.start[at(i)], visit);
+                   }),
+          row_(pattern_.column.size()), value_(row_.size()), diagonal_(n_), row_sum_(n_), x_(n_, 0) {}
 
     /// Row by row. False: the matrix is not positive definite as far as is seen, or an entry is too large.
     bool compute(Wide shift) {
         std::fill(row_sum_.begin(), row_sum_.end(), 0);
         std::fill(x_.begin(), x_.end(), 0);
-        end_.assign(start_.begin(), start_.end() - 1);
+        end_.assign(pattern_.start.begin(), pattern_.start.end() - 1);
         for (int i = 0; at(i) < n_; ++i) {
             if (!compute_row(i, shift)) {
                 return false;
@@ -212,51 +204,13 @@ class Factor {
     }
 
   private:
-    /// The columns of row i, each before its parent.
-    std::span<const int> columns_of(int i) {
-        reach_.resize(n_);
-        std::size_t top = n_;
-        met_[at(i)] = i;
-        for (std::size_t p = b_.start[at(i)]; p < b_.start[at(i) + 1]; ++p) {
-            std::size_t length = 0;
-            for (int k = b_.column[p]; met_[at(k)] != i; k = parent_[at(k)]) {
-                if (parent_[at(k)] < 0) {
-                    leads_ = false;
-                    break;
-                }
-                met_[at(k)] = i;
-                reach_[length++] = k;
-            }
-            while (length > 0) {
-                reach_[--top] = reach_[--length];
-            }
-        }
-        return std::span(reach_).subspan(top);
-    }
-
-    /// Of each column the first row below the diagonal (Liu), with ancestors as shortcuts.
-    void find_parents() {
-        std::vector<int> ancestor(n_, -1);
-        for (int i = 0; at(i) < n_; ++i) {
-            for (std::size_t p = b_.start[at(i)]; p < b_.start[at(i) + 1]; ++p) {
-                for (int k = b_.column[p]; k >= 0 && k < i;) {
-                    const int next = std::exchange(ancestor[at(k)], i);
-                    if (next < 0) {
-                        parent_[at(k)] = i;
-                    }
-                    k = next;
-                }
-            }
-        }
-    }
-
     bool compute_row(int i, Wide shift) {
         for (std::size_t p = b_.start[at(i)]; p < b_.start[at(i) + 1]; ++p) {
-            x_[at(b_.column[p])] = b_.value[p];
+            x_[at(b_.below[p])] = b_.product[p];
         }
         Wide square = std::exchange(x_[at(i)], 0) - shift; // of the diagonal entry, in the end
-        for (std::size_t c = first_[at(i)]; c < first_[at(i) + 1]; ++c) {
-            const int k = column_[c];
+        for (std::size_t c = pattern_.first[at(i)]; c < pattern_.first[at(i) + 1]; ++c) {
+            const int k = pattern_.column[c];
             const Wide sought = std::exchange(x_[at(k)], 0);
             const double quotient = as_double(sought) / static_cast<double>(diagonal_[at(k)]);
             if (!(std::abs(quotient) < 0x1p62)) {
@@ -267,14 +221,14 @@ class Factor {
             if (square <= 0 || !add_residual(i, k, sought - static_cast<Wide>(entry) * diagonal_[at(k)])) {
                 return false;
             }
-            for (std::size_t p = start_[at(k)]; p < end_[at(k)]; ++p) {
+            for (std::size_t p = pattern_.start[at(k)]; p < end_[at(k)]; ++p) {
                 x_[at(row_[p])] -= static_cast<Wide>(entry) * value_[p];
             }
             row_[end_[at(k)]] = i;
             value_[end_[at(k)]++] = entry;
         }
         diagonal_[at(i)] = square > 0 ? static_cast<std::int64_t>(std::sqrt(as_double(square))) : 0;
-        return leads_ && diagonal_[at(i)] > 0 &&
+        return diagonal_[at(i)] > 0 &&
                add_residual(i, i, square - static_cast<Wide>(diagonal_[at(i)]) * diagonal_[at(i)]);
     }
 
@@ -291,12 +245,12 @@ class Factor {
         const auto component = [&x](auto k) -> double& { return x(static_cast<Eigen::Index>(k)); };
         for (std::size_t k = 0; k < n_; ++k) {
             component(k) /= entry(diagonal_[k]);
-            for (std::size_t p = start_[k]; p < end_[k]; ++p) {
+            for (std::size_t p = pattern_.start[k]; p < end_[k]; ++p) {
                 component(row_[p]) -= entry(value_[p]) * component(k);
             }
         }
         for (std::size_t k = n_; k-- > 0;) {
-            for (std::size_t p = start_[k]; p < end_[k]; ++p) {
+            for (std::size_t p = pattern_.start[k]; p < end_[k]; ++p) {
                 component(k) -= entry(value_[p]) * component(row_[p]);
             }
             component(k) /= entry(diagonal_[k]);
@@ -305,19 +259,33 @@ class Factor {
 
     const Normal& b_;
     std::size_t n_;
-    std::vector<int> parent_; ///< above its column
-    bool leads_ = true;       ///< all paths along parents that were gone led to their row
-    std::vector<int> met_;    ///< the last row whose columns were sought
-    std::vector<int> reach_;
-    std::vector<std::size_t> first_{0}; ///< of row i in the list of columns, each before its parent
-    std::vector<int> column_;
-    std::vector<std::size_t> start_, end_; ///< of the columns below the diagonal: rows ascend
-    std::vector<int> row_;
+    FactorPattern pattern_;
+    std::vector<std::size_t> end_; ///< of what was computed of each column
+    std::vector<int> row_;         ///< below the diagonal, column by column: rows ascend
     std::vector<std::int64_t> value_;
     std::vector<std::int64_t> diagonal_;
     std::vector<WideMagnitude> row_sum_; ///< of the residual
     std::vector<Wide> x_;                ///< the row that is computed; 0 elsewhere
 };
+
+/// The bound from doubles (K30); nothing: they show none, or lengths have more than 128 bits.
+std::optional<Rational> bound_in_double(const Problem& problem, const std::vector<int>& order, double shift) {
+    Entries<double> a;
+    const auto rounded = [](Wide separation, long exponent) { return approximate(Broad(separation), -exponent); };
+    if (!problem.stored.narrow() || !a.read<Wide>(problem, {}, rounded)) {
+        return {};
+    }
+    const auto factor = normal_factor(problem.layout.dimension, a, order);
+    if (!factor->compute(shift)) {
+        return {};
+    }
+    const double square = next_below(shift - factor->residual(shift));
+    if (!(square > 0)) {
+        return {};
+    }
+    const Rational bound = Rational(next_below(std::sqrt(square))) - dyadic(a.rounding(), -51);
+    return bound > 0 ? std::optional<Rational>(bound * power_of_two(a.scale + problem.fine)) : std::nullopt;
+}
 
 /// The bound from factors for a shift that is a part of 1; nothing: they show none.
 std::optional<Rational> bound_of(const Problem& problem, const Normal& normal, Factor& factor, double shift) {
@@ -356,7 +324,13 @@ std::vector<int> order_of_normal(const Structure& structure) {
 }
 
 std::optional<Rational> smallest_singular_value(const Problem& problem, const std::vector<int>& order, double enough) {
-    const Normal normal(problem, order.size() == problem.coordinate_of.size() ? order : order_of_normal(problem));
+    const std::vector<int> sought = order.size() == problem.coordinate_of.size() ? order : order_of_normal(problem);
+    if (enough > 0) {
+        if (auto bound = bound_in_double(problem, sought, enough * enough)) {
+            return bound;
+        }
+    }
+    const Normal normal(problem, sought);
     if (!normal.usable) {
         return std::nullopt;
     }

@@ -1,11 +1,13 @@
 #include "checker/solver.hpp"
 
+#include "checker/index.hpp"
+#include "checker/normal_factor.hpp"
 #include "checker/singular_value.hpp"
 
-#include <Eigen/SparseCore>
 #include <klu.h>
 
 #include <algorithm>
+#include <numeric>
 #include <vector>
 
 namespace isostat::checker {
@@ -26,43 +28,41 @@ void add_scaled(Integer& target, double value, long shift) {
     target += part;
 }
 
-/// The factors of KLU, which keeps nothing of the matrix.
+/// The factors of A^T in KLU, which keeps nothing of the matrix, or of A^T A.
 struct Solver::Factors {
     klu_common common{};
     klu_symbolic* symbolic = nullptr;
     klu_numeric* numeric = nullptr;
     int size = 0;
 
-    std::vector<int> order; ///< for A^T A
-    int kept = 0;           ///< how many lists before this one had these orders
-    int entries = 0;        ///< in the factors that had new orders
+    std::unique_ptr<NormalFactor> normal; ///< null: they are those of KLU
+    std::vector<int> order;               ///< for A^T A
+    int kept = 0;                         ///< how many lists before this one had these orders
+    int entries = 0;                      ///< in the factors that had new orders
 
-    /// `like`: has orders that may serve, or null.
-    Factors(const Structure& structure, Eigen::SparseMatrix<double>& matrix, const Factors* like)
-        : size(static_cast<int>(matrix.rows())) {
+    /// `like`: has orders that may serve, or null. `quick`: of A^T A, if its Cholesky factor exists.
+    Factors(const Structure& structure, SparseRows<double> a, const Factors* like, bool quick)
+        : size(static_cast<int>(structure.rows.size())) {
         constexpr int longest = 16;
         constexpr double most_fill = 1.25;
-        klu_defaults(&common);
-        if (like != nullptr && like->size == size && like->kept < longest &&
-            like->filled() <= most_fill * like->entries) {
-            common.btf = 0; // a contact more may connect the blocks
-            symbolic = klu_analyze_given(size, matrix.outerIndexPtr(), matrix.innerIndexPtr(), like->numeric->Pnum,
-                                         like->symbolic->Q, &common);
-            order = like->order;
-            kept = like->kept + 1;
-            entries = like->entries;
-        } else {
-            symbolic = klu_analyze(size, matrix.outerIndexPtr(), matrix.innerIndexPtr(), &common);
-            order = order_of_normal(structure);
+        const bool known = like != nullptr && like->size == size && like->kept < longest &&
+                           like->normal->entries() <= most_fill * like->entries;
+        order = known ? like->order : order_of_normal(structure);
+        kept = known ? like->kept + 1 : 0;
+        if (quick) {
+            normal = normal_factor(structure.layout.dimension, a, order);
+            entries = known ? like->entries : normal->entries();
+            normal = normal->compute(0) ? std::move(normal) : nullptr;
         }
-        if (symbolic != nullptr) {
-            numeric = klu_factor(matrix.outerIndexPtr(), matrix.innerIndexPtr(), matrix.valuePtr(), symbolic, &common);
-        }
-        if (kept == 0 && numeric != nullptr) {
-            entries = filled();
+        if (!normal) { // KLU takes rows for columns
+            std::vector<int> start(a.first.begin(), a.first.end());
+            klu_defaults(&common);
+            symbolic = klu_analyze(size, start.data(), a.column.data(), &common);
+            if (symbolic != nullptr) {
+                numeric = klu_factor(start.data(), a.column.data(), a.value.data(), symbolic, &common);
+            }
         }
     }
-    [[nodiscard]] int filled() const { return numeric->lnz + numeric->unz + numeric->nzoff; }
     ~Factors() {
         klu_free_numeric(&numeric, &common);
         klu_free_symbolic(&symbolic, &common);
@@ -83,22 +83,33 @@ struct Solver::Factors {
 };
 
 Eigen::MatrixXd Solver::solve(Eigen::MatrixXd b) const {
-    return factors_->solved(std::move(b), [](auto... arguments) { klu_solve(arguments...); });
+    if (factors_->normal) {
+        for (Eigen::Index k = 0; k < b.cols(); ++k) {
+            b.col(k) = factors_->normal->solve(b.col(k));
+        }
+        return b;
+    }
+    return factors_->solved(std::move(b), [](auto... arguments) { klu_tsolve(arguments...); });
 }
 
-Eigen::MatrixXd Solver::solve_transposed(Eigen::MatrixXd b) const {
-    return factors_->solved(std::move(b), [](auto... arguments) { klu_tsolve(arguments...); });
+Eigen::MatrixXd Solver::solve_transposed(Eigen::MatrixXd b, int steps) const {
+    if (factors_->normal) {
+        for (Eigen::Index k = 0; k < b.cols(); ++k) {
+            b.col(k) = factors_->normal->solve_transposed(b.col(k), steps);
+        }
+        return b;
+    }
+    return factors_->solved(std::move(b), [](auto... arguments) { klu_solve(arguments...); });
 }
 
 Solver::Solver(const Problem& problem, const Solver* like) : Solver(problem, problem.stored.near(problem.fine), like) {}
 
-Solver::Solver(const Structure& structure, const std::vector<double>& q, const Solver* like) {
-    std::vector<Eigen::Triplet<double>> entries;
+Solver::Solver(const Structure& structure, const std::vector<double>& q, const Solver* like, bool quick) {
+    SparseRows<double> a;
     double largest = 0;
-    for (std::size_t l = 0; l < structure.rows.size(); ++l) {
-        const Row& row = structure.rows[l];
-        for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
-            const auto own = static_cast<std::size_t>(row.coordinate[k]);
+    for (const Row& row : structure.rows) {
+        for (std::size_t k = 0; k < at(row.count); ++k) {
+            const std::size_t own = at(row.coordinate[k]);
             if (structure.dof_of[own] < 0) {
                 continue;
             }
@@ -108,23 +119,22 @@ Solver::Solver(const Structure& structure, const std::vector<double>& q, const S
                 entry *= row.sign[k];
             }
             largest = std::max(largest, std::abs(entry));
-            entries.emplace_back(static_cast<int>(l), structure.dof_of[own], entry);
+            a.column.push_back(structure.dof_of[own]);
+            a.value.push_back(entry);
         }
+        a.first.push_back(a.column.size());
     }
-    const auto n = static_cast<int>(structure.coordinate_of.size());
     if (!(largest > 0) || !std::isfinite(largest) || structure.rows.size() != structure.coordinate_of.size()) {
         return;
     }
     std::frexp(largest, &exponent_);
-    Eigen::SparseMatrix<double> matrix(n, n);
-    matrix.setFromTriplets(entries.begin(), entries.end());
-    matrix *= std::ldexp(1.0, -exponent_);
-    const Factors* known = like != nullptr ? like->factors_.get() : nullptr;
-    auto factors = std::make_shared<const Factors>(structure, matrix, known);
-    if (factors->numeric == nullptr && factors->kept > 0) {
-        factors = std::make_shared<const Factors>(structure, matrix, nullptr);
+    for (double& entry : a.value) {
+        entry = times_power(entry, -exponent_);
     }
-    if (factors->numeric != nullptr) {
+    const bool known = like != nullptr && like->factors_ != nullptr && like->factors_->normal != nullptr;
+    auto factors =
+        std::make_shared<const Factors>(structure, std::move(a), known ? like->factors_.get() : nullptr, quick);
+    if (factors->normal != nullptr || factors->numeric != nullptr) {
         factors_ = std::move(factors);
     }
 }

@@ -43,9 +43,18 @@ class Matching {
     bool perfect_ = true;
 };
 
+/// The contacts that touch each degree of freedom.
+std::vector<std::vector<int>> pattern_of(const Problem& problem) {
+    std::vector<std::vector<int>> contacts_of;
+    for (std::size_t j = 0; j < problem.contacts_of.size(); ++j) {
+        contacts_of.emplace_back(problem.contacts_of[j].begin(), problem.contacts_of[j].end());
+    }
+    return contacts_of;
+}
+
 /// The pattern with the disk of most contacts pinned: its degrees of freedom become those of the pinned disk (C9).
 std::vector<std::vector<int>> with_another_pin(const Problem& problem) {
-    std::vector<std::vector<int>> contacts_of = problem.contacts_of;
+    std::vector<std::vector<int>> contacts_of = pattern_of(problem);
     for (std::size_t a = 0; a < problem.immovable.size(); ++a) {
         const int dof = problem.dof_of[problem.layout.of_disk(problem.most_touched) + a];
         if (problem.immovable[a].periodic && dof >= 0) { // else it is the pinned disk
@@ -110,7 +119,7 @@ std::optional<std::vector<int>> structural_zeros(const Problem& problem, const F
     if (problem.most_touched >= 0 && !acts_on_disks(problem, load)) {
         zeros = zeros_of(with_another_pin(problem), problem.rows.size(), load);
     }
-    return zeros ? zeros : zeros_of(problem.contacts_of, problem.rows.size(), load);
+    return zeros ? zeros : zeros_of(pattern_of(problem), problem.rows.size(), load);
 }
 
 } // namespace isostat::checker

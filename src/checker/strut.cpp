@@ -318,7 +318,7 @@ bool equal_in_edge(const Evidence& evidence, const Forces& load, const std::vect
         if (dof < 0 || load.acts(row)) {
             return false;
         }
-        const std::vector<int>& acting = problem.acting_on[row];
+        const std::span<const int> acting = problem.acting_on[row];
         const bool alike = std::all_of(acting.begin(), acting.end(), [&](int l) {
             const auto k = static_cast<std::size_t>(l);
             return k == a || k == b || contains(zeros, k) || with_a_sphere_there(contacts, contacts[k], one, other);
@@ -359,8 +359,7 @@ bool equal_in_notch(const Evidence& evidence, const Forces& load, const std::vec
                        !contains(zeros, k);
             };
             return dof >= 0 && load[row].lower == 0 && load[row].upper == 0 &&
-                   std::none_of(evidence.problem.contacts_of[row].begin(), evidence.problem.contacts_of[row].end(),
-                                acts);
+                   std::ranges::none_of(evidence.problem.contacts_of[row], acts);
         };
         if (std::any_of(contacts.begin(), contacts.end(), [&](const Contact& at) {
                 return stands(bar.i, at) && stands(bar.j, at) && alone(bar.i, 1 - at.j) && alone(bar.j, 1 - at.j);

@@ -79,7 +79,7 @@ inline double approximate(const Broad& value, long exponent) {
                static_cast<double>(static_cast<std::uint64_t>(of));
     };
     const double all = 0x1p128 * sum(static_cast<WideMagnitude>(size.high)) + sum(size.low);
-    return std::ldexp(value.high < 0 ? -all : all, static_cast<int>(exponent));
+    return times_power(value.high < 0 ? -all : all, exponent);
 }
 
 /// a times b. \pre both are below 2^126

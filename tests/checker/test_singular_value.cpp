@@ -2,6 +2,7 @@
 #include "checker/dense.hpp"
 #include "checker/inverse.hpp"
 #include "checker/maker.hpp"
+#include "checker/normal_factor.hpp"
 #include "checker/singular_value.hpp"
 #include "checker/small_states.hpp"
 #include "checker/vertex.hpp"
@@ -11,6 +12,8 @@
 #include <isostat/checker/verify.hpp>
 
 #include <Eigen/SVD>
+
+#include <random>
 
 using namespace isostat;
 using checker::Problem;
@@ -112,6 +115,74 @@ BOOST_AUTO_TEST_CASE(a_wall_with_more_than_2_to_the_16_contacts_has_no_singular_
         }
         state.packing.q.insert(state.packing.q.end(), {0, 2});
         BOOST_TEST(smallest_singular_value(Problem(state)).has_value() == (disks <= 0x10000), disks);
+    }
+}
+
+namespace {
+
+/// A diagonal of numbers from 1/2 to 1 and two more entries in every row; `singular`: the last row is the first one.
+checker::SparseRows<double> random_rows(std::mt19937& random, int n, bool singular) {
+    std::uniform_real_distribution<double> number(0.5, 1);
+    checker::SparseRows<double> a;
+    for (int l = 0; l < n; ++l) {
+        const bool repeated = singular && l + 1 == n;
+        for (int k = 0; k < 3; ++k) {
+            const int column = k == 0 ? l : (l + (k == 1 ? 1 : 7 + l % 5)) % n;
+            a.column.push_back(repeated ? a.column[static_cast<std::size_t>(k)] : column);
+            a.value.push_back(repeated ? a.value[static_cast<std::size_t>(k)] : (k == 0 ? 1 : -0.4) * number(random));
+        }
+        a.first.push_back(a.column.size());
+    }
+    return a;
+}
+
+std::vector<int> mixed_order(std::mt19937& random, int n) {
+    std::vector<int> order(static_cast<std::size_t>(n));
+    std::iota(order.begin(), order.end(), 0);
+    std::shuffle(order.begin(), order.end(), random);
+    return order;
+}
+
+} // namespace
+
+// K30: rounding lets a factor exist where none does; what it is off by is then no less than the shift.
+BOOST_AUTO_TEST_CASE(a_singular_matrix_gets_no_bound_from_doubles) {
+    std::mt19937 random(1);
+    int passed = 0;
+    for (int sample = 0; sample < 60; ++sample) {
+        const int n = 30 + sample;
+        const auto factor =
+            checker::normal_factor(2 + sample % 2, random_rows(random, n, true), mixed_order(random, n));
+        for (int exponent = 30; exponent < 80; ++exponent) {
+            const double shift = std::ldexp(1.0, -exponent);
+            if (factor->compute(shift)) {
+                ++passed;
+                BOOST_TEST(factor->residual(shift) >= shift, "2^-" << exponent);
+            }
+        }
+    }
+    BOOST_TEST(passed > 0);
+}
+
+BOOST_AUTO_TEST_CASE(factors_of_the_normal_matrix_solve) {
+    std::mt19937 random(2);
+    for (const int n : {20, 31, 64}) {
+        for (const int dimension : {2, 3}) {
+            const checker::SparseRows<double> a = random_rows(random, n, false);
+            const auto size = static_cast<Eigen::Index>(a.first.size() - 1);
+            const auto factor = checker::normal_factor(dimension, a, mixed_order(random, static_cast<int>(size)));
+            Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(size, size);
+            for (Eigen::Index l = 0; l < size; ++l) {
+                for (std::size_t p = a.first[static_cast<std::size_t>(l)]; p < a.first[static_cast<std::size_t>(l) + 1];
+                     ++p) {
+                    dense(l, a.column[p]) += a.value[p];
+                }
+            }
+            BOOST_REQUIRE(factor->compute(0));
+            const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(size, -1, 2);
+            BOOST_TEST((dense * factor->solve(b) - b).norm() < 1e-10);
+            BOOST_TEST((dense.transpose() * factor->solve_transposed(b, 2) - b).norm() < 1e-12);
+        }
     }
 }
 

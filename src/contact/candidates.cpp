@@ -159,9 +159,7 @@ Admissibility certify_admissible(const Packing& packing, double allowance, const
     const auto look = [&](const Contact& contact) {
         const double h = gap(packing, contact);
         // A pair that overlaps takes precedence over one that merely looks worse in double.
-        // A gap is computed to 8 u (|h| + D) in a box (V4): most need no sign in intervals.
-        const bool apart = contact.image.is_here() && h > 0x1p-49 * (h + zero_distance(packing, contact));
-        const bool overlaps = !apart && gap_sign(packing, contact, allowance) < 0;
+        const bool overlaps = gap_sign(packing, contact, allowance) < 0;
         const bool first_overlap = overlaps && result.verdict == Verdict::proved;
         if (first_overlap || (h < result.worst_gap && (overlaps || result.verdict == Verdict::proved))) {
             result.worst_gap = h;

@@ -7,7 +7,6 @@
 #include <isostat/io/run_directory.hpp>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <limits>
 #include <type_traits>
@@ -191,27 +190,20 @@ std::string event_line(const ArcRecord& arc, const RecordColumns& names) {
 }
 
 std::string witness_line(const ArcRecord& arc) {
-    std::string line = fmt::format("{{\"step\":{}", arc.step);
-    const auto append = [&line](const std::vector<double>& numbers) { // without a document between, because many arcs
-        for (std::size_t k = 0; k < numbers.size(); ++k) {            // are certified
-            line += k == 0 ? '[' : ',';
-            json::append_number(line, numbers[k]);
-        }
-        line += numbers.empty() ? "[]" : "]";
-    };
+    Json line;
+    line["step"] = arc.step;
     if (arc.certificate && arc.certificate->verdict == Verdict::proved) {
         const ArcWitness& witness = arc.certificate->witness;
-        line += witness.whole ? "" : fmt::format(",\"grains\":[{}]", fmt::join(witness.grains, ","));
-        line += ",\"centres\":[";
-        for (const ArcWitness::Centre& centre : witness.centres) {
-            line += fmt::format("{}{{\"held\":{},\"q\":", line.back() == '[' ? "" : ",", centre.held);
-            append(centre.q);
-            line += '}';
+        if (!witness.whole) {
+            line["grains"] = witness.grains;
         }
-        line += "],\"end\":";
-        append(witness.end);
+        line["centres"] = Json::array();
+        for (const ArcWitness::Centre& centre : witness.centres) {
+            line["centres"].push_back({{"held", centre.held}, {"q", centre.q}});
+        }
+        line["end"] = witness.end;
     }
-    return line + "}\n";
+    return json::dumped(line) + "\n";
 }
 
 Json counters_json(const RunCounters& counters) {

@@ -51,7 +51,6 @@ class CurvePolynomial {
     [[nodiscard]] const std::vector<double>& shift() const { return shift_; }
 
   private:
-    /// One coordinate of p(s) and of p'(s).
     [[nodiscard]] double coordinate(std::size_t k, double s) const;
     [[nodiscard]] double rate(std::size_t k, double s) const;
     [[nodiscard]] std::vector<double> solved(std::vector<double> rhs) const;

@@ -1,7 +1,5 @@
 #include "trajectory/kept_candidates.hpp"
 
-#include "contact/contact_set.hpp"
-
 #include <algorithm>
 
 namespace isostat {
@@ -14,14 +12,14 @@ void KeptCandidates::set(const Contact& contact, unsigned char flag) {
 }
 
 const std::vector<unsigned char>& KeptCandidates::of(const std::vector<Contact>& candidates,
-                                                     const std::vector<Contact>& contacts, int disks) {
+                                                     const std::vector<Contact>& contacts) {
     if (candidates_ != candidates || contacts_.size() != contacts.size()) {
-        const ContactSet list(contacts, disks);
         candidates_ = candidates;
+        kept_.assign(candidates.size(), 0);
         contacts_ = contacts;
-        kept_.resize(candidates.size());
-        std::transform(candidates.begin(), candidates.end(), kept_.begin(),
-                       [&](const Contact& contact) { return list.contains(contact) ? 1 : 0; });
+        for (const Contact& contact : contacts) {
+            set(contact, 1);
+        }
         return kept_;
     }
     std::vector<std::size_t> changed;

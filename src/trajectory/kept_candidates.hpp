@@ -14,8 +14,7 @@ class KeptCandidates {
   public:
     /// One flag per candidate: 1 when the candidate is in `contacts`. Cost: two comparisons of lists, and a search per
     /// contact whose position changed since the last call. \pre `candidates` sorted. Valid until the next call.
-    const std::vector<unsigned char>& of(const std::vector<Contact>& candidates, const std::vector<Contact>& contacts,
-                                         int disks);
+    const std::vector<unsigned char>& of(const std::vector<Contact>& candidates, const std::vector<Contact>& contacts);
 
   private:
     void set(const Contact& contact, unsigned char flag);

@@ -176,8 +176,7 @@ Result<Vertex::Gaps> Vertex::check_gaps(CandidateList& candidates, KeptCandidate
     if (auto far = too_far(packing, candidates.contacts)) {
         return *far;
     }
-    const std::vector<unsigned char>& is_kept =
-        kept.of(candidates.contacts, structure.contacts(), packing.disk_count());
+    const std::vector<unsigned char>& is_kept = kept.of(candidates.contacts, structure.contacts());
     Gaps gaps;
     gaps.margin = std::numeric_limits<double>::infinity();
     std::vector<Contact> doubtful;

@@ -48,7 +48,7 @@ BOOST_AUTO_TEST_CASE(flags_of_kept_candidates_follow_exchanges_moves_within_the_
         case 2: std::swap(contacts[slot], contacts[static_cast<std::size_t>(random.integer(40))]); break;
         default: new_candidates();
         }
-        const std::vector<unsigned char>& flags = kept.of(candidates, contacts, 2 * disks);
+        const std::vector<unsigned char>& flags = kept.of(candidates, contacts);
         const ContactSet set(contacts, 2 * disks);
         BOOST_TEST_REQUIRE(flags.size() == candidates.size());
         for (std::size_t k = 0; k < flags.size(); ++k) {

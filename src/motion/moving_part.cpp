@@ -257,11 +257,12 @@ bool MovingPart::complete(const CurvePiece& piece, double h, const CandidateList
         return used * up < 0.5 * list.reach;
     }
     const std::size_t axes = piece.centre().axes();
+    const double unit = 1 / list.reach; // squares then neither under- nor overflow in any unit
     for (std::size_t k = 0; k < q.size(); k += axes) {
         const auto length = [&](const auto& component) {
             double square = 0;
             for (std::size_t c = k; c < k + axes; ++c) {
-                square += component(c) * component(c);
+                square += (unit * component(c)) * (unit * component(c));
             }
             return std::sqrt(square);
         };
@@ -271,7 +272,7 @@ bool MovingPart::complete(const CurvePiece& piece, double h, const CandidateList
             moved += power * length([&](std::size_t c) { return coefficient[c]; });
             power *= h;
         }
-        if (!(2 * (moved + off) * up < list.reach)) {
+        if (!(2 * (moved + unit * off) * up < 1)) {
             return false;
         }
     }

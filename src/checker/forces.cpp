@@ -128,7 +128,7 @@ template <class Number> class Balance {
     }
     [[nodiscard]] const std::vector<Number>& sought() const { return sought_; }
 
-    /// Refines until the residual stops falling, is the rounding of g or less than an eighth of what the vertex leaves
+    /// Refines until the residual stops falling, is the rounding of g or less than a quarter of what the vertex leaves
     /// open. False: g is too large.
     bool refine(const Solver& solver) {
         long size = most_bits(residual_);

@@ -332,7 +332,7 @@ InverseBound bound_by_singular_value(const Problem& problem, const Solver& solve
     }
     InverseBound bound;
     bound.found = true;
-    bound.arithmetic = "64-bit integers";
+    bound.arithmetic = roughly ? "double or 64-bit integers" : "64-bit integers";
     bound.singular_value = *sigma;
     const auto size = static_cast<unsigned long>(problem.dofs());
     bound.row_sum = short_above(root(size) / *sigma);

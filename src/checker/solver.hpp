@@ -32,7 +32,7 @@ class Solver {
     [[nodiscard]] Eigen::MatrixXd solve_transposed(Eigen::MatrixXd b, int steps = 1) const;
 
   private:
-    struct Factors; ///< those of KLU
+    struct Factors; ///< those of KLU, or of A^T A
     int exponent_ = 0;
     std::shared_ptr<const Factors> factors_; ///< null: the factorisation failed
 };

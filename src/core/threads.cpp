@@ -88,6 +88,9 @@ class Pool {
 
     /// `first`: before all that wait.
     void send(std::shared_ptr<Task::State> task, bool first) {
+        if (workers_.empty()) {
+            return; // who waits for the task does it
+        }
         {
             const std::scoped_lock lock(guard_);
             tasks_.insert(first ? tasks_.begin() : tasks_.end(), std::move(task));

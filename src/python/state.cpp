@@ -445,13 +445,14 @@ Contact contact_of(std::pair<int, int> pair, const Packing& packing) {
     if (j == no_contact && i >= 0 && i < static_cast<int>(packing.q.size())) {
         return {ContactKind::held, i, 0};
     }
-    if (i >= 0 && i < disks && j <= first_bar && first_bar - j < disks && i != first_bar - j) {
+    if (j <= first_bar && std::any_of(packing.bars.begin(), packing.bars.end(),
+                                      [&](const Bar& b) { return b.i == i && b.j == first_bar - j; })) {
         return {ContactKind::bar, i, first_bar - j};
     }
     throw Error(ErrorKind::bad_input,
                 fmt::format("contact ({}, {}): expected (i, j) of two of {} grains, or (i, -1) left, (i, -2) bottom, "
                             "(i, -3) right, (i, -4) top wall, of spheres (i, -5) back, (i, -6) front, or (i, -9) held "
-                            "coordinate, (i, -10 - j) bar",
+                            "coordinate, (i, -10 - j) bar of the packing",
                             i, j, disks));
 }
 

@@ -74,12 +74,16 @@ int dissection(int n, int* start, int* row, int* order, klu_common* /*common*/) 
     return half != nullptr && cholmod.dissect(*half, order) ? 1 : 0;
 }
 
-/// The same, of the columns that share a row.
+/// The same, of the columns that share a row; no exception passes KLU, which has memory to free.
 int columns(int n, int* start, int* row, int* order, klu_common* /*common*/) {
     const auto size = static_cast<std::size_t>(n);
-    const std::vector<int> found =
-        dissection_of_columns(n, {start, size + 1}, {row, static_cast<std::size_t>(start[n])});
-    std::copy(found.begin(), found.end(), order);
+    try {
+        const std::vector<int> found =
+            dissection_of_columns(n, {start, size + 1}, {row, static_cast<std::size_t>(start[n])});
+        std::copy(found.begin(), found.end(), order);
+    } catch (const std::bad_alloc&) {
+        return 0;
+    }
     return 1;
 }
 

@@ -25,6 +25,7 @@ inline constexpr std::array reasons{
     Reason{"cannot order", "two forces are not ordered"},
     Reason{"vanish together", "two forces are not ordered"},
     Reason{"certificates/", "a claim of a certificate is narrower than what the checker encloses"},
+    Reason{"the stress is", "the stress of an arc is off by more than the bound in the row, by a rounding"},
     Reason{"claimed in", "the stress of an arc is off by more than the bound in the row, by a rounding"},
     Reason{"no stored state has the direction", "a run that chose ended before it stored a state"},
     Reason{"the potential does not decrease", "an arc of length 0, as far as is seen"},

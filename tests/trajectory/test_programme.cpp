@@ -9,7 +9,7 @@ using namespace isostat;
 namespace {
 
 /// With which segments began where.
-struct ProgrammeCourse : crafted::Recorder {
+struct ProgrammeCourse : ::crafted::Recorder {
     std::vector<std::pair<int, int>> begun; ///< segment, equilibrium it starts from
     int direction = 0;                      ///< of the last segment
     void on_segment(int number, const Segment& goal, int made, const State& from) override {
@@ -20,7 +20,7 @@ struct ProgrammeCourse : crafted::Recorder {
     void on_equilibrium(const EquilibriumRecord& record, const State& state,
                         const std::vector<double>& forces) override {
         BOOST_TEST(record.number == static_cast<int>(states.size()));
-        crafted::Recorder::on_equilibrium(record, state, forces);
+        ::crafted::Recorder::on_equilibrium(record, state, forces);
     }
 };
 

@@ -514,7 +514,7 @@ bool is_vague(const LoadEndClaim& end, double largest) {
 }
 
 /// Climbs until both ends are proved, and well known where the rungs reach that. So many forces that double-double does
-/// not order are copies of one another, which no digits order.
+/// not order are as a rule copies of one another, which no digits order: the end then stays undecided.
 void Prover::prove_load_interval() {
     constexpr int copies = 100;
     std::optional<LoadIntervalClaim>& claim = result_.claims.load_interval;

@@ -1,14 +1,16 @@
 """inspect, certify, verify; verdicts; what Ctrl-C does."""
 
 import math
+import re
 import resource
 import signal
 import subprocess
+import sys
 import time
 import unittest
 
 import numpy as np
-from common import Folder, project, two_disks
+from common import Folder, program, project, two_disks
 
 import isostat
 from isostat import Verdict
@@ -42,6 +44,23 @@ class Proofs(Folder):
             seen.forces <= seen.force_intervals[:, 1]
         )
         self.assertTrue(inside.all())
+
+    def test_forces_of_many_copies_are_left_unordered_without_more_digits(self):
+        (self.folder / "cell.toml").write_text(
+            '[packing]\ndisks = 20\nseed = 1\n[cell]\nkind = "rectangular"\n'
+            '[[programme]]\ndo = "up"\nequilibria = 1\n'
+        )
+        prepare = [program, "prepare", "cell.toml", "-o", "one.json"]
+        subprocess.run(prepare, cwd=self.folder, check=True, stdout=subprocess.DEVNULL)
+        for k, digits in ((2, (1e-99, 1e-60)), (8, (1e-30, 1e-10))):  # 3 and 63 copies tie at either end
+            repeat = [sys.executable, project / "tests/bench/repeat.py", "one.json", str(k), "all.json"]
+            subprocess.run(repeat, cwd=self.folder, check=True)
+            certify = [program, "certify", "all.json", "-o", f"{k}.cert.json"]
+            answer = subprocess.run(certify, cwd=self.folder, stdout=subprocess.PIPE, text=True, check=False)
+            self.assertEqual(answer.returncode, 2)
+            self.assertIn("stable         strict local minimum", answer.stdout)
+            known = float(re.search(r"load interval: .*? proved to ([^;]*);", answer.stdout)[1])
+            self.assertTrue(digits[0] < known < digits[1], f"{k}: {known}")
 
     def test_a_state_that_is_not_in_equilibrium_is_refuted(self):
         seen = isostat.inspect(two_disks(stress=(1.0, 0.1)))

@@ -93,6 +93,14 @@ const ContactForces& Evidence::infinitesimal() const {
     return *infinitesimal_;
 }
 
+std::vector<Range> ForcesAfter::all() const {
+    std::vector<Range> forces(evidence.forces.size());
+    for (std::size_t l = 0; l < forces.size(); ++l) {
+        forces[l] = (*this)[l];
+    }
+    return forces;
+}
+
 int Evidence::count(ContactKind kind) const {
     return static_cast<int>(std::count_if(state.contacts.begin(), state.contacts.end(),
                                           [kind](const Contact& c) { return c.kind == kind; }));

@@ -292,20 +292,16 @@ Range ContactForces::operator[](std::size_t contact) const {
     return range;
 }
 
-double ContactForces::about(std::size_t l) const {
-    if (!middle_.empty()) {
-        const Wide units = problem_->rows[l].quadratic ? problem_->sum.in<Wide>()[l] : Wide(1) << problem_->weight_bits;
-        const double product = as_double(static_cast<Wide>(magnitude(middle_[l])) + around_) * as_double(units);
-        if (const double size = times_power(product, exponent_); std::isnormal(size)) {
-            return size;
-        }
+Bounds ContactForces::bounds(std::size_t l) const {
+    const double unit = times_power(1, exponent_);
+    if (middle_.empty() || !std::isnormal(unit)) {
+        return bounds_of((*this)[l]);
     }
-    const auto size = [](const Rational& value) {
-        const long unit = bits(value.get_den()); // neither of the two numbers need be within the range of double
-        return std::abs(approximate(value.get_num(), -unit) / approximate(value.get_den(), -unit));
+    const auto between = [](Wide least, Wide most) {
+        return Bounds::outwards(static_cast<double>(least), static_cast<double>(most));
     };
-    const Range range = (*this)[l];
-    return std::min(std::max(size(range.lower), size(range.upper)), std::numeric_limits<double>::max());
+    const Wide units = problem_->rows[l].quadratic ? problem_->sum.in<Wide>()[l] : Wide(1) << problem_->weight_bits;
+    return between(middle_[l] - around_, middle_[l] + around_) * between(units, units) * unit;
 }
 
 ContactForces contact_forces(const Problem& problem, const Solver& solver, const InverseBound& inverse,

@@ -13,10 +13,6 @@ namespace isostat::checker {
 
 namespace {
 
-Bounds bounds_of(const Range& range) {
-    return {rounded_down(range.lower), rounded_up(range.upper)};
-}
-
 /// Held rows that the load may reach.
 std::vector<std::size_t> acting_rows(const Evidence& e) {
     const auto zeros = structural_zeros(e.problem, e.finite_load);

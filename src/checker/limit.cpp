@@ -41,15 +41,6 @@ Range step_to_limit(const Place& place, std::size_t contact) {
     return Range(Rational(0)) - place.evidence->forces[contact] / place.evidence->slopes()[contact];
 }
 
-std::vector<Range> forces_after(const Place& place, const Range& step) {
-    const Evidence& e = *place.evidence;
-    std::vector<Range> there;
-    for (std::size_t l = 0; l < e.forces.size(); ++l) {
-        there.push_back(e.forces[l] + step * e.slopes()[l]);
-    }
-    return there;
-}
-
 Range limit_rate(const Range& first, const Range& slope) {
     return Range(Rational(0)) - first / slope;
 }
@@ -106,14 +97,9 @@ std::vector<int> Limit::vanishing() const {
 }
 
 bool Limit::is_class(const std::vector<int>& together) const {
-    const Evidence& e = *place.evidence;
     std::vector<int> all = together; // contacts without force may depend on these: multiples too, by 0
     all.insert(all.end(), place.zeros.begin(), place.zeros.end());
-    Forces loaded = e.finite_load;
-    for (std::size_t j = 0; j < loaded.size(); ++j) {
-        loaded.set(j, Range(abs(loaded[j].lower) + abs(e.unit_load()[j].lower)));
-    }
-    return vanish_with(e, loaded, all, opened);
+    return vanish_with(*place.evidence, all, opened);
 }
 
 bool Limit::chosen_against(std::size_t l) const {
@@ -208,7 +194,7 @@ Objections check_limit_at(const Place& place, const Bounded& stress, std::size_t
     if (direction > 0 ? step.negative() : step.positive()) {
         return Objection{true, fmt::format("the force of {} grows in this direction", e.name(opened))};
     }
-    const std::vector<Range> there = forces_after(place, step);
+    const std::vector<Range> there = ForcesAfter{e, step}.all();
     const std::vector<Range> first = place.first->forces(there);
     at_limit = {found - Range(Rational(stress.value)), limit_rate(first[opened], slope)};
     if (said != nullptr) {
@@ -276,11 +262,11 @@ Objections check_limit(const Place& place, const EventRecord& event, double boun
         return wrong;
     }
     // Forces that vanish together with that of `opened`.
-    const Range step = step_to_limit(place, opened);
+    const ForcesAfter there{e, step_to_limit(place, opened)};
     std::vector<std::size_t> together;
     for (std::size_t l = 0; l < e.forces.size(); ++l) {
         const bool other = l != opened && !contains(place.zeros, l) && !place.is_bar(l);
-        if (!other || (e.forces[l] + step * e.slopes()[l]).positive()) {
+        if (!other || there.positive(l)) {
             continue;
         }
         if (e.slopes()[l].has_zero()) {

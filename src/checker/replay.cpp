@@ -85,9 +85,9 @@ void add_first_order(Place& place) {
 double largest_force(const ContactForces& forces) {
     double largest = 0;
     for (std::size_t l = 0; l < forces.size(); ++l) {
-        largest = std::max(largest, forces.about(l));
+        largest = std::max(largest, forces.bounds(l).size());
     }
-    return largest;
+    return std::min(largest, std::numeric_limits<double>::max());
 }
 
 const std::vector<Gap>& Place::gaps() const {
@@ -124,11 +124,7 @@ Objections place_with(int digits, State state, Place& place, const ExactLoad& lo
         return Objection{false, "no true vertex is proved: " + e.why_no_vertex()};
     }
     if (load.shift.lower != 0 || load.shift.upper != 0) {
-        std::vector<Range> forces(e.forces.size());
-        for (std::size_t l = 0; l < forces.size(); ++l) {
-            forces[l] = e.forces[l] + load.shift * e.slopes()[l];
-        }
-        e.forces = std::move(forces);
+        e.forces = ForcesAfter{e, load.shift}.all();
     }
     place.zeros = having_zero(e.forces);
     std::erase(place.zeros, fresh);

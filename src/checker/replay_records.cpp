@@ -56,6 +56,21 @@ Range work(const Place& from, const Place& to, const Forces& load, double& size)
     return sum;
 }
 
+/// The infinitesimal loads do work between two vertices: seen in double, or else from exact numbers.
+Range infinitesimal_work(const Place& from, const Place& to) {
+    const std::vector<double>& load = to.state->load.infinitesimal;
+    const double off = rounded_up(from.evidence->vertex.moved_most + to.evidence->vertex.moved_most);
+    Bounds sum;
+    for (std::size_t k = 0; k < load.size(); ++k) {
+        const Bounds way = Bounds(to.state->packing.q[k]) - from.state->packing.q[k];
+        sum = sum + load[k] * (way + Bounds::around(off));
+    }
+    double unused = 0;
+    return sum.positive() && std::isfinite(sum.upper)
+               ? Range(Rational(sum.lower), Rational(sum.upper))
+               : work(from, to, infinitesimal_load(to.evidence->problem, *to.state), unused);
+}
+
 std::set<Contact> contact_set(const State& state) {
     return {state.contacts.begin(), state.contacts.end()};
 }
@@ -127,7 +142,8 @@ Objections check_smallest_force(const Place& place, const EquilibriumLine& line)
     std::optional<std::size_t> smallest;
     for (std::size_t l = 0; l < e.forces.size(); ++l) {
         if (e.state.contacts[l].is_unilateral() && !contains(place.zeros, l) &&
-            (!smallest || e.forces[l].lower < e.forces[*smallest].lower)) {
+            (!smallest || (e.forces.bounds(l).lower <= e.forces.bounds(*smallest).upper &&
+                           e.forces[l].lower < e.forces[*smallest].lower))) {
             smallest = l;
         }
     }
@@ -283,10 +299,7 @@ Objections check_work(const Place& from, const Place& to, const EventRecord& eve
         return {}; // no work
     }
     // On arcs of rattlers the finite load does no work, so the infinitesimal one decides.
-    double unused = 0;
-    const Range decides = rattles ? work(from, to, infinitesimal_load(to.evidence->problem, *to.state), unused)
-                          : dead  ? done
-                                  : fall_of_phi(from, to);
+    const Range decides = rattles ? infinitesimal_work(from, to) : dead ? done : fall_of_phi(from, to);
     if (!decides.positive()) {
         return Objection{decides.negative(),
                          fmt::format("the potential does not decrease: work in {}", shown(decides))};

@@ -64,7 +64,7 @@ std::optional<Range> first_limit(const Place& from, const std::string& name, std
     if (!l || !from.first || slopes[opened].has_zero() || slopes[*l].has_zero() != all_along) {
         return {};
     }
-    const std::vector<Range> there = forces_after(from, step_to_limit(from, opened));
+    const std::vector<Range> there = ForcesAfter{*from.evidence, step_to_limit(from, opened)}.all();
     const std::vector<Range> first = from.first->forces(there);
     if (all_along) {
         return there[*l].has_zero() ? std::optional(first[*l]) : std::nullopt;

@@ -97,8 +97,8 @@ template <class Number> class Balance {
         target_.assign(load.size(), Sum());
         unknown_.assign(load.size(), Sum());
         for (const auto& [dof, force] : load.acting()) {
-            const Integer lower = floor_of(-force.upper, shift - problem.fine);
-            const Integer width = ceiling_of(-force.lower, shift - problem.fine) - lower;
+            const Integer lower = -ceiling_of(force.upper, shift - problem.fine);
+            const Integer width = -floor_of(force.lower, shift - problem.fine) - lower;
             if (narrow && std::max(bits(lower), bits(width)) > 250) {
                 return false;
             }
@@ -123,7 +123,7 @@ template <class Number> class Balance {
         const std::size_t touching = std::max(problem.contacts_of.lengths().second, std::size_t{1});
         const auto terms = static_cast<long>(std::bit_width(touching * static_cast<std::size_t>(times)));
         largest_ = std::min(125 - terms, 250 - terms - std::max(entry_bits, problem.weight_bits + 1));
-        find_residual();
+        residual_ = target_; // g = 0
         return !narrow || largest_ > 0;
     }
     [[nodiscard]] const std::vector<Number>& sought() const { return sought_; }
@@ -222,16 +222,18 @@ template <class Number> class Balance {
     long largest_ = 0;  ///< bits that g may have
 };
 
-/// Bits before the binary point of the largest magnitude in a load; nothing: the load is 0.
+/// Bits before the binary point of the largest magnitude in a load, or one more; nothing: the load is 0.
 std::optional<long> size_of(const Forces& load) {
-    Rational largest = 0;
+    std::optional<long> largest;
     for (const auto& [dof, force] : load.acting()) {
-        largest = std::max<Rational>(largest, std::max<Rational>(abs(force.upper), abs(force.lower)));
+        for (const Rational* end : {&force.lower, &force.upper}) {
+            if (*end != 0) {
+                const long size = bits(end->get_num()) - bits(end->get_den());
+                largest = std::max(size, largest.value_or(size));
+            }
+        }
     }
-    if (largest == 0) {
-        return {};
-    }
-    return bits(largest.get_num()) - bits(largest.get_den());
+    return largest;
 }
 
 /// A dyadic range in place: there are thousands.
@@ -297,11 +299,12 @@ Bounds ContactForces::bounds(std::size_t l) const {
     if (middle_.empty() || !std::isnormal(unit)) {
         return bounds_of((*this)[l]);
     }
-    const auto between = [](Wide least, Wide most) {
-        return Bounds::outwards(static_cast<double>(least), static_cast<double>(most));
-    };
+    // An end is rounded three times before the room is added.
+    const auto of_double = [](Wide value) { return static_cast<double>(value); };
     const Wide units = problem_->rows[l].quadratic ? problem_->sum.in<Wide>()[l] : Wide(1) << problem_->weight_bits;
-    return between(middle_[l] - around_, middle_[l] + around_) * between(units, units) * unit;
+    const double lower = of_double(middle_[l] - around_) * (of_double(units) * unit);
+    const double upper = of_double(middle_[l] + around_) * (of_double(units) * unit);
+    return {lower - 0x1p-49 * std::abs(lower), upper + 0x1p-49 * std::abs(upper)};
 }
 
 ContactForces contact_forces(const Problem& problem, const Solver& solver, const InverseBound& inverse,

@@ -93,6 +93,10 @@ const ContactForces& Evidence::infinitesimal() const {
     return *infinitesimal_;
 }
 
+Range step_to_limit(const Evidence& evidence, std::size_t contact) {
+    return -(evidence.forces[contact] / evidence.slopes()[contact]);
+}
+
 std::vector<Range> ForcesAfter::all() const {
     std::vector<Range> forces(evidence.forces.size());
     for (std::size_t l = 0; l < forces.size(); ++l) {

@@ -58,6 +58,9 @@ struct Evidence {
     mutable std::optional<ContactForces> infinitesimal_;
 };
 
+/// Change of the loaded stress to where the force of a contact vanishes. \pre its slope is not 0
+Range step_to_limit(const Evidence& evidence, std::size_t contact);
+
 /// The forces after a change of the loaded stress.
 struct ForcesAfter {
     const Evidence& evidence;

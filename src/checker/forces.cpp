@@ -23,10 +23,8 @@ Range force_per_stress(const Problem& problem, const State& state, const TrueVer
             continue;
         }
         const std::size_t at = problem.layout.of_length(b);
-        force = force * (state.load.kind == LoadKind::nominal
-                             ? Range(Rational(state.load.reference_length[b]))
-                             : Range::around(problem.length(vertex.middle[at]),
-                                             problem.dof_of[at] >= 0 ? vertex.radius : Rational(0)));
+        force = force * (state.load.kind == LoadKind::nominal ? Range(Rational(state.load.reference_length[b]))
+                                                              : coordinate_at(problem, vertex, at));
     }
     return force;
 }

@@ -62,7 +62,7 @@ struct End {
             text = fmt::format("{}, whose force changes by {} per unit of stress", evidence.name(opens), shown(slope));
             return never_closing(slope) ? Verdict::refuted : Verdict::undecided;
         }
-        const Range step = Range(Rational(0)) - evidence.forces[opens] / slope;
+        const Range step = step_to_limit(evidence, opens);
         stress = Range(Rational(evidence.state.load.loaded_stress())) + step;
         text = fmt::format("{} (opens {})", shown(*stress), evidence.name(opens));
         const Verdict place = lies_in(*stress, claim.stress);

@@ -64,8 +64,7 @@ Motions motions_of(const Evidence& e, const std::vector<std::size_t>& acting) {
 
 /// A coordinate at all vertices of the evidence.
 Bounds place(const Evidence& e, std::size_t k) {
-    return bounds_of(
-        Range::around(e.problem.length(e.vertex.middle[k]), e.problem.dof_of[k] < 0 ? Rational(0) : e.vertex.radius));
+    return bounds_of(coordinate_at(e.problem, e.vertex, k));
 }
 
 /// form += factor times the products of all changes.

@@ -32,18 +32,10 @@ double loosest_end(const Place& place, const Bounded& stress) {
 /// The key of the infinitesimal loads where forces vanish together: how soon each force vanishes.
 Range soon(const Place& place, std::size_t l) {
     const Range& slope = place.evidence->slopes()[l];
-    return place.evidence->infinitesimal()[l] / (slope.negative() ? Range(Rational(0)) - slope : slope);
+    return place.evidence->infinitesimal()[l] / (slope.negative() ? -slope : slope);
 }
 
 } // namespace
-
-Range step_to_limit(const Place& place, std::size_t contact) {
-    return Range(Rational(0)) - place.evidence->forces[contact] / place.evidence->slopes()[contact];
-}
-
-Range limit_rate(const Range& first, const Range& slope) {
-    return Range(Rational(0)) - first / slope;
-}
 
 Objections check_load_end(const Place& place, const Bounded& stress, std::size_t opened, int direction) {
     const Evidence& e = *place.evidence;
@@ -56,7 +48,7 @@ Objections check_load_end(const Place& place, const Bounded& stress, std::size_t
         return Objection{verdict == Verdict::refuted,
                          fmt::format("the stress is {} +- {}, found {}", stress.value, stress.bound, text)};
     }
-    const Range found = Range(Rational(place.stress())) + step_to_limit(place, opened);
+    const Range found = Range(Rational(place.stress())) + step_to_limit(e, opened);
     return compare("the stress", stress, found, loosest_end(place, stress));
 }
 
@@ -184,7 +176,7 @@ Objections check_limit_at(const Place& place, const Bounded& stress, std::size_t
     if (slope.has_zero()) {
         return Objection{false, fmt::format("the slope of the force of {} is not told from 0", e.name(opened))};
     }
-    const Range step = step_to_limit(place, opened);
+    const Range step = step_to_limit(e, opened);
     const Range found = Range(Rational(place.stress())) + place.load.shift + step;
     if (Objections wrong = compare("the stress", stress, found, loosest_end(place, stress))) {
         wrong->text += fmt::format(" ({} opens)", e.name(opened));
@@ -262,7 +254,7 @@ Objections check_limit(const Place& place, const EventRecord& event, double boun
         return wrong;
     }
     // Forces that vanish together with that of `opened`.
-    const ForcesAfter there{e, step_to_limit(place, opened)};
+    const ForcesAfter there{e, step_to_limit(e, opened)};
     std::vector<std::size_t> together;
     for (std::size_t l = 0; l < e.forces.size(); ++l) {
         const bool other = l != opened && !contains(place.zeros, l) && !place.is_bar(l);

@@ -129,6 +129,9 @@ inline Range operator+(const Range& a, const Range& b) {
 inline Range operator-(const Range& a, const Range& b) {
     return {a.lower - b.upper, a.upper - b.lower};
 }
+inline Range operator-(const Range& a) {
+    return {-a.upper, -a.lower};
+}
 inline Range operator*(const Range& a, const Range& b) {
     const Rational p = a.lower * b.lower;
     const Rational q = a.lower * b.upper;

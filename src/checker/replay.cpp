@@ -98,9 +98,7 @@ const std::vector<Gap>& Place::gaps() const {
 }
 
 Range Place::coordinate(std::size_t k) const {
-    const bool moves = evidence->problem.dof_of[k] >= 0;
-    return Range::around(evidence->problem.length(evidence->vertex.middle[k]),
-                         moves ? evidence->vertex.radius : Rational(0));
+    return coordinate_at(evidence->problem, evidence->vertex, k);
 }
 
 Range Place::length(int axis) const {
@@ -174,7 +172,7 @@ ExactLoad meant_load(const State& state) {
         return {};
     }
     // A stored load is the rounded exact load. If the found load is farther away, the stored load is taken as exact.
-    const Range step = step_to_limit(at, l);
+    const Range step = step_to_limit(*at.evidence, l);
     const auto& stress = state.load.stress;
     const Rational room(record_tolerance * std::max({std::abs(stress[0]), std::abs(stress[1]), std::abs(stress[2])}));
     if (step.lower < -room || step.upper > room) {

@@ -56,7 +56,7 @@ Range work(const Place& from, const Place& to, const Forces& load, double& size)
     return sum;
 }
 
-/// The infinitesimal loads do work between two vertices: seen in double, or else from exact numbers.
+/// Work of the infinitesimal loads between two vertices: from doubles where these show it to be positive.
 Range infinitesimal_work(const Place& from, const Place& to) {
     const std::vector<double>& load = to.state->load.infinitesimal;
     const double off = rounded_up(from.evidence->vertex.moved_most + to.evidence->vertex.moved_most);

@@ -4,18 +4,24 @@
 /// so that results contain the exact results in any rounding mode.
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 namespace isostat::checker {
 
 inline constexpr double root_of_two = 1.4142135623730952; ///< above the square root of 2
 
-inline double next_below(double x) {
-    return std::nextafter(x, -std::numeric_limits<double>::infinity());
-}
+/// As `std::nextafter` towards infinity, without a call: there are millions.
 inline double next_above(double x) {
-    return std::nextafter(x, std::numeric_limits<double>::infinity());
+    if (x == 0 || !(std::abs(x) < std::numeric_limits<double>::infinity())) {
+        return std::nextafter(x, std::numeric_limits<double>::infinity());
+    }
+    return std::bit_cast<double>(std::bit_cast<std::int64_t>(x) + (x > 0 ? 1 : -1));
+}
+inline double next_below(double x) {
+    return -next_above(-x);
 }
 
 /// All numbers from lower to upper. An operation that meets NaN or overflows gives an interval of all numbers.

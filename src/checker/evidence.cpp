@@ -93,6 +93,18 @@ const ContactForces& Evidence::infinitesimal() const {
     return *infinitesimal_;
 }
 
+Range step_to_limit(const Evidence& evidence, std::size_t contact) {
+    return -(evidence.forces[contact] / evidence.slopes()[contact]);
+}
+
+std::vector<Range> ForcesAfter::all() const {
+    std::vector<Range> forces(evidence.forces.size());
+    for (std::size_t l = 0; l < forces.size(); ++l) {
+        forces[l] = (*this)[l];
+    }
+    return forces;
+}
+
 int Evidence::count(ContactKind kind) const {
     return static_cast<int>(std::count_if(state.contacts.begin(), state.contacts.end(),
                                           [kind](const Contact& c) { return c.kind == kind; }));

@@ -58,6 +58,24 @@ struct Evidence {
     mutable std::optional<ContactForces> infinitesimal_;
 };
 
+/// Change of the loaded stress to where the force of a contact vanishes. \pre its slope is not 0
+Range step_to_limit(const Evidence& evidence, std::size_t contact);
+
+/// The forces after a change of the loaded stress.
+struct ForcesAfter {
+    const Evidence& evidence;
+    Range step;
+    Bounds step_in_double = bounds_of(step);
+
+    [[nodiscard]] Range operator[](std::size_t l) const { return evidence.forces[l] + step * evidence.slopes()[l]; }
+    /// Seen in double, or else in exact numbers.
+    [[nodiscard]] bool positive(std::size_t l) const {
+        return (evidence.forces.bounds(l) + step_in_double * evidence.slopes().bounds(l)).positive() ||
+               (*this)[l].positive();
+    }
+    [[nodiscard]] std::vector<Range> all() const;
+};
+
 /// Positions of the ranges that contain 0.
 std::vector<int> having_zero(const ContactForces& ranges);
 

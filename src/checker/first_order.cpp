@@ -18,10 +18,6 @@ template <class At> PerAxis<Range> separate(const Row& row, At at) {
     return d;
 }
 
-Range place(const Problem& problem, const TrueVertex& vertex, std::size_t k) {
-    return Range::around(problem.length(vertex.middle[k]), problem.dof_of[k] >= 0 ? vertex.radius : Rational(0));
-}
-
 } // namespace
 
 namespace {
@@ -124,7 +120,7 @@ Range Velocities::gap_rate(const Contact& pair, const Solution& v) const {
     const auto j = static_cast<std::size_t>(pair.j);
     if (pair.of_disks()) {
         const Row row(pair, e_.problem.layout);
-        const auto x = separate(row, [&](std::size_t k) { return place(e_.problem, e_.vertex, k); });
+        const auto x = separate(row, [&](std::size_t k) { return coordinate_at(e_.problem, e_.vertex, k); });
         const auto change = separate(row, [&](std::size_t k) { return component(e_.problem, v, k); });
         Range sum = x[0] * change[0];
         for (std::size_t a = 1; a < e_.problem.layout.axes(); ++a) {
@@ -221,8 +217,9 @@ std::vector<Range> FirstOrder::forces(const std::vector<Range>& f0) const {
             for (std::size_t b = 0; b < layout.axes(); ++b) {
                 if (a != b) { // the third length, in space
                     const std::size_t c = 3 - a - b;
-                    const Range third = layout.dimension == plane ? Range(Rational(1))
-                                                                  : place(e_.problem, e_.vertex, layout.of_length(c));
+                    const Range third = layout.dimension == plane
+                                            ? Range(Rational(1))
+                                            : coordinate_at(e_.problem, e_.vertex, layout.of_length(c));
                     add(layout.of_length(a), stress * third * component(e_.problem, change_, layout.of_length(b)));
                 }
             }

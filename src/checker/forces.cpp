@@ -23,10 +23,8 @@ Range force_per_stress(const Problem& problem, const State& state, const TrueVer
             continue;
         }
         const std::size_t at = problem.layout.of_length(b);
-        force = force * (state.load.kind == LoadKind::nominal
-                             ? Range(Rational(state.load.reference_length[b]))
-                             : Range::around(problem.length(vertex.middle[at]),
-                                             problem.dof_of[at] >= 0 ? vertex.radius : Rational(0)));
+        force = force * (state.load.kind == LoadKind::nominal ? Range(Rational(state.load.reference_length[b]))
+                                                              : coordinate_at(problem, vertex, at));
     }
     return force;
 }
@@ -97,8 +95,8 @@ template <class Number> class Balance {
         target_.assign(load.size(), Sum());
         unknown_.assign(load.size(), Sum());
         for (const auto& [dof, force] : load.acting()) {
-            const Integer lower = floor_of(-force.upper, shift - problem.fine);
-            const Integer width = ceiling_of(-force.lower, shift - problem.fine) - lower;
+            const Integer lower = -ceiling_of(force.upper, shift - problem.fine);
+            const Integer width = -floor_of(force.lower, shift - problem.fine) - lower;
             if (narrow && std::max(bits(lower), bits(width)) > 250) {
                 return false;
             }
@@ -123,7 +121,7 @@ template <class Number> class Balance {
         const std::size_t touching = std::max(problem.contacts_of.lengths().second, std::size_t{1});
         const auto terms = static_cast<long>(std::bit_width(touching * static_cast<std::size_t>(times)));
         largest_ = std::min(125 - terms, 250 - terms - std::max(entry_bits, problem.weight_bits + 1));
-        find_residual();
+        residual_ = target_; // g = 0
         return !narrow || largest_ > 0;
     }
     [[nodiscard]] const std::vector<Number>& sought() const { return sought_; }
@@ -222,16 +220,18 @@ template <class Number> class Balance {
     long largest_ = 0;  ///< bits that g may have
 };
 
-/// Bits before the binary point of the largest magnitude in a load; nothing: the load is 0.
+/// Bits before the binary point of the largest magnitude in a load, or one more; nothing: the load is 0.
 std::optional<long> size_of(const Forces& load) {
-    Rational largest = 0;
+    std::optional<long> largest;
     for (const auto& [dof, force] : load.acting()) {
-        largest = std::max<Rational>(largest, std::max<Rational>(abs(force.upper), abs(force.lower)));
+        for (const Rational* end : {&force.lower, &force.upper}) {
+            if (*end != 0) {
+                const long size = bits(end->get_num()) - bits(end->get_den());
+                largest = std::max(size, largest.value_or(size));
+            }
+        }
     }
-    if (largest == 0) {
-        return {};
-    }
-    return bits(largest.get_num()) - bits(largest.get_den());
+    return largest;
 }
 
 /// A dyadic range in place: there are thousands.
@@ -292,20 +292,17 @@ Range ContactForces::operator[](std::size_t contact) const {
     return range;
 }
 
-double ContactForces::about(std::size_t l) const {
-    if (!middle_.empty()) {
-        const Wide units = problem_->rows[l].quadratic ? problem_->sum.in<Wide>()[l] : Wide(1) << problem_->weight_bits;
-        const double product = as_double(static_cast<Wide>(magnitude(middle_[l])) + around_) * as_double(units);
-        if (const double size = times_power(product, exponent_); std::isnormal(size)) {
-            return size;
-        }
+Bounds ContactForces::bounds(std::size_t l) const {
+    const double unit = times_power(1, exponent_);
+    if (middle_.empty() || !std::isnormal(unit)) {
+        return bounds_of((*this)[l]);
     }
-    const auto size = [](const Rational& value) {
-        const long unit = bits(value.get_den()); // neither of the two numbers need be within the range of double
-        return std::abs(approximate(value.get_num(), -unit) / approximate(value.get_den(), -unit));
-    };
-    const Range range = (*this)[l];
-    return std::min(std::max(size(range.lower), size(range.upper)), std::numeric_limits<double>::max());
+    // An end is rounded three times before the room is added.
+    const auto of_double = [](Wide value) { return static_cast<double>(value); };
+    const Wide units = problem_->rows[l].quadratic ? problem_->sum.in<Wide>()[l] : Wide(1) << problem_->weight_bits;
+    const double lower = of_double(middle_[l] - around_) * (of_double(units) * unit);
+    const double upper = of_double(middle_[l] + around_) * (of_double(units) * unit);
+    return {lower - 0x1p-49 * std::abs(lower), upper + 0x1p-49 * std::abs(upper)};
 }
 
 ContactForces contact_forces(const Problem& problem, const Solver& solver, const InverseBound& inverse,

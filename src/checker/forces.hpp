@@ -2,6 +2,7 @@
 /// \file
 /// Forces at the true vertex (proofs/checker.md, K6) and what counting alone proves of them (K7, K8).
 
+#include "checker/bounds.hpp"
 #include "checker/vertex.hpp"
 
 #include <isostat/packing/load.hpp>
@@ -31,6 +32,10 @@ class Forces {
     std::map<std::size_t, Range> acting_;
 };
 
+inline Bounds bounds_of(const Range& range) {
+    return {rounded_down(range.lower), rounded_up(range.upper)};
+}
+
 /// Ranges of the forces of all contacts. They are made when they are asked for, where they are integers of 128 bits
 /// with one bound.
 class ContactForces {
@@ -51,8 +56,8 @@ class ContactForces {
     [[nodiscard]] bool has_zero(std::size_t l) const {
         return middle_.empty() ? ranges_[l].has_zero() : middle_[l] <= around_ && middle_[l] >= -around_;
     }
-    /// About the largest magnitude of an end of force l, or of a double if that is less.
-    [[nodiscard]] double about(std::size_t l) const;
+    /// Force l between doubles.
+    [[nodiscard]] Bounds bounds(std::size_t l) const;
 
   private:
     const Problem* problem_ = nullptr;

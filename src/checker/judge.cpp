@@ -161,7 +161,7 @@ bool has_volume_potential(const Evidence& evidence) {
     }
     for (std::size_t a = 0; a < state.packing.axes(); ++a) {
         if (!evidence.vertex.found ||
-            evidence.problem.length(evidence.vertex.middle[state.packing.length_at(a)]) <= evidence.vertex.radius) {
+            !coordinate_at(evidence.problem, evidence.vertex, state.packing.length_at(a)).positive()) {
             return false;
         }
     }

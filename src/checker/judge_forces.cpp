@@ -8,11 +8,11 @@ namespace isostat::checker {
 
 namespace {
 
-/// Keeps the worst answer so far and the sentence that belongs to the first one of its kind.
-void worsen(ClaimCheck& check, Verdict verdict, const std::string& text) {
+/// Keeps the worst answer so far and the sentence that belongs to the first one of its kind, which is made then.
+template <class Text> void worsen(ClaimCheck& check, Verdict verdict, const Text& text) {
     if (both(check.verdict, verdict) != check.verdict) {
         check.verdict = verdict;
-        check.detail = text;
+        check.detail = text();
     }
 }
 
@@ -42,12 +42,15 @@ Smallest judge_infinitesimal(ClaimCheck& check, const Evidence& evidence, const 
     for (std::size_t k = 0; k < zeros.size(); ++k) {
         const auto l = static_cast<std::size_t>(zeros[k]);
         const Range& force = evidence.infinitesimal()[l];
-        const std::string is = fmt::format("the infinitesimal force of {} is in {}", evidence.name(l), shown(force));
-        worsen(check, lies_in(force, claim.infinitesimal[k]), is + ", claimed in " + shown(claim.infinitesimal[k]));
+        const auto is = [&](const std::string& claimed) {
+            return fmt::format("the infinitesimal force of {} is in {}, {}", evidence.name(l), shown(force), claimed);
+        };
+        worsen(check, lies_in(force, claim.infinitesimal[k]),
+               [&] { return is("claimed in " + shown(claim.infinitesimal[k])); });
         if (!evidence.state.contacts[l].is_unilateral()) {
             continue;
         }
-        worsen(check, is_positive(force), is + ", claimed positive");
+        worsen(check, is_positive(force), [&] { return is("claimed positive"); });
         infinitesimal.offer(force, l);
     }
     return infinitesimal;
@@ -63,11 +66,13 @@ void judge_held(ClaimCheck& check, const Evidence& evidence, const std::vector<i
         }
         const Range& force = evidence.forces[l];
         if (!contains(zeros, l)) {
-            worsen(check, force.has_zero() ? Verdict::undecided : Verdict::refuted,
-                   fmt::format("the force of {} is in {}, and the coordinate is held", evidence.name(l), shown(force)));
+            worsen(check, force.has_zero() ? Verdict::undecided : Verdict::refuted, [&] {
+                return fmt::format("the force of {} is in {}, and the coordinate is held", evidence.name(l),
+                                   shown(force));
+            });
         }
         if (pressed) {
-            worsen(check, Verdict::undecided, "infinitesimal loads act where coordinates are held");
+            worsen(check, Verdict::undecided, [] { return "infinitesimal loads act where coordinates are held"; });
         }
     }
 }
@@ -89,11 +94,13 @@ ClaimCheck judge_forces(const Evidence& evidence, const ForcesClaim& claim) {
         const bool listed = contains(zeros, l);
         const bool vanishes = (listed && zeros_vanish) || (small_vanish && contains(small, l));
         const Range force = vanishes ? Range(Rational(0)) : evidence.forces[l];
-        const std::string is = fmt::format("the force of {} is in {}", evidence.name(l), shown(force));
-        worsen(check, lies_in(force, claim.finite[l]), is + ", claimed in " + shown(claim.finite[l]));
+        const auto is = [&](const std::string& claimed) {
+            return fmt::format("the force of {} is in {}, {}", evidence.name(l), shown(force), claimed);
+        };
+        worsen(check, lies_in(force, claim.finite[l]), [&] { return is("claimed in " + shown(claim.finite[l])); });
         if (listed) {
             const Verdict zero = force.has_zero() ? Verdict::undecided : Verdict::refuted;
-            worsen(check, vanishes ? Verdict::proved : zero, is + ", claimed to be a structural zero");
+            worsen(check, vanishes ? Verdict::proved : zero, [&] { return is("claimed to be a structural zero"); });
             continue;
         }
         widest = std::max<Rational>(widest, force.upper - force.lower);
@@ -101,13 +108,14 @@ ClaimCheck judge_forces(const Evidence& evidence, const ForcesClaim& claim) {
             continue; // of either sign
         }
         ++positive;
-        worsen(check, is_positive(force), is + ", claimed positive");
+        worsen(check, is_positive(force), [&] { return is("claimed positive"); });
         smallest.offer(force, l);
     }
-    worsen(check, zeros_vanish ? Verdict::proved : Verdict::undecided,
-           fmt::format("{} structural zeros are listed, but {} unloaded degrees of freedom are touched by no other "
-                       "contact",
-                       zeros.size(), free_of_others(evidence.problem, zeros, evidence.finite_load)));
+    worsen(check, zeros_vanish ? Verdict::proved : Verdict::undecided, [&] {
+        return fmt::format("{} structural zeros are listed, but {} unloaded degrees of freedom are touched by no other "
+                           "contact",
+                           zeros.size(), free_of_others(evidence.problem, zeros, evidence.finite_load));
+    });
 
     const Smallest infinitesimal = judge_infinitesimal(check, evidence, claim);
     judge_held(check, evidence, zeros);

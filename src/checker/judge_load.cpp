@@ -62,7 +62,7 @@ struct End {
             text = fmt::format("{}, whose force changes by {} per unit of stress", evidence.name(opens), shown(slope));
             return never_closing(slope) ? Verdict::refuted : Verdict::undecided;
         }
-        const Range step = Range(Rational(0)) - evidence.forces[opens] / slope;
+        const Range step = step_to_limit(evidence, opens);
         stress = Range(Rational(evidence.state.load.loaded_stress())) + step;
         text = fmt::format("{} (opens {})", shown(*stress), evidence.name(opens));
         const Verdict place = lies_in(*stress, claim.stress);
@@ -75,25 +75,23 @@ struct End {
     /// All other forces at the stress where the named one vanishes: >= 0.
     Verdict judge_others(std::size_t opens, const Range& step) {
         std::vector<int> unclear;
+        const ForcesAfter there{evidence, step};
         for (std::size_t l = 0; l < evidence.forces.size(); ++l) {
-            const Range force = evidence.forces[l] + step * evidence.slopes()[l];
+            if (l != opens && there.positive(l)) {
+                continue;
+            }
+            const Range force = there[l];
             const bool unilateral = evidence.state.contacts[l].is_unilateral();
             if (l != opens && force.negative() && unilateral) {
                 text += fmt::format(", but {} opens before", evidence.name(l));
                 return Verdict::refuted;
             }
-            if (l == opens || (unilateral ? !force.positive() : force.has_zero())) {
+            if (l == opens || unilateral || force.has_zero()) {
                 unclear.push_back(static_cast<int>(l));
             }
         }
         // Exactly 0 there: forces that vanish at every stress, and multiples of the named one.
-        Forces any_load = evidence.finite_load;
-        for (std::size_t j = 0; j < any_load.size(); ++j) {
-            if (evidence.unit_load().acts(j)) {
-                any_load.set(j, evidence.unit_load()[j]);
-            }
-        }
-        if (vanish_with(evidence, any_load, unclear, opens)) {
+        if (vanish_with(evidence, unclear, opens)) {
             return Verdict::proved;
         }
         text += fmt::format(", {} other forces not proved >= 0 there", unclear.size() - 1);

@@ -13,10 +13,6 @@ namespace isostat::checker {
 
 namespace {
 
-Bounds bounds_of(const Range& range) {
-    return {rounded_down(range.lower), rounded_up(range.upper)};
-}
-
 /// Held rows that the load may reach.
 std::vector<std::size_t> acting_rows(const Evidence& e) {
     const auto zeros = structural_zeros(e.problem, e.finite_load);
@@ -68,8 +64,7 @@ Motions motions_of(const Evidence& e, const std::vector<std::size_t>& acting) {
 
 /// A coordinate at all vertices of the evidence.
 Bounds place(const Evidence& e, std::size_t k) {
-    return bounds_of(
-        Range::around(e.problem.length(e.vertex.middle[k]), e.problem.dof_of[k] < 0 ? Rational(0) : e.vertex.radius));
+    return bounds_of(coordinate_at(e.problem, e.vertex, k));
 }
 
 /// form += factor times the products of all changes.

@@ -32,27 +32,10 @@ double loosest_end(const Place& place, const Bounded& stress) {
 /// The key of the infinitesimal loads where forces vanish together: how soon each force vanishes.
 Range soon(const Place& place, std::size_t l) {
     const Range& slope = place.evidence->slopes()[l];
-    return place.evidence->infinitesimal()[l] / (slope.negative() ? Range(Rational(0)) - slope : slope);
+    return place.evidence->infinitesimal()[l] / (slope.negative() ? -slope : slope);
 }
 
 } // namespace
-
-Range step_to_limit(const Place& place, std::size_t contact) {
-    return Range(Rational(0)) - place.evidence->forces[contact] / place.evidence->slopes()[contact];
-}
-
-std::vector<Range> forces_after(const Place& place, const Range& step) {
-    const Evidence& e = *place.evidence;
-    std::vector<Range> there;
-    for (std::size_t l = 0; l < e.forces.size(); ++l) {
-        there.push_back(e.forces[l] + step * e.slopes()[l]);
-    }
-    return there;
-}
-
-Range limit_rate(const Range& first, const Range& slope) {
-    return Range(Rational(0)) - first / slope;
-}
 
 Objections check_load_end(const Place& place, const Bounded& stress, std::size_t opened, int direction) {
     const Evidence& e = *place.evidence;
@@ -65,7 +48,7 @@ Objections check_load_end(const Place& place, const Bounded& stress, std::size_t
         return Objection{verdict == Verdict::refuted,
                          fmt::format("the stress is {} +- {}, found {}", stress.value, stress.bound, text)};
     }
-    const Range found = Range(Rational(place.stress())) + step_to_limit(place, opened);
+    const Range found = Range(Rational(place.stress())) + step_to_limit(e, opened);
     return compare("the stress", stress, found, loosest_end(place, stress));
 }
 
@@ -106,14 +89,9 @@ std::vector<int> Limit::vanishing() const {
 }
 
 bool Limit::is_class(const std::vector<int>& together) const {
-    const Evidence& e = *place.evidence;
     std::vector<int> all = together; // contacts without force may depend on these: multiples too, by 0
     all.insert(all.end(), place.zeros.begin(), place.zeros.end());
-    Forces loaded = e.finite_load;
-    for (std::size_t j = 0; j < loaded.size(); ++j) {
-        loaded.set(j, Range(abs(loaded[j].lower) + abs(e.unit_load()[j].lower)));
-    }
-    return vanish_with(e, loaded, all, opened);
+    return vanish_with(*place.evidence, all, opened);
 }
 
 bool Limit::chosen_against(std::size_t l) const {
@@ -198,7 +176,7 @@ Objections check_limit_at(const Place& place, const Bounded& stress, std::size_t
     if (slope.has_zero()) {
         return Objection{false, fmt::format("the slope of the force of {} is not told from 0", e.name(opened))};
     }
-    const Range step = step_to_limit(place, opened);
+    const Range step = step_to_limit(e, opened);
     const Range found = Range(Rational(place.stress())) + place.load.shift + step;
     if (Objections wrong = compare("the stress", stress, found, loosest_end(place, stress))) {
         wrong->text += fmt::format(" ({} opens)", e.name(opened));
@@ -208,7 +186,7 @@ Objections check_limit_at(const Place& place, const Bounded& stress, std::size_t
     if (direction > 0 ? step.negative() : step.positive()) {
         return Objection{true, fmt::format("the force of {} grows in this direction", e.name(opened))};
     }
-    const std::vector<Range> there = forces_after(place, step);
+    const std::vector<Range> there = ForcesAfter{e, step}.all();
     const std::vector<Range> first = place.first->forces(there);
     at_limit = {found - Range(Rational(stress.value)), limit_rate(first[opened], slope)};
     if (said != nullptr) {
@@ -276,11 +254,11 @@ Objections check_limit(const Place& place, const EventRecord& event, double boun
         return wrong;
     }
     // Forces that vanish together with that of `opened`.
-    const Range step = step_to_limit(place, opened);
+    const ForcesAfter there{e, step_to_limit(e, opened)};
     std::vector<std::size_t> together;
     for (std::size_t l = 0; l < e.forces.size(); ++l) {
         const bool other = l != opened && !contains(place.zeros, l) && !place.is_bar(l);
-        if (!other || (e.forces[l] + step * e.slopes()[l]).positive()) {
+        if (!other || there.positive(l)) {
             continue;
         }
         if (e.slopes()[l].has_zero()) {

@@ -6,11 +6,9 @@
 
 namespace isostat::checker {
 
-/// Change of the stress from that of the place to where the force of a contact vanishes. \pre its slope is not 0
-Range step_to_limit(const Place& place, std::size_t contact);
-/// All forces after a change of the stress.
-std::vector<Range> forces_after(const Place& place, const Range& step);
 /// First-order term of the stress at which the force of a contact vanishes, from the first-order term of the force.
-Range limit_rate(const Range& first, const Range& slope);
+inline Range limit_rate(const Range& first, const Range& slope) {
+    return -(first / slope);
+}
 
 } // namespace isostat::checker

@@ -33,18 +33,22 @@ inline Rational dyadic(const Integer& value, long exponent) {
     return result;
 }
 
-/// The largest integer that is at most value * 2^exponent.
-inline Integer floor_of(const Rational& value, long exponent = 0) {
+/// The quotient value * 2^exponent as a division of GMP rounds it.
+template <auto Division> Integer rounded(const Rational& value, long exponent) {
     Integer result = value.get_num();
     Integer divisor = value.get_den();
     Integer& longer = exponent >= 0 ? result : divisor;
     mpz_mul_2exp(longer.get_mpz_t(), longer.get_mpz_t(), static_cast<mp_bitcnt_t>(std::abs(exponent)));
-    mpz_fdiv_q(result.get_mpz_t(), result.get_mpz_t(), divisor.get_mpz_t());
+    Division(result.get_mpz_t(), result.get_mpz_t(), divisor.get_mpz_t());
     return result;
+}
+/// The largest integer that is at most value * 2^exponent.
+inline Integer floor_of(const Rational& value, long exponent = 0) {
+    return rounded<mpz_fdiv_q>(value, exponent);
 }
 /// The smallest integer that is at least value * 2^exponent.
 inline Integer ceiling_of(const Rational& value, long exponent = 0) {
-    return -floor_of(-value, exponent);
+    return rounded<mpz_cdiv_q>(value, exponent);
 }
 
 inline Integer shifted_left(const Integer& value, long bits) {
@@ -124,6 +128,9 @@ inline Range operator+(const Range& a, const Range& b) {
 }
 inline Range operator-(const Range& a, const Range& b) {
     return {a.lower - b.upper, a.upper - b.lower};
+}
+inline Range operator-(const Range& a) {
+    return {-a.upper, -a.lower};
 }
 inline Range operator*(const Range& a, const Range& b) {
     const Rational p = a.lower * b.lower;

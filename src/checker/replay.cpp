@@ -85,9 +85,9 @@ void add_first_order(Place& place) {
 double largest_force(const ContactForces& forces) {
     double largest = 0;
     for (std::size_t l = 0; l < forces.size(); ++l) {
-        largest = std::max(largest, forces.about(l));
+        largest = std::max(largest, forces.bounds(l).size());
     }
-    return largest;
+    return std::min(largest, std::numeric_limits<double>::max());
 }
 
 const std::vector<Gap>& Place::gaps() const {
@@ -98,9 +98,7 @@ const std::vector<Gap>& Place::gaps() const {
 }
 
 Range Place::coordinate(std::size_t k) const {
-    const bool moves = evidence->problem.dof_of[k] >= 0;
-    return Range::around(evidence->problem.length(evidence->vertex.middle[k]),
-                         moves ? evidence->vertex.radius : Rational(0));
+    return coordinate_at(evidence->problem, evidence->vertex, k);
 }
 
 Range Place::length(int axis) const {
@@ -124,11 +122,7 @@ Objections place_with(int digits, State state, Place& place, const ExactLoad& lo
         return Objection{false, "no true vertex is proved: " + e.why_no_vertex()};
     }
     if (load.shift.lower != 0 || load.shift.upper != 0) {
-        std::vector<Range> forces(e.forces.size());
-        for (std::size_t l = 0; l < forces.size(); ++l) {
-            forces[l] = e.forces[l] + load.shift * e.slopes()[l];
-        }
-        e.forces = std::move(forces);
+        e.forces = ForcesAfter{e, load.shift}.all();
     }
     place.zeros = having_zero(e.forces);
     std::erase(place.zeros, fresh);
@@ -178,7 +172,7 @@ ExactLoad meant_load(const State& state) {
         return {};
     }
     // A stored load is the rounded exact load. If the found load is farther away, the stored load is taken as exact.
-    const Range step = step_to_limit(at, l);
+    const Range step = step_to_limit(*at.evidence, l);
     const auto& stress = state.load.stress;
     const Rational room(record_tolerance * std::max({std::abs(stress[0]), std::abs(stress[1]), std::abs(stress[2])}));
     if (step.lower < -room || step.upper > room) {

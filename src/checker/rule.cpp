@@ -60,7 +60,7 @@ int compare_keys(const Place& place, bool finite, std::size_t a, std::size_t b, 
         const Range& force = finite ? e.forces[l] : e.infinitesimal()[l];
         const bool flipped = place.is_held(l) && force.positive(); // it competes with minus its magnitude
         const Range& value = first ? place.first_force[l] : force;
-        return flipped ? Range(Rational(0)) - value : value;
+        return flipped ? -value : value;
     };
     Range difference = key(a, false) - key(b, false);
     at_first_order = difference.has_zero() && finite && place.first;
@@ -78,7 +78,7 @@ ChoiceRule opening_choice(const Place& place, std::size_t opened, const std::str
     };
     const auto load = [&place, least = rule == "least_negative"](std::size_t l) {
         const Range& f = place.evidence->infinitesimal()[l];
-        return least ? Range(Rational(0)) - f : f;
+        return least ? -f : f;
     };
     return {"opening", tied, load};
 }

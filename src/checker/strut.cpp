@@ -377,7 +377,11 @@ bool equal_by_place(const Evidence& evidence, const Forces& load, const std::vec
     return equal_in_edge(evidence, load, zeros, a, b) || equal_in_notch(evidence, load, zeros, a, b);
 }
 
-bool vanish_with(const Evidence& evidence, const Forces& load, const std::vector<int>& contacts, std::size_t one) {
+bool vanish_with(const Evidence& evidence, const std::vector<int>& contacts, std::size_t one) {
+    Forces load = evidence.finite_load;
+    for (const auto& [dof, force] : evidence.unit_load().acting()) {
+        load.set(dof, force);
+    }
     const auto vary = [&](const std::vector<int>& some) {
         return some.size() == 1 || vary_together(evidence.problem, some, load);
     };

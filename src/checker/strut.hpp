@@ -39,8 +39,9 @@ std::optional<int> strut_order(const Place& place, std::size_t a, std::size_t b)
 bool equal_by_place(const Evidence& evidence, const Forces& load, const std::vector<int>& zeros, std::size_t a,
                     std::size_t b);
 
-/// Whether the forces of all these contacts vanish together with that of `one`, which is one of them: they are
-/// multiples of each other by counting (K8), with or without the contacts whose forces equal that of `one`.
-bool vanish_with(const Evidence& evidence, const Forces& load, const std::vector<int>& contacts, std::size_t one);
+/// Whether the forces of all these contacts vanish together with that of `one`, which is one of them, whatever the
+/// loaded stress: they are multiples of each other by counting (K8), with or without the contacts whose forces equal
+/// that of `one`.
+bool vanish_with(const Evidence& evidence, const std::vector<int>& contacts, std::size_t one);
 
 } // namespace isostat::checker

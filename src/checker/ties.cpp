@@ -52,7 +52,7 @@ std::optional<Range> first_way(const Place& from, const std::string& name, std::
         return {};
     }
     const Velocities& velocities = from.first->velocities();
-    const Range rate = Range(Rational(0)) - velocities.gap_rate(gap->pair, velocities.opening(opened, direction));
+    const Range rate = -velocities.gap_rate(gap->pair, velocities.opening(opened, direction));
     return rate.positive() ? std::optional(gap->value / rate) : std::nullopt;
 }
 
@@ -64,7 +64,7 @@ std::optional<Range> first_limit(const Place& from, const std::string& name, std
     if (!l || !from.first || slopes[opened].has_zero() || slopes[*l].has_zero() != all_along) {
         return {};
     }
-    const std::vector<Range> there = forces_after(from, step_to_limit(from, opened));
+    const std::vector<Range> there = ForcesAfter{*from.evidence, step_to_limit(*from.evidence, opened)}.all();
     const std::vector<Range> first = from.first->forces(there);
     if (all_along) {
         return there[*l].has_zero() ? std::optional(first[*l]) : std::nullopt;
@@ -273,7 +273,7 @@ Objections check_step(const Place& place, const EventRecord& event, std::size_t 
         const Range rate = velocities.gap_rate(gap.pair, motion);
         if (rate.negative()) { // otherwise it opens, or cannot be told to move
             const auto at = event.closed == place.named(gap.pair) ? ways.begin() : ways.end();
-            ways.insert(at, {gap.pair, gap.value / (Range(Rational(0)) - rate)});
+            ways.insert(at, {gap.pair, gap.value / -rate});
         }
     }
     std::optional<Range> shortest;

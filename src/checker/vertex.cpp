@@ -105,6 +105,10 @@ TrueVertex find_vertex(const Problem& problem, const Solver& solver, const Inver
     return vertex;
 }
 
+Range coordinate_at(const Problem& problem, const TrueVertex& vertex, std::size_t k) {
+    return Range::around(problem.length(vertex.middle[k]), problem.dof_of[k] >= 0 ? vertex.radius : Rational(0));
+}
+
 bool unique_within(const InverseBound& inverse, const TrueVertex& vertex, const Rational& distance) {
     return !inverse.regular_within || (vertex.moved_most + distance) / 2 < *inverse.regular_within;
 }

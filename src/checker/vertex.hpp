@@ -23,6 +23,9 @@ struct TrueVertex {
 TrueVertex find_vertex(const Problem& problem, const Solver& solver, const InverseBound& inverse,
                        const Rational& around = 0);
 
+/// Coordinate k of the true vertex.
+Range coordinate_at(const Problem& problem, const TrueVertex& vertex, std::size_t k);
+
 /// The true vertex is the only zero within `distance` of the stored configuration (every coordinate).
 bool unique_within(const InverseBound& inverse, const TrueVertex& vertex, const Rational& distance);
 

@@ -67,6 +67,7 @@ class Stage {
         return Contender{l, competes, competes, competes.margin(), f.value};
     }
 
+    [[nodiscard]] bool may_tie() const;
     void find_zero_holds();
     void sort_by_sign();
     void leave_out_what_cannot_open();
@@ -217,8 +218,22 @@ Result<OpeningDecision> Stage::nothing_opens() {
     return decision_;
 }
 
+/// Whether the strut of the contact that opens may matter: enclosures of equal forces overlap (S4), except at a turn
+/// that was just located, whose forces are not those of the exact turn.
+bool Stage::may_tie() const {
+    if (zero_.fresh.valid() || !finite_ || choice_.rule != OpeningRule::most_negative) {
+        return true;
+    }
+    const auto least = std::min_element(negative_.begin(), negative_.end(), [](const Contender& a, const Contender& b) {
+        return a.force.value < b.force.value;
+    });
+    return std::any_of(negative_.begin(), negative_.end(), [&](const Contender& c) {
+        return c.contact != least->contact && !(c.force - least->force).decided();
+    });
+}
+
 Result<OpeningDecision> Stage::open() {
-    if (!turn_ && !zero_.others.empty()) {
+    if (!turn_ && !zero_.others.empty() && may_tie()) {
         ask_struts();
     }
     choice_.turn = turn_ ? &*turn_ : nullptr;

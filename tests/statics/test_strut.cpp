@@ -191,6 +191,10 @@ BOOST_AUTO_TEST_CASE(the_end_of_a_straight_strut_that_its_own_load_pulls_at_open
         // The rule that opens the weakest traction has the opposite order.
         const ContactId least = opening_at_turn(v, OpeningRule::least_negative).contact;
         BOOST_TEST((v.contact(least) == (g > 0 ? right(0) : left(0))), "g = " << g);
+        // Held since an earlier vertex, the same.
+        const auto later = decide_opening(v.statics, v.sigma(), OpeningRule::most_negative, {}, 0);
+        BOOST_TEST_REQUIRE((later.ok() && later.value().opening), why(later));
+        BOOST_TEST((later.value().opening->contact == opening.contact), "g = " << g);
     }
 }
 

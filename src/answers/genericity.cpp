@@ -1,13 +1,13 @@
 #include "answers/genericity.hpp"
 
 #include "contact/names.hpp"
+#include "core/refuse.hpp"
 #include "io/files.hpp"
 #include "io/text.hpp"
 #include "io/vertex_text.hpp"
 #include "packing/bodies.hpp"
 #include "packing/words.hpp"
 
-#include <isostat/core/result.hpp>
 #include <isostat/crafted/exact_packing.hpp>
 #include <isostat/io/state_file.hpp>
 
@@ -120,7 +120,7 @@ GenericityOriginal read_original(const std::string& file) {
         const crafted::PackingFile crafted = crafted::parse_packing(text, file);
         const auto inspection = crafted::inspect_file(crafted, file);
         if (!inspection.ok()) {
-            throw Error(ErrorKind::bad_input, fmt::format("{}: {}", file, inspection.failure().message()));
+            refuse(file, inspection.failure().message());
         }
         out.packing = crafted::approximate(crafted.packing);
         out.contacts = unilateral(inspection.value().contacts);
@@ -141,11 +141,8 @@ GenericityOriginal read_original(const std::string& file) {
         out.with_radii = crafted::count_with_radii(crafted::exact_copy(out.packing), out.contacts);
         out.title = "contacts of the state, stored coordinates";
     } else {
-        throw Error(
-            ErrorKind::bad_input,
-            fmt::format("{}: not a file of this program: expected a crafted packing (TOML), a state or a vertex "
-                        "text; isostat import makes a state of a packing of another program",
-                        file));
+        refuse(file, "not a file of this program: expected a crafted packing (TOML), a state or a vertex text; isostat "
+                     "import makes a state of a packing of another program");
     }
     std::sort(out.contacts.begin(), out.contacts.end());
     return out;

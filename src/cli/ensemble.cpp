@@ -7,11 +7,10 @@
 #include "cli/mpi/sample_queue.hpp"
 #endif
 
+#include "core/refuse.hpp"
 #include "ensemble/ensemble.hpp"
 #include "ensemble/processes.hpp"
 #include "io/files.hpp"
-
-#include <isostat/core/result.hpp>
 
 #include <fmt/format.h>
 
@@ -276,8 +275,7 @@ int ensemble(const EnsembleArguments& arguments) {
     try {
         const Scene scene = read_scene(arguments.scene);
         if (scene.programme.empty()) {
-            throw Error(ErrorKind::bad_input,
-                        fmt::format("{}: has no [[programme]]: expected at least one segment to run", arguments.scene));
+            refuse(arguments.scene, "has no [[programme]]: expected at least one segment to run");
         }
         header.scene_text = scene.text;
         catch_interrupts();

@@ -79,14 +79,14 @@ bool as_listed(const ImportArguments& a, const Packing& packing) {
 Imported from_list(const ImportArguments& a, const ForeignPacking& file) {
     const bool digits = by_digits(file.packing);
     if (a.jitter != 0 || (digits ? !a.contacts.empty() : a.contacts == "nearest")) {
-        throw Error(ErrorKind::usage,
-                    fmt::format("{} is a packing of {}: expected no --jitter and no --contacts{} (--threshold T lists "
-                                "the pairs with that gap or less)",
-                                a.file,
-                                !file.packing.bars.empty() ? "clumps"
-                                : digits                   ? "spheres"
-                                                           : "disks in walls or a cell that stays",
-                                digits ? ", which are of disks so far" : " nearest"));
+        refuse(ErrorKind::usage,
+               "{} is a packing of {}: expected no --jitter and no --contacts{} (--threshold T lists the pairs with "
+               "that gap or less)",
+               a.file,
+               !file.packing.bars.empty() ? "clumps"
+               : digits                   ? "spheres"
+                                          : "disks in walls or a cell that stays",
+               digits ? ", which are of disks so far" : " nearest");
     }
     Imported out;
     out.from = file.packing.q;
@@ -185,9 +185,8 @@ ForeignPacking read_imported(ImportArguments& a, bool crafted, bool own) {
         refuse(a.file, "is a state of spheres: expected one of disks, which --jitter takes only so far");
     }
     if (crafted && !a.cell.empty()) {
-        throw Error(ErrorKind::usage,
-                    fmt::format("--cell is '{}' and {} is a crafted packing, which says what moves: expected no --cell",
-                                a.cell, a.file));
+        refuse(ErrorKind::usage,
+               "--cell is '{}' and {} is a crafted packing, which says what moves: expected no --cell", a.cell, a.file);
     }
     if (file.packing.cell.any() && !crafted) {
         set_cell(a, own, file.packing);
@@ -282,9 +281,8 @@ void judge_moves(const ImportArguments& a, const Imported& found, const compare:
     }
     const std::string words = fmt::format("disk {} moved by {} of its radius", disk, rounded_up(radii, 3));
     if (radii > 1 && !a.far && std::isfinite(radii)) {
-        refuse(a.file, words +
-                           ": expected at most one on the way to the vertex (are the sizes wrong by a factor, or the "
-                           "box? --far takes it)");
+        refuse(a.file, words + ": expected at most one on the way to the vertex (are the sizes wrong by a factor, or "
+                               "the box? --far takes it)");
     }
     if (radii > far) {
         notes.push_back(words + ", more than a tenth: the vertex may not be that of the file");
@@ -439,9 +437,8 @@ void require_importable(const ImportArguments& a, bool own, bool crafted) {
     }
     if (crafted && a.jitter != 0) {
         refuse(a.file,
-               fmt::format("is a crafted packing, whose contacts are those of its exact radii: expected no --jitter, "
-                           "it is {}",
-                           a.jitter));
+               "is a crafted packing, whose contacts are those of its exact radii: expected no --jitter, it is {}",
+               a.jitter);
     }
 }
 

@@ -5,10 +5,10 @@
 #include "cli/interrupt.hpp"
 #include "cli/progress.hpp"
 #include "cli/terminal.hpp"
+#include "core/refuse.hpp"
 #include "ensemble/members.hpp"
 #include "report/run_report.hpp"
 
-#include <isostat/core/result.hpp>
 #include <isostat/io/run_directory.hpp>
 
 #include <fmt/format.h>
@@ -88,10 +88,8 @@ int report_ensemble(const ReportArguments& arguments) {
                                                          : fs::path(arguments.output) / member.folder.filename();
         try {
             if (!member.begun) {
-                throw Error(
-                    ErrorKind::bad_input,
-                    fmt::format("was not begun{}: `isostat ensemble --resume`",
-                                member.further > 0 ? fmt::format(", nor were {} after it", member.further) : ""));
+                refuse(ErrorKind::bad_input, "was not begun{}: `isostat ensemble --resume`",
+                       member.further > 0 ? fmt::format(", nor were {} after it", member.further) : "");
             }
             const ReportResult result = report_run(member.folder, output, options);
             line.clear();
@@ -136,8 +134,7 @@ int report(const ReportArguments& arguments) {
     }
     const bool is_run = fs::is_directory(input);
     if (arguments.stiffness > 0 && !is_run) {
-        throw Error(ErrorKind::usage,
-                    fmt::format("--stiffness belongs to the folder of a run: {} is none", arguments.input));
+        refuse(ErrorKind::usage, "--stiffness belongs to the folder of a run: {} is none", arguments.input);
     }
     fs::path output = arguments.output;
     if (output.empty()) {

@@ -53,9 +53,8 @@ Read from_foreign(const SnapArguments& a) {
     foreign.options.cells = foreign.spheres = true;
     foreign.walls = foreign.walls.empty() ? "box" : foreign.walls;
     if (foreign.walls != "box") {
-        throw Error(ErrorKind::usage,
-                    fmt::format("--walls is '{}': expected box, a fixed lower and a movable upper wall along each axis",
-                                foreign.walls));
+        refuse(ErrorKind::usage,
+               "--walls is '{}': expected box, a fixed lower and a movable upper wall along each axis", foreign.walls);
     }
     ForeignPacking file = read_any_packing(a.file, foreign);
     take_cell({a.file, a.cell}, file.packing);

@@ -146,7 +146,7 @@ Manifest read_manifest(const std::filesystem::path& path) {
     Manifest out;
     Section top(&document, "manifest", source);
     if (required(top, "format", fmt::format("\"{}\"", format_name)) != format_name) {
-        top.fail("format", fmt::format("\"{}\"", format_name));
+        top.fail("format", "\"{}\"", format_name);
     }
     out.series.title = top.string("title").value_or("");
     out.series.program = top.string("program").value_or("");

@@ -1,12 +1,12 @@
 #include "crafted/genericity.hpp"
 
 #include "core/parallel.hpp"
+#include "core/refuse.hpp"
 #include "packing/arc_bodies.hpp"
 #include "packing/bodies.hpp"
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/core/machine.hpp>
-#include <isostat/core/result.hpp>
 #include <isostat/preparation/preparation.hpp>
 #include <isostat/rigidity/counting.hpp>
 
@@ -43,12 +43,11 @@ void check(const Packing& packing, const GenericityOptions& options) {
             gives_way && (packing.cell.periodic[a] ? packing.cell.period_moves[a] || packing.cell.keeps_shape : box);
     }
     if (!gives_way) {
-        throw Error(ErrorKind::bad_input,
-                    "genericity: expected along each axis a fixed lower and a movable upper wall, "
-                    "or a period that moves, and no fixed disk");
+        refuse("genericity", "expected along each axis a fixed lower and a movable upper wall, or a period that moves, "
+                             "and no fixed disk");
     }
     if (options.tilt && !packing.cell.all()) {
-        throw Error(ErrorKind::bad_input, "genericity: the tilt is to be perturbed: expected a period along each axis");
+        refuse("genericity", "the tilt is to be perturbed: expected a period along each axis");
     }
     const auto require = [](bool holds, const char* field, const std::string& found, const char* wanted) {
         if (!holds) {

@@ -1,8 +1,8 @@
 #include "contact/names.hpp"
+#include "core/refuse.hpp"
 #include "packing/bodies.hpp"
 #include "packing/words.hpp"
 
-#include <isostat/core/result.hpp>
 #include <isostat/core/verdict.hpp>
 #include <isostat/crafted/exact_packing.hpp>
 
@@ -282,8 +282,7 @@ class Comparison {
     }
 
     [[noreturn]] void bad(const ExpectedEntry& entry, const std::string& wanted) const {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{}:{}: expected.{}: expected {}", source_, entry.line, entry.key, wanted));
+        refuse(ErrorKind::bad_input, "{}:{}: expected.{}: expected {}", source_, entry.line, entry.key, wanted);
     }
     void mismatch(const ExpectedEntry& entry, const std::string& wanted, const std::string& found) {
         out_.push_back(fmt::format("{}:{}: {}: expected {}, found {}", source_, entry.line, entry.key, wanted, found));
@@ -347,8 +346,7 @@ class Comparison {
         try {
             return Number::parse(text);
         } catch (const Error& error) {
-            throw Error(ErrorKind::bad_input,
-                        fmt::format("{}:{}: expected.{}: {}", source_, entry.line, entry.key, error.what()));
+            refuse(ErrorKind::bad_input, "{}:{}: expected.{}: {}", source_, entry.line, entry.key, error.what());
         }
     }
 

@@ -1,4 +1,5 @@
 #include "contact/near_pairs.hpp"
+#include "core/refuse.hpp"
 #include "crafted/gap_order.hpp"
 #include "crafted/hyperstaticity.hpp"
 #include "crafted/peeling.hpp"
@@ -10,7 +11,6 @@
 #include "rigidity/strained_matrix.hpp"
 
 #include <isostat/core/machine.hpp>
-#include <isostat/core/result.hpp>
 #include <isostat/crafted/plateau.hpp>
 
 #include <fmt/format.h>
@@ -168,27 +168,23 @@ class Sequence {
         require_no_arcs(packing_, "plateau", "a count against the gap threshold");
         for (const Bar& bar : packing_.bars) {
             if (packing_.is_fixed(DiskId(bar.i)) || packing_.is_fixed(DiskId(bar.j))) {
-                throw Error(ErrorKind::bad_input,
-                            fmt::format("plateau: bar {}-{}: expected members that are not fixed", bar.i, bar.j));
+                refuse("plateau", "bar {}-{}: expected members that are not fixed", bar.i, bar.j);
             }
         }
         count_contacts(packing_, with_bars({}, packing_)); // refuses dependent bars
         const auto sensible = [](double x) { return std::abs(x) <= largest_length; };
         for (const double x : packing_.q) {
             if (!sensible(x)) {
-                throw Error(ErrorKind::bad_input,
-                            fmt::format("plateau: coordinate {}: expected lengths within 1e+-100", x));
+                refuse("plateau", "coordinate {}: expected lengths within 1e+-100", x);
             }
         }
         for (const double r : packing_.radius) {
             if (!sensible(r) || r < smallest_length) {
-                throw Error(ErrorKind::bad_input,
-                            fmt::format("plateau: radius {}: expected lengths within 1e+-100", r));
+                refuse("plateau", "radius {}: expected lengths within 1e+-100", r);
             }
         }
         if (!sensible(largest_)) {
-            throw Error(ErrorKind::bad_input,
-                        fmt::format("plateau: threshold {}: expected lengths within 1e+-100", largest_));
+            refuse("plateau", "threshold {}: expected lengths within 1e+-100", largest_);
         }
     }
 

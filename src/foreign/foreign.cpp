@@ -28,7 +28,7 @@ void take_plane(Raw& raw, const std::string& plane, const std::string& source) {
         return;
     }
     if (!raw.has_z) {
-        refuse(source, fmt::format("--plane {} was stated and there is no column z: expected one", plane));
+        refuse(source, "--plane {} was stated and there is no column z: expected one", plane);
     }
     const PerAxis<std::size_t> from{plane == "xz" ? 0U : 1U, 2, plane == "xz" ? 1U : 0U};
     const auto permuted = [&](auto& of_axes) {
@@ -131,8 +131,7 @@ std::string_view after_lines(std::string_view text, long lines) {
 int dimension_of(Raw& raw, const std::string& source, const ForeignOptions& options, double& rounding) {
     const std::optional<int> stated = options.dimension ? options.dimension : raw.dimension;
     if (stated.value_or(2) != raw.dimension.value_or(stated.value_or(2))) {
-        refuse(source,
-               fmt::format("dimension {} was stated and the file has {}: expected that", *stated, *raw.dimension));
+        refuse(source, "dimension {} was stated and the file has {}: expected that", *stated, *raw.dimension);
     }
     if (stated == 3 && !raw.has_z) {
         refuse(source, "dimension 3 was stated and there is no column z: expected one");
@@ -148,9 +147,9 @@ int dimension_of(Raw& raw, const std::string& source, const ForeignOptions& opti
     const int dimension = stated.value_or(flat ? 2 : 3);
     if (dimension == 2 && !flat) {
         refuse(fmt::format("{}:{}", source, raw.line[farthest]),
-               fmt::format("z of disk {} is '{}': expected {}, as of disk 0: disks were stated, in a plane "
-                           "(--dimension 3 takes spheres)",
-                           farthest, raw.centre[farthest][2], raw.centre[0][2]));
+               "z of disk {} is '{}': expected {}, as of disk 0: disks were stated, in a plane (--dimension 3 takes "
+               "spheres)",
+               farthest, raw.centre[farthest][2], raw.centre[0][2]);
     }
     if (dimension == 2 && off(farthest) > 0) {
         raw.notes.push_back(
@@ -177,13 +176,13 @@ int dimension_of(Raw& raw, const std::string& source, const ForeignOptions& opti
 void check_range(const Packing& packing, const std::string& source) {
     for (std::size_t i = 0; i < packing.radius.size(); ++i) {
         if (!(packing.radius[i] >= shortest_length && packing.radius[i] <= longest_length)) {
-            refuse(source, fmt::format("radius of disk {} is {}: expected one from {} to {}", i, packing.radius[i],
-                                       shortest_length, longest_length));
+            refuse(source, "radius of disk {} is {}: expected one from {} to {}", i, packing.radius[i], shortest_length,
+                   longest_length);
         }
     }
     for (const double x : packing.q) {
         if (!(std::abs(x) <= longest_length)) {
-            refuse(source, fmt::format("a coordinate is {}: expected a size of at most {}", x, longest_length));
+            refuse(source, "a coordinate is {}: expected a size of at most {}", x, longest_length);
         }
     }
 }
@@ -247,7 +246,7 @@ Raw read_raw(const std::string& format, const std::string& text, const std::stri
                                         foreign::read_table,       foreign::read_braces,      foreign::read_centres};
     const auto at = static_cast<std::size_t>(std::find(formats.begin(), formats.end(), format) - formats.begin());
     if (at >= readers.size()) {
-        refuse(source, fmt::format("format '{}': expected one of {}", format, fmt::join(formats, ", ")));
+        refuse(source, "format '{}': expected one of {}", format, fmt::join(formats, ", "));
     }
     return readers[at](text, source, options);
 }
@@ -279,19 +278,17 @@ ForeignPacking parse_foreign(const std::string& whole, const std::string& source
     }
     out.format = !options.format.empty() ? options.format : options.skip > 0 ? "table" : recognise_format(text);
     if (options.skip > 0 && out.format != "table") {
-        refuse(source, fmt::format("{} lines were to be passed over: expected a table, the format is {}", options.skip,
-                                   out.format));
+        refuse(source, "{} lines were to be passed over: expected a table, the format is {}", options.skip, out.format);
     }
     if (options.size && options.size->column.empty() &&
         !(options.size->value > 0 && std::isfinite(options.size->value))) {
-        refuse(source, fmt::format("stated size {}: expected a positive number", options.size->value));
+        refuse(source, "stated size {}: expected a positive number", options.size->value);
     }
     if (!options.columns.empty() && out.format == "centres") {
         refuse(source, "names of columns were stated: expected none, a file of centres has coordinates alone");
     }
     if (options.frame.value_or(0) != 0 && one_frame(out.format)) {
-        refuse(source, fmt::format("frame {} was asked for: expected frame 0, a file of {} has one", *options.frame,
-                                   out.format));
+        refuse(source, "frame {} was asked for: expected frame 0, a file of {} has one", *options.frame, out.format);
     }
     Raw raw = read_raw(out.format, text, source, options);
     if (raw.scaled) {

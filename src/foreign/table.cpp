@@ -148,10 +148,9 @@ TableNames read_table_names(TextLines& lines, const ForeignOptions& options, Raw
         out.names = options.columns;
     }
     if (out.names.empty()) {
-        first.fail(
-            first.text(), "first row",
-            "names of the columns before it (a row of names, or '# x y r'; where one table is read, --columns x,y,r): "
-            "nothing says which column is what");
+        first.fail(first.text(), "first row",
+                   "names of the columns before it (a row of names, or '# x y r'; where one table is read, --columns "
+                   "x,y,r): nothing says which column is what");
     }
     return out;
 }
@@ -183,7 +182,7 @@ Raw read_braces(const std::string& text, const std::string& source, const Foreig
     (void)lines.find_row();
     const TextLine header = lines.next_row("N = .., L1= { .. }, L2= { .. }", 0);
     if (header.text().size() > longest_header) {
-        header.fail(header.text().substr(0, 40), "header", fmt::format("at most {} characters", longest_header));
+        header.fail(header.text().substr(0, 40), "header", "at most {} characters", longest_header);
     }
     static const std::regex vector(R"(L([12])\s*=\s*\{\s*([^\s,{}]+)\s*,\s*([^\s,{}]+)\s*\})");
     PerAxis<PerAxis<double>> periods{{{}, {}, {0, 0, 1}}};
@@ -207,7 +206,7 @@ Raw read_braces(const std::string& text, const std::string& source, const Foreig
     std::cmatch announced;
     if (!std::regex_search(header.text().begin(), header.text().end(), announced, number) ||
         announced[1] != std::to_string(rows.seen())) {
-        header.fail(header.text(), "header", fmt::format("N = {}, so many rows there are", rows.seen()));
+        header.fail(header.text(), "header", "N = {}, so many rows there are", rows.seen());
     }
     rows.finish(raw);
     return raw;

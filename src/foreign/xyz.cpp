@@ -30,7 +30,7 @@ std::map<std::string, std::string> key_values(const TextLine& line) {
                 const char closing = "\"'}]"[quote];
                 const std::size_t stop = rest.find(closing, 1);
                 if (stop == std::string_view::npos) {
-                    line.fail(rest, "value of " + key, fmt::format("an end {}", closing));
+                    line.fail(rest, "value of " + key, "an end {}", closing);
                 }
                 value = std::string(rest.substr(1, stop - 1));
                 rest.remove_prefix(stop + 1);
@@ -94,7 +94,7 @@ std::vector<double> numbers_of(const TextLine& line, const std::string& key, con
         digits.see(fields.field(k));
     }
     if (out.size() != counts[0] && out.size() != counts[1]) {
-        line.fail(value, key, fmt::format("{} numbers", counts[1]));
+        line.fail(value, key, "{} numbers", counts[1]);
     }
     return out;
 }

@@ -1,11 +1,10 @@
 // equilibria.csv, both ways: one table of its columns.
 #include "io/equilibria.hpp"
 
+#include "core/refuse.hpp"
 #include "io/files.hpp"
 #include "io/lines.hpp"
 #include "io/numbers.hpp"
-
-#include <isostat/core/result.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -136,7 +135,7 @@ template <class Use> void for_each_name(MoreColumns more, const Use& use) {
 
 [[noreturn]] void bad_field(const std::string& where, const std::string& name, std::string_view text,
                             const std::string& expected) {
-    throw Error(ErrorKind::bad_input, fmt::format("{}: {} is '{}': expected {}", where, name, text, expected));
+    refuse(where, "{} is '{}': expected {}", name, text, expected);
 }
 
 double number_of(std::string_view text, const std::string& where, const std::string& name) {
@@ -260,9 +259,8 @@ MoreColumns named_columns(std::string_view text, const std::string& source) {
             }
         }
     }
-    throw Error(ErrorKind::bad_input, fmt::format("{}:1: the names of the columns are not those of this program: "
-                                                  "expected {}",
-                                                  source, equilibria_header()));
+    refuse(ErrorKind::bad_input, "{}:1: the names of the columns are not those of this program: expected {}", source,
+           equilibria_header());
 }
 
 std::string equilibrium_row(const EquilibriumRecord& record, const State& state, int previous, MoreColumns more) {
@@ -302,8 +300,7 @@ std::vector<EquilibriumLine> read_equilibrium_lines(const std::filesystem::path&
             fields.push_back(row.substr(at, row.find(',', at) - at));
         }
         if (fields.size() != names.size()) {
-            throw Error(ErrorKind::bad_input, fmt::format("{}: {} columns: expected {}, named by the first line",
-                                                          line.where, fields.size(), names.size()));
+            refuse(line.where, "{} columns: expected {}, named by the first line", fields.size(), names.size());
         }
         for (std::size_t k = 0; k < names.size(); ++k) {
             line.value[names[k]] = number_of(fields[k], line.where, names[k]);

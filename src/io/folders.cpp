@@ -1,10 +1,10 @@
 #include "io/folders.hpp"
 
+#include "core/refuse.hpp"
 #include "io/files.hpp"
 #include "io/json.hpp"
 #include "io/record_digests.hpp"
 
-#include <isostat/core/result.hpp>
 #include <isostat/io/run_directory.hpp>
 
 #include <fcntl.h>
@@ -138,8 +138,7 @@ void look(const fs::path& folder, const std::string& before, const FolderKind& k
         const std::string whole = name_of_temporary(name);
         if (file || kind.owns_folder(name)) {
             if (type != (file ? fs::file_type::regular : fs::file_type::directory)) {
-                throw Error(ErrorKind::bad_input, fmt::format("{}: expected a {} that is no link",
-                                                              entry.path().string(), file ? "regular file" : "folder"));
+                refuse(entry.path().string(), "expected a {} that is no link", file ? "regular file" : "folder");
             }
             (file ? found.files : found.folders).push_back(name);
         } else if (type == fs::file_type::regular && !whole.empty() && kind.owns(whole)) {
@@ -165,8 +164,8 @@ bool is_unused(const FolderContent& content) {
 
 [[noreturn]] void refuse_to_resume(const fs::path& folder, const FolderKind& kind) {
     const std::string_view words = kind.words;
-    throw Error(ErrorKind::bad_input, fmt::format("{}: does not exist: there is no {} to resume",
-                                                  (folder / kind.mark).string(), words.substr(words.find(' ') + 1)));
+    refuse((folder / kind.mark).string(), "does not exist: there is no {} to resume",
+           words.substr(words.find(' ') + 1));
 }
 
 [[noreturn]] void refuse_to_write(const fs::path& folder, const FolderKind& kind, const FolderContent& content) {
@@ -175,8 +174,8 @@ bool is_unused(const FolderContent& content) {
                         : !content.files.empty() ? content.files
                                                  : content.leftovers;
     const std::string holds = other_run ? run_folder.words : names.front();
-    throw Error(ErrorKind::usage, fmt::format("{}: holds {}{}, and is not the folder of {}: expected an empty folder",
-                                              folder.string(), holds, other_run ? " already" : "", kind.words));
+    refuse(ErrorKind::usage, "{}: holds {}{}, and is not the folder of {}: expected an empty folder", folder.string(),
+           holds, other_run ? " already" : "", kind.words);
 }
 
 /// What is there, when it may be taken.
@@ -201,25 +200,24 @@ FolderContent checked(const fs::path& folder, const FolderKind& kind, FolderMode
         }
         check_mark(folder, kind);
         if (mode == FolderMode::fresh) {
-            throw Error(ErrorKind::usage, fmt::format("{}: holds {} already: expected an empty folder, --resume to go "
-                                                      "on or --force to delete it first",
-                                                      folder.string(), kind.words));
+            refuse(ErrorKind::usage,
+                   "{}: holds {} already: expected an empty folder, --resume to go on or --force to delete it first",
+                   folder.string(), kind.words);
         }
         return content;
     } catch (const Error& error) {
         if (resumes || error.kind() == ErrorKind::usage) {
             throw;
         }
-        throw Error(ErrorKind::usage, fmt::format("{} (what is there is not known to be {}: expected an empty folder)",
-                                                  error.what(), kind.words));
+        refuse(ErrorKind::usage, "{} (what is there is not known to be {}: expected an empty folder)", error.what(),
+               kind.words);
     }
 }
 
 Descriptor locked(const fs::path& folder, int flags) {
     Descriptor lock = Descriptor::open(folder / "lock", O_RDWR | O_NOFOLLOW | flags);
     if (!lock.try_lock()) {
-        throw Error(ErrorKind::cannot_write,
-                    fmt::format("{}: another running program writes into this folder", folder.string()));
+        refuse(ErrorKind::cannot_write, "{}: another running program writes into this folder", folder.string());
     }
     return lock;
 }
@@ -241,14 +239,14 @@ void check_mark(const fs::path& folder, const FolderKind& kind) {
     const fs::path mark = folder / kind.mark;
     if (mark.extension() != ".json") {
         if (!is_marked(mark, kind.format)) {
-            throw Error(ErrorKind::bad_input, fmt::format("{}: is not of {}", mark.string(), kind.words));
+            refuse(mark.string(), "is not of {}", kind.words);
         }
         return;
     }
     const json::Json parsed = json::Field::parse(read_text(mark), mark.string());
     const json::Field file(parsed, mark.string());
     if (file.at("format").string() != kind.format) {
-        file.at("format").fail(fmt::format("\"{}\"", kind.format));
+        file.at("format").fail("\"{}\"", kind.format);
     }
     (void)file.at("version").integer(1, 1);
 }

@@ -3,6 +3,8 @@
 /// JSON with messages that name file and field. The only place, with the .cpp files that include it, that knows the
 /// JSON library.
 
+#include "core/refuse.hpp"
+
 #include <isostat/contact/state.hpp>
 #include <isostat/core/verdict.hpp>
 
@@ -30,6 +32,10 @@ class Field {
 
     /// Throws `Error(bad_input)`: "FILE: PATH is VALUE: expected WHAT".
     [[noreturn]] void fail(const std::string& expected) const;
+    template <class... Values>
+    [[noreturn]] void fail(fmt::format_string<Values...> expected, Values&&... values) const {
+        fail(fmt::format(expected, std::forward<Values>(values)...));
+    }
 
     /// "FILE: PATH".
     [[nodiscard]] std::string where() const { return source_ + ": " + path_; }

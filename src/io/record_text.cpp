@@ -142,7 +142,7 @@ template <class Value> void read_from(const json::Field& document, const std::st
         constexpr long most = sizeof(Value) == sizeof(int) ? std::numeric_limits<int>::max() : 1L << 53;
         const long count = field.integer();
         if (count < 0 || count > most) {
-            field.fail(fmt::format("a count, an integer from 0 to {}", most));
+            field.fail("a count, an integer from 0 to {}", most);
         }
         value = static_cast<Value>(count);
     }

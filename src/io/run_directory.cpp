@@ -1,3 +1,4 @@
+#include "core/refuse.hpp"
 #include "core/work.hpp"
 #include "io/descriptor.hpp"
 #include "io/equilibria.hpp"
@@ -7,7 +8,6 @@
 #include "io/record_digests.hpp"
 #include "io/record_text.hpp"
 
-#include <isostat/core/result.hpp>
 #include <isostat/core/verdict.hpp>
 #include <isostat/io/run_directory.hpp>
 #include <isostat/io/state_file.hpp>
@@ -117,13 +117,12 @@ void RunDirectory::open_for_resume() {
     const Field old(parsed, run.string());
     previous_status_ = old.at("status").string();
     if (old.at("scene").string() != header_.scene_text) {
-        throw Error(ErrorKind::bad_input, fmt::format("{}: the run is of another scene ({}): expected the text of {}",
-                                                      run.string(), old.at("scene_file").string(), header_.scene_name));
+        refuse(run.string(), "the run is of another scene ({}): expected the text of {}", old.at("scene_file").string(),
+               header_.scene_name);
     }
     if (old.at("program").string() != header_.program) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{}: the run was made by {}: expected {}, the same bits are not promised otherwise",
-                                run.string(), old.at("program").string(), header_.program));
+        refuse(run.string(), "the run was made by {}: expected {}, the same bits are not promised otherwise",
+               old.at("program").string(), header_.program);
     }
     header_.command = old.at("command").string(); // states tell how the run was started
     read_checkpoint();

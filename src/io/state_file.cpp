@@ -1,3 +1,4 @@
+#include "core/refuse.hpp"
 #include "io/files.hpp"
 #include "io/json.hpp"
 #include "io/state_json.hpp"
@@ -7,7 +8,6 @@
 #include "packing/load_faults.hpp"
 #include "packing/words.hpp"
 
-#include <isostat/core/result.hpp>
 #include <isostat/io/state_file.hpp>
 
 #include <fmt/format.h>
@@ -48,7 +48,7 @@ void read_disks(const Field& document, Packing& packing) {
     const std::size_t size = radius_first ? 0 : packing.axes();
     const Field disks = document.at("disks");
     if (disks.size() == 0) {
-        disks.fail(fmt::format("at least one disk {}", order));
+        disks.fail("at least one disk {}", order);
     }
     for (std::size_t i = 0; i < disks.size(); ++i) {
         const Field row = disks.at(i);
@@ -174,7 +174,7 @@ Packing packing_of(const Field& document) {
         for (std::size_t k = 0; k < fixed.size(); ++k) {
             const long i = fixed.at(k).integer();
             if (i < 0 || i >= packing.disk_count()) {
-                fixed.at(k).fail(fmt::format("a disk from 0 to {}", packing.disk_count() - 1));
+                fixed.at(k).fail("a disk from 0 to {}", packing.disk_count() - 1);
             }
             if (packing.fixed[static_cast<std::size_t>(i)] != 0) {
                 fixed.at(k).fail("each disk once");
@@ -192,9 +192,7 @@ void complete_bars(State& state, const std::string& source) {
     const auto listed = static_cast<std::size_t>(std::count_if(
         state.contacts.begin(), state.contacts.end(), [](const Contact& c) { return c.kind == ContactKind::bar; }));
     if (listed != 0 && listed != bars.size()) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{}: contacts has {} of {} bars: expected all, or to leave them out", source, listed,
-                                bars.size()));
+        refuse(source, "contacts has {} of {} bars: expected all, or to leave them out", listed, bars.size());
     }
     for (std::size_t k = listed; k < bars.size(); ++k) {
         state.contacts.push_back({ContactKind::bar, bars[k].i, bars[k].j});
@@ -203,10 +201,10 @@ void complete_bars(State& state, const std::string& source) {
 
 void require_balance(const Field& document, const char* name, const std::vector<double>& values, const Cell& cell) {
     if (const auto rest = unbalanced<mpq_class>(values, cell)) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{} along {} sum to {:.3g}: expected exactly 0 along a periodic axis (give one disk "
-                                "minus the sum of the others)",
-                                document.at(name).where(), axis_names[rest->first], rest->second.get_d()));
+        refuse(ErrorKind::bad_input,
+               "{} along {} sum to {:.3g}: expected exactly 0 along a periodic axis (give one disk minus the sum of "
+               "the others)",
+               document.at(name).where(), axis_names[rest->first], rest->second.get_d());
     }
 }
 
@@ -238,8 +236,7 @@ void read_path(const Field& field, const Packing& packing, Load& load) {
     path.only({"stress", "direction", "t"});
     const std::vector<double> rates = path.at("direction").numbers();
     if (const std::string fault = fault_of_path(packing, rates); !fault.empty()) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{}: a direction in the space of stresses, {}", path.at("direction").where(), fault));
+        refuse(path.at("direction").where(), "a direction in the space of stresses, {}", fault);
     }
     const Field stress = path.at("stress");
     const std::vector<double> start = stress.numbers(rates.size(), "as many numbers as direction has");
@@ -259,9 +256,8 @@ void read_path(const Field& field, const Packing& packing, Load& load) {
     const bool differs = (field.has("stress") && said.stress != load.stress) ||
                          (field.has("shear") && said.shear != load.shear) || load.loaded_axis != packing.dimension - 1;
     if (differs) {
-        field.fail(
-            "stress and shear that are path.stress + t path.direction, to the nearest double, and the last axis as "
-            "loaded_axis");
+        field.fail("stress and shear that are path.stress + t path.direction, to the nearest double, and the last axis "
+                   "as loaded_axis");
     }
 }
 
@@ -304,10 +300,10 @@ Load load_of(const Field& document, const Packing& packing) {
                                  tilts[static_cast<std::size_t>(axis - packing.dimension)];
             if (!is_tilt && (axis < 0 || axis >= packing.dimension)) {
                 field.at("loaded_axis")
-                    .fail(fmt::format("an axis from 0 to {}{}", packing.dimension - 1,
-                                      !any_tilt                    ? ""
-                                      : packing.dimension == plane ? ", or the tilt, 2"
-                                                                   : ", or a tilt that moves, from 3 on"));
+                    .fail("an axis from 0 to {}{}", packing.dimension - 1,
+                          !any_tilt                    ? ""
+                          : packing.dimension == plane ? ", or the tilt, 2"
+                                                       : ", or a tilt that moves, from 3 on");
             }
             load.loaded_axis = static_cast<int>(axis);
         }
@@ -419,9 +415,10 @@ StateFile read_any_state(const std::filesystem::path& path, Dimensions dimension
             throw;
         }
         if (format.starts_with("lammps") || (format == "xyz" && text.find("Properties=") != std::string::npos)) {
-            throw Error(error.kind(), fmt::format("{}: a packing of another program ({}): expected a state or a "
-                                                  "vertex text; isostat import makes a state of it",
-                                                  path.string(), format));
+            refuse(error.kind(),
+                   "{}: a packing of another program ({}): expected a state or a vertex text; isostat import makes a "
+                   "state of it",
+                   path.string(), format);
         }
         // The first line that is no comment: where it begins with a number, what is wrong with the vertex text was
         // told.
@@ -434,11 +431,10 @@ StateFile read_any_state(const std::filesystem::path& path, Dimensions dimension
             throw;
         }
         constexpr std::size_t few = 40;
-        throw Error(error.kind(),
-                    fmt::format("{}: neither a state (JSON) nor a vertex text (the number of disks comes "
-                                "first; isostat import reads packings of other programs): it begins "
-                                "with '{}'",
-                                path.string(), text::shown(rest.substr(0, std::min(rest.find('\n'), few)))));
+        refuse(error.kind(),
+               "{}: neither a state (JSON) nor a vertex text (the number of disks comes first; isostat import reads "
+               "packings of other programs): it begins with '{}'",
+               path.string(), text::shown(rest.substr(0, std::min(rest.find('\n'), few))));
     }
 }
 

@@ -1,9 +1,8 @@
 #include "io/state_json.hpp"
 
 #include "contact/images.hpp"
+#include "core/refuse.hpp"
 #include "packing/words.hpp"
-
-#include <isostat/core/result.hpp>
 
 #include <fmt/format.h>
 
@@ -17,7 +16,7 @@ namespace {
 int disk_index(const Field& field, int disks) {
     const long i = field.integer();
     if (i < 0 || i >= disks) {
-        field.fail(fmt::format("a disk from 0 to {}", disks - 1));
+        field.fail("a disk from 0 to {}", disks - 1);
     }
     return static_cast<int>(i);
 }
@@ -35,8 +34,8 @@ Image image_of(const Field& field, const Packing& packing) {
             field.at(a).fail("0, as that axis has walls");
         }
         if (m < -farthest_image || m > farthest_image) {
-            field.at(a).fail(fmt::format("from {} to {} periods: put the disks into the cell first", -farthest_image,
-                                         farthest_image));
+            field.at(a).fail("from {} to {} periods: put the disks into the cell first", -farthest_image,
+                             farthest_image);
         }
         image.m[a] = static_cast<std::int8_t>(m);
     }
@@ -97,7 +96,7 @@ Contact contact_of(const Field& field, const Packing& packing) {
         const long coordinate = second.integer();
         const long limit = static_cast<long>(packing.q.size());
         if (first.string() != "held" || coordinate < 0 || coordinate >= limit) {
-            field.fail(fmt::format("[\"held\", coordinate] with a coordinate from 0 to {}", limit - 1));
+            field.fail("[\"held\", coordinate] with a coordinate from 0 to {}", limit - 1);
         }
         return {ContactKind::held, static_cast<int>(coordinate), 0};
     }
@@ -116,8 +115,8 @@ Contact contact_of(const Field& field, const Packing& packing) {
         }
         return {lower ? ContactKind::lower_wall : ContactKind::upper_wall, i, static_cast<int>(a)};
     }
-    second.fail(fmt::format("a grain or one of \"left\", \"right\", \"bottom\", \"top\"{}",
-                            packing.dimension == plane ? "" : ", \"back\", \"front\""));
+    second.fail("a grain or one of \"left\", \"right\", \"bottom\", \"top\"{}",
+                packing.dimension == plane ? "" : ", \"back\", \"front\"");
 }
 
 } // namespace
@@ -125,7 +124,7 @@ Contact contact_of(const Field& field, const Packing& packing) {
 Contact contact_from_json(const Field& field, const Packing& packing) {
     const Contact contact = contact_of(field, packing);
     if (const Json written = contact_to_json(contact, packing.dimension); written != field.value()) {
-        field.fail(fmt::format("{}: a contact has one spelling", written.dump()));
+        field.fail("{}: a contact has one spelling", written.dump());
     }
     return contact;
 }
@@ -138,9 +137,8 @@ void refuse_duplicates(const std::vector<Contact>& contacts, int dimension, cons
                      [&](std::size_t a, std::size_t b) { return contacts[a] < contacts[b]; });
     for (std::size_t k = 1; k < order.size(); ++k) {
         if (contacts[order[k]] == contacts[order[k - 1]]) {
-            throw Error(ErrorKind::bad_input,
-                        fmt::format("{}: {}[{}] is {}, as {}[{}] already: expected each contact once", source, name,
-                                    order[k], to_string(contacts[order[k]], dimension), name, order[k - 1]));
+            refuse(source, "{}[{}] is {}, as {}[{}] already: expected each contact once", name, order[k],
+                   to_string(contacts[order[k]], dimension), name, order[k - 1]);
         }
     }
 }

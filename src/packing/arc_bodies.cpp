@@ -1,8 +1,7 @@
 #include "packing/arc_bodies.hpp"
 
+#include "core/refuse.hpp"
 #include "packing/bodies.hpp"
-
-#include <isostat/core/result.hpp>
 
 #include <fmt/format.h>
 
@@ -172,9 +171,7 @@ ArcBodies::Turn ArcBodies::turn(const std::vector<int>& ring) const {
 }
 
 void validate_arcs(const Packing& packing, const std::string& source) {
-    const auto bad = [&](std::size_t b, const std::string& what) {
-        throw Error(ErrorKind::bad_input, fmt::format("{}: arcs[{}]: {}", source, b, what));
-    };
+    const auto bad = [&](std::size_t b, const std::string& what) { refuse(source, "arcs[{}]: {}", b, what); };
     const Bodies bodies(packing);
     std::vector<unsigned char> used(packing.radius.size());
     for (std::size_t b = 0; b < packing.arcs.size(); ++b) {
@@ -234,10 +231,10 @@ void validate_arcs(const Packing& packing, const std::string& source) {
 
 void require_no_arcs(const Packing& packing, const std::string& source, const std::string& what) {
     if (!packing.arcs.empty()) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{}: {} bodies bounded by arcs; {} does not take them: inspect, certify, verify (of "
-                                "certificates) and report do",
-                                source, packing.arcs.size(), what));
+        refuse(source,
+               "{} bodies bounded by arcs; {} does not take them: inspect, certify, verify (of certificates) and "
+               "report do",
+               packing.arcs.size(), what);
     }
 }
 

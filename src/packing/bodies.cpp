@@ -1,9 +1,8 @@
 #include "packing/bodies.hpp"
 
+#include "core/refuse.hpp"
 #include "packing/arc_bodies.hpp"
 #include "packing/words.hpp"
-
-#include <isostat/core/result.hpp>
 
 #include <fmt/format.h>
 
@@ -88,12 +87,10 @@ std::vector<int> corners_of(const Packing& packing, const std::vector<int>& body
         const auto [member, distance] = farthest(corners);
         if (!(distance > known)) {
             static constexpr std::array places{"in one place", "on one line", "in one plane"};
-            throw Error(ErrorKind::bad_input,
-                        fmt::format("{}: the {} members of the body of {} {} lie {} as far as is known (to {:.2g}): "
-                                    "expected a rigid body; one more member beside them and inside another one touches "
-                                    "nothing and makes it rigid",
-                                    source, body.size(), grain_word(packing.dimension), body.front(),
-                                    places[corners.size() - 1], known));
+            refuse(source,
+                   "the {} members of the body of {} {} lie {} as far as is known (to {:.2g}): expected a rigid body; "
+                   "one more member beside them and inside another one touches nothing and makes it rigid",
+                   body.size(), grain_word(packing.dimension), body.front(), places[corners.size() - 1], known);
         }
         corners.push_back(member);
     }
@@ -265,10 +262,10 @@ double shared_by_members(const Packing& packing, std::span<const int> left_out) 
 void require_single_grains(const Packing& packing, const std::string& source, const std::string& what) {
     require_no_arcs(packing, source, what);
     if (!packing.bars.empty()) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{}: a packing of clumps ({} bars); {} takes single grains only; inspect, certify, run "
-                                "and verify (of certificates) take clumps",
-                                source, packing.bars.size(), what));
+        refuse(source,
+               "a packing of clumps ({} bars); {} takes single grains only; inspect, certify, run and verify (of "
+               "certificates) take clumps",
+               packing.bars.size(), what);
     }
 }
 

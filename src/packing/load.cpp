@@ -1,7 +1,7 @@
 #include "core/dot.hpp"
+#include "core/refuse.hpp"
 #include "packing/words.hpp"
 
-#include <isostat/core/result.hpp>
 #include <isostat/packing/load.hpp>
 
 #include <fmt/format.h>
@@ -313,12 +313,11 @@ void require_pressed_sides(const Packing& packing, const Load& load, bool stated
             const bool open =
                 packing.walls.lower[side] == WallKind::absent || packing.walls.upper[side] == WallKind::absent;
             if (side != pressed && open && !packing.cell.periodic[side] && (present || !stated)) {
-                throw Error(ErrorKind::bad_input,
-                            fmt::format("{}: {}, and the stress along {} presses over the length along {}, where a "
-                                        "wall is absent: expected nominal stresses with reference_length in load, as "
-                                        "the place of an absent wall means nothing",
-                                        source, present ? "load.kind is \"true\"" : "load has no reference_length",
-                                        axis_names.at(pressed), axis_names.at(side)));
+                refuse(source,
+                       "{}, and the stress along {} presses over the length along {}, where a wall is absent: expected "
+                       "nominal stresses with reference_length in load, as the place of an absent wall means nothing",
+                       present ? "load.kind is \"true\"" : "load has no reference_length", axis_names.at(pressed),
+                       axis_names.at(side));
             }
         }
     }

@@ -1,9 +1,9 @@
+#include "core/refuse.hpp"
 #include "packing/arc_bodies.hpp"
 #include "packing/bodies.hpp"
 #include "packing/cell_wrap.hpp"
 #include "packing/words.hpp"
 
-#include <isostat/core/result.hpp>
 #include <isostat/packing/packing.hpp>
 
 #include <fmt/format.h>
@@ -182,20 +182,18 @@ void validate_own_images(const Packing& packing, const std::string& source) {
                 const bool rests = packing.dimension == plane ? y == 0 : z == 0; // while the last period moves
                 if (packing.cell.keeps_shape && rests &&
                     !(2 * *largest < period * (1 - 1e-9))) { // proofs/cells.md, C13
-                    throw Error(
-                        ErrorKind::bad_input,
-                        fmt::format("{}: the cell keeps its shape and a {} of diameter {} touches its own image "
-                                    "along {}, {} away: expected a larger period there",
-                                    source, grain_word(packing.dimension), 2 * *largest,
-                                    packing.dimension == plane ? "x" : "x and y", period));
+                    refuse(source,
+                           "the cell keeps its shape and a {} of diameter {} touches its own image along {}, {} away: "
+                           "expected a larger period there",
+                           grain_word(packing.dimension), 2 * *largest, packing.dimension == plane ? "x" : "x and y",
+                           period);
                 }
                 if (2 * *largest > period * (1 + 1e-9)) { // beyond rounding: whatever the configuration
-                    throw Error(ErrorKind::bad_input,
-                                fmt::format("{}: {} {} of diameter {} overlaps its own image ({}, {}{}), {} away: "
-                                            "expected a diameter of at most the shortest period",
-                                            source, grain_word(packing.dimension), largest - packing.radius.begin(),
-                                            2 * *largest, x, y,
-                                            packing.dimension == plane ? "" : fmt::format(", {}", z), period));
+                    refuse(source,
+                           "{} {} of diameter {} overlaps its own image ({}, {}{}), {} away: expected a diameter of at "
+                           "most the shortest period",
+                           grain_word(packing.dimension), largest - packing.radius.begin(), 2 * *largest, x, y,
+                           packing.dimension == plane ? "" : fmt::format(", {}", z), period);
                 }
             }
         }
@@ -206,14 +204,13 @@ void validate_own_images(const Packing& packing, const std::string& source) {
 
 void require_box(const Packing& packing, const std::string& source, const std::string& what) {
     if (packing.cell.any()) {
-        throw Error(ErrorKind::bad_input, fmt::format("{}: a periodic cell; {} takes boxes only so far", source, what));
+        refuse(source, "a periodic cell; {} takes boxes only so far", what);
     }
 }
 
 void require_plane(const Packing& packing, const std::string& source, const std::string& what) {
     if (packing.dimension != plane) {
-        throw Error(ErrorKind::bad_input, fmt::format("{}: a packing of spheres (dimension {}); {} takes disks only",
-                                                      source, packing.dimension, what));
+        refuse(source, "a packing of spheres (dimension {}); {} takes disks only", packing.dimension, what);
     }
 }
 

@@ -3,6 +3,7 @@
 #include "contact/near_pairs.hpp"
 #include "contact/separation.hpp"
 #include "contact/words.hpp"
+#include "core/refuse.hpp"
 #include "preparation/polish.hpp"
 #include "preparation/programme.hpp"
 #include "preparation/random.hpp"
@@ -11,7 +12,6 @@
 #include "verified/to_vertex.hpp"
 
 #include <isostat/core/machine.hpp>
-#include <isostat/core/result.hpp>
 #include <isostat/preparation/preparation.hpp>
 
 #include <fmt/format.h>
@@ -75,21 +75,20 @@ void require_sensible(const Packing& start, const PreparationOptions& options) {
         gives_way = gives_way && (cell.periodic[a] ? cell.period_moves[a] || cell.keeps_shape : box);
     }
     if (!gives_way) {
-        throw Error(ErrorKind::bad_input, "start of the linear programmes: expected along each axis a fixed and a "
-                                          "movable wall, or a period that moves, and no fixed disk");
+        refuse("start of the linear programmes",
+               "expected along each axis a fixed and a movable wall, or a period that moves, and no fixed disk");
     }
     if (cell.any() &&
         (start.disk_count() > options.large_above || (cell.shears() && options.load != LoadKind::nominal))) {
-        throw Error(ErrorKind::bad_input, fmt::format("start of the linear programmes: expected at most {} disks in a "
-                                                      "periodic cell, and nominal stresses where its tilt moves",
-                                                      options.large_above));
+        refuse("start of the linear programmes",
+               "expected at most {} disks in a periodic cell, and nominal stresses where its tilt moves",
+               options.large_above);
     }
     for (const auto& [name, value] : {std::pair{"stress", options.stress},
                                       {"ratio of the stresses", options.ratio},
                                       {"weight of the infinitesimal loads", options.infinitesimal_weight}}) {
         if (!(value > 0) || !std::isfinite(value)) {
-            throw Error(ErrorKind::bad_input,
-                        fmt::format("preparation: {} is {}: expected a positive finite number", name, value));
+            refuse("preparation", "{} is {}: expected a positive finite number", name, value);
         }
     }
 }

@@ -2,11 +2,10 @@
 
 #include "core/dot.hpp"
 #include "core/parallel.hpp"
+#include "core/refuse.hpp"
 #include "core/work.hpp"
 #include "preparation/pair_forces.hpp"
 #include "preparation/scale.hpp"
-
-#include <isostat/core/result.hpp>
 
 #include <fmt/format.h>
 
@@ -136,9 +135,8 @@ void SoftDynamics::place_images() {
     const double* const length = q_.data() + axes_ * n_;
     // A pair may touch through several images; the centres of a sphere and its own image are a diameter apart.
     if (!(*std::min_element(length, length + axes_) >= (axes_ == 2 ? 2 : 1) * margin)) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("preparation: a periodic cell became narrower than {}: expected more",
-                                axes_ == 2 ? "four disks" : "its largest spheres"));
+        refuse("preparation", "a periodic cell became narrower than {}: expected more",
+               axes_ == 2 ? "four disks" : "its largest spheres");
     }
     int neighbours = 1; // 3 of each axis, with the cell itself
     for (std::size_t a = 0; a < axes_; ++a) {

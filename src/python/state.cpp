@@ -3,12 +3,12 @@
 #include "checker/run_records.hpp"
 #include "contact/names.hpp"
 #include "convert.hpp"
+#include "core/refuse.hpp"
 #include "io/equilibria.hpp"
 #include "packing/words.hpp"
 #include "rigidity/isostatic.hpp"
 
 #include <isostat/certificate/certify.hpp>
-#include <isostat/core/result.hpp>
 #include <isostat/rigidity/counting.hpp>
 
 #include <fmt/format.h>
@@ -215,11 +215,10 @@ Packing packing_of(const py::array_t<double, py::array::c_style | py::array::for
                    const std::optional<std::vector<std::string>>& upper, const std::vector<bool>& fixed) {
     const py::ssize_t d = centres.ndim() == 2 ? centres.shape(1) : 0;
     if ((d != 2 && d != 3) || static_cast<std::size_t>(centres.shape(0)) != radii.size()) {
-        throw Error(ErrorKind::bad_input,
-                    "positions: expected an array of shape (n, 2), of spheres (n, 3), for n radii");
+        refuse("positions", "expected an array of shape (n, 2), of spheres (n, 3), for n radii");
     }
     if (!fixed.empty() && fixed.size() != radii.size()) {
-        throw Error(ErrorKind::bad_input, "fixed: expected one flag per disk");
+        refuse("fixed", "expected one flag per disk");
     }
     Packing packing;
     packing.dimension = packing.cell.dimension = static_cast<int>(d);
@@ -230,8 +229,7 @@ Packing packing_of(const py::array_t<double, py::array::c_style | py::array::for
     packing.fixed.assign(fixed.begin(), fixed.end());
     const auto expect = [&](const char* name, std::size_t size) {
         if (size != packing.axes()) {
-            throw Error(ErrorKind::bad_input,
-                        fmt::format("{} has {} entries: expected {}, one per axis", name, size, packing.axes()));
+            refuse(ErrorKind::bad_input, "{} has {} entries: expected {}, one per axis", name, size, packing.axes());
         }
     };
     expect("length", length.size());
@@ -421,8 +419,8 @@ void bind_state_class(py::module_& module) {
             [](const PyState& self, const std::vector<double>& stress, std::optional<double> shear) {
                 State changed = self.state;
                 if (stress.size() != changed.packing.axes()) {
-                    throw Error(ErrorKind::bad_input, fmt::format("stress has {} numbers: expected {}", stress.size(),
-                                                                  changed.packing.axes()));
+                    refuse(ErrorKind::bad_input, "stress has {} numbers: expected {}", stress.size(),
+                           changed.packing.axes());
                 }
                 changed.load.path.reset();
                 std::copy(stress.begin(), stress.end(), changed.load.stress.begin());
@@ -449,11 +447,11 @@ Contact contact_of(std::pair<int, int> pair, const Packing& packing) {
                                       [&](const Bar& b) { return b.i == i && b.j == first_bar - j; })) {
         return {ContactKind::bar, i, first_bar - j};
     }
-    throw Error(ErrorKind::bad_input,
-                fmt::format("contact ({}, {}): expected (i, j) of two of {} grains, or (i, -1) left, (i, -2) bottom, "
-                            "(i, -3) right, (i, -4) top wall, of spheres (i, -5) back, (i, -6) front, or (i, -9) held "
-                            "coordinate, (i, -10 - j) bar of the packing",
-                            i, j, disks));
+    refuse(ErrorKind::bad_input,
+           "contact ({}, {}): expected (i, j) of two of {} grains, or (i, -1) left, (i, -2) bottom, (i, -3) right, (i, "
+           "-4) top wall, of spheres (i, -5) back, (i, -6) front, or (i, -9) held coordinate, (i, -10 - j) bar of the "
+           "packing",
+           i, j, disks);
 }
 
 } // namespace

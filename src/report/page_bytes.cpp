@@ -1,6 +1,5 @@
+#include "core/refuse.hpp"
 #include "report/page.hpp"
-
-#include <isostat/core/result.hpp>
 
 #include <fmt/format.h>
 #include <nettle/base64.h>
@@ -25,7 +24,7 @@ std::string packed(const std::string& bytes) {
     const int status = ::compress2(reinterpret_cast<Bytef*>(small.data()), &size,
                                    reinterpret_cast<const Bytef*>(bytes.data()), bytes.size(), Z_BEST_COMPRESSION);
     if (status != Z_OK) {
-        throw Error(ErrorKind::internal, fmt::format("zlib: {}", ::zError(status)));
+        refuse(ErrorKind::internal, "zlib: {}", ::zError(status));
     }
     std::string text(BASE64_ENCODE_RAW_LENGTH(size), '\0');
     ::base64_encode_raw(text.data(), size, reinterpret_cast<const std::uint8_t*>(small.data()));

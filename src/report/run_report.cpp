@@ -1,6 +1,7 @@
 #include "report/run_report.hpp"
 
 #include "certificate/contact_table.hpp"
+#include "core/refuse.hpp"
 #include "core/work.hpp"
 #include "io/files.hpp"
 #include "io/folders.hpp"
@@ -14,7 +15,6 @@
 #include "report/statistics.hpp"
 
 #include <isostat/certificate/certify.hpp>
-#include <isostat/core/result.hpp>
 #include <isostat/io/run_directory.hpp>
 #include <isostat/io/state_file.hpp>
 
@@ -237,8 +237,7 @@ void make_output(const fs::path& directory, const fs::path& output) {
 ReportResult report_run(const fs::path& directory, const fs::path& output, const ReportOptions& options) {
     const fs::path run = directory / "run.json";
     if (!fs::exists(run)) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{}: does not exist: expected the folder of a run", run.string()));
+        refuse(run.string(), "does not exist: expected the folder of a run");
     }
     check_mark(directory, run_folder);
     const json::Json parsed = json::Field::parse(read_text(run), run.string());
@@ -296,9 +295,10 @@ ReportResult report_run(const fs::path& directory, const fs::path& output, const
 ReportResult report_state(const fs::path& state, const fs::path& output, const ReportOptions& options) {
     const std::string name = "forces_" + state.stem().string();
     if (options.html && read_any_state(state, Dimensions::any_bodies).state.packing.dimension == plane) {
-        throw Error(ErrorKind::usage, fmt::format("{}: --html of one state is a view of spheres: this file is of "
-                                                  "disks, and without --html {}.svg shows them",
-                                                  state.string(), name));
+        refuse(
+            ErrorKind::usage,
+            "{}: --html of one state is a view of spheres: this file is of disks, and without --html {}.svg shows them",
+            state.string(), name);
     }
     make_directory(output);
     Writer writer(output, options, false);

@@ -1,9 +1,9 @@
 #include "contact/candidates.hpp"
+#include "core/refuse.hpp"
 #include "exact/independent_columns.hpp"
 #include "linear/factorisation.hpp"
 #include "packing/load_faults.hpp"
 
-#include <isostat/core/result.hpp>
 #include <isostat/rigidity/counting.hpp>
 #include <isostat/scene/scene.hpp>
 
@@ -52,9 +52,7 @@ std::string self_stresses(const State& state) {
 } // namespace
 
 void check_start(const State& state, const std::string& source, bool hyperstatic_allowed) {
-    const auto bad = [&](const std::string& what) {
-        throw Error(ErrorKind::bad_input, fmt::format("{}: {}", source, what));
-    };
+    const auto bad = [&](const std::string& what) { refuse(source, what); };
     validate(state.packing, source);
     require_pressed_sides(state.packing, state.load, true, source);
     if (const auto pair = fixed_overlap(state.packing)) {

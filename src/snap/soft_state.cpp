@@ -1,8 +1,7 @@
+#include "core/refuse.hpp"
 #include "packing/words.hpp"
 #include "snap/backbone.hpp"
 #include "snap/soft_list.hpp"
-
-#include <isostat/core/result.hpp>
 
 #include <fmt/format.h>
 
@@ -49,10 +48,10 @@ SoftForces soft_grains(const StateFile& file, const std::string& source) {
     const bool fixed =
         std::any_of(state.packing.fixed.begin(), state.packing.fixed.end(), [](auto f) { return f != 0; });
     if (!gives_way(state.packing) || fixed || !state.load.disk_force.empty()) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{}: expected a fixed lower and a movable upper wall along each axis that is not "
-                                "periodic, no fixed {} and no force on a {}",
-                                source, grain_word(state.packing.dimension), grain_word(state.packing.dimension)));
+        refuse(source,
+               "expected a fixed lower and a movable upper wall along each axis that is not periodic, no fixed {} and "
+               "no force on a {}",
+               grain_word(state.packing.dimension), grain_word(state.packing.dimension));
     }
     SoftForces out;
     std::map<Contact, double> forces;

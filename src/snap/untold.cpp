@@ -123,8 +123,7 @@ double imported_rounding(const State& state) {
     const auto& value = provenance["rounding"];
     const double rounding = value.is_number() ? value.get<double>() : -1;
     if (!(rounding >= 0 && std::isfinite(rounding))) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("provenance.rounding is {}: expected a length, 0 or more", value.dump()));
+        refuse(ErrorKind::bad_input, "provenance.rounding is {}: expected a length, 0 or more", value.dump());
     }
     return rounding;
 }

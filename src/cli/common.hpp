@@ -15,7 +15,6 @@
 
 #include <filesystem>
 #include <string>
-#include <vector>
 
 namespace isostat::cli {
 

@@ -3,7 +3,6 @@
 #include "contact/separation.hpp"
 #include "crafted/able.hpp"
 
-#include <algorithm>
 #include <functional>
 
 namespace isostat::crafted {

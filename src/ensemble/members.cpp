@@ -6,8 +6,6 @@
 #include "io/json.hpp"
 #include "io/numbers.hpp"
 
-#include <isostat/core/result.hpp>
-
 namespace isostat {
 
 namespace fs = std::filesystem;

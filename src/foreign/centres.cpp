@@ -2,8 +2,6 @@
 // of Lubachevsky and Stillinger write this without vectors, TJ (Torquato and Jiao) with vectors.
 #include "foreign/source.hpp"
 
-#include <isostat/core/result.hpp>
-
 #include <fmt/format.h>
 
 #include <utility>

@@ -9,10 +9,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 #include <type_traits>
 
 namespace isostat {

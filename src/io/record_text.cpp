@@ -3,7 +3,6 @@
 #include "io/state_json.hpp"
 #include "packing/words.hpp"
 
-#include <isostat/core/result.hpp>
 #include <isostat/io/run_directory.hpp>
 
 #include <fmt/format.h>

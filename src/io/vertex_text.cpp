@@ -4,8 +4,6 @@
 #include "io/lines.hpp"
 #include "io/state_json.hpp"
 
-#include <isostat/core/result.hpp>
-
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -5,6 +5,7 @@
 #include <isostat/foreign/foreign.hpp>
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -178,6 +179,10 @@ struct GenericityArguments {
 };
 /// Vertices with perturbed radii. 0: every sample proved isostatic; 2: some were not.
 int genericity(const GenericityArguments& arguments);
+
+/// Empty, or a sentence for a message: the file or folder is of a kind that this command does not take, and the
+/// commands that do. Judged by content, not by name. Throws nothing.
+std::string other_use(const std::string& command, const std::filesystem::path& file);
 
 /// "isostat 0.1.0".
 std::string program_name();

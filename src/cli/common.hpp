@@ -3,6 +3,7 @@
 /// Functions that several subcommands share.
 
 #include "cli/commands.hpp"
+#include "cli/terminal.hpp"
 #include "contact/names.hpp"
 #include "core/decimal.hpp"
 #include "io/json.hpp"

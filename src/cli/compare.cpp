@@ -3,7 +3,6 @@
 #include "cli/interrupt.hpp"
 #include "cli/ranges.hpp"
 #include "cli/read_packing.hpp"
-#include "cli/terminal.hpp"
 #include "compare/manifest.hpp"
 #include "compare/report.hpp"
 #include "core/refuse.hpp"

@@ -1,7 +1,6 @@
 #include "certificate/averages.hpp"
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
-#include "cli/terminal.hpp"
 #include "core/refuse.hpp"
 #include "io/files.hpp"
 #include "io/folders.hpp"

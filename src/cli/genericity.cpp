@@ -2,7 +2,6 @@
 
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
-#include "cli/terminal.hpp"
 #include "io/files.hpp"
 
 namespace isostat::cli {

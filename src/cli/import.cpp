@@ -2,7 +2,6 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
 #include "cli/read_packing.hpp"
-#include "cli/terminal.hpp"
 #include "io/files.hpp"
 #include "io/json.hpp"
 #include "io/lines.hpp"

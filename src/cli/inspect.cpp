@@ -2,7 +2,6 @@
 #include "certificate/contact_table.hpp"
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
-#include "cli/terminal.hpp"
 #include "core/refuse.hpp"
 #include "crafted/enclosed_bases.hpp"
 #include "io/files.hpp"

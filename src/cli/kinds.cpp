@@ -1,5 +1,4 @@
-#include "cli/kinds.hpp"
-
+#include "cli/commands.hpp"
 #include "io/files.hpp"
 
 #include <isostat/core/result.hpp>

@@ -1,6 +1,5 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
-#include "cli/terminal.hpp"
 
 #include <fmt/format.h>
 

@@ -3,7 +3,6 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
 #include "cli/read_packing.hpp"
-#include "cli/terminal.hpp"
 #include "io/files.hpp"
 #include "snap/soft_list.hpp"
 
@@ -77,7 +76,7 @@ int plateau(const PlateauArguments& a) {
     ForeignPacking file = read_any_packing(a.file, foreign);
     const Strain strain = value_of(a.strain, words_of<Strain>("fixed", "isotropic", "diagonal", "full")).value();
     const crafted::Plateau result = counts_of(file, a, strain, thresholds);
-    const crafted::Told told = crafted::told_of(result);
+    const answers::Told told = answers::told_of(result);
     note_walls(a, result, file);
     if (const std::string sizes = compare::far_disks(file.packing, thresholds[1], result); !sizes.empty()) {
         file.notes.push_back(sizes);

@@ -4,9 +4,8 @@
 #include "cli/common.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/progress.hpp"
-#include "cli/terminal.hpp"
 #include "core/refuse.hpp"
-#include "ensemble/members.hpp"
+#include "ensemble/ensemble.hpp"
 #include "report/run_report.hpp"
 
 #include <isostat/io/run_directory.hpp>

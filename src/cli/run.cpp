@@ -2,7 +2,6 @@
 #include "cli/common.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/progress.hpp"
-#include "cli/terminal.hpp"
 #include "core/refuse.hpp"
 #include "core/work.hpp"
 #include "io/files.hpp"

@@ -1,8 +1,6 @@
-#include "cli/common.hpp"
 #include "cli/progress.hpp"
-#include "cli/terminal.hpp"
 #include "cli/verify.hpp"
-#include "ensemble/members.hpp"
+#include "ensemble/ensemble.hpp"
 #include "io/files.hpp"
 
 #include <isostat/core/result.hpp>

@@ -1,5 +1,4 @@
 #include "cli/progress.hpp"
-#include "cli/terminal.hpp"
 #include "cli/verify.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,3 @@
-#include "ensemble/members.hpp"
 
 #include "ensemble/ensemble.hpp"
 #include "io/files.hpp"

@@ -3,7 +3,6 @@
 
 #include "convert.hpp"
 #include "core/refuse.hpp"
-#include "ensemble/members.hpp"
 
 #include <isostat/core/verdict.hpp>
 #include <isostat/scene/scene.hpp>

@@ -4,7 +4,6 @@
 #include "packing/arc_bodies.hpp"
 #include "packing/bodies.hpp"
 #include "packing/cell_wrap.hpp"
-#include "report/places.hpp"
 
 #include <fmt/format.h>
 

@@ -11,7 +11,6 @@
 #include "report/charts.hpp"
 #include "report/page.hpp"
 #include "report/picture.hpp"
-#include "report/sphere_page.hpp"
 #include "report/statistics.hpp"
 
 #include <isostat/certificate/certify.hpp>

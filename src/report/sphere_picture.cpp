@@ -2,7 +2,6 @@
 #include "io/text.hpp"
 #include "packing/cell_wrap.hpp"
 #include "report/picture.hpp"
-#include "report/places.hpp"
 
 #include <fmt/format.h>
 

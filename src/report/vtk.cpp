@@ -2,7 +2,6 @@
 #include "contact/separation.hpp"
 #include "io/text.hpp"
 #include "report/picture.hpp"
-#include "report/places.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,6 +1,6 @@
-#include "report/words.hpp"
-
 #include "packing/words.hpp"
+
+#include "report/charts.hpp"
 
 #include <fmt/format.h>
 

@@ -39,7 +39,7 @@ template <class Get> std::array<double, 3> spread(const Genericity& result, Get 
     if (values.empty()) {
         return {HUGE_VAL, HUGE_VAL, HUGE_VAL};
     }
-    std::sort(values.begin(), values.end());
+    std::ranges::sort(values);
     return {values.front(), values[values.size() / 2], values.back()};
 }
 
@@ -48,12 +48,12 @@ std::string list_text(const std::vector<Contact>& list, const std::vector<Contac
     int lost = 0, gained = 0;
     constexpr int most = 8;
     for (const Contact& c : original) {
-        if (!std::binary_search(list.begin(), list.end(), c) && ++lost <= most) {
+        if (!std::ranges::binary_search(list, c) && ++lost <= most) {
             missing += " " + to_string(c, dimension);
         }
     }
     for (const Contact& c : list) {
-        if (!std::binary_search(original.begin(), original.end(), c) && ++gained <= most) {
+        if (!std::ranges::binary_search(original, c) && ++gained <= most) {
             added += " " + to_string(c, dimension);
         }
     }
@@ -144,7 +144,7 @@ GenericityOriginal read_original(const std::string& file) {
         refuse(file, "not a file of this program: expected a crafted packing (TOML), a state or a vertex text; isostat "
                      "import makes a state of a packing of another program");
     }
-    std::sort(out.contacts.begin(), out.contacts.end());
+    std::ranges::sort(out.contacts);
     return out;
 }
 

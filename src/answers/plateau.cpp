@@ -184,8 +184,8 @@ Told told_of(const crafted::Plateau& plateau) {
             out.all.push_back(range);
         }
     }
-    out.special = std::any_of(plateau.special.begin(), plateau.special.end(),
-                              [&](const auto& range) { return range.told && in_widest(range); });
+    out.special =
+        std::ranges::any_of(plateau.special, [&](const auto& range) { return range.told && in_widest(range); });
     return out;
 }
 

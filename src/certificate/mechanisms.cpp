@@ -26,7 +26,7 @@ bool has_potential(const State& state) {
     const Cell& cell = state.packing.cell;
     return !cell.keeps_shape &&
            (state.load.kind == LoadKind::nominal ||
-            (!cell.shears() && std::all_of(forces.begin(), forces.end(), [](double force) { return force == 0; })));
+            (!cell.shears() && std::ranges::all_of(forces, [](double force) { return force == 0; })));
 }
 
 /// Signs of the forces, multipliers of what is held, and what the potential does along one mechanism. Rows that are

@@ -103,8 +103,8 @@ void print_bundle(const compare::Bundle& bundle) {
 /// Prints the loads on both sides of the departure, and the limits of the exact run between them.
 void print_loads(const compare::Comparison& comparison, const compare::Departure& departure) {
     const auto load = [&](int number) {
-        const auto at = std::find_if(comparison.frames.begin(), comparison.frames.end(),
-                                     [&](const compare::FrameResult& f) { return f.frame == number; });
+        const auto at =
+            std::ranges::find_if(comparison.frames, [&](const compare::FrameResult& f) { return f.frame == number; });
         return at == comparison.frames.end() ? comparison.frames.front().stress : at->stress;
     };
     const double from = load(departure.from), to = load(departure.to);

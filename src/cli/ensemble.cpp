@@ -176,7 +176,7 @@ int default_jobs(int ranks) {
 
 int exit_status(const std::vector<Sample>& samples) {
     const auto any = [&](SampleStatus status) {
-        return std::any_of(samples.begin(), samples.end(), [&](const Sample& s) { return s.status == status; });
+        return std::ranges::any_of(samples, [&](const Sample& s) { return s.status == status; });
     };
     if (any(SampleStatus::interrupted) || any(SampleStatus::missing)) {
         return interrupted;

@@ -355,7 +355,7 @@ void print_import(const ImportArguments& a, const ForeignPacking& file, const Im
     for (const std::string& note : file.notes) {
         say("          {}\n", note);
     }
-    const auto rattlers = std::count(moves.rattler.begin(), moves.rattler.end(), 1);
+    const auto rattlers = std::ranges::count(moves.rattler, 1);
     say("contacts  {}\n", found.contacts);
     if (found.held) {
         say("written   {}: {} disks, {} rattlers by coordination, {} contacts, solid fraction {:.6f}; nothing moves "
@@ -379,7 +379,7 @@ void print_import(const ImportArguments& a, const ForeignPacking& file, const Im
     }
     say("{:<9} {}: {} {}, {} contacts, solid fraction {:.6f}{}\n", to_string(found.verdict()), a.output,
         state.packing.disk_count(), grains_of(state.packing),
-        std::count_if(state.contacts.begin(), state.contacts.end(), [](const Contact& c) { return c.is_unilateral(); }),
+        std::ranges::count_if(state.contacts, [](const Contact& c) { return c.is_unilateral(); }),
         state.packing.solid_fraction(),
         found.untold.any()
             ? fmt::format("; {}; {} of the stored doubles", found.untold.words(), to_string(found.truth.verdict))
@@ -418,8 +418,8 @@ std::string advice(const ImportArguments& a, bool crafted, const Packing& packin
         return "; isostat inspect says of exact numbers (a packing in TOML) whether they are jammed";
     }
     std::vector<double> radius = packing.radius;
-    std::sort(radius.begin(), radius.end());
-    const bool equal = std::adjacent_find(radius.begin(), radius.end()) != radius.end();
+    std::ranges::sort(radius);
+    const bool equal = std::ranges::adjacent_find(radius) != radius.end();
     std::string out = a.contacts == "nearest" || crafted || a.contacts.empty()
                           ? ""
                           : "; --contacts nearest takes the vertex downhill whatever its contacts";

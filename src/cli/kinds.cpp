@@ -96,7 +96,7 @@ const Kind* kind_of(const fs::path& file) {
 
 std::string other_use(const std::string& command, const fs::path& file) {
     const Kind* const kind = kind_of(file);
-    if (kind == nullptr || std::find(kind->commands.begin(), kind->commands.end(), command) != kind->commands.end()) {
+    if (kind == nullptr || std::ranges::find(kind->commands, command) != kind->commands.end()) {
         return "";
     }
     return fmt::format("{} is {}: for isostat {}, not for {}{}", file.string(), kind->words,

@@ -587,8 +587,8 @@ std::string wrong_command(const CLI::App& app, const std::string& word) {
     }
     const std::vector<const CLI::App*> commands = app.get_subcommands([](const CLI::App*) { return true; });
     const auto far = [&word](const CLI::App* command) { return difference(word, command->get_name()); };
-    const CLI::App* near = *std::min_element(commands.begin(), commands.end(),
-                                             [&](const auto* a, const auto* b) { return far(a) < far(b); });
+    const CLI::App* near =
+        *std::ranges::min_element(commands, [&](const auto* a, const auto* b) { return far(a) < far(b); });
     if (far(near) == 0) {
         return "";
     }

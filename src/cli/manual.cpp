@@ -105,7 +105,7 @@ std::string values_of(const CLI::Option& option) {
         return "";
     }
     std::string words = type.substr(begin + 1, end - begin - 1);
-    std::replace(words.begin(), words.end(), ',', ' ');
+    std::ranges::replace(words, ',', ' ');
     return words;
 }
 

@@ -35,9 +35,8 @@ double rounding_of(const std::string& box) {
 /// Notes on walls that may hide the range.
 void note_walls(const PlateauArguments& a, const crafted::Plateau& plateau, ForeignPacking& file) {
     const double rounding = rounding_of(a.foreign.box);
-    const bool wide =
-        std::any_of(plateau.ranges.begin(), plateau.ranges.end(),
-                    [&](const crafted::PlateauRange& range) { return range.last - range.first > rounding; });
+    const bool wide = std::ranges::any_of(
+        plateau.ranges, [&](const crafted::PlateauRange& range) { return range.last - range.first > rounding; });
     if (const std::string far = compare::far_wall(file.packing); !far.empty()) {
         file.notes.push_back(far);
     } else if (rounding > 0 && !wide) {

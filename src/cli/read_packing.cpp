@@ -59,8 +59,7 @@ SizeStatement size_of(const std::string& option, const std::string& text, SizeMe
             out.of_word.emplace_back(words[0], number_of(option, text, words[1], expected));
         }
     }
-    const bool positive =
-        std::all_of(out.of_word.begin(), out.of_word.end(), [](const auto& w) { return w.second > 0; });
+    const bool positive = std::ranges::all_of(out.of_word, [](const auto& w) { return w.second > 0; });
     if (!positive || (out.column.empty() && !(out.value > 0))) {
         usage(option, text, expected);
     }
@@ -82,7 +81,7 @@ std::optional<RowsWith> rows_of(const std::string& option, const std::string& te
 ForeignOptions options_of(const ForeignArguments& a) {
     ForeignOptions out = a.options;
     const std::vector<std::string>& formats = foreign_formats();
-    if (!out.format.empty() && std::find(formats.begin(), formats.end(), out.format) == formats.end()) {
+    if (!out.format.empty() && std::ranges::find(formats, out.format) == formats.end()) {
         usage("--format", out.format, fmt::format("one of {}", fmt::join(formats, ", ")));
     }
     if (!a.radius.empty() || !a.diameter.empty()) {

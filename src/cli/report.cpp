@@ -58,7 +58,7 @@ std::string totals(const Member& member, const ReportResult& result) {
     for (const EquilibriumRow& row : rows) {
         arcs += row.arcs;
     }
-    const auto proved = std::count_if(rows.begin(), rows.end(), [](const EquilibriumRow& row) { return row.proved; });
+    const auto proved = std::ranges::count_if(rows, [](const EquilibriumRow& row) { return row.proved; });
     const EquilibriumRow last = rows.empty() ? EquilibriumRow{} : rows.back();
     return fmt::format("{:>8} {:>11} {:>7} {:>8} {:>12.8f} {:>12.5e} {:>6}", member.seed, rows.size(), proved, arcs,
                        last.ratio, last.strain2, result.files.size());

@@ -92,7 +92,7 @@ void draw(const Scene& scene, const RunDirectory& directory, bool quiet) {
     }
     say_lines("\n" + report.text + "\n");
     for (const std::string& note : report.notes) {
-        if (std::count(directory.notes().begin(), directory.notes().end(), note) == 0) {
+        if (std::ranges::count(directory.notes(), note) == 0) {
             say("{}\n", note);
         }
     }

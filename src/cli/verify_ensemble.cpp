@@ -22,7 +22,7 @@ long lines_of(const fs::path& file) {
         return 0;
     }
     const std::string text = read_text(file);
-    return std::count(text.begin(), text.end(), '\n');
+    return std::ranges::count(text, '\n');
 }
 
 /// Records of the runs: those checked so far, and an estimate of the remaining time.

@@ -171,7 +171,7 @@ std::vector<JudgedFrame> judge_all(SeriesReader& reader, const CompareOptions& o
 }
 
 int status_of(const std::vector<FrameResult>& frames) {
-    const auto has = [&](auto what) { return std::any_of(frames.begin(), frames.end(), what); };
+    const auto has = [&](auto what) { return std::ranges::any_of(frames, what); };
     const auto at_rest_and_elsewhere = [](const FrameResult& f) {
         return f.status != FrameStatus::same && f.status != FrameStatus::moving && f.status != FrameStatus::undecided;
     };

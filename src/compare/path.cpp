@@ -158,7 +158,7 @@ void NearestArcs::add(const ArcRecord& arc, int equilibrium) {
         }
     }
     if (arc.kind != ArcKind::rattler && !arc.power_turn) {
-        contacts_.insert(std::upper_bound(contacts_.begin(), contacts_.end(), arc.closed), arc.closed);
+        contacts_.insert(std::ranges::upper_bound(contacts_, arc.closed), arc.closed);
     }
 }
 

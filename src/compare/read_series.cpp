@@ -371,7 +371,7 @@ class Disks {
             refuse(ErrorKind::bad_input, "{0}: no {1} {2}: expected the {1}s of the first frame", place, grain(),
                    ids_[frame.ids.size()]);
         }
-        if (std::any_of(frame.velocity.begin(), frame.velocity.end(), [](double v) { return std::isnan(v); })) {
+        if (std::ranges::any_of(frame.velocity, [](double v) { return std::isnan(v); })) {
             frame.velocity.clear();
         }
         validate(frame.packing, place);
@@ -544,7 +544,7 @@ void read_contacts(const Manifest& manifest, FrameFile& dump, Frame& frame) {
             row.fail(row.field(at), name, expected);
         }
         const long id = row.integer(at, name, 0, 1L << 62);
-        const auto found = std::lower_bound(frame.ids.begin(), frame.ids.end(), id);
+        const auto found = std::ranges::lower_bound(frame.ids, id);
         if (found == frame.ids.end() || *found != id) {
             row.fail(row.field(at), name, expected);
         }

@@ -30,8 +30,8 @@ class Reader {
   public:
     Reader(const Series& series, const Frame& frame)
         : series_(series), frame_(frame), law_{series.law, series.stiffness} {
-        walls_listed_ = series.wall_forces || std::any_of(frame.contacts.begin(), frame.contacts.end(),
-                                                          [](const FileContact& c) { return is_wall(c.contact); });
+        walls_listed_ = series.wall_forces ||
+                        std::ranges::any_of(frame.contacts, [](const FileContact& c) { return is_wall(c.contact); });
         double largest = frame.packing.max_radius();
         for (int a = 0; a < frame.packing.dimension; ++a) {
             largest = std::max(largest, frame.packing.length(a));

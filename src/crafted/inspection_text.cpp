@@ -335,8 +335,8 @@ class Comparison {
         for (const auto& row : entry.values) {
             wanted.insert(wanted.end(), row.begin(), row.end());
         }
-        std::sort(wanted.begin(), wanted.end());
-        std::sort(found.begin(), found.end());
+        std::ranges::sort(wanted);
+        std::ranges::sort(found);
         if (wanted != found) {
             mismatch(entry, fmt::format("[{}]", fmt::join(wanted, ", ")), fmt::format("[{}]", fmt::join(found, ", ")));
         }
@@ -387,8 +387,8 @@ class Comparison {
     }
 
     void check_strain(const ExpectedEntry& entry, const std::vector<std::string>& row) {
-        const auto* const known = std::find_if(
-            strains.begin(), strains.end(), [&](Strain strain) { return !row.empty() && row[0] == to_string(strain); });
+        const auto* const known =
+            std::ranges::find_if(strains, [&](Strain strain) { return !row.empty() && row[0] == to_string(strain); });
         if (row.size() != 5 || known == strains.end()) {
             bad(entry, "rows [\"fixed cell\", \"isotropic\", \"diagonal\" or \"full strain\", N_f, N, h, k]");
         }

@@ -191,7 +191,7 @@ class Reader {
         if (const toml::node* pin = cell.node("pin")) {
             packing.cell.pin = index(cell, *pin, "pin");
         }
-        if (std::find(packing.fixed.begin(), packing.fixed.end(), 1) != packing.fixed.end()) {
+        if (std::ranges::find(packing.fixed, 1) != packing.fixed.end()) {
             cell.refuse("",
                         "a fixed {0} and a [cell]: expected no fixed {0} where an axis repeats: the pinned one says "
                         "where the origin is",
@@ -267,7 +267,7 @@ class Reader {
             }
         }
         const auto& upper = out_.packing.walls.upper;
-        const bool none = std::all_of(upper.begin(), upper.end(), [](WallKind w) { return w == WallKind::absent; });
+        const bool none = std::ranges::all_of(upper, [](WallKind w) { return w == WallKind::absent; });
         const toml::array* length = box.array("length", d);
         if (length == nullptr && !none) {
             (void)box.required("length", "the position of each upper wall");

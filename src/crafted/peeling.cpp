@@ -153,8 +153,8 @@ class Peeler {
         const std::vector<Direction> before = around_[grain];
         const std::vector<Direction> after = able(before, signs_, flat_);
         for (const Direction& d : before) {
-            const bool stays = std::any_of(after.begin(), after.end(),
-                                           [&](const Direction& other) { return other.contact == d.contact; });
+            const bool stays =
+                std::ranges::any_of(after, [&](const Direction& other) { return other.contact == d.contact; });
             if (!stays) {
                 drop(d.contact);
             }

@@ -134,7 +134,7 @@ std::vector<Sample> EnsembleDirectory::merge() const {
     write_atomically(path / "equilibria.csv", equilibria.empty() ? with_seeds(equilibria_header()) : equilibria);
     write_atomically(path / "increments.csv", increments);
     write_atomically(path / "samples.csv", table);
-    const bool all = std::all_of(samples.begin(), samples.end(), [](const Sample& s) { return s.finished(); });
+    const bool all = std::ranges::all_of(samples, [](const Sample& s) { return s.finished(); });
     write_header(all ? "completed" : "interrupted", samples);
     return samples;
 }

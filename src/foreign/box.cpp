@@ -315,7 +315,7 @@ void settle_bounds(Raw& raw, std::size_t axes, const std::string& source, Foreig
 
 double add_box(ForeignPacking& out, const Raw& raw, const std::string& source, const ForeignOptions& options) {
     const auto axes = std::span(raw.boundary).first(out.packing.axes());
-    const bool periodic = std::find(axes.begin(), axes.end(), Boundary::periodic) != axes.end();
+    const bool periodic = std::ranges::find(axes, Boundary::periodic) != axes.end();
     return (periodic ? add_cell : add_walls)(out, raw, source, options);
 }
 

@@ -37,7 +37,7 @@ void take_plane(Raw& raw, const std::string& plane, const std::string& source) {
             of_axes[a] = before[from[a]];
         }
     };
-    std::for_each(raw.centre.begin(), raw.centre.end(), permuted);
+    std::ranges::for_each(raw.centre, permuted);
     permuted(raw.places);
     permuted(raw.boundary);
     permuted(raw.loose);
@@ -48,7 +48,7 @@ void take_plane(Raw& raw, const std::string& plane, const std::string& source) {
     }
     if (raw.vectors) {
         auto box = *raw.box;
-        std::for_each(raw.vectors->begin(), raw.vectors->end(), permuted);
+        std::ranges::for_each(*raw.vectors, permuted);
         permuted(*raw.vectors);
         permuted(box);
         const Digits digits = raw.sides[0];
@@ -141,8 +141,7 @@ int dimension_of(Raw& raw, const std::string& source, const ForeignOptions& opti
     for (std::size_t i = 0; i < raw.centre.size(); ++i) {
         farthest = off(i) > off(farthest) ? i : farthest;
     }
-    const double radius =
-        *std::min_element(raw.size.begin(), raw.size.end()) / (raw.meaning == SizeMeaning::radius ? 1 : 2);
+    const double radius = *std::ranges::min_element(raw.size) / (raw.meaning == SizeMeaning::radius ? 1 : 2);
     const bool flat = off(farthest) <= 0x1p-27 * radius;
     const int dimension = stated.value_or(flat ? 2 : 3);
     if (dimension == 2 && !flat) {
@@ -160,8 +159,7 @@ int dimension_of(Raw& raw, const std::string& source, const ForeignOptions& opti
         refuse(raw.place.empty() ? source : raw.place, "expected a cell in the plane of the disks");
     }
     for (std::size_t a = 0; dimension == 3 && !stated && a < 2; ++a) {
-        if (std::all_of(raw.centre.begin(), raw.centre.end(),
-                        [&](const auto& x) { return x[a] == raw.centre[0][a]; })) {
+        if (std::ranges::all_of(raw.centre, [&](const auto& x) { return x[a] == raw.centre[0][a]; })) {
             raw.notes.push_back(fmt::format("{} is the same for all: --plane {} takes them for disks", axis_names[a],
                                             a == 0 ? "yz" : "xz"));
         }
@@ -227,8 +225,7 @@ double rounding_of(const Raw& raw, const ForeignPacking& found, const ForeignOpt
     for (const double stated : options.box) {
         side = std::max(side, 0x1p-53 * std::abs(stated) + moved);
     }
-    const bool tilted =
-        raw.vectors || std::any_of(raw.tilt.begin(), raw.tilt.end(), [](double tilt) { return tilt != 0; });
+    const bool tilted = raw.vectors || std::ranges::any_of(raw.tilt, [](double tilt) { return tilt != 0; });
     const Scaling scaling = scaling_of(raw, packing.axes());
     // All coordinates have as many digits as given; where that is fewer than radii have, digits were cut off.
     return rounding_of_gaps(places.rounding() * scaling.factor + scaling.rounding + moved, side, size,
@@ -244,7 +241,7 @@ Raw read_raw(const std::string& format, const std::string& text, const std::stri
     const std::vector<std::string>& formats = foreign_formats();
     static constexpr std::array readers{foreign::read_lammps_data, foreign::read_lammps_dump, foreign::read_xyz,
                                         foreign::read_table,       foreign::read_braces,      foreign::read_centres};
-    const auto at = static_cast<std::size_t>(std::find(formats.begin(), formats.end(), format) - formats.begin());
+    const auto at = static_cast<std::size_t>(std::ranges::find(formats, format) - formats.begin());
     if (at >= readers.size()) {
         refuse(source, "format '{}': expected one of {}", format, fmt::join(formats, ", "));
     }
@@ -305,7 +302,7 @@ ForeignPacking parse_foreign(const std::string& whole, const std::string& source
     out.ids = raw.ids;
     packing.fixed = raw.fixed;
     const auto axes = std::span(raw.boundary).first(d);
-    if (!raw.fixed.empty() && std::find(axes.begin(), axes.end(), Boundary::periodic) != axes.end()) {
+    if (!raw.fixed.empty() && std::ranges::find(axes, Boundary::periodic) != axes.end()) {
         refuse(source, "disks that cannot move were stated, of a periodic packing: expected walls or open boundaries");
     }
     if (!text.ends_with('\n')) {

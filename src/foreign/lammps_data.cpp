@@ -151,7 +151,7 @@ std::vector<std::string> columns_of_style(const TextLines& lines, const std::str
     }
     if (known == 0 || known != words.size()) {
         std::vector<std::string_view> names;
-        std::transform(styles.begin(), styles.end(), std::back_inserter(names), [](const Style& s) { return s.name; });
+        std::ranges::transform(styles, std::back_inserter(names), [](const Style& s) { return s.name; });
         lines.fail("section Atoms {}: expected 'Atoms # sphere' or another of {}, or hybrid with several of these; "
                    "--style sphere and --columns id,type,... state it",
                    text.empty() ? "does not name its style" : "has style '" + text + "'", fmt::join(names, ", "));

@@ -60,11 +60,11 @@ std::string seen_columns(const std::vector<std::string>& names) {
     for (const std::string& name : names) {
         seen.push_back(name.empty() ? "-" : name);
         const std::string word = likely_name(name);
-        likely.push_back(std::find(likely.begin(), likely.end(), word) == likely.end() ? word : "-");
+        likely.push_back(std::ranges::find(likely, word) == likely.end() ? word : "-");
     }
     std::string out =
         fmt::format("the columns are {}", names.empty() ? "none" : fmt::format("{}", fmt::join(seen, " ")));
-    const auto has = [&](const char* name) { return std::find(likely.begin(), likely.end(), name) != likely.end(); };
+    const auto has = [&](const char* name) { return std::ranges::find(likely, name) != likely.end(); };
     if (likely != seen && has("x") && has("y") && (has("radius") || has("diameter"))) {
         out += fmt::format("; --columns {} names them anew", fmt::join(likely, ","));
     }
@@ -173,15 +173,15 @@ void find_rows(const std::optional<RowsWith>& rows, const std::vector<std::strin
 }
 
 bool is_one_of(std::string_view word, const std::vector<std::string>& words) {
-    return std::find(words.begin(), words.end(), word) != words.end();
+    return std::ranges::find(words, word) != words.end();
 }
 
 } // namespace
 
 std::string lower(std::string_view text) {
     std::string out(text);
-    std::transform(out.begin(), out.end(), out.begin(),
-                   [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); });
+    std::ranges::transform(out, out.begin(),
+                           [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); });
     return out;
 }
 
@@ -193,7 +193,7 @@ void refuse_twice(const std::vector<std::string>& names, const std::string& wher
 }
 
 int find_column(const std::vector<std::string>& names, std::string_view name) {
-    const auto at = std::find(names.begin(), names.end(), name);
+    const auto at = std::ranges::find(names, name);
     return at == names.end() ? -1 : static_cast<int>(at - names.begin());
 }
 
@@ -226,7 +226,7 @@ Columns find_columns(const std::vector<std::string>& names, const ForeignOptions
                      Raw& raw) {
     Columns out;
     out.names = options.columns.empty() ? names : options.columns;
-    std::replace(out.names.begin(), out.names.end(), std::string("-"), std::string());
+    std::ranges::replace(out.names, std::string("-"), std::string());
     find_coordinates(out, out.names, where, raw);
     out.first_id = options.first_id;
     out.id = options.first_id ? -1 : find_column(out.names, "id");
@@ -240,7 +240,7 @@ Columns find_columns(const std::vector<std::string>& names, const ForeignOptions
         const std::array<int, 9> used{out.at[0],  out.at[1], out.at[2],
                                       out.id,     out.size,  out.type,
                                       out.select, out.fix,   out.are_molecules ? -1 : out.body};
-        return std::find(used.begin(), used.end(), twice.first) == used.end();
+        return std::ranges::find(used, twice.first) == used.end();
     });
     return out;
 }
@@ -313,8 +313,7 @@ void Rows::finish(Raw& raw) {
                fmt::join(columns_.selected, "' or '"));
     }
     if (columns_.fix >= 0) {
-        raw.notes.push_back(
-            fmt::format("{} disks cannot move, as stated", std::count(raw.fixed.begin(), raw.fixed.end(), 1)));
+        raw.notes.push_back(fmt::format("{} disks cannot move, as stated", std::ranges::count(raw.fixed, 1)));
     }
     if (columns_.select >= 0) {
         raw.notes.push_back(fmt::format("{} of {} rows are disks, as selected", raw.centre.size(), seen_));
@@ -337,9 +336,9 @@ void Rows::finish(Raw& raw) {
         }
         raw.bodies.clear();
     }
-    std::sort(ids_.begin(), ids_.end());
+    std::ranges::sort(ids_);
     const auto twice =
-        std::adjacent_find(ids_.begin(), ids_.end(), [](const auto& a, const auto& b) { return a.first == b.first; });
+        std::ranges::adjacent_find(ids_, [](const auto& a, const auto& b) { return a.first == b.first; });
     if (twice != ids_.end()) {
         refuse(ErrorKind::bad_input, "{}:{}: id {} was given in line {} already: expected another", source_,
                (twice + 1)->second, twice->first, twice->second);

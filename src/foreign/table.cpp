@@ -43,7 +43,7 @@ std::vector<std::string> words_of_comment(std::string_view line, int number, con
     }
     if (names.size() == 2 && names[0] == "format") {
         std::string fields = names[1];
-        std::replace(fields.begin(), fields.end(), '_', ' ');
+        std::ranges::replace(fields, '_', ' ');
         names = names_of(TextLine(fields, number, &source));
     }
     return names;
@@ -52,16 +52,16 @@ std::vector<std::string> words_of_comment(std::string_view line, int number, con
 /// Whether a field is a number, or a mark for a missing or infinite number, and so no name of a column.
 bool is_value(std::string_view field) {
     std::string word(field.substr(field.find_first_not_of("+-") == 1 ? 1 : 0));
-    std::transform(word.begin(), word.end(), word.begin(),
-                   [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); });
+    std::ranges::transform(word, word.begin(),
+                           [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); });
     static constexpr std::array<std::string_view, 7> missing{"nan", "inf", "infinity", "na", "n/a", "null", "none"};
     const bool digit = !word.empty() && (std::isdigit(static_cast<unsigned char>(word[0])) != 0 || word[0] == '.');
-    return digit || std::find(missing.begin(), missing.end(), word) != missing.end();
+    return digit || std::ranges::find(missing, word) != missing.end();
 }
 
 /// Whether a row without any value is one of names; every other row is a disk.
 bool are_names(const std::vector<std::string>& words) {
-    return !words.empty() && std::none_of(words.begin(), words.end(), [](const auto& word) { return is_value(word); });
+    return !words.empty() && std::ranges::none_of(words, [](const auto& word) { return is_value(word); });
 }
 
 /// Takes the names in the last comment before the first row that has columns x and y. Otherwise, with `any` columns, it

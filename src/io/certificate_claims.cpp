@@ -230,7 +230,7 @@ LoadEndClaim load_end_of(const Field& field, const State& state) {
     field.only({"unbounded", "stress", "opens"});
     claim.stress = interval_of(field.at("stress"));
     claim.opens = contact_from_json(field.at("opens"), state.packing);
-    if (std::find(state.contacts.begin(), state.contacts.end(), claim.opens) == state.contacts.end()) {
+    if (std::ranges::find(state.contacts, claim.opens) == state.contacts.end()) {
         field.at("opens").fail("a contact of the state");
     }
     return claim;

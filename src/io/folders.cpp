@@ -112,14 +112,14 @@ std::string certificate_name(int equilibrium) {
 }
 
 bool FolderKind::owns(std::string_view name) const {
-    return std::any_of(names.begin(), names.end(), [&](const std::string& pattern) {
+    return std::ranges::any_of(names, [&](const std::string& pattern) {
         const auto rest = behind(pattern, name);
         return rest && rest->empty();
     });
 }
 
 bool FolderKind::owns_folder(std::string_view name) const {
-    return std::any_of(names.begin(), names.end(), [&](const std::string& pattern) {
+    return std::ranges::any_of(names, [&](const std::string& pattern) {
         const auto rest = behind(pattern, name);
         return rest && rest->starts_with('/');
     });
@@ -131,7 +131,7 @@ void look(const fs::path& folder, const std::string& before, const FolderKind& k
     for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
         const std::string name = before + entry.path().filename().string();
         const fs::file_type type = entry.symlink_status().type();
-        if (type == fs::file_type::not_found || std::count(sample_names.begin(), sample_names.end(), name) > 0) {
+        if (type == fs::file_type::not_found || std::ranges::count(sample_names, name) > 0) {
             continue; // a temporary file that was renamed meanwhile; or what is there before the run of a sample begins
         }
         const bool file = kind.owns(name);
@@ -153,7 +153,7 @@ void look(const fs::path& folder, const std::string& before, const FolderKind& k
 }
 
 bool has(const std::vector<std::string>& names, const char* name) {
-    return std::find(names.begin(), names.end(), name) != names.end();
+    return std::ranges::find(names, name) != names.end();
 }
 
 /// Nothing is there, or what a kill leaves before the mark is written.
@@ -230,7 +230,7 @@ FolderContent content_of(const fs::path& folder, const FolderKind& kind) {
         look(folder, "", kind, found);
     }
     for (auto* names : {&found.files, &found.folders, &found.leftovers, &found.others}) {
-        std::sort(names->begin(), names->end());
+        std::ranges::sort(*names);
     }
     return found;
 }

@@ -88,7 +88,7 @@ void Field::only(std::initializer_list<const char*> keys) const {
         fail("an object");
     }
     for (const auto& [key, unused] : value_->items()) {
-        if (std::find(keys.begin(), keys.end(), key) == keys.end()) {
+        if (std::ranges::find(keys, key) == keys.end()) {
             refuse(ErrorKind::bad_input, "{}: unknown field '{}'{}: expected one of {}", source_, key,
                    path_.empty() ? "" : " in " + path_, fmt::join(keys, ", "));
         }

@@ -63,7 +63,7 @@ double TextLine::number(std::size_t k, const std::string& name) const {
     const auto value = written_number(fields_[k]);
     if (!value) {
         std::string point(fields_[k]);
-        std::replace(point.begin(), point.end(), ',', '.');
+        std::ranges::replace(point, ',', '.');
         fail(fields_[k], name,
              finite_number(point) ? "a finite number, with a point (its comma reads as none)" : "a finite number");
     }

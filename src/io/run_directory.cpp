@@ -228,7 +228,7 @@ void RunDirectory::on_equilibrium(const EquilibriumRecord& record, const State& 
     last_record_ = record;
     last_strain_ = record.strain;
     const bool every = header_.states_every > 0 && record.number % header_.states_every == 0;
-    const bool kept = std::find(header_.keep.begin(), header_.keep.end(), record.number) != header_.keep.end();
+    const bool kept = std::ranges::find(header_.keep, record.number) != header_.keep.end();
     if (first || every || kept || segment_done()) {
         const std::string name = state_name(record.number);
         write_state(directory_ / name, last_, last_forces_);

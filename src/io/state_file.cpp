@@ -133,7 +133,7 @@ void read_bodies(const Field& document, Packing& packing) {
         packing.bars.push_back(
             {disk(bar.at(std::size_t{0})), disk(bar.at(std::size_t{1})), bar.at(std::size_t{2}).number()});
     }
-    std::sort(packing.bars.begin(), packing.bars.end());
+    std::ranges::sort(packing.bars);
     for (std::size_t b = 0; document.has("arcs") && b < document.at("arcs").size(); ++b) {
         const Field ring = document.at("arcs").at(b);
         packing.arcs.emplace_back();
@@ -189,8 +189,8 @@ Packing packing_of(const Field& document) {
 /// Lists that name no bar have all of them; the others name each.
 void complete_bars(State& state, const std::string& source) {
     const std::vector<Bar>& bars = state.packing.bars;
-    const auto listed = static_cast<std::size_t>(std::count_if(
-        state.contacts.begin(), state.contacts.end(), [](const Contact& c) { return c.kind == ContactKind::bar; }));
+    const auto listed = static_cast<std::size_t>(
+        std::ranges::count_if(state.contacts, [](const Contact& c) { return c.kind == ContactKind::bar; }));
     if (listed != 0 && listed != bars.size()) {
         refuse(source, "contacts has {} of {} bars: expected all, or to leave them out", listed, bars.size());
     }
@@ -224,7 +224,7 @@ void read_tilts(const Field& field, const Packing& packing, Load& load) {
         const std::vector<double> tilt =
             field.at("reference_tilt")
                 .numbers(packing.cell.any() ? packing.tilts() : 0, "one number per tilt of a periodic cell");
-        std::copy(tilt.begin(), tilt.end(), load.reference_tilt.begin());
+        std::ranges::copy(tilt, load.reference_tilt.begin());
     } else if (field.has("reference_length")) {
         load.reference_tilt.fill(0); // a rectangle
     }
@@ -242,8 +242,8 @@ void read_path(const Field& field, const Packing& packing, Load& load) {
     const std::vector<double> start = stress.numbers(rates.size(), "as many numbers as direction has");
     const Load said = load;
     StressPath& along = load.path.emplace();
-    std::copy(rates.begin(), rates.end(), along.rate.begin());
-    std::copy(start.begin(), start.end(), along.at.begin());
+    std::ranges::copy(rates, along.rate.begin());
+    std::ranges::copy(start, along.at.begin());
     const double t = path.at("t").number();
     constexpr double farthest = 1e200; // the parts of a product with a rate are doubles then (`exact_stress`)
     if (t != 0 && !(std::abs(t) >= 1 / farthest && std::abs(t) <= farthest)) {
@@ -273,7 +273,7 @@ Load load_of(const Field& document, const Packing& packing) {
         if (field.has("kind")) {
             load.kind = field.at("kind").word(load_kind_words);
             const auto& tilts = packing.cell.tilt_moves;
-            if (load.kind == LoadKind::true_stress && std::find(tilts.begin(), tilts.end(), true) != tilts.end()) {
+            if (load.kind == LoadKind::true_stress && std::ranges::find(tilts, true) != tilts.end()) {
                 field.at("kind").fail("\"nominal\" where a tilt moves: true stresses have no potential there");
             }
         }
@@ -295,7 +295,7 @@ Load load_of(const Field& document, const Packing& packing) {
         if (field.has("loaded_axis")) {
             const long axis = field.at("loaded_axis").integer();
             const auto& tilts = packing.cell.tilt_moves;
-            const bool any_tilt = packing.cell.any() && std::find(tilts.begin(), tilts.end(), true) != tilts.end();
+            const bool any_tilt = packing.cell.any() && std::ranges::find(tilts, true) != tilts.end();
             const bool is_tilt = any_tilt && axis >= packing.dimension && axis < packing.dimension + long{most_tilts} &&
                                  tilts[static_cast<std::size_t>(axis - packing.dimension)];
             if (!is_tilt && (axis < 0 || axis >= packing.dimension)) {
@@ -314,8 +314,7 @@ Load load_of(const Field& document, const Packing& packing) {
     load.disk_force = vectors(document, "disk_force", packing.layout());
     load.infinitesimal = vectors(document, "infinitesimal", packing.layout());
     require_balance(document, "disk_force", load.disk_force, packing.cell);
-    if (packing.cell.keeps_shape &&
-        std::any_of(load.disk_force.begin(), load.disk_force.end(), [](double f) { return f != 0; })) {
+    if (packing.cell.keeps_shape && std::ranges::any_of(load.disk_force, [](double f) { return f != 0; })) {
         document.at("disk_force").fail("no force on a disk, as the cell keeps its shape");
     }
     require_balance(document, "infinitesimal", load.infinitesimal, packing.cell);

@@ -86,7 +86,7 @@ Contact contact_of(const Field& field, const Packing& packing) {
         const int i = disk_index(second, packing.disk_count());
         const int j = disk_index(field.at(std::size_t{2}), packing.disk_count());
         const auto& bars = packing.bars;
-        if (std::none_of(bars.begin(), bars.end(), [&](const Bar& bar) { return bar.i == i && bar.j == j; })) {
+        if (std::ranges::none_of(bars, [&](const Bar& bar) { return bar.i == i && bar.j == j; })) {
             field.fail("a bar of \"bars\"");
         }
         return {ContactKind::bar, i, j};
@@ -133,8 +133,7 @@ void refuse_duplicates(const std::vector<Contact>& contacts, int dimension, cons
                        const std::string& name) {
     std::vector<std::size_t> order(contacts.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return contacts[a] < contacts[b]; });
+    std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return contacts[a] < contacts[b]; });
     for (std::size_t k = 1; k < order.size(); ++k) {
         if (contacts[order[k]] == contacts[order[k - 1]]) {
             refuse(source, "{}[{}] is {}, as {}[{}] already: expected each contact once", name, order[k],

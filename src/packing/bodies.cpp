@@ -146,7 +146,7 @@ std::vector<Arc> outer_arcs(const Packing& packing, const std::vector<int>& body
             cover(middle - half, middle + half);
         }
     }
-    std::sort(covered.begin(), covered.end());
+    std::ranges::sort(covered);
     std::vector<Arc> outer;
     double end = 0;
     for (const Arc& arc : covered) {
@@ -229,21 +229,21 @@ std::vector<Bar> bars_of_bodies(const Packing& packing, const std::vector<std::v
     for (const std::vector<int>& body : bodies) {
         const std::vector<int> corners = corners_of(packing, body, source, known);
         for (const int member : body) {
-            const auto corner = std::find(corners.begin(), corners.end(), member);
+            const auto corner = std::ranges::find(corners, member);
             for (const int end : corner == corners.end() ? ends_of(packing, corners, member)
                                                          : std::vector<int>(corners.begin(), corner)) {
                 bars.push_back({std::min(member, end), std::max(member, end), height(packing, member, {end})});
             }
         }
     }
-    std::sort(bars.begin(), bars.end());
+    std::ranges::sort(bars);
     return bars;
 }
 
 double shared_by_members(const Packing& packing, std::span<const int> left_out) {
     double shared = 0;
     for (const std::vector<int>& body : Bodies(packing).members()) {
-        if (std::find(left_out.begin(), left_out.end(), body.front()) != left_out.end()) {
+        if (std::ranges::find(left_out, body.front()) != left_out.end()) {
             continue;
         }
         if (packing.dimension != plane) {

@@ -46,9 +46,9 @@ void Load::set_loaded_stress(double value) {
 
 void Load::follow(const StressRates& rate) {
     path.reset();
-    const auto changing = std::find_if(rate.begin(), rate.end(), [](double r) { return r != 0; });
+    const auto changing = std::ranges::find_if(rate, [](double r) { return r != 0; });
     assert(changing != rate.end());
-    if (*changing == 1 && std::count(rate.begin(), rate.end(), 0.0) + 1 == static_cast<long>(rate.size())) {
+    if (*changing == 1 && std::ranges::count(rate, 0.0) + 1 == static_cast<long>(rate.size())) {
         loaded_axis = static_cast<int>(changing - rate.begin());
         return;
     }
@@ -212,7 +212,7 @@ std::vector<double> Load::unit_force(const Packing& packing) const {
 
 std::vector<double> Load::fixed_force(const Packing& packing) const {
     std::vector<double> force(packing.q.size(), 0.0);
-    std::copy(disk_force.begin(), disk_force.end(), force.begin());
+    std::ranges::copy(disk_force, force.begin());
     for (const WallForce& wall : wall_forces(packing)) {
         const double fixed = path ? path->at[place_of(packing, wall)] : wall.rate == 0 ? wall.stress : 0;
         if (fixed != 0) {

@@ -39,10 +39,10 @@ Walls Walls::none() {
 }
 
 double Packing::min_radius() const {
-    return *std::min_element(radius.begin(), radius.end());
+    return *std::ranges::min_element(radius);
 }
 double Packing::max_radius() const {
-    return *std::max_element(radius.begin(), radius.end());
+    return *std::ranges::max_element(radius);
 }
 
 double Packing::solid_fraction() const {
@@ -53,7 +53,7 @@ double Packing::solid_fraction_without(std::span<const int> left_out) const {
     double grains = 0;
     for (int i = 0; i < disk_count(); ++i) {
         const double r = radius[static_cast<std::size_t>(i)];
-        const bool counts = std::find(left_out.begin(), left_out.end(), i) == left_out.end();
+        const bool counts = std::ranges::find(left_out, i) == left_out.end();
         grains += !counts ? 0 : dimension == plane ? std::numbers::pi * r * r : 4 * std::numbers::pi / 3 * r * r * r;
     }
     grains -= bars.empty() ? 0 : shared_by_members(*this, left_out);
@@ -154,7 +154,7 @@ void validate_cell(const Packing& packing, const std::string& source) {
         bad(fmt::format("{} {} is pinned: expected one from 0 to {}", grain_word(packing.dimension), cell.pin,
                         packing.disk_count() - 1));
     }
-    if (std::find(packing.fixed.begin(), packing.fixed.end(), 1) != packing.fixed.end()) {
+    if (std::ranges::find(packing.fixed, 1) != packing.fixed.end()) {
         bad("fixed disks in a periodic cell are not supported: expected none (the pinned one says where the origin "
             "is)");
     }
@@ -170,7 +170,7 @@ double period_length(const Packing& packing, const std::array<int, most_axes>& m
 /// Periods that a grain can meet itself through: the short ones among those of a few cells.
 void validate_own_images(const Packing& packing, const std::string& source) {
     constexpr int few = 3;
-    const auto largest = std::max_element(packing.radius.begin(), packing.radius.end());
+    const auto largest = std::ranges::max_element(packing.radius);
     std::array<int, most_axes> most{};
     for (std::size_t a = 0; a < packing.axes(); ++a) {
         most[a] = packing.cell.periodic[a] ? few : 0;
@@ -294,7 +294,7 @@ double grid_step(const Packing& packing) {
 
 bool is_on_grid(const Packing& packing) {
     const double step = grid_step(packing);
-    return std::all_of(packing.q.begin(), packing.q.end(), [step](double x) {
+    return std::ranges::all_of(packing.q, [step](double x) {
         const double steps = x / step; // exact but for underflow, as the step is a power of two; fmod is slow
         return x == 0 || (std::abs(steps) >= 1 && steps == std::nearbyint(steps));
     });
@@ -316,7 +316,7 @@ double snap_to_grid(Packing& packing) {
         x = snapped;
     };
     if (packing.cell.any()) {
-        std::for_each(packing.q.begin(), packing.q.end(), snap);
+        std::ranges::for_each(packing.q, snap);
         return moved;
     }
     const std::size_t disks = packing.radius.size();

@@ -77,7 +77,7 @@ void count_changes(const ActiveSet& before, const ActiveSet& now, std::size_t co
         held += now.row[l];
         step.changes += was != (now.row[l] != 0) ? 1 : 0;
     }
-    const bool bounded = std::any_of(now.column.begin(), now.column.end(), [](auto c) { return c != 0; });
+    const bool bounded = std::ranges::any_of(now.column, [](auto c) { return c != 0; });
     step.bounds = static_cast<int>(std::abs(held - static_cast<long>(coordinates))) + (bounded ? 1 : 0);
 }
 
@@ -166,7 +166,7 @@ ProgrammeStep ContactProgramme::descend(Packing& packing, double eps,
         for (double& bound : programme.bound) {
             bound *= 1 - renewal;
         }
-        std::transform(rows.gap.begin(), rows.gap.end(), programme.lower.begin(), [](double h) { return -h; });
+        std::ranges::transform(rows.gap, programme.lower.begin(), [](double h) { return -h; });
         if (renew) {
             anchor = packing.q;
             descent.emplace(programme);

@@ -69,7 +69,7 @@ void require_sensible(const Packing& start, const PreparationOptions& options) {
     validate(checked, "start of the linear programmes");
     const auto is_fixed = [](unsigned char flag) { return flag != 0; };
     const Cell& cell = start.cell;
-    bool gives_way = std::none_of(start.fixed.begin(), start.fixed.end(), is_fixed);
+    bool gives_way = std::ranges::none_of(start.fixed, is_fixed);
     for (std::size_t a = 0; a < start.axes(); ++a) {
         const bool box = start.walls.lower[a] == WallKind::fixed && start.walls.upper[a] == WallKind::movable;
         gives_way = gives_way && (cell.periodic[a] ? cell.period_moves[a] || cell.keeps_shape : box);
@@ -234,7 +234,7 @@ class VertexSearch {
         for (const int coordinate : step.at_bounds) {
             state.contacts.emplace_back(ContactKind::held, coordinate, 0);
         }
-        std::sort(state.contacts.begin(), state.contacts.end());
+        std::ranges::sort(state.contacts);
         const auto failure = to_vertex(state.packing, state.contacts, newton_.iterations);
         snap_to_grid(state.packing);
         state.load = load_;

@@ -194,7 +194,7 @@ class SoftStages {
             return true;
         }
         SoftNewton steps(packing_, options_.stop);
-        return std::all_of(newton_divisors.begin(), newton_divisors.end(), [&](double divisor) {
+        return std::ranges::all_of(newton_divisors, [&](double divisor) {
             const double pressure = options_.softness / divisor;
             return record(fmt::format("newton steps at {:.0e}", pressure), [&](const auto& progress) {
                 return steps.relax(pressure, newton_tolerance, most_newton_steps, progress);

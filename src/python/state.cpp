@@ -35,8 +35,7 @@ template <class T> std::vector<T> per_axis(const PerAxis<T>& values, int dimensi
 As<"dict[str, tuple[str, str]]"> walls_dict(const Walls& walls, int dimension) {
     const auto words = [dimension](const PerAxis<WallKind>& kinds) {
         PerAxis<std::string> names;
-        std::transform(kinds.begin(), kinds.end(), names.begin(),
-                       [](WallKind kind) { return word_of(kind, wall_kind_words); });
+        std::ranges::transform(kinds, names.begin(), [](WallKind kind) { return word_of(kind, wall_kind_words); });
         return py::tuple(py::cast(per_axis(names, dimension)));
     };
     py::dict dict;
@@ -177,10 +176,9 @@ py::tuple packing_parts(const Packing& p) {
     require_single_grains(p, "Packing", "a copy");
     const Cell& c = p.cell;
     PerAxis<std::array<int, 2>> walls{};
-    std::transform(p.walls.lower.begin(), p.walls.lower.end(), p.walls.upper.begin(), walls.begin(),
-                   [](WallKind lower, WallKind upper) {
-                       return std::array{static_cast<int>(lower), static_cast<int>(upper)};
-                   });
+    std::ranges::transform(p.walls.lower, p.walls.upper, walls.begin(), [](WallKind lower, WallKind upper) {
+        return std::array{static_cast<int>(lower), static_cast<int>(upper)};
+    });
     return py::make_tuple(p.dimension, p.radius, p.q, p.fixed, walls, c.periodic, c.period_moves, c.tilt_moves, c.pin,
                           c.keeps_shape);
 }
@@ -236,7 +234,7 @@ Packing packing_of(const py::array_t<double, py::array::c_style | py::array::for
     const auto take = [&](const char* name, const auto& words, PerAxis<WallKind>& walls) {
         if (words) {
             expect(name, words->size());
-            std::transform(words->begin(), words->end(), walls.begin(), wall_kind);
+            std::ranges::transform(*words, walls.begin(), wall_kind);
         }
     };
     take("lower", lower, packing.walls.lower);
@@ -423,7 +421,7 @@ void bind_state_class(py::module_& module) {
                            changed.packing.axes());
                 }
                 changed.load.path.reset();
-                std::copy(stress.begin(), stress.end(), changed.load.stress.begin());
+                std::ranges::copy(stress, changed.load.stress.begin());
                 changed.load.shear[0] = shear.value_or(changed.load.shear[0]);
                 return parse_any_state(state_text(changed), "State", Dimensions::any_bodies);
             },
@@ -443,8 +441,8 @@ Contact contact_of(std::pair<int, int> pair, const Packing& packing) {
     if (j == no_contact && i >= 0 && i < static_cast<int>(packing.q.size())) {
         return {ContactKind::held, i, 0};
     }
-    if (j <= first_bar && std::any_of(packing.bars.begin(), packing.bars.end(),
-                                      [&](const Bar& b) { return b.i == i && b.j == first_bar - j; })) {
+    if (j <= first_bar &&
+        std::ranges::any_of(packing.bars, [&](const Bar& b) { return b.i == i && b.j == first_bar - j; })) {
         return {ContactKind::bar, i, first_bar - j};
     }
     refuse(ErrorKind::bad_input,

@@ -64,8 +64,7 @@ Chart stairs_chart(const std::string& name, const std::vector<SegmentPath>& curv
 
 /// Whether the first equilibrium of a segment does not follow the previous one, so that the path branches.
 bool branches(const std::vector<EquilibriumRow>& rows, const std::vector<EquilibriumRow>& path) {
-    const auto first =
-        std::find_if(rows.begin(), rows.end(), [&](const auto& r) { return r.number == path[1].number; });
+    const auto first = std::ranges::find_if(rows, [&](const auto& r) { return r.number == path[1].number; });
     return first != rows.begin() && (first - 1)->number != path.front().number;
 }
 
@@ -135,9 +134,9 @@ void add_distribution(std::vector<Chart>& charts, const Distribution& of, const 
         }
         std::vector<double> shown = values;
         if (power_law) {
-            std::transform(values.begin(), values.end(), shown.begin(), [](double v) { return std::log10(v); });
+            std::ranges::transform(values, shown.begin(), [](double v) { return std::log10(v); });
         }
-        const auto [low, high] = std::minmax_element(shown.begin(), shown.end());
+        const auto [low, high] = std::ranges::minmax_element(shown);
         const double from = power_law ? *low : 0;
         if (!(*high > from)) {
             continue;

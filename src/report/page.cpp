@@ -74,7 +74,7 @@ std::vector<double> forces_of(const State& state) {
 
 std::vector<double> difference(const State& to, const State& from) {
     std::vector<double> moved(to.packing.q.size());
-    std::transform(to.packing.q.begin(), to.packing.q.end(), from.packing.q.begin(), moved.begin(), std::minus<>());
+    std::ranges::transform(to.packing.q, from.packing.q, moved.begin(), std::minus<>());
     return moved;
 }
 

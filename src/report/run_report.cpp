@@ -43,7 +43,7 @@ class Writer {
         result_.files.push_back(output_ / name);
     }
     void note(const std::string& text) {
-        if (std::find(result_.notes.begin(), result_.notes.end(), text) == result_.notes.end()) {
+        if (std::ranges::find(result_.notes, text) == result_.notes.end()) {
             result_.notes.push_back(text);
         }
     }
@@ -108,7 +108,7 @@ class Writer {
     }
     /// Writes the ParaView files as one series in the order of equilibria; returns in words how many of how many.
     std::string vtk_series(std::size_t equilibria) {
-        std::sort(series_.begin(), series_.end());
+        std::ranges::sort(series_);
         json::Json files = json::Json::array();
         for (const auto& [equilibrium, name] : series_) {
             if (files.empty() || files.back()["time"] != equilibrium) { // the last state is stored twice
@@ -146,7 +146,7 @@ class Writer {
             first_ = q;
         }
         std::vector<double> moved(q.size());
-        std::transform(q.begin(), q.end(), first_.begin(), moved.begin(), std::minus<>());
+        std::ranges::transform(q, first_, moved.begin(), std::minus<>());
         return moved;
     }
     std::vector<double> first_;
@@ -320,7 +320,7 @@ void add_scaled_forces(const fs::path& state, std::vector<double>& all) {
         }
     }
     const double scale = mean(forces);
-    std::transform(forces.begin(), forces.end(), std::back_inserter(all), [scale](double f) { return f / scale; });
+    std::ranges::transform(forces, std::back_inserter(all), [scale](double f) { return f / scale; });
 }
 
 } // namespace
@@ -338,7 +338,7 @@ ReportResult report_forces(const std::vector<fs::path>& runs, const fs::path& ou
                             forces[0].size(), forces[1].size()),
                 ""};
     for (const std::vector<double>& of : forces) {
-        largest = of.empty() ? largest : std::max(largest, *std::max_element(of.begin(), of.end()));
+        largest = of.empty() ? largest : std::max(largest, *std::ranges::max_element(of));
     }
     const int bins = static_cast<int>(std::ceil(largest / width));
     const auto first = histogram(forces[0], 0, bins * width, bins), last = histogram(forces[1], 0, bins * width, bins);

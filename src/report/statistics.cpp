@@ -74,7 +74,7 @@ Increments strain_increments(const std::vector<EquilibriumRow>& rows) {
 }
 
 std::vector<std::pair<double, double>> complementary_distribution(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
+    std::ranges::sort(values);
     std::vector<std::pair<double, double>> points;
     const auto count = static_cast<double>(values.size());
     for (std::size_t i = 0; i < values.size(); ++i) {
@@ -111,7 +111,7 @@ std::vector<EquilibriumRow> path_to(const std::vector<EquilibriumRow>& rows, int
          row = find(index, row->previous)) {
         path.push_back(*row);
     }
-    std::reverse(path.begin(), path.end());
+    std::ranges::reverse(path);
     return path;
 }
 

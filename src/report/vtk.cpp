@@ -76,8 +76,7 @@ double tube_of_one(const State& state, std::span<const double> forces) {
     for (const double r : state.packing.radius) {
         radii += r;
     }
-    const auto bearing =
-        static_cast<double>(forces.size() - static_cast<std::size_t>(std::count(forces.begin(), forces.end(), 0.0)));
+    const auto bearing = static_cast<double>(forces.size() - static_cast<std::size_t>(std::ranges::count(forces, 0.0)));
     return sum > 0 ? 0.25 * radii / static_cast<double>(state.packing.radius.size()) * bearing / sum : 0;
 }
 

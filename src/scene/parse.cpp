@@ -80,7 +80,7 @@ void read_packing(SceneSection& section, Scene& scene, const std::filesystem::pa
                                                                {"spheres", spheres.has_value()},
                                                                {"radii", radii.has_value()},
                                                                {"radii_file", radii_file.has_value()}}};
-    const auto chosen = std::find_if(sources.begin(), sources.end(), [](const auto& s) { return s.second; });
+    const auto chosen = std::ranges::find_if(sources, [](const auto& s) { return s.second; });
     if (chosen == sources.end()) {
         section.refuse(
             "",
@@ -185,7 +185,7 @@ void read_path(SceneSection& section, Scene& scene) {
         section.refuse(key, "'{}' in [load] is a direction in the space of stresses, {}", key, fault);
     }
     if (prepares) {
-        std::copy(scene.path.begin(), scene.path.end(), options.path.emplace().begin());
+        std::ranges::copy(scene.path, options.path.emplace().begin());
     }
 }
 
@@ -386,7 +386,7 @@ void check_sections(const toml::table& document, const std::string& source) {
     static constexpr std::array<std::string_view, 7> sections{"packing",   "cell", "preparation", "load",
                                                               "programme", "run",  "output"};
     for (const auto& [key, node] : document) {
-        if (std::find(sections.begin(), sections.end(), key.str()) == sections.end()) {
+        if (std::ranges::find(sections, key.str()) == sections.end()) {
             refuse(ErrorKind::bad_input, "{}:{}: unknown section or key '{}': expected one of [{}]", source,
                    key.source().begin.line, key.str(), fmt::join(sections, "], ["));
         }
@@ -402,8 +402,8 @@ void read_programme(const toml::table& document, Scene& scene) {
                    "{}:{}: 'programme' is not a list of tables: expected [[programme]] for each segment", source,
                    node->source().begin.line);
         }
-        const bool ratios = std::any_of(steps->begin(), steps->end(),
-                                        [](const toml::node& step) { return step.as_table()->contains("to"); });
+        const bool ratios =
+            std::ranges::any_of(*steps, [](const toml::node& step) { return step.as_table()->contains("to"); });
         const Load load = ratios ? load_at_start(scene) : Load();
         for (const toml::node& step : *steps) {
             SceneSection one(step.as_table(), "[programme]", source, scene.settings);

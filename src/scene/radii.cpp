@@ -35,7 +35,7 @@ std::string word(RadiiLaw law) {
 }
 
 bool belongs(const LawKey& key, RadiiLaw law) {
-    return std::find(key.laws.begin(), key.laws.end(), law) != key.laws.end();
+    return std::ranges::find(key.laws, law) != key.laws.end();
 }
 
 /// Whether a key is given; reading it marks it as known.
@@ -48,8 +48,7 @@ void check_keys(SceneSection& section, RadiiLaw law) {
     for (const LawKey& key : law_keys) {
         if (given(section, key.name) && !belongs(key, law)) {
             std::vector<std::string> laws;
-            std::transform(key.laws.begin(), key.laws.end(), std::back_inserter(laws),
-                           [](RadiiLaw other) { return word(other); });
+            std::ranges::transform(key.laws, std::back_inserter(laws), [](RadiiLaw other) { return word(other); });
             section.refuse(key.name, "'{}' in [packing] goes with law = {} and has no meaning with law = {}", key.name,
                            fmt::join(laws, ", "), word(law));
         }
@@ -77,9 +76,9 @@ DiameterLaw read_law(SceneSection& section) {
     law.kind = section.word("law", law.kind, law_words);
     check_keys(section, law.kind);
     const auto has = [&](const char* name) {
-        return belongs(*std::find_if(law_keys.begin(), law_keys.end(),
-                                     [&](const LawKey& key) { return key.name == std::string_view(name); }),
-                       law.kind);
+        return belongs(
+            *std::ranges::find_if(law_keys, [&](const LawKey& key) { return key.name == std::string_view(name); }),
+            law.kind);
     };
     constexpr double largest_ratio = 1e6;
     if (has("diameter")) {

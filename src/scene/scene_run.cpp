@@ -65,7 +65,7 @@ void choose_loaded(State& state, const Scene& scene, const std::string& source) 
             refuse(source, "[load] of {} names a direction in the space of stresses, {}", scene.file, fault);
         }
         StressRates rate{};
-        std::copy(scene.path.begin(), scene.path.end(), rate.begin());
+        std::ranges::copy(scene.path, rate.begin());
         state.load.follow(rate);
         return;
     }
@@ -73,7 +73,7 @@ void choose_loaded(State& state, const Scene& scene, const std::string& source) 
         return;
     }
     state.load.path.reset();
-    const auto axis = static_cast<std::size_t>(std::find(words.begin(), words.end(), scene.loaded) - words.begin());
+    const auto axis = static_cast<std::size_t>(std::ranges::find(words, scene.loaded) - words.begin());
     if (axis == words.size()) {
         bad(in_plane ? "disks" : "spheres", in_plane ? "\"y\" or \"tilt\"" : "an axis, x to z, or a tilt, xy to yz");
     }
@@ -100,8 +100,8 @@ State clumps_at_rest(State state, const Scene& scene, const std::string& source)
         state.load.infinitesimal = generic_infinitesimal(state.packing.radius, seed, state.packing.dimension);
         balance(state.load.infinitesimal, state.packing.cell);
     }
-    const bool moves = std::any_of(state.contacts.begin(), state.contacts.end(),
-                                   [](const Contact& c) { return c.kind == ContactKind::held; });
+    const bool moves =
+        std::ranges::any_of(state.contacts, [](const Contact& c) { return c.kind == ContactKind::held; });
     if (!moves) {
         return state; // if a force is negative, the run records the rearrangement
     }
@@ -198,8 +198,8 @@ RunHeader header_of(const Scene& scene, const std::string& program, const std::s
 std::string advice(const Scene& scene, const Failure& failure, const Packing& packing) {
     std::vector<double> radius = packing.radius;
     const bool can_choose = !scene.run.chooses();
-    std::sort(radius.begin(), radius.end());
-    const bool equal = std::adjacent_find(radius.begin(), radius.end()) != radius.end();
+    std::ranges::sort(radius);
+    const bool equal = std::ranges::adjacent_find(radius) != radius.end();
     const bool open = failure.kind <= FailureKind::undecided || failure.kind == FailureKind::not_converged;
     if (!open) {
         return "";

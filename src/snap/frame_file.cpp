@@ -165,7 +165,7 @@ std::optional<FileFrame> FrameFile::next() {
                                                : format_ == Format::xyz ? take_xyz()
                                                                         : take_table());
     TextLines lines(*frame.text, source_, lines_);
-    lines_ += static_cast<int>(std::count(frame.text->begin(), frame.text->end(), '\n'));
+    lines_ += static_cast<int>(std::ranges::count(*frame.text, '\n'));
     if (lines.only_blanks()) {
         return std::nullopt;
     }

@@ -63,9 +63,8 @@ Result<WantedList> list_below(const Packing& packing, std::optional<double> thre
                                    "counts",
                                    largest)};
     }
-    const auto range =
-        *std::max_element(plateau.ranges.begin(), plateau.ranges.end(),
-                          [&](const auto& x, const auto& y) { return plateau.width(x) < plateau.width(y); });
+    const auto range = *std::ranges::max_element(
+        plateau.ranges, [&](const auto& x, const auto& y) { return plateau.width(x) < plateau.width(y); });
     return WantedList{
         crafted::backbone_at(packing, range.first),
         fmt::format("isostatic backbone at every threshold from {:.6g} to {:.6g}, proved", range.first, range.last)};
@@ -122,7 +121,7 @@ WantedList list_up_to(const Packing& packing, double threshold) {
     const double reach = std::nextafter(std::max(threshold, 0.0), HUGE_VAL);
     WantedList out{isostat::near_contacts(packing, reach, reach), fmt::format("gaps up to {:.6g}", threshold)};
     std::erase_if(out.contacts, [&](const Contact& c) { return !(gap(packing, c) <= threshold); });
-    std::sort(out.contacts.begin(), out.contacts.end());
+    std::ranges::sort(out.contacts);
     return out;
 }
 

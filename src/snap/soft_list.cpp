@@ -240,7 +240,7 @@ PairImages::PairImages(const Packing& packing) {
         }
     }
     for (auto& [pair, images] : images_) {
-        std::sort(images.by_gap.begin(), images.by_gap.end());
+        std::ranges::sort(images.by_gap);
     }
 }
 

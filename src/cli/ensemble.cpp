@@ -14,7 +14,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -96,7 +95,8 @@ class Board {
                 "elapsed", "rest");
         }
         say("{:>8} {:<12} {:>10} {:>8} {:>9.2f} {:>8} {:>8} {}\n", sample.seed, to_string(sample.status),
-            sample.equilibria, sample.arcs, sample.seconds, clock_text(elapsed()), clock_text(rest()), sample.reason);
+            sample.equilibria, sample.arcs, sample.seconds, clock_text(pace_.elapsed()), clock_text(rest()),
+            sample.reason);
         std::fflush(stdout);
     }
     /// Counts a sample finished in an earlier call.
@@ -109,29 +109,23 @@ class Board {
         }
         line_.show(fmt::format("{} of {} samples done{}{}, running{}, elapsed {}, rest {}", found_ + done_,
                                folders_.header().samples, failed_ > 0 ? fmt::format(", {} failed", failed_) : "",
-                               broken_ > 0 ? fmt::format(", {} broken off", broken_) : "", seeds, clock_text(elapsed()),
-                               clock_text(rest())));
+                               broken_ > 0 ? fmt::format(", {} broken off", broken_) : "", seeds,
+                               clock_text(pace_.elapsed()), clock_text(rest())));
     }
     void clear() { line_.clear(); }
 
   private:
-    [[nodiscard]] double elapsed() const {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
-    }
     /// Estimate from the mean time of ended samples; running ones count as half done.
     [[nodiscard]] double rest() const {
-        if (done_ == 0) {
-            return -1;
-        }
         const int open = folders_.header().samples - found_ - done_;
         const double half = std::min(0.5 * workers_, 0.5 * open);
-        return elapsed() / (done_ + half) * (open - half);
+        return done_ == 0 ? -1 : pace_.rest(done_ + half, open - half);
     }
     const SampleFolders& folders_;
     int workers_;
     bool quiet_;
     StatusLine line_;
-    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+    Pace pace_;
     std::set<std::size_t> running_;
     int done_ = 0;
     int found_ = 0;

@@ -13,7 +13,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <filesystem>
 
@@ -73,15 +72,14 @@ int report_ensemble(const ReportArguments& arguments) {
     Json list = Json::array();
     std::vector<fs::path> reported;
     int status = done;
-    const auto begin = std::chrono::steady_clock::now();
+    const Pace pace;
     if (!quiet) {
         say("{:>8} {:>11} {:>7} {:>8} {:>12} {:>12} {:>6}\n", "seed", "equilibria", "proved", "arcs", "ratio at end",
             "eps2", "files");
     }
     for (std::size_t k = 0; k < members.size(); ++k) {
         const Member& member = members[k];
-        const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-        const double rest = k == 0 ? -1 : elapsed / static_cast<double>(k) * static_cast<double>(members.size() - k);
+        const double rest = pace.rest(static_cast<double>(k), static_cast<double>(members.size() - k));
         line.show(fmt::format("seed {}, {} of {}, {} left", member.seed, k + 1, members.size(), clock_text(rest)));
         const fs::path output = arguments.output.empty() ? member.folder / "figures"
                                                          : fs::path(arguments.output) / member.folder.filename();

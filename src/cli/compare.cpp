@@ -9,7 +9,6 @@
 #include "io/files.hpp"
 #include "io/folders.hpp"
 
-#include <isostat/compare/compare.hpp>
 #include <isostat/io/state_file.hpp>
 
 #include <fmt/format.h>
@@ -159,10 +158,7 @@ int compare_series(const CompareArguments& a) {
     if (!a.output.empty()) {
         check_folder_for(a.output, comparison_folder);
     }
-    compare::CompareOptions options;
-    options.bundle = a.bundle;
-    options.local = a.local;
-    options.nearest_arc = a.nearest_arc;
+    compare::CompareOptions options = a.options;
     if (!a.frames.empty()) {
         const std::vector<std::string> ends = parse_list(a.frames, ':');
         const auto frame = [](const std::string& word) {

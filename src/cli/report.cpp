@@ -6,7 +6,6 @@
 #include "cli/progress.hpp"
 #include "core/refuse.hpp"
 #include "ensemble/ensemble.hpp"
-#include "report/run_report.hpp"
 
 #include <isostat/io/run_directory.hpp>
 
@@ -21,16 +20,6 @@ namespace isostat::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-ReportOptions options_of(const ReportArguments& arguments) {
-    ReportOptions options;
-    options.vtk = arguments.vtk;
-    options.charts = !arguments.no_charts;
-    options.html = arguments.html;
-    options.pdf = arguments.pdf;
-    options.contacts = arguments.contacts;
-    return options;
-}
 
 Json json_of(const std::string& input, const ReportResult& result) {
     Json object;
@@ -67,7 +56,8 @@ std::string totals(const Member& member, const ReportResult& result) {
 int report_ensemble(const ReportArguments& arguments) {
     const std::vector<Member> members = members_of(arguments.input);
     const bool quiet = arguments.common.json || arguments.common.quiet;
-    ReportOptions options = options_of(arguments);
+    ReportOptions options = arguments.options;
+    options.charts = !arguments.no_charts;
     StatusLine line(quiet);
     Json list = Json::array();
     std::vector<fs::path> reported;
@@ -137,7 +127,8 @@ int report(const ReportArguments& arguments) {
     if (output.empty()) {
         output = is_run ? input / "figures" : input.has_parent_path() ? input.parent_path() : fs::path(".");
     }
-    ReportOptions options = options_of(arguments);
+    ReportOptions options = arguments.options;
+    options.charts = !arguments.no_charts;
     StatusLine line(arguments.common.json || arguments.common.quiet);
     options.progress = [&line](std::size_t done, std::size_t all) {
         line.show(fmt::format("trajectory.html: arc {} of {}", done, all));

@@ -284,7 +284,7 @@ void add_plateau(Json& out, const PlateauAnswer& answer) {
         const std::vector<Contact> backbone = shown_backbone(file.packing, plateau, threshold);
         out["cell"] = {{"strain", strain},
                        {"threshold", or_null(threshold)},
-                       {"backbone", strains_json(strains_of(file.packing, backbone))}};
+                       {"backbone", json::counts(strains_of(file.packing, backbone))}};
     }
 }
 

@@ -213,12 +213,7 @@ Json counting_json(const std::string& file, const State& state, const Counting& 
                           {"stress", numbers(of_path(state, path->at))},
                           {"direction", numbers(of_path(state, path->rate))}};
     }
-    object["N_f"] = c.dof_count;
-    object["N"] = c.contact_count;
-    object["rank"] = c.rank;
-    object["rank_exact"] = to_string(c.rank_exact);
-    object["h"] = c.hyperstaticity;
-    object["k"] = c.mechanisms;
+    object.update(json::counts(c));
     return object;
 }
 

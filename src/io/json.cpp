@@ -192,6 +192,19 @@ Json or_null(double value) {
     return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
+Json counts(const Counting& c) {
+    return {{"N_f", c.dof_count},    {"N", c.contact_count}, {"rank", c.rank}, {"rank_exact", to_string(c.rank_exact)},
+            {"h", c.hyperstaticity}, {"k", c.mechanisms}};
+}
+
+Json counts(const StrainCounts& of_strains) {
+    Json out;
+    for (std::size_t k = 0; k < strains.size(); ++k) {
+        out[to_string(strains[k])] = counts(of_strains[k]);
+    }
+    return out;
+}
+
 void append_number(std::string& text, double value) {
     std::array<char, 64> digits{};
     text.append(digits.data(), nlohmann::detail::to_chars(digits.data(), digits.data() + digits.size(), value));

@@ -7,6 +7,7 @@
 
 #include <isostat/contact/state.hpp>
 #include <isostat/core/verdict.hpp>
+#include <isostat/rigidity/counting.hpp>
 
 #include <nlohmann/json.hpp>
 
@@ -82,6 +83,10 @@ std::string dumped(const Json& document, int indent = -1);
 
 /// A number for a record: infinities and NaN, which JSON does not have, become null.
 Json or_null(double value);
+
+/// N_f, N, rank, h and k of a list; and those for each way to strain a cell, by its word.
+Json counts(const Counting& counting);
+Json counts(const StrainCounts& of_strains);
 
 /// Appends a finite number as `Json(value).dump()` writes it, without a document between.
 void append_number(std::string& text, double value);

@@ -69,8 +69,9 @@ class Reader {
     }
 
   private:
-    void contradict(const std::string& what) {
-        out_.contradiction = out_.contradiction.empty() ? what : out_.contradiction;
+    template <class... Values> void contradict(fmt::format_string<Values...> what, Values&&... values) {
+        out_.contradiction =
+            out_.contradiction.empty() ? fmt::format(what, std::forward<Values>(values)...) : out_.contradiction;
     }
     [[nodiscard]] std::string name(const Contact& c) const {
         const auto id = [&](int i) { return frame_.ids[static_cast<std::size_t>(i)]; };
@@ -94,7 +95,7 @@ class Reader {
             const auto [row, added] = row_.emplace(c.contact, c.row);
             if (!added) {
                 ++out_.twice;
-                contradict(fmt::format("{}: {} come twice (first in {})", c.row, name(c.contact), row->second));
+                contradict("{}: {} come twice (first in {})", c.row, name(c.contact), row->second);
             } else if (c.force != 0) {
                 force_.emplace(c.contact, c.force); // a negative force is that of a dashpot, or an error
                 beyond_.emplace(c.contact, c.force - expected(c.contact));
@@ -115,16 +116,15 @@ class Reader {
         const double limit = deepest * frame_.packing.min_radius();
         for (const Contact& c : overlaps_) {
             if (gap(frame_.packing, c) < -limit) {
-                contradict(fmt::format("{}: {} overlap by {:.3g}: expected less than {:.3g}, {} of the smallest radius "
-                                       "(radii, or diameters?)",
-                                       at(c), name(c), -gap(frame_.packing, c), limit, deepest));
+                contradict("{}: {} overlap by {:.3g}: expected less than {:.3g}, {} of the smallest radius (radii, or "
+                           "diameters?)",
+                           at(c), name(c), -gap(frame_.packing, c), limit, deepest);
                 return;
             }
         }
         for (const auto& [c, force] : force_) {
             if (gap(frame_.packing, c) > limit) {
-                contradict(
-                    fmt::format("{}: {} have a force and are {:.3g} apart", at(c), name(c), gap(frame_.packing, c)));
+                contradict("{}: {} have a force and are {:.3g} apart", at(c), name(c), gap(frame_.packing, c));
                 return;
             }
         }
@@ -157,10 +157,9 @@ class Reader {
         } else if (may_be_dashpots(largest)) {
             out_.dashpots = "dashpots may be at work";
         } else {
-            contradict(fmt::format("{}: the force between {} is {:.6g} and {} {:.6g} (ratio {:.6g}){}", at(worst),
-                                   name(worst), force_.at(worst),
-                                   series_.law == ForceLaw::linear ? "stiffness x overlap" : "that of the law",
-                                   expected(worst), out_.ratio, units_words()));
+            contradict("{}: the force between {} is {:.6g} and {} {:.6g} (ratio {:.6g}){}", at(worst), name(worst),
+                       force_.at(worst), series_.law == ForceLaw::linear ? "stiffness x overlap" : "that of the law",
+                       expected(worst), out_.ratio, units_words());
         }
     }
 
@@ -200,8 +199,8 @@ class Reader {
             const double force = law ? expected(c) - unknown(c) : 0;
             if (row_.count(c) == 0 && force > series_.agreement * out_.mean) {
                 ++out_.missing;
-                contradict(fmt::format("{}: {} overlap by {:.6g}, a force of {:.6g}, and have no contact in the files",
-                                       frame_.row, name(c), -gap(frame_.packing, c), expected(c)));
+                contradict("{}: {} overlap by {:.6g}, a force of {:.6g}, and have no contact in the files", frame_.row,
+                           name(c), -gap(frame_.packing, c), expected(c));
             }
         }
     }

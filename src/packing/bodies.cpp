@@ -270,21 +270,20 @@ void require_single_grains(const Packing& packing, const std::string& source, co
 }
 
 void validate_bars(const Packing& packing, const std::string& source) {
-    const auto bad = [&](const std::string& what) { throw Error(ErrorKind::bad_input, source + ": " + what); };
     for (std::size_t k = 0; k < packing.bars.size(); ++k) {
         const Bar& bar = packing.bars[k];
         if (bar.i < 0 || bar.i >= bar.j || bar.j >= packing.disk_count()) {
-            bad(fmt::format("bar {}-{}: expected two different {}s from 0 to {}, the smaller number first", bar.i,
-                            bar.j, grain_word(packing.dimension), packing.disk_count() - 1));
+            refuse(source, "bar {}-{}: expected two different {}s from 0 to {}, the smaller number first", bar.i, bar.j,
+                   grain_word(packing.dimension), packing.disk_count() - 1);
         }
         if (!(bar.length >= shortest_length && bar.length <= longest_length)) {
-            bad(fmt::format("the length of bar {}-{} is {}: expected a positive finite number from {} to {}", bar.i,
-                            bar.j, bar.length, shortest_length, longest_length));
+            refuse(source, "the length of bar {}-{} is {}: expected a positive finite number from {} to {}", bar.i,
+                   bar.j, bar.length, shortest_length, longest_length);
         }
         if (k > 0 &&
             (bar < packing.bars[k - 1] || (bar.i == packing.bars[k - 1].i && bar.j == packing.bars[k - 1].j))) {
-            bad(fmt::format("bar {}-{} comes after bar {}-{}: expected bars in increasing order, each once", bar.i,
-                            bar.j, packing.bars[k - 1].i, packing.bars[k - 1].j));
+            refuse(source, "bar {}-{} comes after bar {}-{}: expected bars in increasing order, each once", bar.i,
+                   bar.j, packing.bars[k - 1].i, packing.bars[k - 1].j);
         }
     }
     if (packing.bars.empty()) {
@@ -299,8 +298,8 @@ void validate_bars(const Packing& packing, const std::string& source) {
         const int count = static_cast<int>(body.size());
         const int expected = bars_of_rigid_body(count, packing.dimension);
         if (const int found = bars[static_cast<std::size_t>(body.front())]; found != expected) {
-            bad(fmt::format("the body of {} {} has {} members and {} bars: expected {}, as many as make it rigid",
-                            grain_word(packing.dimension), body.front(), count, found, expected));
+            refuse(source, "the body of {} {} has {} members and {} bars: expected {}, as many as make it rigid",
+                   grain_word(packing.dimension), body.front(), count, found, expected);
         }
     }
 }

@@ -115,24 +115,24 @@ std::string DofMap::name(int dof) const {
 namespace {
 
 void validate_cell(const Packing& packing, const std::string& source) {
-    const auto bad = [&](const std::string& what) { throw Error(ErrorKind::bad_input, source + ": " + what); };
     const Cell& cell = packing.cell;
     for (std::size_t a = 0; a < packing.axes(); ++a) {
         if (!cell.periodic[a]) {
             if (cell.period_moves[a]) {
-                bad(fmt::format("the period along {} moves, and that axis has walls: expected a periodic axis",
-                                axis_names[a]));
+                refuse(source, "the period along {} moves, and that axis has walls: expected a periodic axis",
+                       axis_names[a]);
             }
             continue;
         }
         if (packing.walls.lower[a] != WallKind::absent || packing.walls.upper[a] != WallKind::absent) {
-            bad(fmt::format("{} is periodic and has walls: expected walls \"absent\" along it", axis_names[a]));
+            refuse(source, "{} is periodic and has walls: expected walls \"absent\" along it", axis_names[a]);
         }
         const double length = packing.lattice(a, a);
         if (!(length > 0 && length <= longest_length)) {
-            bad(fmt::format("the period along {} is {}: expected a positive length of at most {} (the cell is inverted "
-                            "or degenerate)",
-                            axis_names[a], length, longest_length));
+            refuse(source,
+                   "the period along {} is {}: expected a positive length of at most {} (the cell is inverted or "
+                   "degenerate)",
+                   axis_names[a], length, longest_length);
         }
     }
     for (std::size_t b = 1; b < packing.axes(); ++b) {
@@ -140,23 +140,23 @@ void validate_cell(const Packing& packing, const std::string& source) {
             const double tilt = packing.lattice(a, b);
             const bool both = cell.periodic[a] && cell.periodic[b];
             if (!(std::abs(tilt) <= longest_length) || (!both && (tilt != 0 || cell.tilt_moves[cell.tilt(a, b)]))) {
-                bad(fmt::format("the tilt {} is {}: expected {}", tilt_names[cell.tilt(a, b)], tilt,
-                                both ? "a finite number" : "0, fixed, as one of its axes has walls"));
+                refuse(source, "the tilt {} is {}: expected {}", tilt_names[cell.tilt(a, b)], tilt,
+                       both ? "a finite number" : "0, fixed, as one of its axes has walls");
             }
         }
     }
     Cell shaped = cell;
     shaped.keep_shape();
     if (cell.keeps_shape && (!cell.all() || shaped != cell)) {
-        bad("the cell keeps its shape: expected periodic axes alone, and nothing else that moves");
+        refuse(source, "the cell keeps its shape: expected periodic axes alone, and nothing else that moves");
     }
     if (cell.pin < 0 || cell.pin >= packing.disk_count()) {
-        bad(fmt::format("{} {} is pinned: expected one from 0 to {}", grain_word(packing.dimension), cell.pin,
-                        packing.disk_count() - 1));
+        refuse(source, "{} {} is pinned: expected one from 0 to {}", grain_word(packing.dimension), cell.pin,
+               packing.disk_count() - 1);
     }
     if (std::ranges::find(packing.fixed, 1) != packing.fixed.end()) {
-        bad("fixed disks in a periodic cell are not supported: expected none (the pinned one says where the origin "
-            "is)");
+        refuse(source, "fixed disks in a periodic cell are not supported: expected none (the pinned one says where the "
+                       "origin is)");
     }
 }
 
@@ -215,33 +215,32 @@ void require_plane(const Packing& packing, const std::string& source, const std:
 }
 
 void validate(const Packing& packing, const std::string& source) {
-    const auto bad = [&](const std::string& what) { throw Error(ErrorKind::bad_input, source + ": " + what); };
     if (packing.dimension < plane || packing.axes() > most_axes || packing.cell.dimension != packing.dimension) {
-        bad(fmt::format("dimension {}, of the cell {}: expected 2 (disks) or 3 (spheres), the same of both",
-                        packing.dimension, packing.cell.dimension));
+        refuse(source, "dimension {}, of the cell {}: expected 2 (disks) or 3 (spheres), the same of both",
+               packing.dimension, packing.cell.dimension);
     }
     const char* const grain = grain_word(packing.dimension);
     if (packing.radius.empty()) {
-        bad(fmt::format("no {0}s: a packing needs at least one {0}", grain));
+        refuse(source, "no {0}s: a packing needs at least one {0}", grain);
     }
     if (packing.q.size() != packing.coordinate_count()) {
-        bad(fmt::format("{} coordinates for {} {}s: expected {}", packing.q.size(), packing.radius.size(), grain,
-                        packing.coordinate_count()));
+        refuse(source, "{} coordinates for {} {}s: expected {}", packing.q.size(), packing.radius.size(), grain,
+               packing.coordinate_count());
     }
     if (!packing.fixed.empty() && packing.fixed.size() != packing.radius.size()) {
-        bad(fmt::format("{} flags 'fixed' for {} {}s", packing.fixed.size(), packing.radius.size(), grain));
+        refuse(source, "{} flags 'fixed' for {} {}s", packing.fixed.size(), packing.radius.size(), grain);
     }
     for (std::size_t i = 0; i < packing.radius.size(); ++i) {
         const double r = packing.radius[i];
         if (!(r >= shortest_length && r <= longest_length)) {
-            bad(fmt::format("radius of {} {} is {}: expected a positive finite number from {} to {}", grain, i, r,
-                            shortest_length, longest_length));
+            refuse(source, "radius of {} {} is {}: expected a positive finite number from {} to {}", grain, i, r,
+                   shortest_length, longest_length);
         }
         for (std::size_t a = 0; a < packing.axes(); ++a) {
             const double x = packing.q[packing.axes() * i + a];
             if (!(std::abs(x) <= longest_length)) {
-                bad(fmt::format("{} of {} {} is {}: expected a finite number of size at most {}", axis_names[a], grain,
-                                i, x, longest_length));
+                refuse(source, "{} of {} {} is {}: expected a finite number of size at most {}", axis_names[a], grain,
+                       i, x, longest_length);
             }
         }
     }
@@ -258,8 +257,8 @@ void validate(const Packing& packing, const std::string& source) {
         }
         const double length = packing.length(static_cast<int>(a));
         if (!(std::abs(length) <= longest_length) || (packing.walls.lower[a] != WallKind::absent && !(length > 0))) {
-            bad(fmt::format("position of the {} wall is {}: expected a positive finite number of at most {}",
-                            upper_wall_names[a], length, longest_length));
+            refuse(source, "position of the {} wall is {}: expected a positive finite number of at most {}",
+                   upper_wall_names[a], length, longest_length);
         }
         if (packing.walls.lower[a] == WallKind::absent) {
             continue;
@@ -267,8 +266,8 @@ void validate(const Packing& packing, const std::string& source) {
         for (std::size_t i = 0; i < packing.radius.size(); ++i) {
             // 2R > L beyond one rounding of L: the disk cannot fit, whatever the configuration; an arc of it may.
             if (!arcs.angles(static_cast<int>(i)) && 2 * packing.radius[i] > length * (1 + 1e-9)) {
-                bad(fmt::format("{} {} of diameter {} is larger than the box: its length along {} is {}", grain, i,
-                                2 * packing.radius[i], axis_names[a], length));
+                refuse(source, "{} {} of diameter {} is larger than the box: its length along {} is {}", grain, i,
+                       2 * packing.radius[i], axis_names[a], length);
             }
         }
     }

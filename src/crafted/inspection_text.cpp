@@ -55,31 +55,6 @@ std::string number_list(const std::vector<int>& numbers) {
     return numbers.empty() ? "none" : joined(numbers, [](int i) { return std::to_string(i); });
 }
 
-} // namespace
-
-const char* to_string(DiskHold hold) {
-    static constexpr auto words = words_of<DiskHold>("held", "bridge", "rattler", "fixed", "loaded", "member");
-    return word_of(hold, words);
-}
-
-const char* to_string(Support support) {
-    static constexpr auto words =
-        words_of<Support>("positive", "with zeros", "none", "unbalanced", "undecided", "no load");
-    return word_of(support, words);
-}
-
-const char* to_string(SecondOrder answer) {
-    static constexpr auto words = words_of<SecondOrder>("no mechanism", "rigid", "flexes", "undecided");
-    return word_of(answer, words);
-}
-
-const char* to_string(exact::OneSign sign) {
-    static constexpr auto words = words_of<exact::OneSign>("strict", "partial", "none");
-    return word_of(sign, words);
-}
-
-namespace {
-
 /// The table, with a function for each of its parts.
 class InspectionTable {
   public:
@@ -413,6 +388,27 @@ class Comparison {
 };
 
 } // namespace
+
+const char* to_string(DiskHold hold) {
+    static constexpr auto words = words_of<DiskHold>("held", "bridge", "rattler", "fixed", "loaded", "member");
+    return word_of(hold, words);
+}
+
+const char* to_string(Support support) {
+    static constexpr auto words =
+        words_of<Support>("positive", "with zeros", "none", "unbalanced", "undecided", "no load");
+    return word_of(support, words);
+}
+
+const char* to_string(SecondOrder answer) {
+    static constexpr auto words = words_of<SecondOrder>("no mechanism", "rigid", "flexes", "undecided");
+    return word_of(answer, words);
+}
+
+const char* to_string(exact::OneSign sign) {
+    static constexpr auto words = words_of<exact::OneSign>("strict", "partial", "none");
+    return word_of(sign, words);
+}
 
 std::string to_text(const Inspection& inspection, const ExactPacking& packing) {
     return InspectionTable(inspection, packing).text();

@@ -107,20 +107,6 @@ template <class Use> void for_each_column(const Row& row, const Use& use) {
     for_each_bound(row, use);
 }
 
-} // namespace
-
-RecordColumns record_columns(const MoreColumns& more) {
-    Load load;
-    load.dimension = more.dimension;
-    load.loaded_axis = more.loaded_axis;
-    if (more.path) {
-        load.path.emplace();
-    }
-    return record_columns(load, more.tilt);
-}
-
-namespace {
-
 /// The names, and whether integers are there.
 template <class Use> void for_each_name(MoreColumns more, const Use& use) {
     EquilibriumRecord any;
@@ -205,6 +191,16 @@ EquilibriumRow row_of(const EquilibriumLine& line) {
 }
 
 } // namespace
+
+RecordColumns record_columns(const MoreColumns& more) {
+    Load load;
+    load.dimension = more.dimension;
+    load.loaded_axis = more.loaded_axis;
+    if (more.path) {
+        load.path.emplace();
+    }
+    return record_columns(load, more.tilt);
+}
 
 std::pair<int, int> contact_columns(const Contact& contact) {
     switch (contact.i < 0 ? ContactKind::held : contact.kind) {

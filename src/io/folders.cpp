@@ -96,37 +96,6 @@ std::vector<std::string> comparison_names() {
                   names_in("bundle/", {"nodes.csv", "members.csv", "node_####.json"}));
 }
 
-} // namespace
-
-const FolderKind run_folder{"a run", "run.json", "isostat-run", run_names()};
-const FolderKind ensemble_folder{"an ensemble", "ensemble.json", "isostat-ensemble", ensemble_names()};
-const FolderKind report_folder{"a report", "report.txt", "status  ", report_names()};
-const FolderKind comparison_folder{"a comparison", "comparison.json", "isostat-comparison", comparison_names()};
-
-std::string state_name(int equilibrium) {
-    return fmt::format("states/eq_{:06}.json", equilibrium);
-}
-
-std::string certificate_name(int equilibrium) {
-    return fmt::format("certificates/eq_{:06}.json", equilibrium);
-}
-
-bool FolderKind::owns(std::string_view name) const {
-    return std::ranges::any_of(names, [&](const std::string& pattern) {
-        const auto rest = behind(pattern, name);
-        return rest && rest->empty();
-    });
-}
-
-bool FolderKind::owns_folder(std::string_view name) const {
-    return std::ranges::any_of(names, [&](const std::string& pattern) {
-        const auto rest = behind(pattern, name);
-        return rest && rest->starts_with('/');
-    });
-}
-
-namespace {
-
 void look(const fs::path& folder, const std::string& before, const FolderKind& kind, FolderContent& found) {
     for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
         const std::string name = before + entry.path().filename().string();
@@ -223,6 +192,33 @@ Descriptor locked(const fs::path& folder, int flags) {
 }
 
 } // namespace
+
+const FolderKind run_folder{"a run", "run.json", "isostat-run", run_names()};
+const FolderKind ensemble_folder{"an ensemble", "ensemble.json", "isostat-ensemble", ensemble_names()};
+const FolderKind report_folder{"a report", "report.txt", "status  ", report_names()};
+const FolderKind comparison_folder{"a comparison", "comparison.json", "isostat-comparison", comparison_names()};
+
+std::string state_name(int equilibrium) {
+    return fmt::format("states/eq_{:06}.json", equilibrium);
+}
+
+std::string certificate_name(int equilibrium) {
+    return fmt::format("certificates/eq_{:06}.json", equilibrium);
+}
+
+bool FolderKind::owns(std::string_view name) const {
+    return std::ranges::any_of(names, [&](const std::string& pattern) {
+        const auto rest = behind(pattern, name);
+        return rest && rest->empty();
+    });
+}
+
+bool FolderKind::owns_folder(std::string_view name) const {
+    return std::ranges::any_of(names, [&](const std::string& pattern) {
+        const auto rest = behind(pattern, name);
+        return rest && rest->starts_with('/');
+    });
+}
 
 FolderContent content_of(const fs::path& folder, const FolderKind& kind) {
     FolderContent found;

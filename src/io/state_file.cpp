@@ -321,6 +321,11 @@ Load load_of(const Field& document, const Packing& packing) {
     return load;
 }
 
+StateFile of_box(StateFile file, const std::string& source) {
+    require_box(file.state.packing, source, "run, inspect, plateau, certify and verify take it, this command");
+    return file;
+}
+
 } // namespace
 
 StateFile json::state_from_json(const Field& document, const std::string& source) {
@@ -367,15 +372,6 @@ StateFile json::state_from_json(const Field& document, const std::string& source
     }
     return file;
 }
-
-namespace {
-
-StateFile of_box(StateFile file, const std::string& source) {
-    require_box(file.state.packing, source, "run, inspect, plateau, certify and verify take it, this command");
-    return file;
-}
-
-} // namespace
 
 StateFile parse_any_state(const std::string& text, const std::string& source, Dimensions dimensions) {
     const json::Json parsed = Field::parse(text, source);

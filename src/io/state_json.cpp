@@ -51,30 +51,6 @@ Contact pair_from_json(const Field& field, int i, int j, const Packing& packing)
     return pair_of(i, j, image);
 }
 
-} // namespace
-
-Json contact_to_json(const Contact& contact, int dimension) {
-    switch (contact.kind) {
-    case ContactKind::disk_disk: {
-        Json pair = Json::array({contact.i, contact.j});
-        if (!contact.image.is_here()) {
-            pair.push_back(Json::array());
-            for (std::size_t a = 0; a < static_cast<std::size_t>(dimension); ++a) {
-                pair.back().push_back(static_cast<int>(contact.image.m[a]));
-            }
-        }
-        return pair;
-    }
-    case ContactKind::lower_wall:
-    case ContactKind::upper_wall: return Json::array({contact.i, wall_name(contact)});
-    case ContactKind::bar: return Json::array({"bar", contact.i, contact.j});
-    case ContactKind::held: return Json::array({"held", contact.i});
-    }
-    return {};
-}
-
-namespace {
-
 Contact contact_of(const Field& field, const Packing& packing) {
     if (field.size() != 3) {
         field.require_size(2, "[disk, disk], [disk, disk, [mx, my]], [disk, \"wall\"] or [\"held\", coordinate]");
@@ -119,31 +95,6 @@ Contact contact_of(const Field& field, const Packing& packing) {
                 packing.dimension == plane ? "" : ", \"back\", \"front\"");
 }
 
-} // namespace
-
-Contact contact_from_json(const Field& field, const Packing& packing) {
-    const Contact contact = contact_of(field, packing);
-    if (const Json written = contact_to_json(contact, packing.dimension); written != field.value()) {
-        field.fail("{}: a contact has one spelling", written.dump());
-    }
-    return contact;
-}
-
-void refuse_duplicates(const std::vector<Contact>& contacts, int dimension, const std::string& source,
-                       const std::string& name) {
-    std::vector<std::size_t> order(contacts.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return contacts[a] < contacts[b]; });
-    for (std::size_t k = 1; k < order.size(); ++k) {
-        if (contacts[order[k]] == contacts[order[k - 1]]) {
-            refuse(source, "{}[{}] is {}, as {}[{}] already: expected each contact once", name, order[k],
-                   to_string(contacts[order[k]], dimension), name, order[k - 1]);
-        }
-    }
-}
-
-namespace {
-
 Json terms(const std::vector<std::pair<Contact, Enclosure>>& list, int dimension) {
     Json rows = Json::array();
     for (const auto& [contact, term] : list) {
@@ -171,6 +122,47 @@ std::vector<std::pair<Contact, Enclosure>> terms_from(const Field& field, const 
 }
 
 } // namespace
+
+Json contact_to_json(const Contact& contact, int dimension) {
+    switch (contact.kind) {
+    case ContactKind::disk_disk: {
+        Json pair = Json::array({contact.i, contact.j});
+        if (!contact.image.is_here()) {
+            pair.push_back(Json::array());
+            for (std::size_t a = 0; a < static_cast<std::size_t>(dimension); ++a) {
+                pair.back().push_back(static_cast<int>(contact.image.m[a]));
+            }
+        }
+        return pair;
+    }
+    case ContactKind::lower_wall:
+    case ContactKind::upper_wall: return Json::array({contact.i, wall_name(contact)});
+    case ContactKind::bar: return Json::array({"bar", contact.i, contact.j});
+    case ContactKind::held: return Json::array({"held", contact.i});
+    }
+    return {};
+}
+
+Contact contact_from_json(const Field& field, const Packing& packing) {
+    const Contact contact = contact_of(field, packing);
+    if (const Json written = contact_to_json(contact, packing.dimension); written != field.value()) {
+        field.fail("{}: a contact has one spelling", written.dump());
+    }
+    return contact;
+}
+
+void refuse_duplicates(const std::vector<Contact>& contacts, int dimension, const std::string& source,
+                       const std::string& name) {
+    std::vector<std::size_t> order(contacts.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return contacts[a] < contacts[b]; });
+    for (std::size_t k = 1; k < order.size(); ++k) {
+        if (contacts[order[k]] == contacts[order[k - 1]]) {
+            refuse(source, "{}[{}] is {}, as {}[{}] already: expected each contact once", name, order[k],
+                   to_string(contacts[order[k]], dimension), name, order[k - 1]);
+        }
+    }
+}
 
 Json perturbation_to_json(const RadiusPerturbation& perturbation, int dimension) {
     Json object;

@@ -25,95 +25,6 @@ int pinned_grain(const Packing& packing) {
     return pin;
 }
 
-} // namespace
-
-Walls Walls::box(int dimension) {
-    Walls walls;
-    std::fill_n(walls.lower.begin(), dimension, WallKind::fixed);
-    std::fill_n(walls.upper.begin(), dimension, WallKind::movable);
-    return walls;
-}
-
-Walls Walls::none() {
-    return {};
-}
-
-double Packing::min_radius() const {
-    return *std::ranges::min_element(radius);
-}
-double Packing::max_radius() const {
-    return *std::ranges::max_element(radius);
-}
-
-double Packing::solid_fraction() const {
-    return solid_fraction_without({});
-}
-
-double Packing::solid_fraction_without(std::span<const int> left_out) const {
-    double grains = 0;
-    for (int i = 0; i < disk_count(); ++i) {
-        const double r = radius[static_cast<std::size_t>(i)];
-        const bool counts = std::ranges::find(left_out, i) == left_out.end();
-        grains += !counts ? 0 : dimension == plane ? std::numbers::pi * r * r : 4 * std::numbers::pi / 3 * r * r * r;
-    }
-    grains -= bars.empty() ? 0 : shared_by_members(*this, left_out);
-    double cell_size = 1;
-    for (int a = 0; a < dimension; ++a) {
-        cell_size *= length(a);
-    }
-    return grains / cell_size;
-}
-
-DofMap::DofMap(const Packing& packing)
-    : layout_(packing.layout()), periodic_(packing.cell.periodic), dof_of_(packing.q.size(), -1) {
-    coordinate_of_.reserve(packing.q.size());
-    const auto add = [&](std::size_t coordinate) {
-        dof_of_[coordinate] = static_cast<int>(coordinate_of_.size());
-        coordinate_of_.push_back(static_cast<int>(coordinate));
-    };
-    const int pin = pinned_grain(packing);
-    for (int i = 0; i < layout_.disks; ++i) {
-        for (std::size_t a = 0; a < layout_.axes() && !packing.is_fixed(DiskId(i)); ++a) {
-            if (i != pin || !periodic_[a]) {
-                add(layout_.of_disk(i) + a);
-            }
-        }
-    }
-    const Cell& cell = packing.cell;
-    for (std::size_t a = 0; a < layout_.axes(); ++a) {
-        if (cell.periodic[a] ? cell.period_moves[a] : packing.walls.upper[a] == WallKind::movable) {
-            add(packing.length_at(a));
-        }
-    }
-    for (std::size_t t = 0; cell.any() && t < cell.tilt_moves.size(); ++t) {
-        if (cell.tilt_moves[t]) {
-            add(packing.length_at(layout_.axes() + t));
-        }
-    }
-}
-
-std::vector<double> DofMap::on_coordinates(const std::vector<double>& on_dofs) const {
-    std::vector<double> all(dof_of_.size(), 0.0);
-    for (std::size_t mu = 0; mu < on_dofs.size(); ++mu) {
-        all[coordinate_of(mu)] = on_dofs[mu];
-    }
-    return all;
-}
-
-std::string DofMap::name(int dof) const {
-    const auto coordinate = static_cast<std::size_t>(coordinate_of(dof));
-    const std::size_t d = layout_.axes();
-    if (coordinate < layout_.of_length(0)) {
-        return fmt::format("{} of {} {}", axis_names[coordinate % d], grain_word(layout_.dimension), coordinate / d);
-    }
-    const std::size_t axis = coordinate - layout_.of_length(0);
-    return axis >= d         ? fmt::format("tilt {}", tilt_names[axis - d])
-           : periodic_[axis] ? fmt::format("period along {}", axis_names[axis])
-                             : fmt::format("{} wall", upper_wall_names[axis]);
-}
-
-namespace {
-
 void validate_cell(const Packing& packing, const std::string& source) {
     const Cell& cell = packing.cell;
     for (std::size_t a = 0; a < packing.axes(); ++a) {
@@ -201,6 +112,91 @@ void validate_own_images(const Packing& packing, const std::string& source) {
 }
 
 } // namespace
+
+Walls Walls::box(int dimension) {
+    Walls walls;
+    std::fill_n(walls.lower.begin(), dimension, WallKind::fixed);
+    std::fill_n(walls.upper.begin(), dimension, WallKind::movable);
+    return walls;
+}
+
+Walls Walls::none() {
+    return {};
+}
+
+double Packing::min_radius() const {
+    return *std::ranges::min_element(radius);
+}
+double Packing::max_radius() const {
+    return *std::ranges::max_element(radius);
+}
+
+double Packing::solid_fraction() const {
+    return solid_fraction_without({});
+}
+
+double Packing::solid_fraction_without(std::span<const int> left_out) const {
+    double grains = 0;
+    for (int i = 0; i < disk_count(); ++i) {
+        const double r = radius[static_cast<std::size_t>(i)];
+        const bool counts = std::ranges::find(left_out, i) == left_out.end();
+        grains += !counts ? 0 : dimension == plane ? std::numbers::pi * r * r : 4 * std::numbers::pi / 3 * r * r * r;
+    }
+    grains -= bars.empty() ? 0 : shared_by_members(*this, left_out);
+    double cell_size = 1;
+    for (int a = 0; a < dimension; ++a) {
+        cell_size *= length(a);
+    }
+    return grains / cell_size;
+}
+
+DofMap::DofMap(const Packing& packing)
+    : layout_(packing.layout()), periodic_(packing.cell.periodic), dof_of_(packing.q.size(), -1) {
+    coordinate_of_.reserve(packing.q.size());
+    const auto add = [&](std::size_t coordinate) {
+        dof_of_[coordinate] = static_cast<int>(coordinate_of_.size());
+        coordinate_of_.push_back(static_cast<int>(coordinate));
+    };
+    const int pin = pinned_grain(packing);
+    for (int i = 0; i < layout_.disks; ++i) {
+        for (std::size_t a = 0; a < layout_.axes() && !packing.is_fixed(DiskId(i)); ++a) {
+            if (i != pin || !periodic_[a]) {
+                add(layout_.of_disk(i) + a);
+            }
+        }
+    }
+    const Cell& cell = packing.cell;
+    for (std::size_t a = 0; a < layout_.axes(); ++a) {
+        if (cell.periodic[a] ? cell.period_moves[a] : packing.walls.upper[a] == WallKind::movable) {
+            add(packing.length_at(a));
+        }
+    }
+    for (std::size_t t = 0; cell.any() && t < cell.tilt_moves.size(); ++t) {
+        if (cell.tilt_moves[t]) {
+            add(packing.length_at(layout_.axes() + t));
+        }
+    }
+}
+
+std::vector<double> DofMap::on_coordinates(const std::vector<double>& on_dofs) const {
+    std::vector<double> all(dof_of_.size(), 0.0);
+    for (std::size_t mu = 0; mu < on_dofs.size(); ++mu) {
+        all[coordinate_of(mu)] = on_dofs[mu];
+    }
+    return all;
+}
+
+std::string DofMap::name(int dof) const {
+    const auto coordinate = static_cast<std::size_t>(coordinate_of(dof));
+    const std::size_t d = layout_.axes();
+    if (coordinate < layout_.of_length(0)) {
+        return fmt::format("{} of {} {}", axis_names[coordinate % d], grain_word(layout_.dimension), coordinate / d);
+    }
+    const std::size_t axis = coordinate - layout_.of_length(0);
+    return axis >= d         ? fmt::format("tilt {}", tilt_names[axis - d])
+           : periodic_[axis] ? fmt::format("period along {}", axis_names[axis])
+                             : fmt::format("{} wall", upper_wall_names[axis]);
+}
 
 void require_box(const Packing& packing, const std::string& source, const std::string& what) {
     if (packing.cell.any()) {

@@ -81,6 +81,18 @@ void count_changes(const ActiveSet& before, const ActiveSet& now, std::size_t co
     step.bounds = static_cast<int>(std::abs(held - static_cast<long>(coordinates))) + (bounded ? 1 : 0);
 }
 
+/// Moves the degrees of freedom; returns the largest displacement of a disk's coordinate.
+double displace(Packing& packing, const DofMap& dofs, const std::vector<double>& x, std::size_t disks) {
+    double largest = 0;
+    for (int c = 0; c < dofs.dof_count(); ++c) {
+        const auto k = static_cast<std::size_t>(dofs.coordinate_of(c));
+        const double step = x[static_cast<std::size_t>(c)];
+        packing.q[k] += step;
+        largest = k < disks ? std::max(largest, std::abs(step)) : largest;
+    }
+    return largest;
+}
+
 } // namespace
 
 InteriorPoint ContactProgramme::first_point(const Packing& packing, const Rows& rows) const {
@@ -113,22 +125,6 @@ InteriorPoint ContactProgramme::first_point(const Packing& packing, const Rows& 
     }
     return point;
 }
-
-namespace {
-
-/// Moves the degrees of freedom; returns the largest displacement of a disk's coordinate.
-double displace(Packing& packing, const DofMap& dofs, const std::vector<double>& x, std::size_t disks) {
-    double largest = 0;
-    for (int c = 0; c < dofs.dof_count(); ++c) {
-        const auto k = static_cast<std::size_t>(dofs.coordinate_of(c));
-        const double step = x[static_cast<std::size_t>(c)];
-        packing.q[k] += step;
-        largest = k < disks ? std::max(largest, std::abs(step)) : largest;
-    }
-    return largest;
-}
-
-} // namespace
 
 ProgrammeStep ContactProgramme::descend(Packing& packing, double eps,
                                         const std::function<void(const ProgrammeStep&)>& watch) {

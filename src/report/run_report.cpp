@@ -231,6 +231,19 @@ void make_output(const fs::path& directory, const fs::path& output) {
     }
 }
 
+/// Adds the non-zero forces of a state, divided by their mean.
+void add_scaled_forces(const fs::path& state, std::vector<double>& all) {
+    const StateFile file = fs::exists(state) ? read_any_state(state, Dimensions::any_clumps) : StateFile();
+    std::vector<double> forces;
+    for (std::size_t l = 0; l < file.forces.size(); ++l) {
+        if (file.forces[l] != 0 && file.state.contacts[l].is_unilateral()) {
+            forces.push_back(file.forces[l]);
+        }
+    }
+    const double scale = mean(forces);
+    std::ranges::transform(forces, std::back_inserter(all), [scale](double f) { return f / scale; });
+}
+
 } // namespace
 
 ReportResult report_run(const fs::path& directory, const fs::path& output, const ReportOptions& options) {
@@ -307,23 +320,6 @@ ReportResult report_state(const fs::path& state, const fs::path& output, const R
     }
     return writer.take(fmt::format("force picture of {}\n", state.string()));
 }
-
-namespace {
-
-/// Adds the non-zero forces of a state, divided by their mean.
-void add_scaled_forces(const fs::path& state, std::vector<double>& all) {
-    const StateFile file = fs::exists(state) ? read_any_state(state, Dimensions::any_clumps) : StateFile();
-    std::vector<double> forces;
-    for (std::size_t l = 0; l < file.forces.size(); ++l) {
-        if (file.forces[l] != 0 && file.state.contacts[l].is_unilateral()) {
-            forces.push_back(file.forces[l]);
-        }
-    }
-    const double scale = mean(forces);
-    std::ranges::transform(forces, std::back_inserter(all), [scale](double f) { return f / scale; });
-}
-
-} // namespace
 
 ReportResult report_forces(const std::vector<fs::path>& runs, const fs::path& output, const ReportOptions& options) {
     constexpr double width = 0.25;

@@ -25,6 +25,16 @@ const EquilibriumRow* find(const Index& index, int number) {
     return found == index.end() ? nullptr : found->second;
 }
 
+Increments collect(const std::vector<EquilibriumRow>& rows, std::optional<double> RearrangementRow::*which) {
+    Increments increments;
+    for (const RearrangementRow& one : rearrangements(rows)) {
+        if (const auto& value = one.*which) {
+            (one.direction > 0 ? increments.loading : increments.unloading).push_back(*value);
+        }
+    }
+    return increments;
+}
+
 } // namespace
 
 std::vector<RearrangementRow> rearrangements(const std::vector<EquilibriumRow>& rows) {
@@ -50,20 +60,6 @@ std::vector<RearrangementRow> rearrangements(const std::vector<EquilibriumRow>& 
     }
     return list;
 }
-
-namespace {
-
-Increments collect(const std::vector<EquilibriumRow>& rows, std::optional<double> RearrangementRow::*which) {
-    Increments increments;
-    for (const RearrangementRow& one : rearrangements(rows)) {
-        if (const auto& value = one.*which) {
-            (one.direction > 0 ? increments.loading : increments.unloading).push_back(*value);
-        }
-    }
-    return increments;
-}
-
-} // namespace
 
 Increments stress_increments(const std::vector<EquilibriumRow>& rows) {
     return collect(rows, &RearrangementRow::stress_increment);

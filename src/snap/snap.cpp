@@ -126,6 +126,14 @@ void judge_room(Snap& out) {
     }
 }
 
+/// The contacts without structural zeros, or all contacts when the zeros are not known.
+std::vector<Contact> without_zeros(const State& state, const std::vector<unsigned char>& zero) {
+    const bool known = zero.size() == state.contacts.size();
+    std::vector<Contact> out = known ? unmarked(state.contacts, zero) : state.contacts;
+    std::ranges::sort(out);
+    return out;
+}
+
 } // namespace
 
 Packing of_disks(const Packing& packing, const std::vector<int>& disks) {
@@ -223,18 +231,6 @@ Snap snap(const SoftState& soft) {
     }
     return out;
 }
-
-namespace {
-
-/// The contacts without structural zeros, or all contacts when the zeros are not known.
-std::vector<Contact> without_zeros(const State& state, const std::vector<unsigned char>& zero) {
-    const bool known = zero.size() == state.contacts.size();
-    std::vector<Contact> out = known ? unmarked(state.contacts, zero) : state.contacts;
-    std::ranges::sort(out);
-    return out;
-}
-
-} // namespace
 
 std::vector<Contact> carrying(const State& state, const Certification& truth) {
     return without_zeros(state, truth.structural_zero);

@@ -1,7 +1,6 @@
 #include "certificate/exact_counting.hpp"
 #include "certificate/finite_forces.hpp"
 #include "certificate/reach.hpp"
-#include "certificate/sectors.hpp"
 #include "certificate/true_vertex.hpp"
 #include "contact/candidates.hpp"
 #include "contact/images.hpp"

@@ -1,6 +1,5 @@
 #include "certificate/held_minimum.hpp"
 #include "certificate/reach.hpp"
-#include "certificate/sectors.hpp"
 #include "contact/other_pairs.hpp"
 #include "core/decimal.hpp"
 #include "core/roundoff.hpp"

@@ -32,9 +32,10 @@ class Section {
     [[noreturn]] void fail(const toml::node& node, const std::string& key, const std::string& expected,
                            const std::string& found = "") const;
     template <class Value, class... More>
-    [[noreturn]] void fail(const toml::node& node, const std::string& key, fmt::format_string<Value, More...> expected,
-                           Value&& value, More&&... more) const {
-        fail(node, key, fmt::format(expected, std::forward<Value>(value), std::forward<More>(more)...));
+    [[noreturn]] void fail(const toml::node& node, const std::string& key,
+                           fmt::format_string<const Value&, More...> expected, const Value& value,
+                           More&&... more) const {
+        fail(node, key, fmt::format(expected, value, std::forward<More>(more)...));
     }
     /// The same without a value: "FILE:LINE: WHAT", at the line of the key (or of the table when the key is absent).
     [[noreturn]] void refuse(const std::string& key, const std::string& what) const;

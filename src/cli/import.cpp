@@ -90,29 +90,21 @@ Imported from_list(const ImportArguments& a, const ForeignPacking& file) {
     Imported out;
     out.from = file.packing.q;
     compare::SoftState listed{file.packing, {}, load_of(a, file.packing)};
-    std::string words;
-    if (digits || a.threshold) {
-        compare::WantedList list = compare::list_up_to(file.packing, a.threshold.value_or(file.rounding));
-        listed.contacts = std::move(list.contacts);
-        words = list.words + (a.threshold ? "" : ", which the digits of the file leave open");
-    } else if (a.contacts == "plateau") {
-        compare::WantedList list = compare::list_of_plateau(file.packing, file.rounding);
-        listed.contacts = std::move(list.contacts);
-        words = std::move(list.words);
-    } else {
-        compare::SoftList list = stated_list(a.file, file, a.foreign.frame, a.contacts, a.contact_columns);
-        listed.contacts = std::move(list.contacts);
-        words = std::move(list.words);
-    }
+    compare::SoftList list =
+        digits || a.threshold     ? compare::list_up_to(file.packing, a.threshold.value_or(file.rounding))
+        : a.contacts == "plateau" ? compare::list_of_plateau(file.packing, file.rounding)
+                                  : stated_list(a.file, file, a.foreign.frame, a.contacts, a.contact_columns);
+    list.words += digits && !a.threshold ? ", which the digits of the file leave open" : "";
+    listed.contacts = std::move(list.contacts);
     out.as_listed = true;
     out.held = !digits;
     if (out.held) {
         out.state.packing = file.packing;
         out.state.contacts = std::move(listed.contacts);
         out.state.load = listed.load;
-        out.contacts = fmt::format("{}, {}", out.state.contacts.size(), words);
+        out.contacts = fmt::format("{}, {}", out.state.contacts.size(), list.words);
     } else {
-        static_cast<compare::NearestVertex&>(out) = compare::vertex_as_listed(listed, words, a.seed);
+        static_cast<compare::NearestVertex&>(out) = compare::vertex_as_listed(listed, list.words, a.seed);
     }
     return out;
 }
@@ -124,7 +116,7 @@ Result<Imported> from_foreign(const ImportArguments& a, ForeignPacking& file) {
     if (as_listed(a, file.packing)) {
         return from_list(a, file);
     }
-    std::optional<compare::WantedList> wanted;
+    std::optional<compare::SoftList> wanted;
     if (a.threshold || a.contacts == "plateau") {
         auto below = compare::list_below(file.packing, a.threshold, file.rounding);
         if (!below.ok()) {
@@ -132,8 +124,7 @@ Result<Imported> from_foreign(const ImportArguments& a, ForeignPacking& file) {
         }
         wanted = std::move(below.value());
     } else if (a.contacts != "nearest") {
-        compare::SoftList list = stated_list(a.file, file, a.foreign.frame, a.contacts, a.contact_columns);
-        wanted = {std::move(list.contacts), std::move(list.words)};
+        wanted = stated_list(a.file, file, a.foreign.frame, a.contacts, a.contact_columns);
     }
     Imported out;
     out.from = file.packing.q;

@@ -357,10 +357,9 @@ class Reader {
             }
         }
         if (const auto rest = unbalanced<Number>(out, out_.packing.cell)) {
-            in.fail(rows, grain(),
-                    fmt::format("0 along {}, which repeats: the pinned {} would bear the rest", axis_names[rest->first],
-                                grain()),
-                    "forces that sum to " + rest->second.text());
+            in.fail_found(rows, grain(), "forces that sum to " + rest->second.text(),
+                          fmt::format("0 along {}, which repeats: the pinned {} would bear the rest",
+                                      axis_names[rest->first], grain()));
         }
         return out;
     }

@@ -58,10 +58,14 @@ void Section::fail(const std::string& key, const std::string& expected) const {
     fail(*table_->get(key), key, expected);
 }
 
-void Section::fail(const toml::node& node, const std::string& key, const std::string& expected,
-                   const std::string& found) const {
+void Section::fail(const toml::node& node, const std::string& key, const std::string& expected) const {
+    fail_found(node, key, text_of(node), expected);
+}
+
+void Section::fail_found(const toml::node& node, const std::string& key, const std::string& found,
+                         const std::string& expected) const {
     throw Error(ErrorKind::bad_input, fmt::format("{}:{}: {}{} is {}: expected {}", source_, line_of_node(node), key,
-                                                  within(), found.empty() ? text_of(node) : found, expected));
+                                                  within(), found, expected));
 }
 
 void Section::refuse(const std::string& key, const std::string& what) const {

@@ -28,15 +28,16 @@ class Section {
     [[noreturn]] void fail(const std::string& key, fmt::format_string<Values...> expected, Values&&... values) const {
         fail(key, fmt::format(expected, std::forward<Values>(values)...));
     }
-    /// The same of a node in the value of the key, at its line; `found`: what to say in the place of its text.
-    [[noreturn]] void fail(const toml::node& node, const std::string& key, const std::string& expected,
-                           const std::string& found = "") const;
-    template <class Value, class... More>
-    [[noreturn]] void fail(const toml::node& node, const std::string& key,
-                           fmt::format_string<const Value&, More...> expected, const Value& value,
-                           More&&... more) const {
-        fail(node, key, fmt::format(expected, value, std::forward<More>(more)...));
+    /// The same of a node in the value of the key, at its line.
+    [[noreturn]] void fail(const toml::node& node, const std::string& key, const std::string& expected) const;
+    template <class... Values>
+    [[noreturn]] void fail(const toml::node& node, const std::string& key, fmt::format_string<Values...> expected,
+                           Values&&... values) const {
+        fail(node, key, fmt::format(expected, std::forward<Values>(values)...));
     }
+    /// The same with what was found there in the place of the text of the node.
+    [[noreturn]] void fail_found(const toml::node& node, const std::string& key, const std::string& found,
+                                 const std::string& expected) const;
     /// The same without a value: "FILE:LINE: WHAT", at the line of the key (or of the table when the key is absent).
     [[noreturn]] void refuse(const std::string& key, const std::string& what) const;
     template <class... Values>
